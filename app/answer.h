@@ -1,0 +1,20 @@
+// How both programs answer: JSON alone on stdout under --json, else words; errors as one sentence.
+#pragma once
+
+#include <string>
+
+#include "base/json.h"
+#include "base/result.h"
+
+namespace trephine {
+
+// Prints `answer` with `schema` ("trephine.<name>.1") and `build` in front.
+void printAnswer(const std::string& name, const Json& answer);
+
+// Under --json prints {error:{code,what,where,next}} with `extra` merged in, else the sentence on
+// stderr. Returns the exit code: 1.
+int printError(const std::string& name, const Error& error, bool json, const Json& extra = {});
+
+Json errorJson(const Error& error);
+
+}  // namespace trephine

@@ -1,0 +1,246 @@
+#include "app/lab_commands.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "app/answer.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "base/system.h"
+#include "imaging/ct_writer.h"
+#include "imaging/importer.h"
+#include "lab/exercise_picture.h"
+#include "lab/explain.h"
+#include "lab/upload_measurement.h"
+#include "session/case_source.h"
+#include "session/session.h"
+#include "training/replay.h"
+#include "volume/phantom.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+const char* words(Verdict verdict) { return verdictName(verdict); }
+
+void printReport(const ImportReport& report) {
+  for (const SeriesReport& s : report.series) {
+    std::printf("%-8s  %dx%dx%d  %.3f x %.3f x %.3f mm  %s  %s\n", words(s.verdict),
+                s.geometry.size[0], s.geometry.size[1], s.geometry.size[2], s.geometry.spacing_mm.x,
+                s.geometry.spacing_mm.y, s.geometry.spacing_mm.z, s.modality.c_str(),
+                s.description.c_str());
+    for (const Finding& f : s.findings) std::printf("          %s %s\n", f.text.c_str(), f.action.c_str());
+  }
+  for (const SkippedFiles& s : report.skipped) {
+    std::printf("skipped   %d: %s\n", s.count, s.reason.c_str());
+  }
+}
+
+// Puts the command line's choices into the scene.
+Status applyChoices(const RunArguments& arguments, Scene& scene) {
+  if (!arguments.case_source.empty()) scene.case_source = arguments.case_source;
+  if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
+  if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
+    return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
+  }
+  if (arguments.controller.empty()) return {};
+  for (const auto& [name, kind] : kControllerNames) {
+    if (name == arguments.controller) {
+      scene.controller = kind;
+      return {};
+    }
+  }
+  return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
+               "--controller", "Use off or seed"};
+}
+
+Status runRealTime(Session& session, double seconds, const Progress& progress) {
+  if (Status started = session.start(seconds); !started) return started;
+  while (!session.finished() && !progress.cancelled()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return session.stop();
+}
+
+// Runs the exercise and leaves its files in `out`.
+Result<RunReport> runExercise(const RunArguments& arguments, const Progress& progress) {
+  Result<Scene> scene = readScene(arguments.scene);
+  if (!scene) return scene.error();
+  if (Status chosen = applyChoices(arguments, *scene); !chosen) return chosen.error();
+  SessionOptions options;
+  const std::string script_file =
+      arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
+  if (!script_file.empty()) {
+    Result<OperatorScript> script = readOperatorScript(script_file, *scene);
+    if (!script) return script.error();
+    options.script = *std::move(script);
+  }
+  const double seconds =
+      arguments.seconds.value_or(options.script ? options.script->duration_s() : 10.0);
+  if (!(seconds > 0.0 && seconds <= 86400.0)) {
+    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day", "--seconds", ""};
+  }
+  const std::filesystem::path out = arguments.out;
+  if (Status made = makeFolder(out); !made) return made.error();
+
+  Result<Volume> volume = openCase(scene->case_source, progress);
+  if (!volume) return volume.error();
+  options.recording = freshFile(out, "session", ".h5");
+  Result<std::unique_ptr<Session>> session =
+      Session::create(*scene, *std::move(volume), options);
+  if (!session) return session.error();
+
+  const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)
+                                        : (*session)->freewheel(seconds, progress);
+  if (!ran) return ran.error();
+  RunReport report = (*session)->report();
+  if (!arguments.save_volume.empty()) {
+    const Status saved = writeVolume((*session)->grid().snapshot(), arguments.save_volume);
+    if (!saved) return saved.error();
+  }
+  const std::filesystem::path picture = freshFile(out, "picture", ".png");
+  if (!displayAvailable()) {
+    spdlog::info("No display: no picture is drawn");
+  } else if (Status drawn = writeExercisePicture(**session, picture); drawn) {
+    report.picture = picture.string();
+  } else {
+    return drawn.error();
+  }
+  return report;
+}
+
+}  // namespace
+
+int phantomCommand(const std::string& name, const std::string& out, bool json,
+                   const Progress& progress) {
+  Result<Volume> volume = makePhantom(name, progress);
+  if (!volume) return printError("phantom", volume.error(), json);
+  const CtSeriesText text{name + " phantom", name};
+  if (Status written = writeCtSeries(*volume, text, out, progress); !written) {
+    return printError("phantom", written.error(), json);
+  }
+  const GridGeometry& g = volume->geometry;
+  if (json) {
+    printAnswer("phantom", {{"path", out},
+                            {"files", g.size[2]},
+                            {"size", {g.size[0], g.size[1], g.size[2]}},
+                            {"spacing_mm", {g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z}},
+                            {"volume_sha256", volumeSha256(*volume)}});
+  } else {
+    std::printf("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
+  }
+  return 0;
+}
+
+int importCommand(const std::string& path, const std::string& series, const std::string& write,
+                  bool json, const Progress& progress) {
+  const auto fail = [&](const Error& error, const ImportReport* report) {
+    Json extra = report ? toJson(*report) : Json::object();
+    extra["chosen"] = nullptr;
+    if (!report) extra["path"] = path;
+    if (!json && report) printReport(*report);
+    printError("import", error, json, extra);
+    return 2;
+  };
+  Result<CtFolder> folder = CtFolder::scan(path, progress);
+  if (!folder) return fail(folder.error(), nullptr);
+  const std::optional<std::string> uid =
+      series.empty() ? folder->bestSeries() : std::optional<std::string>(series);
+  if (!uid) {
+    const Error none{"ALL_REFUSED", "No series in the folder can be used", path,
+                     "The findings say why for each"};
+    return fail(folder->report().error.value_or(none), &folder->report());
+  }
+  Result<Volume> volume = folder->read(*uid, progress);
+  if (!volume) return fail(volume.error(), &folder->report());
+  if (!write.empty()) {
+    if (Status written = writeVolume(*volume, write); !written) {
+      return fail(written.error(), &folder->report());
+    }
+  }
+  if (json) {
+    printAnswer("import", toJson(folder->report()));
+  } else {
+    printReport(folder->report());
+  }
+  return 0;
+}
+
+int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
+  Result<RunReport> report = runExercise(arguments, progress);
+  if (!report) return printError("run", report.error(), json);
+  if (json) {
+    printAnswer("run", toJson(*report));
+  } else {
+    std::printf("%s", toText(*report).c_str());
+  }
+  return 0;
+}
+
+int replayCommand(const std::string& file, const std::string& case_source, bool json,
+                  const Progress& progress) {
+  Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(file);
+  if (!recording) return printError("replay", recording.error(), json);
+  const Json& recorded_case = (*recording)->header().scene.value("case", Json(nullptr));
+  std::string source = case_source;
+  if (source.empty() && recorded_case.is_string()) source = recorded_case.get<std::string>();
+  if (source.empty()) {
+    const Error error{"NO_CASE", "The recording was made on a case of its own", "--case",
+                      "Give the folder that the session was run on"};
+    return printError("replay", error, json);
+  }
+  Result<Volume> volume = openCase(source, progress);
+  if (!volume) return printError("replay", volume.error(), json);
+  Result<ReplayResult> result = replay(**recording, *std::move(volume), progress);
+  if (!result) return printError("replay", result.error(), json);
+  if (result->cut_short) spdlog::warn("The recording was cut short; what it holds was replayed");
+  Json difference = nullptr;
+  if (const auto& d = result->first_difference) {
+    difference = {{"tick", d->tick},
+                  {"arm", d->arm},
+                  {"field", d->field},
+                  {"recorded", d->recorded},
+                  {"replayed", d->replayed}};
+  }
+  if (json) {
+    printAnswer("replay", {{"ticks", result->ticks},
+                           {"identical", result->identical},
+                           {"first_difference", difference},
+                           {"volume_sha256", result->volume_sha256}});
+  } else {
+    std::printf("%llu ticks replayed: %s\n", static_cast<unsigned long long>(result->ticks),
+                result->identical ? "identical" : "different");
+    if (!result->identical) std::printf("first difference: %s\n", difference.dump().c_str());
+  }
+  return result->identical ? 0 : 3;
+}
+
+int explainCommand(const std::string& scene_file, bool json) {
+  Result<Scene> scene = readScene(scene_file);
+  if (!scene) return printError("explain", scene.error(), json);
+  Result<Json> answer = explainScene(*scene);
+  if (!answer) return printError("explain", answer.error(), json);
+  if (json) {
+    printAnswer("explain", *answer);
+  } else {
+    std::printf("%s\n", answer->dump(2).c_str());
+  }
+  return 0;
+}
+
+int measureUploadCommand(bool json, const Progress& progress) {
+  Result<UploadMeasurement> measured = measureUpload(progress);
+  if (!measured) return printError("measure.upload", measured.error(), json);
+  if (json) {
+    printAnswer("measure.upload", toJson(*measured));
+  } else {
+    std::printf("full upload %.2f ms, 48^3 box %.3f ms: 1/%.0f; pictures %s\n", measured->full_ms,
+                measured->box_ms, measured->ratio, measured->pictures_equal ? "equal" : "different");
+  }
+  return 0;
+}
+
+}  // namespace trephine

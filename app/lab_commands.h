@@ -1,0 +1,31 @@
+// One function a command of trephine-lab: does the work, prints the answer, returns the exit code.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/progress.h"
+
+namespace trephine {
+
+struct RunArguments {
+  std::string scene;
+  std::string case_source;  // empty: the scene's own
+  std::string operator_file;  // empty: the scene's default
+  std::optional<double> seconds;  // empty: as long as the script
+  std::optional<double> rate_hz;
+  std::string controller;  // empty: the scene's
+  std::string save_volume;
+  std::string out;
+  bool realtime = false;
+};
+
+int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
+int importCommand(const std::string& path, const std::string& series, const std::string& write,
+                  bool json, const Progress&);
+int runCommand(const RunArguments& arguments, bool json, const Progress&);
+int replayCommand(const std::string& file, const std::string& case_source, bool json, const Progress&);
+int explainCommand(const std::string& scene, bool json);
+int measureUploadCommand(bool json, const Progress&);
+
+}  // namespace trephine

@@ -1,0 +1,78 @@
+// The workstation: `trephine [FOLDER|SCENE]`, and `trephine --exercise SCENE` for a scripted run.
+#include <CLI/CLI.hpp>
+#include <QApplication>
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "app/answer.h"
+#include "base/log.h"
+#include "ui/colours.h"
+#include "ui/exercise.h"
+#include "ui/main_window.h"
+#include "ui/start_up.h"
+#include "ui/words.h"
+
+namespace {
+
+using namespace trephine;
+
+constexpr double kLongest_s = 24.0 * 3600.0;
+
+int exercise(const ExerciseOptions& options, bool json) {
+  Result<ExerciseOutcome> outcome = runExercise(options);
+  if (!outcome) return printError("exercise", outcome.error(), json);
+  if (json) {
+    printAnswer("exercise", toJson(*outcome));
+  } else {
+    std::fputs(toText(*outcome).c_str(), stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string path, scene, out;
+  double seconds = 0.0;
+  bool json = false;
+  CLI::App cli("Trephine: practise cutting on a CT, with both hands. " +
+               purposeText().toStdString() + ".");
+  auto* path_option = cli.add_option("path", path, "A folder of CT, or a scene (.json)");
+  auto* exercise_option =
+      cli.add_option("--exercise", scene, "Play this scene's script in the window, then end");
+  cli.add_option("--seconds", seconds, "How long; as long as the script where absent")
+      ->check(CLI::Range(0.001, kLongest_s))
+      ->needs(exercise_option);
+  cli.add_option("--out", out, "Folder for its recording and picture")->needs(exercise_option);
+  cli.add_flag("--json", json, "Answer in JSON")->needs(exercise_option);
+  exercise_option->excludes(path_option);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return cli.exit(error);
+    const bool wants_json =
+        std::any_of(argv, argv + argc, [](const char* arg) { return !std::strcmp(arg, "--json"); });
+    return printError("exercise", {"BAD_USE", error.what(), "", "See trephine --help"}, wants_json);
+  }
+
+  setUpLog(!scene.empty());
+  if (Status display = prepareDisplay(); !display) {
+    return printError("exercise", display.error(), json);
+  }
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("trephine");
+  QApplication::setApplicationDisplayName("Trephine");
+  colours::applyTheme(application);
+
+  if (!scene.empty()) {
+    ExerciseOptions options{scene, {}, out};
+    if (seconds > 0.0) options.seconds = seconds;
+    if (out.empty()) options.out = std::filesystem::temp_directory_path() / "trephine-exercise";
+    return exercise(options, json);
+  }
+  MainWindow window;
+  window.show();
+  if (!path.empty()) window.workstation().openPath(path);
+  return QApplication::exec();
+}

@@ -1,0 +1,103 @@
+// trephine-lab: the workstation's work without a window.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "app/answer.h"
+#include "app/lab_commands.h"
+#include "base/log.h"
+#include "base/system.h"
+
+namespace {
+
+// Reports to a terminal only, and is cancelled by Ctrl-C: the work then ends in order.
+trephine::Progress progress([](double fraction, const std::string& step) {
+  static const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
+  if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
+});
+
+void onInterrupt(int) { progress.cancel(); }
+
+int run(int argc, char** argv) {
+  using namespace trephine;
+  CLI::App app{"Trephine's laboratory. For training, not for diagnosis or treatment planning."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", buildName());
+  bool json = false;
+
+  std::string phantom, out, path, series, write, file, case_source;
+  RunArguments arguments;
+  auto with_json = [&](CLI::App* command) {
+    command->add_flag("--json", json, "Answer as JSON on stdout; logs go to stderr");
+    return command;
+  };
+  auto* phantom_command =
+      with_json(app.add_subcommand("phantom", "Write a built-in case as a CT series"));
+  phantom_command->add_option("name", phantom, "cranium or abdomen")->required();
+  phantom_command->add_option("--out", out, "Folder for the slices")->required();
+
+  auto* import_command = with_json(app.add_subcommand("import", "Read a folder of CT, with a report"));
+  import_command->add_option("path", path, "A folder or a file")->required();
+  import_command->add_option("--series", series, "The series to read, by its UID in the report");
+  import_command->add_option("--write", write, "Save the volume as .mha or .nii.gz");
+
+  auto* run_command = with_json(app.add_subcommand("run", "Run an exercise with a scripted operator"));
+  run_command->add_option("scene", arguments.scene, "A scene file")->required();
+  run_command->add_option("--case", arguments.case_source,
+                          "A folder of CT, a volume file, phantom:cranium or phantom:abdomen");
+  run_command->add_option("--operator", arguments.operator_file, "An operator script");
+  run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
+  run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
+  run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
+  run_command->add_option("--controller", arguments.controller, "off or seed");
+  run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume");
+  run_command->add_option("--out", arguments.out, "Folder for recording and picture")->required();
+
+  auto* replay_command = with_json(app.add_subcommand("replay", "Run a recording again and compare"));
+  replay_command->add_option("file", file, "A session file")->required();
+  replay_command->add_option("--case", case_source, "The case, when it was not a phantom");
+
+  auto* explain_command =
+      with_json(app.add_subcommand("explain", "What a scene instantiates and what it costs"));
+  explain_command->add_option("scene", file, "A scene file")->required();
+
+  auto* measure_command = app.add_subcommand("measure", "Measurements");
+  measure_command->require_subcommand(1);
+  auto* upload_command =
+      with_json(measure_command->add_subcommand("upload", "Partial against full upload"));
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0 || !json) return app.exit(error) == 0 ? 0 : 1;
+    return printError("usage", {"BAD_ARGUMENT", error.what(), "the command line", "See --help"}, true);
+  }
+  setUpLog(json);
+  if (*phantom_command) return phantomCommand(phantom, out, json, progress);
+  if (*import_command) return importCommand(path, series, write, json, progress);
+  if (*run_command) return runCommand(arguments, json, progress);
+  if (*replay_command) return replayCommand(file, case_source, json, progress);
+  if (*explain_command) return explainCommand(file, json);
+  if (*upload_command) return measureUploadCommand(json, progress);
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, onInterrupt);
+  std::signal(SIGTERM, onInterrupt);
+  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error of the write, not of the program
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "There is not enough memory. Close other programs or choose a smaller case.\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "The program had to stop: %s.\n", error.what());
+  }
+  return 1;
+}

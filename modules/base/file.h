@@ -1,0 +1,23 @@
+// Files that are complete or not there: written beside the target, then renamed over it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace trephine {
+
+// Calls `write` with a temporary path in the target's folder, then flushes and renames. Any failure
+// (a full disk too) removes the temporary file and leaves what was at `target` untouched. The
+// temporary name keeps the target's extension, since writers choose the format by it.
+Status replaceFile(const std::filesystem::path& target,
+                   const std::function<Status(const std::filesystem::path&)>& write);
+
+Status writeTextFile(const std::filesystem::path& target, std::string_view text);
+
+// Makes the folder and its parents.
+Status makeFolder(const std::filesystem::path& folder);
+
+}  // namespace trephine

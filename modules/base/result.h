@@ -1,0 +1,66 @@
+// Result<T>: a value, or an Error that a person can act on. Nothing in the product throws across a
+// function that returns one of these.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace trephine {
+
+// One clear sentence in four parts. `code` is stable and upper case (MISSING_FOLDER); `what` says
+// what went wrong, `where` names file, field or part, `next` says what to do.
+struct Error {
+  std::string code;
+  std::string what;
+  std::string where;
+  std::string next;
+
+  std::string sentence() const {
+    std::string text = what;
+    if (!where.empty()) text += " (" + where + ")";
+    text += ".";
+    if (!next.empty()) text += " " + next + ".";
+    return text;
+  }
+};
+
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T result) : state_(std::in_place_index<0>, std::move(result)) {}
+  Result(Error why) : state_(std::in_place_index<1>, std::move(why)) {}
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  T& value() & { return std::get<0>(state_); }
+  const T& value() const& { return std::get<0>(state_); }
+  T&& value() && { return std::get<0>(std::move(state_)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  const Error& error() const { return std::get<1>(state_); }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+// Success, or an Error.
+class [[nodiscard]] Status {
+ public:
+  Status() = default;
+  Status(Error why) : error_(std::move(why)) {}
+  bool ok() const { return !error_; }
+  explicit operator bool() const { return ok(); }
+  const Error& error() const { return *error_; }
+
+ private:
+  std::optional<Error> error_;
+};
+
+}  // namespace trephine

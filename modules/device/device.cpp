@@ -1,0 +1,254 @@
+#include "device/device.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace trephine {
+
+namespace {
+
+constexpr std::uint32_t kMaxArmsOfAPlugin = 64;
+constexpr std::size_t kMaxSentence = 1000;
+
+// A name comes from a scene: it must not lead out of the plugin folder.
+bool isPluginName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+Error badPlugin(const std::string& what, const std::string& where) {
+  return {"BAD_PLUGIN", what, where, "Install the plugin that belongs to this Trephine"};
+}
+
+// Empty when the table is whole, else what is wrong with it.
+std::string tableFault(const TrephineDeviceApi& api) {
+  if (api.version != TREPHINE_DEVICE_ABI) {
+    return "The plugin speaks version " + std::to_string(api.version) +
+           " of the device interface, and this program speaks " +
+           std::to_string(TREPHINE_DEVICE_ABI);
+  }
+  if (api.size < sizeof(TrephineDeviceApi)) {
+    return "The plugin's function table has " + std::to_string(api.size) + " bytes instead of " +
+           std::to_string(sizeof(TrephineDeviceApi));
+  }
+  const std::pair<const char*, bool> functions[] = {
+      {"enumerate", api.enumerate},
+      {"open", api.open},
+      {"configure", api.configure},
+      {"calibrate", api.calibrate},
+      {"start", api.start},
+      {"exchange", api.exchange},
+      {"stop", api.stop},
+      {"safe_stop", api.safe_stop},
+      {"capabilities", api.capabilities},
+      {"close", api.close},
+      {"name", api.name},
+      {"last_error", api.last_error},
+  };
+  for (const auto& [name, present] : functions) {
+    if (!present) return std::string("The plugin's function table lacks '") + name + "'";
+  }
+  return {};
+}
+
+// The plugin's own sentence, without its full stop: Error adds one.
+std::string lastSentence(const TrephineDeviceApi& api, TrephineDevice* handle) {
+  const char* text = api.last_error(handle);
+  std::string sentence = text ? std::string(text, strnlen(text, kMaxSentence)) : std::string();
+  while (!sentence.empty() && (sentence.back() == '.' || sentence.back() == '\n')) {
+    sentence.pop_back();
+  }
+  return sentence.empty() ? "The plugin gave no reason" : sentence;
+}
+
+// Empty when an arm can have these capabilities, else the name of one that is impossible.
+std::string impossibleCapability(const TrephineCapabilities& c) {
+  const auto positive = [](double v) { return isFinite(v) && v > 0.0; };
+  for (double extent : c.workspace_m) {
+    if (!positive(extent)) return "workspace_m";
+  }
+  if (!positive(c.peak_force_N)) return "peak_force_N";
+  if (!positive(c.continuous_force_N)) return "continuous_force_N";
+  if (!positive(c.apparent_mass_kg)) return "apparent_mass_kg";
+  if (!positive(c.rate_hz)) return "rate_hz";
+  if (!positive(c.max_stiffness_N_per_m)) return "max_stiffness_N_per_m";
+  if (!isFinite(c.max_damping_Ns_per_m) || c.max_damping_Ns_per_m < 0.0) {
+    return "max_damping_Ns_per_m";
+  }
+  if (!isFinite(c.encoder_step_m) || c.encoder_step_m < 0.0) return "encoder_step_m";
+  return {};
+}
+
+template <class T>
+T sized() {
+  T value{};
+  value.size = sizeof(T);
+  value.version = TREPHINE_DEVICE_ABI;
+  return value;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
+    const std::string& name, const std::filesystem::path& folder) {
+  if (!isPluginName(name)) {
+    return Error{"NO_PLUGIN", "'" + name.substr(0, 60) + "' is not the name of a device plugin",
+                 "device name", "Use lower-case letters, digits, '_' and '-', such as 'simulated'"};
+  }
+  std::error_code ec;
+  // Made absolute: dlopen searches the system for a name without a folder.
+  const std::filesystem::path file =
+      std::filesystem::absolute(folder / ("trephine_" + name + ".so"), ec);
+  if (ec || !std::filesystem::exists(file, ec)) {
+    return Error{"NO_PLUGIN", "There is no device plugin '" + name + "'", file.string(),
+                 "Check the device name, or install that plugin into this folder"};
+  }
+  std::shared_ptr<DevicePlugin> plugin(new DevicePlugin);
+  plugin->library_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!plugin->library_) {
+    const char* reason = ::dlerror();
+    return Error{"NO_PLUGIN",
+                 "The device plugin '" + name +
+                     "' cannot be loaded: " + (reason ? reason : "the system gave no reason"),
+                 file.string(), "Install it again, with the libraries that it needs"};
+  }
+  auto entry =
+      reinterpret_cast<TrephineDeviceEntry>(::dlsym(plugin->library_, TREPHINE_DEVICE_ENTRY));
+  if (!entry) {
+    return badPlugin("The library is no device plugin: it has no '" TREPHINE_DEVICE_ENTRY "'",
+                     file.string());
+  }
+  plugin->api_ = entry(TREPHINE_DEVICE_ABI);
+  if (!plugin->api_) {
+    return badPlugin("The plugin does not speak version " + std::to_string(TREPHINE_DEVICE_ABI) +
+                         " of the device interface",
+                     file.string());
+  }
+  if (std::string fault = tableFault(*plugin->api_); !fault.empty()) {
+    return badPlugin(fault, file.string());
+  }
+  return std::shared_ptr<const DevicePlugin>(std::move(plugin));
+}
+
+DevicePlugin::~DevicePlugin() {
+  if (library_) ::dlclose(library_);
+}
+
+std::vector<TrephineArmInfo> DevicePlugin::enumerate() const {
+  const std::uint32_t count = std::min(api_->enumerate(nullptr, 0), kMaxArmsOfAPlugin);
+  std::vector<TrephineArmInfo> infos(count, sized<TrephineArmInfo>());
+  if (count == 0) return infos;
+  // An arm may have come or gone in between.
+  infos.resize(std::min(api_->enumerate(infos.data(), count), count));
+  for (TrephineArmInfo& info : infos) {
+    info.bus_path[sizeof(info.bus_path) - 1] = '\0';
+    info.serial[sizeof(info.serial) - 1] = '\0';
+    info.model[sizeof(info.model) - 1] = '\0';
+  }
+  return infos;
+}
+
+Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin> plugin,
+                                             const std::vector<std::uint32_t>& arms,
+                                             const std::string& config) {
+  const TrephineDeviceApi& api = plugin->api();
+  const std::string where = std::string("device '") + api.name + "'";
+  if (api.clock != TREPHINE_CLOCK_HOST) {
+    return badPlugin("The plugin brings its own clock, and this program paces its devices itself",
+                     where);
+  }
+  std::unique_ptr<Device> device(new Device);
+  device->plugin_ = plugin;
+  if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
+      !device->handle_) {
+    return Error{"NO_DEVICE", lastSentence(api, nullptr), where,
+                 "Connect the arm and switch it on, or choose another device in the scene"};
+  }
+  if (api.configure(device->handle_, config.c_str()) != TREPHINE_OK) {
+    return Error{"BAD_DEVICE_CONFIG", lastSentence(api, device->handle_),
+                 "configuration of " + where, "Correct the device file that the scene names"};
+  }
+  for (std::uint32_t arm = 0; arm < arms.size(); ++arm) {
+    auto capabilities = sized<TrephineCapabilities>();
+    if (api.capabilities(device->handle_, arm, &capabilities) != TREPHINE_OK) {
+      return badPlugin("The plugin does not say what arm " + std::to_string(arm) +
+                           " can do: " + lastSentence(api, device->handle_),
+                       where);
+    }
+    if (std::string field = impossibleCapability(capabilities); !field.empty()) {
+      return badPlugin(
+          "The plugin states an impossible '" + field + "' for arm " + std::to_string(arm), where);
+    }
+    device->capabilities_.push_back(capabilities);
+  }
+  auto state = sized<TrephineArmState>();
+  state.orientation[0] = 1.0;
+  device->last_states_.assign(arms.size(), state);
+  device->commands_.assign(arms.size(), sized<TrephineArmCommand>());
+  return device;
+}
+
+Device::~Device() {
+  if (!handle_) return;
+  stop();
+  plugin_->api().close(handle_);
+}
+
+Status Device::start() {
+  const TrephineDeviceApi& api = plugin_->api();
+  bool started = true;
+  for (std::uint32_t arm = 0; started && arm < armCount(); ++arm) {
+    started = api.calibrate(handle_, arm) == TREPHINE_OK;
+  }
+  started = started && api.start(handle_, nullptr, nullptr) == TREPHINE_OK;
+  if (!started) {
+    return Error{"DEVICE_NOT_STARTED", lastSentence(api, handle_),
+                 std::string("device '") + api.name + "'", "Check the arm and start again"};
+  }
+  running_ = true;
+  return {};
+}
+
+void Device::stop() {
+  if (!running_) return;
+  running_ = false;
+  plugin_->api().safe_stop(handle_);
+  plugin_->api().stop(handle_);
+}
+
+void Device::safeStop() {
+  plugin_->api().safe_stop(handle_);
+}
+
+bool Device::exchange(double dt_s, TrephineArmState* states, const TrephineArmCommand* commands) {
+  const std::size_t count = armCount();
+  for (std::size_t i = 0; i < count; ++i) {
+    states[i] = last_states_[i];
+    std::copy_n(commands[i].force_N, 3, commands_[i].force_N);
+    std::copy_n(commands[i].torque_Nm, 3, commands_[i].torque_Nm);
+  }
+  const bool good = plugin_->api().exchange(handle_, dt_s, states, commands_.data()) == TREPHINE_OK;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (good) {
+      last_states_[i] = states[i];
+    } else {
+      states[i] = last_states_[i];
+      states[i].flags |= TREPHINE_ARM_LOST;
+    }
+  }
+  return good;
+}
+
+void Device::setTarget(std::size_t arm, const Pose& pose_m, double hand_k, double hand_b) {
+  const TrephineDeviceApi& api = plugin_->api();
+  if (!api.set_target) return;
+  const double position[3] = {pose_m.position.x, pose_m.position.y, pose_m.position.z};
+  const double orientation[4] = {pose_m.orientation.w, pose_m.orientation.x, pose_m.orientation.y,
+                                 pose_m.orientation.z};
+  api.set_target(handle_, std::uint32_t(arm), position, orientation, hand_k, hand_b);
+}
+
+}  // namespace trephine

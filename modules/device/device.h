@@ -1,0 +1,76 @@
+// Device plugins, loaded and owned. The C ABI is trephine_device.h; this is its C++ side.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "base/result.h"
+#include "device/trephine_device.h"
+
+namespace trephine {
+
+// A loaded plugin library. Stays loaded while a Device of it lives.
+class DevicePlugin {
+ public:
+  // `name` such as "simulated": the library trephine_<name>.so in `folder`. Errors: NO_PLUGIN (not
+  // there or not loadable), BAD_PLUGIN (no entry symbol, another ABI, a table with holes).
+  static Result<std::shared_ptr<const DevicePlugin>> load(const std::string& name,
+                                                          const std::filesystem::path& folder);
+  ~DevicePlugin();
+  DevicePlugin(const DevicePlugin&) = delete;
+  DevicePlugin& operator=(const DevicePlugin&) = delete;
+
+  const TrephineDeviceApi& api() const { return *api_; }
+  std::vector<TrephineArmInfo> enumerate() const;
+
+ private:
+  DevicePlugin() = default;
+  void* library_ = nullptr;
+  const TrephineDeviceApi* api_ = nullptr;
+};
+
+// Opened arms of one plugin. Stops and closes itself.
+class Device {
+ public:
+  // `config` is JSON text for the plugin. Errors: NO_DEVICE and BAD_DEVICE_CONFIG with the plugin's
+  // own sentence, BAD_PLUGIN for capabilities that no arm has and for a plugin that brings its own
+  // clock: the host's loop paces every device.
+  static Result<std::unique_ptr<Device>> open(std::shared_ptr<const DevicePlugin> plugin,
+                                              const std::vector<std::uint32_t>& arms,
+                                              const std::string& config);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  std::size_t armCount() const { return capabilities_.size(); }
+  const TrephineCapabilities& capabilities(std::size_t arm) const { return capabilities_[arm]; }
+  bool takesTargets() const { return plugin_->api().set_target != nullptr; }
+
+  // Calibrates and starts every arm. Error: DEVICE_NOT_STARTED with the plugin's own sentence.
+  Status start();
+  void stop();
+  // Zero force until the next start. Any thread.
+  void safeStop();
+
+  // Haptic thread. `states` and `commands` have armCount() elements; sizes and versions in them are
+  // set here. False when the device failed: the states are then the last good ones, marked
+  // TREPHINE_ARM_LOST.
+  bool exchange(double dt_s, TrephineArmState* states, const TrephineArmCommand* commands);
+  // Haptic thread; nothing happens on arms that are not simulated. Position in device metres.
+  void setTarget(std::size_t arm, const Pose& pose_m, double hand_k, double hand_b);
+
+ private:
+  Device() = default;
+  std::shared_ptr<const DevicePlugin> plugin_;
+  TrephineDevice* handle_ = nullptr;
+  std::vector<TrephineCapabilities> capabilities_;
+  std::vector<TrephineArmState> last_states_;  // good ones
+  std::vector<TrephineArmCommand> commands_;   // scratch: the caller's, with size and version
+  bool running_ = false;
+};
+
+}  // namespace trephine

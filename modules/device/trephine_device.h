@@ -1,0 +1,132 @@
+/* The interface between Trephine and a device plugin. Plain C; a plugin includes this header alone.
+ *
+ * A plugin is a shared library that exports one symbol, TREPHINE_DEVICE_ENTRY. The host calls it
+ * with the ABI version it speaks and gets a table of functions, or NULL where the plugin cannot
+ * serve that version. Every struct starts with its size in bytes and a version, set by whoever
+ * allocates it (the host for infos, capabilities, states and commands, before each call; the plugin
+ * for its table), so that fields can be appended later: the other side ignores what lies beyond the
+ * size that it knows, refuses less, and steps through an array by the size in its first element.
+ *
+ * Units: metres, seconds, newtons, kilograms, radians; times in monotonic nanoseconds. Frame: +x
+ * right, +y up, +z towards the user, origin at the centre of the workspace (see FRAMES.md).
+ * Orientation is a unit quaternion (w, x, y, z) from the tool's frame into the device frame.
+ * Forces are those that push the hand.
+ *
+ * Threads: `exchange` and `set_target` are called on the haptic thread: they do not block,
+ * allocate, log or throw. Everything else is called on one other thread while no exchange runs.
+ * Functions return TREPHINE_OK or a TREPHINE_ERROR_*; `last_error` then has one sentence.
+ */
+#ifndef TREPHINE_DEVICE_H
+#define TREPHINE_DEVICE_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TREPHINE_DEVICE_ABI 1u
+#define TREPHINE_DEVICE_ENTRY "trephine_device_plugin"
+
+enum {
+  TREPHINE_OK = 0,
+  TREPHINE_ERROR_ARGUMENT = 1,   /* wrong index, wrong struct size, bad configuration text */
+  TREPHINE_ERROR_NO_DEVICE = 2,  /* nothing there, or it went away */
+  TREPHINE_ERROR_STATE = 3,      /* not allowed now: exchange before start, and the like */
+  TREPHINE_ERROR_DEVICE = 4      /* the device reports a fault */
+};
+
+/* Flags of an arm's state. */
+enum {
+  TREPHINE_ARM_CALIBRATED = 1u << 0,
+  TREPHINE_ARM_WARM = 1u << 1,      /* motors near their thermal limit */
+  TREPHINE_ARM_SATURATED = 1u << 2, /* the last force was more than the motors gave */
+  TREPHINE_ARM_LOST = 1u << 3,      /* no fresh sample: the pose is old */
+  TREPHINE_ARM_AT_LIMIT = 1u << 4,  /* at the edge of its workspace */
+  TREPHINE_ARM_HAS_VELOCITY = 1u << 5
+};
+
+/* How a plugin is paced. */
+enum {
+  TREPHINE_CLOCK_HOST = 0,   /* the host's timer calls exchange */
+  TREPHINE_CLOCK_DEVICE = 1  /* the plugin calls the servo callback */
+};
+
+typedef struct TrephineArmInfo {
+  uint32_t size, version;
+  char bus_path[128]; /* tells two equal arms apart, e.g. a USB port path */
+  char serial[64];
+  char model[64];
+} TrephineArmInfo;
+
+typedef struct TrephineCapabilities {
+  uint32_t size, version;
+  uint32_t input_dof, output_dof;
+  double workspace_m[3]; /* full extent of x, y, z around the origin */
+  double peak_force_N, continuous_force_N;
+  double max_stiffness_N_per_m, max_damping_Ns_per_m;
+  double apparent_mass_kg;
+  double encoder_step_m;
+  double rate_hz; /* highest rate of exchange */
+} TrephineCapabilities;
+
+typedef struct TrephineArmState {
+  uint32_t size, version;
+  uint64_t sequence; /* counts samples; equal to the last one where none came */
+  int64_t time_ns;
+  double position_m[3];
+  double orientation[4]; /* w, x, y, z */
+  double velocity_m_s[3]; /* only with TREPHINE_ARM_HAS_VELOCITY */
+  uint32_t buttons;       /* bit 0 the first */
+  uint32_t flags;
+} TrephineArmState;
+
+typedef struct TrephineArmCommand {
+  uint32_t size, version;
+  double force_N[3];
+  double torque_Nm[3];
+} TrephineArmCommand;
+
+typedef struct TrephineDevice TrephineDevice; /* one opened plugin instance with all its arms */
+
+/* Called by a plugin with TREPHINE_CLOCK_DEVICE on its own thread, once a sample of all arms. */
+typedef void (*TrephineServo)(void* user, uint32_t n_arms, const TrephineArmState* states,
+                              TrephineArmCommand* commands);
+
+typedef struct TrephineDeviceApi {
+  uint32_t size, version;
+  const char* name;
+  uint32_t clock; /* TREPHINE_CLOCK_* */
+
+  /* Arms present now. Writes at most `capacity` infos and returns how many there are. */
+  uint32_t (*enumerate)(TrephineArmInfo* infos, uint32_t capacity);
+  /* Opens `n_arms` arms by their place in the enumeration. `*device` is NULL on failure; then
+   * last_error(NULL) has the sentence. */
+  int (*open)(const uint32_t* arms, uint32_t n_arms, TrephineDevice** device);
+  /* JSON text, as the scene gives it; before start. */
+  int (*configure)(TrephineDevice* device, const char* json);
+  int (*capabilities)(TrephineDevice* device, uint32_t arm, TrephineCapabilities* capabilities);
+  int (*calibrate)(TrephineDevice* device, uint32_t arm);
+  /* `servo` is NULL for TREPHINE_CLOCK_HOST. */
+  int (*start)(TrephineDevice* device, TrephineServo servo, void* user);
+  /* Gives every arm its command, lets dt_s pass (simulated arms) and reads every arm's state. */
+  int (*exchange)(TrephineDevice* device, double dt_s, TrephineArmState* states,
+                  const TrephineArmCommand* commands);
+  /* Simulated arms only, NULL elsewhere: the rest pose of the hand that holds the arm, and the
+   * stiffness [N/m] and damping [N s/m] with which it holds. */
+  int (*set_target)(TrephineDevice* device, uint32_t arm, const double position_m[3],
+                    const double orientation[4], double hand_k, double hand_b);
+  int (*stop)(TrephineDevice* device);
+  /* Zero force at once, from any thread, in any state. */
+  void (*safe_stop)(TrephineDevice* device);
+  const char* (*last_error)(TrephineDevice* device);
+  void (*close)(TrephineDevice* device);
+} TrephineDeviceApi;
+
+typedef const TrephineDeviceApi* (*TrephineDeviceEntry)(uint32_t host_abi);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

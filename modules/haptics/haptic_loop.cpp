@@ -1,0 +1,134 @@
+#include "haptics/haptic_loop.h"
+
+#include <algorithm>
+
+#include "base/rt/alloc_guard.h"
+
+namespace trephine {
+
+HapticLoop::HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper)
+    : core_(core), devices_(std::move(devices)), operator_(oper) {
+  arm_states_.resize(kMaxArms);
+  arm_commands_.resize(kMaxArms);
+}
+
+Status HapticLoop::startDevices() {
+  if (operator_) {  // the hands stand at their first target before anything moves
+    std::array<HandTarget, kMaxArms> hands{};
+    operator_->targets(0, hands.data(), core_.parameters().arms.size());
+    for (LoopDevice& d : devices_) {
+      for (std::size_t i = 0; i < d.arms.size(); ++i) {
+        const HandTarget& hand = hands[d.arms[i]];
+        d.device->setTarget(i, hand.pose_m, hand.stiffness_N_per_m, hand.damping_Ns_per_m);
+      }
+    }
+  }
+  for (LoopDevice& d : devices_) {
+    if (Status started = d.device->start(); !started) return started;
+  }
+  return {};
+}
+
+void HapticLoop::stopDevices() {
+  for (LoopDevice& d : devices_) {
+    d.device->safeStop();
+    d.device->stop();
+  }
+}
+
+void HapticLoop::step(std::int64_t late_ns) {
+  HostClock clock;
+  const std::int64_t begin_ns = clock.now_ns();
+  {
+    rt::NoAllocation guard;
+    TickInput input;
+    input.tick = tick_;
+    input.late_ns = late_ns;
+
+    std::array<Command, 8> commands;
+    std::size_t count = 0;
+    if (core_.acceptsCommands()) {
+      while (count < commands.size() && commands_.pop(commands[count])) ++count;
+      while (count < commands.size() && operator_ && operator_->command(tick_, commands[count])) {
+        ++count;
+      }
+    }
+    exchange(input);
+    TickRecord record;
+    core_.tick(input, commands.data(), count, record);
+    for (std::size_t i = 0; i < forces_N_.size(); ++i) forces_N_[i] = record.arms[i].sent_N;
+
+    // The record last: who finds it finds all that belongs to it.
+    for (const CarveRecord& carve : core_.carves()) carves_.push(carve);
+    for (const Event& event : core_.events()) events_.push(event);
+    records_.push(record);
+    ++tick_;
+    publish(record);
+  }
+  durations_.add(clock.now_ns() - begin_ns);
+}
+
+void HapticLoop::exchange(TickInput& input) {
+  const std::size_t arm_count = core_.parameters().arms.size();
+  std::array<HandTarget, kMaxArms> hands{};
+  if (operator_) operator_->targets(tick_, hands.data(), arm_count);
+  for (LoopDevice& d : devices_) {
+    for (std::size_t i = 0; i < d.arms.size(); ++i) {
+      const std::size_t arm = d.arms[i];
+      if (operator_) {
+        d.device->setTarget(i, hands[arm].pose_m, hands[arm].stiffness_N_per_m,
+                            hands[arm].damping_Ns_per_m);
+      }
+      TrephineArmCommand& command = arm_commands_[i];
+      command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};
+      for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = forces_N_[arm][axis];
+    }
+    d.device->exchange(core_.parameters().period_s, arm_states_.data(), arm_commands_.data());
+    for (std::size_t i = 0; i < d.arms.size(); ++i) {
+      const TrephineArmState& state = arm_states_[i];
+      ArmSample& sample = last_samples_[d.arms[i]];
+      if (!(state.flags & TREPHINE_ARM_LOST)) {
+        sample.position_m = {state.position_m[0], state.position_m[1], state.position_m[2]};
+        sample.orientation = Quat(state.orientation[0], state.orientation[1], state.orientation[2],
+                                  state.orientation[3]);
+        sample.buttons = state.buttons;
+      }
+      sample.flags = state.flags;
+    }
+  }
+  input.arms = last_samples_;
+}
+
+void HapticLoop::publish(const TickRecord& record) {
+  LoopState& state = state_.writeSlot();
+  state.record = record;
+  state.ticks = tick_;
+  state.missed = missed_;
+  state.nonfinite = core_.nonFinite();
+  state.dropped = dropped();
+  const CarveJournal& journal = core_.journal();
+  state.can_undo = false;
+  for (std::size_t i = journal.strokeCount(); i > 0 && !state.can_undo; --i) {
+    state.can_undo = !journal.stroke(i - 1).undone;
+  }
+  for (int arm = 0; arm < kMaxArms; ++arm) {
+    for (int c = 0; c < kMaxClasses; ++c) state.removed[arm][c] = journal.removed(arm, c);
+  }
+  state.controller = core_.controller();
+  state.paused = core_.paused();
+  state.busy = journal.busy();
+  state.journal_full = core_.journalFull();
+  state_.publish();
+}
+
+void HapticLoop::run(LoopClock& clock, const std::atomic<bool>& stop, std::uint64_t last_tick) {
+  const auto period_ns = std::int64_t(core_.parameters().period_s * 1e9 + 0.5);
+  TickSchedule schedule(period_ns);
+  while (tick_ < last_tick && !stop.load(std::memory_order_relaxed)) {
+    const std::int64_t late_ns = schedule.waitForTick(clock);
+    missed_ = schedule.missed();
+    step(late_ns);
+  }
+}
+
+}  // namespace trephine

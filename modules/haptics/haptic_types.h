@@ -1,0 +1,93 @@
+// What goes into a tick and what comes out of it: plain data, recorded as it is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/math.h"
+#include "haptics/controllers.h"
+#include "tissue/tissue_set.h"
+#include "volume/carve_journal.h"
+
+namespace trephine {
+
+// What a device said of one arm.
+struct ArmSample {
+  Vec3 position_m{0.0};         // device frame
+  Quat orientation{1, 0, 0, 0};
+  std::uint32_t buttons = 0;
+  std::uint32_t flags = 0;      // TREPHINE_ARM_*
+};
+
+struct TickInput {
+  std::uint64_t tick = 0;
+  std::int64_t late_ns = 0;
+  std::array<ArmSample, kMaxArms> arms{};
+};
+
+// Live and scripted input to the writer of the voxels, applied at the start of a tick.
+enum class CommandKind : std::int32_t {
+  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues
+};
+
+struct Command {
+  CommandKind kind = CommandKind::none;
+  std::int32_t value = 0;  // controller: a ControllerKind
+  TissueTable tissues{};   // tissues: the new table
+};
+
+// Latched per arm until clear_faults: zero force and no removal while any stands.
+enum Fault : std::uint32_t {
+  kFaultNonFinite = 1u << 0,   // pose, velocity or force was not a number
+  kFaultLate = 1u << 1,        // a tick was 20 ms late
+  kFaultDeviceLost = 1u << 2,  // the plugin reports the arm gone
+};
+
+// What one arm did in one tick. Forces at the device, in device axes, on the arm.
+struct ArmRecord {
+  Vec3 device_position_m{0.0};
+  Quat device_orientation{1, 0, 0, 0};
+  Vec3 patient_position_mm{0.0};  // the tool's tip
+  Quat patient_orientation{1, 0, 0, 0};
+  Vec3 velocity_m_s{0.0};  // patient axes, backward difference
+  Vec3 demanded_N{0.0};    // from the laws
+  Vec3 bounded_N{0.0};     // after the controller
+  Vec3 clamped_N{0.0};     // within the arm's limit
+  Vec3 sent_N{0.0};        // after the gate
+  Vec3 energy_out_J{0.0};  // net work of the sent force on the arm so far, by axis: sum F(n-1) dx(n)
+  double observer_J = 0.0;  // the controller's own observer
+  double alpha = 0.0;       // the controller's gain
+  std::int32_t tissue_class = -1;
+  std::int32_t points_in_tissue = 0;
+  std::int32_t removed_voxels = 0;  // in this tick
+  std::uint32_t faults = 0;
+  std::uint32_t buttons = 0;
+  std::uint32_t flags = 0;
+};
+
+struct TickRecord {
+  std::uint64_t tick = 0;
+  std::int64_t late_ns = 0;
+  std::array<ArmRecord, kMaxArms> arms{};
+};
+
+struct CarveRecord {
+  std::uint64_t tick = 0;
+  std::uint32_t voxel = 0;
+  std::int16_t old_hu = 0;
+  std::int8_t arm = 0;
+  std::int8_t tissue_class = 0;
+};
+
+// Everything else that happened, stamped with its tick.
+enum class EventKind : std::int32_t { command, fault, journal_full, stroke_began };
+
+struct Event {
+  std::uint64_t tick = 0;
+  EventKind kind = EventKind::command;
+  std::int32_t arm = -1;
+  std::uint32_t value = 0;  // fault bits
+  Command command{};
+};
+
+}  // namespace trephine

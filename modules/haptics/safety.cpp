@@ -1,0 +1,62 @@
+#include "haptics/safety.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+namespace {
+constexpr double kRampIn_s = 0.2;
+}
+
+Vec3 clampForce(const Vec3& force_N, double max_N) {
+  if (!isFinite(force_N) || !(max_N > 0.0)) return Vec3(0.0);
+  // Scaled by the largest part first: the square of a huge but finite force is infinite.
+  const double largest =
+      std::max({std::abs(force_N.x), std::abs(force_N.y), std::abs(force_N.z)});
+  if (largest == 0.0) return force_N;
+  const Vec3 unit = force_N / largest;
+  const double length = glm::length(unit);
+  if (largest * length <= max_N) return force_N;
+  return unit * (max_N / length);
+}
+
+Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N) {
+  const double size = glm::length(target_N);
+  if (size == 0.0) return Vec3(0.0);
+  const Vec3 along = target_N / size;
+  const double before = std::max(0.0, glm::dot(sent_before_N, along));
+  return size <= before + step_N ? target_N : along * (before + step_N);
+}
+
+double lateGain(std::int64_t late_ns) {
+  if (late_ns <= kHoldLate_ns) return 1.0;
+  if (late_ns >= kFaultLate_ns) return 0.0;
+  return double(kFaultLate_ns - late_ns) / double(kFaultLate_ns - kHoldLate_ns);
+}
+
+Vec3 ForceGate::pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
+                     double period_s) {
+  if (!open) {
+    catching_up_ = true;
+    return sent_N_ = Vec3(0.0);
+  }
+  if (late_ns > kHoldLate_ns) {
+    catching_up_ = true;
+    return sent_N_ *= lateGain(late_ns);
+  }
+  if (waiting_for_air_) {
+    waiting_for_air_ = touching;
+    return sent_N_ = Vec3(0.0);
+  }
+  gain_ = std::min(1.0, gain_ + period_s / kRampIn_s);
+  const Vec3 target = gain_ * clamped_N;
+  if (catching_up_) {
+    sent_N_ = slewTowards(sent_N_, target, kSlew_N_per_s * period_s);
+    catching_up_ = sent_N_ != target;
+  } else {
+    sent_N_ = target;
+  }
+  return sent_N_;
+}
+
+}  // namespace trephine

@@ -1,0 +1,51 @@
+// The last steps before the arm: clamp, ramps, lateness. Pure functions and one small state.
+#pragma once
+
+#include <cstdint>
+
+#include "base/math.h"
+
+namespace trephine {
+
+// The force with at most `max_N`, its direction kept. Non-finite becomes zero.
+Vec3 clampForce(const Vec3& force_N, double max_N);
+
+// After a change (start, undo, tissue edit, controller, resume) the sent force may rise by at most
+// this until it meets the law again.
+constexpr double kSlew_N_per_s = 50.0;  // 0.05 N per ms
+
+// One tick towards `target`: it may fall or turn away at once, but the part along its own direction
+// rises by at most `step_N` above what was sent along that direction before.
+Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N);
+
+// How much of the last force a late tick still sends: held to 5 ms, then ramped to zero at 20 ms.
+constexpr std::int64_t kHoldLate_ns = 5'000'000;
+constexpr std::int64_t kFaultLate_ns = 20'000'000;
+double lateGain(std::int64_t late_ns);
+
+// Stands between the law and the arm of one hand.
+class ForceGate {
+ public:
+  // Something changed under the force: rise slowly until the law is met.
+  void change() { catching_up_ = true; }
+  // Voxels were put back: no force until the tool is out of tissue, then ramp in over 0.2 s.
+  void restored() {
+    catching_up_ = true;
+    waiting_for_air_ = true;
+    gain_ = 0.0;
+  }
+  void zero() { *this = ForceGate{}; }
+
+  // The force to send this tick. `open` is false in a pause or a fault.
+  Vec3 pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns, double period_s);
+
+  const Vec3& sent_N() const { return sent_N_; }
+
+ private:
+  Vec3 sent_N_{0.0};
+  double gain_ = 1.0;
+  bool catching_up_ = true;  // a session starts from rest
+  bool waiting_for_air_ = false;
+};
+
+}  // namespace trephine

@@ -1,0 +1,32 @@
+// From an arm's workspace to the patient and back. Contact and laws live in the patient, observer,
+// bound and clamp at the device; this is the one crossing.
+#pragma once
+
+#include "base/math.h"
+
+namespace trephine {
+
+// p_patient_mm = centre_mm + 1000 s R p_device_m;  f_device = g R^T f_patient.
+// A tissue damping b is therefore g s b at the arm.
+struct WorkspaceMap {
+  Vec3 centre_mm{0.0};        // where the device's origin lies in the patient
+  Quat rotation{1, 0, 0, 0};  // R, device axes to patient axes
+  double motion_scale = 1.0;  // s
+  double force_scale = 1.0;   // g
+
+  Pose toPatient_mm(const Pose& device_m) const {
+    return {centre_mm + 1000.0 * motion_scale * (rotation * device_m.position),
+            rotation * device_m.orientation};
+  }
+  Vec3 velocityToPatient(const Vec3& device_m_s) const {
+    return motion_scale * (rotation * device_m_s);
+  }
+  Vec3 forceToDevice(const Vec3& patient_N) const {
+    return force_scale * (glm::conjugate(rotation) * patient_N);
+  }
+  Vec3 toDevice_m(const Vec3& patient_mm) const {
+    return glm::conjugate(rotation) * (patient_mm - centre_mm) / (1000.0 * motion_scale);
+  }
+};
+
+}  // namespace trephine

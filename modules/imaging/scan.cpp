@@ -1,0 +1,116 @@
+#include "imaging/scan.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "imaging/text.h"
+#include "imaging/workers.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeepestFolder = 32;
+
+struct FoundFile {
+  fs::path path;
+  std::uint64_t bytes;
+};
+
+// Walks the folders; keeps regular files and counts everything else.
+class Walk {
+ public:
+  Walk(ScannedFiles& result, const Progress& progress) : result_(result), progress_(progress) {}
+
+  void visit(const fs::path& path, int depth) {
+    if (progress_.cancelled()) return;
+    struct stat status;
+    if (::stat(path.c_str(), &status) != 0) {
+      ++result_.files_seen;
+      skip("the file could not be opened");
+      return;
+    }
+    const bool first_visit = seen_.emplace(status.st_dev, status.st_ino).second;
+    if (S_ISDIR(status.st_mode)) {
+      if (first_visit) visitFolder(path, depth);
+      return;
+    }
+    ++result_.files_seen;
+    if (!S_ISREG(status.st_mode)) {
+      skip("not a regular file");
+    } else if (!first_visit) {
+      skip("the same file under another name");
+    } else if (::access(path.c_str(), R_OK) != 0) {
+      skip("the file may not be read");
+    } else {
+      files_.push_back({path, std::uint64_t(status.st_size)});
+    }
+  }
+
+  const std::vector<FoundFile>& files() const { return files_; }
+
+ private:
+  void visitFolder(const fs::path& folder, int depth) {
+    if (depth > kDeepestFolder) {
+      skip("a folder more than " + std::to_string(kDeepestFolder) + " levels deep");
+      return;
+    }
+    std::error_code error;
+    std::vector<fs::path> entries;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+      entries.push_back(it->path());
+    }
+    if (error) skip("a folder that could not be opened");
+    std::ranges::sort(entries);
+    for (const fs::path& entry : entries) visit(entry, depth + 1);
+  }
+
+  void skip(const std::string& reason) { ++result_.skipped[reason]; }
+
+  ScannedFiles& result_;
+  const Progress& progress_;
+  std::set<std::pair<dev_t, ino_t>> seen_;
+  std::vector<FoundFile> files_;
+};
+
+}  // namespace
+
+Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return Error{"MISSING_FOLDER", "The folder does not exist or may not be opened",
+                 cleanUtf8(path.string()), "Check the name and that you may read it"};
+  }
+  ScannedFiles result;
+  progress.at(0.0, "Looking for files");
+  Walk walk(result, progress);
+  walk.visit(path, 0);
+
+  const std::vector<FoundFile>& files = walk.files();
+  std::vector<std::optional<Result<DicomHeader>>> headers(files.size());
+  const Status read = forEachFile(
+      files.size(), progress, {0.0, 1.0, "Reading headers"},
+      [&](std::size_t i) { headers[i] = readDicomHeader(files[i].path, files[i].bytes); });
+  if (!read) return read.error();
+
+  for (auto& header : headers) {
+    if (*header) {
+      result.headers.push_back(std::move(header->value()));
+    } else {
+      ++result.skipped[header->error().what];
+    }
+  }
+  std::ranges::sort(result.headers, {},
+                    [](const DicomHeader& h) { return std::tie(h.sop_instance, h.file); });
+  return result;
+}
+
+}  // namespace trephine

@@ -1,0 +1,25 @@
+// Finds DICOM files whatever their names, and reads their headers.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/dicom_file.h"
+
+namespace trephine {
+
+struct ScannedFiles {
+  std::vector<DicomHeader> headers;    // sorted by SOP Instance UID, then path
+  int files_seen = 0;                  // everything that is not a folder
+  std::map<std::string, int> skipped;  // by reason; none names a file
+};
+
+// `path` is a folder, taken with its subfolders, or one file. Links are followed, each file and
+// folder once. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY.
+Result<ScannedFiles> scanFiles(const std::filesystem::path& path, const Progress& progress);
+
+}  // namespace trephine

@@ -1,0 +1,60 @@
+// Stored pixel words -> HU: mask, sign extension, padding, rescale, rounding and clamping.
+//
+// PS3.3 C.7.6.3 (bits stored, high bit, pixel representation), C.7.5.1.1.2 (padding value and
+// range), C.11.1 (HU = slope * stored + intercept).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace trephine {
+
+struct StoredFormat {
+  int bits_stored = 16;  // 1..16
+  int high_bit = 15;     // bits_stored - 1 .. 15
+  bool is_signed = false;
+  double slope = 1.0;
+  double intercept = 0.0;
+  // Pixel Padding Value and Range Limit as the 16-bit words of the header, in either order. A value
+  // that the stored bits can express is compared with stored values; one that they cannot (a -2000
+  // beside 12 bits) with the whole word.
+  struct Padding {
+    std::uint16_t value = 0;
+    std::uint16_t limit = 0;
+    friend bool operator==(const Padding&, const Padding&) = default;
+  };
+  std::optional<Padding> padding = std::nullopt;
+
+  friend bool operator==(const StoredFormat&, const StoredFormat&) = default;
+};
+
+struct HuCounts {
+  std::uint64_t padding = 0;  // voxels set to kAirHu
+  std::uint64_t rounded = 0;  // voxels whose HU were not whole
+  std::uint64_t clamped = 0;  // voxels outside int16
+  int hu_min = 32767;
+  int hu_max = -32768;
+
+  void add(const HuCounts& other);
+};
+
+// Turns words into HU in place. Keeps its table between slices of the same format; one object per
+// thread.
+class HuConverter {
+ public:
+  HuCounts convert(std::int16_t* words, std::size_t count, const StoredFormat& format);
+
+ private:
+  void buildTable(const StoredFormat& format);
+
+  std::optional<StoredFormat> table_format_;
+  std::vector<std::int16_t> hu_;      // by whole word
+  std::vector<std::uint8_t> events_;  // by whole word: rounded 1, clamped 2, padding 4
+};
+
+// The value of a whole word: masked, shifted, sign-extended.
+int storedValue(std::uint16_t word, const StoredFormat& format);
+
+}  // namespace trephine

@@ -1,0 +1,33 @@
+// Text as it stands in files, made safe to show: always valid UTF-8, numbers free of the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trephine {
+
+bool isUtf8(std::string_view text);
+
+// `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters a space,
+// and spaces around it go.
+std::string cleanUtf8(std::string_view text);
+
+// For text whose character set cannot be decoded: UTF-8 where it is that, ISO 2022 escapes dropped
+// and what they encoded shown as U+FFFD, anything else read as Latin-1. Never fails.
+std::string guessUtf8(std::string_view text);
+
+// The values of a DICOM DS or IS ("1\ -2.5 \3e2"); nothing when one of them is no finite number.
+std::optional<std::vector<double>> parseDecimals(std::string_view text);
+// A single value; nothing when there are none, several or a bad one.
+std::optional<double> parseDecimal(std::string_view text);
+std::optional<int> parseInteger(std::string_view text);
+
+// "12.50" for (12.5, 2), whatever the locale.
+std::string fixedText(double value, int digits);
+
+std::vector<std::string> splitValues(std::string_view text);  // at backslashes, trimmed
+
+}  // namespace trephine

@@ -1,0 +1,15 @@
+// A picture of an exercise without a window.
+#pragma once
+
+#include <filesystem>
+
+#include "base/result.h"
+#include "session/session.h"
+
+namespace trephine {
+
+// Draws the session's volume as it is now from the scene's point of view, with its tools, and
+// writes a PNG. Errors: NO_DISPLAY, NO_OPENGL, CANNOT_WRITE.
+Status writeExercisePicture(Session& session, const std::filesystem::path& file);
+
+}  // namespace trephine

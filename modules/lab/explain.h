@@ -1,0 +1,16 @@
+// What a scene instantiates, and what each part costs in a tick on this machine.
+#pragma once
+
+#include "base/json.h"
+#include "base/result.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+// -> {scene, case, rate_hz, controller, laws, removal, tissues, arms:[{name, plugin, tool, points}],
+//     journal_mb, cost:[{part, arm, ns_per_tick}], tick_ns}
+// Each part is timed alone (median of many batches) on a small block of the scene's firmest tissue;
+// tick_ns is a whole tick of all arms there, without the devices.
+Result<Json> explainScene(const Scene& scene);
+
+}  // namespace trephine

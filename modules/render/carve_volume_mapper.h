@@ -1,0 +1,50 @@
+// A volume as VTK draws it, with two things that VTK's ray caster does not do: it takes changed
+// boxes without sending the whole volume again, and it leaps over what is not visible.
+//
+// One thread, that of the OpenGL context. Methods that say so need the context to be current.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/transfer_function.h"
+#include "volume/grid.h"
+
+class vtkRenderer;
+
+namespace trephine {
+
+class CarveVolume {
+ public:
+  CarveVolume();
+  ~CarveVolume();
+  CarveVolume(const CarveVolume&) = delete;
+  CarveVolume& operator=(const CarveVolume&) = delete;
+
+  // Draws `copy`, which stays the caller's and must outlive its use here: VTK reads the voxels in
+  // place. All of them are sent at the next draw.
+  void show(Volume& copy, vtkRenderer& renderer);
+  void remove(vtkRenderer& renderer);
+  void setTransferFunction(const std::vector<TransferPoint>& points);
+
+  // Voxels in the box were changed in the copy: sent by sendChanges, or with all the others.
+  void changed(const VoxelBox& box);
+  // Sends the changed boxes into the texture in use. Context current; before each draw.
+  void sendChanges(vtkRenderer& renderer);
+  // Sends everything now. Context current. False when the GPU refused.
+  bool sendAll(vtkRenderer& renderer);
+
+  // Pixels between rays (1 is full quality), and the samples' distance in half voxels.
+  void setQuality(double pixel_step, double ray_step);
+  // Off draws as VTK does; for comparisons.
+  void setLeaping(bool on);
+
+  // Before the context goes. Context current.
+  void releaseGraphics(vtkRenderer& renderer);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,26 @@
+// How coarse a frame may be while something moves, from how long the last ones took. Pure.
+#pragma once
+
+namespace trephine {
+
+class LevelOfDetail {
+ public:
+  // Leaves a share of a 15th of a second to the window's other work.
+  static constexpr double kBudget_ms = 50.0;
+  static constexpr double kCoarsest = 6.0;
+
+  // Pixels between two rays, each way; 1 is full quality.
+  double pixelStep() const { return pixel_step_; }
+  // Factor on the distance between two samples of a ray.
+  double rayStep() const;
+
+  // A frame drawn at full quality, or at the moving level, took this long. The first of a movement
+  // takes its level from the still frame before it.
+  void stillFrameTook(double ms);
+  void movingFrameTook(double ms);
+
+ private:
+  double pixel_step_ = 1.0;
+};
+
+}  // namespace trephine

@@ -1,0 +1,97 @@
+// Draws a case: the volume by ray casting, the tools, nothing else. VTK stays inside the .cpp.
+//
+// One thread, the window's. The renderer owns its copy of the voxels; what the haptic thread cuts
+// reaches it through Grid::copyChanges and goes to the GPU as dirty boxes only.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "base/math.h"
+#include "base/result.h"
+#include "render/picture.h"
+#include "tissue/tissue_set.h"
+#include "volume/grid.h"
+
+namespace trephine {
+
+// A tool as it is drawn. The tool points along -z of its pose, its tip is the pose's position.
+struct ToolView {
+  Pose pose_mm;            // patient frame
+  double length_mm = 0.0;  // of the working part (blade) or shaft (needle)
+  bool blade = false;
+  bool contact = false;    // shown by a mark at the tip
+  Vec3 colour{0.8};
+};
+
+// How the window lends its OpenGL context to VTK.
+struct RenderHost {
+  std::function<bool()> isCurrent;
+  std::function<void()> makeCurrent;
+};
+
+class SceneRenderer {
+ public:
+  // For a window: call attach() once its context is current (initializeGL).
+  SceneRenderer();
+  // Its own hidden window, of this size. Errors: NO_DISPLAY (asked before VTK is touched),
+  // NO_OPENGL.
+  static Result<std::unique_ptr<SceneRenderer>> offscreen(int width, int height);
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
+
+  // Errors: NO_OPENGL (older than 3.2), with what the driver says of itself.
+  Status attach(RenderHost host);
+  void detach();  // before the context goes
+  std::string openGlDescription() const;
+
+  // Takes a copy of the grid and looks at it. Full upload at the next paint.
+  void setVolume(const Grid& grid);
+  bool hasVolume() const;
+  void setTissues(const TissueSet& tissues);
+  // Copies what the writer changed since the last call and keeps the boxes for the next paint.
+  // True when there is something new to draw.
+  bool pullChanges(Grid& grid);
+  void setTools(const std::vector<ToolView>& tools);
+  // Draws the renderer's own copy, for saving: what is on the screen.
+  const Volume& copy() const;
+
+  void resize(int width, int height);  // device pixels
+  // Fewer rays and longer steps while something moves; `true` at each input, `false` when still.
+  void setMoving(bool moving);
+  // Renders and copies into the framebuffer object that the window shows.
+  void paint(unsigned int framebuffer);
+  // Renders at full quality and reads it back.
+  Picture picture();
+
+  // Camera. `direction` points from the eye to the focus, patient frame.
+  void resetCamera(const Vec3& direction, const Vec3& up);
+  void lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up, double distance_mm);
+  void orbit(double azimuth_deg, double elevation_deg);
+  void zoom(double factor);
+  void pan(double dx_pixels, double dy_pixels);  // the picture moves right and down, as a mouse
+  // The view plane's axes in the patient frame, and the mm that one pixel spans at a point.
+  Vec3 viewRight() const;
+  Vec3 viewUp() const;
+  Vec3 viewForward() const;
+  double mmPerPixelAt(const Vec3& patient_mm) const;
+
+ private:
+  friend struct UploadProbe;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+// For measurements: of partial against full upload, in milliseconds until the GPU has it, and of
+// leaping over empty space against VTK's own way. Only with an attached or offscreen renderer.
+struct UploadProbe {
+  static double fullUpload_ms(SceneRenderer& renderer);
+  static double boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box);
+  // The copy that will be uploaded, to be changed by the measurement.
+  static Volume& copy(SceneRenderer& renderer);
+  static void setLeaping(SceneRenderer& renderer, bool on);
+};
+
+}  // namespace trephine

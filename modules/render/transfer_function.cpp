@@ -1,0 +1,105 @@
+#include "render/transfer_function.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace trephine {
+
+namespace {
+
+// A stretch of HU with one look: [low, high), in half-HU edges.
+struct Segment {
+  double low;
+  double high;
+  const Tissue* tissue;  // null: free space
+
+  double opacity() const { return tissue ? std::min(tissue->opacity, kMaxOpacity) : 0.0; }
+  bool visible() const { return opacity() > 0.0; }
+};
+
+std::vector<Segment> segments(const TissueSet& set) {
+  std::set<double> edges;
+  for (const Tissue& tissue : set.tissues) {
+    edges.insert(tissue.hu_min - 0.5);
+    edges.insert(tissue.hu_max + 0.5);
+  }
+  std::vector<Segment> result;
+  if (edges.empty()) return result;
+  const auto at = [&](double low, double high) {
+    for (const Tissue& tissue : set.tissues) {
+      if (low > tissue.hu_min - 1.0 && high < tissue.hu_max + 1.0) return &tissue;
+    }
+    return static_cast<const Tissue*>(nullptr);
+  };
+  constexpr double far = std::numeric_limits<double>::infinity();
+  result.push_back({-far, *edges.begin(), nullptr});
+  for (auto low = edges.begin(), high = std::next(low); high != edges.end(); low = high++) {
+    const Tissue* tissue = at(*low, *high);
+    if (result.back().tissue == tissue) {
+      result.back().high = *high;
+    } else {
+      result.push_back({*low, *high, tissue});
+    }
+  }
+  result.push_back({*edges.rbegin(), far, nullptr});
+  return result;
+}
+
+// The colour that a segment shows at the ramp towards `neighbour`.
+Vec3 colourTowards(const Segment& segment, const Segment& neighbour) {
+  if (segment.visible() || !neighbour.visible()) {
+    return segment.tissue ? segment.tissue->colour : Vec3(0.0);
+  }
+  return neighbour.tissue->colour;
+}
+
+}  // namespace
+
+std::vector<TransferPoint> transferFunction(const TissueSet& set) {
+  const std::vector<Segment> parts = segments(set);
+  std::vector<TransferPoint> points;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const Segment& before = parts[i - 1];
+    const Segment& after = parts[i];
+    // A quarter leaves half of the narrower range at its own value.
+    const double narrower = std::min(before.high - before.low, after.high - after.low);
+    const double half = std::min(kRampHalfWidth_HU, narrower / 4.0);
+    const double edge = after.low;
+    points.push_back({edge - half, colourTowards(before, after), before.opacity()});
+    points.push_back({edge + half, colourTowards(after, before), after.opacity()});
+  }
+  return points;
+}
+
+TransferPoint evaluate(const std::vector<TransferPoint>& points, double hu) {
+  if (points.empty()) return {hu, Vec3(0.0), 0.0};
+  const auto next = std::upper_bound(points.begin(), points.end(), hu,
+                                     [](double v, const TransferPoint& p) { return v < p.hu; });
+  if (next == points.begin()) return {hu, next->colour, next->opacity};
+  const TransferPoint& a = *std::prev(next);
+  if (next == points.end()) return {hu, a.colour, a.opacity};
+  const double t = (hu - a.hu) / (next->hu - a.hu);
+  return {hu, glm::mix(a.colour, next->colour, t), glm::mix(a.opacity, next->opacity, t)};
+}
+
+std::vector<HuInterval> visibleIntervals(const std::vector<TransferPoint>& points) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::vector<HuInterval> intervals;
+  const auto add = [&](double low, double high) {
+    if (!intervals.empty() && intervals.back().high >= low) {
+      intervals.back().high = high;
+    } else {
+      intervals.push_back({low, high});
+    }
+  };
+  if (points.empty()) return intervals;
+  if (points.front().opacity > 0.0) add(-far, points.front().hu);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i - 1].opacity > 0.0 || points[i].opacity > 0.0) add(points[i - 1].hu, points[i].hu);
+  }
+  if (points.back().opacity > 0.0) add(points.back().hu, far);
+  return intervals;
+}
+
+}  // namespace trephine

@@ -1,0 +1,99 @@
+#include "scene/landmark.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace trephine {
+
+namespace {
+
+struct Box {
+  Vec3 low_mm{0.0}, high_mm{0.0};
+  bool found = false;
+};
+
+bool inTissue(const Tissue& tissue, double hu) { return hu >= tissue.hu_min && hu <= tissue.hu_max; }
+
+// 1st to 99th percentile of the tissue's voxels along each patient axis, in bins of 1 mm. Every
+// second voxel on each axis is looked at.
+Box tissueBox(const Volume& volume, const Tissue& tissue) {
+  const GridGeometry& g = volume.geometry;
+  const Vec3 centre_mm = g.centre_mm();
+  const double half_mm = g.diagonal_mm() / 2.0 + 1.0;
+  const auto bins = std::size_t(2.0 * half_mm) + 2;
+  std::array<std::vector<std::uint32_t>, 3> counts;
+  for (auto& axis : counts) axis.assign(bins, 0);
+  const Mat4 affine = g.voxelToPatient();
+  std::uint64_t total = 0;
+  for (int k = 0; k < g.size[2]; k += 2) {
+    for (int j = 0; j < g.size[1]; j += 2) {
+      for (int i = 0; i < g.size[0]; i += 2) {
+        if (!inTissue(tissue, volume.at(i, j, k))) continue;
+        const Vec3 p = Vec3(affine * glm::dvec4(i, j, k, 1.0)) - centre_mm + half_mm;
+        for (int axis = 0; axis < 3; ++axis) ++counts[std::size_t(axis)][std::size_t(p[axis])];
+        ++total;
+      }
+    }
+  }
+  Box box;
+  box.found = total > 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& c = counts[std::size_t(axis)];
+    const std::uint64_t tail = total / 100;
+    std::uint64_t seen = 0;
+    std::size_t low = 0, high = bins - 1;
+    while (low + 1 < bins && (seen += c[low]) <= tail) ++low;
+    seen = 0;
+    while (high > 0 && (seen += c[high]) <= tail) --high;
+    box.low_mm[axis] = double(low) + centre_mm[axis] - half_mm;
+    box.high_mm[axis] = double(high) + 1.0 + centre_mm[axis] - half_mm;
+  }
+  return box;
+}
+
+}  // namespace
+
+Quat frameAlong(const Vec3& outward) {
+  const Vec3 z = glm::normalize(outward);
+  const Vec3 superior(0, 0, 1), anterior(0, -1, 0);
+  const Vec3 reference = std::abs(glm::dot(z, superior)) > 0.95 ? anterior : superior;
+  const Vec3 y = glm::normalize(reference - glm::dot(reference, z) * z);
+  return glm::normalize(glm::quat_cast(Mat3(glm::cross(y, z), y, z)));
+}
+
+Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
+                                   const TissueSet& tissues) {
+  const std::string where = "landmark '" + landmark.id + "'";
+  const Tissue* tissue = tissues.find(landmark.tissue);
+  if (!tissue) {
+    return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
+                 where, "Name one of its tissues"};
+  }
+  const Box box = tissueBox(volume, *tissue);
+  if (!box.found) {
+    return Error{"TISSUE_NOT_FOUND", "The case has no voxel of the tissue '" + tissue->id + "'", where,
+                 "Check the HU range, or choose a case of the scene's anatomy"};
+  }
+  const Vec3 extent_mm = box.high_mm - box.low_mm;
+  const Vec3 from_mm = box.low_mm + landmark.from * extent_mm;
+  const Vec3 towards_mm = box.low_mm + landmark.towards * extent_mm;
+  const double length_mm = glm::length(towards_mm - from_mm);
+  if (!(length_mm > 0.0)) {
+    return Error{"NO_SURFACE", "The ray has no direction", where, "Give two different points"};
+  }
+  const Vec3 along = (towards_mm - from_mm) / length_mm;
+  constexpr double kStep_mm = 0.25;
+  double run_mm = 0.0;
+  for (double at_mm = 0.0; at_mm <= length_mm; at_mm += kStep_mm) {
+    const bool inside = inTissue(*tissue, sampleHu(volume, from_mm + at_mm * along));
+    run_mm = inside ? run_mm + kStep_mm : 0.0;
+    if (run_mm >= landmark.run_mm) {
+      return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};
+    }
+  }
+  return Error{"NO_SURFACE", "The ray does not meet the tissue '" + tissue->id + "'", where,
+               "Choose a case of the scene's anatomy, or another ray"};
+}
+
+}  // namespace trephine

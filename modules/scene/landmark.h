@@ -1,0 +1,40 @@
+// Places on a case that fit any patient: where a ray through the anatomy first meets a tissue.
+#pragma once
+
+#include <string>
+
+#include "base/math.h"
+#include "base/result.h"
+#include "tissue/tissue_set.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+// The ray runs between two points given as fractions of the box that holds the tissue (its 1st to
+// 99th percentile on each patient axis, so that a table or noise does not count): (0, 0, 0) is
+// right, anterior, inferior and (1, 1, 1) left, posterior, superior.
+struct Landmark {
+  std::string id;
+  std::string tissue;     // a tissue's id
+  Vec3 from{0.5};         // outside the patient
+  Vec3 towards{0.5};
+  double run_mm = 1.0;    // how long the ray must stay in the tissue to count
+};
+
+// Origin on the surface; +z back along the ray, out of the patient; +y towards the patient's head
+// (or, for a ray along the body, towards the front); +x = y cross z.
+struct LandmarkFrame {
+  Vec3 position_mm{0.0};
+  Quat rotation{1, 0, 0, 0};  // landmark axes to patient axes
+
+  Vec3 toPatient_mm(const Vec3& offset_mm) const { return position_mm + rotation * offset_mm; }
+};
+
+// The rotation whose +z is `outward` (see LandmarkFrame).
+Quat frameAlong(const Vec3& outward);
+
+// Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray.
+Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
+                                   const TissueSet& tissues);
+
+}  // namespace trephine

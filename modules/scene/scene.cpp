@@ -1,0 +1,55 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+const SceneTool* Scene::findTool(const std::string& id) const {
+  auto it = std::find_if(tools.begin(), tools.end(), [&](const auto& t) { return t.id == id; });
+  return it == tools.end() ? nullptr : &*it;
+}
+
+const Landmark* Scene::findLandmarkById(const std::string& id) const {
+  auto it =
+      std::find_if(landmarks.begin(), landmarks.end(), [&](const auto& l) { return l.id == id; });
+  return it == landmarks.end() ? nullptr : &*it;
+}
+
+Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume) {
+  std::vector<PlacedLandmark> placed;
+  for (const Landmark& landmark : scene.landmarks) {
+    Result<LandmarkFrame> frame = findLandmark(landmark, volume, scene.tissues);
+    if (!frame) return frame.error();
+    placed.push_back({landmark.id, *frame});
+  }
+  return placed;
+}
+
+Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks) {
+  Scene fixed = scene;
+  for (SceneArm& arm : fixed.arms) {
+    if (arm.map.fixed) continue;
+    for (const PlacedLandmark& landmark : landmarks) {
+      if (landmark.id != arm.map.landmark) continue;
+      arm.map.fixed = WorkspaceMap{landmark.frame.toPatient_mm(arm.map.offset_mm),
+                                   landmark.frame.rotation, arm.map.motion_scale,
+                                   arm.map.force_scale};
+    }
+  }
+  return fixed;
+}
+
+HapticParameters hapticParameters(const Scene& scene) {
+  HapticParameters parameters;
+  parameters.period_s = 1.0 / scene.rate_hz;
+  parameters.laws = scene.laws;
+  parameters.controller = scene.controller;
+  parameters.tissues = tissueTable(scene.tissues);
+  for (const SceneArm& arm : scene.arms) {
+    parameters.arms.push_back(
+        {scene.findTool(arm.tool)->tool, arm.map.fixed.value_or(WorkspaceMap{}), arm.max_force_N});
+  }
+  return parameters;
+}
+
+}  // namespace trephine

@@ -1,0 +1,90 @@
+// What an exercise consists of, as a file declares it: case, tissues, tools, arms, laws, controller.
+// What a scene does not name is not created, not stepped and not drawn.
+// The file: JSON, resources/schemas/scene.md.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "base/result.h"
+#include "haptics/haptic_core.h"
+#include "scene/landmark.h"
+#include "tissue/tissue_set.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+// Where an arm's workspace lies in the patient: at a landmark that is found in the case, or fixed.
+struct SceneMap {
+  std::string landmark;           // empty: `fixed` holds
+  Vec3 offset_mm{0.0};            // of the device's origin from the landmark, landmark axes
+  std::optional<WorkspaceMap> fixed;
+  double motion_scale = 1.0;
+  double force_scale = 1.0;
+};
+
+struct SceneArm {
+  std::string name;                   // "left", "right"
+  std::string plugin;                 // device plugin, "simulated"
+  std::uint32_t device_arm = 0;       // its place in the plugin's enumeration
+  std::string device_config;          // file of the plugin's configuration, empty for none
+  std::string tool;                   // a tool's id
+  SceneMap map;
+  double max_force_N = 3.3;           // no more than this, whatever the device can give
+};
+
+struct SceneTool {
+  std::string id;
+  double length_mm = 0.0;
+  Tool tool;
+};
+
+struct SceneView {
+  std::string landmark;       // looked at from outside; empty: the whole case from the front
+  double distance_mm = 350.0;
+};
+
+struct Scene {
+  std::string name;
+  std::string anatomy;        // "cranium", "abdomen": which cases the scene fits
+  std::string case_source;    // "phantom:cranium", a path, or empty: given when it is run
+  TissueSet tissues;
+  std::vector<Landmark> landmarks;
+  std::vector<SceneTool> tools;
+  std::vector<SceneArm> arms;
+  std::vector<LawKind> laws;
+  ControllerKind controller = ControllerKind::seed;
+  double rate_hz = 1000.0;
+  std::string operator_file;  // default script, empty for none
+  SceneView view;
+
+  const SceneTool* findTool(const std::string& id) const;
+  const Landmark* findLandmarkById(const std::string& id) const;
+};
+
+// Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
+// field and value named), BAD_TISSUE, BAD_SCENE.
+Result<Scene> readScene(const std::filesystem::path& file);
+Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
+
+// Self-contained: tissues inline, no file names but the plugin's, and a case only where it is a
+// phantom (a path could name a patient). What a recording keeps.
+Json toJson(const Scene& scene);
+
+// A landmark's place in a case, found once and used for maps, scripts and the camera.
+struct PlacedLandmark {
+  std::string id;
+  LandmarkFrame frame;
+};
+Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume);
+
+// The same scene with every arm's map fixed at its landmark.
+Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
+
+// What the core needs of a scene whose maps are fixed.
+HapticParameters hapticParameters(const Scene& scene);
+
+}  // namespace trephine

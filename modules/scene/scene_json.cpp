@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <set>
+
+#include "scene/scene.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Kind, std::size_t N>
+std::string nameOf(const std::array<std::pair<std::string_view, Kind>, N>& names, Kind kind) {
+  for (const auto& [name, k] : names) {
+    if (k == kind) return std::string(name);
+  }
+  return {};
+}
+
+template <class Kind, std::size_t N>
+std::optional<Kind> kindOf(const std::array<std::pair<std::string_view, Kind>, N>& names,
+                           const std::string& text) {
+  for (const auto& [name, k] : names) {
+    if (name == text) return k;
+  }
+  return {};
+}
+
+template <class Kind, std::size_t N>
+std::string choices(const std::array<std::pair<std::string_view, Kind>, N>& names) {
+  std::string text;
+  for (const auto& [name, kind] : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return "Use one of: " + text;
+}
+
+constexpr std::array<std::pair<std::string_view, ToolKind>, 2> kToolNames{
+    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}}};
+
+SceneTool readTool(JsonReader& item) {
+  SceneTool out;
+  out.id = item.text("id");
+  const std::string kind_text = item.text("kind");
+  out.length_mm = item.number("length_mm");
+  const auto points = item.integer("points", 1);
+  const auto kind = kindOf(kToolNames, kind_text);
+  if (!kind) {
+    item.fail("kind", "Unknown tool '" + kind_text + "'", choices(kToolNames));
+    return out;
+  }
+  Result<Tool> tool = makeTool(*kind, out.length_mm / 1000.0,
+                               int(std::clamp<std::int64_t>(points, -1, 1'000'000)));
+  if (tool) {
+    out.tool = *std::move(tool);
+  } else {
+    item.fail(tool.error().where.c_str(), tool.error().what);
+  }
+  return out;
+}
+
+double readScale(JsonReader& map, const char* key) {
+  const double scale = map.number(key, 1.0);
+  if (!(scale > 0.0 && scale <= 100.0)) {
+    map.fail(key, "The scale must lie above 0 and at most 100, not " + Json(scale).dump());
+  }
+  return scale;
+}
+
+SceneMap readMap(JsonReader map) {
+  SceneMap out;
+  out.motion_scale = readScale(map, "motion_scale");
+  out.force_scale = readScale(map, "force_scale");
+  if (!map.has("centre_mm")) {
+    out.landmark = map.text("landmark");
+    out.offset_mm = map.vec3("offset_mm", Vec3(0.0));
+    return out;
+  }
+  WorkspaceMap fixed;
+  fixed.centre_mm = map.vec3("centre_mm");
+  fixed.motion_scale = out.motion_scale;
+  fixed.force_scale = out.force_scale;
+  const Json& q = map.raw("rotation_wxyz");
+  const bool four = q.is_array() && q.size() == 4 &&
+                    std::all_of(q.begin(), q.end(), [](const Json& v) { return v.is_number(); });
+  if (four) {
+    fixed.rotation = Quat(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>());
+  }
+  if (!four || std::abs(glm::length(fixed.rotation) - 1.0) > 1e-6) {
+    map.fail("rotation_wxyz", "Expected a unit quaternion of four numbers, found " + q.dump());
+  }
+  out.fixed = fixed;
+  return out;
+}
+
+SceneArm readArm(JsonReader& item, const fs::path& folder) {
+  SceneArm arm;
+  arm.name = item.text("name");
+  JsonReader device = item.object("device");
+  arm.plugin = device.text("plugin");
+  arm.device_arm = std::uint32_t(std::clamp<std::int64_t>(device.integer("arm", 0), 0, 255));
+  const std::string config = device.text("config", "");
+  if (!config.empty()) {
+    arm.device_config = (folder / config).lexically_normal().string();
+    if (!fs::is_regular_file(arm.device_config)) {
+      device.fail("config", "The file '" + config + "' is not there", "Check the name");
+    }
+  }
+  arm.tool = item.text("tool");
+  arm.map = readMap(item.object("map"));
+  arm.max_force_N = item.number("max_force_N", 3.3);
+  if (arm.max_force_N <= 0.0) {
+    item.fail("max_force_N", "The limit must be above 0, not " + Json(arm.max_force_N).dump());
+  }
+  return arm;
+}
+
+Landmark readLandmark(JsonReader& item) {
+  Landmark landmark;
+  landmark.id = item.text("id");
+  landmark.tissue = item.text("tissue");
+  landmark.from = item.vec3("from");
+  landmark.towards = item.vec3("towards");
+  landmark.run_mm = item.number("run_mm", 1.0);
+  return landmark;
+}
+
+// What one field cannot say: names that must exist, things that must be there once.
+void checkReferences(JsonReader& reader, const Scene& scene) {
+  for (const Landmark& landmark : scene.landmarks) {
+    if (!scene.tissues.find(landmark.tissue)) {
+      reader.fail("landmarks", "The landmark '" + landmark.id + "' names the unknown tissue '" +
+                                   landmark.tissue + "'");
+    }
+  }
+  if (scene.arms.empty() || scene.arms.size() > std::size_t(kMaxArms)) {
+    reader.fail("arms", "A scene has 1 to 4 arms, this one has " + std::to_string(scene.arms.size()));
+  }
+  std::set<std::string> names, devices;
+  for (const SceneArm& arm : scene.arms) {
+    if (!names.insert(arm.name).second) reader.fail("arms", "Two arms are named '" + arm.name + "'");
+    if (!devices.insert(arm.plugin + "/" + std::to_string(arm.device_arm)).second) {
+      reader.fail("arms", "The arm '" + arm.name + "' uses a device that another arm uses");
+    }
+    if (!scene.findTool(arm.tool)) {
+      reader.fail("arms", "The arm '" + arm.name + "' names the unknown tool '" + arm.tool + "'");
+    }
+    if (!arm.map.fixed && !scene.findLandmarkById(arm.map.landmark)) {
+      reader.fail("arms", "The arm '" + arm.name + "' names the unknown landmark '" +
+                              arm.map.landmark + "'");
+    }
+  }
+  if (!scene.view.landmark.empty() && !scene.findLandmarkById(scene.view.landmark)) {
+    reader.fail("view", "The view names the unknown landmark '" + scene.view.landmark + "'");
+  }
+}
+
+Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const std::string& file) {
+  if (value.is_string()) return readTissueSet((folder / value.get<std::string>()).lexically_normal());
+  return parseTissueSet(value, file + ": tissues");
+}
+
+}  // namespace
+
+Result<Scene> parseScene(const Json& json, const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  JsonReader reader(json, file.string());
+  Scene scene;
+  reader.format("trephine.scene", 1);
+  scene.name = reader.text("name");
+  scene.anatomy = reader.text("anatomy");
+  scene.case_source = reader.text("case", "");
+  Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
+  if (reader.ok() && !tissues) return tissues.error();
+  if (tissues) scene.tissues = *std::move(tissues);
+  for (JsonReader& item : reader.objects("landmarks")) scene.landmarks.push_back(readLandmark(item));
+  for (JsonReader& item : reader.objects("tools")) scene.tools.push_back(readTool(item));
+  for (JsonReader& item : reader.objects("arms")) scene.arms.push_back(readArm(item, folder));
+  for (const std::string& name : reader.texts("laws")) {
+    if (auto kind = kindOf(kLawNames, name)) {
+      scene.laws.push_back(*kind);
+    } else {
+      reader.fail("laws", "Unknown law '" + name + "'", choices(kLawNames));
+    }
+  }
+  const std::string removal = reader.text("removal", "on_contact");
+  if (removal != "on_contact") {
+    reader.fail("removal", "Unknown removal '" + removal + "'", "Use one of: on_contact");
+  }
+  const std::string controller = reader.text("controller");
+  if (auto kind = kindOf(kControllerNames, controller)) {
+    scene.controller = *kind;
+  } else {
+    reader.fail("controller", "Unknown controller '" + controller + "'", choices(kControllerNames));
+  }
+  scene.rate_hz = reader.number("rate_hz", 1000.0);
+  if (scene.rate_hz < 100.0 || scene.rate_hz > 20000.0) {
+    reader.fail("rate_hz", "The rate must lie between 100 and 20000 Hz, not " +
+                               Json(scene.rate_hz).dump());
+  }
+  const std::string script = reader.text("operator", "");
+  if (!script.empty()) {
+    scene.operator_file = (folder / script).lexically_normal().string();
+    if (!fs::is_regular_file(scene.operator_file)) {
+      reader.fail("operator", "The file '" + script + "' is not there", "Check the name");
+    }
+  }
+  if (reader.has("view")) {
+    JsonReader view = reader.object("view");
+    scene.view.landmark = view.text("landmark");
+    scene.view.distance_mm = view.number("distance_mm", 350.0);
+  }
+  if (reader.ok()) checkReferences(reader, scene);
+  if (Status status = reader.finish(); !status) return status.error();
+  return scene;
+}
+
+Result<Scene> readScene(const fs::path& file) {
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  return parseScene(*json, file);
+}
+
+Json toJson(const Scene& scene) {
+  const auto vec = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
+  Json landmarks = Json::array(), tools = Json::array(), arms = Json::array(), laws = Json::array();
+  for (const Landmark& l : scene.landmarks) {
+    landmarks.push_back({{"id", l.id},
+                         {"tissue", l.tissue},
+                         {"from", vec(l.from)},
+                         {"towards", vec(l.towards)},
+                         {"run_mm", l.run_mm}});
+  }
+  for (const SceneTool& t : scene.tools) {
+    tools.push_back({{"id", t.id},
+                     {"kind", nameOf(kToolNames, t.tool.kind)},
+                     {"length_mm", t.length_mm},
+                     {"points", t.tool.points_m.size()}});
+  }
+  for (const SceneArm& a : scene.arms) {
+    Json map;
+    if (a.map.fixed) {
+      const Quat& q = a.map.fixed->rotation;
+      map = {{"centre_mm", vec(a.map.fixed->centre_mm)}, {"rotation_wxyz", {q.w, q.x, q.y, q.z}}};
+    } else {
+      map = {{"landmark", a.map.landmark}, {"offset_mm", vec(a.map.offset_mm)}};
+    }
+    map["motion_scale"] = a.map.motion_scale;
+    map["force_scale"] = a.map.force_scale;
+    arms.push_back({{"name", a.name},
+                    {"device", {{"plugin", a.plugin}, {"arm", a.device_arm}}},
+                    {"tool", a.tool},
+                    {"map", map},
+                    {"max_force_N", a.max_force_N}});
+  }
+  for (LawKind law : scene.laws) laws.push_back(nameOf(kLawNames, law));
+  Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", scene.name},
+               {"anatomy", scene.anatomy}};
+  if (scene.case_source.rfind("phantom:", 0) == 0) json["case"] = scene.case_source;
+  json["tissues"] = toJson(scene.tissues);
+  json["landmarks"] = landmarks;
+  json["tools"] = tools;
+  json["arms"] = arms;
+  json["laws"] = laws;
+  json["removal"] = "on_contact";
+  json["controller"] = controllerName(scene.controller);
+  json["rate_hz"] = scene.rate_hz;
+  if (!scene.view.landmark.empty()) {
+    json["view"] = {{"landmark", scene.view.landmark}, {"distance_mm", scene.view.distance_mm}};
+  }
+  return json;
+}
+
+}  // namespace trephine

@@ -1,0 +1,20 @@
+#include "session/live_operator.h"
+
+namespace trephine {
+
+void LiveOperator::targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) {
+  if (script_) script_->targets(tick, hands, arm_count);
+  live_.refresh();
+  for (std::size_t arm = 0; arm < arm_count; ++arm) {
+    const LiveHands::Hand& hand = live_.value().hands[arm];
+    if (!hand.live && script_) continue;
+    hands[arm] = {Pose{hand.position_m, Quat(1, 0, 0, 0)}, hand.stiffness_N_per_m,
+                  hand.damping_Ns_per_m};
+  }
+}
+
+bool LiveOperator::command(std::uint64_t tick, Command& out) {
+  return script_ && script_->command(tick, out);
+}
+
+}  // namespace trephine

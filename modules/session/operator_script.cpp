@@ -1,0 +1,183 @@
+#include "session/operator_script.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, CommandKind>, 8> kCommandNames{
+    {{"undo", CommandKind::undo},
+     {"redo", CommandKind::redo},
+     {"reset", CommandKind::reset},
+     {"pause", CommandKind::pause},
+     {"resume", CommandKind::resume},
+     {"clear_faults", CommandKind::clear_faults},
+     {"controller", CommandKind::controller},
+     {"tissues", CommandKind::tissues}}};
+
+ScriptHand readHand(JsonReader& item, const Scene& scene) {
+  ScriptHand hand;
+  hand.arm = item.text("arm");
+  const bool known = std::any_of(scene.arms.begin(), scene.arms.end(),
+                                 [&](const SceneArm& arm) { return arm.name == hand.arm; });
+  if (!known) item.fail("arm", "The scene has no arm '" + hand.arm + "'");
+  for (JsonReader& point : item.objects("waypoints")) {
+    ScriptWaypoint waypoint{point.number("t"), point.vec3("at_mm")};
+    if (!hand.waypoints.empty() && waypoint.time_s <= hand.waypoints.back().time_s) {
+      point.fail("t", "The time " + Json(waypoint.time_s).dump() +
+                          " is not after the waypoint before it");
+    }
+    hand.waypoints.push_back(waypoint);
+  }
+  if (hand.waypoints.empty()) item.fail("waypoints", "A hand needs at least one waypoint");
+  return hand;
+}
+
+// A tissue change starts from what the scene or the change before it says.
+void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    auto tissue = std::find_if(set.tissues.begin(), set.tissues.end(),
+                               [&](const Tissue& t) { return t.id == it.key(); });
+    JsonReader change = changes.object(it.key().c_str());
+    if (tissue == set.tissues.end()) {
+      changes.fail(it.key().c_str(), "The scene has no tissue '" + it.key() + "'");
+      return;
+    }
+    tissue->hu_min = int(change.integer("hu_min", tissue->hu_min));
+    tissue->hu_max = int(change.integer("hu_max", tissue->hu_max));
+    tissue->damping_Ns_per_m.value =
+        change.number("damping_Ns_per_m", tissue->damping_Ns_per_m.value);
+    tissue->stiffness_N_per_m.value =
+        change.number("stiffness_N_per_m", tissue->stiffness_N_per_m.value);
+    tissue->yield_N.value = change.number("yield_N", tissue->yield_N.value);
+    tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
+  }
+}
+
+ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
+  ScriptCommand out;
+  out.time_s = item.number("t");
+  const std::string name = item.text("do");
+  auto kind = std::find_if(kCommandNames.begin(), kCommandNames.end(),
+                           [&](const auto& k) { return k.first == name; });
+  if (kind == kCommandNames.end()) {
+    item.fail("do", "Unknown command '" + name + "'");
+    return out;
+  }
+  out.command.kind = kind->second;
+  if (out.command.kind == CommandKind::controller) {
+    const std::string wanted = item.text("controller");
+    auto found = std::find_if(kControllerNames.begin(), kControllerNames.end(),
+                              [&](const auto& c) { return c.first == wanted; });
+    if (found == kControllerNames.end()) {
+      item.fail("controller", "Unknown controller '" + wanted + "'");
+    } else {
+      out.command.value = std::int32_t(found->second);
+    }
+  }
+  if (out.command.kind == CommandKind::tissues) {
+    const Json& names = item.raw("tissues");
+    if (names.is_object()) {
+      readTissueChange(item.object("tissues"), names, tissues);
+    } else {
+      item.fail("tissues", "Expected an object of tissues");
+    }
+    if (Status valid = validate(tissues, item.file()); !valid) {
+      item.fail("tissues", valid.error().what + " (" + valid.error().where + ")");
+    }
+    out.command.tissues = tissueTable(tissues);
+  }
+  return out;
+}
+
+}  // namespace
+
+double OperatorScript::duration_s() const {
+  double end_s = commands.empty() ? 0.0 : commands.back().time_s;
+  for (const ScriptHand& hand : hands) end_s = std::max(end_s, hand.waypoints.back().time_s);
+  return end_s;
+}
+
+Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& file,
+                                           const Scene& scene) {
+  JsonReader reader(json, file);
+  OperatorScript script;
+  reader.format("trephine.operator", 1);
+  script.name = reader.text("name");
+  JsonReader hand = reader.object("hand");
+  script.hand_stiffness_N_per_m = hand.number("stiffness_N_per_m");
+  script.hand_damping_Ns_per_m = hand.number("damping_Ns_per_m");
+  if (script.hand_stiffness_N_per_m < 0.0 || script.hand_damping_Ns_per_m < 0.0) {
+    hand.fail("", "A hand's stiffness and damping are 0 or more");
+  }
+  for (JsonReader& item : reader.objects("arms")) script.hands.push_back(readHand(item, scene));
+  TissueSet tissues = scene.tissues;
+  if (reader.has("commands")) {
+    for (JsonReader& item : reader.objects("commands")) {
+      ScriptCommand command = readCommand(item, tissues);
+      if (!script.commands.empty() && command.time_s < script.commands.back().time_s) {
+        item.fail("t", "Commands stand in order of time");
+      }
+      script.commands.push_back(command);
+    }
+  }
+  if (Status status = reader.finish(); !status) return status.error();
+  return script;
+}
+
+Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Scene& scene) {
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  return parseOperatorScript(*json, file.string(), scene);
+}
+
+ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
+                               const std::vector<LandmarkFrame>& landmarks)
+    : period_s_(1.0 / scene.rate_hz),
+      stiffness_(script.hand_stiffness_N_per_m),
+      damping_(script.hand_damping_Ns_per_m),
+      tracks_(scene.arms.size()),
+      commands_(script.commands) {
+  for (const ScriptHand& hand : script.hands) {
+    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+      if (scene.arms[i].name != hand.arm) continue;
+      const WorkspaceMap map = scene.arms[i].map.fixed.value_or(WorkspaceMap{});
+      for (const ScriptWaypoint& waypoint : hand.waypoints) {
+        tracks_[i].time_s.push_back(waypoint.time_s);
+        tracks_[i].at_m.push_back(map.toDevice_m(landmarks[i].toPatient_mm(waypoint.at_mm)));
+      }
+    }
+  }
+}
+
+void ScriptOperator::targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) {
+  const double t = double(tick) * period_s_;
+  for (std::size_t arm = 0; arm < arm_count; ++arm) {
+    HandTarget& hand = hands[arm];
+    hand = HandTarget{Pose{}, stiffness_, damping_};
+    const Track& track = tracks_[arm];
+    if (track.time_s.empty()) continue;
+    const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), t);
+    const auto next = std::size_t(after - track.time_s.begin());
+    if (next == 0) {
+      hand.pose_m.position = track.at_m.front();
+    } else if (next == track.time_s.size()) {
+      hand.pose_m.position = track.at_m.back();
+    } else {
+      const double span_s = track.time_s[next] - track.time_s[next - 1];
+      const double fraction = (t - track.time_s[next - 1]) / span_s;
+      hand.pose_m.position =
+          track.at_m[next - 1] + fraction * (track.at_m[next] - track.at_m[next - 1]);
+    }
+  }
+}
+
+bool ScriptOperator::command(std::uint64_t tick, Command& out) {
+  if (next_command_ == commands_.size()) return false;
+  if (commands_[next_command_].time_s > double(tick) * period_s_ + 1e-9) return false;
+  out = commands_[next_command_++].command;
+  return true;
+}
+
+}  // namespace trephine

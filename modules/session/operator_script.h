@@ -1,0 +1,69 @@
+// A scripted operator: where each hand is at which time, and timed commands. The file: JSON,
+// resources/schemas/operator.md. Waypoints are in millimetres from each arm's landmark, so that one
+// script fits any case of the anatomy.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "haptics/haptic_loop.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+struct ScriptWaypoint {
+  double time_s = 0.0;
+  Vec3 at_mm{0.0};  // landmark axes
+};
+
+struct ScriptHand {
+  std::string arm;  // a name of the scene
+  std::vector<ScriptWaypoint> waypoints;  // by increasing time
+};
+
+struct ScriptCommand {
+  double time_s = 0.0;
+  Command command;
+};
+
+struct OperatorScript {
+  std::string name;
+  double hand_stiffness_N_per_m = 0.0;
+  double hand_damping_Ns_per_m = 0.0;
+  std::vector<ScriptHand> hands;
+  std::vector<ScriptCommand> commands;  // by increasing time
+
+  double duration_s() const;
+};
+
+// Checked against the scene: arms that it has, tissues that it knows. A tissue change names the
+// numbers that change; the table is made here, once. Errors as in readScene.
+Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, const Scene& scene);
+Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& file,
+                                           const Scene& scene);
+
+// Plays a script: a pure function of the tick number. Straight lines between waypoints, at rest
+// before the first and after the last; an arm without waypoints stays where its device's origin is.
+class ScriptOperator : public Operator {
+ public:
+  // `maps[i]` is arm i's map and `landmarks[i]` the frame in which its waypoints are given.
+  ScriptOperator(const OperatorScript& script, const Scene& scene,
+                 const std::vector<LandmarkFrame>& landmarks);
+  void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) override;
+  bool command(std::uint64_t tick, Command& out) override;
+
+ private:
+  struct Track {
+    std::vector<double> time_s;
+    std::vector<Vec3> at_m;  // device frame
+  };
+  double period_s_;
+  double stiffness_, damping_;
+  std::vector<Track> tracks_;  // by arm of the scene
+  std::vector<ScriptCommand> commands_;
+  std::size_t next_command_ = 0;
+};
+
+}  // namespace trephine

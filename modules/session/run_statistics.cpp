@@ -1,0 +1,72 @@
+#include "session/run_statistics.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace trephine {
+
+void ArmStatistics::add(const ArmRecord& record) {
+  max_force_N = std::max(max_force_N, glm::length(record.sent_N));
+  if (record.tissue_class >= 0) ++contact_ticks;
+  const Vec3& e = record.energy_out_J;
+  energy_out_J = std::max(energy_out_J, e.x + e.y + e.z);
+}
+
+Json toJson(const RunReport& report) {
+  Json arms = Json::array();
+  for (const RunReport::Arm& arm : report.arms) {
+    arms.push_back({{"name", arm.name},
+                    {"max_force_N", arm.statistics.max_force_N},
+                    {"contact_ticks", arm.statistics.contact_ticks},
+                    {"energy_out_mJ", arm.statistics.energy_out_J * 1e3},
+                    {"removed_mm3", arm.removed_mm3}});
+  }
+  Json removed = Json::object();
+  for (const auto& [tissue, mm3] : report.removed_mm3) removed[tissue] = mm3;
+  const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
+  return {{"controller", report.controller},
+          {"ticks", report.ticks},
+          {"rate_hz", report.rate_hz},
+          {"arms", arms},
+          {"removed_mm3", removed},
+          {"removed_voxels", report.removed_voxels},
+          {"missed_deadlines", report.missed_deadlines},
+          {"nonfinite", report.nonfinite},
+          {"events_dropped", report.events_dropped},
+          {"tick_ns",
+           {{"median", report.tick_ns.median_ns},
+            {"p99", report.tick_ns.p99_ns},
+            {"p999", report.tick_ns.p999_ns},
+            {"max", report.tick_ns.max_ns}}},
+          {"volume_sha256_before", report.volume_sha256_before},
+          {"volume_sha256", report.volume_sha256},
+          {"recording", file(report.recording)},
+          {"picture", file(report.picture)}};
+}
+
+std::string toText(const RunReport& report) {
+  char line[256];
+  std::string text;
+  const auto add = [&](auto... values) {
+    std::snprintf(line, sizeof(line), values...);
+    text += line;
+  };
+  add("%.1f s of touch at %.0f Hz, controller '%s'\n", double(report.ticks) / report.rate_hz,
+      report.rate_hz, report.controller.c_str());
+  for (const RunReport::Arm& arm : report.arms) {
+    add("  %-6s  in tissue %.1f s, at most %.2f N, removed %.0f mm3\n", arm.name.c_str(),
+        double(arm.statistics.contact_ticks) / report.rate_hz, arm.statistics.max_force_N,
+        arm.removed_mm3);
+  }
+  for (const auto& [tissue, mm3] : report.removed_mm3) {
+    if (mm3 > 0.0) add("  removed of %s: %.0f mm3\n", tissue.c_str(), mm3);
+  }
+  add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
+      report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
+      static_cast<unsigned long long>(report.missed_deadlines));
+  if (!report.recording.empty()) text += "  session: " + report.recording + "\n";
+  if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
+  return text;
+}
+
+}  // namespace trephine

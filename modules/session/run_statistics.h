@@ -1,0 +1,44 @@
+// What a run comes to: sums over its ticks, and the answer of `run --json`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "haptics/duration_histogram.h"
+#include "haptics/haptic_types.h"
+
+namespace trephine {
+
+struct ArmStatistics {
+  double max_force_N = 0.0;       // sent
+  std::uint64_t contact_ticks = 0;
+  double energy_out_J = 0.0;      // the most that was ever given out, net
+  void add(const ArmRecord& record);
+};
+
+struct RunReport {
+  std::string controller;
+  std::uint64_t ticks = 0;
+  double rate_hz = 0.0;
+  struct Arm {
+    std::string name;
+    ArmStatistics statistics;
+    double removed_mm3 = 0.0;
+  };
+  std::vector<Arm> arms;
+  std::vector<std::pair<std::string, double>> removed_mm3;  // by tissue
+  std::uint64_t removed_voxels = 0;
+  std::uint64_t missed_deadlines = 0;
+  std::uint64_t nonfinite = 0;
+  std::uint64_t events_dropped = 0;
+  DurationSummary tick_ns;
+  std::string volume_sha256_before, volume_sha256;
+  std::string recording, picture;  // files; empty: none
+};
+
+Json toJson(const RunReport& report);
+// The same for a person, a few lines.
+std::string toText(const RunReport& report);
+
+}  // namespace trephine

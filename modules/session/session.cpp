@@ -1,0 +1,306 @@
+#include "session/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "base/log.h"
+#include "base/rt/thread.h"
+#include "base/system.h"
+
+namespace trephine {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kDrainEvery = 20ms;
+constexpr auto kFlushEvery = 500ms;
+constexpr int kHapticPriority = 80;
+// How the mouse holds a simulated arm: a firm but not a rigid hand.
+constexpr double kMouseStiffness_N_per_m = 600.0;
+constexpr double kMouseDamping_Ns_per_m = 4.0;
+
+std::string readText(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
+                                const std::string& extension) {
+  std::filesystem::path file = folder / (stem + extension);
+  for (int number = 2; std::filesystem::exists(file); ++number) {
+    file = folder / (stem + "-" + std::to_string(number) + extension);
+  }
+  return file;
+}
+
+Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
+                                                 const SessionOptions& options) {
+  std::unique_ptr<Session> session(new Session);
+  Result<std::vector<PlacedLandmark>> landmarks = placeLandmarks(scene, volume);
+  if (!landmarks) return landmarks.error();
+  session->landmarks_ = *std::move(landmarks);
+  session->scene_ = withFixedMaps(scene, session->landmarks_);
+
+  std::vector<LoopDevice> devices;
+  if (Status opened = session->openDevices(devices); !opened) return opened.error();
+
+  session->sha256_before_ = volumeSha256(volume);
+  session->grid_ = std::make_unique<Grid>(std::move(volume));
+  session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
+                                                *session->grid_->takeWriter());
+  std::unique_ptr<Operator> script;
+  if (options.script) {
+    std::vector<LandmarkFrame> frames(scene.arms.size());
+    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+      for (const PlacedLandmark& l : session->landmarks_) {
+        if (l.id == scene.arms[i].map.landmark) frames[i] = l.frame;
+      }
+    }
+    script = std::make_unique<ScriptOperator>(*options.script, session->scene_, frames);
+  }
+  for (LiveHands::Hand& hand : session->hands_.hands) {
+    hand = {false, Vec3(0.0), kMouseStiffness_N_per_m, kMouseDamping_Ns_per_m};
+  }
+  session->live_hands_.write(session->hands_);
+  session->operator_ = std::make_unique<LiveOperator>(std::move(script), session->live_hands_);
+  session->loop_ = std::make_unique<HapticLoop>(*session->core_, std::move(devices),
+                                                session->operator_.get());
+  session->statistics_.resize(session->scene_.arms.size());
+
+  if (!options.recording.empty()) {
+    session->recording_file_ = options.recording;
+    const RecordingHeader header{toJson(session->scene_), session->sha256_before_,
+                                 session->grid_->geometry(), buildName()};
+    Result<std::unique_ptr<SessionRecorder>> recorder =
+        SessionRecorder::create(options.recording, header, session->scene_.arms.size());
+    if (!recorder) return recorder.error();
+    session->recorder_ = *std::move(recorder);
+  }
+  return session;
+}
+
+Session::~Session() {
+  if (running_) (void)stop();
+}
+
+// One device a plugin, holding all of the scene's arms that it moves.
+Status Session::openDevices(std::vector<LoopDevice>& devices) {
+  std::map<std::string, std::vector<std::size_t>> arms_by_plugin;
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    arms_by_plugin[scene_.arms[i].plugin].push_back(i);
+  }
+  capabilities_.resize(scene_.arms.size());
+  for (const auto& [name, arms] : arms_by_plugin) {
+    Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
+    if (!plugin) return plugin.error();
+    std::vector<std::uint32_t> device_arms;
+    for (std::size_t arm : arms) device_arms.push_back(scene_.arms[arm].device_arm);
+    const std::string& config = scene_.arms[arms.front()].device_config;
+    Result<std::unique_ptr<Device>> device =
+        Device::open(*plugin, device_arms, config.empty() ? "{}" : readText(config));
+    if (!device) return device.error();
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      capabilities_[arms[i]] = (*device)->capabilities(i);
+      double& limit_N = scene_.arms[arms[i]].max_force_N;
+      limit_N = std::min(limit_N, capabilities_[arms[i]].peak_force_N);
+    }
+    devices.push_back({*std::move(device), arms});
+  }
+  return {};
+}
+
+Status Session::start(double seconds) {
+  if (Status started = loop_->startDevices(); !started) return started;
+  running_ = true;
+  const auto last_tick = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  recorder_thread_ = std::thread([this] { record(); });
+  haptic_thread_ = std::thread([this, last_tick] {
+    rt::nameThread("haptic");
+    if (!rt::requestRealTime(kHapticPriority)) {
+      spdlog::info("The haptic thread runs without real-time priority");
+    }
+    HostClock clock;
+    loop_->run(clock, stop_haptics_, last_tick);
+    finished_.store(true, std::memory_order_release);
+  });
+  return {};
+}
+
+Status Session::stop() {
+  if (!running_) return recordingStatus();
+  stop_haptics_ = true;
+  haptic_thread_.join();
+  loop_->stopDevices();
+  stop_recorder_ = true;
+  recorder_thread_.join();
+  running_ = false;
+  return finishRecording();
+}
+
+Status Session::freewheel(double seconds, const Progress& progress) {
+  if (Status started = loop_->startDevices(); !started) return started;
+  const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  // Drained often enough that no ring can fill: they hold thousands of ticks.
+  constexpr std::uint64_t kDrainTicks = 256;
+  std::uint64_t last_flush = 0;
+  const auto flush_ticks = std::uint64_t(scene_.rate_hz / 2);
+  bool cancelled = false;
+  for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
+    loop_->step(0);
+    if (i % kDrainTicks == 0) {
+      drain();
+      progress.at(double(i) / double(ticks), "Running");
+      cancelled = progress.cancelled();
+    }
+    if (i - last_flush >= flush_ticks) {
+      flush();
+      last_flush = i;
+    }
+  }
+  loop_->stopDevices();
+  drain();
+  Status finished = finishRecording();
+  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
+  return finished;
+}
+
+void Session::record() {
+  rt::nameThread("recorder");
+  auto last_flush = std::chrono::steady_clock::now();
+  while (!stop_recorder_) {
+    std::this_thread::sleep_for(kDrainEvery);
+    drain();
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_flush < kFlushEvery) continue;
+    flush();
+    last_flush = now;
+  }
+  drain();
+}
+
+// Records first: the loop pushes what belongs to a tick before the tick's record, so that all of it
+// is found after the record was.
+void Session::drain() {
+  try {
+    TickRecord record;
+    while (loop_->records().pop(record)) {
+      for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
+      if (recorder_) recorder_->add(record);
+    }
+    CarveRecord carve;
+    while (loop_->carves().pop(carve)) {
+      if (recorder_) recorder_->add(carve);
+    }
+    Event event;
+    while (loop_->events().pop(event)) {
+      if (recorder_) recorder_->add(event);
+    }
+  } catch (const std::exception&) {
+    noteFailure({"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
+                 "Close other programs; what was recorded until now is kept"});
+  }
+}
+
+void Session::flush() {
+  if (!recorder_) return;
+  if (Status status = recorder_->flush(); !status) noteFailure(status.error());
+}
+
+void Session::noteFailure(const Error& error) {
+  std::lock_guard lock(failure_mutex_);
+  if (!failure_) failure_ = error;
+}
+
+Status Session::recordingStatus() const {
+  std::lock_guard lock(failure_mutex_);
+  if (failure_) return *failure_;
+  return {};
+}
+
+Status Session::finishRecording() {
+  sha256_after_ = volumeSha256(grid_->snapshot());
+  if (recorder_) {
+    const RecordingEnd end{loop_->ticks(), loop_->dropped(), loop_->missed(), sha256_after_};
+    if (Status status = recorder_->finish(end); !status) noteFailure(status.error());
+  }
+  return recordingStatus();
+}
+
+bool Session::send(CommandKind kind) { return loop_->commands().push({kind, 0, {}}); }
+
+bool Session::setController(ControllerKind kind) {
+  return loop_->commands().push({CommandKind::controller, std::int32_t(kind), {}});
+}
+
+Status Session::setTissues(const TissueSet& tissues) {
+  if (Status valid = validate(tissues, "tissues"); !valid) return valid;
+  scene_.tissues = tissues;
+  if (!loop_->commands().push({CommandKind::tissues, 0, tissueTable(tissues)})) {
+    return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
+  }
+  return {};
+}
+
+void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
+  const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
+  LiveHands::Hand& hand = hands_.hands[arm];
+  if (!hand.live) {
+    hand.live = true;
+    hand.position_m = state().record.arms[arm].device_position_m;
+  }
+  hand.position_m += glm::conjugate(map.rotation) * by_mm / (1000.0 * map.motion_scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double half_m = capabilities_[arm].workspace_m[axis] / 2.0;
+    hand.position_m[axis] = std::clamp(hand.position_m[axis], -half_m, half_m);
+  }
+  live_hands_.write(hands_);
+}
+
+Vec3 Session::handTarget_mm(std::size_t arm) const {
+  const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
+  return map.toPatient_mm({hands_.hands[arm].position_m, Quat(1, 0, 0, 0)}).position;
+}
+
+const LoopState& Session::state() {
+  loop_->state().refresh();
+  return loop_->state().value();
+}
+
+RunReport Session::report() const {
+  RunReport report;
+  report.controller = controllerName(core_->controller());
+  report.ticks = loop_->ticks();
+  report.rate_hz = scene_.rate_hz;
+  const double voxel_mm3 = grid_->geometry().voxelVolume_mm3();
+  for (std::size_t t = 0; t < scene_.tissues.tissues.size(); ++t) {
+    report.removed_mm3.emplace_back(scene_.tissues.tissues[t].id, 0.0);
+  }
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    RunReport::Arm arm{scene_.arms[i].name, statistics_[i], 0.0};
+    for (std::size_t t = 0; t < report.removed_mm3.size(); ++t) {
+      const std::uint64_t voxels = core_->journal().removed(int(i), int(t));
+      arm.removed_mm3 += double(voxels) * voxel_mm3;
+      report.removed_mm3[t].second += double(voxels) * voxel_mm3;
+      report.removed_voxels += voxels;
+    }
+    report.arms.push_back(arm);
+  }
+  report.missed_deadlines = loop_->missed();
+  report.nonfinite = core_->nonFinite();
+  report.events_dropped = loop_->dropped();
+  report.tick_ns = loop_->tickDurations().summary();
+  report.volume_sha256_before = sha256_before_;
+  report.volume_sha256 = sha256_after_;
+  report.recording = recording_file_.string();
+  return report;
+}
+
+}  // namespace trephine

@@ -1,0 +1,110 @@
+// A running exercise: the one place where volume, arms, loop, recorder and operator meet.
+//
+// One owner thread (the window's, or a program's main). A session runs once: either start() ..
+// stop() in real time on its own threads, or freewheel().
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "haptics/haptic_loop.h"
+#include "scene/scene.h"
+#include "session/live_operator.h"
+#include "session/operator_script.h"
+#include "session/run_statistics.h"
+#include "training/session_recorder.h"
+#include "volume/grid.h"
+
+namespace trephine {
+
+struct SessionOptions {
+  std::filesystem::path recording;       // empty: not recorded
+  std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
+};
+
+class Session {
+ public:
+  // Finds the landmarks, opens the devices, starts the recording. Errors of all of these; nothing
+  // is left behind on one.
+  static Result<std::unique_ptr<Session>> create(Scene scene, Volume volume,
+                                                 const SessionOptions& options);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const Scene& scene() const { return scene_; }  // maps fixed, forces within the arms' limits
+  const std::vector<PlacedLandmark>& landmarks() const { return landmarks_; }
+  Grid& grid() { return *grid_; }
+  const TrephineCapabilities& capabilities(std::size_t arm) const { return capabilities_[arm]; }
+
+  // Real time, until stop() or `seconds`.
+  Status start(double seconds = 1e9);
+  bool running() const { return running_; }
+  // True once the ticks asked for are done.
+  bool finished() const { return finished_.load(std::memory_order_acquire); }
+  // Ends the threads, zeroes the forces, ends the recording. The Status is the recording's.
+  Status stop();
+
+  // As fast as it goes, on the calling thread; the recorder keeps up. Errors: CANCELLED, and the
+  // recording's.
+  Status freewheel(double seconds, const Progress& progress = Progress());
+
+  // Live input. Commands are answered within a tick or two; false when 64 of them are waiting.
+  bool send(CommandKind kind);
+  bool setController(ControllerKind kind);
+  // Errors: those of validate().
+  Status setTissues(const TissueSet& tissues);
+  // Moves the rest position of a simulated arm's hand, in patient mm, within the arm's workspace.
+  void moveHand(std::size_t arm, const Vec3& by_mm);
+  Vec3 handTarget_mm(std::size_t arm) const;
+
+  // The newest state of the loop. Owner thread.
+  const LoopState& state();
+  // What became of the recording so far.
+  Status recordingStatus() const;
+
+  // After stop() or freewheel().
+  RunReport report() const;
+
+ private:
+  Session() = default;
+  Status openDevices(std::vector<LoopDevice>& devices);
+  void record();  // the recorder thread
+  void drain();
+  void flush();
+  Status finishRecording();
+  void noteFailure(const Error& error);
+
+  Scene scene_;
+  std::vector<PlacedLandmark> landmarks_;
+  std::vector<TrephineCapabilities> capabilities_;
+  std::string sha256_before_, sha256_after_;
+  std::filesystem::path recording_file_;
+  std::unique_ptr<Grid> grid_;
+  std::unique_ptr<HapticCore> core_;
+  rt::ParameterSet<LiveHands> live_hands_;
+  LiveHands hands_;  // the owner's side of live_hands_
+  std::unique_ptr<Operator> operator_;
+  std::unique_ptr<HapticLoop> loop_;
+  std::unique_ptr<SessionRecorder> recorder_;
+  std::vector<ArmStatistics> statistics_;
+
+  bool running_ = false;
+  std::atomic<bool> stop_haptics_{false}, stop_recorder_{false}, finished_{false};
+  std::thread haptic_thread_, recorder_thread_;
+  mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
+  std::optional<Error> failure_;
+};
+
+// "session.h5" in `folder`, or "session-2.h5" and so on where that is taken.
+std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
+                                const std::string& extension);
+
+}  // namespace trephine

@@ -1,0 +1,190 @@
+#include "tissue/tissue_set.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace trephine {
+
+namespace {
+
+Error bad(const std::string& file, const std::string& field, const std::string& what,
+          const std::string& next = "Correct that value") {
+  return Error{"BAD_TISSUE", what, file + ": " + field, next};
+}
+
+std::string range(const Tissue& t) {
+  return std::to_string(t.hu_min) + ".." + std::to_string(t.hu_max);
+}
+
+bool sameVoxels(const Tissue& a, const Tissue& b) {
+  const bool labels_meet = !a.label || !b.label || *a.label == *b.label;
+  return labels_meet && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
+}
+
+std::string shown(double value) {
+  return isFinite(value) ? Json(value).dump() : std::to_string(value);  // JSON has no nan
+}
+
+Status checkNumber(const std::string& file, const std::string& field, const SourcedNumber& number) {
+  if (!isFinite(number.value)) {
+    return bad(file, field, "The value " + shown(number.value) + " is not finite");
+  }
+  if (number.value < 0.0) {
+    return bad(file, field, "The value " + shown(number.value) + " is negative",
+               "A tissue cannot push: use 0 or more");
+  }
+  if (number.source.empty()) {
+    return bad(file, field, "The value " + shown(number.value) + " has no source",
+               "Cite one, or write \"tuned here, uncited\"");
+  }
+  return {};
+}
+
+// Narrows what was read: a value that an int does not hold must not wrap into one that it does.
+int asInt(JsonReader& reader, const char* key, std::int64_t value) {
+  if (value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()) {
+    return int(value);
+  }
+  reader.fail(key, "The value " + std::to_string(value) + " is out of range");
+  return 0;
+}
+
+SourcedNumber readSourced(JsonReader& mechanics, const char* key) {
+  JsonReader object = mechanics.object(key);
+  return {object.number("value"), object.text("source")};
+}
+
+Json sourced(const SourcedNumber& number) {
+  return {{"value", number.value}, {"source", number.source}};
+}
+
+}  // namespace
+
+const Tissue* TissueSet::find(const std::string& id) const {
+  for (const Tissue& tissue : tissues) {
+    if (tissue.id == id) return &tissue;
+  }
+  return nullptr;
+}
+
+Status validate(const TissueSet& set, const std::string& file) {
+  if (set.tissues.empty() || set.tissues.size() > std::size_t(kMaxTissues)) {
+    return bad(file, "tissues",
+               "A set has 1 to 16 tissues, this one has " + std::to_string(set.tissues.size()));
+  }
+  for (std::size_t i = 0; i < set.tissues.size(); ++i) {
+    const Tissue& t = set.tissues[i];
+    const std::string field = "tissues[" + std::to_string(i) + "]";
+    if (t.id.empty()) return bad(file, field + ".id", "The id is empty");
+    constexpr int low = std::numeric_limits<std::int16_t>::min();
+    constexpr int high = std::numeric_limits<std::int16_t>::max();
+    if (t.hu_min > t.hu_max || t.hu_min < low || t.hu_max > high) {
+      return bad(file, field + ".hu", "The HU range " + range(t) + " is not possible",
+                 "Give the lower value first, within -32768..32767");
+    }
+    if (t.hu_source.empty()) {
+      return bad(file, field + ".hu_source", "The HU range " + range(t) + " has no source",
+                 "Cite one, or write \"tuned here, uncited\"");
+    }
+    if (!isFinite(t.opacity) || t.opacity < 0.0 || t.opacity > 1.0) {
+      return bad(file, field + ".opacity",
+                 "The opacity " + shown(t.opacity) + " is not between 0 and 1");
+    }
+    for (int c = 0; c < 3; ++c) {
+      if (!isFinite(t.colour[c]) || t.colour[c] < 0.0 || t.colour[c] > 1.0) {
+        return bad(file, field + ".colour",
+                   "The colour value " + shown(t.colour[c]) + " is not between 0 and 1");
+      }
+    }
+    for (auto [key, number] : {std::pair{"damping_Ns_per_m", &t.damping_Ns_per_m},
+                               {"stiffness_N_per_m", &t.stiffness_N_per_m},
+                               {"yield_N", &t.yield_N}}) {
+      if (Status s = checkNumber(file, field + ".mechanics." + key, *number); !s) return s;
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const Tissue& other = set.tissues[j];
+      if (other.id == t.id) return bad(file, field + ".id", "The id '" + t.id + "' is used twice");
+      if (sameVoxels(other, t)) {
+        return bad(file, field + ".hu",
+                   "The HU ranges " + range(other) + " of '" + other.id + "' and " + range(t) +
+                       " of '" + t.id + "' overlap",
+                   "Separate the ranges or give them different labels");
+      }
+    }
+  }
+  return {};
+}
+
+Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
+  JsonReader reader(json, file);
+  reader.format("trephine.tissues", 1);
+  TissueSet set;
+  set.name = reader.text("name");
+  for (JsonReader& item : reader.objects("tissues")) {
+    Tissue t;
+    t.id = item.text("id");
+    t.name = item.text("name");
+    const std::vector<std::int64_t> hu = item.integers("hu", 2);
+    t.hu_min = asInt(item, "hu", hu[0]);
+    t.hu_max = asInt(item, "hu", hu[1]);
+    t.hu_source = item.text("hu_source");
+    if (item.has("label")) t.label = asInt(item, "label", item.integer("label"));
+    t.colour = item.vec3("colour");
+    t.opacity = item.number("opacity");
+    JsonReader mechanics = item.object("mechanics");
+    t.damping_Ns_per_m = readSourced(mechanics, "damping_Ns_per_m");
+    t.stiffness_N_per_m = readSourced(mechanics, "stiffness_N_per_m");
+    t.yield_N = readSourced(mechanics, "yield_N");
+    t.cuttable = mechanics.boolean("cuttable", true);
+    set.tissues.push_back(std::move(t));
+  }
+  if (Status status = reader.finish(); !status) return status.error();
+  if (Status status = validate(set, file); !status) return status.error();
+  return set;
+}
+
+Result<TissueSet> readTissueSet(const std::filesystem::path& file) {
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  return parseTissueSet(*json, file.string());
+}
+
+Json toJson(const TissueSet& set) {
+  Json tissues = Json::array();
+  for (const Tissue& t : set.tissues) {
+    Json item = {{"id", t.id},
+                 {"name", t.name},
+                 {"hu", {t.hu_min, t.hu_max}},
+                 {"hu_source", t.hu_source},
+                 {"colour", {t.colour.x, t.colour.y, t.colour.z}},
+                 {"opacity", t.opacity},
+                 {"mechanics",
+                  {{"damping_Ns_per_m", sourced(t.damping_Ns_per_m)},
+                   {"stiffness_N_per_m", sourced(t.stiffness_N_per_m)},
+                   {"yield_N", sourced(t.yield_N)},
+                   {"cuttable", t.cuttable}}}};
+    if (t.label) item["label"] = *t.label;
+    tissues.push_back(std::move(item));
+  }
+  return {{"format", "trephine.tissues"}, {"version", 1}, {"name", set.name}, {"tissues", tissues}};
+}
+
+TissueTable tissueTable(const TissueSet& set) {
+  TissueTable table;
+  table.count = std::int32_t(std::min(set.tissues.size(), table.classes.size()));
+  for (std::size_t i = 0; i < std::size_t(table.count); ++i) {
+    const Tissue& t = set.tissues[i];
+    // The tick has no label map, so a tissue bound to a label gets a range that holds nothing.
+    table.classes[i] = {t.label ? 1 : t.hu_min,
+                        t.label ? 0 : t.hu_max,
+                        t.damping_Ns_per_m.value,
+                        t.stiffness_N_per_m.value,
+                        t.yield_N.value,
+                        t.cuttable ? 1 : 0,
+                        0};
+  }
+  return table;
+}
+
+}  // namespace trephine

@@ -1,0 +1,31 @@
+// A recorded session: everything the tick was given and everything it answered, at haptic rate.
+// The file: HDF5, layout in resources/schemas/recording.md. It names no patient and no folder: a
+// case is known by the sha256 of its voxels.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/json.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+constexpr int kRecordingVersion = 1;
+
+struct RecordingHeader {
+  Json scene;                 // toJson(Scene) with fixed maps and the controller at the start
+  std::string volume_sha256;  // before the first tick
+  GridGeometry geometry;
+  std::string build;
+};
+
+// Written when a session ends by itself; a recording without it was cut short.
+struct RecordingEnd {
+  std::uint64_t ticks = 0;
+  std::uint64_t dropped = 0;  // more than none: the session cannot be replayed
+  std::uint64_t missed_deadlines = 0;
+  std::string volume_sha256;  // after the last tick
+};
+
+}  // namespace trephine

@@ -1,0 +1,142 @@
+#include "training/recording_layout.h"
+
+#include <string>
+
+namespace trephine {
+
+namespace {
+
+using Type = RecordField::Type;
+
+#define FIELD(Record, member, type, count) {#member, offsetof(Record, member), Type::type, count}
+
+constexpr RecordField kArmFields[] = {
+    FIELD(ArmRecord, device_position_m, f64, 3),
+    {"device_orientation_xyzw", offsetof(ArmRecord, device_orientation), Type::f64, 4},
+    FIELD(ArmRecord, patient_position_mm, f64, 3),
+    {"patient_orientation_xyzw", offsetof(ArmRecord, patient_orientation), Type::f64, 4},
+    FIELD(ArmRecord, velocity_m_s, f64, 3),
+    FIELD(ArmRecord, demanded_N, f64, 3),
+    FIELD(ArmRecord, bounded_N, f64, 3),
+    FIELD(ArmRecord, clamped_N, f64, 3),
+    FIELD(ArmRecord, sent_N, f64, 3),
+    FIELD(ArmRecord, energy_out_J, f64, 3),
+    FIELD(ArmRecord, observer_J, f64, 1),
+    FIELD(ArmRecord, alpha, f64, 1),
+    FIELD(ArmRecord, tissue_class, i32, 1),
+    FIELD(ArmRecord, points_in_tissue, i32, 1),
+    FIELD(ArmRecord, removed_voxels, i32, 1),
+    FIELD(ArmRecord, faults, u32, 1),
+    FIELD(ArmRecord, buttons, u32, 1),
+    FIELD(ArmRecord, flags, u32, 1),
+};
+static_assert(sizeof(Quat) == 4 * sizeof(double) && offsetof(Quat, x) == 0,
+              "recordings keep quaternions as glm stores them: x, y, z, w");
+
+constexpr RecordField kTickFields[] = {
+    FIELD(TickRow, tick, u64, 1),
+    FIELD(TickRow, late_ns, i64, 1),
+};
+
+constexpr RecordField kCarveFields[] = {
+    FIELD(CarveRecord, tick, u64, 1),  FIELD(CarveRecord, voxel, u32, 1),
+    FIELD(CarveRecord, old_hu, i16, 1), FIELD(CarveRecord, arm, i8, 1),
+    FIELD(CarveRecord, tissue_class, i8, 1),
+};
+
+constexpr RecordField kTissueFields[] = {
+    FIELD(TissueClass, hu_min, i32, 1),           FIELD(TissueClass, hu_max, i32, 1),
+    FIELD(TissueClass, damping_Ns_per_m, f64, 1), FIELD(TissueClass, stiffness_N_per_m, f64, 1),
+    FIELD(TissueClass, yield_N, f64, 1),          FIELD(TissueClass, cuttable, i32, 1),
+};
+
+constexpr RecordField kEventFields[] = {
+    {"tick", offsetof(Event, tick), Type::u64, 1},
+    {"kind", offsetof(Event, kind), Type::i32, 1},
+    {"arm", offsetof(Event, arm), Type::i32, 1},
+    {"value", offsetof(Event, value), Type::u32, 1},
+    {"command", offsetof(Event, command) + offsetof(Command, kind), Type::i32, 1},
+    {"command_value", offsetof(Event, command) + offsetof(Command, value), Type::i32, 1},
+    {"tissue_count",
+     offsetof(Event, command) + offsetof(Command, tissues) + offsetof(TissueTable, count),
+     Type::i32, 1},
+};
+
+#undef FIELD
+
+hid_t nativeType(Type type) {
+  switch (type) {
+    case Type::f64: return H5T_NATIVE_DOUBLE;
+    case Type::i64: return H5T_NATIVE_INT64;
+    case Type::u64: return H5T_NATIVE_UINT64;
+    case Type::i32: return H5T_NATIVE_INT32;
+    case Type::u32: return H5T_NATIVE_UINT32;
+    case Type::i16: return H5T_NATIVE_INT16;
+    case Type::i8: return H5T_NATIVE_INT8;
+  }
+  return -1;
+}
+
+}  // namespace
+
+std::size_t RecordField::bytes() const {
+  switch (type) {
+    case Type::f64:
+    case Type::i64:
+    case Type::u64: return 8 * count;
+    case Type::i32:
+    case Type::u32: return 4 * count;
+    case Type::i16: return 2 * count;
+    case Type::i8: return count;
+  }
+  return 0;
+}
+
+std::span<const RecordField> armFields() { return kArmFields; }
+std::span<const RecordField> tickFields() { return kTickFields; }
+std::span<const RecordField> carveFields() { return kCarveFields; }
+
+hid_t compoundType(std::span<const RecordField> fields, std::size_t size) {
+  const hid_t compound = H5Tcreate(H5T_COMPOUND, size);
+  for (const RecordField& field : fields) {
+    if (field.count == 1) {
+      H5Tinsert(compound, field.name, field.offset, nativeType(field.type));
+    } else {
+      const hsize_t count = field.count;
+      const hid_t array = H5Tarray_create2(nativeType(field.type), 1, &count);
+      H5Tinsert(compound, field.name, field.offset, array);
+      H5Tclose(array);
+    }
+  }
+  return compound;
+}
+
+hid_t eventType() {
+  const hid_t event = compoundType(kEventFields, sizeof(Event));
+  const hid_t tissue = compoundType(kTissueFields, sizeof(TissueClass));
+  const hsize_t count = kMaxTissues;
+  const hid_t tissues = H5Tarray_create2(tissue, 1, &count);
+  H5Tinsert(event, "tissues",
+            offsetof(Event, command) + offsetof(Command, tissues) + offsetof(TissueTable, classes),
+            tissues);
+  H5Tclose(tissues);
+  H5Tclose(tissue);
+  return event;
+}
+
+hid_t endType() {
+  const hid_t end = H5Tcreate(H5T_COMPOUND, sizeof(EndRow));
+  H5Tinsert(end, "ticks", offsetof(EndRow, ticks), H5T_NATIVE_UINT64);
+  H5Tinsert(end, "dropped", offsetof(EndRow, dropped), H5T_NATIVE_UINT64);
+  H5Tinsert(end, "missed_deadlines", offsetof(EndRow, missed), H5T_NATIVE_UINT64);
+  const hid_t text = H5Tcopy(H5T_C_S1);
+  H5Tset_size(text, sizeof(EndRow::volume_sha256));
+  H5Tset_strpad(text, H5T_STR_NULLPAD);
+  H5Tinsert(end, "volume_sha256", offsetof(EndRow, volume_sha256), text);
+  H5Tclose(text);
+  return end;
+}
+
+std::string armDatasetName(std::size_t arm) { return "arm" + std::to_string(arm); }
+
+}  // namespace trephine

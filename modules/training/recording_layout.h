@@ -1,0 +1,50 @@
+// How the plain data of a tick lie in an HDF5 file: one table of fields a record, from which the
+// file's types are made and by which a replay is compared.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "haptics/haptic_types.h"
+
+namespace trephine {
+
+struct RecordField {
+  enum class Type { f64, i64, u64, i32, u32, i16, i8 };
+  const char* name;
+  std::size_t offset;
+  Type type;
+  std::size_t count;  // elements; more than 1 is an array
+
+  std::size_t bytes() const;
+};
+
+// The row of the dataset "ticks".
+struct TickRow {
+  std::uint64_t tick = 0;
+  std::int64_t late_ns = 0;
+};
+
+std::span<const RecordField> armFields();    // ArmRecord
+std::span<const RecordField> tickFields();   // TickRow
+std::span<const RecordField> carveFields();  // CarveRecord
+
+// HDF5 memory types; the caller closes them with H5Tclose.
+hid_t compoundType(std::span<const RecordField> fields, std::size_t size);
+hid_t eventType();
+
+// Row of the dataset "end".
+struct EndRow {
+  std::uint64_t ticks = 0;
+  std::uint64_t dropped = 0;
+  std::uint64_t missed = 0;
+  char volume_sha256[64] = {};
+};
+hid_t endType();
+
+std::string armDatasetName(std::size_t arm);  // "arm0"
+
+}  // namespace trephine

@@ -1,0 +1,137 @@
+#include "training/replay.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "haptics/haptic_core.h"
+#include "scene/scene.h"
+#include "training/recording_layout.h"
+
+namespace trephine {
+
+namespace {
+
+Json fieldJson(const RecordField& field, const void* record) {
+  const auto* at = static_cast<const unsigned char*>(record) + field.offset;
+  Json values = Json::array();
+  for (std::size_t i = 0; i < field.count; ++i) {
+    const unsigned char* element = at + i * field.bytes() / field.count;
+    const auto take = [&](auto value) {
+      std::memcpy(&value, element, sizeof(value));
+      values.push_back(value);
+    };
+    switch (field.type) {
+      case RecordField::Type::f64: take(double{}); break;
+      case RecordField::Type::i64: take(std::int64_t{}); break;
+      case RecordField::Type::u64: take(std::uint64_t{}); break;
+      case RecordField::Type::i32: take(std::int32_t{}); break;
+      case RecordField::Type::u32: take(std::uint32_t{}); break;
+      case RecordField::Type::i16: take(std::int16_t{}); break;
+      case RecordField::Type::i8: take(std::int8_t{}); break;
+    }
+  }
+  return field.count == 1 ? values[0] : values;
+}
+
+template <class Record>
+std::optional<ReplayDifference> compare(std::span<const RecordField> fields, const Record& recorded,
+                                        const Record& replayed, std::uint64_t tick, int arm) {
+  const auto* a = reinterpret_cast<const unsigned char*>(&recorded);
+  const auto* b = reinterpret_cast<const unsigned char*>(&replayed);
+  for (const RecordField& field : fields) {
+    if (std::memcmp(a + field.offset, b + field.offset, field.bytes()) != 0) {
+      return ReplayDifference{tick, arm, field.name, fieldJson(field, &recorded),
+                              fieldJson(field, &replayed)};
+    }
+  }
+  return {};
+}
+
+// The recorded voxels of this tick against those the core has just removed; `next` moves on.
+std::optional<ReplayDifference> compareCarves(const std::vector<CarveRecord>& recorded,
+                                              std::size_t& next,
+                                              const std::vector<CarveRecord>& replayed,
+                                              std::uint64_t tick) {
+  for (const CarveRecord& carve : replayed) {
+    if (next == recorded.size()) {
+      return ReplayDifference{tick, carve.arm, "removed_voxels", nullptr, carve.voxel};
+    }
+    if (auto d = compare(carveFields(), recorded[next], carve, tick, carve.arm)) return d;
+    ++next;
+  }
+  if (next < recorded.size() && recorded[next].tick <= tick) {
+    const CarveRecord& missed = recorded[next];
+    return ReplayDifference{tick, missed.arm, "removed_voxels", missed.voxel, nullptr};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
+                            const Progress& progress) {
+  const RecordingHeader& header = recording.header();
+  if (volumeSha256(volume) != header.volume_sha256) {
+    return Error{"WRONG_CASE", "The case is not the one that was recorded: its voxels differ", "--case",
+                 "Give the folder that the session was run on"};
+  }
+  if (recording.end() && recording.end()->dropped > 0) {
+    return Error{"NOT_REPLAYABLE",
+                 "The recorder fell behind and dropped " +
+                     std::to_string(recording.end()->dropped) + " entries",
+                 "the recording", "Record again on a machine with less load"};
+  }
+  Result<Scene> scene = parseScene(header.scene, "the recording");
+  if (!scene) return scene.error();
+  Result<std::vector<Event>> events = recording.events();
+  if (!events) return events.error();
+  Result<std::vector<CarveRecord>> carves = recording.carves();
+  if (!carves) return carves.error();
+
+  Grid grid(std::move(volume));
+  HapticCore core(hapticParameters(*scene), *grid.takeWriter());
+  ReplayResult result;
+  result.cut_short = !recording.end();
+  std::size_t next_event = 0, next_carve = 0;
+  std::vector<Command> commands;
+  constexpr std::uint64_t kBlock = 4096;
+  const std::uint64_t total = recording.tickCount();
+  for (std::uint64_t first = 0; first < total && !result.first_difference; first += kBlock) {
+    progress.at(double(first) / double(total), "Replaying");
+    if (progress.cancelled()) return Error{"CANCELLED", "The replay was cancelled", "", ""};
+    Result<std::vector<TickRecord>> block = recording.ticks(first, std::min(kBlock, total - first));
+    if (!block) return block.error();
+    for (const TickRecord& recorded : *block) {
+      TickInput input{recorded.tick, recorded.late_ns, {}};
+      for (std::size_t i = 0; i < recording.armCount(); ++i) {
+        const ArmRecord& arm = recorded.arms[i];
+        input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
+      }
+      commands.clear();
+      for (; next_event < events->size() && (*events)[next_event].tick <= recorded.tick; ++next_event) {
+        const Event& event = (*events)[next_event];
+        if (event.kind == EventKind::command) commands.push_back(event.command);
+      }
+      TickRecord replayed;
+      core.tick(input, commands.data(), commands.size(), replayed);
+      ++result.ticks;
+      auto& difference = result.first_difference;
+      for (std::size_t i = 0; !difference && i < recording.armCount(); ++i) {
+        difference =
+            compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i));
+      }
+      if (!difference) difference = compareCarves(*carves, next_carve, core.carves(), recorded.tick);
+      if (difference) break;
+    }
+  }
+  result.volume_sha256 = volumeSha256(grid.snapshot());
+  if (!result.first_difference && recording.end() &&
+      recording.end()->volume_sha256 != result.volume_sha256) {
+    result.first_difference = ReplayDifference{result.ticks, -1, "volume_sha256",
+                                               recording.end()->volume_sha256, result.volume_sha256};
+  }
+  result.identical = !result.first_difference;
+  return result;
+}
+
+}  // namespace trephine

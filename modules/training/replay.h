@@ -1,0 +1,35 @@
+// Runs a recording through the core again, without hardware, and compares every bit.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "training/session_reader.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+struct ReplayDifference {
+  std::uint64_t tick = 0;
+  int arm = -1;
+  std::string field;
+  Json recorded, replayed;
+};
+
+struct ReplayResult {
+  std::uint64_t ticks = 0;
+  bool identical = false;
+  std::optional<ReplayDifference> first_difference;
+  std::string volume_sha256;  // after the last replayed tick
+  bool cut_short = false;     // the recording has no end: it was killed
+};
+
+// `volume` is the case before the first tick. Errors: WRONG_CASE (another sha256 than recorded),
+// NOT_REPLAYABLE (the recorder dropped something), BAD_RECORDING, CANCELLED.
+Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
+                            const Progress& progress = Progress());
+
+}  // namespace trephine

@@ -1,0 +1,221 @@
+#include "training/session_recorder.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "training/recording_layout.h"
+
+namespace trephine {
+
+namespace {
+
+// A one-dimensional dataset that grows.
+class Rows {
+ public:
+  bool create(hid_t file, const char* name, hid_t type, hsize_t chunk) {
+    type_ = type;
+    const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+    const hid_t space = H5Screate_simple(1, &none, &unlimited);
+    const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_shuffle(properties);
+    H5Pset_deflate(properties, 1);
+    dataset_ = H5Dcreate2(file, name, type_, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Pclose(properties);
+    H5Sclose(space);
+    return dataset_ >= 0;
+  }
+
+  bool append(const void* rows, std::size_t count) {
+    if (count == 0) return true;
+    const hsize_t start = size_, added = count, total = size_ + count;
+    if (H5Dset_extent(dataset_, &total) < 0) return false;
+    const hid_t file_space = H5Dget_space(dataset_);
+    H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &start, nullptr, &added, nullptr);
+    const hid_t memory_space = H5Screate_simple(1, &added, nullptr);
+    const bool ok = H5Dwrite(dataset_, type_, memory_space, file_space, H5P_DEFAULT, rows) >= 0;
+    H5Sclose(memory_space);
+    H5Sclose(file_space);
+    if (ok) size_ = total;
+    return ok;
+  }
+
+  bool flush() { return H5Dflush(dataset_) >= 0; }
+
+  void close() {
+    if (dataset_ >= 0) H5Dclose(dataset_);
+    if (type_ >= 0) H5Tclose(type_);
+    dataset_ = type_ = -1;
+  }
+
+ private:
+  hid_t dataset_ = -1;
+  hid_t type_ = -1;
+  hsize_t size_ = 0;
+};
+
+void writeText(hid_t file, const char* name, const std::string& text) {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, text.size() + 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t dataset =
+      H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str());
+  H5Dclose(dataset);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+void writeVersion(hid_t file) {
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t attribute =
+      H5Acreate2(file, "version", H5T_NATIVE_INT32, space, H5P_DEFAULT, H5P_DEFAULT);
+  const int version = kRecordingVersion;
+  H5Awrite(attribute, H5T_NATIVE_INT32, &version);
+  H5Aclose(attribute);
+  H5Sclose(space);
+}
+
+Json geometryJson(const GridGeometry& g) {
+  Json direction = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) direction.push_back(g.direction[column][row]);
+  }
+  return {{"size", {g.size[0], g.size[1], g.size[2]}},
+          {"spacing_mm", {g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z}},
+          {"origin_mm", {g.origin_mm.x, g.origin_mm.y, g.origin_mm.z}},
+          {"direction", direction}};
+}
+
+}  // namespace
+
+struct SessionRecorder::File {
+  std::filesystem::path path;
+  hid_t file = -1;
+  Rows ticks, carves, events, end;
+  std::vector<Rows> arms;
+  std::vector<TickRow> new_ticks;
+  std::vector<std::vector<ArmRecord>> new_arms;
+  std::vector<CarveRecord> new_carves;
+  std::vector<Event> new_events;
+  std::optional<Error> failure;
+
+  Status fail() {
+    if (!failure) {
+      failure = Error{"CANNOT_WRITE",
+                      std::string("The recording can no longer be written: ") +
+                          (errno ? std::strerror(errno) : "unknown reason"),
+                      path.filename().string(),
+                      "Free some space; what was recorded until now is kept"};
+    }
+    return *failure;
+  }
+
+  void close() {
+    for (Rows& rows : arms) rows.close();
+    for (Rows* rows : {&ticks, &carves, &events, &end}) rows->close();
+    if (file >= 0) H5Fclose(file);
+    file = -1;
+  }
+};
+
+SessionRecorder::SessionRecorder() : file_(std::make_unique<File>()) {}
+
+SessionRecorder::~SessionRecorder() { file_->close(); }
+
+Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::filesystem::path& path,
+                                                                 const RecordingHeader& header,
+                                                                 std::size_t arm_count) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  std::unique_ptr<SessionRecorder> recorder(new SessionRecorder);
+  File& f = *recorder->file_;
+  f.path = path;
+  errno = 0;
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  f.file = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access);
+  H5Pclose(access);
+  const Error cannot{"CANNOT_WRITE",
+                     std::string("The recording cannot be started: ") +
+                         (errno ? std::strerror(errno) : "unknown reason"),
+                     path.string(), "Choose another folder, or free some space"};
+  if (f.file < 0) return cannot;
+
+  writeVersion(f.file);
+  writeText(f.file, "format", "trephine.session");
+  writeText(f.file, "build", header.build);
+  writeText(f.file, "scene", header.scene.dump(1));
+  const Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
+  writeText(f.file, "volume", volume.dump(1));
+
+  bool ok = f.ticks.create(f.file, "ticks", compoundType(tickFields(), sizeof(TickRow)), 4096);
+  f.arms.resize(arm_count);
+  f.new_arms.resize(arm_count);
+  for (std::size_t i = 0; i < arm_count; ++i) {
+    ok = ok && f.arms[i].create(f.file, armDatasetName(i).c_str(),
+                                compoundType(armFields(), sizeof(ArmRecord)), 512);
+  }
+  ok = ok && f.carves.create(f.file, "removed_voxels",
+                             compoundType(carveFields(), sizeof(CarveRecord)), 4096);
+  ok = ok && f.events.create(f.file, "events", eventType(), 64);
+  ok = ok && f.end.create(f.file, "end", endType(), 1);
+  if (!ok || H5Fflush(f.file, H5F_SCOPE_GLOBAL) < 0 || H5Fstart_swmr_write(f.file) < 0) return cannot;
+  return recorder;
+}
+
+void SessionRecorder::add(const TickRecord& record) {
+  if (file_->failure) return;
+  file_->new_ticks.push_back({record.tick, record.late_ns});
+  for (std::size_t i = 0; i < file_->new_arms.size(); ++i) {
+    file_->new_arms[i].push_back(record.arms[i]);
+  }
+}
+
+void SessionRecorder::add(const CarveRecord& carve) {
+  if (!file_->failure) file_->new_carves.push_back(carve);
+}
+
+void SessionRecorder::add(const Event& event) {
+  if (!file_->failure) file_->new_events.push_back(event);
+}
+
+Status SessionRecorder::flush() {
+  File& f = *file_;
+  if (f.failure) return *f.failure;
+  errno = 0;
+  // Ticks last: a reader that finds a tick finds all that belongs to it.
+  bool ok = f.events.append(f.new_events.data(), f.new_events.size()) &&
+            f.carves.append(f.new_carves.data(), f.new_carves.size());
+  for (std::size_t i = 0; ok && i < f.arms.size(); ++i) {
+    ok = f.arms[i].append(f.new_arms[i].data(), f.new_arms[i].size()) && f.arms[i].flush();
+  }
+  ok = ok && f.events.flush() && f.carves.flush() &&
+       f.ticks.append(f.new_ticks.data(), f.new_ticks.size()) && f.ticks.flush();
+  f.new_events.clear();
+  f.new_carves.clear();
+  f.new_ticks.clear();
+  for (auto& rows : f.new_arms) rows.clear();
+  return ok ? Status() : f.fail();
+}
+
+Status SessionRecorder::finish(const RecordingEnd& end) {
+  Status status = flush();
+  File& f = *file_;
+  if (status) {
+    EndRow row{end.ticks, end.dropped, end.missed_deadlines, {}};
+    std::memcpy(row.volume_sha256, end.volume_sha256.data(),
+                std::min(sizeof(row.volume_sha256), end.volume_sha256.size()));
+    errno = 0;
+    if (!f.end.append(&row, 1) || !f.end.flush()) status = f.fail();
+  }
+  f.close();
+  return status;
+}
+
+}  // namespace trephine

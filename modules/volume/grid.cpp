@@ -1,0 +1,79 @@
+#include "volume/grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace trephine {
+
+Grid::Grid(Volume volume) : volume_(std::move(volume)), voxels_(volume_.hu.data()) {
+  std::size_t count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    bricks_[axis] = (geometry().size[axis] + kBrickEdge - 1) / kBrickEdge;
+    count *= std::size_t(bricks_[axis]);
+  }
+  dirty_words_ = (count + 63) / 64;
+  dirty_ = std::make_unique<std::atomic<std::uint64_t>[]>(dirty_words_);
+}
+
+std::optional<Grid::Writer> Grid::takeWriter() {
+  if (taken_.exchange(true, std::memory_order_acquire)) return std::nullopt;
+  return Writer(this);
+}
+
+std::int16_t Grid::Writer::store(std::size_t index, std::int16_t hu) {
+  std::atomic_ref<std::int16_t> voxel(grid_->voxels_[index]);
+  const std::int16_t before = voxel.load(std::memory_order_relaxed);
+  voxel.store(hu, std::memory_order_relaxed);
+  const Index3 ijk = grid_->geometry().indicesOf(index);
+  const Index3& bricks = grid_->bricks_;
+  const std::size_t brick = (std::size_t(ijk[2] / kBrickEdge) * std::size_t(bricks[1]) +
+                             std::size_t(ijk[1] / kBrickEdge)) *
+                                std::size_t(bricks[0]) +
+                            std::size_t(ijk[0] / kBrickEdge);
+  grid_->dirty_[brick / 64].fetch_or(std::uint64_t(1) << (brick % 64), std::memory_order_release);
+  return before;
+}
+
+void Grid::copyChanges(Volume& copy, std::vector<VoxelBox>& boxes) {
+  const Index3& size = geometry().size;
+  for (std::size_t word = 0; word < dirty_words_; ++word) {
+    if (dirty_[word].load(std::memory_order_relaxed) == 0) continue;
+    std::uint64_t marks = dirty_[word].exchange(0, std::memory_order_acquire);
+    while (marks) {
+      const std::size_t brick = word * 64 + std::size_t(std::countr_zero(marks));
+      marks &= marks - 1;
+      const auto nx = std::size_t(bricks_[0]), ny = std::size_t(bricks_[1]);
+      const Index3 at{std::int32_t(brick % nx), std::int32_t(brick / nx % ny),
+                      std::int32_t(brick / (nx * ny))};
+      VoxelBox box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.low[axis] = at[axis] * kBrickEdge;
+        box.high[axis] = std::min(box.low[axis] + kBrickEdge, size[axis]);
+      }
+      for (int k = box.low[2]; k < box.high[2]; ++k) {
+        for (int j = box.low[1]; j < box.high[1]; ++j) {
+          for (int i = box.low[0]; i < box.high[0]; ++i) {
+            const std::size_t index = geometry().indexOf(i, j, k);
+            copy.hu[index] = hu(index);
+          }
+        }
+      }
+      const bool joins = !boxes.empty() && boxes.back().high[0] == box.low[0] &&
+                         boxes.back().low[1] == box.low[1] && boxes.back().low[2] == box.low[2];
+      if (joins) {
+        boxes.back().high[0] = box.high[0];
+      } else {
+        boxes.push_back(box);
+      }
+    }
+  }
+}
+
+Volume Grid::snapshot() const {
+  Volume copy{geometry(), std::vector<std::int16_t>(volume_.hu.size())};
+  for (std::size_t index = 0; index < copy.hu.size(); ++index) copy.hu[index] = hu(index);
+  return copy;
+}
+
+}  // namespace trephine

@@ -1,0 +1,82 @@
+// The live HU grid: one writer at a time, readers that copy what changed.
+//
+// Protocol (architecture.md): the holder of the write token stores int16 with relaxed atomics, then
+// marks the 16^3 brick with fetch_or(release). The one reader takes marks with exchange(acquire)
+// and copies those bricks with relaxed loads into its own Volume. Drawing, slices, saving and
+// hashing see only such copies.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "volume/volume.h"
+
+namespace trephine {
+
+constexpr int kBrickEdge = 16;
+
+// Voxels [low, high) on each axis.
+struct VoxelBox {
+  Index3 low{0, 0, 0};
+  Index3 high{0, 0, 0};
+  friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
+};
+
+class Grid {
+ public:
+  explicit Grid(Volume volume);
+  Grid(const Grid&) = delete;
+  Grid& operator=(const Grid&) = delete;
+
+  const GridGeometry& geometry() const { return volume_.geometry; }
+
+  // Any thread. A voxel outside the grid is air.
+  std::int16_t hu(std::size_t index) const {
+    return std::atomic_ref<std::int16_t>(voxels_[index]).load(std::memory_order_relaxed);
+  }
+  std::int16_t hu(int i, int j, int k) const {
+    return geometry().contains(i, j, k) ? hu(geometry().indexOf(i, j, k)) : kAirHu;
+  }
+
+  // The right to write voxels. Moves between threads; given back when destroyed. Holding it is the
+  // caller's promise to write from one thread at a time. Wait-free, no allocation.
+  class Writer {
+   public:
+    Writer(Writer&& other) noexcept : grid_(std::exchange(other.grid_, nullptr)) {}
+    Writer& operator=(Writer&&) = delete;
+    ~Writer() {
+      if (grid_) grid_->taken_.store(false, std::memory_order_release);
+    }
+    // Stores `hu` and marks the brick; returns what was there before.
+    std::int16_t store(std::size_t index, std::int16_t hu);
+    const Grid& grid() const { return *grid_; }
+
+   private:
+    friend class Grid;
+    explicit Writer(Grid* grid) : grid_(grid) {}
+    Grid* grid_;
+  };
+  // Nothing while another writer stands.
+  std::optional<Writer> takeWriter();
+
+  // The reader's side: one thread at a time.
+  // Copies every brick marked since the last call into `copy` (of this geometry) and appends the
+  // boxes, neighbours along i merged.
+  void copyChanges(Volume& copy, std::vector<VoxelBox>& boxes);
+  // A full copy; relaxed loads, so it may be taken while the writer works.
+  Volume snapshot() const;
+
+ private:
+  Volume volume_;
+  std::int16_t* voxels_;
+  Index3 bricks_;
+  std::unique_ptr<std::atomic<std::uint64_t>[]> dirty_;  // one bit a brick
+  std::size_t dirty_words_;
+  std::atomic<bool> taken_{false};
+};
+
+}  // namespace trephine

@@ -1,0 +1,59 @@
+// Built-in cases: anatomical phantoms from formulas, so that every voxel has a known truth.
+//
+// A phantom is a function from patient mm to tissue; the volume is that function averaged over each
+// voxel (partial-volume edges) plus Gaussian noise from a fixed seed. The same bits everywhere.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+enum class PhantomTissue : std::uint8_t {
+  air,
+  scalp,
+  outerTable,
+  diploe,
+  innerTable,
+  dura,
+  csf,
+  greyMatter,
+  whiteMatter,
+  ventricle,
+  eye,
+  facialBone,
+  skin,
+  fat,
+  muscle,
+  bone,
+  marrow,
+  capsule,
+  liver,
+  vessel,
+  kidney,
+  spleen
+};
+
+// Noise-free HU of each tissue, and its name in lower case.
+std::int16_t phantomHu(PhantomTissue tissue);
+const char* phantomTissueName(PhantomTissue tissue);
+
+// The truth at a point, exact and without noise. `name` is "cranium" or "abdomen".
+using PhantomTruth = PhantomTissue (*)(const Vec3& patient_mm);
+Result<PhantomTruth> phantomTruth(const std::string& name);
+Result<GridGeometry> phantomGeometry(const std::string& name);
+
+// Standard deviation of the noise added to every voxel, HU.
+constexpr double kPhantomNoiseHu = 8.0;
+
+// Makes the volume, on two threads. CANCELLED when `progress` says so; UNKNOWN_PHANTOM.
+Result<Volume> makePhantom(const std::string& name, const Progress& progress = Progress());
+
+// The same truth on any other grid (coarser, finer, oblique): tests and measurements.
+Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu);
+
+}  // namespace trephine

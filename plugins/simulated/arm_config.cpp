@@ -1,0 +1,204 @@
+#include "arm_config.h"
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+namespace trephine::simulated {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kVersion = 1;
+constexpr double kMinEncoderStep_m = 1e-9;
+
+// Caught in parseConfig: nothing leaves this file by exception.
+struct Refused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Range {
+  double low;
+  double high;
+  bool low_itself;  // whether `low` is allowed
+};
+
+std::string shown(const Json& value) {
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+std::string joined(const std::string& parent, const std::string& key) {
+  return parent.empty() ? key : parent + "." + key;
+}
+
+[[noreturn]] void refuse(const std::string& field, const std::string& why) {
+  throw Refused("Field '" + field + "': " + why);
+}
+
+const Json& member(const Json& object, const char* key, const std::string& parent) {
+  auto it = object.find(key);
+  if (it == object.end()) refuse(joined(parent, key), "this required field is missing.");
+  return *it;
+}
+
+void checkObject(const Json& value, const std::string& field,
+                 std::initializer_list<std::string_view> keys) {
+  if (!value.is_object()) refuse(field, "expected an object, found " + shown(value) + ".");
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    bool known = false;
+    for (std::string_view key : keys) known = known || key == it.key();
+    if (!known) {
+      refuse(joined(field, it.key()),
+             "unknown field with value " + shown(it.value()) + "; remove it or correct its name.");
+    }
+  }
+}
+
+double checkNumber(const Json& value, const std::string& field, const Range& range) {
+  if (!value.is_number()) refuse(field, "expected a number, found " + shown(value) + ".");
+  const double number = value.get<double>();
+  const bool above = range.low_itself ? number >= range.low : number > range.low;
+  if (!above || !(number <= range.high)) {
+    refuse(field, "the value " + shown(value) + " must be " +
+                      (range.low_itself ? "at least " : "above ") + shown(range.low) +
+                      " and at most " + shown(range.high) + ".");
+  }
+  return number;
+}
+
+std::string checkText(const Json& object, const char* key, const std::string& parent) {
+  const Json& value = member(object, key, parent);
+  if (!value.is_string() || value.get_ref<const std::string&>().empty()) {
+    refuse(joined(parent, key), "expected text, found " + shown(value) + ".");
+  }
+  return value.get<std::string>();
+}
+
+// {"value": ..., "source": text, "verified": true or false} -> its value.
+const Json& sourced(const Json& arm, const char* key, const std::string& parent) {
+  const Json& number = member(arm, key, parent);
+  const std::string field = joined(parent, key);
+  checkObject(number, field, {"value", "source", "verified"});
+  checkText(number, "source", field);
+  const Json& verified = member(number, "verified", field);
+  if (!verified.is_boolean()) {
+    refuse(joined(field, "verified"), "expected true or false, found " + shown(verified) + ".");
+  }
+  return member(number, "value", field);
+}
+
+double number(const Json& arm, const char* key, const std::string& parent, const Range& range) {
+  return checkNumber(sourced(arm, key, parent), joined(parent, key) + ".value", range);
+}
+
+Vector extent(const Json& arm, const char* key, const std::string& parent) {
+  const Json& value = sourced(arm, key, parent);
+  const std::string field = joined(parent, key) + ".value";
+  if (!value.is_array() || value.size() != 3) {
+    refuse(field, "expected three numbers, found " + shown(value) + ".");
+  }
+  Vector out{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out[axis] =
+        checkNumber(value[axis], field + "[" + std::to_string(axis) + "]", {0.0, 10.0, false});
+  }
+  return out;
+}
+
+ArmConfig parseArm(const Json& arm, const std::string& field) {
+  checkObject(arm, field,
+              {"apparent_mass_kg", "plant_damping_Ns_per_m", "encoder_step_m", "workspace_m",
+               "peak_force_N", "continuous_force_N", "max_stiffness_N_per_m",
+               "max_damping_Ns_per_m", "rate_hz"});
+  ArmConfig config;
+  ArmParameters& p = config.parameters;
+  p.mass_kg = number(arm, "apparent_mass_kg", field, {0.0, 100.0, false});
+  p.damping_Ns_per_m = number(arm, "plant_damping_Ns_per_m", field, {0.0, 1e6, true});
+  p.encoder_step_m = number(arm, "encoder_step_m", field, {0.0, 0.01, true});
+  if (p.encoder_step_m > 0.0 && p.encoder_step_m < kMinEncoderStep_m) {
+    refuse(joined(field, "encoder_step_m.value"), "the value " + shown(p.encoder_step_m) +
+                                                      " must be 0 or at least " +
+                                                      shown(kMinEncoderStep_m) + ".");
+  }
+  p.workspace_m = extent(arm, "workspace_m", field);
+  p.peak_force_N = number(arm, "peak_force_N", field, {0.0, 1000.0, false});
+
+  TrephineCapabilities& c = config.capabilities;
+  c.size = sizeof(TrephineCapabilities);
+  c.version = TREPHINE_DEVICE_ABI;
+  c.input_dof = 6;
+  c.output_dof = 3;
+  for (std::size_t axis = 0; axis < 3; ++axis) c.workspace_m[axis] = p.workspace_m[axis];
+  c.peak_force_N = p.peak_force_N;
+  c.continuous_force_N = number(arm, "continuous_force_N", field, {0.0, p.peak_force_N, false});
+  c.max_stiffness_N_per_m = number(arm, "max_stiffness_N_per_m", field, {0.0, 1e9, false});
+  c.max_damping_Ns_per_m = number(arm, "max_damping_Ns_per_m", field, {0.0, 1e9, true});
+  c.apparent_mass_kg = p.mass_kg;
+  c.encoder_step_m = p.encoder_step_m;
+  c.rate_hz = number(arm, "rate_hz", field, {0.0, 1e6, false});
+  return config;
+}
+
+void checkFormat(const Json& root) {
+  const std::string format = checkText(root, "format", "");
+  if (format != "trephine.device") {
+    refuse("format", "this is '" + format + "', not 'trephine.device'.");
+  }
+  const Json& version = member(root, "version", "");
+  if (!version.is_number_integer() || version < 1) {
+    refuse("version", "expected a whole number from 1, found " + shown(version) + ".");
+  }
+  if (version > kVersion) {
+    refuse("version", "version " + shown(version) + " is newer than version " +
+                          std::to_string(kVersion) + ", which this plugin reads.");
+  }
+}
+
+DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
+  checkObject(root, "", {"format", "version", "model", "arm", "arms", "vanish_after_s"});
+  checkFormat(root);
+  checkText(root, "model", "");
+  if (root.contains("arm") == root.contains("arms")) {
+    refuse("arm", "give either 'arm', one object for every arm, or 'arms', a list of them.");
+  }
+  DeviceConfig config;
+  if (root.contains("arm")) {
+    config.arms.assign(n_arms, parseArm(root["arm"], "arm"));
+  } else {
+    const Json& arms = root["arms"];
+    if (!arms.is_array()) refuse("arms", "expected a list, found " + shown(arms) + ".");
+    if (arms.size() != n_arms) {
+      refuse("arms", "it describes " + std::to_string(arms.size()) + " arms, and " +
+                         std::to_string(n_arms) + " are open.");
+    }
+    for (std::size_t i = 0; i < n_arms; ++i) {
+      config.arms.push_back(parseArm(arms[i], "arms[" + std::to_string(i) + "]"));
+    }
+  }
+  if (root.contains("vanish_after_s")) {
+    config.vanish_after_s = checkNumber(root["vanish_after_s"], "vanish_after_s", {0.0, 1e6, true});
+  }
+  return config;
+}
+
+}  // namespace
+
+bool parseConfig(const char* text, std::size_t n_arms, DeviceConfig& config, std::string& error) {
+  try {
+    const Json root = Json::parse(text);
+    if (!root.is_object()) throw Refused("Expected an object, found " + shown(root) + ".");
+    config = parseRoot(root, n_arms);
+    return true;
+  } catch (const Json::parse_error& e) {
+    error = "The text is not valid JSON at byte " + std::to_string(e.byte) + ".";
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  return false;
+}
+
+}  // namespace trephine::simulated

@@ -1,0 +1,323 @@
+// The simulated arms behind the C ABI: arguments, states and flags; the motion is simulated_arm.h.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "arm_config.h"
+#include "simulated_arm.h"
+#include "trephine_device.h"
+
+using trephine::simulated::ArmConfig;
+using trephine::simulated::ArmMotion;
+using trephine::simulated::DeviceConfig;
+using trephine::simulated::Hand;
+using trephine::simulated::Vector;
+
+namespace {
+
+constexpr const char* kBusPaths[] = {"sim-left", "sim-right"};
+constexpr std::uint32_t kArms = 2;
+constexpr double kMaxStep_s = 0.1;      // longer exchanges are refused: they would block
+constexpr double kMaxReach_m = 1000.0;  // of a hand's rest pose
+constexpr double kMaxHandStiffness = 1e9;
+constexpr double kMaxHandDamping = 1e9;
+
+struct Arm {
+  ArmConfig config;
+  Hand hand;
+  ArmMotion motion;
+  double orientation[4] = {1.0, 0.0, 0.0, 0.0};
+};
+
+thread_local char open_error[160] = "";
+
+}  // namespace
+
+struct TrephineDevice {
+  std::vector<Arm> arms;
+  bool configured = false;
+  bool running = false;
+  bool vanished = false;
+  std::atomic<bool> silenced{false};  // by safe_stop, from any thread
+  std::uint64_t sequence = 0;
+  std::int64_t time_ns = 0;
+  double vanish_after_s = -1.0;
+  std::string config_error;
+  const char* error = "";  // a literal or config_error: set without allocation
+};
+
+namespace {
+
+int fail(TrephineDevice* device, int code, const char* sentence) {
+  device->error = sentence;
+  return code;
+}
+
+// Element i of an array whose elements have the size that the host wrote into the first.
+template <class T>
+T* element(T* first, std::size_t i) {
+  using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
+  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
+}
+
+bool finite(const double* values, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (!std::isfinite(values[i])) return false;
+  }
+  return true;
+}
+
+void copyText(char* to, std::size_t room, const char* text) {
+  std::snprintf(to, room, "%s", text);
+}
+
+std::uint32_t enumerate(TrephineArmInfo* infos, std::uint32_t capacity) {
+  for (std::uint32_t i = 0; i < kArms && i < capacity; ++i) {
+    TrephineArmInfo* info = element(infos, i);
+    if (info->size < sizeof(TrephineArmInfo)) return kArms;
+    copyText(info->bus_path, sizeof(info->bus_path), kBusPaths[i]);
+    copyText(info->serial, sizeof(info->serial), kBusPaths[i]);
+    copyText(info->model, sizeof(info->model), "Simulated arm");
+  }
+  return kArms;
+}
+
+int open(const std::uint32_t* places, std::uint32_t n_arms, TrephineDevice** device) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  *device = nullptr;
+  open_error[0] = '\0';
+  if (!places || n_arms == 0 || n_arms > kArms) {
+    copyText(open_error, sizeof(open_error), "The simulated plugin opens one or two arms.");
+    return TREPHINE_ERROR_ARGUMENT;
+  }
+  for (std::uint32_t i = 0; i < n_arms; ++i) {
+    if (places[i] >= kArms) {
+      std::snprintf(open_error, sizeof(open_error),
+                    "There is no simulated arm %u: the arms are 0 (left) and 1 (right).",
+                    places[i]);
+      return TREPHINE_ERROR_NO_DEVICE;
+    }
+  }
+  if (n_arms == 2 && places[0] == places[1]) {
+    std::snprintf(open_error, sizeof(open_error), "Simulated arm %u is asked for twice.",
+                  places[0]);
+    return TREPHINE_ERROR_ARGUMENT;
+  }
+  try {
+    auto* opened = new TrephineDevice;
+    opened->arms.resize(n_arms);
+    *device = opened;
+    return TREPHINE_OK;
+  } catch (const std::bad_alloc&) {
+    copyText(open_error, sizeof(open_error), "There is no memory for the simulated arms.");
+    return TREPHINE_ERROR_DEVICE;
+  }
+}
+
+int configure(TrephineDevice* device, const char* json) {
+  if (!device || !json) return TREPHINE_ERROR_ARGUMENT;
+  if (device->running) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms are running: stop them to configure them.");
+  }
+  try {
+    DeviceConfig config;
+    if (!parseConfig(json, device->arms.size(), config, device->config_error)) {
+      return fail(device, TREPHINE_ERROR_ARGUMENT, device->config_error.c_str());
+    }
+    for (std::size_t i = 0; i < device->arms.size(); ++i) device->arms[i].config = config.arms[i];
+    device->vanish_after_s = config.vanish_after_s;
+    device->configured = true;
+    return TREPHINE_OK;
+  } catch (const std::bad_alloc&) {
+    return fail(device, TREPHINE_ERROR_DEVICE, "There is no memory for the configuration.");
+  }
+}
+
+int capabilities(TrephineDevice* device, std::uint32_t arm, TrephineCapabilities* out) {
+  if (!device || !out || out->size < sizeof(TrephineCapabilities)) return TREPHINE_ERROR_ARGUMENT;
+  if (arm >= device->arms.size()) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
+  }
+  if (!device->configured) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
+  }
+  const std::uint32_t size = out->size, version = out->version;
+  std::memcpy(out, &device->arms[arm].config.capabilities, sizeof(TrephineCapabilities));
+  out->size = size;
+  out->version = version;
+  return TREPHINE_OK;
+}
+
+int calibrate(TrephineDevice* device, std::uint32_t arm) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (arm >= device->arms.size()) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
+  }
+  return TREPHINE_OK;  // a simulated arm always knows where it is
+}
+
+int start(TrephineDevice* device, TrephineServo servo, void*) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (servo) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The host paces the simulated arms: no servo.");
+  }
+  if (!device->configured || device->running) {
+    return fail(
+        device, TREPHINE_ERROR_STATE,
+        device->running ? "The arms are already running." : "The arms have no configuration yet.");
+  }
+  if (device->vanished) {
+    return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away, as configured.");
+  }
+  device->silenced.store(false);
+  device->running = true;
+  return TREPHINE_OK;
+}
+
+void report(const TrephineDevice& device, const Arm& arm, TrephineArmState& state) {
+  state.sequence = device.sequence;
+  state.time_ns = device.time_ns;
+  const Vector position = encoderReading(arm.config.parameters, arm.motion.position_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    state.position_m[axis] = position[std::size_t(axis)];
+    state.velocity_m_s[axis] = 0.0;
+  }
+  for (int i = 0; i < 4; ++i) state.orientation[i] = arm.orientation[i];
+  state.buttons = 0;
+  state.flags = TREPHINE_ARM_CALIBRATED;
+  if (arm.motion.saturated) state.flags |= TREPHINE_ARM_SATURATED;
+  if (arm.motion.at_limit) state.flags |= TREPHINE_ARM_AT_LIMIT;
+}
+
+int lose(TrephineDevice* device, TrephineArmState* states, int code, const char* sentence) {
+  for (std::size_t i = 0; i < device->arms.size(); ++i) {
+    element(states, i)->flags |= TREPHINE_ARM_LOST;
+  }
+  return fail(device, code, sentence);
+}
+
+int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
+             const TrephineArmCommand* commands) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (!states || !commands || states->size < sizeof(TrephineArmState) ||
+      commands->size < sizeof(TrephineArmCommand)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states or commands have no valid size.");
+  }
+  if (!device->running) {
+    return lose(device, states, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
+  }
+  if (device->vanished) {
+    return lose(device, states, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
+  }
+  if (!(dt_s > 0.0 && dt_s <= kMaxStep_s)) {
+    return lose(device, states, TREPHINE_ERROR_ARGUMENT,
+                "The time step must be above 0 and at most 0.1 s.");
+  }
+  device->time_ns += std::int64_t(dt_s * 1e9 + 0.5);
+  if (device->vanish_after_s >= 0.0 && double(device->time_ns) > device->vanish_after_s * 1e9) {
+    device->vanished = true;
+    return lose(device, states, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
+  }
+  ++device->sequence;
+  const bool silenced = device->silenced.load(std::memory_order_relaxed);
+  bool refused = false;
+  for (std::size_t i = 0; i < device->arms.size(); ++i) {
+    Arm& arm = device->arms[i];
+    const TrephineArmCommand& command = *element(commands, i);
+    const bool usable = finite(command.force_N, 3) && finite(command.torque_Nm, 3);
+    Vector force{};
+    if (usable && !silenced) force = {command.force_N[0], command.force_N[1], command.force_N[2]};
+    refused = refused || !usable;
+    arm.motion = advance(arm.config.parameters, arm.hand, arm.motion, force, dt_s);
+    report(*device, arm, *element(states, i));
+  }
+  if (refused) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT,
+                "A commanded force was not finite: that arm got none.");
+  }
+  return TREPHINE_OK;
+}
+
+int setTarget(TrephineDevice* device, std::uint32_t place, const double position_m[3],
+              const double orientation[4], double hand_k, double hand_b) {
+  if (!device || !position_m || !orientation) return TREPHINE_ERROR_ARGUMENT;
+  if (place >= device->arms.size()) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
+  }
+  double largest = 0.0, sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    largest = std::max(largest, orientation[i] < 0.0 ? -orientation[i] : orientation[i]);
+  }
+  bool usable = finite(position_m, 3) && finite(orientation, 4) && largest > 0.0 && hand_k >= 0.0 &&
+                hand_k <= kMaxHandStiffness && hand_b >= 0.0 && hand_b <= kMaxHandDamping;
+  for (int axis = 0; usable && axis < 3; ++axis) {
+    usable = position_m[axis] >= -kMaxReach_m && position_m[axis] <= kMaxReach_m;
+  }
+  if (!usable) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT,
+                "The hand's pose, stiffness or damping is not possible: it stays as it was.");
+  }
+  Arm& arm = device->arms[place];
+  arm.hand.rest_m = {position_m[0], position_m[1], position_m[2]};
+  arm.hand.stiffness_N_per_m = hand_k;
+  arm.hand.damping_Ns_per_m = hand_b;
+  for (int i = 0; i < 4; ++i) sum += orientation[i] / largest * (orientation[i] / largest);
+  const double length = std::sqrt(sum);
+  for (int i = 0; i < 4; ++i) arm.orientation[i] = orientation[i] / largest / length;
+  if (!device->running && device->configured) {
+    // Nothing resists the hand and nobody counts the time: it has brought the arm there.
+    arm.motion = ArmMotion{};
+    arm.motion.position_m = insideWorkspace(arm.config.parameters, arm.hand.rest_m);
+  }
+  return TREPHINE_OK;
+}
+
+int stop(TrephineDevice* device) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  device->running = false;
+  return TREPHINE_OK;
+}
+
+void safeStop(TrephineDevice* device) {
+  if (device) device->silenced.store(true);
+}
+
+const char* lastError(TrephineDevice* device) {
+  return device ? device->error : open_error;
+}
+
+void close(TrephineDevice* device) {
+  delete device;
+}
+
+const TrephineDeviceApi kApi = {
+    sizeof(TrephineDeviceApi),
+    TREPHINE_DEVICE_ABI,
+    "simulated",
+    TREPHINE_CLOCK_HOST,
+    enumerate,
+    open,
+    configure,
+    capabilities,
+    calibrate,
+    start,
+    exchange,
+    setTarget,
+    stop,
+    safeStop,
+    lastError,
+    close,
+};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const TrephineDeviceApi* trephine_device_plugin(
+    std::uint32_t host_abi) {
+  return host_abi == TREPHINE_DEVICE_ABI ? &kApi : nullptr;
+}

@@ -1,0 +1,101 @@
+#include "simulated_arm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace trephine::simulated {
+
+namespace {
+
+constexpr int kMinSubsteps = 20;
+constexpr double kMaxSubstep_s = 50e-6;
+// A host that clamps at the peak itself may miss it by a rounding error.
+constexpr double kPeakTolerance = 1.0 + 1e-9;
+
+int substeps(double dt_s) {
+  int n = int(dt_s / kMaxSubstep_s);
+  if (n * kMaxSubstep_s < dt_s) ++n;
+  return std::max(n, kMinSubsteps);
+}
+
+// std::round is a library call; the steps are few enough for a 64-bit integer.
+double nearestStep(double value, double step) {
+  const double steps = value / step;
+  return double(std::int64_t(steps < 0.0 ? steps - 0.5 : steps + 0.5)) * step;
+}
+
+}  // namespace
+
+ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& motion,
+                  const Vector& force_N, double dt_s) {
+  ArmMotion next = motion;
+  next.at_limit = false;
+  const Vector force = limitedForce(force_N, arm.peak_force_N, next.saturated);
+  const int n = substeps(dt_s);
+  const double h = dt_s / n;
+  const double m = arm.mass_kg;
+  const double k = hand.stiffness_N_per_m;
+  const double damping = hand.damping_Ns_per_m + arm.damping_Ns_per_m;
+  // With the mean speed u = (v + v')/2 the rule reads
+  //   2 m (u - v) = h [f + k (x_h - x - u h/2) - (b + c) u],  x' = x + h u,  v' = 2 u - v.
+  const double inverse = 1.0 / (2.0 * m + h * damping + 0.5 * h * h * k);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double edge = 0.5 * arm.workspace_m[axis];
+    double x = motion.position_m[axis];
+    double v = motion.velocity_m_s[axis];
+    for (int i = 0; i < n; ++i) {
+      const double pull = force[axis] + k * (hand.rest_m[axis] - x);
+      const double u = (2.0 * m * v + h * pull) * inverse;
+      x += h * u;
+      v = 2.0 * u - v;
+      if (x > edge || x < -edge) {
+        x = x > edge ? edge : -edge;
+        v = 0.0;
+        next.at_limit = true;
+      }
+    }
+    next.position_m[axis] = x;
+    next.velocity_m_s[axis] = v;
+  }
+  return next;
+}
+
+Vector encoderReading(const ArmParameters& arm, const Vector& position_m) {
+  if (arm.encoder_step_m == 0.0) return position_m;
+  Vector reading{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reading[axis] = nearestStep(position_m[axis], arm.encoder_step_m);
+  }
+  return reading;
+}
+
+Vector insideWorkspace(const ArmParameters& arm, const Vector& position_m) {
+  Vector inside{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double edge = 0.5 * arm.workspace_m[axis];
+    inside[axis] = std::clamp(position_m[axis], -edge, edge);
+  }
+  return inside;
+}
+
+Vector limitedForce(const Vector& force_N, double peak_N, bool& limited) {
+  limited = false;
+  double largest = 0.0;
+  for (double f : force_N) largest = std::max(largest, f < 0.0 ? -f : f);
+  if (largest == 0.0) return force_N;
+  // Divided first, so that the squares of a huge force cannot overflow.
+  Vector direction{};
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    direction[axis] = force_N[axis] / largest;
+    sum += direction[axis] * direction[axis];
+  }
+  const double length = std::sqrt(sum);  // of `direction`, between 1 and sqrt(3)
+  if (length <= peak_N / largest * kPeakTolerance) return force_N;
+  limited = true;
+  for (double& d : direction) d *= peak_N / length;
+  return direction;
+}
+
+}  // namespace trephine::simulated

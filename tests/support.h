@@ -1,0 +1,39 @@
+// What several tests need: a folder that goes away, and the real CT where it is.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace trephine::test {
+
+// An empty folder of this test's own, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "trephine-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code ec;
+    std::filesystem::remove_all(path_, ec);
+  }
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace trephine::test
+
+// Declares `folder`, the test data, or skips the test with the reason.
+#define TREPHINE_TEST_DATA_OR_SKIP(folder)                                                 \
+  const char* folder##_text = std::getenv("TREPHINE_TEST_DATA");                           \
+  if (!folder##_text || !*folder##_text) {                                                 \
+    GTEST_SKIP() << "TREPHINE_TEST_DATA is not set: this test needs the real CT data";     \
+  }                                                                                        \
+  const std::filesystem::path folder = folder##_text

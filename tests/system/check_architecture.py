@@ -1,0 +1,328 @@
+"""Holds every #include against the rooms' arrows, and every text file against machine paths.
+
+usage: check_architecture.py SOURCE_DIR ROOMS_JSON [--self-test]
+
+ROOMS_JSON is written by trephine_room() at configure time. --self-test plants violations, one at a
+time, in a copy of the tree and demands that each is found.
+"""
+
+import copy
+import json
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+
+# The arrows of the rooms. A room may declare fewer.
+ROOMS = {
+    "base": set(),
+    "volume": {"base"},
+    "tissue": {"base"},
+    "imaging": {"base", "volume"},
+    "library": {"base", "volume", "imaging"},
+    "device": {"base"},
+    "haptics": {"base", "volume", "tissue", "device"},
+    "scene": {"base", "volume", "tissue", "haptics"},
+    "training": {"base", "volume", "tissue", "device", "haptics", "scene"},
+    "session": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training"},
+    "render": {"base", "volume", "tissue", "scene"},
+    "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training",
+            "session", "render"},
+}
+MODULES = set(ROOMS)
+ROOMS["ui"] = MODULES
+ROOMS["app"] = MODULES | {"ui"}
+
+# The libraries a room may name under USES; threads and dl are the system's own.
+MAY_USE = {
+    "base": {"glm", "json", "spdlog", "openssl"},
+    "volume": {"vtk-image"},
+    "tissue": set(),
+    "imaging": {"dcmtk", "openjpeg", "vtk-image"},
+    "library": {"qt"},
+    "device": {"dl"},
+    "haptics": {"glm"},
+    "scene": set(),
+    "training": {"hdf5"},
+    "session": set(),
+    "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
+    "lab": set(),
+    "ui": {"qt"},
+    "app": {"qt", "cli11"},
+}
+FOR_ALL = {"threads"}
+
+# The headers each library brings. A room that needs one only through another room's header (Vec3
+# through base/math.h) includes that room's header.
+HEADERS = {
+    "glm": r"glm/.+",
+    "json": r"nlohmann/.+",
+    "spdlog": r"spdlog/.+",
+    "openssl": r"openssl/.+",
+    "dcmtk": r"dcmtk/.+",
+    "openjpeg": r"openjpeg.*",
+    "hdf5": r"hdf5(_hl)?\.h|H5.+\.h",
+    "vtk-image": r"vtk[A-Z]\w*\.h",
+    "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h",
+    "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
+    "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",
+    "cli11": r"CLI/.+",
+    "threads": r"pthread\.h|semaphore\.h",
+    "dl": r"dlfcn\.h",
+}
+STANDARD = set("""
+algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono
+cinttypes climits clocale cmath compare complex concepts condition_variable coroutine csetjmp
+csignal cstdarg cstddef cstdint cstdio cstdlib cstring ctime cuchar cwchar deque exception execution
+filesystem forward_list fstream functional future initializer_list iomanip ios iosfwd iostream
+istream iterator latch limits list locale map memory memory_resource mutex new numbers numeric
+optional ostream queue random ranges ratio regex scoped_allocator semaphore set shared_mutex
+source_location span sstream stack stdexcept stop_token streambuf string string_view syncstream
+system_error thread tuple type_traits typeindex typeinfo unordered_map unordered_set utility
+valarray variant vector version
+assert.h ctype.h errno.h float.h inttypes.h limits.h locale.h math.h signal.h stdarg.h stdatomic.h
+stdbool.h stddef.h stdint.h stdio.h stdlib.h string.h time.h
+dirent.h fcntl.h poll.h pwd.h sched.h unistd.h sys/file.h sys/ioctl.h sys/mman.h sys/resource.h
+sys/socket.h sys/stat.h sys/statvfs.h sys/syscall.h sys/time.h sys/types.h sys/un.h sys/utsname.h
+sys/wait.h
+""".split())
+
+# The one header of ours that derives from a VTK class, so it has to show one, to its room alone.
+VTK_HEADER = "modules/render/carve_volume_mapper.h"
+# The one file of volume that reads and writes through VTK.
+VOLUME_VTK_FILE = "modules/volume/volume_files.cpp"
+# By its bare name, since a plugin also builds alone, with that folder given.
+DEVICE_ABI = "trephine_device.h"
+
+SOURCES = {".h", ".hpp", ".c", ".cpp", ".in"}
+TEXTS = SOURCES | {".cmake", ".json", ".md", ".py", ".sh", ".txt", ".yml", ".yaml", ".glsl", ".qss",
+                   ".svg", ".xml", ".desktop", ".rules", ".ts", ""}
+NOT_OURS = {".git", ".cache", "out", "__pycache__"}
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
+# Put together here, so that this file does not hold what it forbids.
+MACHINE_PATH = re.compile(r"(?<![\w.$}/])/(" + "|".join(["work", "root", "home"]) + r")/")
+
+
+def files_below(root, folder):
+    base = root / folder
+    return sorted(p for p in base.rglob("*") if p.is_file()) if base.is_dir() else []
+
+
+def sources_below(root, folder):
+    return [p for p in files_below(root, folder) if p.suffix in SOURCES]
+
+
+def includes(path):
+    """(line number, name, quoted) of each #include."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    for match in INCLUDE.finditer(text):
+        line = text.count("\n", 0, match.start(match.lastindex)) + 1
+        yield line, match.group(match.lastindex), match.lastindex == 1
+
+
+def provided_by(libraries, header):
+    return any(re.fullmatch(HEADERS[name], header) for name in libraries)
+
+
+class Report:
+    def __init__(self, root):
+        self.root = root
+        self.lines = []
+        self.files = 0
+        self.includes = 0
+
+    def add(self, path, line, text):
+        where = path.relative_to(self.root) if path.is_absolute() else path
+        self.lines.append(f"{where}:{line}: {text}" if line else f"{where}: {text}")
+
+
+def check_declaration(report, room):
+    """What a room's CMakeLists.txt declares, against the table of arrows."""
+    name, where = room["name"], pathlib.Path(room["dir"]) / "CMakeLists.txt"
+    if name not in ROOMS:
+        report.add(where, 0, f"the room '{name}' is not in the table of rooms")
+        return
+    for other in sorted(set(room["depends"]) - ROOMS[name]):
+        report.add(where, 0, f"the room '{name}' may not depend on '{other}'")
+    for library in sorted(set(room["uses"]) - MAY_USE[name] - FOR_ALL):
+        report.add(where, 0, f"the room '{name}' may not use the library '{library}'")
+
+
+def check_room(report, rooms, room):
+    """Every #include of a room, against its own DEPENDS and USES."""
+    root, name = report.root, room["name"]
+    allowed_rooms = set(room["depends"]) | {name}
+    libraries = set(room["uses"]) | FOR_ALL
+    for path in sources_below(root, room["dir"]):
+        report.files += 1
+        for line, header, quoted in includes(path):
+            report.includes += 1
+            relative = path.relative_to(root).as_posix()
+            if quoted:
+                target = header.split("/")[0] if "/" in header else None
+                if target is None:
+                    if not (path.parent / header).is_file():
+                        report.add(path, line, f'"{header}" is to be written as "room/file.h"')
+                elif target not in rooms:
+                    report.add(path, line, f'"{header}" is in no room')
+                elif target not in allowed_rooms:
+                    report.add(path, line, f"the room '{name}' does not depend on '{target}'")
+                elif f"modules/{header}" == VTK_HEADER and name != "render":
+                    report.add(path, line, f'"{header}" is for render alone: it shows VTK')
+                elif not (root / rooms[target]["dir"] / header.split("/", 1)[1]).is_file():
+                    report.add(path, line, f'"{header}" does not exist')
+                continue
+            if header.startswith("vtk") and path.suffix != ".cpp" and relative != VTK_HEADER:
+                report.add(path, line, f"<{header}>: VTK belongs in .cpp files")
+            if header.startswith("vtk") and name == "volume" and relative != VOLUME_VTK_FILE:
+                report.add(path, line, f"<{header}>: in volume, VTK belongs in {VOLUME_VTK_FILE}")
+            if header not in STANDARD and not provided_by(libraries, header):
+                report.add(path, line, f"the room '{name}' may not include <{header}>")
+
+
+def check_plugins(report):
+    """Plugins see the device ABI's header, the standard library and JSON, and their own files."""
+    for path in sources_below(report.root, "plugins"):
+        report.files += 1
+        for line, header, quoted in includes(path):
+            report.includes += 1
+            if quoted:
+                if header != DEVICE_ABI and not (path.parent / header).is_file():
+                    report.add(path, line, f'a plugin may include "{DEVICE_ABI}", not "{header}"')
+            elif header not in STANDARD and not provided_by({"json", "threads", "dl"}, header):
+                report.add(path, line, f"a plugin may not include <{header}>")
+
+
+def check_stray_sources(report, rooms):
+    """A source under modules that no room owns would escape every other check."""
+    folders = [r["dir"] + "/" for r in rooms.values()]
+    for path in sources_below(report.root, "modules"):
+        if not path.relative_to(report.root).as_posix().startswith(tuple(folders)):
+            report.add(path, 0, "this source belongs to no declared room")
+
+
+def check_machine_paths(report):
+    """No text that is handed on names a folder of one machine."""
+    for path in sorted(report.root.rglob("*")):
+        folders = path.relative_to(report.root).parts[:-1]
+        if any(folder in NOT_OURS or folder.startswith("build") for folder in folders):
+            continue
+        if path.suffix not in TEXTS or not path.is_file():
+            continue
+        text = path.read_bytes()
+        if b"\0" in text:
+            continue
+        for number, line in enumerate(text.decode("utf-8", "replace").splitlines(), 1):
+            found = MACHINE_PATH.search(line)
+            if found:
+                report.add(path, number, f"names a path of one machine: {found.group()}")
+
+
+def check(root, declared):
+    """Everything; `declared` is the content of rooms.json."""
+    report = Report(root)
+    declared = [{**r, "depends": [d for d in r["depends"] if d],
+                 "uses": [u for u in r["uses"] if u]} for r in declared]
+    rooms = {r["name"]: r for r in declared}
+    # ui and app need not be declared as rooms to be held to the arrows.
+    for name in ("ui", "app"):
+        rooms.setdefault(name, {"name": name, "dir": name, "depends": sorted(ROOMS[name]),
+                                "uses": sorted(MAY_USE[name])})
+    for room in declared:
+        check_declaration(report, room)
+    for room in rooms.values():
+        check_room(report, rooms, room)
+    check_plugins(report)
+    check_stray_sources(report, rooms)
+    check_machine_paths(report)
+    if not report.files or not report.includes:
+        report.add(pathlib.Path("modules"), 0, "no source was found, so nothing was checked")
+    return report
+
+
+# (what it breaks, file, text put in front of it, words of the finding)
+VIOLATIONS = [
+    ("an arrow against the table", "modules/base/json.h", '#include "volume/grid.h"\n',
+     "does not depend on 'volume'"),
+    ("a room's undeclared library", "modules/tissue/tissue_set.cpp", "#include <hdf5.h>\n",
+     "may not include <hdf5.h>"),
+    ("Qt below ui", "modules/volume/grid.cpp", "#include <QString>\n", "may not include <QString>"),
+    ("an include with blanks", "modules/base/file.cpp", " #  include  <QString>\n",
+     "may not include <QString>"),
+    ("VTK in a header", "modules/volume/volume.h", "#include <vtkImageData.h>\n", "in .cpp files"),
+    ("VTK spread in volume", "modules/volume/grid.cpp", "#include <vtkImageData.h>\n",
+     "VTK belongs in modules/volume/volume_files.cpp"),
+    ("render's VTK header elsewhere", "ui/planted.cpp", '#include "render/carve_volume_mapper.h"\n',
+     "render alone"),
+    ("a header by its bare name", "modules/tissue/tissue_set.cpp", '#include "json.h"\n',
+     "room/file.h"),
+    ("a header that is not there", "modules/tissue/tissue_set.cpp", '#include "base/none.h"\n',
+     "does not exist"),
+    ("a plugin that knows a room", "plugins/planted/planted.cpp", '#include "base/json.h"\n',
+     "a plugin may include"),
+    ("a plugin with Qt", "plugins/planted/planted.cpp", "#include <QString>\n",
+     "a plugin may not include"),
+    ("a source of no room", "modules/planted/planted.cpp", "\n", "belongs to no declared room"),
+    ("a machine's path", "modules/base/README.md", "see /ho" "me/someone/notes\n", "one machine"),
+]
+
+
+def self_test(root, declared):
+    failures = []
+    skipped = shutil.ignore_patterns(".git", "build*", "out", ".cache", "__pycache__")
+    with tempfile.TemporaryDirectory(prefix="trephine-") as folder:
+        tree = pathlib.Path(folder).resolve() / "tree"
+        shutil.copytree(root, tree, ignore=skipped, symlinks=True)
+        before = set(check(tree, declared).lines)
+        for what, name, text, words in VIOLATIONS:
+            path = tree / name
+            old = path.read_text(encoding="utf-8") if path.is_file() else None
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text + (old or ""), encoding="utf-8")
+            new = [line for line in check(tree, declared).lines
+                   if line not in before and line.startswith(name) and words in line]
+            print(f"{'found' if new else 'MISSED'}: {what}")
+            if not new:
+                failures.append(what)
+            if old is None:
+                path.unlink()
+            else:
+                path.write_text(old, encoding="utf-8")
+        planted = copy.deepcopy(declared)
+        planted[0]["depends"].append("session")
+        planted[0]["uses"].append("qt")
+        lines = check(tree, planted).lines
+        for words in ("may not depend on 'session'", "may not use the library 'qt'"):
+            found = any(words in line for line in lines)
+            print(f"{'found' if found else 'MISSED'}: a declaration that {words}")
+            if not found:
+                failures.append(words)
+        empty = pathlib.Path(folder).resolve() / "empty"
+        empty.mkdir()
+        if not check(empty, declared).lines:
+            failures.append("a tree without sources")
+    return failures
+
+
+def main(arguments):
+    if len(arguments) not in (2, 3) or arguments[2:] not in ([], ["--self-test"]):
+        print(__doc__, file=sys.stderr)
+        return 1
+    root = pathlib.Path(arguments[0]).resolve()
+    declared = json.loads(pathlib.Path(arguments[1]).read_text(encoding="utf-8"))
+    if arguments[2:]:
+        failures = self_test(root, declared)
+        for what in failures:
+            print(f"the check does not see {what}", file=sys.stderr)
+        return 1 if failures else 0
+    report = check(root, declared)
+    for line in report.lines:
+        print(line)
+    print(f"{report.includes} includes in {report.files} sources of {len(declared)} rooms, "
+          f"{len(report.lines)} violations")
+    return 1 if report.lines else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

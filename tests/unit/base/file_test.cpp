@@ -1,0 +1,173 @@
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::size_t filesIn(const fs::path& folder) {
+  return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+// Stands in for a full disk: a write past `bytes` fails with EFBIG while this lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &limit_);
+    rlimit lower = limit_;
+    lower.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &lower);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit limit_{};
+};
+
+TEST(WriteTextFile, WritesANewFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "new.json", "{}\n"));
+  EXPECT_EQ(contentOf(folder / "new.json"), "{}\n");
+  EXPECT_EQ(filesIn(folder.path()), 1u);
+}
+
+TEST(WriteTextFile, ReplacesAnOldFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "file", "a long old text"));
+  ASSERT_TRUE(writeTextFile(folder / "file", "new"));
+  EXPECT_EQ(contentOf(folder / "file"), "new");
+  EXPECT_EQ(filesIn(folder.path()), 1u);
+}
+
+TEST(WriteTextFile, KeepsTheOldFileWhenTheDiskIsFull) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "file";
+  ASSERT_TRUE(writeTextFile(file, "old"));
+  Status status;
+  {
+    FileSizeLimit limit(4096);
+    status = writeTextFile(file, std::string(100000, 'x'));
+  }
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(status.error().where, file.string());
+  EXPECT_NE(status.error().what.find("File too large"), std::string::npos) << status.error().what;
+  EXPECT_EQ(contentOf(file), "old");
+  EXPECT_EQ(filesIn(folder.path()), 1u) << "a part of the new file was left behind";
+}
+
+TEST(WriteTextFile, SaysWhyItCannotWriteIntoAMissingFolder) {
+  const test::TemporaryFolder folder;
+  const Status status = writeTextFile(folder.path() / "none" / "file", "text");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_NE(status.error().what.find("No such file or directory"), std::string::npos);
+  EXPECT_FALSE(status.error().next.empty());
+}
+
+TEST(WriteTextFile, LeavesAFolderInItsPlaceAlone) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(makeFolder(folder / "taken"));
+  const Status status = writeTextFile(folder / "taken", "text");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  EXPECT_TRUE(fs::is_directory(folder / "taken"));
+  EXPECT_EQ(filesIn(folder.path()), 1u);
+}
+
+TEST(ReplaceFile, ShowsTheTargetOnlyWhenItIsComplete) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "file";
+  const Status status = replaceFile(file, [&](const fs::path& temporary) -> Status {
+    std::ofstream(temporary) << "half";
+    EXPECT_FALSE(fs::exists(file));
+    EXPECT_EQ(temporary.parent_path(), file.parent_path());
+    std::ofstream(temporary, std::ios::app) << " and half";
+    return {};
+  });
+  ASSERT_TRUE(status);
+  EXPECT_EQ(contentOf(file), "half and half");
+}
+
+TEST(ReplaceFile, KeepsTheOldFileAndTheWritersReasonWhenWritingFails) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "file";
+  ASSERT_TRUE(writeTextFile(file, "old"));
+  const Status status = replaceFile(file, [](const fs::path& temporary) -> Status {
+    std::ofstream(temporary) << "half";
+    return Error{"BROKEN", "The writer broke", "", ""};
+  });
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "BROKEN");
+  EXPECT_EQ(contentOf(file), "old");
+  EXPECT_EQ(filesIn(folder.path()), 1u);
+}
+
+TEST(ReplaceFile, KeepsTheOldFileWhenTheWriterWroteNothing) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "file";
+  ASSERT_TRUE(writeTextFile(file, "old"));
+  const Status status = replaceFile(file, [](const fs::path&) -> Status { return {}; });
+  ASSERT_FALSE(status);
+  EXPECT_EQ(contentOf(file), "old");
+}
+
+TEST(ReplaceFile, KeepsTheExtensionByWhichWritersChooseTheFormat) {
+  const test::TemporaryFolder folder;
+  const auto temporaryName = [&](const std::string& name) {
+    std::string seen;
+    EXPECT_TRUE(replaceFile(folder / name, [&](const fs::path& temporary) {
+      seen = temporary.filename().string();
+      return writeTextFile(temporary, "x");
+    }));
+    return seen;
+  };
+  EXPECT_TRUE(temporaryName("a.mha").ends_with(".mha"));
+  EXPECT_TRUE(temporaryName("a.nii.gz").ends_with(".nii.gz"));
+  EXPECT_NE(temporaryName("a.mha"), "a.mha");
+}
+
+TEST(MakeFolder, MakesParentsAndAcceptsAnExistingFolder) {
+  const test::TemporaryFolder folder;
+  const fs::path deep = folder.path() / "a" / "b" / "c";
+  EXPECT_TRUE(makeFolder(deep));
+  EXPECT_TRUE(fs::is_directory(deep));
+  EXPECT_TRUE(makeFolder(deep));
+}
+
+TEST(MakeFolder, RefusesWhereAFileIs) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "file", "text"));
+  for (const fs::path& path : {folder / "file", folder.path() / "file" / "below"}) {
+    const Status status = makeFolder(path);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().where, path.string());
+  }
+  EXPECT_EQ(contentOf(folder / "file"), "text");
+}
+
+}  // namespace
+}  // namespace trephine

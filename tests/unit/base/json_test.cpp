@@ -1,0 +1,92 @@
+// parseJson and readJsonFile: what is refused before any field is read.
+#include "base/json.h"
+
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+TEST(ParseJson, ReadsAndKeepsTheOrderOfFields) {
+  const Result<Json> json = parseJson(R"({"b": 1, "a": [2, {"c": null}]})", "f.json");
+  ASSERT_TRUE(json.ok());
+  EXPECT_EQ(json->dump(), R"({"b":1,"a":[2,{"c":null}]})");
+}
+
+TEST(ParseJson, NamesTheFileAndThePlaceOfASyntaxError) {
+  const Result<Json> json = parseJson("{\n  \"a\": 1,\n  \"b\" 2\n}", "f.json");
+  ASSERT_FALSE(json.ok());
+  EXPECT_EQ(json.error().code, "BAD_JSON");
+  EXPECT_EQ(json.error().where, "f.json");
+  EXPECT_NE(json.error().what.find("line 3"), std::string::npos) << json.error().what;
+}
+
+TEST(ParseJson, RefusesTextThatIsCutShort) {
+  for (const char* text : {"", "{", "{\"a\": [1, 2", "\"open"}) {
+    EXPECT_FALSE(parseJson(text, "f.json").ok()) << text;
+  }
+}
+
+TEST(ParseJson, RefusesNaNAndInfinityWhichJsonDoesNotHave) {
+  for (const char* text : {R"({"a": NaN})", R"({"a": Infinity})", R"({"a": -Infinity})"}) {
+    EXPECT_FALSE(parseJson(text, "f.json").ok()) << text;
+  }
+}
+
+TEST(ParseJson, NamesFieldAndValueOfANumberThatNoDoubleHolds) {
+  const Result<Json> json =
+      parseJson(R"({"tissues": [{"id": "a"}, {"id": "b", "opacity": 1e999}]})", "f.json");
+  ASSERT_FALSE(json.ok());
+  EXPECT_EQ(json.error().where, "f.json: tissues[1].opacity");
+  EXPECT_NE(json.error().what.find("1e999"), std::string::npos) << json.error().what;
+}
+
+TEST(ParseJson, NamesTheElementOfAListWhoseNumberNoDoubleHolds) {
+  const Result<Json> json = parseJson(R"({"a": [[0, 1], [2, -1e400]]})", "f.json");
+  ASSERT_FALSE(json.ok());
+  EXPECT_EQ(json.error().where, "f.json: a[1][1]");
+}
+
+TEST(ParseJson, RefusesAFieldGivenTwice) {
+  const Result<Json> json = parseJson(R"({"a": {"k": 1}, "b": {"k": 1, "k": 2}})", "f.json");
+  ASSERT_FALSE(json.ok());
+  EXPECT_EQ(json.error().where, "f.json: b.k");
+}
+
+TEST(ParseJson, RefusesNestingWithoutEnd) {
+  const std::size_t depth = 1000000;
+  EXPECT_FALSE(parseJson(std::string(depth, '['), "f.json").ok());
+  const std::string closed = std::string(depth, '[') + std::string(depth, ']');
+  EXPECT_FALSE(parseJson(closed, "f.json").ok());
+  EXPECT_TRUE(parseJson(std::string(30, '[') + std::string(30, ']'), "f.json").ok());
+}
+
+TEST(ReadJsonFile, ReadsAFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "f.json", R"({"a": 1})"));
+  const Result<Json> json = readJsonFile(folder / "f.json");
+  ASSERT_TRUE(json.ok());
+  EXPECT_EQ((*json)["a"], 1);
+}
+
+TEST(ReadJsonFile, NamesAFileThatIsNotThere) {
+  const test::TemporaryFolder folder;
+  for (const auto& path : {folder / "none.json", folder.path()}) {
+    const Result<Json> json = readJsonFile(path);
+    ASSERT_FALSE(json.ok());
+    EXPECT_EQ(json.error().code, "MISSING_FILE");
+    EXPECT_EQ(json.error().where, path.string());
+    EXPECT_FALSE(json.error().next.empty());
+  }
+}
+
+TEST(ReadJsonFile, RefusesAFileWithoutEndInsteadOfReadingItAll) {
+  const Result<Json> json = readJsonFile("/dev/zero");
+  ASSERT_FALSE(json.ok());
+  EXPECT_NE(json.error().what.find("64 MB"), std::string::npos) << json.error().what;
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,57 @@
+#include "base/result.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace trephine {
+namespace {
+
+TEST(Error, SaysWhatWhereAndWhatToDoInOneSentence) {
+  const Error error{"MISSING_FOLDER", "The folder does not exist", "case", "Choose another one"};
+  EXPECT_EQ(error.sentence(), "The folder does not exist (case). Choose another one.");
+}
+
+TEST(Error, LeavesOutThePartsThatItDoesNotHave) {
+  EXPECT_EQ((Error{"X", "It failed", "", ""}).sentence(), "It failed.");
+  EXPECT_EQ((Error{"X", "It failed", "here", ""}).sentence(), "It failed (here).");
+  EXPECT_EQ((Error{"X", "It failed", "", "Try again"}).sentence(), "It failed. Try again.");
+}
+
+TEST(Result, HoldsAValue) {
+  Result<int> result = 7;
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(static_cast<bool>(result));
+  EXPECT_EQ(*result, 7);
+}
+
+TEST(Result, HoldsAnErrorInsteadOfAValue) {
+  const Result<int> result = Error{"CODE", "what", "where", "next"};
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "CODE");
+  EXPECT_EQ(result.error().where, "where");
+}
+
+TEST(Result, GivesAwayAValueThatCannotBeCopied) {
+  Result<std::unique_ptr<int>> result = std::make_unique<int>(3);
+  ASSERT_TRUE(result.ok());
+  std::unique_ptr<int> taken = *std::move(result);
+  EXPECT_EQ(*taken, 3);
+}
+
+TEST(Result, KeepsAValueApartFromAnErrorEvenWhereTheValueIsText) {
+  const Result<std::string> result = std::string("text");
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->size(), 4u);
+}
+
+TEST(Status, IsSuccessUntilItIsGivenAnError) {
+  Status status;
+  EXPECT_TRUE(status.ok());
+  status = Error{"CODE", "what", "", ""};
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "CODE");
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,276 @@
+#include "haptics/haptic_core.h"
+
+#include <limits>
+
+#include "base/rt/alloc_guard.h"
+#include "device/trephine_device.h"
+#include "haptics_support.h"
+
+namespace trephine {
+namespace {
+
+using test::Bench;
+using test::oneArm;
+
+std::string hashOf(const Grid& grid) { return volumeSha256(grid.snapshot()); }
+
+TEST(HapticCore, SendsNoForceInAir) {
+  Bench bench;
+  EXPECT_EQ(bench.push({0, 0, 8}, {3, 0, 3}, 200), 0.0);
+  EXPECT_EQ(bench.record.arms[0].tissue_class, -1);
+}
+
+TEST(HapticCore, BoneResistsTheToolAndIsRemovedByIt) {
+  Bench bench;
+  const double force = bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  EXPECT_GT(force, 1.5);
+  EXPECT_LE(force, 3.3);
+  EXPECT_EQ(bench.core.journal().removed(0, 0), 6u);  // a needle takes the voxels on its way
+  EXPECT_GT(bench.record.arms[0].sent_N.z, 0.0) << "pushes back, out of the bone";
+}
+
+TEST(HapticCore, RemovesOnlyWhatMayBeCut) {
+  HapticParameters p = oneArm();
+  p.tissues.classes[0].cuttable = 0;
+  Bench bench(p);
+  const std::string before = hashOf(bench.grid);
+  EXPECT_GT(bench.push({0, 0, 2}, {0, 0, -6}, 800), 1.5);
+  EXPECT_EQ(hashOf(bench.grid), before);
+}
+
+TEST(HapticCore, NeverExceedsTheArmsLimit) {
+  HapticParameters p = oneArm();
+  p.tissues = test::boneTable(1e9, 1e9, 1e9);
+  Bench bench(p);
+  const double force = bench.push({0, 0, 2}, {0, 0, -6}, 100);
+  EXPECT_NEAR(force, 3.3, 1e-9);
+}
+
+TEST(HapticCore, UndoPutsTheStrokeBackAndRedoTakesItAgain) {
+  Bench bench;
+  const std::string whole = hashOf(bench.grid);
+  bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  const std::string cut = hashOf(bench.grid);
+  ASSERT_NE(cut, whole);
+  bench.at({0, 0, 10}, {{CommandKind::undo, 0, {}}});
+  EXPECT_EQ(hashOf(bench.grid), whole);
+  EXPECT_EQ(bench.core.journal().removed(0, 0), 0u);
+  bench.at({0, 0, 10}, {{CommandKind::redo, 0, {}}});
+  EXPECT_EQ(hashOf(bench.grid), cut);
+  EXPECT_EQ(bench.core.journal().removed(0, 0), 6u);
+}
+
+TEST(HapticCore, APauseInCuttingEndsAStroke) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -3}, 300);
+  const std::string first = hashOf(bench.grid);
+  bench.push({5, 0, 5}, {5, 0, 5}, 400);
+  bench.push({5, 0, 2}, {5, 0, -3}, 300);
+  bench.at({5, 0, 8}, {{CommandKind::undo, 0, {}}});
+  EXPECT_EQ(hashOf(bench.grid), first);
+}
+
+TEST(HapticCore, ResetRestoresEverythingInSlicesAndThenAcceptsCommands) {
+  HapticParameters p = oneArm();
+  p.arms[0].tool = makeBlade(0.014, 29);
+  Bench bench(p);
+  const std::string whole = hashOf(bench.grid);
+  for (double y = -12; y < 12; y += 1.0) bench.push({-14, y, -14}, {14, y, -14}, 60);
+  ASSERT_GT(bench.core.journal().removed(0, 0), 3000u);
+  bench.at({0, 0, 15}, {{CommandKind::reset, 0, {}}});
+  EXPECT_FALSE(bench.core.acceptsCommands()) << "more voxels than one tick restores";
+  for (int i = 0; i < 20 && !bench.core.acceptsCommands(); ++i) bench.at({0, 0, 15});
+  EXPECT_TRUE(bench.core.acceptsCommands());
+  EXPECT_EQ(hashOf(bench.grid), whole);
+}
+
+TEST(HapticCore, SendsNoForceAfterUndoUntilTheToolLeftTheTissue) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  bench.at({0, 0, -6}, {{CommandKind::undo, 0, {}}});
+  EXPECT_EQ(bench.push({0, 0, -6}, {0, 0, -10}, 400), 0.0);
+  bench.push({0, 0, -10}, {0, 0, 5}, 400);
+  EXPECT_GT(bench.push({3, 0, 2}, {3, 0, -4}, 600), 0.5);
+}
+
+TEST(HapticCore, NoChangeRaisesTheForceFasterThanTheSlewLimit) {
+  const double step = kSlew_N_per_s * 0.001 + 1e-12;
+  TissueTable hard = test::boneTable(200.0, 5000.0, 50.0);
+  ASSERT_EQ(hard.count, 1);
+  const std::vector<Command> changes{{CommandKind::controller, 1, {}},
+                                     {CommandKind::tissues, 0, hard},
+                                     {CommandKind::clear_faults, 0, {}},
+                                     {CommandKind::resume, 0, {}}};
+  for (const Command& change : changes) {
+    Bench bench;
+    bench.push({0, 0, 2}, {0, 0, -4}, 600);
+    double last = glm::length(bench.record.arms[0].sent_N);
+    for (int i = 0; i < 30; ++i) {
+      const ArmRecord& arm = bench.at({0.02 * i, 0, -4 - 0.01 * i}, i == 0 ? std::vector{change}
+                                                                            : std::vector<Command>{});
+      ASSERT_LE(glm::length(arm.sent_N) - last, step) << "command " << int(change.kind);
+      last = glm::length(arm.sent_N);
+    }
+  }
+}
+
+TEST(HapticCore, StartsSlowlyWhenTheToolStandsInTissue) {
+  HapticParameters p = oneArm();
+  p.tissues = test::boneTable(1000.0, 0.0, 0.0);
+  Bench bench(p);
+  bench.at({0, 0, -5});
+  const ArmRecord& arm = bench.at({0, 0, -5.1});
+  EXPECT_GT(glm::length(arm.clamped_N), 3.0);
+  EXPECT_LE(glm::length(arm.sent_N), 0.05 + 1e-12);
+}
+
+TEST(HapticCore, PauseStopsForceAndRemoval) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -3}, 500);
+  const auto removed = bench.core.journal().removed(0, 0);
+  bench.at({0, 0, -3}, {{CommandKind::pause, 0, {}}});
+  EXPECT_EQ(bench.push({0, 0, -3}, {0, 0, -8}, 500), 0.0);
+  EXPECT_EQ(bench.core.journal().removed(0, 0), removed);
+}
+
+TEST(HapticCore, LatchesAFaultOnAnythingThatIsNotANumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const Vec3& bad : {Vec3(nan, 0, 0), Vec3(0, inf, 0), Vec3(0, 0, -inf)}) {
+    Bench bench;
+    bench.push({0, 0, 2}, {0, 0, -4}, 500);
+    EXPECT_EQ(bench.at(bad).sent_N, Vec3(0.0));
+    EXPECT_TRUE(bench.record.arms[0].faults & kFaultNonFinite);
+    EXPECT_EQ(bench.core.nonFinite(), 1u);
+    ASSERT_EQ(bench.core.events().size(), 1u);
+    EXPECT_EQ(bench.core.events()[0].kind, EventKind::fault);
+    EXPECT_EQ(bench.push({0, 0, -4}, {0, 0, -6}, 100), 0.0) << "stays until it is cleared";
+    bench.at({0, 0, -6}, {{CommandKind::clear_faults, 0, {}}});
+    EXPECT_GT(bench.push({0, 0, -6}, {0, 0, -10}, 300), 0.5);
+  }
+}
+
+TEST(HapticCore, AHugeButFiniteSpeedIsClampedOrFaulted) {
+  for (double far_mm : {1e9, 1e300}) {
+    HapticParameters p = oneArm();
+    Bench bench(p);
+    bench.at({0, 0, -5});
+    bench.at({far_mm, 0, 0});
+    const ArmRecord& arm = bench.at({0, 0, -5});
+    EXPECT_TRUE(isFinite(arm.sent_N));
+    EXPECT_LE(glm::length(arm.sent_N), 3.3);
+    EXPECT_TRUE(isFinite(arm.energy_out_J));
+  }
+}
+
+TEST(HapticCore, ADeviceThatIsLostGetsNoForce) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -4}, 500);
+  TickInput input;
+  input.tick = bench.tick++;
+  input.arms[0].position_m = {0, 0, -0.005};
+  input.arms[0].flags = TREPHINE_ARM_LOST;
+  bench.core.tick(input, nullptr, 0, bench.record);
+  EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
+  EXPECT_TRUE(bench.record.arms[0].faults & kFaultDeviceLost);
+}
+
+TEST(HapticCore, TwentyMillisecondsLateIsAFault) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -4}, 500);
+  EXPECT_GT(glm::length(bench.at({0, 0, -4.01}, {}, 4'000'000).sent_N), 0.0);
+  EXPECT_EQ(bench.at({0, 0, -4.02}, {}, 20'000'000).sent_N, Vec3(0.0));
+  EXPECT_TRUE(bench.record.arms[0].faults & kFaultLate);
+}
+
+TEST(HapticCore, AFullJournalStopsRemovalAndSaysSo) {
+  HapticParameters p = oneArm();
+  p.journal_voxels = 3;
+  Bench bench(p);
+  bool said = false;
+  for (int i = 0; i < 800; ++i) {
+    bench.at({0, 0, 2 - 0.01 * i});
+    for (const Event& event : bench.core.events()) said |= event.kind == EventKind::journal_full;
+  }
+  EXPECT_TRUE(said);
+  EXPECT_EQ(bench.core.journal().removed(0, 0), 3u);
+}
+
+TEST(HapticCore, EnergyIsTheWorkOfTheHeldForceByAxis) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -3}, 500);
+  const Vec3 held = bench.record.arms[0].sent_N;
+  const Vec3 before = bench.record.arms[0].energy_out_J;
+  bench.at({0.2, 0.1, -3.3});
+  const Vec3 work = held * Vec3(0.2e-3, 0.1e-3, -0.3e-3);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(bench.record.arms[0].energy_out_J[axis] - before[axis], work[axis], 1e-15);
+  }
+}
+
+TEST(HapticCore, TheMapScalesMotionAndForce) {
+  HapticParameters p = oneArm();
+  p.laws = {LawKind::viscous};
+  p.arms[0].map.motion_scale = 2.0;
+  p.arms[0].map.force_scale = 0.5;
+  p.arms[0].map.rotation = glm::angleAxis(glm::radians(90.0), Vec3(0, 0, 1));
+  Bench bench(p);
+  bench.at({0, 0, -3});
+  const ArmRecord& arm = bench.at({0.01, 0, -3});  // device mm; patient: 0.02 mm along +y
+  EXPECT_NEAR(arm.patient_position_mm.y, 0.02, 1e-12);
+  EXPECT_NEAR(arm.patient_position_mm.z, -6.0, 1e-12);
+  EXPECT_NEAR(arm.velocity_m_s.y, 0.02, 1e-12);
+  EXPECT_NEAR(arm.demanded_N.x, -0.5 * 10.0 * 2.0 * 0.01, 1e-12) << "g s b v";
+}
+
+TEST(HapticCore, TwoArmsShareOneVolumeAndEachStrokeIsCreditedToItsArm) {
+  HapticParameters p = oneArm();
+  p.arms.push_back(p.arms[0]);
+  Bench bench(p);
+  for (int i = 0; i < 500; ++i) {
+    TickInput input;
+    input.tick = bench.tick++;
+    input.arms[0].position_m = Vec3(0, 0, 2 - 0.01 * i) / 1000.0;
+    input.arms[1].position_m = Vec3(4, 0, 2 - 0.01 * i) / 1000.0;
+    bench.core.tick(input, nullptr, 0, bench.record);
+  }
+  EXPECT_EQ(bench.core.journal().removed(0, 0), 3u);
+  EXPECT_EQ(bench.core.journal().removed(1, 0), 3u);
+}
+
+TEST(HapticCore, TheTickAllocatesNothing) {
+  HapticParameters p = oneArm();
+  p.arms[0].tool = makeBlade(0.010, 100);
+  Bench bench(p);
+  const std::vector<Command> commands{{CommandKind::undo, 0, {}}, {CommandKind::controller, 1, {}}};
+  TickInput input;
+  bench.push({0, 0, 2}, {0, 0, -3}, 100);
+  const std::uint64_t before = rt::guardedAllocations();
+  {
+    rt::NoAllocation guard;
+    for (int i = 0; i < 2000; ++i) {
+      input.tick = bench.tick++;
+      input.arms[0].position_m = Vec3(0.005 * i - 5, 0, -0.004 * i) / 1000.0;
+      const bool command = i % 500 == 400;
+      bench.core.tick(input, commands.data(), command ? commands.size() : 0, bench.record);
+    }
+  }
+  EXPECT_EQ(rt::guardedAllocations(), before);
+  EXPECT_GT(bench.core.journal().strokeCount(), 0u);
+}
+
+TEST(HapticCore, IsAPureFunctionOfItsInputs) {
+  Bench a, b;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 tip(3 * std::sin(0.01 * i), 2 * std::cos(0.013 * i), 1 - 0.002 * i);
+    std::vector<Command> commands;
+    if (i == 1500) commands.push_back({CommandKind::undo, 0, {}});
+    a.at(tip, commands);
+    b.at(tip, commands);
+    ASSERT_EQ(a.record.arms[0].sent_N, b.record.arms[0].sent_N);
+  }
+  EXPECT_EQ(hashOf(a.grid), hashOf(b.grid));
+}
+
+}  // namespace
+}  // namespace trephine

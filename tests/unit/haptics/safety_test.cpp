@@ -1,0 +1,96 @@
+#include "haptics/safety.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace trephine {
+namespace {
+
+constexpr double kT = 0.001;
+constexpr double kStep = kSlew_N_per_s * kT;
+
+TEST(ClampForce, KeepsTheDirectionAndTheLimit) {
+  const Vec3 f = clampForce({30, 40, 0}, 3.3);
+  EXPECT_NEAR(glm::length(f), 3.3, 1e-12);
+  EXPECT_NEAR(f.y / f.x, 4.0 / 3.0, 1e-12);
+  EXPECT_EQ(clampForce({1, 2, 0}, 3.3), Vec3(1, 2, 0));
+}
+
+TEST(ClampForce, AnswersEveryValueWithAFiniteForceWithinTheLimit) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (double v : {0.0, 5e-324, 1e9, 1e300, -1e308, inf, -inf, nan}) {
+    for (const Vec3& f : {Vec3(v, 0, 0), Vec3(v, 1, v), Vec3(v, v, v)}) {
+      const Vec3 out = clampForce(f, 3.3);
+      EXPECT_TRUE(isFinite(out));
+      EXPECT_LE(glm::length(out), 3.3 * (1 + 1e-12));
+    }
+  }
+  EXPECT_EQ(clampForce({1, 0, 0}, 0.0), Vec3(0.0));
+}
+
+TEST(SlewTowards, RisesByOneStepAndFallsAtOnce) {
+  EXPECT_NEAR(slewTowards({1, 0, 0}, {3, 0, 0}, 0.05).x, 1.05, 1e-12);
+  EXPECT_EQ(slewTowards({1, 0, 0}, {0.2, 0, 0}, 0.05), Vec3(0.2, 0, 0));
+  EXPECT_EQ(slewTowards({1, 0, 0}, {0, 0, 0}, 0.05), Vec3(0.0));
+}
+
+TEST(SlewTowards, StartsFromNothingWhenTheForceTurnsAround) {
+  EXPECT_NEAR(slewTowards({1, 0, 0}, {-3, 0, 0}, 0.05).x, -0.05, 1e-12);
+  EXPECT_NEAR(slewTowards({1, 0, 0}, {0, 3, 0}, 0.05).y, 0.05, 1e-12);
+}
+
+TEST(LateGain, HoldsToFiveMillisecondsAndIsZeroAtTwenty) {
+  EXPECT_EQ(lateGain(5'000'000), 1.0);
+  EXPECT_EQ(lateGain(12'500'000), 0.5);
+  EXPECT_EQ(lateGain(20'000'000), 0.0);
+}
+
+TEST(ForceGate, RisesSlowlyAfterAChangeUntilTheLawIsMet) {
+  ForceGate gate;
+  double last = 0.0;
+  int ticks = 0;
+  for (; ticks < 100 && last < 2.0; ++ticks) {
+    const double now = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+    ASSERT_LE(now - last, kStep + 1e-12);
+    last = now;
+  }
+  EXPECT_EQ(ticks, 40);
+  EXPECT_EQ(gate.pass({3, 0, 0}, true, true, 0, kT).x, 3.0) << "met: follows the law";
+  gate.change();
+  EXPECT_NEAR(gate.pass({3.3, 0, 0}, true, true, 0, kT).x, 3.05, 1e-12);
+}
+
+TEST(ForceGate, SendsNothingAfterARestoreUntilTheToolIsOutThenRampsIn) {
+  ForceGate gate;
+  gate.pass({0, 0, 0}, false, true, 0, kT);
+  gate.pass({2, 0, 0}, true, true, 0, kT);
+  gate.restored();
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(gate.pass({2, 0, 0}, true, true, 0, kT), Vec3(0.0));
+  gate.pass({0, 0, 0}, false, true, 0, kT);  // out of tissue
+  const double first = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+  EXPECT_GT(first, 0.0);
+  EXPECT_LE(first, kStep);
+  double force = first;
+  for (int i = 0; i < 200; ++i) force = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+  EXPECT_EQ(force, 2.0) << "full after 0.2 s";
+}
+
+TEST(ForceGate, IsClosedInAPauseAndRisesSlowlyAfterIt) {
+  ForceGate gate;
+  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(gate.pass({2, 0, 0}, true, false, 0, kT), Vec3(0.0));
+  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
+}
+
+TEST(ForceGate, RampsDownWhenATickIsVeryLate) {
+  ForceGate gate;
+  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(gate.pass({2, 0, 0}, true, true, 4'000'000, kT).x, 2.0);
+  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 12'500'000, kT).x, 1.0, 1e-12);
+  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, 1.0 + kStep, 1e-12);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,81 @@
+#include "scene/landmark.h"
+
+#include <gtest/gtest.h>
+
+namespace trephine {
+namespace {
+
+TissueSet boneOnly() {
+  TissueSet set{"test", {}};
+  Tissue bone;
+  bone.id = "bone";
+  bone.hu_min = 226;
+  bone.hu_max = 3071;
+  set.tissues.push_back(bone);
+  return set;
+}
+
+// A ball of bone of radius 20 mm around (5, -7, 40) patient mm, on an oblique grid.
+Volume ball(double angle_deg) {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {64, 64, 40};
+  g.spacing_mm = {1.0, 1.0, 1.5};
+  g.direction = glm::mat3_cast(glm::angleAxis(glm::radians(angle_deg), glm::normalize(Vec3(1, 2, 3))));
+  g.origin_mm = Vec3(5, -7, 40) - g.direction * (Vec3(31.5, 31.5, 19.5) * g.spacing_mm);
+  v.hu.assign(g.voxelCount(), kAirHu);
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 ijk = g.indicesOf(i);
+    const Vec3 p = g.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2]));
+    if (glm::length(p - Vec3(5, -7, 40)) < 20.0) v.hu[i] = 1000;
+  }
+  return v;
+}
+
+TEST(Landmark, LiesOnTheSurfaceWhereTheRayMeetsIt) {
+  for (double angle : {0.0, 25.0}) {
+    const Volume v = ball(angle);
+    const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}, 1.0}, v, boneOnly());
+    ASSERT_TRUE(frame.ok());
+    EXPECT_NEAR(frame->position_mm.x, 5, 1.0);
+    EXPECT_NEAR(frame->position_mm.y, -7, 1.0);
+    EXPECT_NEAR(frame->position_mm.z, 60, 1.0);
+    EXPECT_NEAR((frame->rotation * Vec3(0, 0, 1)).z, 1.0, 0.01) << "+z points out of the patient";
+  }
+}
+
+TEST(Landmark, FramesAreRightHandedAndKeepTheHeadUp) {
+  for (const Vec3& out : {Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(-1, 0.5, 0.3)}) {
+    const Mat3 m = glm::mat3_cast(frameAlong(out));
+    EXPECT_NEAR(glm::determinant(m), 1.0, 1e-12);
+    EXPECT_GT(m[1].z, 0.5) << "+y towards the head";
+    EXPECT_NEAR(glm::dot(m[2], glm::normalize(out)), 1.0, 1e-12);
+  }
+  EXPECT_LT(glm::mat3_cast(frameAlong({0, 0, 1}))[1].y, -0.9) << "along the body: towards the front";
+}
+
+TEST(Landmark, SaysWhenTheTissueIsNotThere) {
+  const Volume v = ball(0);
+  TissueSet set = boneOnly();
+  EXPECT_EQ(findLandmark({"a", "liver", {}, {}, 1.0}, v, set).error().code, "NO_SUCH_TISSUE");
+  set.tissues[0].hu_min = 2000;
+  EXPECT_EQ(findLandmark({"a", "bone", Vec3(1), Vec3(0), 1.0}, v, set).error().code,
+            "TISSUE_NOT_FOUND");
+  set.tissues[0].hu_min = 226;
+  EXPECT_EQ(findLandmark({"a", "bone", {1.2, 1.2, 1.2}, {1.2, 1.2, 0.0}, 1.0}, v, set).error().code,
+            "NO_SURFACE");
+}
+
+TEST(Landmark, IgnoresARunShorterThanAsked) {
+  Volume v = ball(0);
+  // A sheet of one voxel above the ball.
+  for (int j = 0; j < 64; ++j) {
+    for (int i = 0; i < 64; ++i) v.hu[v.geometry.indexOf(i, j, 36)] = 1000;
+  }
+  const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}, 8.0}, v, boneOnly());
+  ASSERT_TRUE(frame.ok());
+  EXPECT_NEAR(frame->position_mm.z, 60, 1.0);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,106 @@
+#include "scene/scene.h"
+
+#include <fstream>
+
+#include "base/system.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+Json shipped() {
+  return *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
+}
+std::filesystem::path shippedFile() { return resourceFolder() / "scenes" / "cranium.json"; }
+
+TEST(Scene, EveryShippedSceneReads) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+    Result<Scene> scene = readScene(entry.path());
+    ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+    EXPECT_FALSE(scene->operator_file.empty());
+    ++count;
+  }
+  EXPECT_EQ(count, 4);
+}
+
+TEST(Scene, TheCraniumSceneHasTwoArmsWithBlades) {
+  const Scene scene = *readScene(shippedFile());
+  ASSERT_EQ(scene.arms.size(), 2u);
+  EXPECT_EQ(scene.findTool(scene.arms[0].tool)->tool.kind, ToolKind::blade);
+  EXPECT_EQ(scene.laws.size(), 2u);
+  EXPECT_EQ(hapticParameters(scene).arms.size(), 2u);
+}
+
+TEST(Scene, SurvivesARoundTripWithoutItsFiles) {
+  Scene scene = *readScene(shippedFile());
+  const auto landmarks = std::vector<PlacedLandmark>{
+      {"vault", {Vec3(1.0 / 3.0, 2, 3), glm::angleAxis(0.3, glm::normalize(Vec3(1, 2, 3)))}}};
+  scene = withFixedMaps(scene, landmarks);
+  const Json json = *parseJson(toJson(scene).dump(), "copy");
+  const Result<Scene> copy = parseScene(json, "copy");
+  ASSERT_TRUE(copy.ok()) << copy.error().sentence();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const WorkspaceMap &a = *scene.arms[i].map.fixed, &b = *copy->arms[i].map.fixed;
+    EXPECT_EQ(a.centre_mm, b.centre_mm) << "to the last bit";
+    EXPECT_EQ(a.rotation, b.rotation);
+    EXPECT_EQ(scene.findTool("blade")->tool.points_m, copy->findTool("blade")->tool.points_m);
+  }
+  EXPECT_EQ(toJson(*copy), toJson(scene));
+}
+
+TEST(Scene, ACopyNeverHoldsACasePath) {
+  Scene scene = *readScene(shippedFile());
+  scene.case_source = "/data/DOE^JANE/ct";
+  EXPECT_EQ(toJson(scene).dump().find("DOE"), std::string::npos);
+}
+
+struct Bad {
+  const char* name;
+  void (*change)(Json&);
+  const char* field;
+  const char* value;
+};
+
+TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
+  const Bad cases[] = {
+      {"unknown key", [](Json& s) { s["colour"] = 7; }, "colour", "7"},
+      {"unknown law", [](Json& s) { s["laws"][0] = "magic"; }, "laws", "magic"},
+      {"unknown controller", [](Json& s) { s["controller"] = "pid"; }, "controller", "pid"},
+      {"unknown tissue", [](Json& s) { s["landmarks"][0]["tissue"] = "cheese"; }, "landmarks", "cheese"},
+      {"unknown tool", [](Json& s) { s["arms"][0]["tool"] = "spoon"; }, "arms", "spoon"},
+      {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale", "-1"},
+      {"same device", [](Json& s) { s["arms"][1]["device"]["arm"] = 0; }, "arms", "right"},
+      {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm", "1000"},
+      {"no points", [](Json& s) { s["tools"][0]["points"] = 0; }, "tools[0].points", "0"},
+      {"rate", [](Json& s) { s["rate_hz"] = 5; }, "rate_hz", "5"},
+      {"operator", [](Json& s) { s["operator"] = "gone.json"; }, "operator", "gone.json"},
+      {"newer", [](Json& s) { s["version"] = 2; }, "version", "2"},
+      {"other format", [](Json& s) { s["format"] = "trephine.tissues"; }, "format", "trephine.tissues"},
+      {"no arms", [](Json& s) { s["arms"] = Json::array(); }, "arms", "0"},
+      {"text for number", [](Json& s) { s["rate_hz"] = "fast"; }, "rate_hz", "fast"},
+  };
+  for (const Bad& bad : cases) {
+    Json json = shipped();
+    bad.change(json);
+    Result<Scene> scene = parseScene(json, shippedFile());
+    ASSERT_FALSE(scene.ok()) << bad.name;
+    EXPECT_NE(scene.error().where.find("cranium.json"), std::string::npos) << bad.name;
+    EXPECT_NE(scene.error().where.find(bad.field), std::string::npos)
+        << bad.name << ": " << scene.error().sentence();
+    EXPECT_NE(scene.error().what.find(bad.value), std::string::npos)
+        << bad.name << ": " << scene.error().sentence();
+  }
+}
+
+TEST(Scene, AMissingTissueFileIsNamed) {
+  Json json = shipped();
+  json["tissues"] = "../tissues/gone.json";
+  const Result<Scene> scene = parseScene(json, shippedFile());
+  ASSERT_FALSE(scene.ok());
+  EXPECT_EQ(scene.error().code, "MISSING_FILE");
+  EXPECT_NE(scene.error().where.find("gone.json"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trephine

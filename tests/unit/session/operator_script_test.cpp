@@ -1,0 +1,96 @@
+#include "session/operator_script.h"
+
+#include <gtest/gtest.h>
+
+#include "base/system.h"
+
+namespace trephine {
+namespace {
+
+Scene cranium() { return *readScene(resourceFolder() / "scenes" / "cranium.json"); }
+
+Json script() {
+  return *parseJson(R"({"format": "trephine.operator", "version": 1, "name": "t",
+    "hand": {"stiffness_N_per_m": 500, "damping_Ns_per_m": 4},
+    "arms": [{"arm": "right", "waypoints": [{"t": 1, "at_mm": [0, 0, 10]}, {"t": 2, "at_mm": [0, 0, -10]}]}],
+    "commands": [{"t": 0.5, "do": "pause"}, {"t": 0.7, "do": "resume"},
+                 {"t": 1.5, "do": "tissues", "tissues": {"bone": {"damping_Ns_per_m": 3}}},
+                 {"t": 1.6, "do": "controller", "controller": "off"}, {"t": 2, "do": "undo"}]})",
+                    "script");
+}
+
+TEST(OperatorScript, EveryShippedSceneHasOneThatFits) {
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+    const Scene scene = *readScene(entry.path());
+    const auto read = readOperatorScript(scene.operator_file, scene);
+    ASSERT_TRUE(read.ok()) << read.error().sentence();
+    EXPECT_EQ(read->hands.size(), scene.arms.size());
+    EXPECT_GT(read->duration_s(), 5.0);
+  }
+}
+
+TEST(ScriptOperator, MovesTheHandInStraightLinesBetweenWaypoints) {
+  Scene scene = cranium();
+  const LandmarkFrame landmark{Vec3(10, 20, 30), frameAlong({0, 0, 1})};
+  scene = withFixedMaps(scene, {{"vault", landmark}});
+  ScriptOperator oper(*parseOperatorScript(script(), "s", scene), scene, {landmark, landmark});
+  HandTarget hands[2];
+  const double off_m = scene.arms[1].map.offset_mm.z / 1000.0;  // the workspace stands off the bone
+  for (auto [tick, z_m] : {std::pair{0, 0.010}, {1000, 0.010}, {1500, 0.0}, {2000, -0.010}, {9000, -0.010}}) {
+    oper.targets(std::uint64_t(tick), hands, 2);
+    EXPECT_NEAR(hands[1].pose_m.position.z, z_m - off_m, 1e-12) << tick;
+    EXPECT_EQ(hands[1].stiffness_N_per_m, 500);
+    EXPECT_EQ(hands[0].pose_m.position, Vec3(0.0)) << "an arm without waypoints rests";
+  }
+}
+
+TEST(ScriptOperator, GivesEachCommandOnceAtItsTime) {
+  Scene scene = withFixedMaps(cranium(), {{"vault", {}}});
+  ScriptOperator oper(*parseOperatorScript(script(), "s", scene), scene, {{}, {}});
+  std::vector<std::pair<std::uint64_t, CommandKind>> given;
+  Command command;
+  for (std::uint64_t tick = 0; tick < 3000; ++tick) {
+    while (oper.command(tick, command)) {
+      given.emplace_back(tick, command.kind);
+      if (command.kind == CommandKind::tissues) {
+        EXPECT_EQ(command.tissues.classes[3].damping_Ns_per_m, 3.0);
+        EXPECT_EQ(command.tissues.classes[3].stiffness_N_per_m, 900.0) << "the rest stays";
+      }
+    }
+  }
+  const std::vector<std::pair<std::uint64_t, CommandKind>> expected{
+      {500, CommandKind::pause},  {700, CommandKind::resume}, {1500, CommandKind::tissues},
+      {1600, CommandKind::controller}, {2000, CommandKind::undo}};
+  EXPECT_EQ(given, expected);
+}
+
+TEST(OperatorScript, NamesWhatIsWrong) {
+  const Scene scene = cranium();
+  struct Bad {
+    void (*change)(Json&);
+    const char* field;
+    const char* value;
+  };
+  const Bad cases[] = {
+      {[](Json& s) { s["arms"][0]["arm"] = "third"; }, "arms[0].arm", "third"},
+      {[](Json& s) { s["arms"][0]["waypoints"][1]["t"] = 0.5; }, "waypoints[1].t", "0.5"},
+      {[](Json& s) { s["arms"][0]["waypoints"] = Json::array(); }, "waypoints", "waypoint"},
+      {[](Json& s) { s["commands"][0]["do"] = "dance"; }, "commands[0].do", "dance"},
+      {[](Json& s) { s["commands"][2]["tissues"] = {{"cheese", {{"yield_N", 1}}}}; }, "cheese", "cheese"},
+      {[](Json& s) { s["commands"][2]["tissues"]["bone"]["damping_Ns_per_m"] = -1; }, "tissues", "-1"},
+      {[](Json& s) { s["commands"][3]["controller"] = "pid"; }, "controller", "pid"},
+      {[](Json& s) { s["commands"][0]["t"] = 5; }, "commands[1].t", "order"},
+      {[](Json& s) { s["version"] = 9; }, "version", "9"},
+  };
+  for (const Bad& bad : cases) {
+    Json json = script();
+    bad.change(json);
+    const auto read = parseOperatorScript(json, "script.json", scene);
+    ASSERT_FALSE(read.ok()) << bad.field;
+    EXPECT_NE(read.error().where.find(bad.field), std::string::npos) << read.error().sentence();
+    EXPECT_NE(read.error().what.find(bad.value), std::string::npos) << read.error().sentence();
+  }
+}
+
+}  // namespace
+}  // namespace trephine

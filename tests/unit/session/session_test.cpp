@@ -1,0 +1,156 @@
+#include "session/session.h"
+
+#include <chrono>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "session/case_source.h"
+#include "support.h"
+#include "training/replay.h"
+
+namespace trephine {
+namespace {
+
+// A ball of bone in scalp: enough of a cranium for the shipped scene, and quick to make.
+Volume smallHead() {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {80, 80, 80};
+  g.spacing_mm = Vec3(1.2);
+  g.origin_mm = Vec3(-47.4);
+  v.hu.assign(g.voxelCount(), kAirHu);
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 ijk = g.indicesOf(i);
+    const double r = glm::length(g.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2])));
+    if (r < 44) v.hu[i] = -20;
+    if (r < 39) v.hu[i] = 1200;
+    if (r < 32) v.hu[i] = 35;
+  }
+  return v;
+}
+
+Scene cranium() { return *readScene(resourceFolder() / "scenes" / "cranium.json"); }
+
+SessionOptions scripted(const std::filesystem::path& recording = {}) {
+  const Scene scene = cranium();
+  return {recording, *readOperatorScript(scene.operator_file, scene)};
+}
+
+TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
+  test::TemporaryFolder folder;
+  auto session = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  ASSERT_TRUE((*session)->freewheel(10.0).ok());
+  const RunReport report = (*session)->report();
+  EXPECT_EQ(report.ticks, 10000u);
+  ASSERT_EQ(report.arms.size(), 2u);
+  for (const auto& arm : report.arms) {
+    EXPECT_GT(arm.removed_mm3, 100.0) << arm.name;
+    EXPECT_GT(arm.statistics.max_force_N, 1.0) << arm.name;
+    EXPECT_LE(arm.statistics.max_force_N, 3.3) << arm.name;
+  }
+  EXPECT_EQ(report.removed_mm3.back().first, "bone");
+  EXPECT_GT(report.removed_mm3.back().second, 200.0);
+  EXPECT_EQ(report.events_dropped, 0u);
+  EXPECT_EQ(report.nonfinite, 0u);
+  EXPECT_NE(report.volume_sha256, report.volume_sha256_before);
+
+  auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto result = replay(**reader, smallHead());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->volume_sha256, report.volume_sha256);
+}
+
+TEST(Session, FreewheelsToTheSameVoxelsTwice) {
+  std::string first;
+  for (int i = 0; i < 2; ++i) {
+    auto session = Session::create(cranium(), smallHead(), scripted());
+    ASSERT_TRUE((*session)->freewheel(5.0).ok());
+    const std::string hash = (*session)->report().volume_sha256;
+    if (i == 0) first = hash;
+    EXPECT_EQ(hash, first);
+  }
+}
+
+TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
+  test::TemporaryFolder folder;
+  auto made = Session::create(cranium(), smallHead(), {folder / "s.h5", {}});
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  ASSERT_TRUE(session.start().ok());
+  const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
+  TissueSet softer = session.scene().tissues;
+  softer.tissues[3].yield_N.value = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    session.moveHand(1, 0.6 * down_mm);
+    if (i == 40) {
+      ASSERT_TRUE(session.setTissues(softer).ok());
+    }
+    if (i == 50) session.setController(ControllerKind::off);
+    std::this_thread::sleep_for(std::chrono::milliseconds(15));
+  }
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!session.state().can_undo && std::chrono::steady_clock::now() < deadline) {
+    session.moveHand(1, 0.1 * down_mm);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_TRUE(session.state().can_undo);
+  session.send(CommandKind::reset);
+  while ((session.state().can_undo || session.state().busy) &&
+         std::chrono::steady_clock::now() < deadline) {
+    session.moveHand(1, -5.0 * down_mm);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_TRUE(session.stop().ok());
+  const RunReport report = session.report();
+  EXPECT_GT(report.arms[1].statistics.contact_ticks, 0u);
+  EXPECT_GT(report.arms[1].statistics.max_force_N, 0.0);
+
+  const auto result = replay(**SessionReader::open(folder / "s.h5"), smallHead());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->ticks, report.ticks);
+}
+
+TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
+  Volume air = smallHead();
+  std::fill(air.hu.begin(), air.hu.end(), kAirHu);
+  auto session = Session::create(cranium(), air, {});
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
+}
+
+TEST(Session, SaysWhenAPluginIsMissing) {
+  Scene scene = cranium();
+  scene.arms[0].plugin = scene.arms[1].plugin = "nosuch";
+  auto session = Session::create(scene, smallHead(), {});
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().code, "NO_PLUGIN");
+}
+
+TEST(Session, RefusesTissuesThatCannotBe) {
+  auto session = Session::create(cranium(), smallHead(), {});
+  TissueSet bad = (*session)->scene().tissues;
+  bad.tissues[0].damping_Ns_per_m.value = -1.0;
+  EXPECT_FALSE((*session)->setTissues(bad).ok());
+}
+
+TEST(Session, AMissingCaseIsNamed) {
+  EXPECT_EQ(openCase("").error().code, "NO_CASE");
+  EXPECT_EQ(openCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
+  const auto missing = openCase("/no/such/folder");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_NE(missing.error().where.find("/no/such/folder"), std::string::npos);
+}
+
+TEST(FreshFile, NeverNamesAFileThatIsThere) {
+  test::TemporaryFolder folder;
+  EXPECT_EQ(freshFile(folder.path(), "a", ".h5"), folder / "a.h5");
+  (void)makeFolder(folder / "a.h5");
+  EXPECT_EQ(freshFile(folder.path(), "a", ".h5"), folder / "a-2.h5");
+}
+
+}  // namespace
+}  // namespace trephine

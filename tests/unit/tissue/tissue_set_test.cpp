@@ -1,0 +1,359 @@
+#include "tissue/tissue_set.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Tissue tissue(const std::string& id, int hu_min, int hu_max) {
+  Tissue t;
+  t.id = id;
+  t.name = "The " + id;
+  t.hu_min = hu_min;
+  t.hu_max = hu_max;
+  t.hu_source = "an atlas";
+  t.colour = Vec3(0.9, 0.8, 0.7);
+  t.opacity = 0.25;
+  t.damping_Ns_per_m = {12.5, "a paper"};
+  t.stiffness_N_per_m = {800.0, "a table"};
+  t.yield_N = {1.5, "tuned here, uncited"};
+  return t;
+}
+
+TissueSet head() {
+  return {"head",
+          {tissue("skin", -200, 100), tissue("brain", 101, 299), tissue("bone", 300, 3071)}};
+}
+
+// The error of a valid set after `change`, which must make it invalid.
+template <class Change>
+Error errorAfter(Change&& change) {
+  TissueSet set = head();
+  change(set);
+  const Status status = validate(set, "t.json");
+  EXPECT_FALSE(status.ok());
+  return status.ok() ? Error{} : status.error();
+}
+
+#define EXPECT_PART(text, part) \
+  EXPECT_NE((text).find(part), std::string::npos) << "'" << (text) << "' lacks '" << (part) << "'"
+
+TEST(TissueSet, AcceptsASetThatKeepsEveryRule) {
+  const Status status = validate(head(), "t.json");
+  EXPECT_TRUE(status.ok()) << status.error().sentence();
+}
+
+TEST(TissueSet, HasAtLeastOneTissueAndAtMostSixteen) {
+  const Error none = errorAfter([](TissueSet& s) { s.tissues.clear(); });
+  EXPECT_EQ(none.where, "t.json: tissues");
+  EXPECT_PART(none.what, "this one has 0");
+  TissueSet set{"many", {}};
+  for (int i = 0; i < 16; ++i) set.tissues.push_back(tissue("t" + std::to_string(i), i, i));
+  EXPECT_TRUE(validate(set, "t.json").ok());
+  set.tissues.push_back(tissue("t16", 16, 16));
+  ASSERT_FALSE(validate(set, "t.json").ok());
+  EXPECT_PART(validate(set, "t.json").error().what, "this one has 17");
+}
+
+TEST(TissueSet, HasIdsThatAreThereAndUnique) {
+  EXPECT_EQ(errorAfter([](TissueSet& s) { s.tissues[1].id = ""; }).where, "t.json: tissues[1].id");
+  const Error twice = errorAfter([](TissueSet& s) { s.tissues[2].id = "skin"; });
+  EXPECT_EQ(twice.where, "t.json: tissues[2].id");
+  EXPECT_PART(twice.what, "'skin'");
+}
+
+TEST(TissueSet, HasItsLowerHuFirst) {
+  const Error error = errorAfter([](TissueSet& s) { s.tissues[2].hu_min = 4000; });
+  EXPECT_EQ(error.where, "t.json: tissues[2].hu");
+  EXPECT_PART(error.what, "4000..3071");
+  TissueSet one_value{"x", {tissue("a", 7, 7)}};
+  EXPECT_TRUE(validate(one_value, "t.json").ok());
+}
+
+TEST(TissueSet, KeepsItsHuWithinInt16) {
+  EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[2].hu_max = 32768; }).what, "300..32768");
+  EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[0].hu_min = -32769; }).what, "-32769..100");
+  TissueSet whole{"x", {tissue("a", -32768, 32767)}};
+  EXPECT_TRUE(validate(whole, "t.json").ok());
+}
+
+TEST(TissueSet, HasNoTwoRangesThatOverlap) {
+  const Error error = errorAfter([](TissueSet& s) { s.tissues[1].hu_max = 300; });
+  EXPECT_EQ(error.where, "t.json: tissues[2].hu");
+  EXPECT_PART(error.what, "101..300 of 'brain'");
+  EXPECT_PART(error.what, "300..3071 of 'bone'");
+  EXPECT_PART(error.next, "labels");
+}
+
+TEST(TissueSet, MayOverlapUnderDifferentLabelsOnly) {
+  TissueSet set{"x", {tissue("liver", 0, 200), tissue("kidney", 100, 300)}};
+  set.tissues[0].label = 5;
+  EXPECT_FALSE(validate(set, "t.json").ok()) << "the kidney without a label holds label 5 too";
+  set.tissues[1].label = 5;
+  EXPECT_FALSE(validate(set, "t.json").ok());
+  set.tissues[1].label = 6;
+  EXPECT_TRUE(validate(set, "t.json").ok());
+}
+
+TEST(TissueSet, HasOpacityAndColourBetweenZeroAndOne) {
+  for (double value : {-0.1, 1.1, kNaN, kInfinity}) {
+    EXPECT_EQ(errorAfter([&](TissueSet& s) { s.tissues[0].opacity = value; }).where,
+              "t.json: tissues[0].opacity");
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(errorAfter([&](TissueSet& s) { s.tissues[1].colour[c] = value; }).where,
+                "t.json: tissues[1].colour");
+    }
+  }
+  EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[0].opacity = 1.5; }).what, "1.5");
+  EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[0].colour.y = -2.5; }).what, "-2.5");
+}
+
+struct Mechanic {
+  const char* key;
+  SourcedNumber Tissue::*number;
+};
+const Mechanic kMechanics[] = {{"damping_Ns_per_m", &Tissue::damping_Ns_per_m},
+                               {"stiffness_N_per_m", &Tissue::stiffness_N_per_m},
+                               {"yield_N", &Tissue::yield_N}};
+
+TEST(TissueSet, HasNoNegativeMechanics) {
+  for (const Mechanic& m : kMechanics) {
+    const Error error = errorAfter([&](TissueSet& s) { (s.tissues[1].*m.number).value = -0.5; });
+    EXPECT_EQ(error.where, std::string("t.json: tissues[1].mechanics.") + m.key);
+    EXPECT_PART(error.what, "-0.5");
+    TissueSet zero = head();
+    (zero.tissues[1].*m.number).value = 0.0;
+    EXPECT_TRUE(validate(zero, "t.json").ok()) << m.key;
+  }
+}
+
+TEST(TissueSet, HasNoMechanicsThatAreNotFinite) {
+  for (const Mechanic& m : kMechanics) {
+    for (double value : {kNaN, kInfinity, -kInfinity}) {
+      const Error error = errorAfter([&](TissueSet& s) { (s.tissues[1].*m.number).value = value; });
+      EXPECT_EQ(error.where, std::string("t.json: tissues[1].mechanics.") + m.key);
+      EXPECT_PART(error.what, std::isnan(value) ? "nan" : "inf");
+    }
+  }
+}
+
+TEST(TissueSet, CitesTheSourceOfEachNumber) {
+  for (const Mechanic& m : kMechanics) {
+    const Error error = errorAfter([&](TissueSet& s) { (s.tissues[0].*m.number).source = ""; });
+    EXPECT_EQ(error.where, std::string("t.json: tissues[0].mechanics.") + m.key);
+    EXPECT_PART(error.next, "uncited");
+  }
+  EXPECT_EQ(errorAfter([](TissueSet& s) { s.tissues[0].hu_source = ""; }).where,
+            "t.json: tissues[0].hu_source");
+}
+
+TEST(TissueSet, FindsATissueByItsId) {
+  const TissueSet set = head();
+  ASSERT_NE(set.find("bone"), nullptr);
+  EXPECT_EQ(set.find("bone")->hu_max, 3071);
+  EXPECT_EQ(set.find("Bone"), nullptr);
+}
+
+// As a file.
+
+// The error of head()'s file after `change`, which must make it invalid.
+template <class Change>
+Error parseErrorAfter(Change&& change) {
+  Json json = toJson(head());
+  change(json);
+  const Result<TissueSet> set = parseTissueSet(json, "t.json");
+  EXPECT_FALSE(set.ok());
+  return set.ok() ? Error{} : set.error();
+}
+
+TEST(TissueFile, ComesBackAsItWasWritten) {
+  TissueSet set = head();
+  set.tissues[1].label = 5;
+  set.tissues[2].cuttable = false;
+  set.tissues[0].damping_Ns_per_m.value = 0.1;  // no double holds it exactly
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "t.json", toJson(set).dump(2)));
+  const Result<TissueSet> read = readTissueSet(folder / "t.json");
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  EXPECT_EQ(toJson(*read), toJson(set));
+  EXPECT_EQ(read->name, "head");
+  ASSERT_EQ(read->tissues.size(), 3u);
+  const Tissue& skin = read->tissues[0];
+  EXPECT_EQ(skin.name, "The skin");
+  EXPECT_EQ(skin.hu_min, -200);
+  EXPECT_EQ(skin.hu_max, 100);
+  EXPECT_EQ(skin.hu_source, "an atlas");
+  EXPECT_FALSE(skin.label.has_value());
+  EXPECT_EQ(skin.colour, Vec3(0.9, 0.8, 0.7));
+  EXPECT_EQ(skin.opacity, 0.25);
+  EXPECT_EQ(skin.damping_Ns_per_m.value, 0.1);
+  EXPECT_EQ(skin.damping_Ns_per_m.source, "a paper");
+  EXPECT_EQ(skin.stiffness_N_per_m.value, 800.0);
+  EXPECT_EQ(skin.yield_N.source, "tuned here, uncited");
+  EXPECT_TRUE(skin.cuttable);
+  EXPECT_EQ(read->tissues[1].label, 5);
+  EXPECT_FALSE(read->tissues[2].cuttable);
+}
+
+TEST(TissueFile, NeedsEveryFieldButLabelAndCuttable) {
+  for (const char* key : {"format", "version", "name", "tissues"}) {
+    EXPECT_EQ(parseErrorAfter([&](Json& j) { j.erase(key); }).where, std::string("t.json: ") + key);
+  }
+  for (const char* key : {"id", "name", "hu", "hu_source", "colour", "opacity", "mechanics"}) {
+    EXPECT_EQ(parseErrorAfter([&](Json& j) { j["tissues"][1].erase(key); }).where,
+              std::string("t.json: tissues[1].") + key);
+  }
+  for (const Mechanic& m : kMechanics) {
+    for (const char* key : {"value", "source"}) {
+      EXPECT_EQ(
+          parseErrorAfter([&](Json& j) { j["tissues"][1]["mechanics"][m.key].erase(key); }).where,
+          std::string("t.json: tissues[1].mechanics.") + m.key + "." + key);
+    }
+  }
+  Json json = toJson(head());
+  json["tissues"][0]["mechanics"].erase("cuttable");
+  const Result<TissueSet> set = parseTissueSet(json, "t.json");
+  ASSERT_TRUE(set.ok()) << set.error().sentence();
+  EXPECT_TRUE(set->tissues[0].cuttable);
+}
+
+TEST(TissueFile, RefusesAnUnknownFieldByNameAndValue) {
+  const Error top = parseErrorAfter([](Json& j) { j["author"] = "me"; });
+  EXPECT_EQ(top.where, "t.json: author");
+  EXPECT_PART(top.what, "\"me\"");
+  EXPECT_EQ(parseErrorAfter([](Json& j) { j["tissues"][2]["opactiy"] = 0.5; }).where,
+            "t.json: tissues[2].opactiy");
+  EXPECT_EQ(parseErrorAfter([](Json& j) { j["tissues"][0]["mechanics"]["friction"] = 1; }).where,
+            "t.json: tissues[0].mechanics.friction");
+  EXPECT_EQ(
+      parseErrorAfter([](Json& j) { j["tissues"][0]["mechanics"]["yield_N"]["unit"] = "N"; }).where,
+      "t.json: tissues[0].mechanics.yield_N.unit");
+}
+
+TEST(TissueFile, RefusesANewerVersionByName) {
+  const Error error = parseErrorAfter([](Json& j) { j["version"] = 2; });
+  EXPECT_EQ(error.where, "t.json: version");
+  EXPECT_PART(error.what, "version 2 of trephine.tissues");
+  EXPECT_PART(parseErrorAfter([](Json& j) { j["format"] = "trephine.scene"; }).what,
+              "trephine.scene");
+}
+
+TEST(TissueFile, RefusesAnHuRangeThatIsNotTwoWholeNumbers) {
+  for (const char* hu : {"[1]", "[1, 2, 3]", "[1.5, 2]", "[\"a\", 2]", "7", "null"}) {
+    const Error error = parseErrorAfter([&](Json& j) { j["tissues"][0]["hu"] = Json::parse(hu); });
+    EXPECT_EQ(error.where, "t.json: tissues[0].hu") << hu;
+  }
+}
+
+TEST(TissueFile, RefusesWholeNumbersThatWouldWrapRoundIntoValidOnes) {
+  const Error hu = parseErrorAfter([](Json& j) {
+    j["tissues"][0]["hu"] = {4294967296, 4294967300};
+  });
+  EXPECT_EQ(hu.where, "t.json: tissues[0].hu");
+  EXPECT_PART(hu.what, "4294967296");
+  const Error label = parseErrorAfter([](Json& j) { j["tissues"][0]["label"] = 4294967301; });
+  EXPECT_EQ(label.where, "t.json: tissues[0].label");
+  EXPECT_PART(label.what, "4294967301");
+}
+
+TEST(TissueFile, IsHeldToTheRulesOfTheSet) {
+  const Error error =
+      parseErrorAfter([](Json& j) { j["tissues"][1]["mechanics"]["yield_N"]["value"] = -3.0; });
+  EXPECT_EQ(error.code, "BAD_TISSUE");
+  EXPECT_EQ(error.where, "t.json: tissues[1].mechanics.yield_N");
+  EXPECT_PART(error.what, "-3.0");
+}
+
+TEST(TissueFile, NamesANumberThatNoDoubleHoldsByFileFieldAndValue) {
+  std::string text = toJson(head()).dump();
+  const std::string value = "12.5";
+  text.replace(text.rfind(value), value.size(), "1e999");
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "t.json", text));
+  const Result<TissueSet> set = readTissueSet(folder / "t.json");
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().where,
+            (folder / "t.json").string() + ": tissues[2].mechanics.damping_Ns_per_m.value");
+  EXPECT_PART(set.error().what, "1e999");
+}
+
+TEST(TissueFile, NamesAFileThatIsNotThere) {
+  const Result<TissueSet> set = readTissueSet("none/such.json");
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().code, "MISSING_FILE");
+  EXPECT_EQ(set.error().where, "none/such.json");
+}
+
+TEST(TissueFile, IsValidAndComesBackForEverySetThatIsShipped) {
+  int sets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "tissues")) {
+    const Result<TissueSet> set = readTissueSet(entry.path());
+    ASSERT_TRUE(set.ok()) << set.error().sentence();
+    const Result<TissueSet> again = parseTissueSet(toJson(*set), "again");
+    ASSERT_TRUE(again.ok()) << again.error().sentence();
+    EXPECT_EQ(toJson(*again), toJson(*set));
+    ++sets;
+  }
+  EXPECT_GE(sets, 2);
+}
+
+// In the tick.
+
+TEST(TissueTable, KeepsTheOrderAndTheNumbersOfTheSet) {
+  TissueSet set = head();
+  set.tissues[1].cuttable = false;
+  const TissueTable table = tissueTable(set);
+  ASSERT_EQ(table.count, 3);
+  EXPECT_EQ(table.classes[2].hu_min, 300);
+  EXPECT_EQ(table.classes[2].hu_max, 3071);
+  EXPECT_EQ(table.classes[2].damping_Ns_per_m, 12.5);
+  EXPECT_EQ(table.classes[2].stiffness_N_per_m, 800.0);
+  EXPECT_EQ(table.classes[2].yield_N, 1.5);
+  EXPECT_EQ(table.classes[0].cuttable, 1);
+  EXPECT_EQ(table.classes[1].cuttable, 0);
+}
+
+TEST(Classify, HoldsBothEndsOfARange) {
+  const TissueTable table = tissueTable(head());
+  EXPECT_EQ(classify(table, -200), 0);
+  EXPECT_EQ(classify(table, 100), 0);
+  EXPECT_EQ(classify(table, 101), 1);
+  EXPECT_EQ(classify(table, 299), 1);
+  EXPECT_EQ(classify(table, 300), 2);
+  EXPECT_EQ(classify(table, 3071), 2);
+}
+
+TEST(Classify, TakesWhatNoRangeHoldsForFreeSpace) {
+  const TissueTable table = tissueTable(head());
+  for (int hu : {-32768, -1024, -201, 3072, 32767}) {
+    EXPECT_EQ(classify(table, std::int16_t(hu)), -1) << hu;
+  }
+  EXPECT_EQ(classify(TissueTable{}, 0), -1);
+}
+
+TEST(Classify, FindsNoTissueThatIsBoundToALabel) {
+  TissueSet set = head();
+  set.tissues[1].label = 5;
+  const TissueTable table = tissueTable(set);
+  EXPECT_EQ(table.count, 3);
+  EXPECT_EQ(classify(table, 200), -1);
+  EXPECT_EQ(classify(table, 500), 2) << "the others keep their place";
+}
+
+TEST(TissueTable, TakesNoMoreThanItHoldsOfASetThatIsTooLong) {
+  TissueSet set{"many", {}};
+  for (int i = 0; i < 20; ++i) set.tissues.push_back(tissue("t" + std::to_string(i), i, i));
+  EXPECT_EQ(tissueTable(set).count, kMaxTissues);
+}
+
+}  // namespace
+}  // namespace trephine

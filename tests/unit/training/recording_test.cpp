@@ -1,0 +1,231 @@
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "scene/scene.h"
+#include "support.h"
+#include "training/replay.h"
+#include "training/session_reader.h"
+#include "training/session_recorder.h"
+
+namespace trephine {
+namespace {
+
+Volume slab() {
+  Volume v;
+  v.geometry.size = {24, 24, 24};
+  v.geometry.origin_mm = Vec3(-12.0);
+  v.hu.assign(v.geometry.voxelCount(), kAirHu);
+  for (std::size_t i = 0; i < v.hu.size() / 2; ++i) v.hu[i] = 900;
+  return v;
+}
+
+Scene sceneWithOneArm() {
+  Scene scene;
+  scene.name = "test";
+  scene.anatomy = "cranium";
+  Tissue bone;
+  bone.id = bone.name = "bone";
+  bone.hu_min = 226;
+  bone.hu_max = 3071;
+  bone.hu_source = bone.damping_Ns_per_m.source = bone.stiffness_N_per_m.source =
+      bone.yield_N.source = "test";
+  bone.damping_Ns_per_m.value = 10;
+  bone.stiffness_N_per_m.value = 800;
+  bone.yield_N.value = 2;
+  scene.tissues = {"test", {bone}};
+  scene.tools.push_back({"blade", 8.0, makeBlade(0.008, 17)});
+  SceneArm arm;
+  arm.name = "right";
+  arm.plugin = "simulated";
+  arm.tool = "blade";
+  arm.map.fixed = WorkspaceMap{};
+  scene.arms.push_back(arm);
+  scene.laws = {LawKind::viscous, LawKind::elastic};
+  return scene;
+}
+
+// Runs the core and records it, as a session does; `ticks` of a cut with an undo in it.
+void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bool finish = true,
+               std::uint64_t dropped = 0) {
+  const Scene scene = sceneWithOneArm();
+  Grid grid(slab());
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      file, {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+  ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
+  for (std::uint64_t t = 0; t < ticks; ++t) {
+    TickInput input;
+    input.tick = t;
+    input.arms[0].position_m = Vec3(4e-6 * double(t % 2000) - 4e-3, 1e-3, 2e-3 - 3e-6 * double(t % 2000));
+    std::vector<Command> commands;
+    if (t == 2500) commands.push_back({CommandKind::undo, 0, {}});
+    if (t == 2600) commands.push_back({CommandKind::controller, 0, {}});
+    TickRecord record;
+    core.tick(input, commands.data(), commands.size(), record);
+    (*recorder)->add(record);
+    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
+    for (const Event& e : core.events()) (*recorder)->add(e);
+    if (t % 500 == 499) {
+      ASSERT_TRUE((*recorder)->flush().ok());
+    }
+  }
+  if (finish) {
+    ASSERT_TRUE((*recorder)->finish({ticks, dropped, 0, volumeSha256(grid.snapshot())}).ok());
+  }
+}
+
+TEST(Recording, ReplaysBitForBit) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 6000);
+  auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  EXPECT_EQ((*reader)->tickCount(), 6000u);
+  EXPECT_GT((*reader)->carves()->size(), 50u);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field : "");
+  EXPECT_EQ(result->ticks, 6000u);
+  EXPECT_EQ(result->volume_sha256, (*reader)->end()->volume_sha256);
+  EXPECT_FALSE(result->cut_short);
+}
+
+// Rewrites one recorded number and expects the replay to find just that one.
+TEST(Recording, AReplayNamesTheFirstDifference) {
+  test::TemporaryFolder folder;
+  const Scene scene = sceneWithOneArm();
+  Grid grid(slab());
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      folder / "a.h5", {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+  for (std::uint64_t t = 0; t < 1000; ++t) {
+    TickInput input;
+    input.tick = t;
+    input.arms[0].position_m = Vec3(0, 0, 2e-3 - 5e-6 * double(t));
+    TickRecord record;
+    core.tick(input, nullptr, 0, record);
+    if (t == 777) record.arms[0].sent_N.y = 0.125;
+    (*recorder)->add(record);
+    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
+    for (const Event& e : core.events()) (*recorder)->add(e);
+  }
+  ASSERT_TRUE((*recorder)->finish({1000, 0, 0, volumeSha256(grid.snapshot())}).ok());
+  const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
+  ASSERT_TRUE(result.ok());
+  EXPECT_FALSE(result->identical);
+  ASSERT_TRUE(result->first_difference.has_value());
+  EXPECT_EQ(result->first_difference->tick, 777u);
+  EXPECT_EQ(result->first_difference->arm, 0);
+  EXPECT_EQ(result->first_difference->field, "sent_N");
+  EXPECT_EQ(result->first_difference->recorded[1].get<double>(), 0.125);
+}
+
+TEST(Recording, CanBeReadAndReplayedWhileItIsStillBeingWritten) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 1700, false);
+  const auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  EXPECT_FALSE((*reader)->end().has_value());
+  EXPECT_GE((*reader)->tickCount(), 1500u);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(result->identical);
+  EXPECT_TRUE(result->cut_short);
+}
+
+TEST(Recording, RefusesAnotherCase) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 100);
+  Volume other = slab();
+  other.hu[5] += 1;
+  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), other).error().code, "WRONG_CASE");
+}
+
+TEST(Recording, RefusesToReplayWhatWasDropped) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 100, true, 3);
+  EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), slab()).error().code, "NOT_REPLAYABLE");
+}
+
+TEST(Recording, IsNeverWrittenOverAnotherFile) {
+  test::TemporaryFolder folder;
+  std::ofstream(folder / "a.h5") << "precious";
+  auto recorder = SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
+  ASSERT_FALSE(recorder.ok());
+  EXPECT_EQ(recorder.error().code, "CANNOT_WRITE");
+  std::string text;
+  std::ifstream(folder / "a.h5") >> text;
+  EXPECT_EQ(text, "precious");
+}
+
+TEST(Recording, AFileThatIsMissingForeignOrCutShortIsNamed) {
+  test::TemporaryFolder folder;
+  EXPECT_EQ(SessionReader::open(folder / "none.h5").error().code, "MISSING_FILE");
+  std::ofstream(folder / "text.h5") << "not a recording";
+  EXPECT_EQ(SessionReader::open(folder / "text.h5").error().code, "BAD_RECORDING");
+  recordRun(folder / "a.h5", 3000);
+  const auto size = std::filesystem::file_size(folder / "a.h5");
+  for (double part : {0.001, 0.02, 0.3, 0.9}) {
+    const auto cut = folder / "cut.h5";
+    std::filesystem::copy_file(folder / "a.h5", cut, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(cut, std::uintmax_t(double(size) * part));
+    auto reader = SessionReader::open(cut);
+    if (!reader.ok()) {
+      EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+      EXPECT_NE(reader.error().where.find("cut.h5"), std::string::npos);
+      continue;
+    }
+    const auto result = replay(**reader, slab());
+    EXPECT_TRUE(!result.ok() || result->identical) << "what is left must still be true";
+  }
+}
+
+TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
+  test::TemporaryFolder folder;
+  const Scene scene = sceneWithOneArm();
+  Grid grid(slab());
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      folder / "a.h5", {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+  ASSERT_TRUE(recorder.ok());
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old{}, small{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  small = old;
+  small.rlim_cur = 150'000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  Status status;
+  std::uint64_t ticks = 0;
+  // Positions without a pattern, so that compression cannot make room.
+  std::uint32_t random = 1;
+  for (; ticks < 200'000 && status; ++ticks) {
+    TickInput input;
+    input.tick = ticks;
+    for (int axis = 0; axis < 3; ++axis) {
+      random = random * 1664525u + 1013904223u;
+      input.arms[0].position_m[axis] = 1e-12 * random;
+    }
+    input.arms[0].position_m.z += 0.006;
+    TickRecord record;
+    core.tick(input, nullptr, 0, record);
+    (*recorder)->add(record);
+    if (ticks % 100 == 99) status = (*recorder)->flush();
+  }
+  EXPECT_FALSE(status.ok());
+  if (!status) {
+    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+  }
+  EXPECT_FALSE((*recorder)->finish({ticks, 0, 0, ""}).ok());
+  setrlimit(RLIMIT_FSIZE, &old);
+  const auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  EXPECT_GT((*reader)->tickCount(), 0u);
+  EXPECT_LT((*reader)->tickCount(), ticks);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,156 @@
+#include "volume/grid.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <thread>
+
+#include "volumes.h"
+
+namespace trephine {
+namespace {
+
+using test::patternVolume;
+
+std::size_t countDifferences(const Volume& a, const Volume& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.hu.size(); ++i) count += a.hu[i] != b.hu[i];
+  return count;
+}
+
+TEST(Grid, AVoxelOutsideIsAir) {
+  const Grid grid(patternVolume({4, 5, 6}));
+  EXPECT_EQ(grid.hu(-1, 0, 0), kAirHu);
+  EXPECT_EQ(grid.hu(0, 5, 0), kAirHu);
+  EXPECT_EQ(grid.hu(0, 0, 6), kAirHu);
+  EXPECT_EQ(grid.hu(3, 4, 5), patternVolume({4, 5, 6}).at(3, 4, 5));
+}
+
+TEST(Grid, HasOneWriterAtATime) {
+  Grid grid(patternVolume({4, 4, 4}));
+  auto first = grid.takeWriter();
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(grid.takeWriter());
+  first.reset();
+  EXPECT_TRUE(grid.takeWriter());
+}
+
+TEST(Grid, AMovedWriterKeepsTheRightAndGivesItBackOnce) {
+  Grid grid(patternVolume({4, 4, 4}));
+  {
+    auto first = grid.takeWriter();
+    Grid::Writer moved = std::move(*first);
+    first.reset();
+    EXPECT_FALSE(grid.takeWriter());
+    moved.store(5, 77);
+  }
+  EXPECT_EQ(grid.hu(std::size_t(5)), 77);
+  EXPECT_TRUE(grid.takeWriter());
+}
+
+TEST(Grid, StoreReturnsWhatWasThere) {
+  const Volume volume = patternVolume({4, 4, 4});
+  Grid grid(volume);
+  auto writer = grid.takeWriter();
+  EXPECT_EQ(writer->store(9, 123), volume.hu[9]);
+  EXPECT_EQ(writer->store(9, 5), 123);
+}
+
+TEST(Grid, NothingChangedMeansNothingCopied) {
+  Grid grid(patternVolume({40, 20, 20}));
+  Volume copy = grid.snapshot();
+  copy.hu[0] = 31000;
+  std::vector<VoxelBox> boxes;
+  grid.copyChanges(copy, boxes);
+  EXPECT_TRUE(boxes.empty());
+  EXPECT_EQ(copy.hu[0], 31000);
+}
+
+TEST(Grid, CopiesExactlyTheBricksThatChanged) {
+  const Volume start = patternVolume({50, 40, 35});
+  Grid grid(start);
+  Volume copy = start;
+  for (auto& hu : copy.hu) hu = 9;  // so that whatever is copied shows
+  {
+    auto writer = grid.takeWriter();
+    writer->store(start.geometry.indexOf(17, 2, 3), 500);    // brick (1, 0, 0)
+    writer->store(start.geometry.indexOf(49, 39, 34), 600);  // the cut-off last brick (3, 2, 2)
+  }
+  std::vector<VoxelBox> boxes;
+  grid.copyChanges(copy, boxes);
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0], (VoxelBox{{16, 0, 0}, {32, 16, 16}}));
+  EXPECT_EQ(boxes[1], (VoxelBox{{48, 32, 32}, {50, 40, 35}}));
+  for (int k = 0; k < 35; ++k) {
+    for (int j = 0; j < 40; ++j) {
+      for (int i = 0; i < 50; ++i) {
+        const bool inside = (i >= 16 && i < 32 && j < 16 && k < 16) || (i >= 48 && j >= 32 && k >= 32);
+        ASSERT_EQ(copy.at(i, j, k), inside ? grid.hu(i, j, k) : 9) << i << " " << j << " " << k;
+      }
+    }
+  }
+  boxes.clear();
+  grid.copyChanges(copy, boxes);
+  EXPECT_TRUE(boxes.empty()) << "marks are taken once";
+}
+
+TEST(Grid, MergesBricksThatAreNeighboursAlongI) {
+  const Volume start = patternVolume({64, 32, 16});
+  Grid grid(start);
+  auto writer = grid.takeWriter();
+  for (int i : {0, 16, 32}) writer->store(start.geometry.indexOf(i, 0, 0), 1);
+  writer->store(start.geometry.indexOf(0, 16, 0), 1);
+  writer->store(start.geometry.indexOf(63, 31, 0), 1);
+  Volume copy = start;
+  std::vector<VoxelBox> boxes;
+  grid.copyChanges(copy, boxes);
+  ASSERT_EQ(boxes.size(), 3u);
+  EXPECT_EQ(boxes[0], (VoxelBox{{0, 0, 0}, {48, 16, 16}}));
+  EXPECT_EQ(boxes[1], (VoxelBox{{0, 16, 0}, {16, 32, 16}}));
+  EXPECT_EQ(boxes[2], (VoxelBox{{48, 16, 0}, {64, 32, 16}}));
+}
+
+TEST(Grid, MarksMoreBricksThanOneWordHolds) {
+  const Volume start = patternVolume({16, 16, 16 * 150});
+  Grid grid(start);
+  auto writer = grid.takeWriter();
+  for (int k = 0; k < 150; k += 7) writer->store(start.geometry.indexOf(3, 3, 16 * k), 2222);
+  Volume copy = start;
+  std::vector<VoxelBox> boxes;
+  grid.copyChanges(copy, boxes);
+  EXPECT_EQ(boxes.size(), 22u);
+  EXPECT_EQ(countDifferences(copy, grid.snapshot()), 0u);
+  EXPECT_EQ(countDifferences(copy, start), 22u);
+}
+
+TEST(Grid, AReaderBesideAWriterEndsWithTheSameVoxels) {
+  const Volume start = patternVolume({70, 60, 50});
+  Grid grid(start);
+  Volume copy = start;
+  std::atomic<bool> done{false};
+  std::thread thread([&] {
+    auto writer = grid.takeWriter();
+    std::uint64_t state = 1;
+    for (int n = 0; n < 300000; ++n) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      writer->store(std::size_t(state >> 33) % start.hu.size(), std::int16_t(state >> 20));
+    }
+    done = true;
+  });
+  std::vector<VoxelBox> boxes;
+  std::size_t rounds = 0;
+  while (!done) {
+    boxes.clear();
+    grid.copyChanges(copy, boxes);
+    ++rounds;
+  }
+  thread.join();
+  grid.copyChanges(copy, boxes);
+  EXPECT_GT(rounds, 0u);
+  EXPECT_EQ(volumeSha256(copy), volumeSha256(grid.snapshot()));
+  EXPECT_NE(volumeSha256(copy), volumeSha256(start));
+}
+
+}  // namespace
+}  // namespace trephine

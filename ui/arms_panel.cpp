@@ -1,0 +1,199 @@
+#include "ui/arms_panel.h"
+
+#include <QFormLayout>
+#include <QFrame>
+#include <QScrollArea>
+
+#include "ui/colours.h"
+#include "ui/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kMilli = 1000.0;
+
+QLabel* value(QWidget* parent, const QString& name) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
+}
+
+QLabel* quiet(const QString& text, QWidget* parent) {
+  auto* label = new QLabel(text, parent);
+  label->setProperty("quiet", true);
+  return label;
+}
+
+void colourText(QLabel* label, const QColor& colour) {
+  QPalette palette = label->palette();
+  if (palette.color(QPalette::WindowText) == colour) return;
+  palette.setColor(QPalette::WindowText, colour);
+  label->setPalette(palette);
+}
+
+QString newtons(double force_N) {
+  return ArmsPanel::tr("%1 N").arg(force_N, 0, 'f', 2);
+}
+
+}  // namespace
+
+QColor armColour(const SceneArm& arm, std::size_t index) {
+  const bool left = arm.name == "left" || (arm.name != "right" && index == 0);
+  return left ? colours::kLeftArm : colours::kRightArm;
+}
+
+ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
+  auto* inside = new QWidget(this);
+  cards_layout_ = new QVBoxLayout(inside);
+  cards_layout_->setContentsMargins(10, 10, 10, 10);
+  cards_layout_->setSpacing(10);
+  auto* area = new QScrollArea(this);
+  area->setWidget(inside);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+
+  controller_ = new QComboBox(inside);
+  controller_->setObjectName("controller");
+  controller_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  for (const auto& [name, kind] : kControllerNames) {
+    controller_->addItem(controllerWord(kind), int(kind));
+  }
+  clear_ = new QPushButton(tr("Clear faults"), inside);
+  clear_->setObjectName("clearFaults");
+  missed_ = value(inside, "missedDeadlines");
+  dropped_ = value(inside, "dropped");
+  journal_ =
+      new QLabel(tr("The undo memory is full: nothing more is removed. Reset to go on."), inside);
+  journal_->setWordWrap(true);
+  colourText(journal_, colours::kBad);
+  journal_->hide();
+
+  auto* common = new QFormLayout;
+  common->setVerticalSpacing(6);
+  common->addRow(quiet(tr("Controller"), inside), controller_);
+  common->addRow(quiet(tr("Missed deadlines"), inside), missed_);
+  common->addRow(quiet(tr("Dropped records"), inside), dropped_);
+  cards_layout_->addLayout(common);
+  cards_layout_->addWidget(journal_);
+  cards_layout_->addWidget(clear_);
+  cards_layout_->addStretch(1);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(area);
+
+  connect(controller_, &QComboBox::activated, this,
+          [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
+  connect(clear_, &QPushButton::clicked, this, &ArmsPanel::clearFaultsWanted);
+  showIdle();
+}
+
+void ArmsPanel::setScene(const Scene& scene) {
+  for (QWidget* card : card_widgets_) delete card;
+  card_widgets_.clear();
+  cards_.clear();
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene.arms[i], i));
+  controller_->setCurrentIndex(controller_->findData(int(scene.controller)));
+  showIdle();
+}
+
+ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
+  auto* frame = new QFrame(this);
+  frame->setProperty("card", true);
+  const QString prefix = toQt(arm.name);
+  auto* title = new QLabel(arm.name == "left"    ? tr("Left arm")
+                           : arm.name == "right" ? tr("Right arm")
+                                                 : prefix,
+                           frame);
+  title->setProperty("title", true);
+  colourText(title, armColour(arm, index));
+
+  Card card{value(frame, prefix + "Contact"),
+            value(frame, prefix + "Position"),
+            value(frame, prefix + "Force"),
+            value(frame, prefix + "Demanded"),
+            value(frame, prefix + "Energy"),
+            value(frame, prefix + "Faults"),
+            new ForceBar(frame)};
+  card.bar->setObjectName(prefix + "ForceBar");
+  card.bar->setToolTip(
+      tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
+  card.energy->setToolTip(tr("Net work that the sent force did on the hand."));
+  card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
+  card.faults->setWordWrap(true);
+  colourText(card.faults, colours::kBad);
+
+  auto* force_row = new QHBoxLayout;
+  force_row->addWidget(card.force, 1);
+  force_row->addWidget(card.demanded);
+  auto* form = new QFormLayout;
+  form->setVerticalSpacing(4);
+  form->addRow(quiet(tr("Touches"), frame), card.contact);
+  form->addRow(quiet(tr("Tip"), frame), card.position);
+  form->addRow(quiet(tr("Energy"), frame), card.energy);
+  auto* layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(10, 8, 10, 8);
+  layout->setSpacing(6);
+  layout->addWidget(title);
+  layout->addWidget(card.bar);
+  layout->addLayout(force_row);
+  layout->addLayout(form);
+  layout->addWidget(card.faults);
+  cards_layout_->insertWidget(int(index), frame);
+  card_widgets_.push_back(frame);
+  return card;
+}
+
+void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
+                          const std::vector<double>& limits_N) {
+  bool faulty = false;
+  for (std::size_t i = 0; i < cards_.size() && i < limits_N.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    const Card& card = cards_[i];
+    const double sent_N = glm::length(arm.sent_N), demanded_N = glm::length(arm.demanded_N);
+    card.bar->setForce(sent_N, demanded_N, limits_N[i]);
+    card.force->setText(tr("%1 of %2").arg(newtons(sent_N), newtons(limits_N[i])));
+    card.demanded->setText(tr("demanded %1").arg(newtons(demanded_N)));
+    const Vec3& p = arm.patient_position_mm;
+    card.position->setText(
+        tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
+    const Vec3& energy = arm.energy_out_J;
+    card.energy->setText(tr("%1 mJ").arg(kMilli * (energy.x + energy.y + energy.z), 0, 'f', 1));
+    const bool touching =
+        arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
+    card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
+                                   : tr("nothing"));
+    colourText(card.contact, touching ? colours::kText : colours::kQuiet);
+    card.faults->setText(faultWords(arm.faults));
+    card.faults->setVisible(arm.faults != 0);
+    faulty = faulty || arm.faults != 0;
+  }
+  missed_->setText(QString::number(state.missed));
+  dropped_->setText(QString::number(state.dropped));
+  colourText(dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
+  journal_->setVisible(state.journal_full);
+  clear_->setVisible(faulty);
+  if (!controller_->view()->isVisible()) {
+    controller_->setCurrentIndex(controller_->findData(int(state.controller)));
+  }
+}
+
+void ArmsPanel::showIdle() {
+  for (const Card& card : cards_) {
+    card.bar->setForce(0.0, 0.0, 1.0);
+    for (QLabel* label : {card.contact, card.position, card.energy, card.force}) {
+      label->setText(QStringLiteral("\u2013"));
+    }
+    card.demanded->clear();
+    card.faults->hide();
+  }
+  missed_->setText(QStringLiteral("\u2013"));
+  dropped_->setText(QStringLiteral("\u2013"));
+  journal_->hide();
+  clear_->hide();
+}
+
+}  // namespace trephine

@@ -1,0 +1,52 @@
+#include "ui/colours.h"
+
+#include <QPalette>
+#include <QStyleFactory>
+
+namespace trephine::colours {
+
+void applyTheme(QApplication& application) {
+  application.setStyle(QStyleFactory::create("Fusion"));
+  QPalette p;
+  p.setColor(QPalette::Window, kWindow);
+  p.setColor(QPalette::WindowText, kText);
+  p.setColor(QPalette::Base, kPanel);
+  p.setColor(QPalette::AlternateBase, kWindow);
+  p.setColor(QPalette::Text, kText);
+  p.setColor(QPalette::Button, kRaised);
+  p.setColor(QPalette::ButtonText, kText);
+  p.setColor(QPalette::BrightText, Qt::white);
+  p.setColor(QPalette::ToolTipBase, kRaised);
+  p.setColor(QPalette::ToolTipText, kText);
+  p.setColor(QPalette::PlaceholderText, kQuiet);
+  p.setColor(QPalette::Highlight, kAccent);
+  p.setColor(QPalette::HighlightedText, Qt::white);
+  p.setColor(QPalette::Link, kAccent);
+  p.setColor(QPalette::Light, kLine);
+  p.setColor(QPalette::Midlight, kLine);
+  p.setColor(QPalette::Mid, kPanel);
+  p.setColor(QPalette::Dark, kPanel);
+  p.setColor(QPalette::Shadow, Qt::black);
+  const QColor off = kQuiet.darker(150);
+  for (QPalette::ColorRole role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
+    p.setColor(QPalette::Disabled, role, off);
+  }
+  p.setColor(QPalette::Disabled, QPalette::Highlight, kLine);
+  application.setPalette(p);
+
+  // What a palette cannot say. Colours by name, so that this list and the palette stay one.
+  application.setStyleSheet(
+      QString("QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+              "QToolBar { border: none; border-bottom: 1px solid %4; padding: 4px; spacing: 4px; }"
+              "QToolBar QToolButton { padding: 4px 8px; border-radius: 4px; }"
+              "QToolBar QToolButton:hover { background: %2; }"
+              "QToolBar QToolButton:pressed { background: %4; }"
+              "QStatusBar { border-top: 1px solid %4; }"
+              "QStatusBar::item { border: none; }"
+              "QLabel[quiet=\"true\"] { color: %5; }"
+              "QLabel[title=\"true\"] { font-weight: bold; }"
+              "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }")
+          .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name()));
+}
+
+}  // namespace trephine::colours

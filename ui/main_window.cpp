@@ -1,0 +1,310 @@
+#include "ui/main_window.h"
+
+#include <QDragEnterEvent>
+#include <QFileDialog>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QStandardPaths>
+#include <QStatusBar>
+
+#include "base/system.h"
+#include "render/picture.h"
+#include "ui/error_dialog.h"
+#include "ui/words.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
+constexpr int kRatesEvery_ms = 1000;
+constexpr int kMessage_ms = 15000;
+
+std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
+  std::vector<ToolView> tools;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const SceneTool* tool = scene.findTool(scene.arms[i].tool);
+    const ArmRecord& arm = state.record.arms[i];
+    if (!tool || !isFinite(arm.patient_position_mm)) continue;
+    const QColor colour = armColour(scene.arms[i], i);
+    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->length_mm,
+                     tool->tool.kind == ToolKind::blade, arm.tissue_class >= 0,
+                     Vec3(colour.redF(), colour.greenF(), colour.blueF())});
+  }
+  return tools;
+}
+
+std::filesystem::path ownRecordings() {
+  return toPath(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)) / "sessions";
+}
+
+}  // namespace
+
+// --- Opening ---
+
+void MainWindow::askForFolder() {
+  auto* dialog = new QFileDialog(this, tr("Open a folder of CT"));
+  dialog->setObjectName("folderDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::Directory);
+  dialog->setOption(QFileDialog::ShowDirsOnly);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& folder) { workstation_.openPath(toPath(folder)); });
+  dialog->open();
+}
+
+void MainWindow::askForScene() {
+  auto* dialog = new QFileDialog(this, tr("Open a scene"), {}, tr("Scene (*.json)"));
+  dialog->setObjectName("sceneDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.openPath(toPath(file)); });
+  dialog->open();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() != 1 || !urls.front().isLocalFile()) return;
+  event->acceptProposedAction();
+  workstation_.openPath(toPath(urls.front().toLocalFile()));
+}
+
+void MainWindow::showScene() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  if (!scene) return;
+  const QString file = toQt(workstation_.sceneFile());
+  int index = scenes_->findData(file);
+  if (index < 0) index = scenes_->findText(toQt(scene->name));
+  if (index < 0) {
+    scenes_->addItem(toQt(scene->name), file);
+    index = scenes_->count() - 1;
+  }
+  scenes_->setCurrentIndex(index);
+  setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
+  tissues_->setTissues(scene->tissues);
+  view_->setTissues(scene->tissues);
+  arms_->setScene(*scene);
+}
+
+void MainWindow::showCase() {
+  const std::shared_ptr<const Volume>& volume = workstation_.volume();
+  if (!volume) return;
+  carved_ = false;
+  view_->setTools({});
+  view_->showVolume(Grid(*volume));
+  case_->showCase(sizeWords(volume->geometry));
+  lookAtCase();
+  showPhase();
+}
+
+void MainWindow::lookAtCase() {
+  if (const std::optional<LandmarkFrame> landmark = workstation_.viewLandmark()) {
+    view_->lookAtLandmark(*landmark, workstation_.scene()->view.distance_mm);
+  } else {
+    view_->lookFromFront();
+  }
+}
+
+// --- The exercise ---
+
+void MainWindow::startExercise(std::optional<OperatorScript> script, double seconds) {
+  workstation_.start(recordings_.empty() ? ownRecordings() : recordings_, std::move(script),
+                     seconds);
+}
+
+void MainWindow::showPhase() {
+  using Phase = Workstation::Phase;
+  const Phase phase = workstation_.phase();
+  const bool running = phase == Phase::running, ready = phase == Phase::ready;
+  const bool may_open = ready || phase == Phase::empty;
+  for (QAction* action : {open_, open_scene_}) action->setEnabled(may_open);
+  scenes_->setEnabled(may_open);
+  case_->setOpeningAllowed(may_open);
+  start_->setEnabled(ready);
+  for (QAction* action : {stop_, pause_, undo_, redo_}) action->setEnabled(running);
+  if (!running) pause_->setChecked(false);
+  reset_->setEnabled(running || (ready && carved_));
+  for (QAction* action : {picture_, volume_, look_}) action->setEnabled(phase != Phase::empty);
+  view_->setTraining(running);
+  switch (phase) {
+    case Phase::starting:
+      hint_->setText(tr("Starting\u2026"));
+      break;
+    case Phase::ending:
+      hint_->setText(tr("Ending the recording\u2026"));
+      break;
+    case Phase::running:
+      hint_->setText(
+          tr("Drag or arrow keys: right hand. Wheel, Page Up/Down: depth. Shift: left hand."));
+      break;
+    default:
+      hint_->setText(ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. Space: start.")
+                           : QString());
+  }
+}
+
+void MainWindow::sessionStarted() {
+  const Session& session = *workstation_.session();
+  limits_N_.clear();
+  for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
+  carved_ = true;
+  recording_failed_ = false;
+  ticks_shown_ = 0;
+  rate_clock_.restart();
+  view_->showVolume(workstation_.session()->grid());
+  placeHandPoints();
+  frame_timer_.start();
+  view_->setFocus();
+}
+
+void MainWindow::sessionEnded(Session& session) {
+  frame_timer_.stop();
+  showState(session, session.state());
+  arms_->showIdle();
+  view_->setTools({});
+  rates_->clear();
+  const RunReport report = session.report();
+  say(tr("%1 s, %2 voxels removed. Recorded in %3")
+          .arg(double(report.ticks) / report.rate_hz, 0, 'f', 1)
+          .arg(report.removed_voxels)
+          .arg(toQt(std::filesystem::path(report.recording))));
+}
+
+void MainWindow::tick() {
+  Session* session = workstation_.session();
+  if (!session) return;
+  const LoopState& state = session->state();
+  view_->pullChanges(session->grid());
+  view_->setTools(toolViews(session->scene(), state));
+  if (panel_clock_.elapsed() >= kPanelEvery_ms) {
+    panel_clock_.restart();
+    showState(*session, state);
+  }
+  if (rate_clock_.elapsed() >= kRatesEvery_ms) showRates();
+  if (session->finished()) workstation_.stop();
+}
+
+void MainWindow::showState(Session& session, const LoopState& state) {
+  view_->pullChanges(session.grid());
+  arms_->showState(state, session.scene().tissues, limits_N_);
+  pause_->setChecked(state.paused);
+  undo_->setEnabled(state.can_undo && workstation_.session());
+  if (Status recording = session.recordingStatus(); !recording && !recording_failed_) {
+    recording_failed_ = true;
+    report(recording.error());
+  }
+}
+
+void MainWindow::showRates() {
+  const double seconds = double(rate_clock_.restart()) / 1000.0;
+  Session* session = workstation_.session();
+  if (!session) return;
+  const LoopState& state = session->state();
+  const double haptic_hz = double(state.ticks - ticks_shown_) / seconds;
+  ticks_shown_ = state.ticks;
+  rates_->setText(tr("%1 pictures/s \u00b7 touch %2 Hz, %3 missed")
+                      .arg(double(frames_) / seconds, 0, 'f', 0)
+                      .arg(haptic_hz, 0, 'f', 0)
+                      .arg(state.missed));
+  frames_ = 0;
+}
+
+void MainWindow::command(CommandKind kind) {
+  Session* session = workstation_.session();
+  if (session && !session->send(kind)) say(tr("Busy: try again in a moment."));
+}
+
+void MainWindow::reset() {
+  if (workstation_.session()) {
+    command(CommandKind::reset);
+  } else if (workstation_.phase() == Workstation::Phase::ready) {
+    carved_ = false;
+    view_->showVolume(Grid(*workstation_.volume()));
+    showPhase();
+  }
+}
+
+std::size_t MainWindow::armOf(Hand hand) const {
+  const std::vector<SceneArm>& arms = workstation_.scene()->arms;
+  const std::string name = hand == Hand::right ? "right" : "left";
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    if (arms[i].name == name) return i;
+  }
+  return hand == Hand::right ? arms.size() - 1 : 0;  // a lone arm answers to both
+}
+
+void MainWindow::moveHand(Hand hand, const Vec3& by_mm) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  session->moveHand(armOf(hand), by_mm);
+  placeHandPoints();
+}
+
+void MainWindow::placeHandPoints() {
+  const Session* session = workstation_.session();
+  for (Hand hand : {Hand::left, Hand::right}) {
+    view_->setHandPoint(hand, session->handTarget_mm(armOf(hand)));
+  }
+}
+
+// --- Saving and saying ---
+
+void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
+                                const QString& filter, void (MainWindow::*save)(const QString&)) {
+  auto* dialog = new QFileDialog(this, title, {}, filter);
+  dialog->setObjectName("saveDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setAcceptMode(QFileDialog::AcceptSave);
+  dialog->selectFile(suggestion);
+  dialog->setDefaultSuffix(QFileInfo(suggestion).suffix());
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, save](const QString& file) { (this->*save)(file); });
+  dialog->open();
+}
+
+void MainWindow::savePicture(const QString& file) {
+  Result<Picture> picture = view_->picture();
+  if (!picture) return report(picture.error());
+  workstation_.save(
+      tr("The picture is saved."),
+      [picture = *std::move(picture), path = toPath(file)] { return writePng(picture, path); });
+}
+
+void MainWindow::saveVolume(const QString& file) {
+  if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
+  const auto copy = std::make_shared<const Volume>(view_->shownVolume());
+  say(tr("Saving the volume\u2026"));
+  workstation_.save(tr("The volume is saved."),
+                    [copy, path = toPath(file)] { return writeVolume(*copy, path); });
+}
+
+void MainWindow::say(const QString& text) {
+  statusBar()->showMessage(text, kMessage_ms);
+}
+
+void MainWindow::report(const Error& error) {
+  showError(this, error);
+  emit failed(error);
+}
+
+void MainWindow::showAbout() {
+  auto* box = new QMessageBox(this);
+  box->setObjectName("aboutDialog");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setWindowTitle(tr("About Trephine"));
+  box->setText(tr("Trephine %1").arg(toQt(buildName())));
+  box->setInformativeText(tr("Turns a CT into a case on which cutting can be practised with two "
+                             "hands, and felt.\n\n%1.\n\n"
+                             "Graphics: %2")
+                              .arg(purposeText(), toQt(view_->openGlDescription())));
+  box->open();
+}
+
+}  // namespace trephine

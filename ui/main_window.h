@@ -1,0 +1,99 @@
+// The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
+// connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
+// builds it, main_window.cpp is what it does.)
+#pragma once
+
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QMainWindow>
+#include <QTabWidget>
+#include <QTimer>
+#include <filesystem>
+
+#include "ui/arms_panel.h"
+#include "ui/case_panel.h"
+#include "ui/icons.h"
+#include "ui/tissue_panel.h"
+#include "ui/view_widget.h"
+#include "ui/workstation.h"
+
+namespace trephine {
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+ public:
+  // Recordings go into `recordings`; empty: the user's own folder of sessions.
+  explicit MainWindow(std::filesystem::path recordings = {}, QWidget* parent = nullptr);
+
+  Workstation& workstation() { return workstation_; }
+  ViewWidget& view() { return *view_; }
+
+  // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
+  void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
+  // The 3-D view as a PNG, and the voxels as they are now; errors become dialogs.
+  void savePicture(const QString& file);
+  void saveVolume(const QString& file);
+
+ signals:
+  // Beside the dialog that is shown.
+  void failed(const trephine::Error& error);
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+
+ private:
+  static constexpr double kNoEnd_s = 1e9;
+
+  void buildActions();
+  void buildBars();
+  void buildPanels();
+  void connectParts();
+  QAction* makeAction(Symbol symbol, const char* name, const QString& text, const QKeySequence& key,
+                      const QString& tip);
+  void fillScenes();
+
+  void askForFolder();
+  void askForScene();
+  void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
+                      void (MainWindow::*save)(const QString&));
+  void showAbout();
+  void showScene();
+  void showCase();
+  void showPhase();
+  void lookAtCase();
+  void reset();
+  void command(CommandKind kind);
+  void moveHand(Hand hand, const Vec3& by_mm);
+  void placeHandPoints();
+  std::size_t armOf(Hand hand) const;
+  void sessionStarted();
+  void sessionEnded(Session& session);
+  void tick();
+  void showState(Session& session, const LoopState& state);
+  void showRates();
+  void say(const QString& text);
+  void report(const Error& error);
+
+  Workstation workstation_;
+  std::filesystem::path recordings_;
+  QAction *open_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_, *picture_,
+      *volume_, *look_;
+  QComboBox* scenes_;
+  QTabWidget* left_;
+  CasePanel* case_;
+  TissuePanel* tissues_;
+  ArmsPanel* arms_;
+  ViewWidget* view_;
+  QLabel *hint_, *rates_;
+  QTimer frame_timer_;
+  QElapsedTimer panel_clock_, rate_clock_;
+  std::vector<double> limits_N_;  // of the running session's arms
+  int frames_ = 0;                // since the rates were shown
+  std::uint64_t ticks_shown_ = 0;
+  bool carved_ = false;            // the view shows what an ended exercise left
+  bool recording_failed_ = false;  // said once an exercise
+};
+
+}  // namespace trephine

@@ -1,0 +1,223 @@
+#include <QLabel>
+#include <QMenuBar>
+#include <QShortcut>
+#include <QSplitter>
+#include <QStatusBar>
+#include <QToolBar>
+#include <algorithm>
+
+#include "base/system.h"
+#include "ui/main_window.h"
+#include "ui/words.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kLeftWidth = 300, kRightWidth = 270;
+constexpr int kFrame_ms = 16;
+}  // namespace
+
+MainWindow::MainWindow(std::filesystem::path recordings, QWidget* parent)
+    : QMainWindow(parent), recordings_(std::move(recordings)) {
+  setWindowTitle(tr("Trephine"));
+  setAcceptDrops(true);
+  buildActions();
+  buildPanels();
+  buildBars();
+  connectParts();
+  fillScenes();
+  frame_timer_.setInterval(kFrame_ms);
+  rate_clock_.start();
+  panel_clock_.start();
+  resize(1280, 800);
+  showPhase();
+  view_->setFocus();
+}
+
+QAction* MainWindow::makeAction(Symbol symbol, const char* name, const QString& text,
+                                const QKeySequence& key, const QString& tip) {
+  auto* action = new QAction(symbolIcon(symbol), text, this);
+  action->setObjectName(name);
+  action->setShortcut(key);
+  const QString keys = key.toString(QKeySequence::NativeText);
+  action->setToolTip(keys.isEmpty() ? tip : tr("%1 (%2)").arg(tip, keys));
+  addAction(action);
+  return action;
+}
+
+void MainWindow::buildActions() {
+  open_ = makeAction(Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
+                     tr("Open a folder of CT"));
+  open_scene_ = makeAction(Symbol::open, "openScene", tr("Open scene\u2026"),
+                           QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O), tr("Open a scene file"));
+  start_ = makeAction(Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
+                      tr("Start the exercise; in the view also Space"));
+  stop_ = makeAction(Symbol::stop, "stop", tr("Stop"), QKeySequence(Qt::SHIFT | Qt::Key_F5),
+                     tr("Stop the exercise; in the view also Space"));
+  pause_ = makeAction(Symbol::pause, "pause", tr("Pause"), QKeySequence(Qt::CTRL | Qt::Key_P),
+                      tr("Hold: no force and no cutting until it is released"));
+  pause_->setCheckable(true);
+  undo_ = makeAction(Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),
+                     tr("Put the last stroke's tissue back"));
+  redo_ = makeAction(Symbol::redo, "redo", tr("Redo"),
+                     QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), tr("Cut the stroke again"));
+  reset_ = makeAction(Symbol::reset, "reset", tr("Reset"), QKeySequence(Qt::CTRL | Qt::Key_R),
+                      tr("Put all tissue back"));
+  picture_ = makeAction(Symbol::picture, "savePicture", tr("Save picture\u2026"),
+                        QKeySequence(Qt::Key_F12), tr("Save the 3-D view as a picture"));
+  volume_ = makeAction(Symbol::save, "saveVolume", tr("Save volume\u2026"), QKeySequence::Save,
+                       tr("Save the volume as it is now, with what was cut"));
+  look_ = makeAction(Symbol::view, "resetView", tr("Reset view"), QKeySequence(Qt::Key_Home),
+                     tr("Look at the case as at the start"));
+}
+
+void MainWindow::buildPanels() {
+  case_ = new CasePanel;
+  tissues_ = new TissuePanel;
+  left_ = new QTabWidget;
+  left_->setObjectName("leftTabs");
+  left_->setDocumentMode(true);
+  left_->addTab(case_, tr("Case"));
+  left_->addTab(tissues_, tr("Tissues"));
+  left_->setMinimumWidth(260);
+  view_ = new ViewWidget;
+  arms_ = new ArmsPanel;
+  arms_->setMinimumWidth(240);
+
+  auto* splitter = new QSplitter(Qt::Horizontal);
+  splitter->addWidget(left_);
+  splitter->addWidget(view_);
+  splitter->addWidget(arms_);
+  splitter->setStretchFactor(0, 0);
+  splitter->setStretchFactor(1, 1);
+  splitter->setStretchFactor(2, 0);
+  splitter->setCollapsible(1, false);
+  splitter->setSizes({kLeftWidth, 1280 - kLeftWidth - kRightWidth, kRightWidth});
+  setCentralWidget(splitter);
+}
+
+void MainWindow::buildBars() {
+  auto* tools = addToolBar(tr("Exercise"));
+  tools->setObjectName("toolBar");
+  tools->setMovable(false);
+  tools->setIconSize({20, 20});
+  tools->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  tools->setContextMenuPolicy(Qt::PreventContextMenu);
+  scenes_ = new QComboBox;
+  scenes_->setObjectName("scenes");
+  scenes_->setToolTip(tr("The exercise"));
+  scenes_->setAccessibleName(tr("Exercise"));
+  scenes_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  tools->addWidget(scenes_);
+  tools->addSeparator();
+  tools->addActions({start_, stop_, pause_});
+  tools->addSeparator();
+  tools->addActions({undo_, redo_, reset_});
+  tools->addSeparator();
+  tools->addActions({look_, picture_, volume_});
+
+  QMenu* file = menuBar()->addMenu(tr("&File"));
+  file->addActions({open_, open_scene_});
+  file->addSeparator();
+  file->addActions({picture_, volume_});
+  file->addSeparator();
+  QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
+  quit->setObjectName("quit");
+  menuBar()->addMenu(tr("&Exercise"))->addActions({start_, stop_, pause_, undo_, redo_, reset_});
+  menuBar()->addMenu(tr("&View"))->addAction(look_);
+  QMenu* help = menuBar()->addMenu(tr("&Help"));
+  help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
+
+  hint_ = new QLabel;
+  hint_->setProperty("quiet", true);
+  rates_ = new QLabel;
+  rates_->setObjectName("rates");
+  rates_->setProperty("quiet", true);
+  auto* purpose = new QLabel(purposeText());
+  purpose->setObjectName("purpose");
+  purpose->setContentsMargins(12, 0, 6, 0);
+  statusBar()->addWidget(hint_, 1);
+  statusBar()->addPermanentWidget(rates_);
+  statusBar()->addPermanentWidget(purpose);
+}
+
+void MainWindow::connectParts() {
+  connect(open_, &QAction::triggered, this, &MainWindow::askForFolder);
+  connect(open_scene_, &QAction::triggered, this, &MainWindow::askForScene);
+  connect(start_, &QAction::triggered, this, [this] { startExercise(); });
+  connect(stop_, &QAction::triggered, &workstation_, &Workstation::stop);
+  connect(pause_, &QAction::triggered, this,
+          [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
+  connect(undo_, &QAction::triggered, this, [this] { command(CommandKind::undo); });
+  connect(redo_, &QAction::triggered, this, [this] { command(CommandKind::redo); });
+  connect(reset_, &QAction::triggered, this, &MainWindow::reset);
+  connect(look_, &QAction::triggered, this, &MainWindow::lookAtCase);
+  connect(picture_, &QAction::triggered, this, [this] {
+    askWhereToSave(tr("Save picture"), "trephine.png", tr("Picture (*.png)"),
+                   &MainWindow::savePicture);
+  });
+  connect(volume_, &QAction::triggered, this, [this] {
+    askWhereToSave(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"),
+                   &MainWindow::saveVolume);
+  });
+  // Space belongs to buttons and lists where they have the focus.
+  auto* space = new QShortcut(Qt::Key_Space, view_, nullptr, nullptr, Qt::WidgetShortcut);
+  connect(space, &QShortcut::activated, this,
+          [this] { (stop_->isEnabled() ? stop_ : start_)->trigger(); });
+
+  connect(case_, &CasePanel::folderWanted, this, &MainWindow::askForFolder);
+  connect(case_, &CasePanel::phantomWanted, this, [this](const QString& name) {
+    case_->forgetReport();
+    workstation_.openPhantom(name.toStdString());
+  });
+  connect(case_, &CasePanel::seriesWanted, this,
+          [this](const QString& uid) { workstation_.openSeries(uid.toStdString()); });
+  connect(case_, &CasePanel::cancelWanted, &workstation_, &Workstation::cancelOpening);
+  connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
+    workstation_.setTissues(set);
+    view_->setTissues(set);
+  });
+  connect(arms_, &ArmsPanel::controllerWanted, &workstation_, &Workstation::setController);
+  connect(arms_, &ArmsPanel::clearFaultsWanted, this,
+          [this] { command(CommandKind::clear_faults); });
+  connect(scenes_, &QComboBox::activated, this, [this](int index) {
+    workstation_.useScene(toPath(scenes_->itemData(index).toString()));
+    showScene();  // back to the one in use where the other cannot be had
+  });
+
+  connect(view_, &ViewWidget::handMoved, this, &MainWindow::moveHand);
+  connect(view_, &ViewWidget::failed, this, &MainWindow::report);
+  connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
+
+  connect(&workstation_, &Workstation::openingProgressed, this,
+          [this](double fraction, const QString& step) {
+            case_->showProgress(fraction, step);
+            left_->setCurrentWidget(case_);
+          });
+  connect(&workstation_, &Workstation::openingEnded, case_, &CasePanel::endProgress);
+  connect(&workstation_, &Workstation::seriesFound, case_, &CasePanel::showReport);
+  connect(&workstation_, &Workstation::seriesChosen, case_, &CasePanel::showChosen);
+  connect(&workstation_, &Workstation::sceneChanged, this, &MainWindow::showScene);
+  connect(&workstation_, &Workstation::caseOpened, this, &MainWindow::showCase);
+  connect(&workstation_, &Workstation::phaseChanged, this, &MainWindow::showPhase);
+  connect(&workstation_, &Workstation::sessionStarted, this, &MainWindow::sessionStarted);
+  connect(&workstation_, &Workstation::sessionEnded, this, &MainWindow::sessionEnded);
+  connect(&workstation_, &Workstation::saved, this, &MainWindow::say);
+  connect(&workstation_, &Workstation::failed, this, &MainWindow::report);
+  connect(&frame_timer_, &QTimer::timeout, this, &MainWindow::tick);
+}
+
+void MainWindow::fillScenes() {
+  std::vector<std::filesystem::path> files;
+  std::error_code ec;
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes", ec)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files) {
+    if (Result<Scene> scene = readScene(file)) scenes_->addItem(toQt(scene->name), toQt(file));
+  }
+  scenes_->setCurrentIndex(scenes_->findData(toQt(defaultScene("cranium"))));
+}
+
+}  // namespace trephine

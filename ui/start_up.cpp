@@ -1,0 +1,44 @@
+#include "ui/start_up.h"
+
+#include <time.h>
+#include <unistd.h>
+
+#include <QSurfaceFormat>
+#include <fstream>
+#include <sstream>
+
+#include "render/display_probe.h"
+
+namespace trephine {
+
+Status prepareDisplay() {
+  if (Status display = probeDisplay(); !display) return display;
+  // The OpenGL that VTK was built for is X's; a Wayland desktop has an X server beside it.
+  if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "xcb");
+  QSurfaceFormat format;
+  format.setRenderableType(QSurfaceFormat::OpenGL);
+  format.setVersion(3, 2);
+  format.setProfile(QSurfaceFormat::CoreProfile);
+  format.setDepthBufferSize(24);
+  format.setStencilBufferSize(8);
+  format.setSamples(0);
+  QSurfaceFormat::setDefaultFormat(format);
+  return {};
+}
+
+double msSinceProcessStart() {
+  // Field 22 of stat, in clock ticks since boot; the name in field 2 may hold blanks.
+  std::ifstream file("/proc/self/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string skipped;
+  for (int field = 3; field < 22; ++field) fields >> skipped;
+  double start_ticks = 0.0;
+  fields >> start_ticks;
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  const double now_s = double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
+  return 1000.0 * (now_s - start_ticks / double(::sysconf(_SC_CLK_TCK)));
+}
+
+}  // namespace trephine

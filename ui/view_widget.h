@@ -1,0 +1,85 @@
+// The 3-D view: hosts the scene renderer and turns mouse and keys into movements of a hand or of
+// the camera. It knows no session: what a hand does with its movement is told by a signal.
+//
+// While an exercise runs:  left drag moves the right hand in the view plane, the wheel in depth;
+//                          with Shift, the left hand. Arrow keys and Page Up, Page Down do the
+//                          same.
+// Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
+// left button, the wheel and the keys move the camera too.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QOpenGLWidget>
+#include <QTimer>
+#include <array>
+#include <optional>
+
+#include "base/result.h"
+#include "render/scene_renderer.h"
+#include "scene/landmark.h"
+
+namespace trephine {
+
+enum class Hand { left, right };
+
+class ViewWidget : public QOpenGLWidget {
+  Q_OBJECT
+ public:
+  explicit ViewWidget(QWidget* parent = nullptr);
+  ~ViewWidget() override;
+
+  // Takes a copy of the voxels; the camera stays where the place in the patient is the same.
+  void showVolume(const Grid& grid);
+  void setTissues(const TissueSet& tissues);
+  // Looks at a landmark from outside, or at the whole case from the front.
+  void lookAtLandmark(const LandmarkFrame& frame, double distance_mm);
+  void lookFromFront();
+  // What was cut since the last call, and where the tools are now; draws when something changed.
+  void pullChanges(Grid& grid);
+  void setTools(const std::vector<ToolView>& tools);
+
+  // In an exercise the mouse moves hands; `point_mm` is where a hand is, which gives the scale.
+  void setTraining(bool training);
+  void setHandPoint(Hand hand, const Vec3& point_mm);
+
+  // What is on the screen: the voxels, and the picture at full quality.
+  const Volume& shownVolume() const { return renderer_.copy(); }
+  Result<Picture> picture();
+  std::string openGlDescription() const { return gl_description_; }
+
+ signals:
+  void handMoved(trephine::Hand hand, const trephine::Vec3& by_mm);
+  void framePainted(double paint_ms, bool with_volume);
+  void failed(const trephine::Error& error);
+
+ protected:
+  void initializeGL() override;
+  void resizeGL(int width, int height) override;
+  void paintGL() override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  void releaseGraphics();
+  void redraw();  // coarse now, refined when still
+  void moveHand(Hand hand, double right_pixels, double up_pixels);
+  void moveHandBy(Hand hand, const Vec3& by_mm);
+  void turn(double right_pixels, double down_pixels);
+  void fitHint();
+  void fitRenderer();
+
+  SceneRenderer renderer_;
+  std::string gl_description_;
+  QLabel* hint_;
+  QTimer still_;
+  QPointF last_;
+  std::array<Vec3, 2> hand_points_mm_{};
+  std::vector<ToolView> tools_;
+  bool training_ = false;
+};
+
+}  // namespace trephine

@@ -1,0 +1,85 @@
+#include "ui/words.h"
+
+#include <QCoreApplication>
+#include <QFile>
+#include <QStringList>
+
+#include "haptics/haptic_types.h"
+
+namespace trephine {
+
+namespace {
+QString tr(const char* text) {
+  return QCoreApplication::translate("Words", text);
+}
+}  // namespace
+
+QString toQt(const std::string& utf8) {
+  return QString::fromStdString(utf8);
+}
+
+std::filesystem::path toPath(const QString& text) {
+  return QFile::encodeName(text).toStdString();
+}
+
+QString toQt(const std::filesystem::path& path) {
+  return QFile::decodeName(QByteArray::fromStdString(path.string()));
+}
+
+QString purposeText() {
+  return tr("For training, not for diagnosis or treatment planning");
+}
+
+QString verdictWord(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return tr("Pass");
+    case Verdict::repaired:
+      return tr("Repaired");
+    case Verdict::refused:
+      return tr("Refused");
+  }
+  return {};
+}
+
+QString controllerWord(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::off:
+      return tr("Off");
+    case ControllerKind::seed:
+      return tr("Passivity controller (seed paper)");
+  }
+  return {};
+}
+
+QString faultWords(std::uint32_t faults) {
+  QStringList words;
+  if (faults & kFaultNonFinite) words << tr("A pose or a force was not a number.");
+  if (faults & kFaultLate) words << tr("The haptic step came 20 ms late.");
+  if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  return words.join('\n');
+}
+
+QString findingWords(const SeriesReport& series) {
+  QStringList lines;
+  for (const Finding& finding : series.findings) {
+    QString line = toQt(finding.text);
+    if (!line.isEmpty() && !line.endsWith('.')) line += '.';
+    if (!finding.action.empty()) line += ' ' + toQt(finding.action);
+    if (!line.endsWith('.')) line += '.';
+    lines << line;
+  }
+  return lines.join('\n');
+}
+
+QString sizeWords(const GridGeometry& g) {
+  return tr("%1 \u00d7 %2 \u00d7 %3 voxels of %4 \u00d7 %5 \u00d7 %6 mm")
+      .arg(g.size[0])
+      .arg(g.size[1])
+      .arg(g.size[2])
+      .arg(g.spacing_mm.x, 0, 'f', 2)
+      .arg(g.spacing_mm.y, 0, 'f', 2)
+      .arg(g.spacing_mm.z, 0, 'f', 2);
+}
+
+}  // namespace trephine

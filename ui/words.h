@@ -1,0 +1,30 @@
+// What the domain's values are called on the screen.
+#pragma once
+
+#include <QString>
+#include <filesystem>
+
+#include "base/result.h"
+#include "haptics/controllers.h"
+#include "imaging/importer.h"
+
+namespace trephine {
+
+QString toQt(const std::string& utf8);
+// Paths keep the bytes that the file system gave, whatever their encoding.
+std::filesystem::path toPath(const QString& text);
+QString toQt(const std::filesystem::path& path);
+
+// "For training, not for diagnosis or treatment planning".
+QString purposeText();
+
+QString verdictWord(Verdict verdict);
+QString controllerWord(ControllerKind kind);
+// Each fault bit as a sentence, one a line; empty for none.
+QString faultWords(std::uint32_t faults);
+// Findings of a series, what was noticed and what was done, one a line.
+QString findingWords(const SeriesReport& series);
+// "512 x 512 x 140, 0.49 x 0.49 x 1.00 mm".
+QString sizeWords(const GridGeometry& geometry);
+
+}  // namespace trephine

@@ -1,0 +1,97 @@
+// What the window works on: the case that is open, the scene, and the exercise that runs. No
+// widget. Long work (scan, read, place landmarks, start, stop, save) goes to background threads;
+// every method is called, and every signal sent, on the window's thread.
+#pragma once
+
+#include <QObject>
+#include <memory>
+#include <optional>
+
+#include "imaging/importer.h"
+#include "session/session.h"
+#include "ui/background_task.h"
+
+namespace trephine {
+
+class Workstation : public QObject {
+  Q_OBJECT
+ public:
+  enum class Phase { empty, ready, starting, running, ending };
+
+  explicit Workstation(QObject* parent = nullptr);
+  ~Workstation() override;
+
+  // A folder or file of CT (scanned, the best series is read), a volume file, or a scene (.json),
+  // which brings its own case.
+  void openPath(const std::filesystem::path& path);
+  // One of the built-in cases, with the scene that fits it.
+  void openPhantom(const std::string& name);
+  // Another series of the folder scanned last.
+  void openSeries(const std::string& uid);
+  // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
+  void useScene(const std::filesystem::path& file);
+  void cancelOpening() { opening_.cancel(); }
+  bool isOpening() const { return opening_.busy(); }
+
+  Phase phase() const { return phase_; }
+  const std::optional<Scene>& scene() const { return scene_; }
+  const std::filesystem::path& sceneFile() const { return scene_file_; }
+  const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  // Where the scene wants to be looked at, when the case has that landmark.
+  std::optional<LandmarkFrame> viewLandmark() const;
+
+  // Starts from the case as it was opened. `script` moves the hands until the mouse does; after
+  // `seconds` the session is finished() and waits for stop().
+  void start(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
+             double seconds);
+  void stop();
+  // Only while the phase is running.
+  Session* session() const { return phase_ == Phase::running ? session_.get() : nullptr; }
+  // Felt at once, and kept for the next exercise.
+  void setTissues(const TissueSet& tissues);
+  void setController(ControllerKind kind);
+
+  // Runs `write` in the background; `what` names the outcome in saved().
+  void save(const QString& what, std::function<Status()> write);
+  bool isSaving() const { return saving_.busy(); }
+
+ signals:
+  void openingProgressed(double fraction, const QString& step);
+  void openingEnded();
+  void seriesFound(const trephine::ImportReport& report);
+  void seriesChosen(const QString& uid);
+  void sceneChanged();
+  void caseOpened();
+  void phaseChanged();
+  void sessionStarted();
+  // The exercise's last state; `session` goes away after it.
+  void sessionEnded(trephine::Session& session);
+  void saved(const QString& what);
+  void failed(const trephine::Error& error);
+
+ private:
+  struct Opened;
+  bool mayOpen();
+  std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
+  void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source);
+  void openFolder(const std::filesystem::path& folder);
+  void opened(Result<Opened> outcome);
+  void setPhase(Phase phase);
+  void fail(const Error& error);
+
+  Phase phase_ = Phase::empty;
+  std::optional<Scene> scene_;
+  std::filesystem::path scene_file_;
+  std::shared_ptr<const Volume> volume_;
+  std::vector<PlacedLandmark> landmarks_;
+  bool own_case_ = false;  // the user's, not a built-in one
+  std::shared_ptr<CtFolder> folder_;
+  std::unique_ptr<Session> session_;
+  // Last, so that they are joined before what they work on goes.
+  BackgroundTask opening_, running_, saving_;
+};
+
+// The scene that fits a case of this anatomy, among the product's own.
+std::filesystem::path defaultScene(const std::string& anatomy);
+
+}  // namespace trephine
