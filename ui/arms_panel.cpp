@@ -1,5 +1,6 @@
 #include "ui/arms_panel.h"
 
+#include <QAbstractItemView>
 #include <QFormLayout>
 #include <QFrame>
 #include <QScrollArea>

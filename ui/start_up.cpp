@@ -3,6 +3,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <QByteArray>
 #include <QSurfaceFormat>
 #include <fstream>
 #include <sstream>
@@ -14,7 +15,7 @@ namespace trephine {
 Status prepareDisplay() {
   if (Status display = probeDisplay(); !display) return display;
   // The OpenGL that VTK was built for is X's; a Wayland desktop has an X server beside it.
-  if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", "xcb");
+  if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", QByteArray("xcb"));
   QSurfaceFormat format;
   format.setRenderableType(QSurfaceFormat::OpenGL);
   format.setVersion(3, 2);

@@ -37,11 +37,11 @@ double lateGain(std::int64_t late_ns) {
 Vec3 ForceGate::pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
                      double period_s) {
   if (!open) {
-    catching_up_ = true;
+    change();
     return sent_N_ = Vec3(0.0);
   }
   if (late_ns > kHoldLate_ns) {
-    catching_up_ = true;
+    change();
     return sent_N_ *= lateGain(late_ns);
   }
   if (waiting_for_air_) {
@@ -50,12 +50,10 @@ Vec3 ForceGate::pass(const Vec3& clamped_N, bool touching, bool open, std::int64
   }
   gain_ = std::min(1.0, gain_ + period_s / kRampIn_s);
   const Vec3 target = gain_ * clamped_N;
-  if (catching_up_) {
-    sent_N_ = slewTowards(sent_N_, target, kSlew_N_per_s * period_s);
-    catching_up_ = sent_N_ != target;
-  } else {
-    sent_N_ = target;
-  }
+  if (catch_up_s_ <= 0.0) return sent_N_ = target;
+  sent_N_ = slewTowards(sent_N_, target, kSlew_N_per_s * period_s);
+  const double left_s = catch_up_s_ - period_s;
+  catch_up_s_ = sent_N_ == target ? left_s : std::max(left_s, period_s);
   return sent_N_;
 }
 

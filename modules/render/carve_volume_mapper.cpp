@@ -27,6 +27,7 @@
 #include <vtkVolumeTexture.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "render/carve_volume_mapper.h"
@@ -143,26 +144,30 @@ struct CarveVolume::Parts {
   std::vector<VoxelBox> boxes;
   std::vector<HuInterval> visible;
   BrickRanges bricks;
+  LeapMap leap_map;
   double lookup_step_HU = 0.0;
   double half_voxel_mm = 0.5;
   bool leaping = true;
-  bool leaps_stale = true;
+  bool leap_map_stale = true;  // to be made anew
+  bool leaps_stale = true;     // to be sent
 
   // Null until VTK has sent the image that is shown now.
   vtkTextureObject* textureInUse() {
     return image ? mapper->textureOf(image->GetPointData()->GetScalars()) : nullptr;
   }
 
-  void updateLeaps(vtkRenderer& renderer) {
-    if (!leaps_stale && leaps->GetHandle()) return;
-    std::vector<std::uint8_t> distance = leapDistances(bricks, visible, 2.0 * lookup_step_HU);
-    const Index3& n = bricks.size();
-    leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
-    leaps->SetMinificationFilter(vtkTextureObject::Nearest);
-    leaps->SetMagnificationFilter(vtkTextureObject::Nearest);
-    leaps->Create3DFromRaw(unsigned(n[0]), unsigned(n[1]), unsigned(n[2]), 1, VTK_UNSIGNED_CHAR,
-                           distance.data());
-    leaps_stale = false;
+  void sendLeaps(vtkRenderer& renderer) {
+    if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
+    if (leap_map_stale || leaps_stale || !leaps->GetHandle()) {
+      const Index3& n = bricks.size();
+      leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
+      leaps->SetMinificationFilter(vtkTextureObject::Nearest);
+      leaps->SetMagnificationFilter(vtkTextureObject::Nearest);
+      // VTK takes a pointer to what it only reads.
+      leaps->Create3DFromRaw(unsigned(n[0]), unsigned(n[1]), unsigned(n[2]), 1, VTK_UNSIGNED_CHAR,
+                             const_cast<std::uint8_t*>(leap_map.distances().data()));
+    }
+    leap_map_stale = leaps_stale = false;
   }
 
   void updateShader() {
@@ -210,7 +215,7 @@ void CarveVolume::show(Volume& copy, vtkRenderer& renderer) {
   p.copy = &copy;
   p.boxes.clear();
   p.bricks = BrickRanges(copy);
-  p.leaps_stale = true;
+  p.leap_map_stale = true;
 
   vtkNew<vtkShortArray> voxels;
   voxels->SetArray(copy.hu.data(), vtkIdType(copy.hu.size()), 1 /* not VTK's to free */);
@@ -270,7 +275,7 @@ void CarveVolume::setTransferFunction(const std::vector<TransferPoint>& points) 
     p.opacity->AddPoint(0.0, 0.0);
   }
   p.visible = visibleIntervals(points);
-  p.leaps_stale = true;
+  p.leap_map_stale = true;
 }
 
 void CarveVolume::changed(const VoxelBox& box) { parts_->boxes.push_back(box); }
@@ -281,23 +286,31 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   vtkTextureObject* texture = p.textureInUse();
   for (const VoxelBox& box : boxes) {
-    if (p.bricks.update(*p.copy, box)) p.leaps_stale = true;
+    if (const std::optional<BrickBox> bricks = p.bricks.update(*p.copy, box)) {
+      if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
+      p.leaps_stale = true;
+    }
     // Without one, VTK is about to send everything.
     if (texture) sendBox(*texture, *p.copy, box);
   }
-  p.updateLeaps(renderer);
+  p.sendLeaps(renderer);
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
   // VTK raises no UpdateShaderEvent in the frame that builds a shader.
   p.leaps->Activate();
+}
+
+void CarveVolume::scan(vtkRenderer& renderer) {
+  Parts& p = *parts_;
+  if (!p.copy) return;
+  p.bricks = BrickRanges(*p.copy);
+  p.leap_map_stale = true;
+  p.sendLeaps(renderer);
 }
 
 bool CarveVolume::sendAll(vtkRenderer& renderer) {
   Parts& p = *parts_;
   if (!p.copy) return false;
   p.boxes.clear();
-  p.bricks = BrickRanges(*p.copy);
-  p.leaps_stale = true;
-  p.updateLeaps(renderer);
   p.image->Modified();
   return p.mapper->PreLoadData(&renderer, p.prop);
 }

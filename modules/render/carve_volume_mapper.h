@@ -31,7 +31,10 @@ class CarveVolume {
   void changed(const VoxelBox& box);
   // Sends the changed boxes into the texture in use. Context current; before each draw.
   void sendChanges(vtkRenderer& renderer);
-  // Sends everything now. Context current. False when the GPU refused.
+  // Looks at every voxel again for what can be leapt over, where the copy changed as a whole.
+  // Context current.
+  void scan(vtkRenderer& renderer);
+  // Sends every voxel now. Context current. False when the GPU refused.
   bool sendAll(vtkRenderer& renderer);
 
   // Pixels between rays (1 is full quality), and the samples' distance in half voxels.

@@ -1,32 +1,62 @@
 #include "render/empty_space.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "render/dirty_boxes.h"
 
 namespace trephine {
 
 namespace {
 
-std::size_t brickIndex(const Index3& size, int i, int j, int k) {
-  return (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
-         std::size_t(i);
-}
+constexpr int kFarthest = 255;
+constexpr BrickRanges::Range kNothing{INT16_MAX, INT16_MIN};
 
-BrickRanges::Range rangeOf(const Volume& volume, int i, int j, int k) {
+// The ranges of the bricks [first, last) of row (j, k). Rows of voxels are folded together before
+// they are cut into bricks, which a compiler turns into a few wide instructions.
+void scanRow(const Volume& volume, int j, int k, int first, int last, BrickRanges::Range* out) {
   const Index3& n = volume.geometry.size;
-  const auto low = [](int b) { return std::max(0, b * kLeapEdge - 1); };
-  const auto high = [](int b, int size) { return std::min(size, (b + 1) * kLeapEdge + 1); };
-  BrickRanges::Range range{INT16_MAX, INT16_MIN};
-  const int x0 = low(i), x1 = high(i, n[0]);
+  const auto low = [](int brick) { return std::max(0, brick * kLeapEdge - 1); };
+  const auto high = [](int brick, int size) { return std::min(size, (brick + 1) * kLeapEdge + 1); };
+  const int x0 = low(first), x1 = high(last - 1, n[0]);
+  const auto width = std::size_t(x1 - x0);
+  std::vector<std::int16_t> lowest(width, INT16_MAX), highest(width, INT16_MIN);
   for (int z = low(k), z1 = high(k, n[2]); z < z1; ++z) {
     for (int y = low(j), y1 = high(j, n[1]); y < y1; ++y) {
-      const std::int16_t* row = volume.hu.data() + volume.geometry.indexOf(0, y, z);
-      for (int x = x0; x < x1; ++x) {
-        range.low = std::min(range.low, row[x]);
-        range.high = std::max(range.high, row[x]);
+      const std::int16_t* row = volume.hu.data() + volume.geometry.indexOf(x0, y, z);
+      for (std::size_t x = 0; x < width; ++x) {
+        lowest[x] = std::min(lowest[x], row[x]);
+        highest[x] = std::max(highest[x], row[x]);
       }
     }
   }
-  return range;
+  for (int i = first; i < last; ++i) {
+    BrickRanges::Range range = kNothing;
+    for (int x = low(i), end = high(i, n[0]); x < end; ++x) {
+      range.low = std::min(range.low, lowest[std::size_t(x - x0)]);
+      range.high = std::max(range.high, highest[std::size_t(x - x0)]);
+    }
+    out[i - first] = range;
+  }
+}
+
+template <class Visit>
+void forEachBrick(const BrickBox& box, Visit visit) {
+  for (int k = box.low[2]; k < box.high[2]; ++k) {
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+      for (int i = box.low[0]; i < box.high[0]; ++i) visit(i, j, k);
+    }
+  }
+}
+
+BrickBox grown(const BrickBox& box, int by, const Index3& size) {
+  BrickBox result;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.low[axis] = std::max(0, box.low[axis] - by);
+    result.high[axis] = std::min(size[axis], box.high[axis] + by);
+  }
+  return result;
 }
 
 }  // namespace
@@ -36,29 +66,33 @@ BrickRanges::BrickRanges(const Volume& volume) {
     size_[axis] = (volume.geometry.size[axis] + kLeapEdge - 1) / kLeapEdge;
   }
   ranges_.resize(std::size_t(size_[0]) * std::size_t(size_[1]) * std::size_t(size_[2]));
-  std::size_t index = 0;
   for (int k = 0; k < size_[2]; ++k) {
     for (int j = 0; j < size_[1]; ++j) {
-      for (int i = 0; i < size_[0]; ++i) ranges_[index++] = rangeOf(volume, i, j, k);
+      scanRow(volume, j, k, 0, size_[0], ranges_.data() + indexOf(0, j, k));
     }
   }
 }
 
-bool BrickRanges::update(const Volume& volume, const VoxelBox& box) {
-  Index3 low, high;
+std::optional<BrickBox> BrickRanges::update(const Volume& volume, const VoxelBox& box) {
+  if (voxelCount(box) == 0) return std::nullopt;
+  BrickBox reach;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // A voxel counts in the brick beside it when it lies on that brick's rim.
-    low[axis] = std::max(0, (box.low[axis] - 1) / kLeapEdge);
-    high[axis] = std::min(size_[axis], box.high[axis] / kLeapEdge + 1);
+    // A voxel counts in the brick beside it too when it lies at that brick's rim.
+    reach.low[axis] = std::max(0, (box.low[axis] - 1) / kLeapEdge);
+    reach.high[axis] = std::min(size_[axis], box.high[axis] / kLeapEdge + 1);
   }
-  bool changed = false;
-  for (int k = low[2]; k < high[2]; ++k) {
-    for (int j = low[1]; j < high[1]; ++j) {
-      for (int i = low[0]; i < high[0]; ++i) {
-        const Range range = rangeOf(volume, i, j, k);
-        Range& kept = ranges_[brickIndex(size_, i, j, k)];
-        changed = changed || !(range == kept);
-        kept = range;
+  std::optional<BrickBox> changed;
+  std::vector<Range> row(std::size_t(reach.high[0] - reach.low[0]));
+  for (int k = reach.low[2]; k < reach.high[2]; ++k) {
+    for (int j = reach.low[1]; j < reach.high[1]; ++j) {
+      scanRow(volume, j, k, reach.low[0], reach.high[0], row.data());
+      for (int i = reach.low[0]; i < reach.high[0]; ++i) {
+        Range& kept = ranges_[indexOf(i, j, k)];
+        const Range& now = row[std::size_t(i - reach.low[0])];
+        if (kept == now) continue;
+        kept = now;
+        const BrickBox here{{i, j, k}, {i + 1, j + 1, k + 1}};
+        changed = changed ? commonBox(*changed, here) : here;
       }
     }
   }
@@ -66,7 +100,7 @@ bool BrickRanges::update(const Volume& volume, const VoxelBox& box) {
 }
 
 BrickRanges::Range BrickRanges::whole() const {
-  Range whole{INT16_MAX, INT16_MIN};
+  Range whole = kNothing;
   for (const Range& range : ranges_) {
     whole.low = std::min(whole.low, range.low);
     whole.high = std::max(whole.high, range.high);
@@ -74,46 +108,84 @@ BrickRanges::Range BrickRanges::whole() const {
   return whole;
 }
 
-std::vector<std::uint8_t> leapDistances(const BrickRanges& bricks,
-                                        const std::vector<HuInterval>& visible, double margin_HU) {
-  const Index3& n = bricks.size();
-  std::vector<std::uint8_t> distance(bricks.ranges().size(), 255);
-  for (std::size_t b = 0; b < distance.size(); ++b) {
-    const BrickRanges::Range& range = bricks.ranges()[b];
-    const bool met = std::any_of(visible.begin(), visible.end(), [&](const HuInterval& v) {
-      return range.high >= v.low - margin_HU && range.low <= v.high + margin_HU;
-    });
-    if (met) distance[b] = 0;
+bool LeapMap::visible(BrickRanges::Range range) const {
+  return std::any_of(visible_.begin(), visible_.end(), [&](const HuInterval& interval) {
+    return range.high >= interval.low && range.low <= interval.high;
+  });
+}
+
+// Chessboard distance in two sweeps, each from the 13 neighbours already visited (Rosenfeld and
+// Pfaltz, Sequential operations in digital picture processing, J. ACM 13, 1966).
+LeapMap::LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU)
+    : visible_(std::move(visible)), distances_(bricks.ranges().size(), kFarthest) {
+  for (HuInterval& interval : visible_) {
+    interval.low -= margin_HU;
+    interval.high += margin_HU;
   }
-  // Chessboard distance in two sweeps, each from the 13 neighbours already visited (Rosenfeld and
-  // Pfaltz, Sequential operations in digital picture processing, J. ACM 13, 1966).
+  const Index3& n = bricks.size();
+  for (std::size_t b = 0; b < distances_.size(); ++b) {
+    if (this->visible(bricks.ranges()[b])) distances_[b] = 0;
+  }
   const auto sweep = [&](int sign) {
     const auto order = [&](int size, int step) { return sign > 0 ? step : size - 1 - step; };
-    for (int kk = 0; kk < n[2]; ++kk) {
-      for (int jj = 0; jj < n[1]; ++jj) {
-        for (int ii = 0; ii < n[0]; ++ii) {
-          const int i = order(n[0], ii), j = order(n[1], jj), k = order(n[2], kk);
-          std::uint8_t& here = distance[brickIndex(n, i, j, k)];
-          if (here == 0) continue;
-          int nearest = here;
-          const auto look = [&](int di, int dj, int dk) {
-            const int x = i - sign * di, y = j - sign * dj, z = k - sign * dk;
-            if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) return;
-            nearest = std::min(nearest, distance[brickIndex(n, x, y, z)] + 1);
-          };
-          look(1, 0, 0);
-          for (int di = -1; di <= 1; ++di) look(di, 1, 0);
-          for (int dj = -1; dj <= 1; ++dj) {
-            for (int di = -1; di <= 1; ++di) look(di, dj, 1);
-          }
-          here = std::uint8_t(nearest);
-        }
+    forEachBrick({{0, 0, 0}, n}, [&](int ii, int jj, int kk) {
+      const int i = order(n[0], ii), j = order(n[1], jj), k = order(n[2], kk);
+      std::uint8_t& here = distances_[bricks.indexOf(i, j, k)];
+      if (here == 0) return;
+      int nearest = here;
+      const auto look = [&](int di, int dj, int dk) {
+        const int x = i - sign * di, y = j - sign * dj, z = k - sign * dk;
+        if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) return;
+        nearest = std::min(nearest, distances_[bricks.indexOf(x, y, z)] + 1);
+      };
+      look(1, 0, 0);
+      for (int di = -1; di <= 1; ++di) look(di, 1, 0);
+      for (int dj = -1; dj <= 1; ++dj) {
+        for (int di = -1; di <= 1; ++di) look(di, dj, 1);
       }
-    }
+      here = std::uint8_t(nearest);
+    });
   };
   sweep(+1);
   sweep(-1);
-  return distance;
+}
+
+void LeapMap::update(const BrickRanges& bricks, const BrickBox& changed) {
+  const Index3& n = bricks.size();
+  // Neighbours never differ by more than one, here and in what follows; so where a ring around a
+  // brick that became visible holds nothing too far, no ring beyond it does.
+  forEachBrick(changed, [&](int i, int j, int k) {
+    std::uint8_t& here = distances_[bricks.indexOf(i, j, k)];
+    if (here == 0 || !visible(bricks.ranges()[bricks.indexOf(i, j, k)])) return;
+    here = 0;
+    bool shortened = true;
+    for (int ring = 1; shortened && ring < kFarthest; ++ring) {
+      shortened = false;
+      const BrickBox self{{i, j, k}, {i + 1, j + 1, k + 1}};
+      forEachBrick(grown(self, ring, n), [&](int x, int y, int z) {
+        if (std::max({std::abs(x - i), std::abs(y - j), std::abs(z - k)}) != ring) return;
+        std::uint8_t& there = distances_[bricks.indexOf(x, y, z)];
+        if (there <= ring) return;
+        there = std::uint8_t(ring);
+        shortened = true;
+      });
+    }
+  });
+  // A brick without matter is one farther than its nearest neighbour. A few rounds reach the middle
+  // of what one cut empties; what they miss is leapt over in smaller steps.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    forEachBrick(grown(changed, kRounds, n), [&](int i, int j, int k) {
+      const std::size_t index = bricks.indexOf(i, j, k);
+      if (distances_[index] == 0 && visible(bricks.ranges()[index])) return;
+      int nearest = kFarthest - 1;
+      forEachBrick(grown({{i, j, k}, {i + 1, j + 1, k + 1}}, 1, n), [&](int x, int y, int z) {
+        if (x == i && y == j && z == k) return;
+        nearest = std::min(nearest, int(distances_[bricks.indexOf(x, y, z)]));
+      });
+      distances_[index] = std::uint8_t(std::max(int(distances_[index]), nearest + 1));
+    });
+  }
 }
 
 }  // namespace trephine

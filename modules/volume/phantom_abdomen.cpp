@@ -60,6 +60,14 @@ double spineDistance(const Vec3& m, double canal) {
   return std::min({body, arch, spinous, transverse.distance(local), pedicle.distance(local)});
 }
 
+// Psoas, the muscles beside the spine, and quadratus lumborum.
+double deepMuscleDistance(const Vec3& m) {
+  static const Rod psoas{{30, 46, 10}, {52, 42, -130}, 10, 23};
+  static const Ellipsoid erector({31, 82, -10}, {25, 17, 400});
+  static const Ellipsoid quadratus({66, 70, -90}, {20, 9, 62});
+  return std::min({psoas.distance(m), erector.roughDistance(m), quadratus.roughDistance(m)});
+}
+
 // The liver: an ellipsoid cut by the abdominal wall, the diaphragm and its own visceral surface,
 // which rises to the left, so that the left lobe thins to a wedge. Negative inside.
 double liverDistance(const Vec3& p, double depth, double fat) {
@@ -77,6 +85,8 @@ double liverDistance(const Vec3& p, double depth, double fat) {
   d = smoothIntersection(d, -kidneyBed.roughDistance(p), 8);
   d = smoothIntersection(d, -gallbladder.roughDistance(p), 6);
   d = smoothIntersection(d, porta, 8);
+  if (d > 12.0) return d;
+  d = smoothIntersection(d, 2.0 - deepMuscleDistance(mirrored(p)), 8);
   // Room for spine and great vessels.
   return smoothIntersection(d, 36.0 - glm::length(glm::dvec2(p.x - 4, p.y - 50)), 10);
 }
@@ -233,13 +243,6 @@ bool inGut(const Vec3& p, T& tissue) {
   return false;
 }
 
-bool inDeepMuscle(const Vec3& m) {
-  static const Rod psoas{{30, 46, 10}, {52, 42, -130}, 10, 23};
-  static const Ellipsoid erector({31, 82, -10}, {25, 17, 400});
-  static const Ellipsoid quadratus({66, 70, -90}, {20, 9, 62});
-  return psoas.contains(m) || erector.contains(m) || quadratus.contains(m);
-}
-
 }  // namespace
 
 PhantomTissue abdomenTissue(const Vec3& p) {
@@ -268,7 +271,7 @@ PhantomTissue abdomenTissue(const Vec3& p) {
     const double d = wing.distance(m);
     if (d < 0.0) return longBone(d, 2.0);
   }
-  if (inDeepMuscle(m)) return T::muscle;
+  if (deepMuscleDistance(m) < 0.0) return T::muscle;
   if (depth < fat + kMuscleWall) {
     // Three flat muscles at the sides, with thin fat between.
     const double within = depth - fat;
@@ -284,12 +287,12 @@ PhantomTissue abdomenTissue(const Vec3& p) {
   }
   if (above > 0.0) return T::muscle;
 
+  if (inGreatVessel(p)) return T::vessel;
   const double liver = liverDistance(p, depth, fat);
   if (liver < 0.0) {
     if (liver > -kCapsule) return T::capsule;
     return liver < -3.0 && inLiverVessel(p) ? T::vessel : T::liver;
   }
-  if (inGreatVessel(p)) return T::vessel;
   static const Ellipsoid gallbladder({-52, -52, -22}, {12, 23, 19});
   if (gallbladder.contains(p)) return T::csf;
   T tissue = T::fat;

@@ -14,7 +14,7 @@ constexpr double kScalp = 5.0, kOuter = 2.0, kDiploe = 3.0, kInner = 1.5, kDura 
 constexpr double kSkull = kOuter + kDiploe + kInner;
 
 // The outer surface of the outer table.
-const Ellipsoid kVault({0, 4, 8}, {70, 82, 62}, {70, 87, 66});
+const Ellipsoid kVault({0, 4, 6}, {74, 82, 62}, {74, 87, 70});
 
 // Height of the floor that the brain rests on: anterior, middle and posterior fossa, with sella,
 // petrous ridges and the groove between the orbits.
@@ -30,7 +30,7 @@ double floorHeight(const Vec3& m) {
 // The soft envelope, negative inside; equals distance to the scalp's surface over the vault.
 double envelope(const Vec3& m, double vault) {
   static const Ellipsoid face({0, -28, -48}, {61, 53, 62});
-  static const Ellipsoid ear({67, 13, -32}, {8, 14, 27});
+  static const Ellipsoid ear({69, 13, -32}, {8, 14, 27});
   static const Rod nose{{0, -77, -26}, {0, -87, -57}, 5, 8};
   static const Rod wing{{7, -81, -61}, {9, -78, -61}, 6, 5.5};
   static const Rod lips{{0, -77, -76}, {14, -72, -76}, 7, 3};
@@ -121,7 +121,7 @@ bool inAirway(const Vec3& p, const Vec3& m, double& wall) {
   static const Ellipsoid nose({7, -52, -50}, {6.2, 32, 15});
   static const Rod nostril{{6, -84, -63}, {6, -70, -57}, 3.0, 4.0};
   static const Rod pharynx{{0, -20, -56}, {0, -13, -96}, 8, 8};
-  static const Rod ear{{80, 10, -32}, {46, 12, -32}, 3, 3};
+  static const Rod ear{{82, 10, -36}, {54, 12, -37}, 3, 2.5};
   wall =
       std::min({maxillary.roughDistance(m), frontal.roughDistance(m), sphenoid.roughDistance(m)});
   if (wall < 0.0) return true;
@@ -256,7 +256,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
     const bool intracranial = vault < -kSkull && height > 0.0;
     if (!intracranial) {
       if (foramen && vault < 0.0 && inSpine(m, tissue)) return tissue;
-      const bool roofed = vault >= 0.0 || height < -1.5;  // bone stays between them and the dura
+      const bool roofed = vault >= 0.0 || height < -2.0;  // bone stays between them and the dura
       if (roofed && inAirway(p, m, sinus_wall)) return T::air;
       if (roofed && inOrbit(m, tissue)) return tissue;
       if (inFacialBone(m, sinus_wall) && envelope_mm < -3.0) return T::facialBone;

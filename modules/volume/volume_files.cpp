@@ -51,11 +51,20 @@ Error tooLarge(const fs::path& file) {
                "Crop it or export it at a lower resolution"};
 }
 
+bool endsWith(const std::string& name, const std::string& ending) {
+  if (name.size() < ending.size()) return false;
+  return std::equal(ending.rbegin(), ending.rend(), name.rbegin(), [](char a, char b) {
+    return a == (b >= 'A' && b <= 'Z' ? char(b - 'A' + 'a') : b);
+  });
+}
+
 // Keeps what VTK would print.
 class VtkErrors : public vtkCommand {
  public:
   static VtkErrors* New() { return new VtkErrors; }
-  void Execute(vtkObject*, unsigned long, void*) override { seen = true; }
+  void Execute(vtkObject*, unsigned long event, void*) override {
+    seen = seen || event == vtkCommand::ErrorEvent;
+  }
   bool seen = false;
 };
 
@@ -152,6 +161,21 @@ Result<Volume> volumeFrom(vtkImageData& image, const GridGeometry& geometry, con
   return volume;
 }
 
+// The checksum of the voxels as they were packed: in the byte order of the file.
+std::uint32_t adler32Of(vtkImageData& image, const MetaImageHeader& header) {
+  std::size_t bytes = 0;
+  vtkDataArray* data = image.GetPointData()->GetScalars();
+  if (data) bytes = std::size_t(data->GetDataSize()) * std::size_t(data->GetDataTypeSize());
+  const auto* memory = data ? static_cast<const std::uint8_t*>(data->GetVoidPointer(0)) : nullptr;
+  const std::size_t swap = header.big_endian ? std::size_t(header.bytes_per_voxel) - 1 : 0;
+  std::uint32_t a = 1, b = 0;
+  for (std::size_t i = 0; i < bytes; ++i) {
+    a = (a + memory[i ^ swap]) % 65521;
+    b = (b + a) % 65521;
+  }
+  return b << 16 | a;
+}
+
 Result<Volume> readMetaImage(const fs::path& file) {
   const auto header = readMetaImageHeader(file);
   if (!header) return header.error();
@@ -160,6 +184,10 @@ Result<Volume> readMetaImage(const fs::path& file) {
   if (double(header->data_bytes) * (header->compressed ? kMostCompression : 1.0) < bytes) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
   }
+  const auto checksum = header->compressed ? readAdler32(*header) : std::nullopt;
+  if (header->compressed && !checksum) {
+    return unreadable("The file's compressed voxels are not in zlib's format", file);
+  }
   vtkNew<VtkErrors> errors;
   vtkNew<vtkMetaImageReader> reader;
   listen(*reader, *errors);
@@ -167,6 +195,10 @@ Result<Volume> readMetaImage(const fs::path& file) {
   reader->Update();
   if (errors->seen || reader->GetErrorCode() != 0) {
     return unreadable("The file's voxels cannot be read", file);
+  }
+  // VTK says nothing when voxels do not unpack, and hands out whatever was in memory.
+  if (checksum && *checksum != adler32Of(*reader->GetOutput(), *header)) {
+    return unreadable("The file's compressed voxels are damaged", file);
   }
   return volumeFrom(*reader->GetOutput(), header->geometry, {header->slope, header->intercept},
                     file);
@@ -229,13 +261,15 @@ int niftiIntegerBytes(int type) {
 }
 
 Result<Index3> niftiSize(vtkNIFTIImageHeader& h, const fs::path& file) {
-  if (h.GetDim(0) < 3) return unreadable("The image has fewer than three dimensions", file);
+  if (h.GetDim(0) < 3 || h.GetDim(0) > 7) {
+    return unreadable("The image is not three-dimensional", file);
+  }
   Index3 size;
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = h.GetDim(axis + 1);
     size[axis] = int(std::clamp<long long>(n, -1, std::numeric_limits<int>::max()));
   }
-  for (int d = 4; d <= std::min<int>(7, int(h.GetDim(0))); ++d) {
+  for (int d = 4; d <= int(h.GetDim(0)); ++d) {
     if (h.GetDim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
   }
   if (auto status = checkSize(size, file.string()); !status) return status.error();
@@ -271,7 +305,7 @@ Result<Volume> readNifti(const fs::path& file) {
   const double bytes = double(geometry.voxelCount()) * voxel_bytes;
   std::error_code ec;
   const double stored = double(fs::file_size(file, ec));
-  const bool zipped = file.extension() == ".gz";
+  const bool zipped = endsWith(file.filename().string(), ".gz");
   if (ec || stored * (zipped ? kMostCompression : 1.0) < bytes + (zipped ? 0 : 348)) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
   }
@@ -288,7 +322,6 @@ Result<Volume> readNifti(const fs::path& file) {
   return volumeFrom(*reader->GetOutput(), geometry, rescale, file);
 }
 
-// The writers of VTK 9.1 report no failed write of the last buffer, so the size is checked.
 Error cannotWrite(const fs::path& file) {
   return Error{"CANNOT_WRITE", "The volume could not be written", file.string(),
                "Check free space and that you may write there; nothing that was there is lost"};
@@ -302,6 +335,19 @@ Status writeMetaImage(const Volume& volume, const fs::path& temporary, const fs:
   out.close();
   if (!out) return cannotWrite(target);
   return {};
+}
+
+// VTK 9.1 does not notice when the disk is full while gzip writes its last buffers, so the length
+// is checked: the file's own, or the one that ends a gzip file (modulo 2^32).
+bool isComplete(const fs::path& nifti, const Volume& volume) {
+  const std::uint64_t expected = 352 + volume.hu.size() * sizeof(std::int16_t);
+  std::error_code ec;
+  if (!endsWith(nifti.filename().string(), ".gz")) return fs::file_size(nifti, ec) == expected;
+  std::ifstream in(nifti, std::ios::binary);
+  std::uint32_t length = 0;
+  in.seekg(-4, std::ios::end);
+  in.read(reinterpret_cast<char*>(&length), sizeof length);
+  return in && length == std::uint32_t(expected);
 }
 
 Status writeNifti(const Volume& volume, const fs::path& temporary, const fs::path& target) {
@@ -327,21 +373,19 @@ Status writeNifti(const Volume& volume, const fs::path& temporary, const fs::pat
   writer->SetInputData(image);
   writer->SetFileName(temporary.c_str());
   writer->SetDescription("Trephine");
+  vtkNew<vtkNIFTIImageHeader> header;
+  header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
+  writer->SetNIFTIHeader(header);
   writer->SetQFormMatrix(form);
   writer->SetSFormMatrix(form);
   writer->Write();
-  if (errors->seen || writer->GetErrorCode() != 0) return cannotWrite(target);
+  if (errors->seen || writer->GetErrorCode() != 0 || !isComplete(temporary, volume)) {
+    return cannotWrite(target);
+  }
   return {};
 }
 
 enum class Format { unknown, metaImage, nifti };
-
-bool endsWith(const std::string& name, const std::string& ending) {
-  if (name.size() < ending.size()) return false;
-  return std::equal(ending.rbegin(), ending.rend(), name.rbegin(), [](char a, char b) {
-    return a == (b >= 'A' && b <= 'Z' ? char(b - 'A' + 'a') : b);
-  });
-}
 
 Format formatOf(const fs::path& file) {
   const std::string name = file.filename().string();
@@ -380,7 +424,9 @@ Result<Volume> readVolume(const fs::path& file) {
 
 Status writeVolume(const Volume& volume, const fs::path& file) {
   const Format format = formatOf(file);
-  if (format == Format::unknown || endsWith(file.filename().string(), ".mhd")) {
+  // Lower case only: VTK's writer and replaceFile() go by the ending as it is.
+  const std::string ending = file.extension().string();
+  if (format == Format::unknown || (ending != ".mha" && ending != ".nii" && ending != ".gz")) {
     return Error{"UNKNOWN_FORMAT", "Volumes are written as .mha, .nii or .nii.gz", file.string(),
                  "Give the file one of these endings"};
   }

@@ -16,9 +16,9 @@ namespace trephine {
 // intercept are honoured, and values are rounded to whole HU. Direction comes out right-handed: the
 // slices of a left-handed file are reversed, and every voxel stays where it was in the patient.
 
-// Chooses the format by extension, not by content. Header and file size are compared before anything
-// large is allocated. Errors: MISSING_FILE, UNKNOWN_FORMAT, UNREADABLE, BAD_GEOMETRY
-// (a direction that is not orthonormal, a spacing that is not positive), TOO_LARGE, NOT_HU (a pixel
+// Chooses the format by extension, not by content. Header and file size are compared before
+// anything large is allocated. Errors: MISSING_FILE, UNKNOWN_FORMAT, UNREADABLE, BAD_GEOMETRY (a
+// direction that is not orthonormal, a spacing that is not positive), TOO_LARGE, NOT_HU (a pixel
 // type or range that does not fit int16).
 Result<Volume> readVolume(const std::filesystem::path& file);
 

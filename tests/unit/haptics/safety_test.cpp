@@ -57,6 +57,7 @@ TEST(ForceGate, RisesSlowlyAfterAChangeUntilTheLawIsMet) {
     last = now;
   }
   EXPECT_EQ(ticks, 40);
+  for (int i = 0; i < 61; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
   EXPECT_EQ(gate.pass({3, 0, 0}, true, true, 0, kT).x, 3.0) << "met: follows the law";
   gate.change();
   EXPECT_NEAR(gate.pass({3.3, 0, 0}, true, true, 0, kT).x, 3.05, 1e-12);
@@ -64,8 +65,7 @@ TEST(ForceGate, RisesSlowlyAfterAChangeUntilTheLawIsMet) {
 
 TEST(ForceGate, SendsNothingAfterARestoreUntilTheToolIsOutThenRampsIn) {
   ForceGate gate;
-  gate.pass({0, 0, 0}, false, true, 0, kT);
-  gate.pass({2, 0, 0}, true, true, 0, kT);
+  for (int i = 0; i < 101; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
   gate.restored();
   for (int i = 0; i < 500; ++i) ASSERT_EQ(gate.pass({2, 0, 0}, true, true, 0, kT), Vec3(0.0));
   gate.pass({0, 0, 0}, false, true, 0, kT);  // out of tissue
@@ -77,6 +77,12 @@ TEST(ForceGate, SendsNothingAfterARestoreUntilTheToolIsOutThenRampsIn) {
   EXPECT_EQ(force, 2.0) << "full after 0.2 s";
 }
 
+TEST(ForceGate, IsNotMetByALawThatHappensToBeZero) {
+  ForceGate gate;
+  gate.pass({0, 0, 0}, true, true, 0, kT);  // in tissue, at rest
+  EXPECT_NEAR(gate.pass({3, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
+}
+
 TEST(ForceGate, IsClosedInAPauseAndRisesSlowlyAfterIt) {
   ForceGate gate;
   for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
@@ -86,7 +92,7 @@ TEST(ForceGate, IsClosedInAPauseAndRisesSlowlyAfterIt) {
 
 TEST(ForceGate, RampsDownWhenATickIsVeryLate) {
   ForceGate gate;
-  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  for (int i = 0; i < 101; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
   EXPECT_EQ(gate.pass({2, 0, 0}, true, true, 4'000'000, kT).x, 2.0);
   EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 12'500'000, kT).x, 1.0, 1e-12);
   EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, 1.0 + kStep, 1e-12);

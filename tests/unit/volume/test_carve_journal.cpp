@@ -1,7 +1,6 @@
-#include "volume/carve_journal.h"
-
 #include <gtest/gtest.h>
 
+#include "volume/carve_journal.h"
 #include "volumes.h"
 
 namespace trephine {

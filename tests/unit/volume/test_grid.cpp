@@ -1,11 +1,10 @@
-#include "volume/grid.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <set>
 #include <thread>
 
+#include "volume/grid.h"
 #include "volumes.h"
 
 namespace trephine {
@@ -85,7 +84,8 @@ TEST(Grid, CopiesExactlyTheBricksThatChanged) {
   for (int k = 0; k < 35; ++k) {
     for (int j = 0; j < 40; ++j) {
       for (int i = 0; i < 50; ++i) {
-        const bool inside = (i >= 16 && i < 32 && j < 16 && k < 16) || (i >= 48 && j >= 32 && k >= 32);
+        const bool inside =
+            (i >= 16 && i < 32 && j < 16 && k < 16) || (i >= 48 && j >= 32 && k >= 32);
         ASSERT_EQ(copy.at(i, j, k), inside ? grid.hu(i, j, k) : 9) << i << " " << j << " " << k;
       }
     }

@@ -1,9 +1,8 @@
-#include "volume/volume.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "volume/volume.h"
 #include "volumes.h"
 
 namespace trephine {
@@ -41,7 +40,8 @@ TEST(Volume, HashIsThatOfTheBytesInMemoryOrder) {
   volume.geometry.size = {2, 1, 1};
   volume.hu = {0x0201, -1};
   // sha256 of 01 02 ff ff, from another tool.
-  EXPECT_EQ(volumeSha256(volume), "1b6dd05c65b015573ced7de8b6bbd987291aa3b0b0a5a1fbd840a4cbcd5f61c1");
+  EXPECT_EQ(volumeSha256(volume),
+            "1b6dd05c65b015573ced7de8b6bbd987291aa3b0b0a5a1fbd840a4cbcd5f61c1");
 }
 
 TEST(Volume, AnImpossibleSizeIsRefusedBeforeAnythingIsAllocated) {

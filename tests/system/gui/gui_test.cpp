@@ -1,0 +1,360 @@
+// The window as a person uses it: drop a folder of CT on it, move a threshold, cut with the mouse,
+// undo, reset, save. Voxels and pixels are both looked at. The steps build on each other, in order.
+#include <QApplication>
+#include <QCoreApplication>
+#include <QDir>
+#include <QDropEvent>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QProgressBar>
+#include <QSignalSpy>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <cmath>
+#include <cstdio>
+
+#include "imaging/ct_writer.h"
+#include "render/picture.h"
+#include "ui/colours.h"
+#include "ui/main_window.h"
+#include "ui/start_up.h"
+#include "ui/words.h"
+#include "volume/phantom.h"
+#include "volume/volume_files.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 120000;
+const char* const kFolderName = "Doe^Jane_1971";  // as identifying as a folder's name can be
+const char* const kDescription = "Phantom, cranium";
+
+// The cranium on a grid half as fine: the test is about the window.
+Volume testCase() {
+  GridGeometry geometry = *phantomGeometry("cranium");
+  for (int axis = 0; axis < 3; ++axis) {
+    geometry.size[std::size_t(axis)] /= 2;
+    geometry.spacing_mm[axis] *= 2.0;
+  }
+  return makePhantomOn(*phantomTruth("cranium"), geometry, kPhantomNoiseHu);
+}
+
+// Pixels that a person sees as different.
+int differentPixels(const Picture& a, const Picture& b) {
+  if (a.rgb.size() != b.rgb.size()) return -1;
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); i += 3) {
+    int most = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      most = std::max(most, std::abs(int(a.rgb[i + c]) - int(b.rgb[i + c])));
+    }
+    count += most > 16;
+  }
+  return count;
+}
+
+std::uint64_t removedVoxels(Session& session) {
+  std::uint64_t sum = 0;
+  for (const auto& arm : session.state().removed) {
+    for (std::uint64_t voxels : arm) sum += voxels;
+  }
+  return sum;
+}
+
+}  // namespace
+
+class GuiTest : public QObject {
+  Q_OBJECT
+
+ private:
+  QTemporaryDir temporary_;
+  Volume written_;
+  std::unique_ptr<MainWindow> window_;
+  Picture opened_;  // the case, before anything was done to it
+  std::string sha_before_;
+
+  ViewWidget& view() { return window_->view(); }
+  Workstation& workstation() { return window_->workstation(); }
+  template <class Widget>
+  Widget* find(const char* name) {
+    auto* widget = window_->findChild<Widget*>(name);
+    if (!widget) qFatal("the window has no %s", name);
+    return widget;
+  }
+
+  // The view without the tools, which are elsewhere in every picture.
+  Picture casePicture() {
+    view().setTools({});
+    Result<Picture> picture = view().picture();
+    return picture ? *picture : Picture{};
+  }
+  std::string shownSha() {
+    if (Session* session = workstation().session()) view().pullChanges(session->grid());
+    return volumeSha256(view().shownVolume());
+  }
+
+  void drop(const QString& path) {
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(path)});
+    const QPoint at(200, 200);
+    QDragEnterEvent enter(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(window_.get(), &enter);
+    QVERIFY(enter.isAccepted());
+    QDropEvent dropped(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(window_.get(), &dropped);
+  }
+
+  void wheel(int notches, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    const QPointF at = QRectF(view().rect()).center();
+    for (int i = 0; i < std::abs(notches); ++i) {
+      QWheelEvent event(at, view().mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
+                        modifiers, Qt::NoScrollPhase, false);
+      QCoreApplication::sendEvent(&view(), &event);
+      QTest::qWait(15);
+    }
+  }
+
+  void drag(QPoint by, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    const QPoint from = view().rect().center();
+    constexpr int kSteps = 20;
+    QTest::mousePress(&view(), Qt::LeftButton, modifiers, from);
+    for (int i = 1; i <= kSteps; ++i) {
+      QTest::mouseMove(&view(), from + by * i / kSteps);
+      QTest::qWait(20);
+    }
+    QTest::mouseRelease(&view(), Qt::LeftButton, modifiers, from + by);
+  }
+
+  // Down into the bone, sideways, and out again; until the stroke has ended.
+  void cut(Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    wheel(30, modifiers);
+    drag({60, 0}, modifiers);
+    wheel(-34, modifiers);
+    QTest::qWait(500);
+  }
+
+  void start() {
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    view().setFocus();
+    QTest::keyClick(&view(), Qt::Key_Space);
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+  }
+
+  void enter(const char* box, const QString& value) {
+    auto* spin = find<QSpinBox>(box);
+    spin->setFocus();
+    auto* line = spin->findChild<QLineEdit*>();
+    line->selectAll();
+    QTest::keyClicks(line, value);
+    QTest::keyClick(line, Qt::Key_Return);
+  }
+
+  void keepGrab(const char* name) {
+    QTest::qWait(700);  // until the view has been refined
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
+  }
+
+ private slots:
+  void initTestCase() {
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    written_ = testCase();
+    const QString folder = temporary_.filePath(kFolderName);
+    const Status made = writeCtSeries(written_, {kDescription, "HEAD"}, toPath(folder));
+    QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QApplication::setActiveWindow(window_.get());
+    QVERIFY(window_->minimumSizeHint().width() <= 1280);
+    QVERIFY(window_->minimumSizeHint().height() <= 800);
+  }
+
+  void aMissingFolderIsSaidInWords() {
+    workstation().openPath("/no/such/folder");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>("errorDialog"), kLong_ms);
+    auto* dialog = find<QMessageBox>("errorDialog");
+    QVERIFY(dialog->isVisible());
+    QVERIFY2(dialog->text().length() > 10, qPrintable(dialog->text()));
+    QVERIFY2(dialog->informativeText().contains("What to do"),
+             qPrintable(dialog->informativeText()));
+    QTest::keyClick(dialog, Qt::Key_Return);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
+  }
+
+  void anEmptyFolderIsSaidInWords() {
+    QVERIFY(QDir().mkpath(temporary_.filePath("empty")));
+    drop(temporary_.filePath("empty"));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>("errorDialog"), kLong_ms);
+    find<QMessageBox>("errorDialog")->close();
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
+    QVERIFY(!find<QAction>("start")->isEnabled());
+  }
+
+  void openingCanBeCancelled() {
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    QSignalSpy ended(&workstation(), &Workstation::openingEnded);
+    QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
+    auto* cancel = find<QPushButton>("cancelOpening");
+    QTRY_VERIFY_WITH_TIMEOUT(cancel->isVisible(), kLong_ms);
+    QTest::mouseClick(cancel, Qt::LeftButton);
+    QVERIFY(ended.count() == 1 || ended.wait(kLong_ms));
+    QCoreApplication::processEvents();
+    QVERIFY(!cancel->isVisible());
+    QVERIFY(!workstation().volume());
+    QCOMPARE(failed.count(), 0);  // who cancels needs no dialog
+  }
+
+  void aFolderIsOpenedAndDrawn() {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    QSignalSpy painted(&view(), &ViewWidget::framePainted);
+    drop(temporary_.filePath(kFolderName));
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
+    painted.clear();
+    QVERIFY(painted.wait(kLong_ms));
+    QCOMPARE(painted.back().at(1).toBool(), true);
+
+    auto* list = find<QTreeWidget>("seriesList");
+    QCOMPARE(list->topLevelItemCount(), 1);
+    QCOMPARE(list->topLevelItem(0)->text(0), QString(kDescription));
+    QCOMPARE(list->topLevelItem(0)->text(2), verdictWord(Verdict::pass));
+    QVERIFY(view().shownVolume().geometry.size == written_.geometry.size);
+    QVERIFY(view().shownVolume().hu == written_.hu);
+
+    opened_ = casePicture();
+    QVERIFY(opened_.width > 0);
+    Picture empty = opened_;
+    for (std::size_t i = 0; i < empty.rgb.size(); i += 3) {
+      std::copy_n(opened_.rgb.begin(), 3, empty.rgb.begin() + std::ptrdiff_t(i));
+    }
+    QVERIFY2(differentPixels(opened_, empty) > opened_.width * opened_.height / 10,
+             "the case is not drawn");
+    QVERIFY(!window_->windowTitle().contains("Doe"));
+  }
+
+  void aThresholdIsSeenAtOnce() {
+    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    window_->findChild<TissuePanel*>()->select("bone");
+    QCOMPARE(find<QSpinBox>("huLow")->value(), 226);
+    enter("huLow", "900");
+    QCOMPARE(workstation().scene()->tissues.find("bone")->hu_min, 900);
+    const Picture denser = casePicture();
+    QVERIFY2(differentPixels(denser, opened_) > 1000, "the picture did not follow the threshold");
+    enter("huLow", "226");
+    QCOMPARE(differentPixels(casePicture(), opened_), 0);
+  }
+
+  void anImpossibleThresholdIsSaidAndNotApplied() {
+    auto* problem = find<QLabel>("tissueProblem");
+    QVERIFY(!problem->isVisible());
+    enter("huLow", "100");  // into the dura
+    QVERIFY(problem->isVisible());
+    QVERIFY2(problem->text().contains("overlap"), qPrintable(problem->text()));
+    QCOMPARE(workstation().scene()->tissues.find("bone")->hu_min, 226);
+    enter("huLow", "226");
+    QVERIFY(!problem->isVisible());
+  }
+
+  void theMouseCutsWhatTheHandReaches() {
+    start();
+    sha_before_ = shownSha();
+    QCOMPARE(sha_before_, volumeSha256(written_));
+    const Picture before = casePicture();
+    cut();
+    const std::uint64_t removed = removedVoxels(*workstation().session());
+    QVERIFY2(removed > 20, qPrintable(QString::number(removed)));
+    QVERIFY(shownSha() != sha_before_);
+    const Picture after = casePicture();
+    QVERIFY2(differentPixels(after, before) > 30, "the cut is not seen");
+
+    find<QAction>("undo");
+    QTRY_VERIFY(find<QAction>("undo")->isEnabled());
+    keepGrab("cut-1280x800.png");
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier);
+    QTRY_COMPARE_WITH_TIMEOUT(shownSha(), sha_before_, 10000);
+    QCOMPARE(differentPixels(casePicture(), before), 0);
+    QTRY_VERIFY(!find<QAction>("undo")->isEnabled());
+
+    QTest::keyClick(window_.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    QTRY_COMPARE_WITH_TIMEOUT(removedVoxels(*workstation().session()), removed, 10000);
+  }
+
+  void resetPutsBackWhatBothHandsCut() {
+    cut(Qt::ShiftModifier);
+    const LoopState state = workstation().session()->state();
+    for (int arm : {0, 1}) {
+      std::uint64_t removed = 0;
+      for (std::uint64_t voxels : state.removed[arm]) removed += voxels;
+      QVERIFY2(removed > 0, qPrintable(QString("arm %1 removed nothing").arg(arm)));
+    }
+    QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    QTRY_COMPARE_WITH_TIMEOUT(shownSha(), sha_before_, 10000);
+    QCOMPARE(removedVoxels(*workstation().session()), std::uint64_t(0));
+  }
+
+  void whatIsSavedIsWhatIsShown() {
+    cut();
+    QSignalSpy saved(&workstation(), &Workstation::saved);
+    const QString volume_file = temporary_.filePath("carved.nii.gz");
+    window_->saveVolume(volume_file);
+    QVERIFY(saved.wait(kLong_ms));
+    const Result<Volume> volume = readVolume(toPath(volume_file));
+    QVERIFY(volume.ok());
+    QVERIFY(volume->hu == view().shownVolume().hu);
+    QVERIFY(volume->hu != written_.hu);
+
+    const QString picture_file = TREPHINE_ARTEFACTS "/view-1280x800.png";
+    window_->savePicture(picture_file);
+    QVERIFY(saved.wait(kLong_ms));
+    const Result<Picture> picture = readPng(toPath(picture_file));
+    QVERIFY(picture.ok());
+    QCOMPARE(picture->width, opened_.width);
+    QVERIFY(differentPixels(*picture, opened_) > 0);
+  }
+
+  void aStoppedExerciseLeavesARecordingWithoutANameOfTheSource() {
+    window_->resize(1920, 1080);
+    keepGrab("cut-1920x1080.png");
+    QSignalSpy ended(&workstation(), &Workstation::sessionEnded);
+    view().setFocus();
+    QTest::keyClick(&view(), Qt::Key_Space);
+    QVERIFY(ended.count() == 1 || ended.wait(kLong_ms));
+    const QStringList files = QDir(temporary_.filePath("sessions")).entryList(QDir::Files);
+    QCOMPARE(files.size(), 1);
+    QVERIFY2(files.front().startsWith("session-"), qPrintable(files.front()));
+    QFile recording(temporary_.filePath("sessions/" + files.front()));
+    QVERIFY(recording.open(QIODevice::ReadOnly));
+    const QByteArray bytes = recording.readAll();
+    QVERIFY(bytes.size() > 1000);
+    QVERIFY(!bytes.contains("Doe"));
+    QVERIFY(!bytes.contains(temporary_.path().toUtf8()));
+  }
+
+  void theNextExerciseStartsFromTheWholeCase() {
+    QVERIFY(shownSha() != sha_before_);  // what was cut stays on the screen
+    start();
+    QCOMPARE(shownSha(), sha_before_);
+    window_->close();
+  }
+
+  void cleanupTestCase() { window_.reset(); }
+};
+
+int main(int argc, char** argv) {
+  if (Status display = prepareDisplay(); !display) {
+    std::printf("SKIP: %s\n", display.error().sentence().c_str());
+    return 77;
+  }
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("trephine-test");
+  QStandardPaths::setTestModeEnabled(true);
+  colours::applyTheme(application);
+  GuiTest test;
+  return QTest::qExec(&test, argc, argv);
+}
+
+#include "gui_test.moc"

@@ -1,0 +1,128 @@
+#include "series_fixture.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+namespace trephine::test {
+
+namespace fs = std::filesystem;
+
+Volume rampVolume(Index3 size) {
+  Volume volume;
+  volume.geometry.size = size;
+  volume.geometry.spacing_mm = {0.5, 0.75, 1.25};
+  volume.geometry.origin_mm = {-20.0, 10.5, 100.0};
+  volume.hu.resize(volume.geometry.voxelCount());
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    volume.hu[n] = static_cast<std::int16_t>(int(n * 7 % 3001) - 1000);
+  }
+  return volume;
+}
+
+void writeBytes(const fs::path& file, const std::string& bytes) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+std::string readBytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+fs::path SeriesFixture::slice(int number) const {
+  char name[32];
+  std::snprintf(name, sizeof name, "IM%04d.dcm", number);
+  return folder() / name;
+}
+
+void SeriesFixture::write(const Volume& volume) {
+  const Status written = writeCtSeries(volume, {"Test series", "HEAD"}, folder());
+  ASSERT_TRUE(written.ok()) << written.error().sentence();
+}
+
+void SeriesFixture::edit(const fs::path& file, const Change& change, E_TransferSyntax syntax) {
+  DcmFileFormat dicom;
+  ASSERT_TRUE(dicom.loadFile(file.c_str()).good());
+  dicom.loadAllDataIntoMemory();
+  change(*dicom.getDataset());
+  ASSERT_TRUE(dicom.saveFile(file.c_str(), syntax).good());
+}
+
+void SeriesFixture::editAll(const Change& change, E_TransferSyntax syntax) {
+  for (const auto& entry : fs::directory_iterator(folder())) edit(entry.path(), change, syntax);
+}
+
+std::string SeriesFixture::text(DcmDataset& data, const DcmTagKey& tag) {
+  OFString value;
+  data.findAndGetOFStringArray(tag, value);
+  return value.c_str();
+}
+
+void SeriesFixture::put(DcmDataset& data, const DcmTagKey& tag, const std::string& value) {
+  ASSERT_TRUE(data.putAndInsertString(tag, value.c_str()).good());
+}
+
+CtFolder SeriesFixture::scan(const fs::path& path) {
+  auto result = CtFolder::scan(path, Progress());
+  EXPECT_TRUE(result.ok()) << result.error().sentence();
+  return std::move(result).value();
+}
+
+Volume SeriesFixture::import() {
+  CtFolder ct = scan();
+  const auto best = ct.bestSeries();
+  report_ = ct.report();
+  if (!best) {
+    ADD_FAILURE() << "no series: " << (report_.error ? report_.error->sentence() : "");
+    return {};
+  }
+  auto volume = ct.read(*best, Progress());
+  report_ = ct.report();
+  if (!volume.ok()) {
+    ADD_FAILURE() << volume.error().sentence();
+    return {};
+  }
+  return std::move(volume).value();
+}
+
+const SeriesReport& SeriesFixture::chosen() const {
+  static const SeriesReport none;
+  const auto it =
+      std::ranges::find(report_.series, report_.chosen.value_or(""), &SeriesReport::uid);
+  if (it != report_.series.end()) return *it;
+  ADD_FAILURE() << "no series was chosen";
+  return none;
+}
+
+const Finding* SeriesFixture::find(const SeriesReport& series, const std::string& code) {
+  const auto it = std::ranges::find(series.findings, code, &Finding::code);
+  return it == series.findings.end() ? nullptr : &*it;
+}
+
+std::string SeriesFixture::codes(const SeriesReport& series) {
+  std::string all;
+  for (const Finding& finding : series.findings) all += finding.code + " ";
+  return all;
+}
+
+Finding SeriesFixture::expectRefused(const std::string& code) {
+  CtFolder ct = scan();
+  report_ = ct.report();
+  EXPECT_EQ(report_.series.size(), 1U);
+  if (report_.series.empty()) return {};
+  const SeriesReport series = report_.series.front();
+  EXPECT_EQ(series.verdict, Verdict::refused);
+  EXPECT_FALSE(ct.bestSeries().has_value());
+  EXPECT_FALSE(ct.read(series.uid, Progress()).ok());
+  EXPECT_FALSE(ct.report().chosen.has_value());
+  const Finding* finding = find(series, code);
+  EXPECT_NE(finding, nullptr) << "found only: " << codes(series);
+  if (!finding) return {};
+  EXPECT_EQ(finding->severity, "refusal");
+  EXPECT_FALSE(finding->text.empty());
+  EXPECT_FALSE(finding->action.empty());
+  return *finding;
+}
+
+}  // namespace trephine::test
