@@ -55,6 +55,8 @@ ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabe
 
 ViewWidget::~ViewWidget() {
   releaseGraphics();
+  // The base class destroys the context, and says so, when our members are gone.
+  if (context()) disconnect(context(), nullptr, this, nullptr);
 }
 
 void ViewWidget::releaseGraphics() {

@@ -41,8 +41,7 @@ Volume block(const TissueSet& tissues) {
 
 // Keeps the optimiser from dropping a result that nobody reads.
 void keep(const Vec3& value) {
-  static volatile double sink;
-  sink = value.x;
+  asm volatile("" : : "g"(&value) : "memory");
 }
 
 }  // namespace

@@ -44,13 +44,12 @@ class CarveMapper : public vtkOpenGLGPUVolumeRayCastMapper {
   static CarveMapper* New();
   vtkTypeMacro(CarveMapper, vtkOpenGLGPUVolumeRayCastMapper);
 
-  // The texture that holds `voxels`; null where there is none.
-  vtkTextureObject* textureOf(const vtkDataArray* voxels) {
+  // Asked only after a draw: VTK keeps dead pointers in here once it released its resources. Null
+  // where the GPU refused the volume.
+  vtkTextureObject* texture() {
     const auto input = AssembledInputs.find(0);
-    if (input == AssembledInputs.end()) return nullptr;
-    vtkVolumeTexture* loaded = input->second.Texture;
-    if (!loaded || loaded->GetLoadedScalars() != voxels) return nullptr;
-    vtkTextureObject* texture = loaded->GetCurrentBlock()->TextureObject;
+    if (input == AssembledInputs.end() || !input->second.Texture) return nullptr;
+    vtkTextureObject* texture = input->second.Texture->GetCurrentBlock()->TextureObject;
     return texture && texture->GetHandle() ? texture : nullptr;
   }
 };
@@ -139,6 +138,7 @@ struct CarveVolume::Parts {
   vtkNew<vtkPiecewiseFunction> opacity;
   vtkNew<vtkTextureObject> leaps;
   vtkNew<vtkCallbackCommand> shader_used;
+  vtkNew<vtkCallbackCommand> drawn;
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
   std::vector<VoxelBox> boxes;
@@ -148,13 +148,9 @@ struct CarveVolume::Parts {
   double lookup_step_HU = 0.0;
   double half_voxel_mm = 0.5;
   bool leaping = true;
+  bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
-
-  // Null until VTK has sent the image that is shown now.
-  vtkTextureObject* textureInUse() {
-    return image ? mapper->textureOf(image->GetPointData()->GetScalars()) : nullptr;
-  }
 
   void sendLeaps(vtkRenderer& renderer) {
     if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
@@ -192,6 +188,11 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
     static_cast<vtkShaderProgram*>(program)->SetUniformi("in_leaps", unit);
   });
   p.mapper->AddObserver(vtkCommand::UpdateShaderEvent, p.shader_used);
+  p.drawn->SetClientData(&p);
+  p.drawn->SetCallback([](vtkObject*, unsigned long, void* parts, void*) {
+    static_cast<Parts*>(parts)->sent = true;
+  });
+  p.mapper->AddObserver(vtkCommand::VolumeMapperRenderEndEvent, p.drawn);
   p.look->SetColor(p.colour);
   p.look->SetScalarOpacity(p.opacity);
   p.look->SetScalarOpacityUnitDistance(1.0);  // a tissue's opacity is per mm
@@ -214,6 +215,7 @@ void CarveVolume::show(Volume& copy, vtkRenderer& renderer) {
   const GridGeometry& g = copy.geometry;
   p.copy = &copy;
   p.boxes.clear();
+  p.sent = false;
   p.bricks = BrickRanges(copy);
   p.leap_map_stale = true;
 
@@ -284,13 +286,13 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   Parts& p = *parts_;
   if (!p.copy) return;
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
-  vtkTextureObject* texture = p.textureInUse();
+  // Unless VTK is about to send everything.
+  vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
   for (const VoxelBox& box : boxes) {
     if (const std::optional<BrickBox> bricks = p.bricks.update(*p.copy, box)) {
       if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
-    // Without one, VTK is about to send everything.
     if (texture) sendBox(*texture, *p.copy, box);
   }
   p.sendLeaps(renderer);
@@ -312,7 +314,8 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   if (!p.copy) return false;
   p.boxes.clear();
   p.image->Modified();
-  return p.mapper->PreLoadData(&renderer, p.prop);
+  p.sent = p.mapper->PreLoadData(&renderer, p.prop);
+  return p.sent;
 }
 
 void CarveVolume::setQuality(double pixel_step, double ray_step) {
@@ -328,6 +331,7 @@ void CarveVolume::setLeaping(bool on) {
 
 void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
   vtkWindow* window = renderer.GetRenderWindow();
+  parts_->sent = false;
   parts_->prop->ReleaseGraphicsResources(window);
   parts_->leaps->ReleaseGraphicsResources(window);
 }

@@ -46,6 +46,14 @@ double msSince(Clock::time_point start) {
 
 constexpr double kViewAngle_deg = 30.0;
 
+// Of the context that is current; 0 where there is none.
+int openGlVersion() {
+  GLint major = 0, minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  return major * 10 + minor;
+}
+
 Vec3 toVec3(const double* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -121,7 +129,9 @@ struct SceneRenderer::Parts {
     volume.setQuality(pixel_step, ray_step);
     cue.update(right(), up(), forward(), width, height);
     renderer->ResetCameraClippingRange();
+    if(getenv("DBG")) printf("before render err %x\n",glGetError());
     window->Render();
+    if(getenv("DBG")) printf("after render err %x\n",glGetError());
   }
 
   void release() {
@@ -155,9 +165,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   p.window->SetSize(p.width, p.height);
   p.window->AddRenderer(p.renderer);
   p.window->Initialize();
-  int major = 0, minor = 0;
-  p.window->GetOpenGLVersion(major, minor);
-  if (major * 10 + minor < 32) return no_opengl;
+  p.window->MakeCurrent();
+  if (openGlVersion() < 32) return no_opengl;
   return renderer;
 }
 
@@ -175,11 +184,9 @@ Status SceneRenderer::attach(RenderHost host) {
   window->SetFrameBlitModeToNoBlit();
   window->SetReadyForRendering(true);
   window->SetSize(p.width, p.height);
-  window->OpenGLInitContext();
+  window->OpenGLInit();
   p.window = window;
-  int major = 0, minor = 0;
-  p.window->GetOpenGLVersion(major, minor);
-  if (major * 10 + minor < 32) {
+  if (openGlVersion() < 32) {
     const std::string description = openGlDescription();
     p.window = nullptr;
     return Error{"NO_OPENGL", "OpenGL 3.2 is needed, the driver offers " + description,
@@ -254,9 +261,12 @@ void SceneRenderer::paint(unsigned int framebuffer) {
   }
   if (p.hosted) {
     p.window->GetState()->vtkglBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    if(getenv("DBG")) { GLint d=0,r=0; glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING,&d);glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING,&r); printf("bound %d read %d want %d status %x err %x\n",d,r,framebuffer,glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER),glGetError());}
     p.window->BlitDisplayFramebuffer();
+    if(getenv("DBG")) printf("after blit err %x\n",glGetError());
     p.window->GetState()->vtkglBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   }
+  if (getenv("DBG")) { GLint vp[4],sc[4]; glGetIntegerv(GL_VIEWPORT,vp); glGetIntegerv(GL_SCISSOR_BOX,sc); printf("err %x vp %d %d %d %d sc %d: %d %d %d %d size %d %d ready\n",glGetError(),vp[0],vp[1],vp[2],vp[3],glIsEnabled(GL_SCISSOR_TEST),sc[0],sc[1],sc[2],sc[3],p.window->GetSize()[0],p.window->GetSize()[1]); }
   glFinish();  // the level follows the time that a frame really takes
   if (p.moving) {
     p.level.movingFrameTook(msSince(start));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace trephine {
@@ -52,6 +53,90 @@ Box tissueBox(const Volume& volume, const Tissue& tissue) {
   return box;
 }
 
+// The mean HU of the point and of six neighbours at `radius_mm`.
+double meanHu(const Volume& volume, const Vec3& at_mm, double radius_mm) {
+  double sum = sampleHu(volume, at_mm);
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 step(0.0);
+    step[axis] = radius_mm;
+    sum += sampleHu(volume, at_mm + step) + sampleHu(volume, at_mm - step);
+  }
+  return sum / 7.0;
+}
+
+// The centre of the ball that holds most of the tissue: cells of a third of the radius, each judged
+// by its mean HU, then counted in boxes of the ball's size.
+std::optional<Vec3> bulkOf(const Volume& volume, const Tissue& tissue, double radius_mm) {
+  const GridGeometry& g = volume.geometry;
+  Index3 stride{}, cells{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = std::size_t(axis);
+    stride[a] = std::max(1, int(radius_mm / 3.0 / g.spacing_mm[axis]));
+    cells[a] = g.size[a] / stride[a];
+  }
+  const auto cell = [&](int i, int j, int k) {
+    return (std::size_t(k) * std::size_t(cells[1]) + std::size_t(j)) * std::size_t(cells[0]) +
+           std::size_t(i);
+  };
+  std::vector<std::uint8_t> inside(std::size_t(cells[0]) * std::size_t(cells[1]) *
+                                   std::size_t(cells[2]));
+  for (int k = 0; k < cells[2]; ++k) {
+    for (int j = 0; j < cells[1]; ++j) {
+      for (int i = 0; i < cells[0]; ++i) {
+        std::int64_t sum = 0;
+        for (int c = 0; c < stride[2]; ++c) {
+          for (int b = 0; b < stride[1]; ++b) {
+            for (int a = 0; a < stride[0]; ++a) {
+              sum += volume.at(i * stride[0] + a, j * stride[1] + b, k * stride[2] + c);
+            }
+          }
+        }
+        const double mean = double(sum) / (double(stride[0]) * stride[1] * stride[2]);
+        inside[cell(i, j, k)] = inTissue(tissue, mean);
+      }
+    }
+  }
+  constexpr int kReach = 3;  // cells; the radius
+  int most = 0;
+  std::optional<Vec3> centre;
+  for (int k = kReach; k < cells[2] - kReach; ++k) {
+    for (int j = kReach; j < cells[1] - kReach; ++j) {
+      for (int i = kReach; i < cells[0] - kReach; ++i) {
+        int count = 0;
+        for (int c = -kReach; c <= kReach; ++c) {
+          for (int b = -kReach; b <= kReach; ++b) {
+            const std::uint8_t* row = &inside[cell(i - kReach, j + b, k + c)];
+            for (int a = 0; a <= 2 * kReach; ++a) count += row[a];
+          }
+        }
+        if (count <= most) continue;
+        most = count;
+        centre = g.toPatient_mm((Vec3(i, j, k) + 0.5) * Vec3(stride[0], stride[1], stride[2]) - 0.5);
+      }
+    }
+  }
+  return centre;
+}
+
+struct Ray {
+  Vec3 from_mm, towards_mm;
+};
+
+Result<Ray> rayOf(const Landmark& landmark, const Volume& volume, const Tissue& tissue) {
+  const Error none{"TISSUE_NOT_FOUND", "The case has no voxel of the tissue '" + tissue.id + "'",
+                   "landmark '" + landmark.id + "'",
+                   "Check the HU range, or choose a case of the scene's anatomy"};
+  if (landmark.bulk_radius_mm > 0.0) {
+    const std::optional<Vec3> centre = bulkOf(volume, tissue, landmark.bulk_radius_mm);
+    if (!centre) return none;
+    return Ray{*centre + landmark.outward * volume.geometry.diagonal_mm() / 2.0, *centre};
+  }
+  const Box box = tissueBox(volume, tissue);
+  if (!box.found) return none;
+  const Vec3 extent_mm = box.high_mm - box.low_mm;
+  return Ray{box.low_mm + landmark.from * extent_mm, box.low_mm + landmark.towards * extent_mm};
+}
+
 }  // namespace
 
 Quat frameAlong(const Vec3& outward) {
@@ -70,23 +155,19 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
     return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
                  where, "Name one of its tissues"};
   }
-  const Box box = tissueBox(volume, *tissue);
-  if (!box.found) {
-    return Error{"TISSUE_NOT_FOUND", "The case has no voxel of the tissue '" + tissue->id + "'", where,
-                 "Check the HU range, or choose a case of the scene's anatomy"};
-  }
-  const Vec3 extent_mm = box.high_mm - box.low_mm;
-  const Vec3 from_mm = box.low_mm + landmark.from * extent_mm;
-  const Vec3 towards_mm = box.low_mm + landmark.towards * extent_mm;
+  const Result<Ray> ray = rayOf(landmark, volume, *tissue);
+  if (!ray) return ray.error();
+  const auto [from_mm, towards_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
   if (!(length_mm > 0.0)) {
     return Error{"NO_SURFACE", "The ray has no direction", where, "Give two different points"};
   }
   const Vec3 along = (towards_mm - from_mm) / length_mm;
   constexpr double kStep_mm = 0.25;
+  const double radius_mm = std::min(3.0, landmark.run_mm / 4.0);
   double run_mm = 0.0;
   for (double at_mm = 0.0; at_mm <= length_mm; at_mm += kStep_mm) {
-    const bool inside = inTissue(*tissue, sampleHu(volume, from_mm + at_mm * along));
+    const bool inside = inTissue(*tissue, meanHu(volume, from_mm + at_mm * along, radius_mm));
     run_mm = inside ? run_mm + kStep_mm : 0.0;
     if (run_mm >= landmark.run_mm) {
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};

@@ -10,15 +10,20 @@
 
 namespace trephine {
 
-// The ray runs between two points given as fractions of the box that holds the tissue (its 1st to
-// 99th percentile on each patient axis, so that a table or noise does not count): (0, 0, 0) is
-// right, anterior, inferior and (1, 1, 1) left, posterior, superior.
+// A ray that meets a tissue, given in one of two ways:
+// - between two points, as fractions of the box that holds the tissue (its 1st to 99th percentile
+//   on each patient axis, so that a table or noise does not count): (0, 0, 0) is right, anterior,
+//   inferior and (1, 1, 1) left, posterior, superior. For a shell such as the vault.
+// - towards the place with most of the tissue within `bulk_radius_mm`, from the direction
+//   `outward`. For an organ, whatever else of the body the scan holds.
 struct Landmark {
   std::string id;
-  std::string tissue;     // a tissue's id
-  Vec3 from{0.5};         // outside the patient
+  std::string tissue;           // a tissue's id
+  Vec3 from{0.5};               // outside the patient
   Vec3 towards{0.5};
-  double run_mm = 1.0;    // how long the ray must stay in the tissue to count
+  double bulk_radius_mm = 0.0;  // above 0: the second way
+  Vec3 outward{0.0, -1.0, 0.0};
+  double run_mm = 1.0;          // how long the ray must stay in the tissue to count
 };
 
 // Origin on the surface; +z back along the ray, out of the patient; +y towards the patient's head
@@ -33,6 +38,7 @@ struct LandmarkFrame {
 // The rotation whose +z is `outward` (see LandmarkFrame).
 Quat frameAlong(const Vec3& outward);
 
+// HU are averaged over a quarter of `run_mm`, at most 3 mm, so that noise does not break a run.
 // Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues);

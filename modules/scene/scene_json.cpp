@@ -117,8 +117,17 @@ Landmark readLandmark(JsonReader& item) {
   Landmark landmark;
   landmark.id = item.text("id");
   landmark.tissue = item.text("tissue");
-  landmark.from = item.vec3("from");
-  landmark.towards = item.vec3("towards");
+  if (item.has("bulk_radius_mm")) {
+    landmark.bulk_radius_mm = item.number("bulk_radius_mm");
+    landmark.outward = item.vec3("outward");
+    const double length = glm::length(landmark.outward);
+    if (landmark.bulk_radius_mm < 3.0) item.fail("bulk_radius_mm", "The radius is 3 mm or more");
+    if (length <= 0.0) item.fail("outward", "The direction has no length");
+    landmark.outward /= length;
+  } else {
+    landmark.from = item.vec3("from");
+    landmark.towards = item.vec3("towards");
+  }
   landmark.run_mm = item.number("run_mm", 1.0);
   return landmark;
 }
@@ -223,11 +232,16 @@ Json toJson(const Scene& scene) {
   const auto vec = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
   Json landmarks = Json::array(), tools = Json::array(), arms = Json::array(), laws = Json::array();
   for (const Landmark& l : scene.landmarks) {
-    landmarks.push_back({{"id", l.id},
-                         {"tissue", l.tissue},
-                         {"from", vec(l.from)},
-                         {"towards", vec(l.towards)},
-                         {"run_mm", l.run_mm}});
+    Json landmark = {{"id", l.id}, {"tissue", l.tissue}};
+    if (l.bulk_radius_mm > 0.0) {
+      landmark["bulk_radius_mm"] = l.bulk_radius_mm;
+      landmark["outward"] = vec(l.outward);
+    } else {
+      landmark["from"] = vec(l.from);
+      landmark["towards"] = vec(l.towards);
+    }
+    landmark["run_mm"] = l.run_mm;
+    landmarks.push_back(landmark);
   }
   for (const SceneTool& t : scene.tools) {
     tools.push_back({{"id", t.id},

@@ -237,6 +237,7 @@ T softTissue(const Vec3& m, double depth) {
 
 PhantomTissue craniumTissue(const Vec3& p) {
   const Vec3 m = mirrored(p);
+  if (m.x > 80.0) return T::air;
   const double level = kVault.level(p);
   if (level < 0.3) {  // at least 28 mm below the outer table
     const double height = m.z - floorHeight(m);

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/level_of_detail.h"
+
+using namespace trephine;
+
+namespace {
+
+// A machine that draws a full frame in `full_ms`, and less the fewer samples there are.
+double frame_ms(double full_ms, const LevelOfDetail& level) {
+  return 3.0 + full_ms / (level.pixelStep() * level.pixelStep() * level.rayStep());
+}
+
+}  // namespace
+
+TEST(LevelOfDetail, AFastMachineMovesAtFullQuality) {
+  LevelOfDetail level;
+  level.stillFrameTook(12.0);
+  EXPECT_EQ(level.pixelStep(), 1.0);
+  EXPECT_EQ(level.rayStep(), 1.0);
+}
+
+TEST(LevelOfDetail, ASlowMachineKeepsFifteenFramesASecondFromTheFirstMovingFrame) {
+  for (double full_ms : {80.0, 340.0, 900.0}) {
+    LevelOfDetail level;
+    level.stillFrameTook(full_ms);
+    for (int frame = 0; frame < 50; ++frame) {
+      const double ms = frame_ms(full_ms, level);
+      EXPECT_LE(ms, 1000.0 / 15.0) << full_ms << " at frame " << frame;
+      level.movingFrameTook(ms);
+    }
+  }
+}
+
+TEST(LevelOfDetail, WithoutAStillFrameItFindsItsLevelInAFewFrames) {
+  LevelOfDetail level;
+  for (int frame = 0; frame < 6; ++frame) level.movingFrameTook(frame_ms(600.0, level));
+  EXPECT_LE(frame_ms(600.0, level), 1000.0 / 15.0);
+}
+
+TEST(LevelOfDetail, ItBecomesFinerWhenThereIsTimeAndThenStaysPut) {
+  LevelOfDetail level;
+  level.stillFrameTook(2000.0);
+  const double coarse = level.pixelStep();
+  for (int frame = 0; frame < 30; ++frame) level.movingFrameTook(frame_ms(100.0, level));
+  EXPECT_LT(level.pixelStep(), coarse);
+  const double settled = level.pixelStep();
+  for (int frame = 0; frame < 30; ++frame) {
+    level.movingFrameTook(frame_ms(100.0, level));
+    EXPECT_EQ(level.pixelStep(), settled);
+  }
+}
+
+TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
+  LevelOfDetail level;
+  level.movingFrameTook(1e9);
+  EXPECT_EQ(level.pixelStep(), LevelOfDetail::kCoarsest);
+  level.movingFrameTook(std::nan(""));
+  level.stillFrameTook(-1.0);
+  level.movingFrameTook(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(level.pixelStep(), LevelOfDetail::kCoarsest);
+  for (int frame = 0; frame < 100; ++frame) level.movingFrameTook(0.01);
+  EXPECT_EQ(level.pixelStep(), 1.0);
+}

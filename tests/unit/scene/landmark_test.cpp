@@ -35,13 +35,31 @@ Volume ball(double angle_deg) {
 TEST(Landmark, LiesOnTheSurfaceWhereTheRayMeetsIt) {
   for (double angle : {0.0, 25.0}) {
     const Volume v = ball(angle);
-    const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}, 1.0}, v, boneOnly());
+    const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}}, v, boneOnly());
     ASSERT_TRUE(frame.ok());
     EXPECT_NEAR(frame->position_mm.x, 5, 1.0);
     EXPECT_NEAR(frame->position_mm.y, -7, 1.0);
     EXPECT_NEAR(frame->position_mm.z, 60, 1.0);
     EXPECT_NEAR((frame->rotation * Vec3(0, 0, 1)).z, 1.0, 0.01) << "+z points out of the patient";
   }
+}
+
+TEST(Landmark, FindsTheBulkOfAnOrganInNoiseAndBesideSmallerLumps) {
+  Volume v = ball(0);
+  std::uint32_t random = 7;
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 ijk = v.geometry.indicesOf(i);
+    random = random * 1664525u + 1013904223u;
+    const int noise = int(random >> 24) - 128;
+    const bool lump = ijk[0] < 12 && ijk[1] < 12;
+    if (v.hu[i] > 0 || lump) v.hu[i] = std::int16_t(500 + 6 * noise);
+  }
+  Landmark organ{"organ", "bone", {}, {}, 12.0, {0, -1, 0}, 10.0};
+  const auto frame = findLandmark(organ, v, boneOnly());
+  ASSERT_TRUE(frame.ok()) << frame.error().sentence();
+  EXPECT_NEAR(frame->position_mm.x, 5, 5.0);
+  EXPECT_NEAR(frame->position_mm.y, -27, 3.0) << "the front of the ball";
+  EXPECT_NEAR(frame->position_mm.z, 40, 5.0);
 }
 
 TEST(Landmark, FramesAreRightHandedAndKeepTheHeadUp) {
@@ -57,12 +75,12 @@ TEST(Landmark, FramesAreRightHandedAndKeepTheHeadUp) {
 TEST(Landmark, SaysWhenTheTissueIsNotThere) {
   const Volume v = ball(0);
   TissueSet set = boneOnly();
-  EXPECT_EQ(findLandmark({"a", "liver", {}, {}, 1.0}, v, set).error().code, "NO_SUCH_TISSUE");
+  EXPECT_EQ(findLandmark({"a", "liver", {}, {}}, v, set).error().code, "NO_SUCH_TISSUE");
   set.tissues[0].hu_min = 2000;
-  EXPECT_EQ(findLandmark({"a", "bone", Vec3(1), Vec3(0), 1.0}, v, set).error().code,
+  EXPECT_EQ(findLandmark({"a", "bone", Vec3(1), Vec3(0)}, v, set).error().code,
             "TISSUE_NOT_FOUND");
   set.tissues[0].hu_min = 226;
-  EXPECT_EQ(findLandmark({"a", "bone", {1.2, 1.2, 1.2}, {1.2, 1.2, 0.0}, 1.0}, v, set).error().code,
+  EXPECT_EQ(findLandmark({"a", "bone", {1.2, 1.2, 1.2}, {1.2, 1.2, 0.0}}, v, set).error().code,
             "NO_SURFACE");
 }
 
@@ -72,7 +90,7 @@ TEST(Landmark, IgnoresARunShorterThanAsked) {
   for (int j = 0; j < 64; ++j) {
     for (int i = 0; i < 64; ++i) v.hu[v.geometry.indexOf(i, j, 36)] = 1000;
   }
-  const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}, 8.0}, v, boneOnly());
+  const auto frame = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}, 0.0, {}, 8.0}, v, boneOnly());
   ASSERT_TRUE(frame.ok());
   EXPECT_NEAR(frame->position_mm.z, 60, 1.0);
 }

@@ -92,6 +92,8 @@ TEST(TissueSet, HasNoTwoRangesThatOverlap) {
   EXPECT_PART(error.what, "101..300 of 'brain'");
   EXPECT_PART(error.what, "300..3071 of 'bone'");
   EXPECT_PART(error.next, "labels");
+  const TissueSet falling{"x", {tissue("bone", 300, 3071), tissue("brain", 0, 300)}};
+  EXPECT_FALSE(validate(falling, "t.json").ok()) << "the order in the list does not matter";
 }
 
 TEST(TissueSet, MayOverlapUnderDifferentLabelsOnly) {
