@@ -213,7 +213,7 @@ void CasePanel::showDetails() {
   const SeriesReport* one = selected();
   if (!one) return details_->clear();
   QStringList lines;
-  lines << toQt(one->modality) + ", " + sizeWords(one->geometry);
+  lines << toQt(one->modality) << sizeWords(one->geometry);
   if (one->hu_min && one->hu_max) lines << tr("HU %1 to %2").arg(*one->hu_min).arg(*one->hu_max);
   if (one->tilt_deg != 0.0) lines << tr("Gantry tilt %1\u00b0").arg(one->tilt_deg, 0, 'f', 1);
   if (one->lossy) lines << tr("Was compressed with loss");

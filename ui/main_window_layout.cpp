@@ -129,6 +129,7 @@ void MainWindow::buildBars() {
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 
   hint_ = new QLabel;
+  hint_->setContentsMargins(6, 0, 0, 0);
   hint_->setProperty("quiet", true);
   rates_ = new QLabel;
   rates_->setObjectName("rates");

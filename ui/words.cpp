@@ -47,7 +47,7 @@ QString controllerWord(ControllerKind kind) {
     case ControllerKind::off:
       return tr("Off");
     case ControllerKind::seed:
-      return tr("Passivity controller (seed paper)");
+      return tr("Passivity (seed)");
   }
   return {};
 }
@@ -73,7 +73,7 @@ QString findingWords(const SeriesReport& series) {
 }
 
 QString sizeWords(const GridGeometry& g) {
-  return tr("%1 \u00d7 %2 \u00d7 %3 voxels of %4 \u00d7 %5 \u00d7 %6 mm")
+  return tr("%1 \u00d7 %2 \u00d7 %3 voxels\n%4 \u00d7 %5 \u00d7 %6 mm")
       .arg(g.size[0])
       .arg(g.size[1])
       .arg(g.size[2])

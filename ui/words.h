@@ -24,7 +24,7 @@ QString controllerWord(ControllerKind kind);
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.
 QString findingWords(const SeriesReport& series);
-// "512 x 512 x 140, 0.49 x 0.49 x 1.00 mm".
+// "512 x 512 x 140 voxels", and on a second line "0.49 x 0.49 x 1.00 mm".
 QString sizeWords(const GridGeometry& geometry);
 
 }  // namespace trephine

@@ -120,12 +120,12 @@ struct SceneRenderer::Parts {
   void draw(double pixel_step, double ray_step) {
     window->MakeCurrent();
     // The window's toolkit has changed OpenGL's state behind VTK's back.
-    if (hosted) {
+    if (hosted && !getenv("NORESET")) {
       window->GetState()->Reset();
       window->GetState()->vtkglDepthFunc(GL_LEQUAL);
     }
     window->SetSize(width, height);
-    volume.sendChanges(*renderer);
+    if(!getenv("NOSEND"))volume.sendChanges(*renderer);
     volume.setQuality(pixel_step, ray_step);
     cue.update(right(), up(), forward(), width, height);
     renderer->ResetCameraClippingRange();
@@ -184,7 +184,7 @@ Status SceneRenderer::attach(RenderHost host) {
   window->SetFrameBlitModeToNoBlit();
   window->SetReadyForRendering(true);
   window->SetSize(p.width, p.height);
-  window->OpenGLInit();
+  if(getenv("CTXONLY")) window->OpenGLInitContext(); else window->OpenGLInit();
   p.window = window;
   if (openGlVersion() < 32) {
     const std::string description = openGlDescription();

@@ -1,0 +1,199 @@
+"""The command line's contract: keys, exit codes, errors; on the built-in cases alone."""
+
+import hashlib
+import json
+import os
+import subprocess
+import unittest
+from pathlib import Path
+
+from lab_support import LAB, SCENES, LabTest, lab
+
+IMPORT_KEYS = {
+    "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen", "seconds",
+    "start_rss_mb", "peak_rss_mb"}
+SERIES_KEYS = {
+    "uid", "description", "modality", "verdict", "size", "spacing_mm", "origin_mm", "direction",
+    "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
+RUN_KEYS = {
+    "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
+    "missed_deadlines", "nonfinite", "events_dropped", "tick_ns", "volume_sha256_before",
+    "volume_sha256", "recording", "picture"}
+
+
+def without_display():
+    environment = dict(os.environ)
+    environment.pop("DISPLAY", None)
+    return environment
+
+
+class Phantom(LabTest):
+    def test_a_phantom_survives_the_way_through_dicom(self):
+        made = lab("phantom", "cranium", "--out", self.folder / "ct")
+        self.assertEqual(made["size"], [256, 256, 180])
+        self.assertEqual(made["files"], 180)
+        read = lab("import", self.folder / "ct", "--write", self.folder / "v.mha")
+        self.assertEqual(set(read), IMPORT_KEYS)
+        self.assertEqual(set(read["seconds"]), {"scan", "read", "hash"})
+        series = read["series"][0]
+        self.assertEqual(set(series), SERIES_KEYS)
+        self.assertEqual(series["verdict"], "pass")
+        self.assertEqual(series["size"], [256, 256, 180])
+        self.assertEqual(series["spacing_mm"], [0.8, 0.8, 1.0])
+        self.assertEqual(series["uid"], read["chosen"])
+        self.assertEqual(series["volume_sha256"], made["volume_sha256"])
+        run = lab("run", SCENES / "cranium.json", "--case", self.folder / "v.mha", "--seconds", 0.1,
+                  "--out", self.folder / "out", environment=without_display())
+        self.assertEqual(run["volume_sha256_before"], made["volume_sha256"])
+
+    def test_an_unknown_phantom_is_named(self):
+        answer = lab("phantom", "foot", "--out", self.folder, expect=1)
+        self.assert_error(answer, "UNKNOWN_PHANTOM", "foot")
+
+
+class Run(LabTest):
+    def test_every_shipped_scene_removes_tissue_and_replays_identically(self):
+        for name in ("cranium", "cranium-one-arm", "liver", "liver-one-arm"):
+            with self.subTest(scene=name):
+                run = lab("run", SCENES / f"{name}.json", "--out", self.folder / name,
+                          environment=without_display())
+                self.assertEqual(set(run), RUN_KEYS)
+                self.assertEqual(set(run["tick_ns"]), {"median", "p99", "p999", "max"})
+                self.assertEqual(len(run["arms"]), 1 if "one-arm" in name else 2)
+                for arm in run["arms"]:
+                    self.assertEqual(set(arm), {"name", "max_force_N", "contact_ticks",
+                                                "energy_out_mJ", "removed_mm3"})
+                    self.assertLessEqual(arm["max_force_N"], 3.3 + 1e-9)
+                    self.assertGreater(arm["removed_mm3"], 50.0)
+                target = "bone" if "cranium" in name else "liver"
+                self.assertGreater(run["removed_mm3"][target], 100.0)
+                self.assertEqual(run["nonfinite"], 0)
+                self.assertEqual(run["events_dropped"], 0)
+                self.assertIsNone(run["picture"], "without a display there is no picture")
+                again = lab("replay", run["recording"])
+                self.assertEqual(again["identical"], True)
+                self.assertIsNone(again["first_difference"])
+                self.assertEqual(again["ticks"], run["ticks"])
+                self.assertEqual(again["volume_sha256"], run["volume_sha256"])
+
+    def test_options_reach_the_run(self):
+        run = lab("run", SCENES / "cranium.json", "--seconds", 0.5, "--rate", 2000, "--controller",
+                  "off", "--save-volume", self.folder / "carved.nii.gz", "--out", self.folder)
+        self.assertEqual(run["ticks"], 1000)
+        self.assertEqual(run["rate_hz"], 2000)
+        self.assertEqual(run["controller"], "off")
+        self.assertTrue((self.folder / "carved.nii.gz").stat().st_size > 1000)
+
+    def test_a_second_run_leaves_the_first_ones_files(self):
+        first = lab("run", SCENES / "cranium.json", "--seconds", 0.2, "--out", self.folder)
+        digest = hashlib.sha256(Path(first["recording"]).read_bytes()).hexdigest()
+        second = lab("run", SCENES / "cranium.json", "--seconds", 0.2, "--out", self.folder)
+        self.assertNotEqual(first["recording"], second["recording"])
+        self.assertEqual(hashlib.sha256(Path(first["recording"]).read_bytes()).hexdigest(), digest)
+
+    def test_an_operator_script_of_ones_own(self):
+        script = {
+            "format": "trephine.operator", "version": 1, "name": "dip",
+            "hand": {"stiffness_N_per_m": 800, "damping_Ns_per_m": 8},
+            "arms": [{"arm": "right", "waypoints": [{"t": 0, "at_mm": [0, 0, 18]},
+                                                    {"t": 1.5, "at_mm": [0, 0, -10]},
+                                                    {"t": 2.5, "at_mm": [0, 0, 18]}]}],
+            "commands": [{"t": 3.2, "do": "undo"}]}
+        (self.folder / "dip.json").write_text(json.dumps(script))
+        run = lab("run", SCENES / "cranium.json", "--operator", self.folder / "dip.json",
+                  "--seconds", 3.6, "--out", self.folder)
+        self.assertGreater(run["arms"][1]["max_force_N"], 1.0)
+        self.assertEqual(run["removed_voxels"], 0)
+        self.assertEqual(run["volume_sha256"], run["volume_sha256_before"])
+        self.assertTrue(lab("replay", run["recording"])["identical"])
+
+    def test_explain_lists_what_is_instantiated_and_its_cost(self):
+        answer = lab("explain", SCENES / "liver.json")
+        self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
+        parts = {cost["part"] for cost in answer["cost"]}
+        self.assertEqual(parts, {"contact", "law viscous", "law elastic", "controller seed",
+                                 "clamp and gate"})
+        self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
+        self.assertGreater(answer["tick_ns"], 0)
+
+
+class BadInput(LabTest):
+    def run_scene(self, change, code, *words):
+        scene = json.loads((SCENES / "cranium.json").read_text())
+        for arm in scene["arms"]:
+            arm["device"].pop("config")
+        scene["tissues"] = json.loads((SCENES.parent / "tissues" / "cranium.json").read_text())
+        scene.pop("operator")
+        change(scene)
+        file = self.folder / "scene.json"
+        file.write_text(json.dumps(scene))
+        answer = lab("run", file, "--seconds", 0.1, "--out", self.folder / "out", expect=1)
+        self.assert_error(answer, code, *words)
+
+    def test_scenes_that_cannot_be(self):
+        def unknown_tissue(scene):
+            scene["landmarks"][0]["tissue"] = "cheese"
+        self.run_scene(unknown_tissue, "BAD_FIELD", "scene.json", "cheese")
+
+        def missing_file(scene):
+            scene["tissues"] = "gone.json"
+        self.run_scene(missing_file, "MISSING_FILE", "gone.json")
+
+        def newer(scene):
+            scene["version"] = 99
+        self.run_scene(newer, "BAD_FIELD", "99")
+
+        def negative(scene):
+            scene["tissues"]["tissues"][0]["mechanics"]["damping_Ns_per_m"]["value"] = -2
+        self.run_scene(negative, "BAD_TISSUE", "damping_Ns_per_m", "-2")
+
+    def test_folders_that_are_missing_empty_or_without_ct(self):
+        answer = lab("import", self.folder / "nowhere", expect=2)
+        self.assert_error(answer, "MISSING_FOLDER", "nowhere")
+        self.assertIsNone(answer["chosen"])
+        (self.folder / "empty").mkdir()
+        self.assert_error(lab("import", self.folder / "empty", expect=2), "EMPTY_FOLDER", "empty")
+        (self.folder / "texts").mkdir()
+        (self.folder / "texts" / "a.txt").write_text("not an image")
+        answer = lab("import", self.folder / "texts", expect=2)
+        self.assert_error(answer, "NO_CT", "texts")
+        self.assertEqual(answer["files_seen"], 1)
+        self.assertEqual(answer["skipped"][0]["count"], 1)
+
+    def test_a_recording_cut_short_is_named_and_kept(self):
+        run = lab("run", SCENES / "cranium.json", "--seconds", 1, "--out", self.folder)
+        whole = Path(run["recording"]).read_bytes()
+        cut = self.folder / "cut.h5"
+        cut.write_bytes(whole[:300])
+        self.assert_error(lab("replay", cut, expect=1), "BAD_RECORDING", "cut.h5")
+        self.assertEqual(cut.read_bytes(), whole[:300])
+        self.assert_error(lab("replay", self.folder / "none.h5", expect=1), "MISSING_FILE", "none.h5")
+
+    def test_a_full_disk_stops_with_one_line_and_loses_nothing(self):
+        (self.folder / "precious.mha").write_text("precious")
+        shell = (f'ulimit -f 64; exec "{LAB}" run "{SCENES}/cranium.json" --seconds 2 '
+                 f'--save-volume "{self.folder}/precious.mha" --out "{self.folder}/out" --json')
+        done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assert_error(json.loads(done.stdout), "CANNOT_WRITE")
+        self.assertEqual((self.folder / "precious.mha").read_text(), "precious")
+
+    def test_wrong_use_says_so(self):
+        for arguments in (["dance"], ["run"], ["run", SCENES / "cranium.json", "--out"],
+                          ["replay", "a", "b"]):
+            done = subprocess.run([LAB, *map(str, arguments)], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.strip())
+        answer = lab("run", SCENES / "cranium.json", "--controller", "pid", "--out", self.folder,
+                     expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "pid")
+        answer = lab("run", SCENES / "cranium.json", "--seconds", "-1", "--out", self.folder, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT")
+
+    def test_measuring_without_a_display_says_so(self):
+        answer = lab("measure", "upload", expect=1, environment=without_display())
+        self.assert_error(answer, "NO_DISPLAY")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,133 @@
+#include "ui/background_task.h"
+
+#include <gtest/gtest.h>
+
+#include <QThread>
+#include <stdexcept>
+
+#include "qt_support.h"
+
+namespace trephine {
+namespace {
+
+using test::waitFor;
+
+class BackgroundTaskTest : public ::testing::Test {
+ protected:
+  QApplication& application_ = test::application();
+};
+
+TEST_F(BackgroundTaskTest, WorksElsewhereAndDeliversHere) {
+  BackgroundTask task;
+  QThread *worked_on = nullptr, *delivered_on = nullptr;
+  int answer = 0;
+  ASSERT_TRUE(task.run(
+      [&](const Progress&) -> Result<int> {
+        worked_on = QThread::currentThread();
+        return 42;
+      },
+      [&](Result<int> result) {
+        delivered_on = QThread::currentThread();
+        answer = *result;
+      }));
+  EXPECT_TRUE(task.busy());
+  EXPECT_EQ(answer, 0) << "delivered before the event loop ran";
+  ASSERT_TRUE(waitFor([&] { return answer == 42; }));
+  EXPECT_FALSE(task.busy());
+  EXPECT_EQ(delivered_on, QThread::currentThread());
+  EXPECT_NE(worked_on, delivered_on);
+}
+
+TEST_F(BackgroundTaskTest, DoesOneThingAtATimeAndTheNextAfterIt) {
+  BackgroundTask task;
+  std::atomic<bool> go{false};
+  int done = 0;
+  ASSERT_TRUE(task.run(
+      [&](const Progress&) -> Status {
+        while (!go) QThread::msleep(1);
+        return {};
+      },
+      [&](Status) {
+        ++done;
+        // What was delivered may start the next piece of work.
+        EXPECT_TRUE(
+            task.run([](const Progress&) -> Status { return {}; }, [&](Status) { ++done; }));
+      }));
+  EXPECT_FALSE(task.run([](const Progress&) -> Status { return {}; }, [&](Status) { done = 100; }));
+  go = true;
+  ASSERT_TRUE(waitFor([&] { return done == 2; }));
+}
+
+TEST_F(BackgroundTaskTest, CancelReachesTheWork) {
+  BackgroundTask task;
+  std::string code;
+  ASSERT_TRUE(task.run(
+      [](const Progress& progress) -> Status {
+        while (!progress.cancelled()) QThread::msleep(1);
+        return Error{"CANCELLED", "Cancelled", "", ""};
+      },
+      [&](Status status) { code = status.error().code; }));
+  task.cancel();
+  ASSERT_TRUE(waitFor([&] { return !code.empty(); }));
+  EXPECT_EQ(code, "CANCELLED");
+}
+
+TEST_F(BackgroundTaskTest, AnExceptionBecomesAnError) {
+  BackgroundTask task;
+  std::string code;
+  const auto deliver = [&](Result<int> result) { code = result.error().code; };
+  ASSERT_TRUE(task.run([](const Progress&) -> Result<int> { throw std::bad_alloc(); }, deliver));
+  ASSERT_TRUE(waitFor([&] { return !code.empty(); }));
+  EXPECT_EQ(code, "OUT_OF_MEMORY");
+  code.clear();
+  ASSERT_TRUE(
+      task.run([](const Progress&) -> Result<int> { throw std::runtime_error("odd"); }, deliver));
+  ASSERT_TRUE(waitFor([&] { return !code.empty(); }));
+  EXPECT_EQ(code, "UNEXPECTED");
+}
+
+TEST_F(BackgroundTaskTest, ReportsProgressOnThisThreadAndNotTooOften) {
+  BackgroundTask task;
+  int reports = 0;
+  bool done = false;
+  QObject::connect(&task, &BackgroundTask::progressed, &task,
+                   [&](double fraction, const QString& s) {
+                     ++reports;
+                     EXPECT_GE(fraction, 0.0);
+                     EXPECT_EQ(s, "Reading");
+                     EXPECT_EQ(QThread::currentThread(), task.thread());
+                   });
+  ASSERT_TRUE(task.run(
+      [](const Progress& progress) -> Status {
+        for (int i = 0; i < 100000; ++i) progress.at(i / 1e5, "Reading");
+        QThread::msleep(60);
+        progress.at(1.0, "Reading");
+        QThread::msleep(60);
+        return {};
+      },
+      [&](Status) { done = true; }));
+  ASSERT_TRUE(waitFor([&] { return done; }));
+  EXPECT_GE(reports, 2);
+  EXPECT_LT(reports, 1000);
+}
+
+TEST_F(BackgroundTaskTest, GoingAwayCancelsWaitsAndDeliversNothing) {
+  bool delivered = false;
+  std::atomic<bool> ended{false};
+  {
+    BackgroundTask task;
+    ASSERT_TRUE(task.run(
+        [&](const Progress& progress) -> Status {
+          while (!progress.cancelled()) QThread::msleep(1);
+          ended = true;
+          return {};
+        },
+        [&](Status) { delivered = true; }));
+  }
+  EXPECT_TRUE(ended);
+  QCoreApplication::processEvents();
+  EXPECT_FALSE(delivered);
+}
+
+}  // namespace
+}  // namespace trephine

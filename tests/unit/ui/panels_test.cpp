@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QTreeWidget>
+
+#include "qt_support.h"
+#include "ui/arms_panel.h"
+#include "ui/case_panel.h"
+#include "ui/tissue_panel.h"
+
+namespace trephine {
+namespace {
+
+TissueSet twoTissues() {
+  Tissue soft{"soft", "Soft tissue", 0, 200, "a book", {}, Vec3(0.8), 0.1, {}, {}, {}, true};
+  soft.damping_Ns_per_m = soft.stiffness_N_per_m = soft.yield_N = {1.0, "a paper"};
+  Tissue bone = soft;
+  bone.id = "bone";
+  bone.name = "Bone";
+  bone.hu_min = 201;
+  bone.hu_max = 3000;
+  bone.opacity = 0.4237;
+  return {"two", {soft, bone}};
+}
+
+class PanelTest : public ::testing::Test {
+ protected:
+  template <class Widget>
+  static Widget& find(QWidget& panel, const char* name) {
+    auto* widget = panel.findChild<Widget*>(name);
+    EXPECT_NE(widget, nullptr) << name;
+    return *widget;
+  }
+  QApplication& application_ = test::application();
+};
+
+class TissuePanelTest : public PanelTest {
+ protected:
+  TissuePanelTest() {
+    panel_.setTissues(twoTissues());
+    panel_.select("bone");
+    QObject::connect(&panel_, &TissuePanel::tissuesChanged, &panel_, [this](const TissueSet& set) {
+      changed_ = set;
+      ++changes_;
+    });
+  }
+  TissuePanel panel_;
+  TissueSet changed_;
+  int changes_ = 0;
+};
+
+TEST_F(TissuePanelTest, ShowsANumberAndItsSource) {
+  EXPECT_EQ(find<QSpinBox>(panel_, "huLow").value(), 201);
+  EXPECT_TRUE(find<QSpinBox>(panel_, "huLow").toolTip().contains("a book"));
+  EXPECT_TRUE(find<QDoubleSpinBox>(panel_, "damping").toolTip().contains("a paper"));
+  EXPECT_EQ(changes_, 0) << "showing is no change";
+}
+
+TEST_F(TissuePanelTest, AChangeIsToldAndNoLongerCitesTheOldSource) {
+  find<QSpinBox>(panel_, "huLow").setValue(300);
+  ASSERT_EQ(changes_, 1);
+  EXPECT_EQ(changed_.tissues[1].hu_min, 300);
+  EXPECT_NE(changed_.tissues[1].hu_source, "a book");
+  EXPECT_EQ(changed_.tissues[0].hu_source, "a book");
+  find<QDoubleSpinBox>(panel_, "stiffness").setValue(55.0);
+  ASSERT_EQ(changes_, 2);
+  EXPECT_EQ(changed_.tissues[1].stiffness_N_per_m.value, 55.0);
+  EXPECT_NE(changed_.tissues[1].stiffness_N_per_m.source, "a paper");
+  EXPECT_EQ(changed_.tissues[1].damping_Ns_per_m.source, "a paper");
+}
+
+TEST_F(TissuePanelTest, ANumberThatWasNotTouchedKeepsEveryDigit) {
+  find<QSpinBox>(panel_, "huLow").setValue(300);
+  EXPECT_EQ(changed_.tissues[1].opacity, 0.4237);
+}
+
+TEST_F(TissuePanelTest, AnOverlapIsSaidAndNotApplied) {
+  find<QSpinBox>(panel_, "huLow").setValue(150);
+  EXPECT_EQ(changes_, 0);
+  EXPECT_EQ(panel_.tissues().tissues[1].hu_min, 201);
+  QLabel& problem = find<QLabel>(panel_, "tissueProblem");
+  EXPECT_FALSE(problem.isHidden());
+  EXPECT_TRUE(problem.text().contains("overlap")) << problem.text().toStdString();
+  find<QSpinBox>(panel_, "huLow").setValue(220);
+  EXPECT_TRUE(problem.isHidden());
+  EXPECT_EQ(changes_, 1);
+}
+
+TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
+  QSlider& slider = find<QSlider>(panel_, "opacity");
+  slider.setValue(slider.maximum());
+  EXPECT_EQ(changed_.tissues[1].opacity, 1.0);
+  slider.setValue(0);
+  EXPECT_EQ(changed_.tissues[1].opacity, 0.0);
+  for (double opacity : {0.0, 0.01, 0.3, 1.0}) {
+    EXPECT_NEAR(opacityAtSlider(sliderAtOpacity(opacity)), opacity, 1e-12);
+  }
+}
+
+TEST_F(PanelTest, ASeriesThatIsRefusedCannotBeUsedAndSaysWhy) {
+  CasePanel panel;
+  ImportReport report;
+  SeriesReport good, bad;
+  good.uid = "1.2";
+  good.description = "Head";
+  good.verdict = Verdict::pass;
+  bad.uid = "1.3";
+  bad.verdict = Verdict::refused;
+  bad.findings.push_back({"GAP", "refusal", "Slices are missing", {}, "Export it again"});
+  report.series = {good, bad};
+  panel.showReport(report);
+  QTreeWidget& list = find<QTreeWidget>(panel, "seriesList");
+  QPushButton& use = find<QPushButton>(panel, "useSeries");
+  ASSERT_EQ(list.topLevelItemCount(), 2);
+  EXPECT_EQ(list.topLevelItem(0)->text(2), "Pass");
+  EXPECT_EQ(list.topLevelItem(1)->text(2), "Refused");
+  EXPECT_TRUE(list.topLevelItem(1)->toolTip(0).contains("Slices are missing"));
+  list.setCurrentItem(list.topLevelItem(1));
+  EXPECT_FALSE(use.isEnabled());
+  EXPECT_TRUE(find<QLabel>(panel, "seriesDetails").text().contains("Export it again"));
+
+  QString wanted;
+  QObject::connect(&panel, &CasePanel::seriesWanted, &panel,
+                   [&](const QString& uid) { wanted = uid; });
+  list.setCurrentItem(list.topLevelItem(0));
+  ASSERT_TRUE(use.isEnabled());
+  use.click();
+  EXPECT_EQ(wanted, "1.2");
+  panel.showChosen("1.2");
+  EXPECT_FALSE(use.isEnabled()) << "it is in use already";
+  panel.showChosen("");
+  panel.setOpeningAllowed(false);
+  EXPECT_FALSE(use.isEnabled());
+}
+
+TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
+  ArmsPanel panel;
+  Scene scene;
+  scene.tissues = twoTissues();
+  scene.arms.resize(1);
+  scene.arms[0].name = "right";
+  panel.setScene(scene);
+  LoopState state;
+  ArmRecord& arm = state.record.arms[0];
+  arm.sent_N = {0.0, 3.0, 0.0};
+  arm.demanded_N = {0.0, 4.0, 3.0};
+  arm.energy_out_J = {0.001, 0.002, 0.0};
+  arm.tissue_class = 1;
+  panel.showState(state, scene.tissues, {3.3});
+  EXPECT_EQ(find<QLabel>(panel, "rightForce").text(), "3.00 N of 3.30 N");
+  EXPECT_TRUE(find<QLabel>(panel, "rightDemanded").text().contains("5.00 N"));
+  EXPECT_EQ(find<QLabel>(panel, "rightContact").text(), "Bone");
+  EXPECT_EQ(find<QLabel>(panel, "rightEnergy").text(), "3.0 mJ");
+  EXPECT_TRUE(find<QPushButton>(panel, "clearFaults").isHidden());
+
+  arm.faults = kFaultLate;
+  panel.showState(state, scene.tissues, {3.3});
+  EXPECT_TRUE(find<QLabel>(panel, "rightFaults").text().contains("late"));
+  bool cleared = false;
+  QObject::connect(&panel, &ArmsPanel::clearFaultsWanted, &panel, [&] { cleared = true; });
+  ASSERT_FALSE(find<QPushButton>(panel, "clearFaults").isHidden());
+  find<QPushButton>(panel, "clearFaults").click();
+  EXPECT_TRUE(cleared);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QtGlobal>
+#include <functional>
+
+namespace trephine::test {
+
+// One for the whole program, drawing nowhere.
+inline QApplication& application() {
+  static int argc = 1;
+  static char name[] = "test_ui";
+  static char* argv[] = {name, nullptr};
+  qputenv("QT_QPA_PLATFORM", "offscreen");
+  static QApplication instance(argc, argv);
+  return instance;
+}
+
+// Runs the event loop until `done`, ten seconds at most.
+inline bool waitFor(const std::function<bool()>& done) {
+  QElapsedTimer timer;
+  timer.start();
+  while (!done() && timer.elapsed() < 10000) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+  }
+  return done();
+}
+
+}  // namespace trephine::test
