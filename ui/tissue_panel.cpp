@@ -30,7 +30,9 @@ QIcon swatch(const QColor& colour, bool hidden) {
   painter.setPen(QPen(colour, 3));
   painter.setBrush(hidden ? QBrush(Qt::NoBrush) : QBrush(colour));
   painter.drawRoundedRect(QRectF(4, 4, 24, 24), 6, 6);
-  return pixmap;
+  QIcon icon(pixmap);
+  icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
+  return icon;
 }
 
 }  // namespace
@@ -52,6 +54,8 @@ void TissuePanel::build() {
   list_->setObjectName("tissueList");
   list_->setIconSize({16, 16});
   list_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
+  list_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
+  list_->setSpacing(2);
 
   editor_ = new QWidget(this);
   title_ = new QLabel(editor_);
@@ -117,10 +121,10 @@ void TissuePanel::build() {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(10);
-  layout->addWidget(list_, 1);
+  layout->addWidget(list_);
   layout->addWidget(editor_);
   layout->addWidget(problem_);
-  layout->addStretch(0);
+  layout->addStretch(1);
 
   connect(list_, &QListWidget::currentRowChanged, this, &TissuePanel::showSelected);
   connect(colour_, &QToolButton::clicked, this, &TissuePanel::chooseColour);

@@ -33,10 +33,6 @@ void place(Opened& opened, const Progress& progress) {
   }
 }
 
-struct Ended {
-  std::optional<Error> error;
-};
-
 }  // namespace
 
 std::filesystem::path defaultScene(const std::string& anatomy) {
@@ -147,25 +143,20 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
 }
 
 void Workstation::openFolder(const std::filesystem::path& folder) {
-  opening_.run(
-      [folder](const Progress& progress) -> Result<std::shared_ptr<CtFolder>> {
-        Result<CtFolder> scanned = CtFolder::scan(folder, progress);
-        if (!scanned) return scanned.error();
-        return std::make_shared<CtFolder>(*std::move(scanned));
-      },
-      [this](Result<std::shared_ptr<CtFolder>> scanned) {
-        if (!scanned) return fail(scanned.error());
-        folder_ = *std::move(scanned);
-        emit seriesFound(folder_->report());
-        const std::optional<std::string> best = folder_->bestSeries();
-        if (best) {
-          openSeries(*best);
-        } else {
-          fail(folder_->report().error.value_or(
-              Error{"ALL_REFUSED", "No series in the folder can be used", "the folder",
-                    "The list of series says why for each"}));
-        }
-      });
+  opening_.run([folder](const Progress& progress) { return CtFolder::scan(folder, progress); },
+               [this](Result<CtFolder> scanned) {
+                 if (!scanned) return fail(scanned.error());
+                 folder_ = std::make_shared<CtFolder>(*std::move(scanned));
+                 emit seriesFound(folder_->report());
+                 const std::optional<std::string> best = folder_->bestSeries();
+                 if (best) {
+                   openSeries(*best);
+                 } else {
+                   fail(folder_->report().error.value_or(
+                       Error{"ALL_REFUSED", "No series in the folder can be used", "the folder",
+                             "The list of series says why for each"}));
+                 }
+               });
 }
 
 void Workstation::openSeries(const std::string& uid) {
@@ -218,20 +209,18 @@ void Workstation::start(const std::filesystem::path& recordings,
   const std::string stem =
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   running_.run(
-      [scene = *scene_, volume = volume_, recordings, stem, script = std::move(script)](
-          const Progress&) -> Result<std::shared_ptr<std::unique_ptr<Session>>> {
+      [scene = *scene_, volume = volume_, recordings, stem,
+       script = std::move(script)](const Progress&) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
         SessionOptions options{freshFile(recordings, stem, ".h5"), script};
-        Result<std::unique_ptr<Session>> session = Session::create(scene, Volume(*volume), options);
-        if (!session) return session.error();
-        return std::make_shared<std::unique_ptr<Session>>(*std::move(session));
+        return Session::create(scene, Volume(*volume), options);
       },
-      [this, seconds](Result<std::shared_ptr<std::unique_ptr<Session>>> created) {
+      [this, seconds](Result<std::unique_ptr<Session>> created) {
         if (!created) {
           setPhase(Phase::ready);
           return fail(created.error());
         }
-        session_ = std::move(**created);
+        session_ = *std::move(created);
         if (Status started = session_->start(seconds); !started) {
           session_.reset();
           setPhase(Phase::ready);
@@ -245,18 +234,13 @@ void Workstation::start(const std::filesystem::path& recordings,
 void Workstation::stop() {
   if (phase_ != Phase::running) return;
   setPhase(Phase::ending);  // from here to the outcome the session is the background thread's
-  running_.run(
-      [session = session_.get()](const Progress&) -> Result<Ended> {
-        const Status stopped = session->stop();
-        return Ended{stopped ? std::nullopt : std::optional<Error>(stopped.error())};
-      },
-      [this](Result<Ended> ended) {
-        emit sessionEnded(*session_);
-        session_.reset();
-        setPhase(Phase::ready);
-        if (!ended) return fail(ended.error());
-        if (ended->error) fail(*ended->error);
-      });
+  running_.run([session = session_.get()](const Progress&) { return session->stop(); },
+               [this](Status stopped) {
+                 emit sessionEnded(*session_);
+                 session_.reset();
+                 setPhase(Phase::ready);
+                 if (!stopped) fail(stopped.error());
+               });
 }
 
 void Workstation::setTissues(const TissueSet& tissues) {

@@ -30,8 +30,8 @@ Volume ball() {
       const double left = radius_mm * radius_mm - z * z - y * y;
       if (left <= 0.0) continue;
       const int half = std::min(kSize[0] / 2 - 1, int(std::sqrt(left) / spacing.x));
-      const auto row = volume.hu.begin() +
-                       std::ptrdiff_t(volume.geometry.indexOf(kSize[0] / 2 - half, j, k));
+      const auto row =
+          volume.hu.begin() + std::ptrdiff_t(volume.geometry.indexOf(kSize[0] / 2 - half, j, k));
       std::fill(row, row + 2 * half, kBoneHu);
     }
   }

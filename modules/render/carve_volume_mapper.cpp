@@ -1,9 +1,4 @@
-// The one file that calls OpenGL beside VTK. VTK renamed its loader's header in 9.4.
-#if __has_include(<vtk_glad.h>)
-#include <vtk_glad.h>
-#else
-#include <vtk_glew.h>
-#endif
+#include "render/opengl.h"
 //
 #include <vtkCallbackCommand.h>
 #include <vtkColorTransferFunction.h>
@@ -13,6 +8,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkOpenGLGPUVolumeRayCastMapper.h>
 #include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
 #include <vtkRenderer.h>
@@ -138,7 +134,12 @@ struct CarveVolume::Parts {
   vtkNew<vtkPiecewiseFunction> opacity;
   vtkNew<vtkTextureObject> leaps;
   vtkNew<vtkCallbackCommand> shader_used;
-  vtkNew<vtkCallbackCommand> drawn;
+  vtkNew<vtkCallbackCommand> draw_starts;
+  vtkNew<vtkCallbackCommand> draw_ends;
+  vtkOpenGLState* state = nullptr;  // of the window of the last sendChanges
+  std::optional<std::pair<int, int>> rows;
+  int width = 0;
+  int height = 0;
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
   std::vector<VoxelBox> boxes;
@@ -166,6 +167,18 @@ struct CarveVolume::Parts {
     leap_map_stale = leaps_stale = false;
   }
 
+  // The rest of the picture is drawn whole: only rays cost time.
+  void startDraw() {
+    if (!rows) return;
+    state->vtkglEnable(GL_SCISSOR_TEST);
+    state->vtkglScissor(0, rows->first, width, rows->second - rows->first);
+  }
+
+  void endDraw() {
+    sent = true;
+    if (rows) state->vtkglScissor(0, 0, width, height);
+  }
+
   void updateShader() {
     vtkShaderProperty* shader = prop->GetShaderProperty();
     shader->ClearAllFragmentShaderReplacements();
@@ -188,11 +201,15 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
     static_cast<vtkShaderProgram*>(program)->SetUniformi("in_leaps", unit);
   });
   p.mapper->AddObserver(vtkCommand::UpdateShaderEvent, p.shader_used);
-  p.drawn->SetClientData(&p);
-  p.drawn->SetCallback([](vtkObject*, unsigned long, void* parts, void*) {
-    static_cast<Parts*>(parts)->sent = true;
+  p.draw_starts->SetClientData(&p);
+  p.draw_starts->SetCallback([](vtkObject*, unsigned long, void* parts, void*) {
+    static_cast<Parts*>(parts)->startDraw();
   });
-  p.mapper->AddObserver(vtkCommand::VolumeMapperRenderEndEvent, p.drawn);
+  p.mapper->AddObserver(vtkCommand::VolumeMapperRenderStartEvent, p.draw_starts);
+  p.draw_ends->SetClientData(&p);
+  p.draw_ends->SetCallback(
+      [](vtkObject*, unsigned long, void* parts, void*) { static_cast<Parts*>(parts)->endDraw(); });
+  p.mapper->AddObserver(vtkCommand::VolumeMapperRenderEndEvent, p.draw_ends);
   p.look->SetColor(p.colour);
   p.look->SetScalarOpacity(p.opacity);
   p.look->SetScalarOpacityUnitDistance(1.0);  // a tissue's opacity is per mm
@@ -280,10 +297,16 @@ void CarveVolume::setTransferFunction(const std::vector<TransferPoint>& points) 
   p.leap_map_stale = true;
 }
 
-void CarveVolume::changed(const VoxelBox& box) { parts_->boxes.push_back(box); }
+void CarveVolume::changed(const VoxelBox& box) {
+  parts_->boxes.push_back(box);
+}
 
 void CarveVolume::sendChanges(vtkRenderer& renderer) {
   Parts& p = *parts_;
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
+  p.state = window->GetState();
+  p.width = window->GetSize()[0];
+  p.height = window->GetSize()[1];
   if (!p.copy) return;
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
@@ -322,6 +345,10 @@ void CarveVolume::setQuality(double pixel_step, double ray_step) {
   Parts& p = *parts_;
   p.mapper->SetImageSampleDistance(float(pixel_step));
   p.mapper->SetSampleDistance(float(ray_step * p.half_voxel_mm));
+}
+
+void CarveVolume::setRows(std::optional<std::pair<int, int>> rows) {
+  parts_->rows = rows;
 }
 
 void CarveVolume::setLeaping(bool on) {

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "render/transfer_function.h"
@@ -39,6 +41,8 @@ class CarveVolume {
 
   // Pixels between rays (1 is full quality), and the samples' distance in half voxels.
   void setQuality(double pixel_step, double ray_step);
+  // Casts rays for these rows of pixels only, [first, second) from below; nothing: for all.
+  void setRows(std::optional<std::pair<int, int>> rows);
   // Off draws as VTK does; for comparisons.
   void setLeaping(bool on);
 

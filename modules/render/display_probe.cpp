@@ -63,8 +63,14 @@ Status probeDisplay() {
   if (!display) return no_display;
   int error_base = 0, event_base = 0, count = 0;
   if (!query(display, &error_base, &event_base)) return no_opengl;
-  const int wanted[] = {kGlxDrawableType, kGlxWindowBit, kGlxRenderType,   kGlxRgbaBit,
-                        kGlxDepthSize,    1,             kGlxDoubleBuffer, 1,
+  const int wanted[] = {kGlxDrawableType,
+                        kGlxWindowBit,
+                        kGlxRenderType,
+                        kGlxRgbaBit,
+                        kGlxDepthSize,
+                        1,
+                        kGlxDoubleBuffer,
+                        1,
                         0};
   void* configs = choose(display, default_screen(display), wanted, &count);
   if (configs) free_list(configs);

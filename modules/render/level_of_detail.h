@@ -19,8 +19,16 @@ class LevelOfDetail {
   void stillFrameTook(double ms);
   void movingFrameTook(double ms);
 
+  // What the last picture at full quality took; 0 before there is one.
+  double stillFrame_ms() const { return still_frame_ms_; }
+
  private:
   double pixel_step_ = 1.0;
+  double still_frame_ms_ = 0.0;
 };
+
+// How many rows of a still picture the next strip may have, so that it takes `left_ms`, when the
+// last one's `rows` took `took_ms`. At most half as many again, since the next rows may be dearer.
+int nextStripRows(int rows, double took_ms, double left_ms);
 
 }  // namespace trephine

@@ -28,9 +28,8 @@ class ErrorFlag {
  public:
   explicit ErrorFlag(vtkObject* object) {
     command_->SetClientData(&raised_);
-    command_->SetCallback([](vtkObject*, unsigned long, void* raised, void*) {
-      *static_cast<bool*>(raised) = true;
-    });
+    command_->SetCallback(
+        [](vtkObject*, unsigned long, void* raised, void*) { *static_cast<bool*>(raised) = true; });
     object->AddObserver(vtkCommand::ErrorEvent, command_);
     object->AddObserver(vtkCommand::WarningEvent, command_);
   }

@@ -1,9 +1,4 @@
-// VTK renamed its OpenGL loader's header in 9.4.
-#if __has_include(<vtk_glad.h>)
-#include <vtk_glad.h>
-#else
-#include <vtk_glew.h>
-#endif
+#include "render/opengl.h"
 //
 #include <vtkAutoInit.h>
 #include <vtkCallbackCommand.h>
@@ -21,9 +16,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "base/system.h"
+#include "render/canvas.h"
 #include "render/carve_volume_mapper.h"
 #include "render/display_probe.h"
 #include "render/level_of_detail.h"
@@ -54,7 +50,9 @@ int openGlVersion() {
   return major * 10 + minor;
 }
 
-Vec3 toVec3(const double* v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3(const double* v) {
+  return {v[0], v[1], v[2]};
+}
 
 }  // namespace
 
@@ -76,6 +74,14 @@ struct SceneRenderer::Parts {
   int width = 1;
   int height = 1;
 
+  // The still picture as it grows from the top; `row` is the lowest that is at full quality.
+  Canvas canvas;
+  bool stale = true;
+  int row = 0;
+  int strip_rows = 0;
+  double strip_ms = 0.0;
+  double picture_ms = 0.0;
+
   Parts() {
     renderer->GradientBackgroundOn();
     renderer->SetBackground(0.07, 0.075, 0.08);
@@ -86,7 +92,8 @@ struct SceneRenderer::Parts {
       const RenderHost& lender = static_cast<Parts*>(client)->host;
       if (event == vtkCommand::WindowIsCurrentEvent) {
         *static_cast<bool*>(data) = lender.isCurrent();
-      } else {
+      } else if (!lender.isCurrent()) {
+        // Qt's makeCurrent binds its own framebuffer, which VTK must not meet amid a frame.
         lender.makeCurrent();
       }
     });
@@ -114,29 +121,68 @@ struct SceneRenderer::Parts {
     camera().SetFocalPoint(at.x, at.y, at.z);
     camera().SetPosition(from.x, from.y, from.z);
     camera().SetViewUp(up_axis.x, up_axis.y, up_axis.z);
+    stale = true;
   }
 
   // Draws into VTK's own framebuffer; the context is current afterwards.
   void draw(double pixel_step, double ray_step) {
     window->MakeCurrent();
     // The window's toolkit has changed OpenGL's state behind VTK's back.
-    if (hosted && !getenv("NORESET")) {
+    if (hosted) {
       window->GetState()->Reset();
       window->GetState()->vtkglDepthFunc(GL_LEQUAL);
     }
     window->SetSize(width, height);
-    if(!getenv("NOSEND"))volume.sendChanges(*renderer);
+    volume.sendChanges(*renderer);
     volume.setQuality(pixel_step, ray_step);
     cue.update(right(), up(), forward(), width, height);
     renderer->ResetCameraClippingRange();
-    if(getenv("DBG")) printf("before render err %x\n",glGetError());
     window->Render();
-    if(getenv("DBG")) printf("after render err %x\n",glGetError());
+  }
+
+  // Copies rows of what VTK drew.
+  void keep(int low, int high) {
+    canvas.bind(width, height);
+    window->BlitDisplayFramebuffer(0, 0, low, width, high - low, 0, low, width, high - low,
+                                   GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  }
+
+  void drawStrip(double left_ms) {
+    const Clock::time_point start = Clock::now();
+    const int rows = std::min(row, nextStripRows(strip_rows, strip_ms, left_ms));
+    volume.setRows(std::pair(row - rows, row));
+    draw(1.0, 1.0);
+    volume.setRows(std::nullopt);
+    keep(row - rows, row);
+    glFinish();
+    row -= rows;
+    strip_rows = rows;
+    strip_ms = msSince(start);
+    picture_ms += strip_ms;
+  }
+
+  void drawStill(double budget_ms) {
+    const Clock::time_point start = Clock::now();
+    if (stale) {
+      draw(level.pixelStep(), level.rayStep());
+      keep(0, height);
+      stale = false;
+      row = height;
+      strip_rows = height / 16;
+      strip_ms = budget_ms;
+      picture_ms = 0.0;
+    }
+    do {
+      drawStrip(budget_ms - msSince(start));
+    } while (row > 0 && msSince(start) + 0.5 * strip_ms < budget_ms);
+    if (row == 0) level.stillFrameTook(picture_ms);
   }
 
   void release() {
     if (!window) return;
     window->MakeCurrent();
+    canvas.release();
+    stale = true;
     volume.releaseGraphics(*renderer);
     window->Finalize();
     window->RemoveRenderer(renderer);
@@ -147,7 +193,9 @@ struct SceneRenderer::Parts {
 
 SceneRenderer::SceneRenderer() : parts_(std::make_unique<Parts>()) {}
 
-SceneRenderer::~SceneRenderer() { detach(); }
+SceneRenderer::~SceneRenderer() {
+  detach();
+}
 
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int height) {
   if (Status display = probeDisplay(); !display) return display.error();
@@ -175,7 +223,7 @@ Status SceneRenderer::attach(RenderHost host) {
   Parts& p = *parts_;
   p.host = std::move(host);
   p.hosted = true;
-  p.host.makeCurrent();
+  if (!p.host.isCurrent()) p.host.makeCurrent();
   vtkNew<vtkGenericOpenGLRenderWindow> window;
   window->AddObserver(vtkCommand::WindowIsCurrentEvent, p.context_asked);
   window->AddObserver(vtkCommand::WindowMakeCurrentEvent, p.context_asked);
@@ -184,7 +232,7 @@ Status SceneRenderer::attach(RenderHost host) {
   window->SetFrameBlitModeToNoBlit();
   window->SetReadyForRendering(true);
   window->SetSize(p.width, p.height);
-  if(getenv("CTXONLY")) window->OpenGLInitContext(); else window->OpenGLInit();
+  window->OpenGLInit();
   p.window = window;
   if (openGlVersion() < 32) {
     const std::string description = openGlDescription();
@@ -196,7 +244,9 @@ Status SceneRenderer::attach(RenderHost host) {
   return {};
 }
 
-void SceneRenderer::detach() { parts_->release(); }
+void SceneRenderer::detach() {
+  parts_->release();
+}
 
 std::string SceneRenderer::openGlDescription() const {
   if (!parts_->window) return "none";
@@ -213,6 +263,7 @@ std::string SceneRenderer::openGlDescription() const {
 
 void SceneRenderer::setVolume(const Grid& grid) {
   Parts& p = *parts_;
+  p.stale = true;
   const bool same_place = grid.geometry() == p.copy.geometry;
   p.volume.remove(*p.renderer);
   p.copy = Volume{};  // its memory goes back before the new copy takes as much
@@ -222,9 +273,12 @@ void SceneRenderer::setVolume(const Grid& grid) {
   if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
 }
 
-bool SceneRenderer::hasVolume() const { return !parts_->copy.hu.empty(); }
+bool SceneRenderer::hasVolume() const {
+  return !parts_->copy.hu.empty();
+}
 
 void SceneRenderer::setTissues(const TissueSet& tissues) {
+  parts_->stale = true;
   parts_->volume.setTransferFunction(transferFunction(tissues));
 }
 
@@ -234,45 +288,55 @@ bool SceneRenderer::pullChanges(Grid& grid) {
   p.pulled.clear();
   grid.copyChanges(p.copy, p.pulled);
   for (const VoxelBox& box : p.pulled) p.volume.changed(box);
-  return !p.pulled.empty();
+  if (p.pulled.empty()) return false;
+  p.stale = true;
+  return true;
 }
 
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
+  parts_->stale = true;
   parts_->tools.show(tools, *parts_->renderer);
 }
 
-const Volume& SceneRenderer::copy() const { return parts_->copy; }
-
-void SceneRenderer::resize(int width, int height) {
-  parts_->width = std::max(1, width);
-  parts_->height = std::max(1, height);
+const Volume& SceneRenderer::copy() const {
+  return parts_->copy;
 }
 
-void SceneRenderer::setMoving(bool moving) { parts_->moving = moving; }
-
-void SceneRenderer::paint(unsigned int framebuffer) {
+void SceneRenderer::resize(int width, int height) {
   Parts& p = *parts_;
-  if (!p.window) return;
+  if (width == p.width && height == p.height) return;
+  p.width = std::max(1, width);
+  p.height = std::max(1, height);
+  p.stale = true;
+}
+
+void SceneRenderer::setMoving(bool moving) {
+  parts_->moving = moving;
+}
+
+bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
+  Parts& p = *parts_;
+  if (!p.window) return true;
   const Clock::time_point start = Clock::now();
-  if (p.moving) {
-    p.draw(p.level.pixelStep(), p.level.rayStep());
-  } else {
-    p.draw(1.0, 1.0);
+  if (!p.moving && p.level.stillFrame_ms() > budget_ms) {
+    if (p.stale || p.row > 0) p.drawStill(budget_ms);
+    if (p.hosted) p.canvas.copyTo(framebuffer);
+    return p.row == 0;
   }
+  p.stale = true;
+  p.draw(p.moving ? p.level.pixelStep() : 1.0, p.moving ? p.level.rayStep() : 1.0);
   if (p.hosted) {
-    p.window->GetState()->vtkglBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    if(getenv("DBG")) { GLint d=0,r=0; glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING,&d);glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING,&r); printf("bound %d read %d want %d status %x err %x\n",d,r,framebuffer,glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER),glGetError());}
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     p.window->BlitDisplayFramebuffer();
-    if(getenv("DBG")) printf("after blit err %x\n",glGetError());
-    p.window->GetState()->vtkglBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   }
-  if (getenv("DBG")) { GLint vp[4],sc[4]; glGetIntegerv(GL_VIEWPORT,vp); glGetIntegerv(GL_SCISSOR_BOX,sc); printf("err %x vp %d %d %d %d sc %d: %d %d %d %d size %d %d ready\n",glGetError(),vp[0],vp[1],vp[2],vp[3],glIsEnabled(GL_SCISSOR_TEST),sc[0],sc[1],sc[2],sc[3],p.window->GetSize()[0],p.window->GetSize()[1]); }
   glFinish();  // the level follows the time that a frame really takes
   if (p.moving) {
     p.level.movingFrameTook(msSince(start));
   } else {
     p.level.stillFrameTook(msSince(start));
   }
+  return true;
 }
 
 Picture SceneRenderer::picture() {
@@ -307,9 +371,9 @@ void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
     const Vec3 voxel(corner & 1 ? g.size[0] - 1 : 0, corner & 2 ? g.size[1] - 1 : 0,
                      corner & 4 ? g.size[2] - 1 : 0);
     const Vec3 c = g.toPatient_mm(voxel) - g.centre_mm();
-    const double needed = std::max(std::abs(glm::dot(c, p.right())) / tan_x,
-                                   std::abs(glm::dot(c, p.up())) / tan_y) -
-                          glm::dot(c, p.forward());
+    const double needed =
+        std::max(std::abs(glm::dot(c, p.right())) / tan_x, std::abs(glm::dot(c, p.up())) / tan_y) -
+        glm::dot(c, p.forward());
     distance = std::max(distance, needed);
   }
   p.setCamera(g.centre_mm(), direction, up, distance * 1.02);
@@ -344,9 +408,15 @@ void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   p.setCamera(p.focus() + shift, p.forward(), p.up(), glm::distance(p.eye(), p.focus()));
 }
 
-Vec3 SceneRenderer::viewRight() const { return parts_->right(); }
-Vec3 SceneRenderer::viewUp() const { return parts_->up(); }
-Vec3 SceneRenderer::viewForward() const { return parts_->forward(); }
+Vec3 SceneRenderer::viewRight() const {
+  return parts_->right();
+}
+Vec3 SceneRenderer::viewUp() const {
+  return parts_->up();
+}
+Vec3 SceneRenderer::viewForward() const {
+  return parts_->forward();
+}
 
 double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
   const Parts& p = *parts_;
@@ -376,9 +446,12 @@ double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
   return msSince(start);
 }
 
-Volume& UploadProbe::copy(SceneRenderer& renderer) { return renderer.parts_->copy; }
+Volume& UploadProbe::copy(SceneRenderer& renderer) {
+  return renderer.parts_->copy;
+}
 
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {
+  renderer.parts_->stale = true;
   renderer.parts_->volume.setLeaping(on);
 }
 

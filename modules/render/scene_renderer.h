@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct ToolView {
   Pose pose_mm;            // patient frame
   double length_mm = 0.0;  // of the working part (blade) or shaft (needle)
   bool blade = false;
-  bool contact = false;    // shown by a mark at the tip
+  bool contact = false;  // shown by a mark at the tip
   Vec3 colour{0.8};
 };
 
@@ -61,8 +62,11 @@ class SceneRenderer {
   void resize(int width, int height);  // device pixels
   // Fewer rays and longer steps while something moves; `true` at each input, `false` when still.
   void setMoving(bool moving);
-  // Renders and copies into the framebuffer object that the window shows.
-  void paint(unsigned int framebuffer);
+  // Renders and copies into the framebuffer object that the window shows. With a budget, a still
+  // picture that would take longer starts coarse and gains full quality in strips from the top,
+  // some at each call; false while it is not complete: paint again when nothing else is to be done.
+  // Whatever changes meanwhile starts it anew. Moving frames and those without a budget are whole.
+  bool paint(unsigned int framebuffer, double budget_ms = std::numeric_limits<double>::infinity());
   // Renders at full quality and reads it back.
   Picture picture();
 

@@ -152,8 +152,7 @@ struct ToolDrawing::Tool {
       place->SetElement(row, 3, view.pose_mm.position[row]);
     }
     place->Modified();
-    const Vec3 colour =
-        view.contact ? glm::mix(view.colour, kMarkColour, 0.45) : Vec3(view.colour);
+    const Vec3 colour = view.contact ? glm::mix(view.colour, kMarkColour, 0.45) : Vec3(view.colour);
     body->GetProperty()->SetColor(colour.x, colour.y, colour.z);
     mark->SetVisibility(view.contact);
   }

@@ -1,3 +1,4 @@
+// Both formats in one file, over 400 lines: the only one of this room that includes VTK.
 #include "volume/volume_files.h"
 
 #include <vtkCommand.h>

@@ -52,8 +52,8 @@ std::vector<int> distancesByDefinition(const Volume& volume) {
       for (int i = 0; i < b[0]; ++i) {
         int nearest = 255;
         for (const Index3& s : seen) {
-          nearest = std::min(nearest, std::max({std::abs(s[0] - i), std::abs(s[1] - j),
-                                                std::abs(s[2] - k)}));
+          nearest = std::min(
+              nearest, std::max({std::abs(s[0] - i), std::abs(s[1] - j), std::abs(s[2] - k)}));
         }
         distances.push_back(nearest);
       }

@@ -65,3 +65,11 @@ TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
   for (int frame = 0; frame < 100; ++frame) level.movingFrameTook(0.01);
   EXPECT_EQ(level.pixelStep(), 1.0);
 }
+
+TEST(StripRows, AStripTakesTheTimeThatIsLeft) {
+  EXPECT_EQ(nextStripRows(40, 20.0, 20.0), 40);
+  EXPECT_EQ(nextStripRows(40, 20.0, 10.0), 20);
+  EXPECT_EQ(nextStripRows(40, 20.0, 1000.0), 60);  // the next rows may be dearer
+  EXPECT_EQ(nextStripRows(40, 20.0, -5.0), 8);     // but there is always some progress
+  EXPECT_EQ(nextStripRows(0, 0.0, 50.0), 8);
+}

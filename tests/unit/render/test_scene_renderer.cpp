@@ -1,3 +1,5 @@
+#include "render/opengl.h"
+//
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
-#include "base/system.h"
 #include "render/scene_renderer.h"
 
 using namespace trephine;
@@ -14,10 +15,10 @@ namespace {
 
 constexpr int kWidth = 200, kHeight = 160;  // below the size at which the orientation cue is drawn
 
-#define RENDERER_OR_SKIP(name)                                                        \
-  auto name##_made = offscreenIfDisplay();                                            \
-  if (!name##_made) GTEST_SKIP() << "No display: this test draws and reads pixels";   \
-  ASSERT_TRUE(name##_made->ok()) << name##_made->error().sentence();                  \
+#define RENDERER_OR_SKIP(name)                                                      \
+  auto name##_made = offscreenIfDisplay();                                          \
+  if (!name##_made) GTEST_SKIP() << "No display: this test draws and reads pixels"; \
+  ASSERT_TRUE(name##_made->ok()) << name##_made->error().sentence();                \
   SceneRenderer& name = ***name##_made
 
 std::optional<Result<std::unique_ptr<SceneRenderer>>> offscreenIfDisplay() {
@@ -37,8 +38,9 @@ Tissue tissue(const char* id, int low, int high, Vec3 colour, double opacity) {
 }
 
 TissueSet tissues(double soft_opacity = 0.0, double bone_opacity = 0.9) {
-  return {"test", {tissue("soft", -100, 199, Vec3(0.8, 0.5, 0.4), soft_opacity),
-                   tissue("bone", 300, 3000, Vec3(0.9, 0.9, 0.8), bone_opacity)}};
+  return {"test",
+          {tissue("soft", -100, 199, Vec3(0.8, 0.5, 0.4), soft_opacity),
+           tissue("bone", 300, 3000, Vec3(0.9, 0.9, 0.8), bone_opacity)}};
 }
 
 // A soft ball with a shell of bone inside, partial volumes at their edges, centred on 0.
@@ -318,7 +320,8 @@ TEST(SceneRenderer, AToolIsDrawnInFrontOfBoneAndHiddenBehindIt) {
   const Difference front = difference(none, renderer.picture());
   EXPECT_GT(front.pixels, 100);
 
-  tool.pose_mm.position = Vec3(0, 0, -10);  // its blade lies inside the shell, the handle sticks out
+  tool.pose_mm.position =
+      Vec3(0, 0, -10);  // its blade lies inside the shell, the handle sticks out
   renderer.setTools({tool});
   const Difference inside = difference(none, renderer.picture());
   EXPECT_LT(inside.pixels, front.pixels);
@@ -335,7 +338,8 @@ TEST(SceneRenderer, AToolExtendsFromItsTipAlongPlusZOfItsPose) {
     ToolView tool;
     tool.blade = blade;
     tool.length_mm = 30.0;
-    tool.pose_mm.orientation = glm::angleAxis(1.5707963, Vec3(0, 1, 0));  // +z to the patient's left
+    tool.pose_mm.orientation =
+        glm::angleAxis(1.5707963, Vec3(0, 1, 0));  // +z to the patient's left
     renderer.setTools({tool});
     const Difference seen = difference(none, renderer.picture());
     ASSERT_GT(seen.pixels, 50);
@@ -394,6 +398,86 @@ TEST(SceneRenderer, AWindowsContextShowsWhatTheHiddenWindowShows) {
   hosted.detach();
 }
 
+namespace {
+
+// What a window would show.
+class Screen {
+ public:
+  Screen() {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(1, &colour_);
+    glBindRenderbuffer(GL_RENDERBUFFER, colour_);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, kWidth, kHeight);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+  }
+  ~Screen() {
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteRenderbuffers(1, &colour_);
+  }
+  unsigned int id() const { return framebuffer_; }
+
+  Picture read() const {
+    std::vector<std::uint8_t> up(std::size_t(kWidth) * kHeight * 3);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, up.data());
+    Picture picture{kWidth, kHeight, {}};
+    for (int y = kHeight - 1; y >= 0; --y) {
+      const auto row = up.begin() + std::ptrdiff_t(y) * kWidth * 3;
+      picture.rgb.insert(picture.rgb.end(), row, row + kWidth * 3);
+    }
+    return picture;
+  }
+
+ private:
+  unsigned int framebuffer_ = 0;
+  unsigned int colour_ = 0;
+};
+
+}  // namespace
+
+TEST(SceneRenderer, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
+  RENDERER_OR_SKIP(lender);
+  lender.picture();  // leaves the lender's context current
+  SceneRenderer hosted;
+  hosted.resize(kWidth, kHeight);
+  hosted.setTissues(tissues(0.1));
+  hosted.setVolume(Grid(ball()));
+  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
+  {
+    const Screen screen;
+    EXPECT_TRUE(hosted.paint(screen.id()));
+    const Picture whole = screen.read();
+    EXPECT_EQ(whole, hosted.picture());
+
+    constexpr double kTiny_ms = 1e-3;  // less than any picture takes
+    const auto finish = [&] {
+      int paints = 1;
+      while (!hosted.paint(screen.id(), kTiny_ms)) ++paints;
+      return paints;
+    };
+    EXPECT_GT(finish(), 5);
+    EXPECT_EQ(screen.read(), whole);
+    EXPECT_EQ(finish(), 1);  // nothing changed: what is there is shown again
+    EXPECT_EQ(screen.read(), whole);
+
+    hosted.orbit(20, 0);
+    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
+    hosted.orbit(-20, 0);
+    EXPECT_GT(finish(), 5);
+    EXPECT_GE(psnr_dB(screen.read(), whole), 60.0);  // the camera came back but for rounding
+
+    ToolView tool;
+    tool.length_mm = 20.0;
+    tool.pose_mm.position = Vec3(0, -40, 0);
+    hosted.setTools({tool});
+    EXPECT_GT(finish(), 5);
+    EXPECT_EQ(screen.read(), hosted.picture());
+  }
+  hosted.detach();
+}
+
 TEST(Camera, OnePixelSpansWhatPerspectiveGives) {
   SceneRenderer renderer;
   renderer.resize(400, 300);
@@ -440,7 +524,7 @@ TEST(Camera, LookingAlongTheUpDirectionStillGivesARightHandedView) {
   SceneRenderer renderer;
   renderer.lookAt(Vec3(0.0), Vec3(0, 0, -1), Vec3(0, 0, 1), 200.0);
   EXPECT_NEAR(glm::length(renderer.viewUp()), 1.0, 1e-12);
-  EXPECT_NEAR(glm::distance(glm::cross(renderer.viewForward(), renderer.viewUp()),
-                            renderer.viewRight()),
-              0.0, 1e-12);
+  EXPECT_NEAR(
+      glm::distance(glm::cross(renderer.viewForward(), renderer.viewUp()), renderer.viewRight()),
+      0.0, 1e-12);
 }

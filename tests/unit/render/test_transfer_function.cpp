@@ -23,8 +23,9 @@ const Vec3 kRed(1, 0, 0), kBlue(0, 0, 1);
 }  // namespace
 
 TEST(TransferFunction, InsideARangeATissueHasItsOwnLook) {
-  const auto f = transferFunction({"", {tissue("a", 0, 499, kRed, 0.3),  //
-                                        tissue("b", 500, 3000, kBlue, 0.8)}});
+  const auto f = transferFunction({"",
+                                   {tissue("a", 0, 499, kRed, 0.3),  //
+                                    tissue("b", 500, 3000, kBlue, 0.8)}});
   EXPECT_EQ(evaluate(f, 250).colour, kRed);
   EXPECT_DOUBLE_EQ(evaluate(f, 250).opacity, 0.3);
   EXPECT_EQ(evaluate(f, 1500).colour, kBlue);
@@ -32,8 +33,9 @@ TEST(TransferFunction, InsideARangeATissueHasItsOwnLook) {
 }
 
 TEST(TransferFunction, HuOfNoTissueAreTransparent) {
-  const auto f = transferFunction({"", {tissue("a", 0, 100, kRed, 0.3),  //
-                                        tissue("b", 500, 900, kBlue, 0.8)}});
+  const auto f = transferFunction({"",
+                                   {tissue("a", 0, 100, kRed, 0.3),  //
+                                    tissue("b", 500, 900, kBlue, 0.8)}});
   for (double hu : {-3000.0, -1000.0, -50.0, 300.0, 1000.0, 30000.0}) {
     EXPECT_EQ(evaluate(f, hu).opacity, 0.0) << hu;
   }
@@ -48,23 +50,25 @@ TEST(TransferFunction, TheRampIsNarrowAndHalfWayAtTheRangesEdge) {
 }
 
 TEST(TransferFunction, TheEdgeOfAVisibleTissueKeepsItsColourBesideAHiddenOne) {
-  const auto f = transferFunction({"", {tissue("hidden", 0, 299, kBlue, 0.0),
-                                        tissue("bone", 300, 3000, kRed, 0.8)}});
+  const auto f = transferFunction(
+      {"", {tissue("hidden", 0, 299, kBlue, 0.0), tissue("bone", 300, 3000, kRed, 0.8)}});
   EXPECT_EQ(evaluate(f, 296.0).colour, kRed);
   EXPECT_GT(evaluate(f, 296.0).opacity, 0.0);
   EXPECT_EQ(evaluate(f, 150.0).opacity, 0.0);
 }
 
 TEST(TransferFunction, ARangeOfOneValueIsStillSeenAndPointsStayInOrder) {
-  const auto f = transferFunction({"", {tissue("thin", 40, 40, kRed, 0.5),  //
-                                        tissue("next", 41, 42, kBlue, 0.9)}});
+  const auto f = transferFunction({"",
+                                   {tissue("thin", 40, 40, kRed, 0.5),  //
+                                    tissue("next", 41, 42, kBlue, 0.9)}});
   EXPECT_DOUBLE_EQ(evaluate(f, 40).opacity, 0.5);
   EXPECT_EQ(evaluate(f, 40).colour, kRed);
   for (std::size_t i = 1; i < f.size(); ++i) EXPECT_LT(f[i - 1].hu, f[i].hu);
 }
 
 TEST(TransferFunction, WhereRangesOverlapTheFirstTissueWins) {
-  Tissue first = tissue("first", 0, 200, kRed, 0.5), second = tissue("second", 100, 300, kBlue, 0.9);
+  Tissue first = tissue("first", 0, 200, kRed, 0.5),
+         second = tissue("second", 100, 300, kBlue, 0.9);
   first.label = 1;
   second.label = 2;
   const auto f = transferFunction({"", {first, second}});
@@ -84,10 +88,10 @@ TEST(TransferFunction, AnEmptySetShowsNothing) {
 }
 
 TEST(VisibleIntervals, HoldExactlyTheHuWithOpacity) {
-  const auto f = transferFunction({"", {tissue("skin", -200, 99, kRed, 0.1),
-                                        tissue("hidden", 100, 299, kBlue, 0.0),
-                                        tissue("bone", 300, 699, kRed, 0.6),
-                                        tissue("hard", 700, 3071, kBlue, 0.9)}});
+  const auto f = transferFunction(
+      {"",
+       {tissue("skin", -200, 99, kRed, 0.1), tissue("hidden", 100, 299, kBlue, 0.0),
+        tissue("bone", 300, 699, kRed, 0.6), tissue("hard", 700, 3071, kBlue, 0.9)}});
   const auto visible = visibleIntervals(f);
   ASSERT_EQ(visible.size(), 2u);
   for (double hu = -1100.5; hu < 3300; hu += 1.0) {

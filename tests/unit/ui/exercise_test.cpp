@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <QStringList>
+
 #include "haptics/haptic_types.h"
 #include "ui/start_up.h"
 #include "ui/words.h"

@@ -265,25 +265,30 @@ TEST(VolumeFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
   Volume larger = patternVolume({64, 64, 64});
   std::uint32_t state = 1;  // noise, so that gzip cannot make it fit
   for (auto& hu : larger.hu) hu = std::int16_t((state = state * 1664525u + 1013904223u) >> 16);
+  const TemporaryFolder other;
   for (const char* name : {"a.mha", "a.nii", "a.nii.gz"}) {
     const fs::path file = folder / name;
-    ASSERT_TRUE(writeVolume(old, file));
-    rlimit limit{}, before{};
-    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-    auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
-    limit = before;
-    limit.rlim_cur = 40000;
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    const Status status = writeVolume(larger, file);
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
-    ASSERT_FALSE(status) << name;
-    EXPECT_EQ(status.error().code, "CANNOT_WRITE") << name;
-    const auto read = readVolume(file);
-    ASSERT_TRUE(read) << name;
-    EXPECT_EQ(read->hu, old.hu) << name << ": what was there is still there";
-    fs::remove(file);
-    EXPECT_TRUE(fs::is_empty(folder.path())) << name << ": nothing half-written stays";
+    ASSERT_TRUE(writeVolume(larger, other / name));
+    const auto whole = fs::file_size(other / name);
+    for (const auto room : {rlim_t(40000), rlim_t(whole - 20)}) {
+      ASSERT_TRUE(writeVolume(old, file));
+      rlimit limit{}, before{};
+      ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+      auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
+      limit = before;
+      limit.rlim_cur = room;
+      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+      const Status status = writeVolume(larger, file);
+      setrlimit(RLIMIT_FSIZE, &before);
+      std::signal(SIGXFSZ, handler);
+      ASSERT_FALSE(status) << name;
+      EXPECT_EQ(status.error().code, "CANNOT_WRITE") << name;
+      const auto read = readVolume(file);
+      ASSERT_TRUE(read) << name;
+      EXPECT_EQ(read->hu, old.hu) << name << ": what was there is still there";
+      fs::remove(file);
+      EXPECT_TRUE(fs::is_empty(folder.path())) << name << ": nothing half-written stays";
+    }
   }
 }
 
