@@ -154,11 +154,12 @@ void MainWindow::sessionStarted() {
   const Session& session = *workstation_.session();
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
-  carved_ = true;
   recording_failed_ = false;
   ticks_shown_ = 0;
   rate_clock_.restart();
-  view_->showVolume(workstation_.session()->grid());
+  // The view has the case already, unless an earlier exercise left its cuts there.
+  if (carved_) view_->showVolume(workstation_.session()->grid());
+  carved_ = true;
   placeHandPoints();
   frame_timer_.start();
   view_->setFocus();

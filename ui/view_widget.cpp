@@ -11,6 +11,10 @@ namespace trephine {
 namespace {
 
 constexpr int kStillAfter_ms = 300;
+// A full picture that takes this long would stop a hand that rests for a moment only, so in an
+// exercise it waits for a longer rest.
+constexpr double kSlowPicture_ms = 150.0;
+constexpr int kLongRest_ms = 1500;
 constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
 constexpr double kKeyStep_mm = 0.5;
@@ -46,8 +50,8 @@ ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabe
   hint_->setProperty("quiet", true);
   hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
   still_.setSingleShot(true);
-  still_.setInterval(kStillAfter_ms);
   connect(&still_, &QTimer::timeout, this, [this] {
+    moving_ = false;
     renderer_.setMoving(false);
     update();
   });
@@ -100,19 +104,23 @@ void ViewWidget::paintGL() {
   timer.start();
   fitRenderer();  // the screen may have changed under the window
   renderer_.paint(defaultFramebufferObject());
-  emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
+  const double paint_ms = double(timer.nsecsElapsed()) * 1e-6;
+  if (!moving_) still_picture_ms_ = paint_ms;
+  emit framePainted(paint_ms, renderer_.hasVolume());
 }
 
 void ViewWidget::redraw() {
+  moving_ = true;
   renderer_.setMoving(true);
-  still_.start();
+  const bool slow = training_ && still_picture_ms_ > kSlowPicture_ms;
+  still_.start(slow ? kLongRest_ms : kStillAfter_ms);
   update();
 }
 
 void ViewWidget::showVolume(const Grid& grid) {
   renderer_.setVolume(grid);
   hint_->setVisible(!renderer_.hasVolume());
-  update();
+  redraw();
 }
 
 void ViewWidget::setTissues(const TissueSet& tissues) {

@@ -80,6 +80,8 @@ class ViewWidget : public QOpenGLWidget {
   std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;
   bool training_ = false;
+  bool moving_ = false;
+  double still_picture_ms_ = 0.0;  // what the last picture at full quality took
 };
 
 }  // namespace trephine

@@ -11,7 +11,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kTries = 7;
+constexpr int kTries = 15;
 constexpr Index3 kSize{512, 512, 300};
 constexpr int kBoxEdge = 48;
 constexpr std::int16_t kBoneHu = 1200;

@@ -1,6 +1,11 @@
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
 #include "render/canvas.h"
-
-#include "render/opengl.h"
 
 namespace trephine {
 

@@ -1,4 +1,9 @@
-#include "render/opengl.h"
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
 //
 #include <vtkCallbackCommand.h>
 #include <vtkColorTransferFunction.h>
@@ -51,22 +56,39 @@ class CarveMapper : public vtkOpenGLGPUVolumeRayCastMapper {
 };
 vtkStandardNewMacro(CarveMapper);
 
-// Sends part of `volume` into a texture that holds all of it.
-void sendBox(vtkTextureObject& texture, const Volume& volume, const VoxelBox& box) {
-  const Index3& size = volume.geometry.size;
+// Tells OpenGL how the rows of a grid lie in memory, for as long as this lives.
+class UnpackRows {
+ public:
+  UnpackRows(const Index3& size) {
+    glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, size[0]);
+    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, size[1]);
+  }
+  ~UnpackRows() {
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, alignment_);
+  }
+  UnpackRows(const UnpackRows&) = delete;
+  UnpackRows& operator=(const UnpackRows&) = delete;
+
+ private:
+  GLint alignment_ = 4;
+};
+
+// Sends a part of `grid`, of this size, into a texture that holds all of it.
+template <class Value>
+void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size,
+             const VoxelBox& box) {
+  const auto [i, j, k] = box.low;
+  const UnpackRows rows(size);
   texture.Activate();
-  GLint alignment = 4;
-  glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, size[0]);
-  glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, size[1]);
-  glTexSubImage3D(GL_TEXTURE_3D, 0, box.low[0], box.low[1], box.low[2], box.high[0] - box.low[0],
-                  box.high[1] - box.low[1], box.high[2] - box.low[2], GL_RED, GL_SHORT,
-                  volume.hu.data() + volume.geometry.indexOf(box.low[0], box.low[1], box.low[2]));
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, alignment);
-  texture.Deactivate();
+  glTexSubImage3D(
+      GL_TEXTURE_3D, 0, i, j, k, box.high[0] - i, box.high[1] - j, box.high[2] - k, GL_RED,
+      sizeof(Value) == 1 ? GL_UNSIGNED_BYTE : GL_SHORT,
+      grid + (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
+          std::size_t(i));
 }
 
 static_assert(kLeapEdge == 8, "the shader below counts in bricks of 8");
@@ -153,18 +175,24 @@ struct CarveVolume::Parts {
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
 
+  // Leaves the texture active.
   void sendLeaps(vtkRenderer& renderer) {
+    const Index3& n = bricks.size();
     if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
-    if (leap_map_stale || leaps_stale || !leaps->GetHandle()) {
-      const Index3& n = bricks.size();
+    const std::uint8_t* distances = leap_map.distances().data();
+    if (leap_map_stale || !leaps->GetHandle()) {
+      const UnpackRows rows(n);
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
       leaps->SetMinificationFilter(vtkTextureObject::Nearest);
       leaps->SetMagnificationFilter(vtkTextureObject::Nearest);
       // VTK takes a pointer to what it only reads.
       leaps->Create3DFromRaw(unsigned(n[0]), unsigned(n[1]), unsigned(n[2]), 1, VTK_UNSIGNED_CHAR,
-                             const_cast<std::uint8_t*>(leap_map.distances().data()));
+                             const_cast<std::uint8_t*>(distances));
+    } else if (leaps_stale) {
+      sendBox(*leaps, distances, n, {{0, 0, 0}, n});
     }
     leap_map_stale = leaps_stale = false;
+    leaps->Activate();
   }
 
   // The rest of the picture is drawn whole: only rays cost time.
@@ -250,7 +278,6 @@ void CarveVolume::show(Volume& copy, vtkRenderer& renderer) {
   last = high;
   first = low;
   voxels->GetFiniteRange(0);
-  voxels->GetRange(0);
   last = kept.second;
   first = kept.first;
   p.lookup_step_HU = (double(high) - double(low)) / 1023.0;
@@ -316,12 +343,12 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
       if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
-    if (texture) sendBox(*texture, *p.copy, box);
+    if (texture) sendBox(*texture, p.copy->hu.data(), p.copy->geometry.size, box);
   }
-  p.sendLeaps(renderer);
+  if (texture) texture->Deactivate();
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
   // VTK raises no UpdateShaderEvent in the frame that builds a shader.
-  p.leaps->Activate();
+  p.sendLeaps(renderer);
 }
 
 void CarveVolume::scan(vtkRenderer& renderer) {

@@ -1,4 +1,9 @@
-#include "render/opengl.h"
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
 //
 #include <vtkAutoInit.h>
 #include <vtkCallbackCommand.h>
@@ -26,6 +31,7 @@
 #include "render/orientation_cue.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
+#include "render/view_camera.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2);
@@ -40,18 +46,12 @@ double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-constexpr double kViewAngle_deg = 30.0;
-
 // Of the context that is current; 0 where there is none.
 int openGlVersion() {
   GLint major = 0, minor = 0;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
   return major * 10 + minor;
-}
-
-Vec3 toVec3(const double* v) {
-  return {v[0], v[1], v[2]};
 }
 
 }  // namespace
@@ -69,6 +69,7 @@ struct SceneRenderer::Parts {
   OrientationCue cue{*renderer};
   std::vector<VoxelBox> pulled;
 
+  ViewCamera camera;
   LevelOfDetail level;
   bool moving = false;
   int width = 1;
@@ -86,7 +87,7 @@ struct SceneRenderer::Parts {
     renderer->GradientBackgroundOn();
     renderer->SetBackground(0.07, 0.075, 0.08);
     renderer->SetBackground2(0.22, 0.225, 0.235);
-    camera().SetViewAngle(kViewAngle_deg);
+    renderer->GetActiveCamera()->SetViewAngle(ViewCamera::kViewAngle_deg);
     context_asked->SetClientData(this);
     context_asked->SetCallback([](vtkObject*, unsigned long event, void* client, void* data) {
       const RenderHost& lender = static_cast<Parts*>(client)->host;
@@ -99,29 +100,14 @@ struct SceneRenderer::Parts {
     });
   }
 
-  vtkCamera& camera() const { return *renderer->GetActiveCamera(); }
-  Vec3 eye() const { return toVec3(camera().GetPosition()); }
-  Vec3 focus() const { return toVec3(camera().GetFocalPoint()); }
-  Vec3 forward() const { return glm::normalize(focus() - eye()); }
-  Vec3 right() const { return glm::normalize(glm::cross(forward(), toVec3(camera().GetViewUp()))); }
-  Vec3 up() const { return glm::cross(right(), forward()); }
-
-  void setCamera(const Vec3& at, const Vec3& direction, const Vec3& view_up, double distance_mm) {
-    if (!isFinite(at) || !isFinite(direction) || !isFinite(view_up) || !isFinite(distance_mm)) {
-      return;
-    }
-    if (glm::length(direction) == 0.0 || distance_mm <= 0.0) return;
-    const Vec3 ahead = glm::normalize(direction);
-    Vec3 side = glm::cross(ahead, view_up);
-    if (glm::length(side) < 1e-6 * std::max(1.0, glm::length(view_up))) {
-      side = glm::cross(ahead, std::abs(ahead.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, -1, 0));
-    }
-    const Vec3 up_axis = glm::normalize(glm::cross(side, ahead));
-    const Vec3 from = at - ahead * distance_mm;
-    camera().SetFocalPoint(at.x, at.y, at.z);
-    camera().SetPosition(from.x, from.y, from.z);
-    camera().SetViewUp(up_axis.x, up_axis.y, up_axis.z);
-    stale = true;
+  void placeCamera() {
+    const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
+    vtkCamera* vtk = renderer->GetActiveCamera();
+    vtk->SetPosition(eye.x, eye.y, eye.z);
+    vtk->SetFocalPoint(focus.x, focus.y, focus.z);
+    vtk->SetViewUp(up.x, up.y, up.z);
+    cue.update(camera.right(), camera.up(), camera.forward(), width, height);
+    renderer->ResetCameraClippingRange();
   }
 
   // Draws into VTK's own framebuffer; the context is current afterwards.
@@ -135,8 +121,7 @@ struct SceneRenderer::Parts {
     window->SetSize(width, height);
     volume.sendChanges(*renderer);
     volume.setQuality(pixel_step, ray_step);
-    cue.update(right(), up(), forward(), width, height);
-    renderer->ResetCameraClippingRange();
+    placeCamera();
     window->Render();
   }
 
@@ -361,67 +346,45 @@ Picture SceneRenderer::picture() {
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
-  const GridGeometry& g = p.copy.geometry;
-  p.setCamera(g.centre_mm(), direction, up, g.diagonal_mm());
-  // As near as every corner allows.
-  const double tan_y = std::tan(glm::radians(kViewAngle_deg / 2.0));
-  const double tan_x = tan_y * double(p.width) / double(p.height);
-  double distance = 1.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 voxel(corner & 1 ? g.size[0] - 1 : 0, corner & 2 ? g.size[1] - 1 : 0,
-                     corner & 4 ? g.size[2] - 1 : 0);
-    const Vec3 c = g.toPatient_mm(voxel) - g.centre_mm();
-    const double needed =
-        std::max(std::abs(glm::dot(c, p.right())) / tan_x, std::abs(glm::dot(c, p.up())) / tan_y) -
-        glm::dot(c, p.forward());
-    distance = std::max(distance, needed);
-  }
-  p.setCamera(g.centre_mm(), direction, up, distance * 1.02);
+  p.camera.fit(p.copy.geometry, direction, up, p.width, p.height);
+  p.stale = true;
 }
 
 void SceneRenderer::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up,
                            double distance_mm) {
-  parts_->setCamera(focus_mm, direction, up, distance_mm);
+  parts_->camera.lookAt(focus_mm, direction, up, distance_mm);
+  parts_->stale = true;
 }
 
 void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
-  if (!isFinite(azimuth_deg) || !isFinite(elevation_deg)) return;
-  Parts& p = *parts_;
-  const Vec3 side = p.right(), up = p.up();
-  const Quat turn = glm::angleAxis(glm::radians(azimuth_deg), up) *
-                    glm::angleAxis(glm::radians(-elevation_deg), side);
-  p.setCamera(p.focus(), turn * p.forward(), turn * up, glm::distance(p.eye(), p.focus()));
+  parts_->camera.orbit(azimuth_deg, elevation_deg);
+  parts_->stale = true;
 }
 
 void SceneRenderer::zoom(double factor) {
-  if (!isFinite(factor) || factor <= 0.0) return;
   Parts& p = *parts_;
-  const double farthest = hasVolume() ? 20.0 * p.copy.geometry.diagonal_mm() : 1e5;
-  const double distance = std::clamp(glm::distance(p.eye(), p.focus()) / factor, 1.0, farthest);
-  p.setCamera(p.focus(), p.forward(), p.up(), distance);
+  p.camera.zoom(factor, hasVolume() ? 20.0 * p.copy.geometry.diagonal_mm() : 1e5);
+  p.stale = true;
 }
 
 void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   Parts& p = *parts_;
-  const double mm = mmPerPixelAt(p.focus());
-  const Vec3 shift = (p.up() * dy_pixels - p.right() * dx_pixels) * mm;
-  p.setCamera(p.focus() + shift, p.forward(), p.up(), glm::distance(p.eye(), p.focus()));
+  p.camera.pan(dx_pixels, dy_pixels, p.height);
+  p.stale = true;
 }
 
 Vec3 SceneRenderer::viewRight() const {
-  return parts_->right();
+  return parts_->camera.right();
 }
 Vec3 SceneRenderer::viewUp() const {
-  return parts_->up();
+  return parts_->camera.up();
 }
 Vec3 SceneRenderer::viewForward() const {
-  return parts_->forward();
+  return parts_->camera.forward();
 }
 
 double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
-  const Parts& p = *parts_;
-  const double depth_mm = std::max(1e-3, glm::dot(patient_mm - p.eye(), p.forward()));
-  return 2.0 * depth_mm * std::tan(glm::radians(kViewAngle_deg / 2.0)) / double(p.height);
+  return parts_->camera.mmPerPixelAt(patient_mm, parts_->height);
 }
 
 double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {

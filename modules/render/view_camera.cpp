@@ -1,0 +1,69 @@
+#include "render/view_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+const double kTan = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0));
+
+}  // namespace
+
+void ViewCamera::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up,
+                        double distance_mm) {
+  if (!isFinite(focus_mm) || !isFinite(direction) || !isFinite(up) || !isFinite(distance_mm) ||
+      glm::length(direction) == 0.0 || distance_mm <= 0.0) {
+    return;
+  }
+  focus_mm_ = focus_mm;
+  forward_ = glm::normalize(direction);
+  distance_mm_ = distance_mm;
+  Vec3 side = glm::cross(forward_, up);
+  if (glm::length(side) <= 1e-6 * glm::length(up)) {
+    side = glm::cross(forward_, std::abs(forward_.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, -1, 0));
+  }
+  up_ = glm::normalize(glm::cross(side, forward_));
+}
+
+void ViewCamera::fit(const GridGeometry& geometry, const Vec3& direction, const Vec3& view_up,
+                     int width, int height) {
+  const Vec3 centre = geometry.centre_mm();
+  lookAt(centre, direction, view_up, 1.0);
+  const double tan_right = kTan * double(width) / double(height);
+  double distance = 1.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 voxel(corner & 1 ? geometry.size[0] - 1 : 0, corner & 2 ? geometry.size[1] - 1 : 0,
+                     corner & 4 ? geometry.size[2] - 1 : 0);
+    const Vec3 at = geometry.toPatient_mm(voxel) - centre;
+    const double beside =
+        std::max(std::abs(glm::dot(at, right())) / tan_right, std::abs(glm::dot(at, up())) / kTan);
+    distance = std::max(distance, beside - glm::dot(at, forward()));
+  }
+  distance_mm_ = distance * 1.02;
+}
+
+void ViewCamera::orbit(double azimuth_deg, double elevation_deg) {
+  if (!isFinite(azimuth_deg) || !isFinite(elevation_deg)) return;
+  const Quat turn = glm::angleAxis(glm::radians(azimuth_deg), up_) *
+                    glm::angleAxis(glm::radians(-elevation_deg), right());
+  lookAt(focus_mm_, turn * forward_, turn * up_, distance_mm_);
+}
+
+void ViewCamera::zoom(double factor, double farthest_mm) {
+  if (!isFinite(factor) || factor <= 0.0) return;
+  distance_mm_ = std::clamp(distance_mm_ / factor, 1.0, std::max(1.0, farthest_mm));
+}
+
+void ViewCamera::pan(double right_pixels, double down_pixels, int height) {
+  if (!isFinite(right_pixels) || !isFinite(down_pixels)) return;
+  focus_mm_ += (up_ * down_pixels - right() * right_pixels) * mmPerPixelAt(focus_mm_, height);
+}
+
+double ViewCamera::mmPerPixelAt(const Vec3& patient_mm, int height) const {
+  const double depth_mm = std::max(1e-3, glm::dot(patient_mm - eye(), forward_));
+  return 2.0 * depth_mm * kTan / double(height);
+}
+
+}  // namespace trephine

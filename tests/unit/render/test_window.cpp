@@ -1,0 +1,115 @@
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
+#include <vector>
+
+#include "scenes.h"
+
+using namespace trephine;
+using namespace trephine::test;
+
+namespace {
+
+// What a window would show.
+class Screen {
+ public:
+  Screen() {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(1, &colour_);
+    glBindRenderbuffer(GL_RENDERBUFFER, colour_);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, kWidth, kHeight);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+  }
+  ~Screen() {
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteRenderbuffers(1, &colour_);
+  }
+  unsigned int id() const { return framebuffer_; }
+
+  Picture read() const {
+    std::vector<std::uint8_t> up(std::size_t(kWidth) * kHeight * 3);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, kWidth, kHeight, GL_RGB, GL_UNSIGNED_BYTE, up.data());
+    Picture picture{kWidth, kHeight, {}};
+    for (int y = kHeight - 1; y >= 0; --y) {
+      const auto row = up.begin() + std::ptrdiff_t(y) * kWidth * 3;
+      picture.rgb.insert(picture.rgb.end(), row, row + kWidth * 3);
+    }
+    return picture;
+  }
+
+ private:
+  unsigned int framebuffer_ = 0;
+  unsigned int colour_ = 0;
+};
+
+}  // namespace
+
+TEST(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
+  RENDERER_OR_SKIP(lender);
+  lender.setTissues(tissues(0.1));
+  lender.setVolume(Grid(ball()));
+  const Picture expected = lender.picture();  // leaves the lender's context current
+
+  SceneRenderer hosted;
+  hosted.setTissues(tissues(0.1));
+  hosted.resize(kWidth, kHeight);
+  hosted.setVolume(Grid(ball()));
+  const Status attached = hosted.attach({[] { return true; }, [] {}});
+  ASSERT_TRUE(attached.ok()) << attached.error().sentence();
+  EXPECT_NE(hosted.openGlDescription(), "none");
+  hosted.paint(0);
+  EXPECT_EQ(hosted.picture(), expected);
+  hosted.detach();
+  EXPECT_TRUE(hosted.picture().rgb.empty());
+  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
+  EXPECT_EQ(hosted.picture(), expected);
+  hosted.detach();
+}
+
+TEST(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
+  RENDERER_OR_SKIP(lender);
+  lender.picture();  // leaves the lender's context current
+  SceneRenderer hosted;
+  hosted.resize(kWidth, kHeight);
+  hosted.setTissues(tissues(0.1));
+  hosted.setVolume(Grid(ball()));
+  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
+  {
+    const Screen screen;
+    EXPECT_TRUE(hosted.paint(screen.id()));
+    const Picture whole = screen.read();
+    EXPECT_EQ(whole, hosted.picture());
+
+    constexpr double kTiny_ms = 1e-3;  // less than any picture takes
+    const auto finish = [&] {
+      int paints = 1;
+      while (!hosted.paint(screen.id(), kTiny_ms)) ++paints;
+      return paints;
+    };
+    EXPECT_GT(finish(), 5);
+    EXPECT_EQ(screen.read(), whole);
+    EXPECT_EQ(finish(), 1);  // nothing changed: what is there is shown again
+    EXPECT_EQ(screen.read(), whole);
+
+    hosted.orbit(20, 0);
+    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
+    hosted.orbit(-20, 0);
+    EXPECT_GT(finish(), 5);
+    EXPECT_GE(psnr_dB(screen.read(), whole), 60.0);  // the camera came back but for rounding
+
+    ToolView tool;
+    tool.length_mm = 20.0;
+    tool.pose_mm.position = Vec3(0, -40, 0);
+    hosted.setTools({tool});
+    EXPECT_GT(finish(), 5);
+    EXPECT_EQ(screen.read(), hosted.picture());
+  }
+  hosted.detach();
+}
