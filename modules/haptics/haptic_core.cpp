@@ -178,7 +178,8 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   out.sent_N = arm.gate.pass(out.clamped_N, arm.contact.touching(), open, input.late_ns, T);
   out.energy_out_J = arm.energy_out_J;
 
-  if (open && !journal_.busy()) removeHits(index, input.tick, out);
+  const bool cuts = open && !journal_.busy() && !arm.gate.waitingForAir();
+  if (cuts) removeHits(index, input.tick, out);
   out.faults = arm.faults;
 }
 

@@ -42,6 +42,9 @@ class ForceGate {
   Vec3 pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns, double period_s);
 
   const Vec3& sent_N() const { return sent_N_; }
+  // True after restored() while the tool has not been out of tissue: it must not cut either, or an
+  // undo with the tool in place would cut at once what it put back.
+  bool waitingForAir() const { return waiting_for_air_; }
 
  private:
   Vec3 sent_N_{0.0};

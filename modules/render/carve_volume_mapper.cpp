@@ -59,7 +59,7 @@ vtkStandardNewMacro(CarveMapper);
 // Tells OpenGL how the rows of a grid lie in memory, for as long as this lives.
 class UnpackRows {
  public:
-  UnpackRows(const Index3& size) {
+  explicit UnpackRows(const Index3& size) {
     glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, size[0]);
@@ -82,7 +82,7 @@ template <class Value>
 void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size,
              const VoxelBox& box) {
   const auto [i, j, k] = box.low;
-  const UnpackRows rows(size);
+  const UnpackRows layout(size);
   texture.Activate();
   glTexSubImage3D(
       GL_TEXTURE_3D, 0, i, j, k, box.high[0] - i, box.high[1] - j, box.high[2] - k, GL_RED,
@@ -181,7 +181,7 @@ struct CarveVolume::Parts {
     if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
     const std::uint8_t* distances = leap_map.distances().data();
     if (leap_map_stale || !leaps->GetHandle()) {
-      const UnpackRows rows(n);
+      const UnpackRows layout(n);
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
       leaps->SetMinificationFilter(vtkTextureObject::Nearest);
       leaps->SetMagnificationFilter(vtkTextureObject::Nearest);

@@ -7,7 +7,7 @@ class LevelOfDetail {
  public:
   // Leaves a share of a 15th of a second to the window's other work.
   static constexpr double kBudget_ms = 50.0;
-  static constexpr double kCoarsest = 6.0;
+  static constexpr double kCoarsest = 8.0;
 
   // Pixels between two rays, each way; 1 is full quality.
   double pixelStep() const { return pixel_step_; }

@@ -93,6 +93,18 @@ TEST(HapticCore, SendsNoForceAfterUndoUntilTheToolLeftTheTissue) {
   EXPECT_GT(bench.push({3, 0, 2}, {3, 0, -4}, 600), 0.5);
 }
 
+TEST(HapticCore, CutsNothingAfterUndoUntilTheToolLeftTheTissue) {
+  Bench bench;
+  const std::string whole = hashOf(bench.grid);
+  bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  bench.at({0, 0, -6}, {{CommandKind::undo, 0, {}}});
+  bench.push({0, 0, -6}, {3, 0, -9}, 400);
+  EXPECT_EQ(hashOf(bench.grid), whole);
+  bench.push({3, 0, -9}, {3, 0, 5}, 400);
+  bench.push({3, 0, 2}, {3, 0, -4}, 600);
+  EXPECT_NE(hashOf(bench.grid), whole);
+}
+
 TEST(HapticCore, NoChangeRaisesTheForceFasterThanTheSlewLimit) {
   const double step = kSlew_N_per_s * 0.001 + 1e-12;
   TissueTable hard = test::boneTable(200.0, 5000.0, 50.0);
