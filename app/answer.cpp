@@ -1,6 +1,10 @@
 #include "app/answer.h"
 
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <new>
 
 #include "base/system.h"
 
@@ -25,6 +29,23 @@ int printError(const std::string& name, const Error& error, bool json, const Jso
     std::fprintf(stderr, "%s\n", error.sentence().c_str());
   }
   return 1;
+}
+
+bool wantsJson(int argc, char** argv) {
+  return std::any_of(argv, argv + argc, [](const char* a) { return !std::strcmp(a, "--json"); });
+}
+
+int guarded(const std::string& name, bool json, const std::function<int()>& work) {
+  std::signal(SIGXFSZ, SIG_IGN);  // then the write fails and says so
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return printError(name, {"OUT_OF_MEMORY", "There is not enough memory", "",
+                             "Close other programs or choose a smaller case"}, json);
+  } catch (const std::exception& error) {
+    return printError(name, {"INTERNAL", std::string("The program had to stop: ") + error.what(), "",
+                             "Please report this"}, json);
+  }
 }
 
 }  // namespace trephine

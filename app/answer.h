@@ -1,6 +1,7 @@
 // How both programs answer: JSON alone on stdout under --json, else words; errors as one sentence.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "base/json.h"
@@ -16,5 +17,12 @@ void printAnswer(const std::string& name, const Json& answer);
 int printError(const std::string& name, const Error& error, bool json, const Json& extra = {});
 
 Json errorJson(const Error& error);
+
+// Whether --json stands anywhere on the command line.
+bool wantsJson(int argc, char** argv);
+
+// Runs a program's work: what would end it otherwise (no memory, a library's exception, a file
+// over the user's limit) becomes an answer and an exit code.
+int guarded(const std::string& name, bool json, const std::function<int()>& work);
 
 }  // namespace trephine

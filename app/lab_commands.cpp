@@ -83,6 +83,9 @@ Result<RunReport> runExercise(const RunArguments& arguments, const Progress& pro
   if (!(seconds > 0.0 && seconds <= 86400.0)) {
     return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day", "--seconds", ""};
   }
+  if (!arguments.save_volume.empty()) {
+    if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();
+  }
   const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return made.error();
 
@@ -102,12 +105,12 @@ Result<RunReport> runExercise(const RunArguments& arguments, const Progress& pro
     if (!saved) return saved.error();
   }
   const std::filesystem::path picture = freshFile(out, "picture", ".png");
-  if (!displayAvailable()) {
-    spdlog::info("No display: no picture is drawn");
-  } else if (Status drawn = writeExercisePicture(**session, picture); drawn) {
+  const Status drawn = writeExercisePicture(**session, picture);
+  if (!drawn && drawn.error().code != "NO_DISPLAY") return drawn.error();
+  if (drawn) {
     report.picture = picture.string();
   } else {
-    return drawn.error();
+    spdlog::info("No display: no picture is drawn");
   }
   return report;
 }
@@ -138,9 +141,10 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
 int importCommand(const std::string& path, const std::string& series, const std::string& write,
                   bool json, const Progress& progress) {
   const auto fail = [&](const Error& error, const ImportReport* report) {
-    Json extra = report ? toJson(*report) : Json::object();
+    ImportReport nothing;
+    nothing.path = path;
+    Json extra = toJson(report ? *report : nothing);
     extra["chosen"] = nullptr;
-    if (!report) extra["path"] = path;
     if (!json && report) printReport(*report);
     printError("import", error, json, extra);
     return 2;
@@ -184,9 +188,11 @@ int replayCommand(const std::string& file, const std::string& case_source, bool 
                   const Progress& progress) {
   Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(file);
   if (!recording) return printError("replay", recording.error(), json);
-  const Json& recorded_case = (*recording)->header().scene.value("case", Json(nullptr));
+  const Json& scene = (*recording)->header().scene;
   std::string source = case_source;
-  if (source.empty() && recorded_case.is_string()) source = recorded_case.get<std::string>();
+  if (source.empty() && scene.contains("case") && scene["case"].is_string()) {
+    source = scene["case"].get<std::string>();
+  }
   if (source.empty()) {
     const Error error{"NO_CASE", "The recording was made on a case of its own", "--case",
                       "Give the folder that the session was run on"};

@@ -1,9 +1,7 @@
 // The workstation: `trephine [FOLDER|SCENE]`, and `trephine --exercise SCENE` for a scripted run.
 #include <CLI/CLI.hpp>
 #include <QApplication>
-#include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 #include "app/answer.h"
 #include "base/log.h"
@@ -30,9 +28,7 @@ int exercise(const ExerciseOptions& options, bool json) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   std::string path, scene, out;
   double seconds = 0.0;
   bool json = false;
@@ -51,9 +47,8 @@ int main(int argc, char** argv) {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return cli.exit(error);
-    const bool wants_json =
-        std::any_of(argv, argv + argc, [](const char* arg) { return !std::strcmp(arg, "--json"); });
-    return printError("exercise", {"BAD_USE", error.what(), "", "See trephine --help"}, wants_json);
+    return printError("exercise", {"BAD_USE", error.what(), "", "See trephine --help"},
+                      wantsJson(argc, argv));
   }
 
   setUpLog(!scene.empty());
@@ -75,4 +70,10 @@ int main(int argc, char** argv) {
   window.show();
   if (!path.empty()) window.workstation().openPath(path);
   return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return guarded("exercise", wantsJson(argc, argv), [&] { return run(argc, argv); });
 }

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
@@ -73,7 +72,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0 || !json) return app.exit(error) == 0 ? 0 : 1;
+    // The flag itself may stand behind what could not be parsed.
+    if (error.get_exit_code() == 0 || !wantsJson(argc, argv)) return app.exit(error) == 0 ? 0 : 1;
     return printError("usage", {"BAD_ARGUMENT", error.what(), "the command line", "See --help"}, true);
   }
   setUpLog(json);
@@ -91,13 +91,6 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGINT, onInterrupt);
   std::signal(SIGTERM, onInterrupt);
-  std::signal(SIGXFSZ, SIG_IGN);  // a full quota is an error of the write, not of the program
-  try {
-    return run(argc, argv);
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "There is not enough memory. Close other programs or choose a smaller case.\n");
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "The program had to stop: %s.\n", error.what());
-  }
-  return 1;
+  return trephine::guarded("trephine-lab", trephine::wantsJson(argc, argv),
+                           [&] { return run(argc, argv); });
 }

@@ -103,7 +103,8 @@ void ViewWidget::paintGL() {
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
-  renderer_.paint(defaultFramebufferObject());
+  constexpr double kStrip_ms = 50.0;  // a still picture comes in strips, so that input is not kept waiting
+  if (!renderer_.paint(defaultFramebufferObject(), kStrip_ms)) update();
   const double paint_ms = double(timer.nsecsElapsed()) * 1e-6;
   if (!moving_) still_picture_ms_ = paint_ms;
   emit framePainted(paint_ms, renderer_.hasVolume());

@@ -1,4 +1,4 @@
-// What this process and machine are: build name, memory, display, places of our own files.
+// What this process and machine are: build name, memory, places of our own files.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,6 @@ std::string buildName();
 // Resident memory now and at its peak, in MB of 2^20 bytes.
 double residentMb();
 double peakResidentMb();
-
-// True where DISPLAY names an X display and, when that is a local one, it answers. VTK and Qt abort
-// without one, so this is asked before either is touched.
-bool displayAvailable();
 
 // Where scenes, tissues and devices are; the environment's TREPHINE_RESOURCES comes first.
 std::filesystem::path resourceFolder();

@@ -163,7 +163,9 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   out.observer_J = std::visit([](auto& c) { return c.energy_J(); }, arm.controller);
   out.alpha = std::visit([](auto& c) { return c.alpha(); }, arm.controller);
 
-  const bool finite = isFinite(out.demanded_N) && isFinite(out.bounded_N) && isFinite(moved_m) &&
+  const bool finite = isFinite(out.demanded_N) && isFinite(out.bounded_N) &&
+                      isFinite(velocity_m_s) && isFinite(out.velocity_m_s) &&
+                      isFinite(pose_mm) && isFinite(out.observer_J) && isFinite(out.alpha) &&
                       isFinite(arm.energy_out_J);
   if (!finite) {
     ++nonfinite_;
@@ -172,10 +174,13 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
     std::visit([](auto& c) { c.forget(); }, arm.controller);
     if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
     out.velocity_m_s = out.demanded_N = out.bounded_N = Vec3(0.0);
+    out.observer_J = out.alpha = 0.0;
   }
   out.clamped_N = clampForce(out.bounded_N, parameters.max_force_N);
   const bool open = !paused_ && arm.faults == 0;
-  out.sent_N = arm.gate.pass(out.clamped_N, arm.contact.touching(), open, input.late_ns, T);
+  // While voxels come back in slices, tissue may yet fill in around the tool.
+  const bool in_tissue = arm.contact.touching() || journal_.busy();
+  out.sent_N = arm.gate.pass(out.clamped_N, in_tissue, open, input.late_ns, T);
   out.energy_out_J = arm.energy_out_J;
 
   const bool cuts = open && !journal_.busy() && !arm.gate.waitingForAir();
@@ -201,8 +206,8 @@ void HapticCore::removeHits(std::size_t index, std::uint64_t tick, ArmRecord& ou
                        std::int8_t(hit.tissue_class)});
     ++out.removed_voxels;
   }
-  arm.idle_ticks = out.removed_voxels > 0 ? 0 : arm.idle_ticks + 1;
-  if (journal_.inStroke(arm_number) && arm.idle_ticks > stroke_gap_ticks_) {
+  arm.air_ticks = arm.contact.touching() ? 0 : arm.air_ticks + 1;
+  if (journal_.inStroke(arm_number) && arm.air_ticks > stroke_gap_ticks_) {
     journal_.endStroke(arm_number);
   }
 }

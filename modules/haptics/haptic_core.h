@@ -33,7 +33,7 @@ struct HapticParameters {
   double contact_hold_mm = 1.5;              // see findContact
   std::size_t journal_voxels = 8'000'000;    // 8 bytes each
   std::size_t journal_strokes = 4096;
-  double stroke_gap_s = 0.3;                 // a pause this long ends a stroke
+  double stroke_gap_s = 0.3;                 // this long out of tissue ends a stroke
 };
 
 class HapticCore {
@@ -41,8 +41,8 @@ class HapticCore {
   // `writer` stays with the core: it is the one writer of the grid.
   HapticCore(const HapticParameters& parameters, Grid::Writer writer);
 
-  // Applies `commands` (those that act on voxels only start here and go on in slices), then moves
-  // every arm one tick. `record` is the outcome; carves() and events() list what happened.
+  // Applies `commands` (those that act on voxels only start here and go on in slices; at most one
+  // of them a tick, or the second is lost), then moves every arm one tick. `record` is the outcome; carves() and events() list what happened.
   void tick(const TickInput& input, const Command* commands, std::size_t command_count,
             TickRecord& record);
 
@@ -70,7 +70,7 @@ class HapticCore {
     std::optional<Vec3> last_position_m;  // device
     Vec3 energy_out_J{0.0};
     std::uint32_t faults = 0;
-    std::uint64_t idle_ticks = 0;  // since the last voxel removed
+    std::uint64_t air_ticks = 0;  // since the tool was last in tissue
   };
 
   void apply(const Command& command, std::uint64_t tick);

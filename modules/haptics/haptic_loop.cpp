@@ -45,17 +45,14 @@ void HapticLoop::step(std::int64_t late_ns) {
     input.tick = tick_;
     input.late_ns = late_ns;
 
-    std::array<Command, 8> commands;
-    std::size_t count = 0;
-    if (core_.acceptsCommands()) {
-      while (count < commands.size() && commands_.pop(commands[count])) ++count;
-      while (count < commands.size() && operator_ && operator_->command(tick_, commands[count])) {
-        ++count;
-      }
-    }
+    // One a tick: a second undo would find the first one still at work.
+    Command command;
+    const bool commanded = core_.acceptsCommands() &&
+                           (commands_.pop(command) ||
+                            (operator_ && operator_->command(tick_, command)));
     exchange(input);
     TickRecord record;
-    core_.tick(input, commands.data(), count, record);
+    core_.tick(input, &command, commanded ? 1 : 0, record);
     for (std::size_t i = 0; i < forces_N_.size(); ++i) forces_N_[i] = record.arms[i].sent_N;
 
     // The record last: who finds it finds all that belongs to it.

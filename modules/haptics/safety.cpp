@@ -17,7 +17,8 @@ Vec3 clampForce(const Vec3& force_N, double max_N) {
   const Vec3 unit = force_N / largest;
   const double length = glm::length(unit);
   if (largest * length <= max_N) return force_N;
-  return unit * (max_N / length);
+  constexpr double kRoundedDown = 1.0 - 1e-15;  // or the product's length may exceed the limit
+  return unit * (max_N / length * kRoundedDown);
 }
 
 Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N) {

@@ -36,7 +36,10 @@ class ForceGate {
     waiting_for_air_ = true;
     gain_ = 0.0;
   }
-  void zero() { *this = ForceGate{}; }
+  void zero() {
+    sent_N_ = Vec3(0.0);
+    change();
+  }
 
   // The force to send this tick. `open` is false in a pause or a fault.
   Vec3 pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns, double period_s);

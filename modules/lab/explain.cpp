@@ -39,6 +39,19 @@ Volume block(const TissueSet& tissues) {
   return volume;
 }
 
+// One voxel erased with its journal entry: the mean over a row of voxels, median of the rows.
+double removalNs() {
+  Volume volume;
+  volume.geometry.size = {kBatchSize, kBatches, 1};
+  volume.hu.assign(volume.geometry.voxelCount(), 1000);
+  Grid grid(std::move(volume));
+  Grid::Writer writer = *grid.takeWriter();
+  CarveJournal journal(grid.geometry().voxelCount(), 1);
+  journal.beginStroke(0);
+  std::size_t voxel = 0;
+  return medianNs([&] { journal.erase(writer, 0, voxel++, 0); });
+}
+
 // Keeps the optimiser from dropping a result that nobody reads.
 void keep(const Vec3& value) {
   asm volatile("" : : "g"(&value) : "memory");
@@ -99,6 +112,8 @@ Result<Json> explainScene(const Scene& scene) {
         }));
   }
 
+  const double removal_ns = removalNs();
+  cost.push_back({{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
   HapticCore core(parameters, *grid.takeWriter());
   TickInput input;
   TickRecord record;

@@ -121,7 +121,10 @@ Landmark readLandmark(JsonReader& item) {
     landmark.bulk_radius_mm = item.number("bulk_radius_mm");
     landmark.outward = item.vec3("outward");
     const double length = glm::length(landmark.outward);
-    if (landmark.bulk_radius_mm < 3.0) item.fail("bulk_radius_mm", "The radius is 3 mm or more");
+    if (landmark.bulk_radius_mm < 3.0 || landmark.bulk_radius_mm > 300.0) {
+      item.fail("bulk_radius_mm", "The radius must lie between 3 and 300 mm, not " +
+                                      Json(landmark.bulk_radius_mm).dump());
+    }
     if (length <= 0.0) item.fail("outward", "The direction has no length");
     landmark.outward /= length;
   } else {
@@ -129,6 +132,10 @@ Landmark readLandmark(JsonReader& item) {
     landmark.towards = item.vec3("towards");
   }
   landmark.run_mm = item.number("run_mm", 1.0);
+  if (landmark.run_mm <= 0.0 || landmark.run_mm > 300.0) {
+    item.fail("run_mm", "The run must lie above 0 and at most 300 mm, not " +
+                            Json(landmark.run_mm).dump());
+  }
   return landmark;
 }
 
@@ -216,6 +223,10 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
     JsonReader view = reader.object("view");
     scene.view.landmark = view.text("landmark");
     scene.view.distance_mm = view.number("distance_mm", 350.0);
+    if (scene.view.distance_mm < 10.0 || scene.view.distance_mm > 5000.0) {
+      view.fail("distance_mm", "The distance must lie between 10 and 5000 mm, not " +
+                                   Json(scene.view.distance_mm).dump());
+    }
   }
   if (reader.ok()) checkReferences(reader, scene);
   if (Status status = reader.finish(); !status) return status.error();

@@ -34,6 +34,9 @@ ScriptHand readHand(JsonReader& item, const Scene& scene) {
   return hand;
 }
 
+// Any whole number as an int; what is no HU stays so and is refused by validate().
+int limitHu(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -100'000, 100'000)); }
+
 // A tissue change starts from what the scene or the change before it says.
 void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
   for (auto it = names.begin(); it != names.end(); ++it) {
@@ -44,8 +47,8 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
       changes.fail(it.key().c_str(), "The scene has no tissue '" + it.key() + "'");
       return;
     }
-    tissue->hu_min = int(change.integer("hu_min", tissue->hu_min));
-    tissue->hu_max = int(change.integer("hu_max", tissue->hu_max));
+    tissue->hu_min = limitHu(change.integer("hu_min", tissue->hu_min));
+    tissue->hu_max = limitHu(change.integer("hu_max", tissue->hu_max));
     tissue->damping_Ns_per_m.value =
         change.number("damping_Ns_per_m", tissue->damping_Ns_per_m.value);
     tissue->stiffness_N_per_m.value =
@@ -111,7 +114,13 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   if (script.hand_stiffness_N_per_m < 0.0 || script.hand_damping_Ns_per_m < 0.0) {
     hand.fail("", "A hand's stiffness and damping are 0 or more");
   }
-  for (JsonReader& item : reader.objects("arms")) script.hands.push_back(readHand(item, scene));
+  for (JsonReader& item : reader.objects("arms")) {
+    ScriptHand hand_track = readHand(item, scene);
+    for (const ScriptHand& other : script.hands) {
+      if (other.arm == hand_track.arm) item.fail("arm", "The arm '" + other.arm + "' stands twice");
+    }
+    script.hands.push_back(std::move(hand_track));
+  }
   TissueSet tissues = scene.tissues;
   if (reader.has("commands")) {
     for (JsonReader& item : reader.objects("commands")) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -43,6 +44,10 @@ std::filesystem::path freshFile(const std::filesystem::path& folder, const std::
 
 Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
                                                  const SessionOptions& options) {
+  if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
+    return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
+                 "Crop it or export it at a lower resolution"};
+  }
   std::unique_ptr<Session> session(new Session);
   Result<std::vector<PlacedLandmark>> landmarks = placeLandmarks(scene, volume);
   if (!landmarks) return landmarks.error();
@@ -102,8 +107,14 @@ Status Session::openDevices(std::vector<LoopDevice>& devices) {
     Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
     if (!plugin) return plugin.error();
     std::vector<std::uint32_t> device_arms;
-    for (std::size_t arm : arms) device_arms.push_back(scene_.arms[arm].device_arm);
     const std::string& config = scene_.arms[arms.front()].device_config;
+    for (std::size_t arm : arms) {
+      device_arms.push_back(scene_.arms[arm].device_arm);
+      if (scene_.arms[arm].device_config != config) {
+        return Error{"BAD_SCENE", "The arms of the plugin '" + name + "' name different files",
+                     "arms: device.config", "One file configures all arms of a plugin"};
+      }
+    }
     Result<std::unique_ptr<Device>> device =
         Device::open(*plugin, device_arms, config.empty() ? "{}" : readText(config));
     if (!device) return device.error();
@@ -155,7 +166,7 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   bool cancelled = false;
   for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
     loop_->step(0);
-    if (i % kDrainTicks == 0) {
+    if (i % kDrainTicks == 0 || loop_->carves().size() > loop_->carves().capacity() / 2) {
       drain();
       progress.at(double(i) / double(ticks), "Running");
       cancelled = progress.cancelled();
@@ -204,8 +215,10 @@ void Session::drain() {
       if (recorder_) recorder_->add(event);
     }
   } catch (const std::exception&) {
-    noteFailure({"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
-                 "Close other programs; what was recorded until now is kept"});
+    const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
+                      "Close other programs; what was recorded until now is kept"};
+    if (recorder_) recorder_->abandon(error);
+    noteFailure(error);
   }
 }
 
@@ -242,10 +255,18 @@ bool Session::setController(ControllerKind kind) {
 
 Status Session::setTissues(const TissueSet& tissues) {
   if (Status valid = validate(tissues, "tissues"); !valid) return valid;
-  scene_.tissues = tissues;
+  // Voxels are counted by a tissue's place in the set, so the places stay.
+  const bool same_ids = std::equal(
+      tissues.tissues.begin(), tissues.tissues.end(), scene_.tissues.tissues.begin(),
+      scene_.tissues.tissues.end(), [](const Tissue& a, const Tissue& b) { return a.id == b.id; });
+  if (!same_ids) {
+    return Error{"OTHER_TISSUES", "A running exercise keeps its list of tissues", "tissues",
+                 "Stop it before tissues are added or removed"};
+  }
   if (!loop_->commands().push({CommandKind::tissues, 0, tissueTable(tissues)})) {
     return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
   }
+  scene_.tissues = tissues;
   return {};
 }
 

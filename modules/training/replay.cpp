@@ -71,7 +71,8 @@ std::optional<ReplayDifference> compareCarves(const std::vector<CarveRecord>& re
 Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
                             const Progress& progress) {
   const RecordingHeader& header = recording.header();
-  if (volumeSha256(volume) != header.volume_sha256) {
+  if (volume.geometry.size != header.geometry.size ||
+      volumeSha256(volume) != header.volume_sha256) {
     return Error{"WRONG_CASE", "The case is not the one that was recorded: its voxels differ", "--case",
                  "Give the folder that the session was run on"};
   }
@@ -88,6 +89,8 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
+  // The same voxels may come from a file that rounds their place.
+  volume.geometry = header.geometry;
   Grid grid(std::move(volume));
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
   ReplayResult result;
@@ -102,6 +105,11 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
     Result<std::vector<TickRecord>> block = recording.ticks(first, std::min(kBlock, total - first));
     if (!block) return block.error();
     for (const TickRecord& recorded : *block) {
+      if (recorded.tick != result.ticks) {
+        return Error{"NOT_REPLAYABLE",
+                     "The recorder fell behind: tick " + std::to_string(result.ticks) + " is missing",
+                     "the recording", "Record again on a machine with less load"};
+      }
       TickInput input{recorded.tick, recorded.late_ns, {}};
       for (std::size_t i = 0; i < recording.armCount(); ++i) {
         const ArmRecord& arm = recorded.arms[i];

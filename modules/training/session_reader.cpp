@@ -209,6 +209,11 @@ Result<std::vector<Event>> SessionReader::events() const {
   if (!readRows(file_->events, eventType(), 0, out.size(), out.data())) {
     return file_->bad("The recording's events are damaged");
   }
+  for (const Event& event : out) {
+    if (event.command.tissues.count < 0 || event.command.tissues.count > kMaxTissues) {
+      return file_->bad("The recording's events are damaged");
+    }
+  }
   return out;
 }
 

@@ -233,6 +233,10 @@ void SessionRecorder::add(const Event& event) {
   if (!file_->failure) file_->new_events.push_back(event);
 }
 
+void SessionRecorder::abandon(const Error& why) {
+  if (!file_->failure) file_->failure = why;
+}
+
 Status SessionRecorder::flush() {
   File& f = *file_;
   if (f.failure) return *f.failure;

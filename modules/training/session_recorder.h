@@ -27,6 +27,8 @@ class SessionRecorder {
   void add(const CarveRecord& carve);
   void add(const Event& event);
 
+  // Gives up after a row was lost: nothing more is written, so that no hole hides in the file.
+  void abandon(const Error& why);
   // Appends what was added and pushes it to the system. After the first failure (a full disk)
   // nothing more is written: what is on disk stays readable, and every later call says the same.
   Status flush();

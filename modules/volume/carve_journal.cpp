@@ -10,8 +10,9 @@ CarveJournal::CarveJournal(std::size_t max_voxels, std::size_t max_strokes)
       undone_(strokes_.size()) {}
 
 bool CarveJournal::beginStroke(int arm) {
-  if (busy() || stroke_count_ == strokes_.size()) return false;
+  if (busy()) return false;
   dropUndone();
+  if (stroke_count_ == strokes_.size()) return false;
   strokes_[stroke_count_] = Stroke{};
   strokes_[stroke_count_].first = std::uint32_t(entry_count_);
   strokes_[stroke_count_].end = std::uint32_t(entry_count_);
@@ -43,9 +44,9 @@ bool CarveJournal::erase(Grid::Writer& writer, int arm, std::size_t voxel, int t
 void CarveJournal::dropUndone() {
   undone_count_ = 0;
   while (stroke_count_ > 0 && strokes_[stroke_count_ - 1].undone) --stroke_count_;
-  while (entry_count_ > 0 && entries_[entry_count_ - 1].stroke >= stroke_count_) --entry_count_;
+  entry_count_ = 0;
   for (std::size_t i = 0; i < stroke_count_; ++i) {
-    strokes_[i].end = std::min(strokes_[i].end, std::uint32_t(entry_count_));
+    entry_count_ = std::max<std::size_t>(entry_count_, strokes_[i].end);
   }
 }
 

@@ -42,7 +42,10 @@ class CarveJournal {
   // counted. False, and nothing done, when the journal is full: removal stops, and the caller says
   // so.
   bool erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class);
-  bool full() const { return entry_count_ == entries_.size() || stroke_count_ == strokes_.size(); }
+  bool full() const {
+    const bool can_drop = stroke_count_ > 0 && strokes_[stroke_count_ - 1].undone;
+    return !can_drop && (entry_count_ == entries_.size() || stroke_count_ == strokes_.size());
+  }
 
   // Undo, redo and reset run in slices: start one, then step it until it is done. Starting fails
   // while another runs or when there is nothing to do. Open strokes are ended first.

@@ -423,14 +423,19 @@ Result<Volume> readVolume(const fs::path& file) {
                file.string(), "Choose such a file, or import a DICOM folder"};
 }
 
-Status writeVolume(const Volume& volume, const fs::path& file) {
-  const Format format = formatOf(file);
+Status checkVolumeFileName(const fs::path& file) {
   // Lower case only: VTK's writer and replaceFile() go by the ending as it is.
   const std::string ending = file.extension().string();
-  if (format == Format::unknown || (ending != ".mha" && ending != ".nii" && ending != ".gz")) {
+  if (formatOf(file) == Format::unknown || (ending != ".mha" && ending != ".nii" && ending != ".gz")) {
     return Error{"UNKNOWN_FORMAT", "Volumes are written as .mha, .nii or .nii.gz", file.string(),
                  "Give the file one of these endings"};
   }
+  return {};
+}
+
+Status writeVolume(const Volume& volume, const fs::path& file) {
+  if (auto status = checkVolumeFileName(file); !status) return status;
+  const Format format = formatOf(file);
   if (auto status = checkSize(volume.geometry.size, file.string()); !status) return status;
   if (auto status = checkGeometry(volume.geometry, file); !status) return status;
   if (leftHanded(volume.geometry)) {

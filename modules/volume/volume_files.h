@@ -25,6 +25,8 @@ Result<Volume> readVolume(const std::filesystem::path& file);
 // .mha (uncompressed), .nii or .nii.gz by extension; written beside the target and renamed, so a
 // full disk loses nothing. NIfTI keeps the affine as float. Errors: UNKNOWN_FORMAT, BAD_GEOMETRY,
 // BAD_SIZE, TOO_LARGE, CANNOT_WRITE.
+// checkVolumeFileName says before a long run whether the name can be written at all.
+Status checkVolumeFileName(const std::filesystem::path& file);
 Status writeVolume(const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace trephine

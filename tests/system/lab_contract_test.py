@@ -91,17 +91,20 @@ class Run(LabTest):
         self.assertNotEqual(first["recording"], second["recording"])
         self.assertEqual(hashlib.sha256(Path(first["recording"]).read_bytes()).hexdigest(), digest)
 
-    def test_an_operator_script_of_ones_own(self):
+    def test_a_script_of_ones_own_takes_back_both_its_strokes(self):
         script = {
             "format": "trephine.operator", "version": 1, "name": "dip",
             "hand": {"stiffness_N_per_m": 800, "damping_Ns_per_m": 8},
             "arms": [{"arm": "right", "waypoints": [{"t": 0, "at_mm": [0, 0, 18]},
-                                                    {"t": 1.5, "at_mm": [0, 0, -10]},
-                                                    {"t": 2.5, "at_mm": [0, 0, 18]}]}],
-            "commands": [{"t": 3.2, "do": "undo"}]}
+                                                    {"t": 1.2, "at_mm": [0, 0, -6]},
+                                                    {"t": 2.0, "at_mm": [0, 0, 18]},
+                                                    {"t": 2.6, "at_mm": [5, 0, 18]},
+                                                    {"t": 3.8, "at_mm": [5, 0, -6]},
+                                                    {"t": 4.6, "at_mm": [5, 0, 18]}]}],
+            "commands": [{"t": 5.2, "do": "undo"}, {"t": 5.2, "do": "undo"}]}
         (self.folder / "dip.json").write_text(json.dumps(script))
         run = lab("run", SCENES / "cranium.json", "--operator", self.folder / "dip.json",
-                  "--seconds", 3.6, "--out", self.folder)
+                  "--seconds", 5.6, "--out", self.folder)
         self.assertGreater(run["arms"][1]["max_force_N"], 1.0)
         self.assertEqual(run["removed_voxels"], 0)
         self.assertEqual(run["volume_sha256"], run["volume_sha256_before"])
@@ -112,7 +115,7 @@ class Run(LabTest):
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
         parts = {cost["part"] for cost in answer["cost"]}
         self.assertEqual(parts, {"contact", "law viscous", "law elastic", "controller seed",
-                                 "clamp and gate"})
+                                 "clamp and gate", "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
         self.assertGreater(answer["tick_ns"], 0)
 
@@ -151,6 +154,7 @@ class BadInput(LabTest):
         answer = lab("import", self.folder / "nowhere", expect=2)
         self.assert_error(answer, "MISSING_FOLDER", "nowhere")
         self.assertIsNone(answer["chosen"])
+        self.assertEqual(set(answer), IMPORT_KEYS | {"error"})
         (self.folder / "empty").mkdir()
         self.assert_error(lab("import", self.folder / "empty", expect=2), "EMPTY_FOLDER", "empty")
         (self.folder / "texts").mkdir()
@@ -184,6 +188,11 @@ class BadInput(LabTest):
             done = subprocess.run([LAB, *map(str, arguments)], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)
             self.assertTrue(done.stderr.strip())
+        for arguments in (["dance"], ["run", SCENES / "cranium.json", "--out", self.folder, "--seconds"]):
+            self.assert_error(lab(*arguments, expect=1), "BAD_ARGUMENT")
+        answer = lab("run", SCENES / "cranium.json", "--save-volume", "x.foo", "--out", self.folder,
+                     expect=1)
+        self.assert_error(answer, "UNKNOWN_FORMAT", "x.foo")
         answer = lab("run", SCENES / "cranium.json", "--controller", "pid", "--out", self.folder,
                      expect=1)
         self.assert_error(answer, "BAD_ARGUMENT", "pid")

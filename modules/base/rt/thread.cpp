@@ -1,7 +1,6 @@
 #include "base/rt/thread.h"
 
 #include <pthread.h>
-#include <sys/mman.h>
 
 namespace trephine::rt {
 
@@ -10,8 +9,6 @@ bool requestRealTime(int priority) {
   parameters.sched_priority = priority;
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
-
-bool lockMemory() { return mlockall(MCL_CURRENT) == 0; }
 
 void nameThread(const char* name) { pthread_setname_np(pthread_self(), name); }
 

@@ -1,13 +1,10 @@
-// Set-up of the haptic thread: real-time priority where it can be had, locked memory, a name.
+// Set-up of the haptic thread: real-time priority where it can be had, a name.
 #pragma once
 
 namespace trephine::rt {
 
 // Asks for SCHED_FIFO at `priority` for the calling thread; true where the system grants it.
 bool requestRealTime(int priority);
-
-// Keeps this process's pages in memory so that no tick waits for one; true where granted.
-bool lockMemory();
 
 void nameThread(const char* name);  // at most 15 characters
 

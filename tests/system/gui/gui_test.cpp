@@ -349,7 +349,7 @@ class GuiTest : public QObject {
     QVERIFY(recording.open(QIODevice::ReadOnly));
     const QByteArray bytes = recording.readAll();
     QVERIFY(bytes.size() > 1000);
-    QVERIFY(!bytes.contains("Doe"));
+    QVERIFY(!bytes.contains(kFolderName));
     QVERIFY(!bytes.contains(temporary_.path().toUtf8()));
   }
 

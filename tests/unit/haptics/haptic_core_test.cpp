@@ -60,7 +60,7 @@ TEST(HapticCore, UndoPutsTheStrokeBackAndRedoTakesItAgain) {
   EXPECT_EQ(bench.core.journal().removed(0, 0), 6u);
 }
 
-TEST(HapticCore, APauseInCuttingEndsAStroke) {
+TEST(HapticCore, LeavingTheTissueEndsAStroke) {
   Bench bench;
   bench.push({0, 0, 2}, {0, 0, -3}, 300);
   const std::string first = hashOf(bench.grid);
@@ -68,6 +68,16 @@ TEST(HapticCore, APauseInCuttingEndsAStroke) {
   bench.push({5, 0, 2}, {5, 0, -3}, 300);
   bench.at({5, 0, 8}, {{CommandKind::undo, 0, {}}});
   EXPECT_EQ(hashOf(bench.grid), first);
+}
+
+TEST(HapticCore, RestingInTheTissueDoesNotEndAStroke) {
+  Bench bench;
+  const std::string whole = hashOf(bench.grid);
+  bench.push({0, 0, 2}, {0, 0, -3}, 300);
+  bench.push({0, 0, -3}, {0, 0, -3}, 1000);
+  bench.push({0, 0, -3}, {0, 0, -6}, 300);
+  bench.at({0, 0, 10}, {{CommandKind::undo, 0, {}}});
+  EXPECT_EQ(hashOf(bench.grid), whole);
 }
 
 TEST(HapticCore, ResetRestoresEverythingInSlicesAndThenAcceptsCommands) {
@@ -160,6 +170,27 @@ TEST(HapticCore, LatchesAFaultOnAnythingThatIsNotANumber) {
     bench.at({0, 0, -6}, {{CommandKind::clear_faults, 0, {}}});
     EXPECT_GT(bench.push({0, 0, -6}, {0, 0, -10}, 300), 0.5);
   }
+}
+
+TEST(HapticCore, ASpeedThatIsNotANumberIsAFaultInAirToo) {
+  HapticParameters p = oneArm();
+  p.controller = ControllerKind::seed;
+  Bench bench(p);
+  bench.at({0, 0, 8});
+  bench.at({-1.7e308, 0, 8});
+  bench.at({1.7e308, 0, 8});  // each is a number, their difference in a tick is not
+  EXPECT_TRUE(bench.record.arms[0].faults & kFaultNonFinite);
+  bench.at({0, 0, 8}, {{CommandKind::clear_faults, 0, {}}});
+  EXPECT_TRUE(isFinite(bench.record.arms[0].observer_J));
+}
+
+TEST(HapticCore, AFaultWhileWaitingForAirDoesNotEndTheWait) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -6}, 800);
+  bench.at({0, 0, -6}, {{CommandKind::undo, 0, {}}});
+  bench.at(Vec3(std::nan("")));
+  bench.at({0, 0, -6}, {{CommandKind::clear_faults, 0, {}}});
+  EXPECT_EQ(bench.push({0, 0, -6}, {0, 0, -10}, 400), 0.0);
 }
 
 TEST(HapticCore, AHugeButFiniteSpeedIsClampedOrFaulted) {

@@ -24,10 +24,21 @@ TEST(ClampForce, AnswersEveryValueWithAFiniteForceWithinTheLimit) {
     for (const Vec3& f : {Vec3(v, 0, 0), Vec3(v, 1, v), Vec3(v, v, v)}) {
       const Vec3 out = clampForce(f, 3.3);
       EXPECT_TRUE(isFinite(out));
-      EXPECT_LE(glm::length(out), 3.3 * (1 + 1e-12));
+      EXPECT_LE(glm::length(out), 3.3);
     }
   }
   EXPECT_EQ(clampForce({1, 0, 0}, 0.0), Vec3(0.0));
+}
+
+TEST(ClampForce, NeverExceedsTheLimitByRounding) {
+  std::uint32_t random = 1;
+  const auto next = [&random] {
+    random = random * 1664525u + 1013904223u;
+    return double(random) / 4294967296.0 * 20.0 - 10.0;
+  };
+  for (int i = 0; i < 100000; ++i) {
+    ASSERT_LE(glm::length(clampForce({next(), next(), next()}, 3.3)), 3.3);
+  }
 }
 
 TEST(SlewTowards, RisesByOneStepAndFallsAtOnce) {

@@ -77,6 +77,8 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
       {"operator", [](Json& s) { s["operator"] = "gone.json"; }, "operator", "gone.json"},
       {"newer", [](Json& s) { s["version"] = 2; }, "version", "2"},
       {"other format", [](Json& s) { s["format"] = "trephine.tissues"; }, "format", "trephine.tissues"},
+      {"run", [](Json& s) { s["landmarks"][0]["run_mm"] = 0; }, "landmarks[0].run_mm", "0"},
+      {"view", [](Json& s) { s["view"]["distance_mm"] = 1e9; }, "view.distance_mm", "1000000000"},
       {"no arms", [](Json& s) { s["arms"] = Json::array(); }, "arms", "0"},
       {"text for number", [](Json& s) { s["rate_hz"] = "fast"; }, "rate_hz", "fast"},
   };

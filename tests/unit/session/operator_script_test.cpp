@@ -79,6 +79,8 @@ TEST(OperatorScript, NamesWhatIsWrong) {
       {[](Json& s) { s["commands"][2]["tissues"] = {{"cheese", {{"yield_N", 1}}}}; }, "cheese", "cheese"},
       {[](Json& s) { s["commands"][2]["tissues"]["bone"]["damping_Ns_per_m"] = -1; }, "tissues", "-1"},
       {[](Json& s) { s["commands"][3]["controller"] = "pid"; }, "controller", "pid"},
+      {[](Json& s) { s["arms"].push_back(s["arms"][0]); }, "arms[1].arm", "right"},
+      {[](Json& s) { s["commands"][2]["tissues"]["bone"] = {{"hu_min", 4294967596}}; }, "tissues", "100000"},
       {[](Json& s) { s["commands"][0]["t"] = 5; }, "commands[1].t", "order"},
       {[](Json& s) { s["version"] = 9; }, "version", "9"},
   };
