@@ -130,8 +130,7 @@ void ViewWidget::setTissues(const TissueSet& tissues) {
 }
 
 void ViewWidget::lookAtLandmark(const LandmarkFrame& frame, double distance_mm) {
-  renderer_.lookAt(frame.position_mm, frame.rotation * Vec3(0, 0, -1),
-                   frame.rotation * Vec3(0, 1, 0), distance_mm);
+  renderer_.lookAt(frame.position_mm, frame.viewDirection(), frame.viewUp(), distance_mm);
   redraw();
 }
 

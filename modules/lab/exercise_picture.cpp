@@ -30,11 +30,8 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   bool placed = false;
   for (const PlacedLandmark& landmark : session.landmarks()) {
     if (landmark.id != scene.view.landmark) continue;
-    // From outside the patient, a little from the front so that depth can be seen.
-    const Quat& frame = landmark.frame.rotation;
-    const Vec3 direction = frame * glm::normalize(Vec3(0.0, -0.45, -1.0));
-    renderer.lookAt(landmark.frame.position_mm, direction, frame * Vec3(0, 1, 0),
-                    scene.view.distance_mm);
+    renderer.lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
+                    landmark.frame.viewUp(), scene.view.distance_mm);
     placed = true;
   }
   if (!placed) renderer.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));

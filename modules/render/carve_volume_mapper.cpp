@@ -243,9 +243,9 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
   p.look->SetScalarOpacityUnitDistance(1.0);  // a tissue's opacity is per mm
   p.look->SetInterpolationTypeToLinear();
   p.look->ShadeOn();
-  p.look->SetAmbient(0.25);
-  p.look->SetDiffuse(0.75);
-  p.look->SetSpecular(0.25);
+  p.look->SetAmbient(0.2);
+  p.look->SetDiffuse(0.68);
+  p.look->SetSpecular(0.1);
   p.look->SetSpecularPower(20.0);
   p.prop->SetMapper(p.mapper);
   p.prop->SetProperty(p.look);

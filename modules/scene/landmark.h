@@ -33,6 +33,10 @@ struct LandmarkFrame {
   Quat rotation{1, 0, 0, 0};  // landmark axes to patient axes
 
   Vec3 toPatient_mm(const Vec3& offset_mm) const { return position_mm + rotation * offset_mm; }
+  // Where the eye looks to see the landmark from outside: tilted by 24 degrees, so that a tool
+  // along -z does not hide its own tip. +y is up.
+  Vec3 viewDirection() const { return rotation * glm::normalize(Vec3(0.0, 0.45, -1.0)); }
+  Vec3 viewUp() const { return rotation * Vec3(0.0, 1.0, 0.0); }
 };
 
 // The rotation whose +z is `outward` (see LandmarkFrame).
