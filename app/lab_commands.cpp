@@ -13,7 +13,12 @@
 #include "imaging/importer.h"
 #include "lab/exercise_picture.h"
 #include "lab/explain.h"
+#include "lab/extremes_measurement.h"
+#include "lab/jitter_measurement.h"
+#include "lab/stability_maps.h"
+#include "lab/stability_measurement.h"
 #include "lab/upload_measurement.h"
+#include "render/display_probe.h"
 #include "session/case_source.h"
 #include "session/session.h"
 #include "training/replay.h"
@@ -245,6 +250,65 @@ int measureUploadCommand(bool json, const Progress& progress) {
   } else {
     std::printf("full upload %.2f ms, 48^3 box %.3f ms: 1/%.0f; pictures %s\n", measured->full_ms,
                 measured->box_ms, measured->ratio, measured->pictures_equal ? "equal" : "different");
+  }
+  return 0;
+}
+
+int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
+                            const Progress& progress) {
+  constexpr const char* kName = "measure.stability";
+  std::vector<StabilityCell> cells = fullGrid();
+  if (!grid.empty()) {
+    Result<std::vector<StabilityCell>> read = readGrid(grid);
+    if (!read) return printError(kName, read.error(), json);
+    cells = *std::move(read);
+  }
+  if (Status made = makeFolder(out); !made) return printError(kName, made.error(), json);
+  Result<StabilityMeasurement> measured = measureStability(std::move(cells), progress);
+  if (!measured) return printError(kName, measured.error(), json);
+  if (Status written = writeStabilityTable(*measured, out); !written) {
+    return printError(kName, written.error(), json);
+  }
+  Json maps = nullptr;
+  if (Status display = probeDisplay(); !display) {
+    spdlog::warn("No maps: {}", display.error().what);
+  } else {
+    auto drawn = writeStabilityMaps(mapCells(*measured), out, progress);
+    if (!drawn) return printError(kName, drawn.error(), json);
+    maps = Json::array();
+    for (const std::filesystem::path& map : *drawn) maps.push_back(map.string());
+  }
+  if (json) {
+    Json answer = toJson(*measured);
+    answer["table"] = (std::filesystem::path(out) / "stability.csv").string();
+    answer["maps"] = maps;
+    printAnswer(kName, answer);
+  } else {
+    std::printf("%s", toText(*measured).c_str());
+    std::printf("  table and maps: %s\n", out.c_str());
+  }
+  return 0;
+}
+
+int measureExtremesCommand(const std::string& out, bool json, const Progress& progress) {
+  Result<ExtremesMeasurement> measured = measureExtremes(out, progress);
+  if (!measured) return printError("measure.extremes", measured.error(), json);
+  if (json) {
+    printAnswer("measure.extremes", toJson(*measured));
+  } else {
+    std::printf("%s", toText(*measured).c_str());
+  }
+  return measured->all_pass() ? 0 : 3;
+}
+
+int measureJitterCommand(double seconds, const std::string& out, bool json,
+                         const Progress& progress) {
+  Result<JitterMeasurement> measured = measureJitter({seconds}, out, progress);
+  if (!measured) return printError("measure.jitter", measured.error(), json);
+  if (json) {
+    printAnswer("measure.jitter", toJson(*measured));
+  } else {
+    std::printf("%s", toText(*measured).c_str());
   }
   return 0;
 }

@@ -27,5 +27,10 @@ int runCommand(const RunArguments& arguments, bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source, bool json, const Progress&);
 int explainCommand(const std::string& scene, bool json);
 int measureUploadCommand(bool json, const Progress&);
+// `grid` is empty for the full grid.
+int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
+                            const Progress&);
+int measureExtremesCommand(const std::string& out, bool json, const Progress&);
+int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

@@ -52,7 +52,7 @@ int run(int argc, char** argv) {
   run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
   run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
   run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
-  run_command->add_option("--controller", arguments.controller, "off or seed");
+  run_command->add_option("--controller", arguments.controller, "off, seed or bounded");
   run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume");
   run_command->add_option("--out", arguments.out, "Folder for recording and picture")->required();
 
@@ -68,6 +68,19 @@ int run(int argc, char** argv) {
   measure_command->require_subcommand(1);
   auto* upload_command =
       with_json(measure_command->add_subcommand("upload", "Partial against full upload"));
+  auto* stability_command = with_json(measure_command->add_subcommand(
+      "stability", "Every controller over a grid of arms, hands and tissues"));
+  std::string grid;
+  stability_command->add_option("--grid", grid, "A grid of your own (JSON); the full grid unless given");
+  stability_command->add_option("--out", out, "Folder for the table and the maps")->required();
+  auto* extremes_command = with_json(measure_command->add_subcommand(
+      "extremes", "Values at the edge of what can be given, through the real loop"));
+  extremes_command->add_option("--out", out, "Folder for the table")->required();
+  auto* jitter_command = with_json(
+      measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
+  double seconds = 5.0;
+  jitter_command->add_option("--seconds", seconds, "For each row")->capture_default_str();
+  jitter_command->add_option("--out", out, "Folder for the table")->required();
 
   try {
     app.parse(argc, argv);
@@ -83,6 +96,9 @@ int run(int argc, char** argv) {
   if (*replay_command) return replayCommand(file, case_source, json, progress);
   if (*explain_command) return explainCommand(file, json);
   if (*upload_command) return measureUploadCommand(json, progress);
+  if (*stability_command) return measureStabilityCommand(grid, out, json, progress);
+  if (*extremes_command) return measureExtremesCommand(out, json, progress);
+  if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }
 

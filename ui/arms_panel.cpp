@@ -117,6 +117,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
             value(frame, prefix + "Force"),
             value(frame, prefix + "Demanded"),
             value(frame, prefix + "Energy"),
+            value(frame, prefix + "Parts"),
             value(frame, prefix + "Faults"),
             new ForceBar(frame)};
   card.bar->setObjectName(prefix + "ForceBar");
@@ -124,6 +125,8 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
       tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
   card.energy->setToolTip(tr("Net work that the sent force did on the hand."));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
+  card.parts->setWordWrap(true);
+  card.parts->setToolTip(tr("What the controller changes in the force that the tissue demands."));
   card.faults->setWordWrap(true);
   colourText(card.faults, colours::kBad);
 
@@ -135,6 +138,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   form->addRow(quiet(tr("Touches"), frame), card.contact);
   form->addRow(quiet(tr("Tip"), frame), card.position);
   form->addRow(quiet(tr("Energy"), frame), card.energy);
+  form->addRow(quiet(tr("Bounds"), frame), card.parts);
   auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(10, 8, 10, 8);
   layout->setSpacing(6);
@@ -163,6 +167,9 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
         tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
     const Vec3& energy = arm.energy_out_J;
     card.energy->setText(tr("%1 mJ").arg(kMilli * (energy.x + energy.y + energy.z), 0, 'f', 1));
+    card.parts->setText(state.controller == ControllerKind::bounded
+                            ? controllerPartWords(arm.controller_parts)
+                            : QStringLiteral("\u2013"));
     const bool touching =
         arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
     card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
@@ -185,7 +192,7 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
 void ArmsPanel::showIdle() {
   for (const Card& card : cards_) {
     card.bar->setForce(0.0, 0.0, 1.0);
-    for (QLabel* label : {card.contact, card.position, card.energy, card.force}) {
+    for (QLabel* label : {card.contact, card.position, card.energy, card.parts, card.force}) {
       label->setText(QStringLiteral("\u2013"));
     }
     card.demanded->clear();

@@ -33,7 +33,7 @@ class ArmsPanel : public QWidget {
 
  private:
   struct Card {
-    QLabel *contact, *position, *force, *demanded, *energy, *faults;
+    QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
     ForceBar* bar;
   };
   Card addCard(const SceneArm& arm, std::size_t index);

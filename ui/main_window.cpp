@@ -1,5 +1,7 @@
 #include "ui/main_window.h"
 
+#include <algorithm>
+
 #include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QMessageBox>
@@ -89,6 +91,15 @@ void MainWindow::showScene() {
   scenes_->setCurrentIndex(index);
   setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
   tissues_->setTissues(scene->tissues);
+  // The weaker of the arms: the panel speaks of both.
+  std::optional<Renderable> most;
+  for (const SceneArm& arm : scene->arms) {
+    if (!arm.dynamics) continue;
+    const Renderable on_arm = renderableOn(arm, scene->rate_hz);
+    most = most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
+                : on_arm;
+  }
+  tissues_->setRenderable(most);
   view_->setTissues(scene->tissues);
   arms_->setScene(*scene);
 }

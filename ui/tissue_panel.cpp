@@ -100,9 +100,9 @@ void TissuePanel::build() {
   form->addRow(tr("To"), high_);
   form->addRow(tr("Opacity"), opacity_row);
   form->addRow(tr("Damping"),
-               addNumber("damping", tr(" N\u00b7s/m"), 200.0, 0.1, &Tissue::damping_Ns_per_m));
+               addNumber("damping", tr(" N\u00b7s/m"), 1e5, 0.1, &Tissue::damping_Ns_per_m));
   form->addRow(tr("Stiffness"),
-               addNumber("stiffness", tr(" N/m"), 1e5, 10.0, &Tissue::stiffness_N_per_m));
+               addNumber("stiffness", tr(" N/m"), 1e7, 10.0, &Tissue::stiffness_N_per_m));
   form->addRow(tr("Yield"), addNumber("yield", tr(" N"), 100.0, 0.05, &Tissue::yield_N));
 
   auto* editor_layout = new QVBoxLayout(editor_);
@@ -110,6 +110,11 @@ void TissuePanel::build() {
   editor_layout->addLayout(head);
   editor_layout->addLayout(form);
 
+  felt_ = new QLabel(this);
+  felt_->setObjectName("tissueFelt");
+  felt_->setWordWrap(true);
+  felt_->setProperty("quiet", true);
+  felt_->hide();
   problem_ = new QLabel(this);
   problem_->setObjectName("tissueProblem");
   problem_->setWordWrap(true);
@@ -123,6 +128,7 @@ void TissuePanel::build() {
   layout->setSpacing(10);
   layout->addWidget(list_);
   layout->addWidget(editor_);
+  layout->addWidget(felt_);
   layout->addWidget(problem_);
   layout->addStretch(1);
 
@@ -149,6 +155,27 @@ void TissuePanel::setTissues(const TissueSet& tissues) {
   edited_ = applied_ = tissues;
   problem_->hide();
   showList();
+}
+
+void TissuePanel::setRenderable(const std::optional<Renderable>& most) {
+  renderable_ = most;
+  showFelt();
+}
+
+void TissuePanel::showFelt() {
+  const Tissue* tissue = current();
+  QStringList lines;
+  if (tissue && renderable_) {
+    const auto line = [&](const QString& what, double demanded, double most) {
+      if (demanded > most) {
+        lines << tr("%1: these arms show at most %2, and that is felt.").arg(what).arg(most, 0, 'f', 0);
+      }
+    };
+    line(tr("Damping"), tissue->damping_Ns_per_m.value, renderable_->b_max);
+    line(tr("Stiffness"), tissue->stiffness_N_per_m.value, renderable_->k_max);
+  }
+  felt_->setText(lines.join('\n'));
+  felt_->setVisible(!lines.isEmpty());
 }
 
 void TissuePanel::select(const std::string& id) {
@@ -203,6 +230,7 @@ void TissuePanel::showSelected() {
     number.box->setToolTip(tr("Source: %1").arg(toQt(value.source)));
   }
   showing_ = false;
+  showFelt();
 }
 
 void TissuePanel::chooseColour() {

@@ -9,6 +9,9 @@
 #include <QToolButton>
 #include <QWidget>
 
+#include <optional>
+
+#include "haptics/arm_dynamics.h"
 #include "tissue/tissue_set.h"
 
 namespace trephine {
@@ -21,6 +24,8 @@ class TissuePanel : public QWidget {
   void setTissues(const TissueSet& tissues);
   const TissueSet& tissues() const { return applied_; }
   void select(const std::string& id);
+  // The firmest tissue that the arms show: what lies above is said to be felt as this.
+  void setRenderable(const std::optional<Renderable>& most);
 
  signals:
   // A possible set, changed by a person.
@@ -36,6 +41,7 @@ class TissuePanel : public QWidget {
                             SourcedNumber Tissue::*field);
   void showList();
   void showSelected();
+  void showFelt();
   void chooseColour();
   // Takes what the controls say into the set that is being edited, and applies it when possible.
   void edited();
@@ -43,10 +49,11 @@ class TissuePanel : public QWidget {
 
   TissueSet edited_;   // what the controls say
   TissueSet applied_;  // the last possible one
+  std::optional<Renderable> renderable_;
   bool showing_ = false;
   QListWidget* list_;
   QWidget* editor_;
-  QLabel *title_, *opacity_text_, *problem_;
+  QLabel *title_, *opacity_text_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
   QSpinBox *low_, *high_;

@@ -48,8 +48,19 @@ QString controllerWord(ControllerKind kind) {
       return tr("Off");
     case ControllerKind::seed:
       return tr("Passivity (seed)");
+    case ControllerKind::bounded:
+      return tr("Bounded");
   }
   return {};
+}
+
+QString controllerPartWords(std::uint32_t parts) {
+  QStringList words;
+  if (parts & kPartArmBound) words << tr("bounded by the arm");
+  if (parts & kPartLearned) words << tr("less, since it shook");
+  if (parts & kPartDamping) words << tr("damping added");
+  if (parts & kPartCredit) words << tr("energy held back");
+  return words.isEmpty() ? tr("nothing to do") : words.join(", ");
 }
 
 QString faultWords(std::uint32_t faults) {

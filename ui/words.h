@@ -20,6 +20,8 @@ QString purposeText();
 
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
+// Which parts of `bounded` acted (ControllerPart), in words.
+QString controllerPartWords(std::uint32_t parts);
 // Each fault bit as a sentence, one a line; empty for none.
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.

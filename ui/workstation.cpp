@@ -69,9 +69,13 @@ bool Workstation::mayOpen() {
 
 std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& file) {
   Result<Scene> scene = readScene(file);
-  if (scene) return *std::move(scene);
-  fail(scene.error());
-  return {};
+  if (!scene) {
+    fail(scene.error());
+    return {};
+  }
+  // An arm that is not there now may be when the exercise starts, which then asks again.
+  (void)readArmDynamics(*scene);
+  return *std::move(scene);
 }
 
 void Workstation::openPath(const std::filesystem::path& path) {

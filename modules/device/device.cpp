@@ -133,6 +133,13 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
   return std::shared_ptr<const DevicePlugin>(std::move(plugin));
 }
 
+Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::builtIn(const TrephineDeviceApi& api) {
+  if (std::string fault = tableFault(api); !fault.empty()) return badPlugin(fault, "built in");
+  std::shared_ptr<DevicePlugin> plugin(new DevicePlugin);
+  plugin->api_ = &api;
+  return std::shared_ptr<const DevicePlugin>(std::move(plugin));
+}
+
 DevicePlugin::~DevicePlugin() {
   if (library_) ::dlclose(library_);
 }

@@ -20,6 +20,8 @@ class DevicePlugin {
   // there or not loadable), BAD_PLUGIN (no entry symbol, another ABI, a table with holes).
   static Result<std::shared_ptr<const DevicePlugin>> load(const std::string& name,
                                                           const std::filesystem::path& folder);
+  // A device compiled in, such as a measurement's own: `api` outlives it. Error: BAD_PLUGIN.
+  static Result<std::shared_ptr<const DevicePlugin>> builtIn(const TrephineDeviceApi& api);
   ~DevicePlugin();
   DevicePlugin(const DevicePlugin&) = delete;
   DevicePlugin& operator=(const DevicePlugin&) = delete;

@@ -22,8 +22,12 @@ std::string_view controllerName(ControllerKind kind) {
   return "";
 }
 
-Controller makeController(ControllerKind kind) {
-  if (kind == ControllerKind::seed) return SeedController{};
+Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s) {
+  switch (kind) {
+    case ControllerKind::off: return OffController{};
+    case ControllerKind::seed: return SeedController{};
+    case ControllerKind::bounded: return BoundedController(arm, period_s);
+  }
   return OffController{};
 }
 

@@ -1,6 +1,11 @@
 // Controllers: what may change the demanded force to keep the arm passive. All at the device, in
 // device metres. Forces here are those on the arm; the paper's port force is their opposite.
 //
+//   Impedance limit(const Impedance&)    what the laws shall render of a tissue, at the device
+//   Vec3 bound(const ControllerInput&)   the force on the arm [N]
+//   void forget()                        after an undo, a reset or a fault: no credit
+//   energy_J(), alpha(), parts()         what it observed and did in this tick, for the record
+//
 // To add a controller: a type here, its line in kControllerNames and makeController, its tests.
 #pragma once
 
@@ -10,20 +15,17 @@
 #include <variant>
 
 #include "base/math.h"
+#include "haptics/bounded_controller.h"
 
 namespace trephine {
 
-struct ControllerInput {
-  Vec3 demanded_N{0.0};    // on the arm
-  Vec3 velocity_m_s{0.0};  // of the arm
-  double period_s = 0.001;
-};
-
 struct OffController {
+  Impedance limit(const Impedance& tissue) { return tissue; }
   Vec3 bound(const ControllerInput& in) { return in.demanded_N; }
   void forget() {}
   double energy_J() const { return 0.0; }
   double alpha() const { return 0.0; }
+  std::uint32_t parts() const { return 0; }
 };
 
 // Seed paper, eqs. 7-12 verbatim. Our reading of the 3-D case, since the paper gives 7-9 for one
@@ -37,23 +39,39 @@ struct OffController {
 // Known limits, measured in the design notes: blind to the energy that sampling a damper makes, and
 // alpha grows without bound near rest. It is here to be compared with.
 struct SeedController {
+  Impedance limit(const Impedance& tissue) { return tissue; }
   Vec3 bound(const ControllerInput& in);
   void forget() { *this = SeedController{}; }
   double energy_J() const { return observer_J; }
   double alpha() const { return last_alpha; }
+  std::uint32_t parts() const { return 0; }
 
   double observer_J = 0.0;
   double last_alpha = 0.0;
   double last_vp2 = 0.0;
 };
 
-using Controller = std::variant<OffController, SeedController>;
+using Controller = std::variant<OffController, SeedController, BoundedController>;
 
-enum class ControllerKind : std::int32_t { off, seed };
-inline constexpr std::array<std::pair<std::string_view, ControllerKind>, 2> kControllerNames{
-    {{"off", ControllerKind::off}, {"seed", ControllerKind::seed}}};
+enum class ControllerKind : std::int32_t { off, seed, bounded };
+inline constexpr std::array<std::pair<std::string_view, ControllerKind>, 3> kControllerNames{
+    {{"off", ControllerKind::off},
+     {"seed", ControllerKind::seed},
+     {"bounded", ControllerKind::bounded}}};
 std::string_view controllerName(ControllerKind kind);
 
-Controller makeController(ControllerKind kind);
+// Solves a small matrix equation for `bounded`: not for the tick.
+Controller makeController(ControllerKind kind, const ArmDynamics& arm, double period_s);
+
+// The impedance that the laws shall render of a tissue with this one; before bound().
+inline Impedance limitImpedance(Controller& controller, const Impedance& tissue) {
+  return std::visit([&](auto& c) { return c.limit(tissue); }, controller);
+}
+inline Vec3 boundForce(Controller& controller, const ControllerInput& in) {
+  return std::visit([&](auto& c) { return c.bound(in); }, controller);
+}
+inline void forgetController(Controller& controller) {
+  std::visit([](auto& c) { c.forget(); }, controller);
+}
 
 }  // namespace trephine

@@ -21,8 +21,14 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
   std::size_t points = 0;
   for (const ArmParameters& arm : parameters_.arms) {
     Arm state;
-    for (LawKind kind : parameters_.laws) state.laws.push_back(makeLaw(kind));
-    state.controller = makeController(parameters_.controller);
+    for (LawKind kind : parameters_.laws) {
+      state.laws.push_back(makeLaw(kind));
+      state.rendered_laws.push_back(makeLaw(kind));
+    }
+    for (const auto& [name, kind] : kControllerNames) {
+      state.controllers.push_back(makeController(kind, arm.dynamics, parameters_.period_s));
+    }
+    state.controller = state.controllers[std::size_t(parameters_.controller)];
     state.hits.reserve(arm.tool.points_m.size());
     points += arm.tool.points_m.size();
     arms_.push_back(std::move(state));
@@ -75,7 +81,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::controller:
       parameters_.controller = ControllerKind(command.value);
       for (Arm& arm : arms_) {
-        arm.controller = makeController(parameters_.controller);
+        arm.controller = arm.controllers[std::size_t(parameters_.controller)];
         arm.gate.change();
       }
       break;
@@ -91,7 +97,8 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
 void HapticCore::forgetForces(bool restored) {
   for (Arm& arm : arms_) {
     for (Law& law : arm.laws) forgetLaw(law);
-    std::visit([](auto& c) { c.forget(); }, arm.controller);
+    for (Law& law : arm.rendered_laws) forgetLaw(law);
+    forgetController(arm.controller);
     arm.contact = Contact{};
     if (restored) {
       arm.gate.restored();
@@ -150,20 +157,45 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   out.tissue_class = arm.contact.tissue_class;
   out.points_in_tissue = arm.contact.points;
 
-  LawInput law_input{0.001 * pose_mm.position, out.velocity_m_s, arm.contact, {}};
+  LawInput law_input{0.001 * pose_mm.position, arm.contact, {}};
   if (arm.contact.touching()) {
     law_input.tissue = parameters_.tissues.classes[std::size_t(arm.contact.tissue_class)];
   }
-  Vec3 force_N(0.0);
-  for (Law& law : arm.laws) force_N += lawForce(law, law_input);
-  out.demanded_N = parameters.map.forceToDevice(force_N);
+  ContactForce model;
+  for (Law& law : arm.laws) addLaw(law, law_input, model);
+  out.demanded_N = parameters.map.forceToDevice(model.at(out.velocity_m_s));
 
-  const ControllerInput controller_input{out.demanded_N, velocity_m_s, T};
-  out.bounded_N = std::visit([&](auto& c) { return c.bound(controller_input); }, arm.controller);
-  out.observer_J = std::visit([](auto& c) { return c.energy_J(); }, arm.controller);
-  out.alpha = std::visit([](auto& c) { return c.alpha(); }, arm.controller);
+  // The same contact once more, with the impedance that the controller lets this arm show.
+  const double at_arm = parameters.map.motion_scale * parameters.map.force_scale;
+  const Impedance limited =
+      limitImpedance(arm.controller, {at_arm * law_input.tissue.damping_Ns_per_m,
+                                      at_arm * law_input.tissue.stiffness_N_per_m});
+  law_input.tissue.damping_Ns_per_m = limited.damping / at_arm;
+  law_input.tissue.stiffness_N_per_m = limited.stiffness / at_arm;
+  ControllerInput to_controller;
+  for (Law& law : arm.rendered_laws) addLaw(law, law_input, to_controller.rendered);
+  to_controller.rendered.elastic_N = parameters.map.forceToDevice(to_controller.rendered.elastic_N);
+  to_controller.rendered.stiffness *= at_arm;
+  to_controller.rendered.damping *= at_arm;
+  to_controller.demanded_N = out.demanded_N;
+  to_controller.touching = arm.contact.touching();
+  to_controller.position_m = sample.position_m;
+  to_controller.velocity_m_s = velocity_m_s;
+  to_controller.last_sent_N = arm.gate.sent_N();
+  to_controller.period_s = T;
+  out.bounded_N = boundForce(arm.controller, to_controller);
+  std::visit(
+      [&](const auto& c) {
+        out.observer_J = c.energy_J();
+        out.alpha = c.alpha();
+        out.controller_parts = c.parts();
+      },
+      arm.controller);
 
-  const bool finite = isFinite(out.demanded_N) && isFinite(out.bounded_N) &&
+  const TissueClass& numbers = law_input.tissue;
+  const bool finite = isFinite(numbers.damping_Ns_per_m) &&
+                      isFinite(numbers.stiffness_N_per_m) && isFinite(numbers.yield_N) &&
+                      isFinite(out.demanded_N) && isFinite(out.bounded_N) &&
                       isFinite(velocity_m_s) && isFinite(out.velocity_m_s) &&
                       isFinite(pose_mm) && isFinite(out.observer_J) && isFinite(out.alpha) &&
                       isFinite(arm.energy_out_J);
@@ -171,7 +203,8 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
     ++nonfinite_;
     latch(index, kFaultNonFinite, input.tick);
     for (Law& law : arm.laws) forgetLaw(law);
-    std::visit([](auto& c) { c.forget(); }, arm.controller);
+    for (Law& law : arm.rendered_laws) forgetLaw(law);
+    forgetController(arm.controller);
     if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
     out.velocity_m_s = out.demanded_N = out.bounded_N = Vec3(0.0);
     out.observer_J = out.alpha = 0.0;

@@ -22,13 +22,14 @@ struct ArmParameters {
   Tool tool;
   WorkspaceMap map;
   double max_force_N = 0.0;
+  ArmDynamics dynamics;
 };
 
 struct HapticParameters {
   double period_s = 0.001;
   std::vector<ArmParameters> arms;  // at most kMaxArms
   std::vector<LawKind> laws;
-  ControllerKind controller = ControllerKind::off;
+  ControllerKind controller = ControllerKind::bounded;
   TissueTable tissues;
   double contact_hold_mm = 1.5;              // see findContact
   std::size_t journal_voxels = 8'000'000;    // 8 bytes each
@@ -46,6 +47,11 @@ class HapticCore {
   void tick(const TickInput& input, const Command* commands, std::size_t command_count,
             TickRecord& record);
 
+  // Continues an arm's account of a longer session; before the first tick.
+  void setEnergyOut(std::size_t arm, const Vec3& energy_out_J) {
+    arms_[arm].energy_out_J = energy_out_J;
+  }
+
   // False while an undo, redo or reset is still going on: commands then wait for a later tick.
   bool acceptsCommands() const { return !journal_.busy(); }
 
@@ -62,7 +68,9 @@ class HapticCore {
 
  private:
   struct Arm {
-    std::vector<Law> laws;
+    std::vector<Law> laws;           // of the model: what the tissue demands
+    std::vector<Law> rendered_laws;  // of what the controller lets the arm render
+    std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
     Controller controller;
     ForceGate gate;
     Contact contact;

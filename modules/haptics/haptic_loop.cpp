@@ -6,8 +6,9 @@
 
 namespace trephine {
 
-HapticLoop::HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper)
-    : core_(core), devices_(std::move(devices)), operator_(oper) {
+HapticLoop::HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
+                       std::uint64_t first_tick)
+    : core_(core), devices_(std::move(devices)), operator_(oper), tick_(first_tick) {
   arm_states_.resize(kMaxArms);
   arm_commands_.resize(kMaxArms);
 }

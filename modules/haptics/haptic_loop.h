@@ -56,7 +56,9 @@ struct LoopState {
 class HapticLoop {
  public:
   // `oper` may be null: then the hands hold where they are. It and `core` outlive the loop.
-  HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper);
+  // Ticks count from `first_tick`.
+  HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
+             std::uint64_t first_tick = 0);
 
   Status startDevices();
   void stopDevices();

@@ -56,7 +56,8 @@ struct ArmRecord {
   Vec3 sent_N{0.0};        // after the gate
   Vec3 energy_out_J{0.0};  // net work of the sent force on the arm so far, by axis: sum F(n-1) dx(n)
   double observer_J = 0.0;  // the controller's own observer
-  double alpha = 0.0;       // the controller's gain
+  double alpha = 0.0;       // the controller's gain: of `bounded`, the scale it has learnt
+  std::uint32_t controller_parts = 0;  // ControllerPart: which of its parts acted
   std::int32_t tissue_class = -1;
   std::int32_t points_in_tissue = 0;
   std::int32_t removed_voxels = 0;  // in this tick

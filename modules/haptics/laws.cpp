@@ -2,16 +2,15 @@
 
 namespace trephine {
 
-Vec3 ViscousLaw::force(const LawInput& in) const {
-  if (!in.contact.touching()) return Vec3(0.0);
-  return -in.tissue.damping_Ns_per_m * in.velocity_m_s;
+void ViscousLaw::add(const LawInput& in, ContactForce& out) const {
+  if (in.contact.touching()) out.damping += in.tissue.damping_Ns_per_m;
 }
 
-Vec3 ElasticLaw::force(const LawInput& in) {
+void ElasticLaw::add(const LawInput& in, ContactForce& out) {
   const double k = in.tissue.stiffness_N_per_m;
   if (!in.contact.touching() || k <= 0.0) {
     anchor_m.reset();
-    return Vec3(0.0);
+    return;
   }
   if (!anchor_m) anchor_m = in.tip_m;
   Vec3 stretch_m = in.tip_m - *anchor_m;
@@ -21,7 +20,8 @@ Vec3 ElasticLaw::force(const LawInput& in) {
     stretch_m *= limit_m / length_m;
     anchor_m = in.tip_m - stretch_m;
   }
-  return -k * stretch_m;
+  out.elastic_N -= k * stretch_m;
+  out.stiffness += k;
 }
 
 Law makeLaw(LawKind kind) {

@@ -1,7 +1,8 @@
 // Force laws: each a small type with one signature, created only when the scene names it.
 //
-//   Vec3 force(const LawInput&)   the force on the arm [N], patient axes; zero without contact
-//   void forget()                 after an undo or reset: back to the state of a new law
+//   void add(const LawInput&, ContactForce&)   adds its force on the arm, patient axes; nothing
+//                                              without contact
+//   void forget()                              after an undo or reset: back to the state of a new law
 //
 // To add a law: a type here, its line in kLawNames and in makeLaw, its tests.
 #pragma once
@@ -13,20 +14,20 @@
 
 #include "base/math.h"
 #include "haptics/contact.h"
+#include "haptics/contact_force.h"
 #include "tissue/tissue_set.h"
 
 namespace trephine {
 
 struct LawInput {
   Vec3 tip_m{0.0};         // patient axes, metres
-  Vec3 velocity_m_s{0.0};  // of the tip, patient axes
   Contact contact;
   TissueClass tissue;      // of the firmest tissue touched; unused without contact
 };
 
 // Seed paper, eq. 1: f = -b v at the tip, b the damping of the tissue touched [N s/m].
 struct ViscousLaw {
-  Vec3 force(const LawInput& in) const;
+  void add(const LawInput& in, ContactForce& out) const;
   void forget() {}
 };
 
@@ -35,7 +36,7 @@ struct ViscousLaw {
 // rest and gives way under load, so that bone resists a blade that erases what it touches. Energy
 // is stored or lost, never made. (Elastic-perfectly plastic: Prandtl 1928, in one point.)
 struct ElasticLaw {
-  Vec3 force(const LawInput& in);
+  void add(const LawInput& in, ContactForce& out);
   void forget() { anchor_m.reset(); }
   std::optional<Vec3> anchor_m;
 };
@@ -47,8 +48,8 @@ inline constexpr std::array<std::pair<std::string_view, LawKind>, 2> kLawNames{
     {{"viscous", LawKind::viscous}, {"elastic", LawKind::elastic}}};
 
 Law makeLaw(LawKind kind);
-inline Vec3 lawForce(Law& law, const LawInput& in) {
-  return std::visit([&](auto& l) { return l.force(in); }, law);
+inline void addLaw(Law& law, const LawInput& in, ContactForce& out) {
+  std::visit([&](auto& l) { l.add(in, out); }, law);
 }
 inline void forgetLaw(Law& law) {
   std::visit([](auto& l) { l.forget(); }, law);

@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace trephine {
 
@@ -19,13 +20,29 @@ void HostClock::sleepUntil(std::int64_t time_ns) {
 }
 
 std::int64_t TickSchedule::waitForTick(LoopClock& clock) {
+  // A clock that is a second off its schedule, either way, tells nothing: the tick counts as late
+  // by that second, and the next one starts a new schedule.
+  constexpr std::int64_t kLost_ns = 1'000'000'000;
+  const auto lost = [&] {
+    lost_ = true;
+    ++missed_;
+    return kLost_ns;
+  };
   const std::int64_t before_ns = clock.now_ns();
   if (!started_) {
     started_ = true;
     deadline_ns_ = before_ns;
   }
+  if (lost_) {
+    lost_ = false;
+    deadline_ns_ = before_ns + period_ns_;
+  }
+  // As doubles: differences of the extremes do not fit.
+  if (std::abs(double(before_ns) - double(deadline_ns_)) > double(kLost_ns)) return lost();
   if (before_ns < deadline_ns_) clock.sleepUntil(deadline_ns_);
-  const std::int64_t late_ns = std::max<std::int64_t>(0, clock.now_ns() - deadline_ns_);
+  const std::int64_t after_ns = clock.now_ns();
+  if (std::abs(double(after_ns) - double(deadline_ns_)) > double(kLost_ns)) return lost();
+  const std::int64_t late_ns = std::max<std::int64_t>(0, after_ns - deadline_ns_);
   if (late_ns > period_ns_ / 2) ++missed_;
   deadline_ns_ += period_ns_ + (late_ns >= period_ns_ ? late_ns : 0);
   return late_ns;

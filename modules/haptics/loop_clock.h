@@ -35,6 +35,7 @@ class TickSchedule {
   std::int64_t period_ns_;
   std::int64_t deadline_ns_ = 0;
   bool started_ = false;
+  bool lost_ = false;  // the last reading told nothing
   std::uint64_t missed_ = 0;
 };
 

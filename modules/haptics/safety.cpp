@@ -16,8 +16,8 @@ Vec3 clampForce(const Vec3& force_N, double max_N) {
   if (largest == 0.0) return force_N;
   const Vec3 unit = force_N / largest;
   const double length = glm::length(unit);
-  if (largest * length <= max_N) return force_N;
-  constexpr double kRoundedDown = 1.0 - 1e-15;  // or the product's length may exceed the limit
+  constexpr double kRoundedDown = 1.0 - 1e-15;  // or a length taken another way may exceed the limit
+  if (largest * length <= max_N * kRoundedDown) return force_N;
   return unit * (max_N / length * kRoundedDown);
 }
 

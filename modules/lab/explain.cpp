@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "haptics/haptic_core.h"
+#include "session/session.h"
 #include "volume/grid.h"
 
 namespace trephine {
@@ -59,7 +60,8 @@ void keep(const Vec3& value) {
 
 }  // namespace
 
-Result<Json> explainScene(const Scene& scene) {
+Result<Json> explainScene(Scene scene) {
+  if (Status asked = readArmDynamics(scene); !asked) return asked.error();
   HapticParameters parameters = hapticParameters(scene);
   for (int i = 0; i < parameters.tissues.count; ++i) {
     parameters.tissues.classes[std::size_t(i)].cuttable = 0;
@@ -72,10 +74,13 @@ Result<Json> explainScene(const Scene& scene) {
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const SceneArm& arm = scene.arms[i];
     const Tool& tool = parameters.arms[i].tool;
+    const Renderable most = renderableOn(arm, scene.rate_hz);
     arms.push_back({{"name", arm.name},
                     {"plugin", arm.plugin},
                     {"tool", arm.tool},
-                    {"points", tool.points_m.size()}});
+                    {"points", tool.points_m.size()},
+                    {"renderable",
+                     {{"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}}}});
     const auto add = [&](std::string part, double ns) {
       cost.push_back({{"part", std::move(part)}, {"arm", arm.name}, {"ns_per_tick", ns}});
     };
@@ -86,7 +91,7 @@ Result<Json> explainScene(const Scene& scene) {
           contact = findContact(grid, to_voxel, parameters.tissues, tool, Pose{}, contact,
                                 parameters.contact_hold_mm, hits);
         }));
-    LawInput input{Vec3(0.0), Vec3(0.01, 0.0, 0.0), contact, {}};
+    LawInput input{Vec3(0.0), contact, {}};
     if (contact.touching()) {
       input.tissue = parameters.tissues.classes[std::size_t(contact.tissue_class)];
     }
@@ -96,14 +101,24 @@ Result<Json> explainScene(const Scene& scene) {
                                      [&](const auto& entry) { return entry.second == kind; });
       add("law " + std::string(name->first), medianNs([&] {
             input.tip_m.x += 1e-6;
-            keep(lawForce(law, input));
+            ContactForce force;
+            addLaw(law, input, force);
+            keep(force.elastic_N);
           }));
     }
-    Controller controller = makeController(scene.controller);
-    const ControllerInput controller_input{Vec3(1.0, 0.5, 0.2), Vec3(-0.01, 0.0, 0.0),
-                                           parameters.period_s};
+    Controller controller =
+        makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
+    ControllerInput to_controller;
+    to_controller.touching = true;
+    to_controller.period_s = parameters.period_s;
+    to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
     add("controller " + std::string(controllerName(scene.controller)), medianNs([&] {
-          keep(std::visit([&](auto& c) { return c.bound(controller_input); }, controller));
+          const Impedance limited = limitImpedance(controller, {12.0, 900.0});
+          to_controller.rendered = {Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping};
+          to_controller.demanded_N = to_controller.rendered.at(to_controller.velocity_m_s);
+          to_controller.position_m.x -= 1e-9;
+          to_controller.last_sent_N = boundForce(controller, to_controller);
+          keep(to_controller.last_sent_N);
         }));
     ForceGate gate;
     add("clamp and gate", medianNs([&] {
@@ -130,6 +145,15 @@ Result<Json> explainScene(const Scene& scene) {
       if (k == kind) laws.push_back(name);
     }
   }
+  Json bounded = Json::array();
+  for (const BoundedTissue& b : boundedTissues(scene)) {
+    bounded.push_back({{"arm", b.arm},
+                       {"tissue", b.tissue},
+                       {"damping_Ns_per_m", b.demanded.damping},
+                       {"damping_felt_Ns_per_m", b.felt.damping},
+                       {"stiffness_N_per_m", b.demanded.stiffness},
+                       {"stiffness_felt_N_per_m", b.felt.stiffness}});
+  }
   const double journal_mb = double(parameters.journal_voxels * sizeof(CarveJournal::Entry) +
                                    parameters.journal_strokes * sizeof(CarveJournal::Stroke)) /
                             (1024.0 * 1024.0);
@@ -142,6 +166,7 @@ Result<Json> explainScene(const Scene& scene) {
               {"removal", "on_contact"},
               {"tissues", tissues},
               {"arms", arms},
+              {"bounded", bounded},
               {"journal_mb", journal_mb},
               {"cost", cost},
               {"tick_ns", tick_ns}};

@@ -7,10 +7,11 @@
 
 namespace trephine {
 
-// -> {scene, case, rate_hz, controller, laws, removal, tissues, arms:[{name, plugin, tool, points}],
-//     journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
+// -> {scene, case, rate_hz, controller, laws, removal, tissues,
+//     arms:[{name, plugin, tool, points, renderable}],
+//     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of many batches) on a small block of the scene's firmest tissue;
 // tick_ns is a whole tick of all arms there, without the devices.
-Result<Json> explainScene(const Scene& scene);
+Result<Json> explainScene(Scene scene);
 
 }  // namespace trephine

@@ -39,6 +39,32 @@ Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landm
   return fixed;
 }
 
+Renderable renderableOn(const SceneArm& arm, double rate_hz) {
+  const ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
+  WorkspaceMap map;
+  map.motion_scale = arm.map.motion_scale;
+  map.force_scale = arm.map.force_scale;
+  return renderable(dynamics, rate_hz, dynamics.delay_ticks, arm.map.fixed.value_or(map));
+}
+
+std::vector<BoundedTissue> boundedTissues(const Scene& scene) {
+  std::vector<BoundedTissue> bounded;
+  if (scene.controller != ControllerKind::bounded) return bounded;
+  for (const SceneArm& arm : scene.arms) {
+    if (!arm.dynamics) continue;
+    const Renderable most = renderableOn(arm, scene.rate_hz);
+    for (const Tissue& tissue : scene.tissues.tissues) {
+      const Impedance demanded{tissue.damping_Ns_per_m.value, tissue.stiffness_N_per_m.value};
+      const Impedance felt{std::min(demanded.damping, most.b_max),
+                           std::min(demanded.stiffness, most.k_max)};
+      if (felt.damping < demanded.damping || felt.stiffness < demanded.stiffness) {
+        bounded.push_back({arm.name, tissue.id, demanded, felt});
+      }
+    }
+  }
+  return bounded;
+}
+
 HapticParameters hapticParameters(const Scene& scene) {
   HapticParameters parameters;
   parameters.period_s = 1.0 / scene.rate_hz;
@@ -46,8 +72,10 @@ HapticParameters hapticParameters(const Scene& scene) {
   parameters.controller = scene.controller;
   parameters.tissues = tissueTable(scene.tissues);
   for (const SceneArm& arm : scene.arms) {
-    parameters.arms.push_back(
-        {scene.findTool(arm.tool)->tool, arm.map.fixed.value_or(WorkspaceMap{}), arm.max_force_N});
+    ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
+    dynamics.peak_force_N = arm.max_force_N;
+    parameters.arms.push_back({scene.findTool(arm.tool)->tool,
+                               arm.map.fixed.value_or(WorkspaceMap{}), arm.max_force_N, dynamics});
   }
   return parameters;
 }

@@ -34,6 +34,7 @@ struct SceneArm {
   std::string tool;                   // a tool's id
   SceneMap map;
   double max_force_N = 3.3;           // no more than this, whatever the device can give
+  std::optional<ArmDynamics> dynamics;  // of the device that moved it: in recordings
 };
 
 struct SceneTool {
@@ -56,7 +57,7 @@ struct Scene {
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
   std::vector<LawKind> laws;
-  ControllerKind controller = ControllerKind::seed;
+  ControllerKind controller = ControllerKind::bounded;
   double rate_hz = 1000.0;
   std::string operator_file;  // default script, empty for none
   SceneView view;
@@ -83,6 +84,17 @@ Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Vol
 
 // The same scene with every arm's map fixed at its landmark.
 Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
+
+// What an arm renders at the scene's rate, in the tissue's own numbers.
+Renderable renderableOn(const SceneArm& arm, double rate_hz);
+
+// A tissue that is firmer than an arm can show: what is demanded, and what will be felt.
+struct BoundedTissue {
+  std::string arm, tissue;
+  Impedance demanded, felt;
+};
+// Empty under another controller than `bounded`. Needs the arms' dynamics.
+std::vector<BoundedTissue> boundedTissues(const Scene& scene);
 
 // What the core needs of a scene whose maps are fixed.
 HapticParameters hapticParameters(const Scene& scene);

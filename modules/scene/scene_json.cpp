@@ -91,6 +91,25 @@ SceneMap readMap(JsonReader map) {
   return out;
 }
 
+ArmDynamics readDynamics(JsonReader item) {
+  ArmDynamics dynamics;
+  dynamics.apparent_mass_kg = item.number("apparent_mass_kg");
+  dynamics.encoder_step_m = item.number("encoder_step_m");
+  const std::int64_t delay = item.integer("delay_ticks", 0);
+  if (!(dynamics.apparent_mass_kg >= 1e-4 && dynamics.apparent_mass_kg <= 100.0)) {
+    item.fail("apparent_mass_kg", "The mass must lie between 0.0001 and 100 kg");
+  }
+  if (!(dynamics.encoder_step_m >= 0.0 && dynamics.encoder_step_m <= 0.01)) {
+    item.fail("encoder_step_m", "The step must lie between 0 and 0.01 m");
+  }
+  if (delay < 0 || delay > kMaxDelayTicks) {
+    item.fail("delay_ticks",
+              "The delay must lie between 0 and " + std::to_string(kMaxDelayTicks) + " ticks");
+  }
+  dynamics.delay_ticks = int(delay);
+  return dynamics;
+}
+
 SceneArm readArm(JsonReader& item, const fs::path& folder) {
   SceneArm arm;
   arm.name = item.text("name");
@@ -110,6 +129,7 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   if (arm.max_force_N <= 0.0) {
     item.fail("max_force_N", "The limit must be above 0, not " + Json(arm.max_force_N).dump());
   }
+  if (item.has("dynamics")) arm.dynamics = readDynamics(item.object("dynamics"));
   return arm;
 }
 
@@ -275,6 +295,11 @@ Json toJson(const Scene& scene) {
                     {"tool", a.tool},
                     {"map", map},
                     {"max_force_N", a.max_force_N}});
+    if (a.dynamics) {
+      arms.back()["dynamics"] = {{"apparent_mass_kg", a.dynamics->apparent_mass_kg},
+                                 {"encoder_step_m", a.dynamics->encoder_step_m},
+                                 {"delay_ticks", a.dynamics->delay_ticks}};
+    }
   }
   for (LawKind law : scene.laws) laws.push_back(nameOf(kLawNames, law));
   Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", scene.name},

@@ -31,6 +31,43 @@ std::string readText(const std::string& file) {
   return text.str();
 }
 
+// One device a plugin, holding all of the scene's arms that it moves.
+Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
+                   std::vector<TrephineCapabilities>& capabilities) {
+  std::map<std::string, std::vector<std::size_t>> arms_by_plugin;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    arms_by_plugin[scene.arms[i].plugin].push_back(i);
+  }
+  capabilities.resize(scene.arms.size());
+  for (const auto& [name, arms] : arms_by_plugin) {
+    Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
+    if (!plugin) return plugin.error();
+    std::vector<std::uint32_t> device_arms;
+    const std::string& config = scene.arms[arms.front()].device_config;
+    for (std::size_t arm : arms) {
+      device_arms.push_back(scene.arms[arm].device_arm);
+      if (scene.arms[arm].device_config != config) {
+        return Error{"BAD_SCENE", "The arms of the plugin '" + name + "' name different files",
+                     "arms: device.config", "One file configures all arms of a plugin"};
+      }
+    }
+    Result<std::unique_ptr<Device>> device =
+        Device::open(*plugin, device_arms, config.empty() ? "{}" : readText(config));
+    if (!device) return device.error();
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      capabilities[arms[i]] = (*device)->capabilities(i);
+      double& limit_N = scene.arms[arms[i]].max_force_N;
+      limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
+      // The host paces its devices: a sample is answered in the period that follows it.
+      scene.arms[arms[i]].dynamics =
+          ArmDynamics{capabilities[arms[i]].apparent_mass_kg,
+                      capabilities[arms[i]].encoder_step_m, limit_N, 0};
+    }
+    devices.push_back({*std::move(device), arms});
+  }
+  return {};
+}
+
 }  // namespace
 
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
@@ -55,7 +92,9 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   session->scene_ = withFixedMaps(scene, session->landmarks_);
 
   std::vector<LoopDevice> devices;
-  if (Status opened = session->openDevices(devices); !opened) return opened.error();
+  if (Status opened = openDevices(session->scene_, devices, session->capabilities_); !opened) {
+    return opened.error();
+  }
 
   session->sha256_before_ = volumeSha256(volume);
   session->grid_ = std::make_unique<Grid>(std::move(volume));
@@ -96,36 +135,10 @@ Session::~Session() {
   if (running_) (void)stop();
 }
 
-// One device a plugin, holding all of the scene's arms that it moves.
-Status Session::openDevices(std::vector<LoopDevice>& devices) {
-  std::map<std::string, std::vector<std::size_t>> arms_by_plugin;
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    arms_by_plugin[scene_.arms[i].plugin].push_back(i);
-  }
-  capabilities_.resize(scene_.arms.size());
-  for (const auto& [name, arms] : arms_by_plugin) {
-    Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
-    if (!plugin) return plugin.error();
-    std::vector<std::uint32_t> device_arms;
-    const std::string& config = scene_.arms[arms.front()].device_config;
-    for (std::size_t arm : arms) {
-      device_arms.push_back(scene_.arms[arm].device_arm);
-      if (scene_.arms[arm].device_config != config) {
-        return Error{"BAD_SCENE", "The arms of the plugin '" + name + "' name different files",
-                     "arms: device.config", "One file configures all arms of a plugin"};
-      }
-    }
-    Result<std::unique_ptr<Device>> device =
-        Device::open(*plugin, device_arms, config.empty() ? "{}" : readText(config));
-    if (!device) return device.error();
-    for (std::size_t i = 0; i < arms.size(); ++i) {
-      capabilities_[arms[i]] = (*device)->capabilities(i);
-      double& limit_N = scene_.arms[arms[i]].max_force_N;
-      limit_N = std::min(limit_N, capabilities_[arms[i]].peak_force_N);
-    }
-    devices.push_back({*std::move(device), arms});
-  }
-  return {};
+Status readArmDynamics(Scene& scene) {
+  std::vector<LoopDevice> devices;
+  std::vector<TrephineCapabilities> capabilities;
+  return openDevices(scene, devices, capabilities);
 }
 
 Status Session::start(double seconds) {

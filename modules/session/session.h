@@ -29,6 +29,10 @@ struct SessionOptions {
   std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
 };
 
+// Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
+// arms' dynamics and their force limits. Errors: those of the devices.
+Status readArmDynamics(Scene& scene);
+
 class Session {
  public:
   // Finds the landmarks, opens the devices, starts the recording. Errors of all of these; nothing
@@ -75,7 +79,6 @@ class Session {
 
  private:
   Session() = default;
-  Status openDevices(std::vector<LoopDevice>& devices);
   void record();  // the recorder thread
   void drain();
   void flush();

@@ -26,6 +26,9 @@ std::string shown(double value) {
   return isFinite(value) ? Json(value).dump() : std::to_string(value);  // JSON has no nan
 }
 
+// Far beyond steel; what lies below it and above the arm is bounded, and felt as the arm's most.
+constexpr double kAbsurd = 1e9;
+
 Status checkNumber(const std::string& file, const std::string& field, const SourcedNumber& number) {
   if (!isFinite(number.value)) {
     return bad(file, field, "The value " + shown(number.value) + " is not finite");
@@ -33,6 +36,10 @@ Status checkNumber(const std::string& file, const std::string& field, const Sour
   if (number.value < 0.0) {
     return bad(file, field, "The value " + shown(number.value) + " is negative",
                "A tissue cannot push: use 0 or more");
+  }
+  if (number.value > kAbsurd) {
+    return bad(file, field, "The value " + shown(number.value) + " is absurd: no tissue has it",
+               "Use at most " + shown(kAbsurd));
   }
   if (number.source.empty()) {
     return bad(file, field, "The value " + shown(number.value) + " has no source",

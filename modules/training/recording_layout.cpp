@@ -23,6 +23,7 @@ constexpr RecordField kArmFields[] = {
     FIELD(ArmRecord, energy_out_J, f64, 3),
     FIELD(ArmRecord, observer_J, f64, 1),
     FIELD(ArmRecord, alpha, f64, 1),
+    FIELD(ArmRecord, controller_parts, u32, 1),
     FIELD(ArmRecord, tissue_class, i32, 1),
     FIELD(ArmRecord, points_in_tissue, i32, 1),
     FIELD(ArmRecord, removed_voxels, i32, 1),

@@ -17,8 +17,9 @@ endif()
 find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOImage)
 if(TREPHINE_WINDOW)
-  find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel CommonExecutionModel
-               CommonTransforms FiltersSources InteractionStyle RenderingCore RenderingOpenGL2
+  find_package(VTK REQUIRED COMPONENTS ChartsCore CommonCore CommonDataModel CommonExecutionModel
+               CommonTransforms FiltersSources InteractionStyle RenderingContext2D
+               RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2
                RenderingVolume RenderingVolumeOpenGL2 IOImage)
   find_package(OpenGL REQUIRED)
   find_package(GLEW REQUIRED)

@@ -47,7 +47,7 @@ MAY_USE = {
     "training": {"hdf5"},
     "session": set(),
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
-    "lab": set(),
+    "lab": {"vtk-charts"},
     "ui": {"qt"},
     "app": {"qt", "cli11"},
 }
@@ -65,6 +65,7 @@ HEADERS = {
     "hdf5": r"hdf5(_hl)?\.h|H5.+\.h",
     "vtk-image": r"vtk[A-Z]\w*\.h",
     "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h",
+    "vtk-charts": r"vtk[A-Z]\w*\.h",
     "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
     "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",
     "cli11": r"CLI/.+",

@@ -32,7 +32,8 @@ inline TissueTable boneTable(double damping = 10.0, double stiffness = 800.0, do
 
 inline HapticParameters oneArm() {
   HapticParameters p;
-  p.arms.push_back({makeNeedle(0.05), WorkspaceMap{}, 3.3});
+  p.arms.push_back({makeNeedle(0.05), WorkspaceMap{}, 3.3, ArmDynamics{}});
+  p.controller = ControllerKind::off;
   p.laws = {LawKind::viscous, LawKind::elastic};
   p.tissues = boneTable();
   p.journal_voxels = 100000;

@@ -1,0 +1,35 @@
+// What an arm is to the force that it shows: the few numbers on which stability depends.
+#pragma once
+
+#include "haptics/workspace_map.h"
+
+namespace trephine {
+
+struct ArmDynamics {
+  double apparent_mass_kg = 0.045;
+  double encoder_step_m = 0.0;  // 0: finer than anything else here
+  double peak_force_N = 3.3;
+  // Whole periods between a sample and the force that answers it, beyond the period in which that
+  // force is held: 0 for an arm that takes its force at once.
+  int delay_ticks = 0;
+};
+
+constexpr int kMaxDelayTicks = 16;
+
+// Damping [N s/m] and stiffness [N/m] of a tissue.
+struct Impedance {
+  double damping = 0.0;
+  double stiffness = 0.0;
+};
+
+// The firmest tissue that `bounded` shows on this arm at this rate: what lies above is felt as this
+// much. In the patient's metres: the map's motion scale s and force scale g are divided out, since
+// a tissue's b and k are g s b and g s k at the arm. Source of the numbers: CONTROLLERS.md.
+struct Renderable {
+  double b_max = 0.0;  // N s/m
+  double k_max = 0.0;  // N/m
+};
+Renderable renderable(const ArmDynamics& arm, double rate_hz, int delay_ticks,
+                      const WorkspaceMap& map);
+
+}  // namespace trephine

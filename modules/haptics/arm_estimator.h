@@ -1,0 +1,41 @@
+// Where the arm is, how fast it moves and how hard the hand pushes it, from quantised samples and
+// the forces that were sent. One steady-state Kalman filter for all three axes.
+#pragma once
+
+#include <array>
+
+#include "haptics/arm_dynamics.h"
+
+namespace trephine {
+
+// State x [m], v [m/s], a [m/s2] = hand force over apparent mass, each a vector in device axes:
+//   x' = v,  v' = F / m + a,  a' = white noise of kHandJerk / m (the hand changes its force slowly)
+// seen through z = x + noise of variance q^2 / 12 (a quantiser of step q). The gains are those of
+// the steady state (the Riccati equation, iterated in the constructor; Kalman 1960), so a tick is
+// nine multiplications an axis.
+class ArmEstimator {
+ public:
+  ArmEstimator(const ArmDynamics& arm, double period_s);
+
+  // After a period in which `held_N` acted on the arm, the sample reads `position_m`. One that lies
+  // 20 mm from what was expected starts the filter anew, at rest.
+  void update(const Vec3& position_m, const Vec3& held_N);
+  void forget() { started_ = false; }
+
+  const Vec3& position_m() const { return x_; }
+  const Vec3& velocity_m_s() const { return v_; }
+  const Vec3& handAcceleration_m_s2() const { return a_; }
+  // How long the filter takes to believe a sample, beyond the sample itself [s].
+  double lag_s() const { return T_ / gain_[0] - T_; }
+
+ private:
+  void restart(const Vec3& position_m);
+
+  double T_;
+  double mass_kg_;
+  std::array<double, 3> gain_{};
+  Vec3 x_{0.0}, v_{0.0}, a_{0.0};
+  bool started_ = false;
+};
+
+}  // namespace trephine

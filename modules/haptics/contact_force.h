@@ -1,0 +1,29 @@
+// What the laws say of a contact, and what a controller is told in a tick.
+#pragma once
+
+#include "base/math.h"
+
+namespace trephine {
+
+// The force on the arm is elastic_N - damping v; around the sampled position it changes by
+// -stiffness per metre. One frame throughout: patient axes from the laws, device axes at the
+// controller.
+struct ContactForce {
+  Vec3 elastic_N{0.0};
+  double stiffness = 0.0;  // N/m
+  double damping = 0.0;    // N s/m
+
+  Vec3 at(const Vec3& velocity_m_s) const { return elastic_N - damping * velocity_m_s; }
+};
+
+struct ControllerInput {
+  Vec3 demanded_N{0.0};    // of the model, on the arm
+  ContactForce rendered;   // of the impedance that the controller allowed
+  bool touching = false;
+  Vec3 position_m{0.0};    // sampled
+  Vec3 velocity_m_s{0.0};  // backward difference
+  Vec3 last_sent_N{0.0};   // by the tick before
+  double period_s = 0.001;
+};
+
+}  // namespace trephine

@@ -1,0 +1,291 @@
+#include "lab/stability_cell.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+constexpr int kParts = 4;  // of a period, for the ideal law and the energy
+
+// x' = v, v' = (F - k_h (x - x_r) - (c + b_h) v) / m with F constant and x_r linear: the state
+// [x v F x_r x_r'] after a time h is exp(M h) times the state before.
+class Plant {
+ public:
+  Plant(const StabilityCell& cell, double h) {
+    Matrix M{};
+    M[0][1] = 1.0;
+    M[1][0] = -cell.hand.stiffness / cell.mass_kg;
+    M[1][1] = -(cell.plant_damping + cell.hand.damping) / cell.mass_kg;
+    M[1][2] = 1.0 / cell.mass_kg;
+    M[1][3] = cell.hand.stiffness / cell.mass_kg;
+    M[3][4] = 1.0;
+    // exp by scaling and squaring: 15 terms of the series of M h / 2^n.
+    double norm = 0.0;
+    for (const auto& row : M) {
+      double sum = 0.0;
+      for (double value : row) sum += std::abs(value * h);
+      norm = std::max(norm, sum);
+    }
+    int squarings = 0;
+    for (; norm > 0.25; norm /= 2.0) ++squarings;
+    const double part_h = std::ldexp(h, -squarings);
+    Matrix term{}, result{};
+    for (std::size_t i = 0; i < 5; ++i) term[i][i] = result[i][i] = 1.0;
+    for (int order = 1; order <= 15; ++order) {
+      term = product(term, M);
+      for (std::size_t i = 0; i < 5; ++i) {
+        for (std::size_t j = 0; j < 5; ++j) {
+          term[i][j] *= part_h / order;
+          result[i][j] += term[i][j];
+        }
+      }
+    }
+    for (; squarings > 0; --squarings) result = product(result, result);
+    position_ = result[0];
+    velocity_ = result[1];
+  }
+
+  void step(double& x, double& v, double force, double rest, double rest_speed) const {
+    const std::array<double, 5> state{x, v, force, rest, rest_speed};
+    x = v = 0.0;
+    for (std::size_t i = 0; i < 5; ++i) {
+      x += position_[i] * state[i];
+      v += velocity_[i] * state[i];
+    }
+  }
+
+ private:
+  using Matrix = std::array<std::array<double, 5>, 5>;
+  static Matrix product(const Matrix& a, const Matrix& b) {
+    Matrix out{};
+    for (std::size_t i = 0; i < 5; ++i) {
+      for (std::size_t j = 0; j < 5; ++j) {
+        for (std::size_t l = 0; l < 5; ++l) out[i][j] += a[i][l] * b[l][j];
+      }
+    }
+    return out;
+  }
+  std::array<double, 5> position_{}, velocity_{};
+};
+
+double restAt(double t) {
+  return kCellStart_m + (kCellRest_m - kCellStart_m) * std::min(1.0, t / kCellRamp_s);
+}
+double restSpeedAt(double t) {
+  return t < kCellRamp_s - 1e-9 ? (kCellRest_m - kCellStart_m) / kCellRamp_s : 0.0;
+}
+
+double idealForce(const Impedance& tissue, double x, double v) {
+  if (x >= 0.0) return 0.0;
+  return std::clamp(-tissue.stiffness * x - tissue.damping * v, -kCellForce_N, kCellForce_N);
+}
+
+// The chain of the loop in one dimension: law, controller, clamp.
+class Chain {
+ public:
+  Chain(const StabilityCell& cell, CellDriver driver, double scale)
+      : zero_(driver == CellDriver::zero_force),
+        tissue_{scale * cell.tissue.damping, scale * cell.tissue.stiffness},
+        period_s_(cell.period_s),
+        controller_(makeController(kindOf(driver),
+                                   ArmDynamics{cell.mass_kg, cell.encoder_m, kCellForce_N,
+                                               cell.delay_samples},
+                                   cell.period_s)) {}
+
+  double tick(double sample_m) {
+    const double moved_m = started_ ? sample_m - last_m_ : 0.0;
+    started_ = true;
+    last_m_ = sample_m;
+    const bool inside = sample_m < 0.0;
+    ControllerInput in;
+    in.touching = inside;
+    in.position_m.x = sample_m;
+    in.velocity_m_s.x = moved_m / period_s_;
+    in.last_sent_N.x = sent_N_;
+    in.period_s = period_s_;
+    const Impedance limited = limitImpedance(controller_, inside ? tissue_ : Impedance{});
+    if (inside) {
+      in.demanded_N.x = -tissue_.stiffness * sample_m - tissue_.damping * in.velocity_m_s.x;
+      in.rendered = {Vec3(-limited.stiffness * sample_m, 0.0, 0.0), limited.stiffness,
+                     limited.damping};
+    }
+    sent_N_ = std::clamp(boundForce(controller_, in).x, -kCellForce_N, kCellForce_N);
+    if (zero_) sent_N_ = 0.0;
+    return sent_N_;
+  }
+
+ private:
+  static ControllerKind kindOf(CellDriver driver) {
+    if (driver == CellDriver::seed) return ControllerKind::seed;
+    if (driver == CellDriver::bounded) return ControllerKind::bounded;
+    return ControllerKind::off;
+  }
+
+  bool zero_;
+  Impedance tissue_;
+  double period_s_;
+  Controller controller_;
+  bool started_ = false;
+  double last_m_ = 0.0;
+  double sent_N_ = 0.0;
+};
+
+// Peak to peak over the last quarter of x less its centred mean over 0.1 s, narrower at the end.
+double oscillation_m(const std::vector<double>& x, double period_s) {
+  const std::size_t n = x.size(), first = n - n / 4;
+  const auto half = std::size_t(std::max(3.0, 0.05 / period_s));
+  std::vector<double> sum(n + 1, 0.0);
+  for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + x[i];
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = first; i < n; ++i) {
+    const std::size_t h = std::min({half, i, n - 1 - i});
+    const double off_mean = x[i] - (sum[i + h + 1] - sum[i - h]) / double(2 * h + 1);
+    low = i == first ? off_mean : std::min(low, off_mean);
+    high = i == first ? off_mean : std::max(high, off_mean);
+  }
+  return high - low;
+}
+
+// The ideal law has no samples: its force follows the state in steps of 2 us, semi-implicitly.
+CellResult runIdeal(const StabilityCell& cell) {
+  constexpr double h = 2e-6;
+  const double m = cell.mass_kg, b = cell.tissue.damping, k = cell.tissue.stiffness;
+  const double c = cell.plant_damping + cell.hand.damping;
+  double x = kCellStart_m, v = kCellSpeed_m_s, squares = 0.0;
+  std::size_t inside = 0;
+  for (std::size_t i = 0; double(i) * h < kCellDuration_s; ++i) {
+    double force = 0.0;
+    if (x < 0.0) {
+      force = std::clamp(-(k * (x + v * h) + b * v) / (1.0 + (b + k * h) * h / m), -kCellForce_N,
+                         kCellForce_N);
+      squares += force * force;
+      ++inside;
+    }
+    const double pull = -cell.hand.stiffness * (x - restAt(double(i) * h));
+    v = (v + (force + pull) / m * h) / (1.0 + c * h / m);
+    x += v * h;
+  }
+  CellResult result;
+  result.contact_rms_N = inside > 0 ? std::sqrt(squares / double(inside)) : 0.0;
+  return result;
+}
+
+}  // namespace
+
+double unseenEnergy_J(const StabilityCell& cell) { return std::max(5e-5, 1.0 * cell.encoder_m); }
+
+bool isStable(const StabilityCell& cell, const CellResult& r) {
+  return r.oscillation_m <= std::max(2e-5, 2.0 * cell.encoder_m) && r.step_N <= 0.1 &&
+         r.energy_out_J <= unseenEnergy_J(cell);
+}
+
+CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_scale) {
+  if (driver == CellDriver::ideal) return runIdeal(cell);
+  const double T = cell.period_s;
+  const auto ticks = std::size_t(std::llround(kCellDuration_s / T));
+  const std::size_t last_quarter = ticks - ticks / 4;
+  const Plant plant(cell, T / kParts);
+  Chain chain(cell, driver, tissue_scale);
+  std::vector<double> pending(std::size_t(cell.delay_samples), 0.0);  // a ring
+  std::size_t oldest = 0;
+  std::vector<double> positions;
+  positions.reserve(ticks);
+
+  double x = kCellStart_m, v = kCellSpeed_m_s, last_N = 0.0;
+  double put_in_J = 0.0, error2 = 0.0, ideal2 = 0.0, contact2 = 0.0;
+  std::size_t inside = 0;
+  CellResult result;
+  for (std::size_t n = 0; n < ticks; ++n) {
+    const double sample = cell.encoder_m > 0.0 ? std::round(x / cell.encoder_m) * cell.encoder_m : x;
+    double held_N = chain.tick(sample);
+    if (!pending.empty()) {
+      std::swap(held_N, pending[oldest]);
+      oldest = (oldest + 1) % pending.size();
+    }
+    if (x < 0.0) {
+      contact2 += held_N * held_N;
+      ++inside;
+    }
+    if (n >= last_quarter) result.step_N += std::abs(held_N - last_N);
+    last_N = held_N;
+    positions.push_back(x);
+    for (int part = 0; part < kParts; ++part) {
+      const double t = (double(n) + double(part) / kParts) * T;
+      const double x0 = x, v0 = v;
+      plant.step(x, v, held_N, restAt(t), restSpeedAt(t));
+      put_in_J -= held_N * (x - x0);
+      result.energy_out_J = std::max(result.energy_out_J, -put_in_J);
+      const double ideal = idealForce(cell.tissue, 0.5 * (x0 + x), 0.5 * (v0 + v));
+      ideal2 += ideal * ideal;
+      error2 += (held_N - ideal) * (held_N - ideal);
+    }
+    if (!(std::abs(x) < 1e3)) {  // gone
+      result.oscillation_m = 1e3;
+      result.stable = false;
+      return result;
+    }
+  }
+  result.step_N /= double(ticks - last_quarter);
+  result.oscillation_m = oscillation_m(positions, T);
+  result.fidelity_error = ideal2 > 0.0 ? std::sqrt(error2 / ideal2) : 0.0;
+  result.contact_rms_N = inside > 0 ? std::sqrt(contact2 / double(inside)) : 0.0;
+  result.stable = isStable(cell, result);
+  return result;
+}
+
+CellReference referenceOf(const StabilityCell& cell) {
+  CellReference reference;
+  reference.off = runCell(cell, CellDriver::off);
+  if (reference.off.stable) {
+    reference.margin = runCell(cell, CellDriver::off, 2.0).stable;
+    if (reference.margin) return reference;
+    reference.scale = 1.0;
+    reference.contact_rms_N = reference.off.contact_rms_N;
+  } else {
+    double low = std::log(0.01), high = 0.0;
+    CellResult best = runCell(cell, CellDriver::off, 0.01);
+    if (!best.stable) return reference;
+    for (int i = 0; i < 12; ++i) {
+      const double middle = 0.5 * (low + high);
+      const CellResult tried = runCell(cell, CellDriver::off, std::exp(middle));
+      if (tried.stable) {
+        low = middle;
+        best = tried;
+      } else {
+        high = middle;
+      }
+    }
+    reference.scale = std::exp(low);
+    reference.contact_rms_N = best.contact_rms_N;
+  }
+  if (*reference.contact_rms_N <= 1e-3) reference.contact_rms_N.reset();
+  return reference;
+}
+
+std::vector<StabilityCell> fullGrid() {
+  std::vector<Impedance> tissues;
+  for (double b : {1.0, 5.0, 20.0, 50.0, 100.0, 1e3, 1e4}) tissues.push_back({b, 0.0});
+  for (double k : {300.0, 1e3, 1e4, 1e6}) {
+    for (double b : {0.0, 10.0}) tissues.push_back({b, k});
+  }
+  std::vector<StabilityCell> cells;
+  for (double mass : {0.020, 0.045, 0.200}) {
+    for (double period : {0.25e-3, 1e-3, 2e-3}) {
+      for (int delay : {0, 1, 3}) {
+        for (double encoder : {0.0, 0.055e-3, 0.2e-3}) {
+          for (const Impedance& hand : {Impedance{}, Impedance{2.0, 300.0}, Impedance{10.0, 1000.0}}) {
+            for (const Impedance& tissue : tissues) {
+              cells.push_back({mass, period, delay, encoder, 0.05, hand, tissue});
+            }
+          }
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace trephine
