@@ -19,7 +19,7 @@ constexpr double kImpactAgain_s = 0.05;         // and is there again after so l
 constexpr double kCreditAbove_J = 3.53e-4;     // credit beyond what the spring holds
 constexpr double kMostDebt_J = 1e-3;             // a pose that jumps must not silence the arm for long
 constexpr double kCreditSlack = 0.01;        // of the tolerance may be overdrawn
-constexpr double kLossSeen = 2.635;             // tolerances lost before stiffness is lowered
+constexpr double kLossSeen = 2.0;             // tolerances lost before stiffness is lowered
 constexpr double kLossStep = 0.9671;              // by this
 constexpr double kShaking_N = 0.09076;          // force that comes and goes, per tick
 constexpr double kShakingTime_s = 0.06444;
@@ -69,19 +69,16 @@ BoundedController::BoundedController(const ArmDynamics& arm, double period_s)
 }
 
 Impedance BoundedController::limit(const Impedance& tissue) {
+  const Impedance arm{most_.damping, most_.stiffness * (1.0 + kImpact * impact_)};
+  const Impedance learnt{scale_.damping * arm.damping, scale_.stiffness * arm.stiffness};
+  const Impedance limited{std::min(tissue.damping, learnt.damping),
+                          std::min(tissue.stiffness, learnt.stiffness)};
   parts_ = 0;
-  const double at_impact = most_.stiffness * (1.0 + kImpact * impact_);
-  Impedance limited{std::min(tissue.damping, most_.damping),
-                    std::min(tissue.stiffness, at_impact)};
-  if (limited.damping < tissue.damping || limited.stiffness < tissue.stiffness) {
-    parts_ |= kPartArmBound;
-  }
-  if ((tissue.damping > 0.0 && scale_.damping < 1.0) ||
-      (tissue.stiffness > 0.0 && scale_.stiffness < 1.0)) {
+  if (tissue.damping > arm.damping || tissue.stiffness > arm.stiffness) parts_ |= kPartArmBound;
+  if (limited.damping < std::min(tissue.damping, arm.damping) ||
+      limited.stiffness < std::min(tissue.stiffness, arm.stiffness)) {
     parts_ |= kPartLearned;
   }
-  limited.damping *= scale_.damping;
-  limited.stiffness *= scale_.stiffness;
   return limited;
 }
 
@@ -191,7 +188,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
       const double critical = std::sqrt(k * m);
       b = std::max(b, kLeastDamping * critical);
       const double learnt = std::min(most_.damping, kLearntDamping * critical);
-      if (scale_.stiffness < 1.0 && learnt > b) {
+      if ((parts_ & kPartLearned) && learnt > b) {
         b = learnt;
         parts_ |= kPartDamping;
       }

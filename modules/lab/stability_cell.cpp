@@ -8,7 +8,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kParts = 4;  // of a period, for the ideal law and the energy
+constexpr int kParts = 8;  // of a period, for the ideal law and the energy
 
 // x' = v, v' = (F - k_h (x - x_r) - (c + b_h) v) / m with F constant and x_r linear: the state
 // [x v F x_r x_r'] after a time h is exp(M h) times the state before.

@@ -147,6 +147,7 @@ Result<StabilityMeasurement> measureStability(std::vector<StabilityCell> cells,
     }
   }
   if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  progress.at(1.0, "Stability");
   return measurement;
 }
 

@@ -114,10 +114,56 @@ class Run(LabTest):
         answer = lab("explain", SCENES / "liver.json")
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
         parts = {cost["part"] for cost in answer["cost"]}
-        self.assertEqual(parts, {"contact", "law viscous", "law elastic", "controller seed",
+        self.assertEqual(parts, {"contact", "law viscous", "law elastic", "controller bounded",
                                  "clamp and gate", "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
         self.assertGreater(answer["tick_ns"], 0)
+
+
+class Measurements(LabTest):
+    CELL = {"mass_kg": 0.045, "period_s": 0.001, "delay_samples": 0, "encoder_mm": 0.055,
+            "plant_damping": 0.05, "hand": {"k": 300, "b": 2}, "tissue": {"b": 100, "k": 0}}
+
+    def grid(self, *changes):
+        file = self.folder / "grid.json"
+        file.write_text(json.dumps({"cells": [{**self.CELL, **change} for change in changes]}))
+        return file
+
+    def test_a_grid_of_ones_own_is_judged_under_every_controller(self):
+        grid = self.grid({}, {"hand": None}, {"tissue": {"b": 1, "k": 0}})
+        answer = lab("measure", "stability", "--grid", grid, "--out", self.folder / "out")
+        self.assertEqual(set(answer["controllers"]), {"off", "seed", "bounded"})
+        self.assertEqual(answer["controllers"]["bounded"]["unstable"], 0)
+        self.assertGreater(answer["controllers"]["off"]["unstable"], 0)
+        self.assertFalse(answer["zero_force"]["accepted"])
+        self.assertEqual(len(answer["per_cell"]), 9)
+        self.assertEqual(set(answer["per_cell"][0]),
+                         {"cell", "controller", "oscillation_mm", "step_N", "energy_out_mJ",
+                          "fidelity_error", "authority", "stable", "margin"})
+        self.assertEqual(len((self.folder / "out" / "stability.csv").read_text().splitlines()), 10)
+
+    def test_a_grid_that_cannot_be_is_named(self):
+        out = self.folder / "out"
+        answer = lab("measure", "stability", "--grid", self.folder / "none.json", "--out", out,
+                     expect=1)
+        self.assert_error(answer, "MISSING_FILE", "none.json")
+        answer = lab("measure", "stability", "--grid", self.grid({"mass_kg": -1}), "--out", out,
+                     expect=1)
+        self.assert_error(answer, "BAD_FIELD", "mass_kg", "-1")
+
+    def test_the_extremes_all_end_as_they_should(self):
+        answer = lab("measure", "extremes", "--out", self.folder)
+        self.assertGreater(len(answer["rows"]), 30)
+        self.assertEqual([row for row in answer["rows"] if not row["pass"]], [])
+
+    def test_jitter_is_measured_at_three_rates(self):
+        answer = lab("measure", "jitter", "--seconds", 0.2, "--out", self.folder)
+        self.assertEqual({row["rate_hz"] for row in answer["rows"]}, {1000, 2000, 4000})
+        for row in answer["rows"]:
+            self.assertEqual(row["ticks"], round(0.2 * row["rate_hz"]))
+            self.assertLessEqual(row["late_us"]["median"], row["late_us"]["max"])
+        answer = lab("measure", "jitter", "--seconds", "-1", "--out", self.folder, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT")
 
 
 class BadInput(LabTest):
