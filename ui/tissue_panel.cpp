@@ -166,13 +166,15 @@ void TissuePanel::showFelt() {
   const Tissue* tissue = current();
   QStringList lines;
   if (tissue && renderable_) {
-    const auto line = [&](const QString& what, double demanded, double most) {
-      if (demanded > most) {
-        lines << tr("%1: these arms show at most %2, and that is felt.").arg(what).arg(most, 0, 'f', 0);
-      }
+    const auto line = [&](const QString& what, const QString& unit, double demanded, double most) {
+      if (demanded <= most) return;
+      lines << tr("%1: these arms show at most %2 %3, and that is felt.")
+                   .arg(what)
+                   .arg(most, 0, 'f', 0)
+                   .arg(unit);
     };
-    line(tr("Damping"), tissue->damping_Ns_per_m.value, renderable_->b_max);
-    line(tr("Stiffness"), tissue->stiffness_N_per_m.value, renderable_->k_max);
+    line(tr("Damping"), tr("N\u00b7s/m"), tissue->damping_Ns_per_m.value, renderable_->b_max);
+    line(tr("Stiffness"), tr("N/m"), tissue->stiffness_N_per_m.value, renderable_->k_max);
   }
   felt_->setText(lines.join('\n'));
   felt_->setVisible(!lines.isEmpty());

@@ -23,7 +23,7 @@ struct Impedance {
 };
 
 // The firmest tissue that `bounded` shows on this arm at this rate: what lies above is felt as this
-// much. In the patient's metres: the map's motion scale s and force scale g are divided out, since
+// much (as contact begins for a few milliseconds stiffer). In the patient's metres: the map's motion scale s and force scale g are divided out, since
 // a tissue's b and k are g s b and g s k at the arm. Source of the numbers: CONTROLLERS.md.
 struct Renderable {
   double b_max = 0.0;  // N s/m

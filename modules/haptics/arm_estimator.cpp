@@ -7,7 +7,7 @@ namespace {
 // Tuned on the stability grid: hand forces that wander by half a newton in a second.
 constexpr double kHandJerk_N_per_sqrt_s = 0.5124;
 constexpr double kFinestStep_m = 1e-8;  // below this a sample counts as exact
-constexpr double kJump_m = 0.02;         // within a period, beyond what was expected
+constexpr double kJump_m = 0.02;        // within a period, beyond what was expected
 constexpr int kRiccatiSteps = 4000;
 
 using Matrix = std::array<std::array<double, 3>, 3>;

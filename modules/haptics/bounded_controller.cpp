@@ -8,27 +8,28 @@ namespace trephine {
 namespace {
 
 // Tuned on the stability grid and checked on cells that the tuning had not seen (CONTROLLERS.md).
-constexpr double kDampingPerMassRate = 2.848;   // b_max = this m / tau_b
+constexpr double kDampingPerMassRate = 2.848;     // b_max = this m / tau_b
 constexpr double kStiffnessPerMassRate = 0.3259;  // k_max = this m / tau_k^2
-constexpr double kCountForce_N = 0.1997;        // a count of the encoder changes the force by this
-constexpr double kDelayInDamping = 0.35;      // tau_b = T (1 + this d)
-constexpr double kLagInStiffness = 0.3088;      // tau_k = T (1 + this' d) + this lag
-constexpr double kImpact = 8.0;               // stiffness added to k_max as contact begins, of k_max
-constexpr double kImpactTime_s = 0.006219;      // it fades with this
-constexpr double kImpactAgain_s = 0.05;         // and is there again after so long in air
-constexpr double kCreditAbove_J = 3.53e-4;     // credit beyond what the spring holds
-constexpr double kMostDebt_J = 1e-3;             // a pose that jumps must not silence the arm for long
-constexpr double kCreditSlack = 0.01;        // of the tolerance may be overdrawn
-constexpr double kLossSeen = 2.0;             // tolerances lost before stiffness is lowered
-constexpr double kLossStep = 0.9671;              // by this
-constexpr double kShaking_N = 0.09076;          // force that comes and goes, per tick
+constexpr double kCountForce_N = 0.1997;  // a count of the encoder changes the force by this
+constexpr double kDelayInDamping = 0.35;  // tau_b = T (1 + this d)
+constexpr double kHandInDelay = 4.0;      // N s/m: less damping where such a hand outdoes the mass
+constexpr double kLagInStiffness = 0.3088;  // tau_k = T (1 + this' d) + this lag
+constexpr double kImpact = 8.0;             // stiffness added to k_max as contact begins, of k_max
+constexpr double kImpactTime_s = 0.006219;  // it fades with this
+constexpr double kImpactAgain_s = 0.05;     // and is there again after so long in air
+constexpr double kCreditAbove_J = 3.53e-4;  // credit beyond what the spring holds
+constexpr double kMostDebt_J = 1e-3;        // a pose that jumps must not silence the arm for long
+constexpr double kCreditSlack = 0.01;       // of the tolerance may be overdrawn
+constexpr double kLossSeen = 2.0;           // tolerances lost before stiffness is lowered
+constexpr double kLossStep = 0.9671;        // by this
+constexpr double kShaking_N = 0.09076;      // force that comes and goes, per tick
 constexpr double kShakingTime_s = 0.06444;
 constexpr double kShakingStep = 0.7644;
-constexpr double kLeastDamping = 0.01612;       // of sqrt(k m), always
-constexpr double kLearntDamping = 1.316;        // of sqrt(k m), once stiffness was lowered
+constexpr double kLeastDamping = 0.01612;  // of sqrt(k m), always
+constexpr double kLearntDamping = 1.316;   // of sqrt(k m), once stiffness was lowered
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.05012;
-constexpr double kForget_per_s = 0.5062;        // of the lowering, while in air
+constexpr double kForget_per_s = 0.5062;  // of the lowering, while in air
 
 // What a spring holds that pushes with `force_N`, no more than `peak_N` of which arrives.
 double springEnergy(double force_N, double stiffness, double peak_N) {
@@ -43,6 +44,10 @@ Impedance mostOf(const ArmDynamics& arm, double T, double lag_s) {
   const double tau_k = tau_b + kLagInStiffness * lag_s;
   Impedance most{kDampingPerMassRate * arm.apparent_mass_kg / tau_b,
                  kStiffnessPerMassRate * arm.apparent_mass_kg / (tau_k * tau_k)};
+  // Over a delay of m / b_hand the hand decides where the arm goes, and the prediction knows no
+  // hand.
+  const double outdone = kHandInDelay * T * arm.delay_ticks / arm.apparent_mass_kg;
+  most.damping /= 1.0 + outdone * outdone * outdone * outdone;
   if (arm.encoder_step_m > 0.0) {
     most.stiffness = std::min(most.stiffness, kCountForce_N / arm.encoder_step_m);
   }
@@ -146,12 +151,10 @@ Vec3 BoundedController::limitToCredit(const Vec3& force_N, const Vec3& velocity_
   const double size_N = glm::length(force_N);
   if (!(size_N > 0.0)) return force_N;
   const double per_N = T_ * T_ / (2.0 * arm_.apparent_mass_kg);
-  const double way_m =
-      glm::dot(force_N, T_ * velocity_m_s + (0.5 * T_ * T_) * hand_m_s2) / size_N;
+  const double way_m = glm::dot(force_N, T_ * velocity_m_s + (0.5 * T_ * T_) * hand_m_s2) / size_N;
   if (size_N * (way_m + size_N * per_N) <= credit_J) return force_N;
   parts_ |= kPartCredit;
-  const double most_N =
-      (std::sqrt(way_m * way_m + 4.0 * per_N * credit_J) - way_m) / (2.0 * per_N);
+  const double most_N = (std::sqrt(way_m * way_m + 4.0 * per_N * credit_J) - way_m) / (2.0 * per_N);
   return force_N * (std::min(size_N, std::max(0.0, most_N)) / size_N);
 }
 

@@ -11,10 +11,10 @@ namespace trephine {
 
 // Which parts of the controller changed the force of a tick.
 enum ControllerPart : std::uint32_t {
-  kPartArmBound = 1u << 0,   // the tissue is firmer than this arm renders
-  kPartLearned = 1u << 1,    // less is rendered than the arm could: this hand made it shake
-  kPartDamping = 1u << 2,    // damping was added, since stiffness was learnt to be too high
-  kPartCredit = 1u << 3,     // the force would have given out more energy than was put in
+  kPartArmBound = 1u << 0,  // the tissue is firmer than this arm renders
+  kPartLearned = 1u << 1,   // less is rendered than the arm could: this hand made it shake
+  kPartDamping = 1u << 2,   // damping was added, since stiffness was learnt to be too high
+  kPartCredit = 1u << 3,    // the force would have given out more energy than was put in
 };
 
 class BoundedController {
@@ -31,7 +31,9 @@ class BoundedController {
 
   double energy_J() const { return energy_J_; }
   // The smaller of the learnt scales: 1 where nothing was learnt.
-  double alpha() const { return scale_.stiffness < scale_.damping ? scale_.stiffness : scale_.damping; }
+  double alpha() const {
+    return scale_.stiffness < scale_.damping ? scale_.stiffness : scale_.damping;
+  }
   std::uint32_t parts() const { return parts_; }
 
  private:
@@ -42,8 +44,8 @@ class BoundedController {
 
   double T_;
   ArmDynamics arm_;
-  Impedance most_;         // what this arm renders
-  double tolerance_J_;     // energy that an encoder cannot see
+  Impedance most_;      // what this arm renders
+  double tolerance_J_;  // energy that an encoder cannot see
   ArmEstimator estimator_;
   std::array<Vec3, kMaxDelayTicks> pending_{};  // sent, not yet at the arm; the oldest first
 
@@ -53,12 +55,12 @@ class BoundedController {
   bool started_ = false;
   bool was_touching_ = false;
   double last_stiffness_ = 0.0;
-  double energy_J_ = 0.0;    // put into the environment and not given back, capped
-  double stored_J_ = 0.0;    // in the rendered spring
+  double energy_J_ = 0.0;  // put into the environment and not given back, capped
+  double stored_J_ = 0.0;  // in the rendered spring
   double dissipated_J_ = 0.0, most_dissipated_J_ = 0.0;  // of this contact
   Vec3 last_force_N_{0.0};
-  double variation_N_ = 0.0;   // mean |change of force| per tick, leaky
-  Vec3 drift_N_{0.0};          // mean change of force per tick, leaky
+  double variation_N_ = 0.0;  // mean |change of force| per tick, leaky
+  Vec3 drift_N_{0.0};         // mean change of force per tick, leaky
   std::uint32_t parts_ = 0;
 };
 

@@ -90,10 +90,10 @@ class Chain {
       : zero_(driver == CellDriver::zero_force),
         tissue_{scale * cell.tissue.damping, scale * cell.tissue.stiffness},
         period_s_(cell.period_s),
-        controller_(makeController(kindOf(driver),
-                                   ArmDynamics{cell.mass_kg, cell.encoder_m, kCellForce_N,
-                                               cell.delay_samples},
-                                   cell.period_s)) {}
+        controller_(makeController(
+            kindOf(driver),
+            ArmDynamics{cell.mass_kg, cell.encoder_m, kCellForce_N, cell.delay_samples},
+            cell.period_s)) {}
 
   double tick(double sample_m) {
     const double moved_m = started_ ? sample_m - last_m_ : 0.0;
@@ -175,7 +175,9 @@ CellResult runIdeal(const StabilityCell& cell) {
 
 }  // namespace
 
-double unseenEnergy_J(const StabilityCell& cell) { return std::max(5e-5, 1.0 * cell.encoder_m); }
+double unseenEnergy_J(const StabilityCell& cell) {
+  return std::max(5e-5, 1.0 * cell.encoder_m);
+}
 
 bool isStable(const StabilityCell& cell, const CellResult& r) {
   return r.oscillation_m <= std::max(2e-5, 2.0 * cell.encoder_m) && r.step_N <= 0.1 &&
@@ -199,7 +201,8 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
   std::size_t inside = 0;
   CellResult result;
   for (std::size_t n = 0; n < ticks; ++n) {
-    const double sample = cell.encoder_m > 0.0 ? std::round(x / cell.encoder_m) * cell.encoder_m : x;
+    const double sample =
+        cell.encoder_m > 0.0 ? std::round(x / cell.encoder_m) * cell.encoder_m : x;
     double held_N = chain.tick(sample);
     if (!pending.empty()) {
       std::swap(held_N, pending[oldest]);
@@ -276,7 +279,8 @@ std::vector<StabilityCell> fullGrid() {
     for (double period : {0.25e-3, 1e-3, 2e-3}) {
       for (int delay : {0, 1, 3}) {
         for (double encoder : {0.0, 0.055e-3, 0.2e-3}) {
-          for (const Impedance& hand : {Impedance{}, Impedance{2.0, 300.0}, Impedance{10.0, 1000.0}}) {
+          for (const Impedance& hand :
+               {Impedance{}, Impedance{2.0, 300.0}, Impedance{10.0, 1000.0}}) {
             for (const Impedance& tissue : tissues) {
               cells.push_back({mass, period, delay, encoder, 0.05, hand, tissue});
             }

@@ -77,7 +77,9 @@ JudgedCell judge(const StabilityCell& cell) {
 
 std::string instability(const StabilityCell& cell, const CellResult& r) {
   std::string parts;
-  const auto add = [&](const char* part) { parts += (parts.empty() ? "" : ", ") + std::string(part); };
+  const auto add = [&](const char* part) {
+    parts += (parts.empty() ? "" : ", ") + std::string(part);
+  };
   if (r.oscillation_m > std::max(2e-5, 2.0 * cell.encoder_m)) add("it oscillates");
   if (r.step_N > 0.1) add("the force jumps");
   if (r.energy_out_J > unseenEnergy_J(cell)) add("energy was given out before the hand was learnt");
@@ -101,7 +103,9 @@ std::string limitOf(const StabilityCell& cell) {
   return "less is rendered than the bound: shaking was felt, or the estimate lags";
 }
 
-Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
 
 Json figuresJson(const BarFigures& f) {
   return {{"cells", f.cells},
@@ -287,7 +291,8 @@ std::string toText(const StabilityMeasurement& measurement) {
   const BarFigures f = figuresOf(measurement, &JudgedCell::bounded);
   add("  bounded  unfaithful in %zu of %zu cells that are stable with margin (worst %.1f points)\n",
       f.unfaithful, f.cells_with_margin, f.worst_points);
-  add("  bounded  authority below 0.7 in %zu, below 0.5 in %zu of %zu cells (%zu without reference)\n",
+  add("  bounded  authority below 0.7 in %zu, below 0.5 in %zu of %zu cells (%zu without "
+      "reference)\n",
       f.below_0_7, f.below_0_5, f.authority_cells, f.no_reference);
   add("           of these the law on a perfect arm stays below in %zu and %zu\n",
       f.ideal_below_0_7, f.ideal_below_0_5);

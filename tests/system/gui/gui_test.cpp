@@ -275,6 +275,23 @@ class GuiTest : public QObject {
     QVERIFY(!problem->isVisible());
   }
 
+  void whatTheArmsCannotShowIsSaidWithWhatWillBeFelt() {
+    auto* felt = find<QLabel>("tissueFelt");
+    QVERIFY(!felt->isVisible());
+    const std::optional<Scene>& scene = workstation().scene();
+    QVERIFY(scene->arms[0].dynamics.has_value());
+    const double most = renderableOn(scene->arms[0], scene->rate_hz).k_max;
+    auto* box = find<QDoubleSpinBox>("stiffness");
+    const double before = box->value();
+    box->setValue(1e6);
+    QVERIFY(felt->isVisible());
+    QVERIFY2(felt->text().contains(QString::number(std::lround(most))), qPrintable(felt->text()));
+    QCOMPARE(scene->tissues.find("bone")->stiffness_N_per_m.value, 1e6);
+    keepGrab("felt-1280x800.png");
+    box->setValue(before);
+    QVERIFY(!felt->isVisible());
+  }
+
   void theMouseCutsWhatTheHandReaches() {
     start();
     QVERIFY(workstation().session());
