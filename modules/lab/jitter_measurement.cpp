@@ -107,6 +107,7 @@ Result<JitterRow> measureJitterRow(double rate_hz, bool real_time, double second
   // Last, so that it has stopped and joined before anything it uses goes away.
   std::jthread thread([&](const std::stop_token& stop) {
     rt::nameThread("jitter");
+    rt::sharpenTimers();  // as the haptic thread does
     const bool has_priority = real_time ? rt::requestRealTime(kPriority) : requestNormal();
     if (has_priority) {
       rt::NoAllocation guard;

@@ -98,6 +98,12 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
 
   session->sha256_before_ = volumeSha256(volume);
   session->grid_ = std::make_unique<Grid>(std::move(volume));
+  for (const BoundedTissue& b : boundedTissues(session->scene_)) {
+    spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
+                 "{:.4g} are felt",
+                 b.tissue, b.arm, b.demanded.damping, b.demanded.stiffness, b.felt.damping,
+                 b.felt.stiffness);
+  }
   session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
                                                 *session->grid_->takeWriter());
   std::unique_ptr<Operator> script;
@@ -148,6 +154,7 @@ Status Session::start(double seconds) {
   recorder_thread_ = std::thread([this] { record(); });
   haptic_thread_ = std::thread([this, last_tick] {
     rt::nameThread("haptic");
+    rt::sharpenTimers();
     if (!rt::requestRealTime(kHapticPriority)) {
       spdlog::info("The haptic thread runs without real-time priority");
     }
