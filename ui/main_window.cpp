@@ -94,7 +94,7 @@ void MainWindow::showScene() {
   // The weaker of the arms: the panel speaks of both.
   std::optional<Renderable> most;
   for (const SceneArm& arm : scene->arms) {
-    if (!arm.dynamics) continue;
+    if (!arm.dynamics || scene->controller != ControllerKind::bounded) continue;
     const Renderable on_arm = renderableOn(arm, scene->rate_hz);
     most = most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
                 : on_arm;

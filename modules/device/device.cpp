@@ -72,13 +72,13 @@ std::string impossibleCapability(const TrephineCapabilities& c) {
   }
   if (!positive(c.peak_force_N)) return "peak_force_N";
   if (!positive(c.continuous_force_N)) return "continuous_force_N";
-  if (!positive(c.apparent_mass_kg)) return "apparent_mass_kg";
+  if (!(c.apparent_mass_kg >= 1e-4 && c.apparent_mass_kg <= 100.0)) return "apparent_mass_kg";
   if (!positive(c.rate_hz)) return "rate_hz";
   if (!positive(c.max_stiffness_N_per_m)) return "max_stiffness_N_per_m";
   if (!isFinite(c.max_damping_Ns_per_m) || c.max_damping_Ns_per_m < 0.0) {
     return "max_damping_Ns_per_m";
   }
-  if (!isFinite(c.encoder_step_m) || c.encoder_step_m < 0.0) return "encoder_step_m";
+  if (!(c.encoder_step_m >= 0.0 && c.encoder_step_m <= 0.01)) return "encoder_step_m";
   return {};
 }
 

@@ -25,6 +25,7 @@ constexpr double kLossStep = 0.9671;        // by this
 constexpr double kShaking_N = 0.09076;      // force that comes and goes, per tick
 constexpr double kShakingTime_s = 0.06444;
 constexpr double kShakingStep = 0.7644;
+constexpr double kObeyed = 1e-9;  // of the peak force: rounding of the clamp
 constexpr double kLeastDamping = 0.01612;  // of sqrt(k m), always
 constexpr double kLearntDamping = 1.316;   // of sqrt(k m), once stiffness was lowered
 constexpr double kFloorDamping = 0.008432;
@@ -110,7 +111,7 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   const double stored_J = springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
   energy_J_ = std::clamp(energy_J_ + put_in_J, -kMostDebt_J, stored_J + kCreditAbove_J);
 
-  if (!in.touching) {
+  if (!in.touching || not_obeyed_ticks_ > 0) {
     dissipated_J_ = most_dissipated_J_ = 0.0;
   } else if (was_touching_ && k <= last_stiffness_) {
     // A spring that turns stiffer under the hand holds energy that nobody put in.
@@ -124,7 +125,8 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
 
 // From what the observer and the force show, never from the hand itself.
 void BoundedController::learn(bool touching) {
-  impact_ += touching ? -impact_ * T_ / kImpactTime_s : (1.0 - impact_) * T_ / kImpactAgain_s;
+  impact_ += touching ? -impact_ * std::min(1.0, T_ / kImpactTime_s)
+                      : (1.0 - impact_) * std::min(1.0, T_ / kImpactAgain_s);
   const bool elastic = last_stiffness_ > 0.0;
   if (most_dissipated_J_ - dissipated_J_ > kLossSeen * tolerance_J_) {
     most_dissipated_J_ = dissipated_J_;
@@ -167,6 +169,13 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     pending_[std::size_t(arm_.delay_ticks - 1)] = in.last_sent_N;
   }
   estimator_.update(in.position_m, held_N);
+  // In a pause, a fault or a ramp other forces are sent than were computed here: what the hand does
+  // meanwhile says nothing of this controller, until forces of its own act again.
+  if (glm::length(in.last_sent_N - last_force_N_) > kObeyed * arm_.peak_force_N) {
+    not_obeyed_ticks_ = arm_.delay_ticks + 1;
+  } else if (not_obeyed_ticks_ > 0) {
+    --not_obeyed_ticks_;
+  }
   account(in, held_N);
   learn(in.touching);
 
@@ -213,7 +222,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
   }
 
   const double leak = T_ / kShakingTime_s;
-  const bool both = in.touching && last_force_N_ != Vec3(0.0);
+  const bool both = in.touching && not_obeyed_ticks_ == 0 && last_force_N_ != Vec3(0.0);
   const Vec3 change = both ? force_N - last_force_N_ : Vec3(0.0);
   variation_N_ += leak * (glm::length(change) - variation_N_);
   drift_N_ += leak * (change - drift_N_);

@@ -61,6 +61,7 @@ class BoundedController {
   Vec3 last_force_N_{0.0};
   double variation_N_ = 0.0;  // mean |change of force| per tick, leaky
   Vec3 drift_N_{0.0};         // mean change of force per tick, leaky
+  int not_obeyed_ticks_ = 0;  // above 0: other forces act than this controller computed
   std::uint32_t parts_ = 0;
 };
 

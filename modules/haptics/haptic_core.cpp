@@ -79,6 +79,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       forgetForces(false);
       break;
     case CommandKind::controller:
+      if (command.value < 0 || std::size_t(command.value) >= kControllerNames.size()) break;
       parameters_.controller = ControllerKind(command.value);
       for (Arm& arm : arms_) {
         arm.controller = arm.controllers[std::size_t(parameters_.controller)];

@@ -226,7 +226,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
       error2 += (held_N - ideal) * (held_N - ideal);
     }
     if (!(std::abs(x) < 1e3)) {  // gone
-      result.oscillation_m = 1e3;
+      result.oscillation_m = result.fidelity_error = 1e3;
       result.stable = false;
       return result;
     }

@@ -58,10 +58,12 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
       capabilities[arms[i]] = (*device)->capabilities(i);
       double& limit_N = scene.arms[arms[i]].max_force_N;
       limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
-      // The host paces its devices: a sample is answered in the period that follows it.
+      // A simulated arm moves on with the force that answers its sample. A real one gets that force
+      // with the next exchange, a period later.
+      const int delay_ticks = (*device)->takesTargets() ? 0 : 1;
       scene.arms[arms[i]].dynamics =
           ArmDynamics{capabilities[arms[i]].apparent_mass_kg,
-                      capabilities[arms[i]].encoder_step_m, limit_N, 0};
+                      capabilities[arms[i]].encoder_step_m, limit_N, delay_ticks};
     }
     devices.push_back({*std::move(device), arms});
   }

@@ -210,7 +210,11 @@ Result<std::vector<Event>> SessionReader::events() const {
     return file_->bad("The recording's events are damaged");
   }
   for (const Event& event : out) {
-    if (event.command.tissues.count < 0 || event.command.tissues.count > kMaxTissues) {
+    const Command& command = event.command;
+    const bool controller_known =
+        command.kind != CommandKind::controller ||
+        (command.value >= 0 && std::size_t(command.value) < kControllerNames.size());
+    if (!controller_known || command.tissues.count < 0 || command.tissues.count > kMaxTissues) {
       return file_->bad("The recording's events are damaged");
     }
   }

@@ -46,6 +46,61 @@ TEST(HapticCore, NeverExceedsTheArmsLimit) {
   EXPECT_NEAR(force, 3.3, 1e-9);
 }
 
+// The hand works against no force in a pause: nothing of that says anything of the arm.
+TEST(HapticCore, TheBoundedControllerLearnsNothingWhileItsForceIsNotSent) {
+  HapticParameters p = oneArm();
+  p.controller = ControllerKind::bounded;
+  p.arms[0].dynamics = {0.045, 5.5e-5, 3.3, 0};
+  p.tissues.classes[0].cuttable = 0;
+  const auto wiggle = [](Bench& bench) {
+    for (int i = 0; i < 5000; ++i) {
+      const double phase = std::abs(double(i % 500) / 250.0 - 1.0);
+      bench.at({0, 0, -1.0 - 4.0 * phase});
+    }
+  };
+  for (CommandKind stop : {CommandKind::pause, CommandKind::none}) {
+    Bench bench(p);
+    bench.push({0, 0, 2}, {0, 0, -3}, 500);
+    bench.at({0, 0, -3}, {{stop, 0, {}}}, stop == CommandKind::none ? 30'000'000 : 0);
+    wiggle(bench);
+    EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
+    EXPECT_EQ(bench.record.arms[0].alpha, 1.0);
+  }
+}
+
+TEST(HapticCore, TheBoundedControllerShowsTheTissueThroughAScaledAndTurnedMap) {
+  HapticParameters p = oneArm();
+  p.controller = ControllerKind::bounded;
+  p.arms[0].dynamics = {0.045, 0.0, 3.3, 0};
+  p.arms[0].map.motion_scale = 2.0;
+  p.arms[0].map.force_scale = 0.5;
+  p.arms[0].map.rotation = Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0);  // device y is patient z
+  p.tissues = test::boneTable(5.0, 300.0, 100.0);
+  p.tissues.classes[0].cuttable = 0;
+  Bench bench(p);
+  // The tip moves 10 mm/s in the patient, 5 mm/s at the arm.
+  bench.push({0, 2, 0}, {0, -2, 0}, 800);
+  const ArmRecord& record = bench.record.arms[0];
+  EXPECT_NEAR(record.demanded_N.y, 0.5 * (300.0 * 3.49e-3 + 5.0 * 1e-2), 0.005);  // touches at z = -0.5
+  EXPECT_NEAR(record.bounded_N.y, record.demanded_N.y, 0.02);
+  EXPECT_NEAR(glm::length(record.bounded_N), record.bounded_N.y, 1e-6);
+}
+
+TEST(HapticCore, ASlowLoopKeepsTheSignOfStiffness) {
+  HapticParameters p = oneArm();
+  p.period_s = 0.01;
+  p.controller = ControllerKind::bounded;
+  p.arms[0].dynamics = {0.045, 5.5e-5, 3.3, 0};
+  p.tissues = test::boneTable(0.5, 100.0, 2.0);
+  p.tissues.classes[0].cuttable = 0;
+  Bench bench(p);
+  for (int i = 0; i <= 100; ++i) {
+    const ArmRecord& record = bench.at({0, 0, 1.0 - 0.04 * i});
+    EXPECT_EQ(record.controller_parts & kPartArmBound, 0u) << i;
+    if (i > 60) EXPECT_NEAR(record.bounded_N.z, record.demanded_N.z, 0.02) << i;
+  }
+}
+
 TEST(HapticCore, UndoPutsTheStrokeBackAndRedoTakesItAgain) {
   Bench bench;
   const std::string whole = hashOf(bench.grid);
