@@ -97,7 +97,9 @@ TEST(HapticCore, ASlowLoopKeepsTheSignOfStiffness) {
   for (int i = 0; i <= 100; ++i) {
     const ArmRecord& record = bench.at({0, 0, 1.0 - 0.04 * i});
     EXPECT_EQ(record.controller_parts & kPartArmBound, 0u) << i;
-    if (i > 60) EXPECT_NEAR(record.bounded_N.z, record.demanded_N.z, 0.02) << i;
+    if (i > 60) {
+      EXPECT_NEAR(record.bounded_N.z, record.demanded_N.z, 0.02) << i;
+    }
   }
 }
 
