@@ -30,8 +30,8 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.patient_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
-    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->length_mm,
-                     tool->tool.kind == ToolKind::blade, arm.tissue_class >= 0,
+    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->tool.made_from.length_mm,
+                     tool->tool.made_from.kind == ToolKind::blade, arm.tissue_class >= 0,
                      Vec3(colour.redF(), colour.greenF(), colour.blueF())});
   }
   return tools;

@@ -103,7 +103,8 @@ void TissuePanel::build() {
                addNumber("damping", tr(" N\u00b7s/m"), 1e5, 0.1, &Tissue::damping_Ns_per_m));
   form->addRow(tr("Stiffness"),
                addNumber("stiffness", tr(" N/m"), 1e7, 10.0, &Tissue::stiffness_N_per_m));
-  form->addRow(tr("Yield"), addNumber("yield", tr(" N"), 100.0, 0.05, &Tissue::yield_N));
+  form->addRow(tr("Friction"),
+               addNumber("friction", tr(" N"), 100.0, 0.05, &Tissue::friction_N));
 
   auto* editor_layout = new QVBoxLayout(editor_);
   editor_layout->setContentsMargins(0, 0, 0, 0);

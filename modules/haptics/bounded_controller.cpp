@@ -213,7 +213,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     const bool pushed = in.rendered.elastic_N != Vec3(0.0);
     const bool leaves = pushed && glm::dot(spring_N, in.rendered.elastic_N) <= 0.0;
     if (!leaves) {
-      force_N = (spring_N - b * v - (0.25 * k * T_ * T_ + b * theta * T_) * hand) /
+      force_N = (spring_N - b * v - in.rendered.damped_turning_N - (0.25 * k * T_ * T_ + b * theta * T_) * hand) /
                 (1.0 + 0.25 * k * T_ * T_ / m + theta * beta);
     }
     const double size_N = glm::length(force_N);

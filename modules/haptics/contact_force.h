@@ -5,15 +5,21 @@
 
 namespace trephine {
 
-// The force on the arm is elastic_N - damping v; around the sampled position it changes by
-// -stiffness per metre. One frame throughout: patient axes from the laws, device axes at the
-// controller.
+// The force on the arm is elastic_N - damping (v + turning), v the velocity of the tool's tip, which
+// the arm moves; around the sampled position it changes by -stiffness per metre. One frame
+// throughout: patient axes from the laws, device axes at the controller.
 struct ContactForce {
   Vec3 elastic_N{0.0};
-  double stiffness = 0.0;  // N/m
-  double damping = 0.0;    // N s/m
+  double stiffness = 0.0;        // N/m
+  double damping = 0.0;          // N s/m, the sum over the tool's points
+  Vec3 damped_turning_N{0.0};    // sum of damping_i (omega x r_i): the points' own velocities
+  Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
 
-  Vec3 at(const Vec3& velocity_m_s) const { return elastic_N - damping * velocity_m_s; }
+  Vec3 at(const Vec3& velocity_m_s) const {
+    return elastic_N - damping * velocity_m_s - damped_turning_N;
+  }
+  // What the points move by turning, as one velocity; 0 without damping.
+  Vec3 turning_m_s() const { return damping > 0.0 ? damped_turning_N / damping : Vec3(0.0); }
 };
 
 struct ControllerInput {

@@ -7,48 +7,110 @@
 namespace trephine {
 
 namespace {
-// Undo, redo and reset move at most this many voxels a tick.
-constexpr std::size_t kVoxelsPerSlice = 1024;
+
+// Undo, redo and rewind move at most this many voxels a tick.
+constexpr std::size_t kVoxelsPerSlice = 4096;
 constexpr std::size_t kMaxEventsPerTick = 64;
+
+// How an orientation turned from one to another in a time, small angles: 2 Im(q_now q_before*) / T.
+Vec3 turning(const Quat& before, const Quat& now, double period_s) {
+  const Quat by = now * glm::conjugate(before);
+  const double sign = by.w < 0.0 ? -2.0 : 2.0;
+  return Vec3(by.x, by.y, by.z) * (sign / period_s);
+}
+
+// 1 where nothing was limited, so that what was allowed in full stays the same to the last bit.
+double shareOf(double limited, double demanded) {
+  return demanded > 0.0 ? limited / demanded : 1.0;
+}
+
 }  // namespace
+
+HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
+                     const GridGeometry& geometry)
+    : contact(arm.tool, geometry),
+      removal(arm.tool, geometry, all.removal, all.period_s),
+      points(all.force_at == ForceAt::tip ? 1 : arm.tool.points_m.size()) {
+  for (LawKind kind : all.laws) {
+    laws.push_back(makeLaw(kind, points.size()));
+    rendered_laws.push_back(makeLaw(kind, points.size()));
+    if (kind == LawKind::elastic) ball.emplace(geometry, 1000.0 * arm.tool.ball_radius_m, kBallDirections);
+  }
+  for (const auto& [name, kind] : kControllerNames) {
+    controllers.push_back(makeController(kind, arm.dynamics, all.period_s));
+  }
+  controller = controllers[std::size_t(all.controller)];
+  bites.reserve(Removal::kMostBites);
+}
 
 HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
     : parameters_(parameters),
       writer_(std::move(writer)),
-      journal_(parameters.journal_voxels, parameters.journal_strokes),
-      patient_to_voxel_(writer_.grid().geometry().patientToVoxel()),
-      stroke_gap_ticks_(std::uint64_t(parameters.stroke_gap_s / parameters.period_s)) {
-  std::size_t points = 0;
+      journal_(parameters.journal_voxels, parameters.journal_strokes, parameters.journal_seconds),
+      stroke_gap_ticks_(std::uint64_t(parameters.stroke_gap_s / parameters.period_s)),
+      second_ticks_(std::uint64_t(1.0 / parameters.period_s + 0.5)) {
+  const auto& laws = parameters_.laws;
+  elastic_ = std::find(laws.begin(), laws.end(), LawKind::elastic) != laws.end();
   for (const ArmParameters& arm : parameters_.arms) {
-    Arm state;
-    for (LawKind kind : parameters_.laws) {
-      state.laws.push_back(makeLaw(kind));
-      state.rendered_laws.push_back(makeLaw(kind));
-    }
-    for (const auto& [name, kind] : kControllerNames) {
-      state.controllers.push_back(makeController(kind, arm.dynamics, parameters_.period_s));
-    }
-    state.controller = state.controllers[std::size_t(parameters_.controller)];
-    state.hits.reserve(arm.tool.points_m.size());
-    points += arm.tool.points_m.size();
-    arms_.push_back(std::move(state));
+    arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
-  carves_.reserve(points);
+  useTissues();
+  carves_.reserve(arms_.size() * Removal::kMostBites);
   events_.reserve(kMaxEventsPerTick);
+}
+
+void HapticCore::useTissues() {
+  lookup_.set(parameters_.tissues);
+  if (elastic_) {
+    TissueTable pushing = parameters_.tissues;
+    // A capsule pushes by the law of its own, where the scene has it.
+    const auto& laws = parameters_.laws;
+    const bool ruptures = std::find(laws.begin(), laws.end(), LawKind::rupture) != laws.end();
+    for (int c = 0; ruptures && c < pushing.count; ++c) {
+      TissueClass& tissue = pushing.classes[std::size_t(c)];
+      if (tissue.rupture_N > 0.0) tissue.stiffness_N_per_m = 0.0;
+    }
+    stiffness_.set(pushing);
+  }
+  for (Arm& arm : arms_) {
+    arm.removal.forget();
+    arm.gate.change();
+  }
+}
+
+CarveJournal::Credits HapticCore::credits() const {
+  CarveJournal::Credits out{};
+  for (std::size_t i = 0; i < arms_.size(); ++i) out[i] = arms_[i].removal.credit_J();
+  return out;
+}
+
+std::uint32_t HapticCore::journalState() {
+  std::uint32_t state = 0;
+  if (journal_.hasRoom(arms_.size() * Removal::kMostBites)) state |= kJournalRoom;
+  if (!journal_.busy() || journal_.canStep(kVoxelsPerSlice)) state |= kJournalReady;
+  return state;
 }
 
 void HapticCore::tick(const TickInput& input, const Command* commands, std::size_t command_count,
                       TickRecord& record) {
   carves_.clear();
   events_.clear();
+  if (journal_.busy() && (input.journal & kJournalReady)) {
+    journal_.step(writer_, kVoxelsPerSlice);
+    if (!journal_.busy()) finishRestore();
+  }
+  if (++ticks_ % second_ticks_ == 0) journal_.mark(credits());
+  // The journal grants what it was asked for.
+  may_remove_ = (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostBites);
   for (std::size_t i = 0; i < command_count; ++i) apply(commands[i], input.tick);
-  journal_.step(writer_, kVoxelsPerSlice);
 
   record.tick = input.tick;
   record.late_ns = input.late_ns;
+  record.journal = input.journal;
   for (std::size_t i = 0; i < arms_.size(); ++i) moveArm(i, input, record.arms[i]);
+  removeBites(input.tick, record);
 
-  const bool full = journal_.full();
+  const bool full = !(input.journal & kJournalRoom);
   if (full && !reported_full_) events_.push_back({input.tick, EventKind::journal_full, -1, 0, {}});
   reported_full_ = full;
 }
@@ -59,13 +121,18 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::none:
       break;
     case CommandKind::undo:
-      if (journal_.startUndo()) forgetForces(true);
+      if (journal_.startUndo(credits())) forgetForces(true);
       break;
     case CommandKind::redo:
-      if (journal_.startRedo()) forgetForces(true);
+      if (journal_.startRedo(credits())) forgetForces(true);
       break;
     case CommandKind::reset:
-      if (journal_.startReset()) forgetForces(true);
+      if (journal_.startReset(credits())) forgetForces(true);
+      break;
+    case CommandKind::rewind:
+      if (command.value >= 0 && journal_.startRewind(std::size_t(command.value), credits())) {
+        forgetForces(true);
+      }
       break;
     case CommandKind::pause:
       paused_ = true;
@@ -88,7 +155,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       break;
     case CommandKind::tissues:
       parameters_.tissues = command.tissues;
-      for (Arm& arm : arms_) arm.gate.change();
+      useTissues();
       break;
   }
 }
@@ -100,12 +167,21 @@ void HapticCore::forgetForces(bool restored) {
     for (Law& law : arm.laws) forgetLaw(law);
     for (Law& law : arm.rendered_laws) forgetLaw(law);
     forgetController(arm.controller);
-    arm.contact = Contact{};
+    arm.contact.forget();
+    arm.removal.forget();
+    arm.last_demanded_N = arm.last_torque_Nm = Vec3(0.0);
     if (restored) {
       arm.gate.restored();
     } else {
       arm.gate.change();
     }
+  }
+}
+
+void HapticCore::finishRestore() {
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    arms_[i].removal.setCredit(journal_.credits()[i]);
+    arms_[i].removal.forget();
   }
 }
 
@@ -115,6 +191,60 @@ void HapticCore::latch(std::size_t index, std::uint32_t fault, std::uint64_t tic
   if (events_.size() < kMaxEventsPerTick) {
     events_.push_back({tick, EventKind::fault, std::int32_t(index), fault, {}});
   }
+}
+
+// What the laws are told: which points lie in which tissue, and how they move.
+LawInput HapticCore::touch(Arm& arm, const Tool& tool, const Motion& motion) {
+  const Contact& contact =
+      arm.contact.update(writer_.grid(), lookup_, parameters_.tissues, motion.pose_mm);
+  const std::span<const std::int8_t> classes = arm.contact.classes();
+  if (parameters_.force_at == ForceAt::tip) {
+    arm.points[0].tissue_class = contact.tissue_class;
+  } else {
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      TouchPoint& p = arm.points[i];
+      p.tissue_class = classes[i];
+      if (classes[i] < 0) continue;
+      p.weight = tool.weights[i];
+      p.arm_m = motion.pose_mm.orientation * tool.points_m[i];
+      p.turning_m_s = glm::cross(motion.turning_rad_s, p.arm_m);
+    }
+  }
+  LawInput in;
+  in.tip_m = 0.001 * motion.pose_mm.position;
+  in.velocity_m_s = motion.velocity_m_s;
+  in.into_m = motion.pose_mm.orientation * Vec3(0.0, 0.0, -1.0);
+  in.points = arm.points;
+  in.touching = contact.touching();
+  in.tip_class = classes[0];
+  in.tissues = &parameters_.tissues;
+  in.blunt = tool.blunt;
+  in.ball_radius_m = tool.ball_radius_m;
+  if (arm.ball) {
+    in.ball_m = -tool.ball_radius_m * in.into_m;
+    in.push = arm.ball->push(writer_.grid(), stiffness_,
+                             motion.pose_mm.position + 1000.0 * in.ball_m);
+  }
+  return in;
+}
+
+// The work of the demanded force, by the trapezoidal rule, and of the motor while the tool is in
+// tissue that may be cut.
+void HapticCore::earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model) {
+  const Vec3 force_N = model.at(motion.velocity_m_s);
+  const Contact& contact = arm.contact.contact();
+  const bool cutting =
+      contact.touching() &&
+      parameters_.tissues.classes[std::size_t(contact.tissue_class)].cuttable;
+  if (cutting && arm.cuts) {
+    const double T = parameters_.period_s;
+    const double by_hand_W =
+        -0.5 * (glm::dot(force_N + arm.last_demanded_N, motion.velocity_m_s) +
+                glm::dot(model.torque_Nm + arm.last_torque_Nm, motion.turning_rad_s));
+    arm.removal.earn(T * (by_hand_W + tool.made_from.motor_W), parameters_.tissues);
+  }
+  arm.last_demanded_N = force_N;
+  arm.last_torque_Nm = model.torque_Nm;
 }
 
 void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& out) {
@@ -128,6 +258,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   out.device_orientation = sample.orientation;
   out.buttons = sample.buttons;
   out.flags = sample.flags;
+  arm.cuts = false;
 
   if (sample.flags & TREPHINE_ARM_LOST) latch(index, kFaultDeviceLost, input.tick);
   if (input.late_ns >= kFaultLate_ns) latch(index, kFaultLate, input.tick);
@@ -136,50 +267,54 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
     ++nonfinite_;
     latch(index, kFaultNonFinite, input.tick);
     arm.gate.zero();
-    arm.contact = Contact{};
-    arm.last_position_m.reset();
+    arm.contact.forget();
+    arm.last_pose.reset();
     out.energy_out_J = arm.energy_out_J;
+    out.cutting_credit_J = arm.removal.credit_J();
     out.faults = arm.faults;
     return;
   }
 
-  const Vec3 moved_m = arm.last_position_m ? sample.position_m - *arm.last_position_m : Vec3(0.0);
-  arm.last_position_m = sample.position_m;
+  const Pose before = arm.last_pose.value_or(Pose{sample.position_m, sample.orientation});
+  const Vec3 moved_m = sample.position_m - before.position;
+  arm.last_pose = Pose{sample.position_m, sample.orientation};
   arm.energy_out_J += arm.gate.sent_N() * moved_m;  // the force held since the last tick
   const Vec3 velocity_m_s = moved_m / T;
 
-  const Pose pose_mm = parameters.map.toPatient_mm({sample.position_m, sample.orientation});
-  out.patient_position_mm = pose_mm.position;
-  out.patient_orientation = pose_mm.orientation;
-  out.velocity_m_s = parameters.map.velocityToPatient(velocity_m_s);
+  Motion motion;
+  motion.pose_mm = parameters.map.toPatient_mm({sample.position_m, sample.orientation});
+  motion.velocity_m_s = parameters.map.velocityToPatient(velocity_m_s);
+  motion.turning_rad_s =
+      parameters.map.rotation * turning(before.orientation, sample.orientation, T);
+  out.patient_position_mm = motion.pose_mm.position;
+  out.patient_orientation = motion.pose_mm.orientation;
+  out.velocity_m_s = motion.velocity_m_s;
 
-  arm.contact = findContact(writer_.grid(), patient_to_voxel_, parameters_.tissues, parameters.tool,
-                            pose_mm, arm.contact, parameters_.contact_hold_mm, arm.hits);
-  out.tissue_class = arm.contact.tissue_class;
-  out.points_in_tissue = arm.contact.points;
+  LawInput law_input = touch(arm, parameters.tool, motion);
+  out.tissue_class = arm.contact.contact().tissue_class;
+  out.points_in_tissue = arm.contact.contact().points;
 
-  LawInput law_input{0.001 * pose_mm.position, arm.contact, {}};
-  if (arm.contact.touching()) {
-    law_input.tissue = parameters_.tissues.classes[std::size_t(arm.contact.tissue_class)];
-  }
   ContactForce model;
   for (Law& law : arm.laws) addLaw(law, law_input, model);
-  out.demanded_N = parameters.map.forceToDevice(model.at(out.velocity_m_s));
+  out.demanded_N = parameters.map.forceToDevice(model.at(motion.velocity_m_s));
+  out.demanded_torque_Nm = parameters.map.torqueToDevice(model.torque_Nm);
 
   // The same contact once more, with the impedance that the controller lets this arm show.
   const double at_arm = parameters.map.motion_scale * parameters.map.force_scale;
-  const Impedance limited =
-      limitImpedance(arm.controller, {at_arm * law_input.tissue.damping_Ns_per_m,
-                                      at_arm * law_input.tissue.stiffness_N_per_m});
-  law_input.tissue.damping_Ns_per_m = limited.damping / at_arm;
-  law_input.tissue.stiffness_N_per_m = limited.stiffness / at_arm;
+  const Impedance demanded{at_arm * model.damping, at_arm * model.stiffness};
+  const Impedance limited = limitImpedance(arm.controller, demanded);
+  law_input.share = {shareOf(limited.damping, demanded.damping),
+                     shareOf(limited.stiffness, demanded.stiffness)};
   ControllerInput to_controller;
-  for (Law& law : arm.rendered_laws) addLaw(law, law_input, to_controller.rendered);
-  to_controller.rendered.elastic_N = parameters.map.forceToDevice(to_controller.rendered.elastic_N);
-  to_controller.rendered.stiffness *= at_arm;
-  to_controller.rendered.damping *= at_arm;
+  ContactForce& rendered = to_controller.rendered;
+  for (Law& law : arm.rendered_laws) addLaw(law, law_input, rendered);
+  rendered.elastic_N = parameters.map.forceToDevice(rendered.elastic_N);
+  rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
+  rendered.stiffness *= at_arm;
+  rendered.damping *= at_arm;
+  const bool in_contact = law_input.touching || model.stiffness > 0.0;
   to_controller.demanded_N = out.demanded_N;
-  to_controller.touching = arm.contact.touching();
+  to_controller.touching = in_contact;
   to_controller.position_m = sample.position_m;
   to_controller.velocity_m_s = velocity_m_s;
   to_controller.last_sent_N = arm.gate.sent_N();
@@ -193,57 +328,90 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
       },
       arm.controller);
 
-  const TissueClass& numbers = law_input.tissue;
-  const bool finite = isFinite(numbers.damping_Ns_per_m) &&
-                      isFinite(numbers.stiffness_N_per_m) && isFinite(numbers.yield_N) &&
-                      isFinite(out.demanded_N) && isFinite(out.bounded_N) &&
-                      isFinite(velocity_m_s) && isFinite(out.velocity_m_s) &&
-                      isFinite(pose_mm) && isFinite(out.observer_J) && isFinite(out.alpha) &&
-                      isFinite(arm.energy_out_J);
+  const bool finite = isFinite(law_input.share.damping) && isFinite(law_input.share.stiffness) &&
+                      isFinite(model.stiffness) && isFinite(model.damping) &&
+                      isFinite(out.demanded_N) && isFinite(out.demanded_torque_Nm) &&
+                      isFinite(out.bounded_N) && isFinite(velocity_m_s) &&
+                      isFinite(out.velocity_m_s) && isFinite(motion.pose_mm) &&
+                      isFinite(out.observer_J) && isFinite(out.alpha) && isFinite(arm.energy_out_J);
   if (!finite) {
     ++nonfinite_;
     latch(index, kFaultNonFinite, input.tick);
     for (Law& law : arm.laws) forgetLaw(law);
     for (Law& law : arm.rendered_laws) forgetLaw(law);
     forgetController(arm.controller);
+    arm.last_demanded_N = arm.last_torque_Nm = Vec3(0.0);
     if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
-    out.velocity_m_s = out.demanded_N = out.bounded_N = Vec3(0.0);
+    out.velocity_m_s = out.demanded_N = out.demanded_torque_Nm = out.bounded_N = Vec3(0.0);
     out.observer_J = out.alpha = 0.0;
   }
   out.clamped_N = clampForce(out.bounded_N, parameters.max_force_N);
   const bool open = !paused_ && arm.faults == 0;
   // While voxels come back in slices, tissue may yet fill in around the tool.
-  const bool in_tissue = arm.contact.touching() || journal_.busy();
+  const bool in_tissue = in_contact || journal_.busy();
   out.sent_N = arm.gate.pass(out.clamped_N, in_tissue, open, input.late_ns, T);
   out.energy_out_J = arm.energy_out_J;
 
-  const bool cuts = open && !journal_.busy() && !arm.gate.waitingForAir();
-  if (cuts) removeHits(index, input.tick, out);
+  arm.cuts = open && !journal_.busy() && !arm.gate.waitingForAir();
+  if (finite) earn(arm, parameters.tool, motion, model);
+  out.cutting_credit_J = arm.removal.credit_J();
   out.faults = arm.faults;
 }
 
-// Removal on contact, the seed paper's rule: every point in tissue erases its voxel.
-void HapticCore::removeHits(std::size_t index, std::uint64_t tick, ArmRecord& out) {
-  Arm& arm = arms_[index];
-  const int arm_number = int(index);
-  for (const Hit& hit : arm.hits) {
-    if (!parameters_.tissues.classes[std::size_t(hit.tissue_class)].cuttable) continue;
-    // Two points may share a voxel, and a tissue may include the HU of air.
-    const std::int16_t old_hu = writer_.grid().hu(hit.voxel);
-    if (old_hu == kAirHu) continue;
-    if (!journal_.inStroke(arm_number)) {
-      if (!journal_.beginStroke(arm_number)) return;
-      events_.push_back({tick, EventKind::stroke_began, std::int32_t(index), 0, {}});
+// All tools bite into the tissue as it was, then it goes. Who comes second to a voxel that another
+// took in the same tick pays half of it, so that the order of the arms changes no credit.
+void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    Arm& arm = arms_[i];
+    arm.bites.clear();
+    if (!arm.cuts || !may_remove_) continue;
+    const ArmRecord& moved = record.arms[i];
+    arm.removal.sweep(writer_.grid(), lookup_, parameters_.tissues,
+                      {moved.patient_position_mm, moved.patient_orientation}, arm.bites);
+  }
+  const GridGeometry& geometry = writer_.grid().geometry();
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    Arm& arm = arms_[i];
+    for (const Bite& bite : arm.bites) {
+      const Index3& v = bite.voxel;
+      const std::size_t voxel = geometry.indexOf(v[0], v[1], v[2]);
+      if (writer_.grid().hu(voxel) == kAirHu) {
+        arm.removal.refund(0.5 * bite.cost_J);
+        for (std::size_t other = 0; other < i; ++other) {
+          for (const Bite& first : arms_[other].bites) {
+            if (first.voxel != v) continue;
+            arms_[other].removal.refund(0.5 * bite.cost_J);
+            other = i;
+            break;
+          }
+        }
+      } else if (erase(i, bite, voxel, tick)) {
+        ++record.arms[i].removed_voxels;
+      } else {
+        arm.removal.refund(bite.cost_J);
+      }
     }
-    if (!journal_.erase(writer_, arm_number, hit.voxel, hit.tissue_class)) return;
-    carves_.push_back({tick, std::uint32_t(hit.voxel), old_hu, std::int8_t(index),
-                       std::int8_t(hit.tissue_class)});
-    ++out.removed_voxels;
+    if (!arm.cuts) continue;
+    const int arm_number = int(i);
+    arm.air_ticks = arm.contact.contact().touching() ? 0 : arm.air_ticks + 1;
+    if (journal_.inStroke(arm_number) && arm.air_ticks > stroke_gap_ticks_) {
+      journal_.endStroke(arm_number);
+    }
   }
-  arm.air_ticks = arm.contact.touching() ? 0 : arm.air_ticks + 1;
-  if (journal_.inStroke(arm_number) && arm.air_ticks > stroke_gap_ticks_) {
-    journal_.endStroke(arm_number);
+}
+
+bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
+                       std::uint64_t tick) {
+  const int arm = int(index);
+  if (!journal_.inStroke(arm)) {
+    if (!journal_.beginStroke(arm, credits())) return false;
+    events_.push_back({tick, EventKind::stroke_began, arm, 0, {}});
   }
+  const std::int16_t old_hu = writer_.grid().hu(voxel);
+  if (!journal_.erase(writer_, arm, voxel, bite.tissue_class)) return false;
+  carves_.push_back({tick, std::uint32_t(voxel), old_hu, std::int8_t(index),
+                     std::int8_t(bite.tissue_class)});
+  return true;
 }
 
 }  // namespace trephine

@@ -10,7 +10,9 @@
 #include "haptics/controllers.h"
 #include "haptics/haptic_types.h"
 #include "haptics/laws.h"
+#include "haptics/removal.h"
 #include "haptics/safety.h"
+#include "haptics/stiffness_ball.h"
 #include "haptics/tool.h"
 #include "haptics/workspace_map.h"
 #include "volume/carve_journal.h"
@@ -29,11 +31,13 @@ struct HapticParameters {
   double period_s = 0.001;
   std::vector<ArmParameters> arms;  // at most kMaxArms
   std::vector<LawKind> laws;
+  ForceAt force_at = ForceAt::tip;
+  RemovalKind removal = RemovalKind::work;
   ControllerKind controller = ControllerKind::bounded;
   TissueTable tissues;
-  double contact_hold_mm = 1.5;              // see findContact
-  std::size_t journal_voxels = 8'000'000;    // 8 bytes each
-  std::size_t journal_strokes = 4096;
+  std::size_t journal_voxels = 8'000'000;   // in memory, 8 bytes each; the rest is spilled
+  std::size_t journal_strokes = 65'536;
+  std::size_t journal_seconds = 86'400;      // to which one can rewind
   double stroke_gap_s = 0.3;                 // this long out of tissue ends a stroke
 };
 
@@ -42,8 +46,14 @@ class HapticCore {
   // `writer` stays with the core: it is the one writer of the grid.
   HapticCore(const HapticParameters& parameters, Grid::Writer writer);
 
-  // Applies `commands` (those that act on voxels only start here and go on in slices; at most one
-  // of them a tick, or the second is lost), then moves every arm one tick. `record` is the outcome; carves() and events() list what happened.
+  // Asked before each tick and given to it: JournalState bits.
+  std::uint32_t journalState();
+
+  // Goes on with an undo, redo or rewind; applies `commands` (those that act on voxels only start
+  // here and go on in slices from the next tick; at most one of them a tick, or the second is
+  // lost); moves every arm one tick, all on the tissue as it is now; then removes what they cut, so
+  // that the order of the arms changes nothing. `record` is the outcome; carves() and events() list
+  // what happened.
   void tick(const TickInput& input, const Command* commands, std::size_t command_count,
             TickRecord& record);
 
@@ -59,6 +69,7 @@ class HapticCore {
   const std::vector<Event>& events() const { return events_; }        // of the last tick
 
   const CarveJournal& journal() const { return journal_; }
+  CarveJournal& journal() { return journal_; }  // for the one that spills it
   const Grid& grid() const { return writer_.grid(); }
   const HapticParameters& parameters() const { return parameters_; }
   bool paused() const { return paused_; }
@@ -68,33 +79,57 @@ class HapticCore {
 
  private:
   struct Arm {
+    Arm(const ArmParameters& parameters, const HapticParameters& all, const GridGeometry& geometry);
+
     std::vector<Law> laws;           // of the model: what the tissue demands
     std::vector<Law> rendered_laws;  // of what the controller lets the arm render
     std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
     Controller controller;
     ForceGate gate;
-    Contact contact;
-    std::vector<Hit> hits;
-    std::optional<Vec3> last_position_m;  // device
+    ToolContact contact;
+    std::optional<StiffnessBall> ball;  // only with the elastic law
+    Removal removal;
+    std::vector<TouchPoint> points;
+    std::vector<Bite> bites;  // of this tick
+    std::optional<Pose> last_pose;  // device
+    Vec3 last_demanded_N{0.0}, last_torque_Nm{0.0};  // patient axes
+    bool cuts = false;  // may remove in this tick
     Vec3 energy_out_J{0.0};
     std::uint32_t faults = 0;
     std::uint64_t air_ticks = 0;  // since the tool was last in tissue
   };
+  // How an arm moved since the last tick, patient axes.
+  struct Motion {
+    Pose pose_mm;
+    Vec3 velocity_m_s{0.0};
+    Vec3 turning_rad_s{0.0};
+  };
 
   void apply(const Command& command, std::uint64_t tick);
   void forgetForces(bool restored);
+  void finishRestore();
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
-  void removeHits(std::size_t index, std::uint64_t tick, ArmRecord& out);
+  LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
+  void earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model);
+  void removeBites(std::uint64_t tick, TickRecord& record);
+  bool erase(std::size_t index, const Bite& bite, std::size_t voxel, std::uint64_t tick);
+  void useTissues();
+  CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);
 
   HapticParameters parameters_;
   Grid::Writer writer_;
   CarveJournal journal_;
-  Mat4 patient_to_voxel_;
+  TissueLookup lookup_;
+  StiffnessOfHu stiffness_;  // only with the elastic law
+  bool elastic_ = false;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;
+  std::uint64_t second_ticks_;
+  std::uint64_t ticks_ = 0;
+  bool may_remove_ = false;  // in this tick
   bool paused_ = false;
   bool reported_full_ = false;
   std::uint64_t nonfinite_ = 0;

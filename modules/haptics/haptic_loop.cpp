@@ -45,6 +45,7 @@ void HapticLoop::step(std::int64_t late_ns) {
     TickInput input;
     input.tick = tick_;
     input.late_ns = late_ns;
+    input.journal = core_.journalState();
 
     // One a tick: a second undo would find the first one still at work.
     Command command;
@@ -105,10 +106,9 @@ void HapticLoop::publish(const TickRecord& record) {
   state.nonfinite = core_.nonFinite();
   state.dropped = dropped();
   const CarveJournal& journal = core_.journal();
-  state.can_undo = false;
-  for (std::size_t i = journal.strokeCount(); i > 0 && !state.can_undo; --i) {
-    state.can_undo = !journal.stroke(i - 1).undone;
-  }
+  state.can_undo = journal.canUndo();
+  state.can_redo = journal.canRedo();
+  state.seconds = std::uint32_t(journal.seconds());
   for (int arm = 0; arm < kMaxArms; ++arm) {
     for (int c = 0; c < kMaxClasses; ++c) state.removed[arm][c] = journal.removed(arm, c);
   }

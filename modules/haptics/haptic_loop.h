@@ -51,6 +51,8 @@ struct LoopState {
   bool busy = false;  // an undo, redo or reset is going on
   bool journal_full = false;
   bool can_undo = false;
+  bool can_redo = false;
+  std::uint32_t seconds = 0;  // back to any of which one can rewind
 };
 
 class HapticLoop {

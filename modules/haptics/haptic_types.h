@@ -19,20 +19,27 @@ struct ArmSample {
   std::uint32_t flags = 0;      // TREPHINE_ARM_*
 };
 
+// What the journal allows in a tick; it depends on another thread, so it is an input and recorded.
+enum JournalState : std::uint32_t {
+  kJournalRoom = 1u << 0,   // removal may go on
+  kJournalReady = 1u << 1,  // the next slice of an undo, redo or rewind is in memory
+};
+
 struct TickInput {
   std::uint64_t tick = 0;
   std::int64_t late_ns = 0;
+  std::uint32_t journal = kJournalRoom | kJournalReady;
   std::array<ArmSample, kMaxArms> arms{};
 };
 
 // Live and scripted input to the writer of the voxels, applied at the start of a tick.
 enum class CommandKind : std::int32_t {
-  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues
+  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues, rewind
 };
 
 struct Command {
   CommandKind kind = CommandKind::none;
-  std::int32_t value = 0;  // controller: a ControllerKind
+  std::int32_t value = 0;  // controller: a ControllerKind; rewind: to this second of the session
   TissueTable tissues{};   // tissues: the new table
 };
 
@@ -51,12 +58,14 @@ struct ArmRecord {
   Quat patient_orientation{1, 0, 0, 0};
   Vec3 velocity_m_s{0.0};  // patient axes, backward difference
   Vec3 demanded_N{0.0};    // from the laws
+  Vec3 demanded_torque_Nm{0.0};  // about the handle, for arms that can
   Vec3 bounded_N{0.0};     // after the controller
   Vec3 clamped_N{0.0};     // within the arm's limit
   Vec3 sent_N{0.0};        // after the gate
   Vec3 energy_out_J{0.0};  // net work of the sent force on the arm so far, by axis: sum F(n-1) dx(n)
   double observer_J = 0.0;  // the controller's own observer
   double alpha = 0.0;       // the controller's gain: of `bounded`, the scale it has learnt
+  double cutting_credit_J = 0.0;  // work on tissue, not yet spent on removal
   std::uint32_t controller_parts = 0;  // ControllerPart: which of its parts acted
   std::int32_t tissue_class = -1;
   std::int32_t points_in_tissue = 0;
@@ -69,6 +78,7 @@ struct ArmRecord {
 struct TickRecord {
   std::uint64_t tick = 0;
   std::int64_t late_ns = 0;
+  std::uint32_t journal = 0;
   std::array<ArmRecord, kMaxArms> arms{};
 };
 

@@ -1,29 +1,132 @@
 #include "haptics/tool.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace trephine {
 
-Tool makeNeedle(double length_m) { return {ToolKind::needle, length_m, {Vec3(0.0)}}; }
+namespace {
 
-Tool makeBlade(double length_m, int count) {
-  Tool tool{ToolKind::blade, length_m, {}};
-  tool.points_m.reserve(std::size_t(count));
-  const Vec3 along(0.0, 0.0, 1.0);  // from the tip towards the handle
+const Vec3 kAlong(0.0, 0.0, 1.0);  // from the tip towards the handle
+// A sharp tip presses with a ball of this radius at least: a normal needs more than a voxel.
+constexpr double kLeastBall_m = 1.5e-3;
+// Share of the shaft's points in a burr's contact, however many there are; tuned here, uncited.
+constexpr double kShaftShare = 0.1;
+
+// `count` points from `from` to `to`, ends included, with trapezoidal weights that sum to `share`.
+void addLine(Tool& tool, const Vec3& from, const Vec3& to, int count, double share) {
   for (int k = 0; k < count; ++k) {
     const double fraction = count > 1 ? double(k) / double(count - 1) : 0.0;
-    tool.points_m.push_back(fraction * length_m * along);
+    tool.points_m.push_back(from + fraction * (to - from));
+    const bool end = k == 0 || k == count - 1;
+    tool.weights.push_back(count > 1 ? share * (end ? 0.5 : 1.0) / double(count - 1) : share);
   }
+}
+
+Tool sharpTool(const ToolDescription& d) {
+  Tool tool;
+  tool.made_from = d;
+  addLine(tool, Vec3(0.0), 0.001 * d.length_mm * kAlong, d.points, 1.0);
+  tool.radius_m = tool.point_inset_m = 0.001 * d.radius_mm;
+  tool.ball_radius_m = std::max(kLeastBall_m, tool.radius_m);
+  // A needle opens tissue with its point, a blade along its edge.
+  tool.solid_to_m = (d.kind == ToolKind::blade ? 0.001 * d.length_mm : 0.0) * kAlong;
   return tool;
 }
 
-Result<Tool> makeTool(ToolKind kind, double length_m, int count) {
-  if (!isFinite(length_m) || length_m < 0.0 || length_m > 1.0) {
-    return Error{"BAD_TOOL", "A tool's length must lie between 0 and 1000 mm", "length_mm", ""};
+// An equal-area spiral (Fibonacci lattice) over the surface of a rod with round ends: each turn of
+// latitude holds as much surface as the next.
+void addShell(Tool& tool, double radius, double straight, int count, double share) {
+  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < count; ++i) {
+    // Archimedes: a band of a ball has the area of that of its cylinder, so height measures area.
+    const double height = (i + 0.5) / count * (2.0 * radius + straight);
+    const double level = height < radius              ? height - radius
+                         : height > radius + straight ? height - radius - straight
+                                                      : 0.0;
+    const double flat = std::sqrt(std::max(0.0, radius * radius - level * level));
+    tool.points_m.push_back({flat * std::cos(turn * i), flat * std::sin(turn * i), height});
+    tool.weights.push_back(share / count);
   }
-  if (count < 1 || count > 10000) {
-    return Error{"BAD_TOOL", "A blade has 1 to 10,000 points, not " + std::to_string(count), "points",
-                 ""};
+}
+
+Tool burr(const ToolDescription& d) {
+  Tool tool;
+  tool.made_from = d;
+  const double radius = 0.001 * d.radius_mm, length = 0.001 * d.length_mm;
+  const bool cylinder = d.shape == BurrShape::cylinder;
+  const double straight = cylinder ? std::max(0.0, 0.001 * d.head_mm - 2.0 * radius) : 0.0;
+  const double head = 2.0 * radius + straight;
+  addShell(tool, radius, straight, d.points, d.shaft_points > 0 ? 1.0 - kShaftShare : 1.0);
+  if (d.shaft_points > 0) {
+    const double gap = std::max(0.0, length - head) / d.shaft_points;
+    addLine(tool, (head + gap) * kAlong, (head + gap * d.shaft_points) * kAlong, d.shaft_points,
+            kShaftShare);
   }
-  return kind == ToolKind::needle ? makeNeedle(length_m) : makeBlade(length_m, count);
+  tool.solid_from_m = radius * kAlong;
+  tool.solid_to_m = (radius + straight) * kAlong;
+  tool.radius_m = tool.ball_radius_m = radius;
+  tool.blunt = true;
+  return tool;
+}
+
+}  // namespace
+
+Tool makeNeedle(double length_m, int count) {
+  ToolDescription d;
+  d.length_mm = 1000.0 * length_m;
+  d.points = count;
+  return sharpTool(d);
+}
+
+Tool makeBlade(double length_m, int count) {
+  ToolDescription d;
+  d.kind = ToolKind::blade;
+  d.length_mm = 1000.0 * length_m;
+  d.points = count;
+  return sharpTool(d);
+}
+
+Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length_m) {
+  ToolDescription d;
+  d.kind = ToolKind::burr;
+  d.radius_mm = 1000.0 * radius_m;
+  d.points = shell_points;
+  d.shaft_points = shaft_points;
+  d.length_mm = 1000.0 * length_m;
+  return burr(d);
+}
+
+Result<Tool> makeTool(const ToolDescription& d) {
+  const auto bad = [](const char* field, const std::string& what) {
+    return Error{"BAD_TOOL", what, field, ""};
+  };
+  if (!(d.length_mm >= 0.0 && d.length_mm <= 1000.0)) {
+    return bad("length_mm", "A tool's length must lie between 0 and 1000 mm");
+  }
+  if (d.points < 1 || d.points > 10000) {
+    return bad("points", "A tool has 1 to 10,000 points, not " + std::to_string(d.points));
+  }
+  if (!(d.radius_mm >= 0.05 && d.radius_mm <= 20.0)) {
+    return bad("radius_mm", "A tool's radius must lie between 0.05 and 20 mm");
+  }
+  if (!(d.motor_W >= 0.0 && d.motor_W <= 500.0)) {
+    return bad("motor_W", "A motor gives between 0 and 500 W");
+  }
+  if (d.kind != ToolKind::burr) return sharpTool(d);
+  if (d.shaft_points < 0 || d.shaft_points > 1000) {
+    return bad("shaft_points",
+               "A shaft has 0 to 1,000 points, not " + std::to_string(d.shaft_points));
+  }
+  const bool cylinder = d.shape == BurrShape::cylinder;
+  if (cylinder && !(d.head_mm >= 2.0 * d.radius_mm && d.head_mm <= 1000.0)) {
+    return bad("head_mm", "A cylinder's head is at least as long as it is thick");
+  }
+  if (d.length_mm < (cylinder ? d.head_mm : 2.0 * d.radius_mm)) {
+    return bad("length_mm", "A burr is at least as long as its head");
+  }
+  return burr(d);
 }
 
 }  // namespace trephine

@@ -1,4 +1,5 @@
-// Tools as sample points. A tool points along -z of its own frame; its tip is the origin.
+// Tools: the points with which they touch, the solid with which they cut, the ball with which they
+// press. A tool points along -z of its own frame; its tip is the origin.
 #pragma once
 
 #include <string>
@@ -9,23 +10,52 @@
 
 namespace trephine {
 
-enum class ToolKind { needle, blade };
+enum class ToolKind { needle, blade, burr };
+enum class BurrShape { sphere, cylinder };
 
-struct Tool {
+// What a scene or a tool file says of a tool, in the millimetres of files.
+struct ToolDescription {
   ToolKind kind = ToolKind::needle;
-  double length_m = 0.0;
-  std::vector<Vec3> points_m;  // tool frame; the tip first
+  double length_mm = 0.0;  // needle: drawn; blade: its edge; burr: with its shaft
+  int points = 1;          // along a needle or blade; on a burr's shell
+  double radius_mm = 0.6;  // of the solid that cuts: half the width of a slot or hole
+  int shaft_points = 0;    // burr only: they touch and do not cut
+  BurrShape shape = BurrShape::sphere;
+  double head_mm = 0.0;    // cylinder only: length of the burr's head
+  double motor_W = 0.0;    // work that the motor does on tissue; 0: driven by hand
+
+  friend bool operator==(const ToolDescription&, const ToolDescription&) = default;
 };
 
-// A needle touches with its tip alone; its length is only drawn.
-Tool makeNeedle(double length_m);
+struct Tool {
+  ToolDescription made_from;
+  std::vector<Vec3> points_m;   // tool frame
+  std::vector<double> weights;  // of the points, their sum is 1
+  // What it cuts: all within radius_m of this segment, tool frame.
+  Vec3 solid_from_m{0.0}, solid_to_m{0.0};
+  double radius_m = 0.0;
+  // From a point to the surface of the solid: 0 for points on a shell.
+  double point_inset_m = 0.0;
+  // The ball with which it presses on elastic tissue touches the tip from inside.
+  double ball_radius_m = 0.0;
+  // A blunt tool is pushed out however deep it sits; a sharp one has parted the tissue.
+  bool blunt = false;
+};
+
+// A needle of one point touches with its tip alone; more of them lie evenly along its length.
+Tool makeNeedle(double length_m, int count = 1);
 
 // Seed paper, eqs. 2-4: the blade is the line from the tip along (u, v, w), and point k of i lies at
 // t_k = (k / i) L / |(u, v, w)|, k = 0..i. (The paper prints the square of the root; with the unit
-// vector along the tool both readings agree.) `count` points: i = count - 1.
+// vector along the tool both readings agree.) `count` points: i = count - 1. The weights are those
+// of the trapezoidal rule, so that the sum of point forces goes to the line integral.
 Tool makeBlade(double length_m, int count);
 
-// Errors: BAD_TOOL for a length that is not finite or outside 0..1 m, or not 1..10,000 points.
-Result<Tool> makeTool(ToolKind kind, double length_m, int count);
+// A ball (or a rod with round ends) that cuts, its shell evenly covered with points, and a shaft.
+Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length_m);
+
+// Errors: BAD_TOOL for a length that is not finite or outside 0..1 m, a radius outside 0.05 to 20
+// mm, not 1..10,000 points, a motor outside 0..500 W; `where` names the field of the tool file.
+Result<Tool> makeTool(const ToolDescription& description);
 
 }  // namespace trephine

@@ -24,6 +24,10 @@ struct WorkspaceMap {
   Vec3 forceToDevice(const Vec3& patient_N) const {
     return force_scale * (glm::conjugate(rotation) * patient_N);
   }
+  // Of equal power, as the force: force and travel are scaled by g and 1/s, turning by nothing.
+  Vec3 torqueToDevice(const Vec3& patient_Nm) const {
+    return force_scale / motion_scale * (glm::conjugate(rotation) * patient_Nm);
+  }
   Vec3 toDevice_m(const Vec3& patient_mm) const {
     return glm::conjugate(rotation) * (patient_mm - centre_mm) / (1000.0 * motion_scale);
   }

@@ -21,8 +21,8 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
     const ArmRecord& arm = state.record.arms[i];
     const Tool& tool = scene.findTool(scene.arms[i].tool)->tool;
     tools.push_back({{arm.patient_position_mm, arm.patient_orientation},
-                     tool.length_m * 1000.0,
-                     tool.kind == ToolKind::blade,
+                     tool.made_from.length_mm,
+                     tool.made_from.kind == ToolKind::blade,
                      arm.tissue_class >= 0,
                      Vec3(0.75, 0.78, 0.82)});
   }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "haptics/haptic_core.h"
+#include "scene/names.h"
 #include "session/session.h"
 #include "volume/grid.h"
 
@@ -28,15 +29,17 @@ double medianNs(const std::function<void()>& call) {
   return ns[kBatches / 2];
 }
 
-// A 64 mm cube of the firmest tissue around the origin, not cuttable, so that contact lasts.
+// A 64 mm cube around the origin, its lower half and 10 mm more of the firmest tissue, not cuttable,
+// so that contact lasts.
 Volume block(const TissueSet& tissues) {
   const auto firmest = std::max_element(
       tissues.tissues.begin(), tissues.tissues.end(),
-      [](const Tissue& a, const Tissue& b) { return a.yield_N.value < b.yield_N.value; });
+      [](const Tissue& a, const Tissue& b) { return a.friction_N.value < b.friction_N.value; });
   Volume volume;
   volume.geometry.size = {64, 64, 64};
   volume.geometry.origin_mm = Vec3(-31.5);
-  volume.hu.assign(volume.geometry.voxelCount(), std::int16_t(firmest->hu_min));
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  std::fill_n(volume.hu.begin(), 64 * 64 * 42, std::int16_t(firmest->hu_min));
   return volume;
 }
 
@@ -47,8 +50,9 @@ double removalNs() {
   volume.hu.assign(volume.geometry.voxelCount(), 1000);
   Grid grid(std::move(volume));
   Grid::Writer writer = *grid.takeWriter();
-  CarveJournal journal(grid.geometry().voxelCount(), 1);
-  journal.beginStroke(0);
+  CarveJournal journal(grid.geometry().voxelCount(), 1, 1);
+  journal.beginStroke(0, {});
+  journal.hasRoom(grid.geometry().voxelCount());
   std::size_t voxel = 0;
   return medianNs([&] { journal.erase(writer, 0, voxel++, 0); });
 }
@@ -68,7 +72,6 @@ Result<Json> explainScene(Scene scene) {
   }
   for (ArmParameters& arm : parameters.arms) arm.map.centre_mm = Vec3(0.0);
   Grid grid(block(scene.tissues));
-  const Mat4 to_voxel = grid.geometry().patientToVoxel();
 
   Json cost = Json::array(), arms = Json::array();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
@@ -84,28 +87,49 @@ Result<Json> explainScene(Scene scene) {
     const auto add = [&](std::string part, double ns) {
       cost.push_back({{"part", std::move(part)}, {"arm", arm.name}, {"ns_per_tick", ns}});
     };
-    std::vector<Hit> hits;
-    hits.reserve(tool.points_m.size());
-    Contact contact;
-    add("contact", medianNs([&] {
-          contact = findContact(grid, to_voxel, parameters.tissues, tool, Pose{}, contact,
-                                parameters.contact_hold_mm, hits);
-        }));
-    LawInput input{Vec3(0.0), contact, {}};
-    if (contact.touching()) {
-      input.tissue = parameters.tissues.classes[std::size_t(contact.tissue_class)];
+    ToolContact contact(tool, grid.geometry());
+    TissueLookup lookup;
+    lookup.set(parameters.tissues);
+    add("contact", medianNs([&] { contact.update(grid, lookup, parameters.tissues, Pose{}); }));
+    std::vector<TouchPoint> points(scene.force_at == ForceAt::tip ? 1 : tool.points_m.size());
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      points[p].tissue_class = contact.contact().tissue_class;
+      points[p].weight = points.size() == 1 ? 1.0 : tool.weights[p];
+      points[p].arm_m = points.size() == 1 ? Vec3(0.0) : tool.points_m[p];
     }
+    LawInput input;
+    input.points = points;
+    input.tissues = &parameters.tissues;
+    input.touching = contact.contact().touching();
+    input.tip_class = contact.classes()[0];
+    input.ball_radius_m = tool.ball_radius_m;
     for (LawKind kind : scene.laws) {
-      Law law = makeLaw(kind);
+      Law law = makeLaw(kind, points.size());
+      std::optional<StiffnessBall> ball;
+      StiffnessOfHu stiffness;
+      if (kind == LawKind::elastic) {
+        ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, kBallDirections);
+        stiffness.set(parameters.tissues);
+      }
       const auto name = std::find_if(kLawNames.begin(), kLawNames.end(),
                                      [&](const auto& entry) { return entry.second == kind; });
       add("law " + std::string(name->first), medianNs([&] {
             input.tip_m.x += 1e-6;
+            // Half of the ball in tissue.
+            if (ball) input.push = ball->push(grid, stiffness, Vec3(0.0, 0.0, 10.0));
             ContactForce force;
             addLaw(law, input, force);
             keep(force.elastic_N);
           }));
     }
+    Removal removal(tool, grid.geometry(), scene.removal, parameters.period_s);
+    std::vector<Bite> bites;
+    bites.reserve(Removal::kMostBites);
+    Pose moving;
+    add("removal sweep", medianNs([&] {
+          moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
+          removal.sweep(grid, lookup, parameters.tissues, moving, bites);
+        }));
     Controller controller =
         makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
     ControllerInput to_controller;
@@ -134,6 +158,7 @@ Result<Json> explainScene(Scene scene) {
   TickRecord record;
   const double tick_ns = medianNs([&] {
     ++input.tick;
+    input.journal = core.journalState();
     input.arms[0].position_m.x = 1e-6 * double(input.tick % 1000);
     core.tick(input, nullptr, 0, record);
   });
@@ -154,16 +179,15 @@ Result<Json> explainScene(Scene scene) {
                        {"stiffness_N_per_m", b.demanded.stiffness},
                        {"stiffness_felt_N_per_m", b.felt.stiffness}});
   }
-  const double journal_mb = double(parameters.journal_voxels * sizeof(CarveJournal::Entry) +
-                                   parameters.journal_strokes * sizeof(CarveJournal::Stroke)) /
-                            (1024.0 * 1024.0);
+  const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
   const bool named_case = scene.case_source.rfind("phantom:", 0) == 0;
   return Json{{"scene", scene.name},
               {"case", named_case ? Json(scene.case_source) : Json(nullptr)},
               {"rate_hz", scene.rate_hz},
               {"controller", controllerName(scene.controller)},
               {"laws", laws},
-              {"removal", "on_contact"},
+              {"force_at", nameOf(kForceAtNames, scene.force_at)},
+              {"removal", nameOf(kRemovalNames, scene.removal)},
               {"tissues", tissues},
               {"arms", arms},
               {"bounded", bounded},

@@ -107,10 +107,10 @@ Vec3 middle_m() {
 }
 
 // Past the validation: a table that no file and no panel can give.
-Outcome badTable(double damping, double stiffness, double yield) {
+Outcome badTable(double damping, double stiffness, double friction) {
   Setup setup;
   setup.commands = {{kClear - 1, {CommandKind::tissues, 0, setup.tissues}}, kClearFaults};
-  setup.tissues = table(damping, stiffness, yield);
+  setup.tissues = table(damping, stiffness, friction);
   return faultThenWork(setup, kFaultNonFinite, 0);
 }
 
@@ -119,7 +119,7 @@ Outcome pluginTime(std::int64_t time_ns) {
 }
 
 Tool blade(double length_m, int points) {
-  return *makeTool(ToolKind::blade, length_m, points);
+  return *makeTool({ToolKind::blade, 1000.0 * length_m, points});
 }
 
 // ---- clocks
@@ -266,7 +266,8 @@ TissueSet validSet() {
   bone.hu_min = 226;
   bone.hu_max = 3071;
   bone.hu_source = bone.damping_Ns_per_m.source = "made up";
-  bone.stiffness_N_per_m.source = bone.yield_N.source = "made up";
+  bone.stiffness_N_per_m.source = bone.friction_N.source = "made up";
+  bone.cutting_J_per_mm3.source = "made up";
   return {"made up", {bone}};
 }
 
@@ -287,7 +288,8 @@ Outcome refusedTissues() {
   if (auto set = parseTissueSet(valid, "file"); !set) return {set.error().sentence(), false};
   Refusals refusals;
   for (double value : kNotFinite) {
-    for (auto number : {&Tissue::damping_Ns_per_m, &Tissue::stiffness_N_per_m, &Tissue::yield_N}) {
+    for (auto number : {&Tissue::damping_Ns_per_m, &Tissue::stiffness_N_per_m, &Tissue::friction_N,
+                        &Tissue::cutting_J_per_mm3}) {
       TissueSet set = validSet();
       (set.tissues[0].*number).value = value;
       refusals.add(validate(set, "set"));
@@ -296,7 +298,7 @@ Outcome refusedTissues() {
     opaque.tissues[0].opacity = coloured.tissues[0].colour.y = value;
     refusals.add(validate(opaque, "set"));
     refusals.add(validate(coloured, "set"));
-    for (const char* key : {"damping_Ns_per_m", "stiffness_N_per_m", "yield_N"}) {
+    for (const char* key : {"damping_Ns_per_m", "stiffness_N_per_m", "friction_N"}) {
       Json json = valid;
       json["tissues"][0]["mechanics"][key]["value"] = value;
       refusals.add(parseTissueSet(json, "file"));
@@ -309,8 +311,8 @@ Outcome refusedTissues() {
 Outcome refusedTools() {
   Refusals refusals;
   for (double length_m : kNotFinite) {
-    for (ToolKind kind : {ToolKind::needle, ToolKind::blade}) {
-      refusals.add(makeTool(kind, length_m, 10));
+    for (ToolKind kind : {ToolKind::needle, ToolKind::blade, ToolKind::burr}) {
+      refusals.add(makeTool({kind, 1000.0 * length_m, 10}));
     }
   }
   return refusals.outcome();
@@ -467,8 +469,8 @@ std::vector<Case> cases() {
        "50 times into bone and out, 1 km a tick, then the reference's stroke",
        "never 0.1 N more than the tissue demands, above 0.1 N at the end, no fault",
        afterHugeVelocity},
-      {"b and k 0", "b 0, k 0, yield 0", "no force, 11 voxels cut, no fault", noImpedance},
-      {"b and k 1e9", "b, k and yield 1e9 by an edit while circling, then a pause and a resume",
+      {"b and k 0", "b 0, k 0, friction 0", "no force, 11 voxels cut, no fault", noImpedance},
+      {"b and k 1e9", "b, k and friction 1e9 by an edit while circling, then a pause and a resume",
        "above 0.1 N, none in the pause, no fault", hugeImpedance},
       {"clock back 1 ms", "one sleep ends 1 ms early", "no tick early or skipped, the same forces",
        [] { return clockBack(1'000'000); }},
@@ -517,7 +519,7 @@ std::vector<Case> cases() {
        [] { return badTable(10.0, kNaN, 2.0); }},
       {"k infinite past validation", "in the core's table", kFaultAtFirst,
        [] { return badTable(10.0, kInf, 2.0); }},
-      {"yield NaN past validation", "in the core's table", kFaultAtFirst,
+      {"friction NaN past validation", "in the core's table", kFaultAtFirst,
        [] { return badTable(10.0, 800.0, kNaN); }},
       {"HU -32768 in range", "every voxel, and a tissue of just that HU", kStroke,
        [] { return tissueOf(-32768); }},

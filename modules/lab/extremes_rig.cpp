@@ -91,7 +91,7 @@ HapticParameters parametersOf(const Setup& setup, const TrephineCapabilities& ca
                     WorkspaceMap{},
                     peak_N,
                     {capabilities.apparent_mass_kg, capabilities.encoder_step_m, peak_N, 0}});
-  p.laws = {LawKind::viscous, LawKind::elastic};
+  p.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
   p.controller = setup.controller;
   p.tissues = setup.tissues;
   p.journal_voxels = 100'000;
@@ -149,10 +149,10 @@ Volume block(const Vec3& spacing_mm, std::int16_t hu) {
   return block({32, 32, 32}, spacing_mm, hu, {16, 16, 16});
 }
 
-TissueTable table(double damping, double stiffness, double yield, int hu_min, int hu_max) {
+TissueTable table(double damping, double stiffness, double friction, int hu_min, int hu_max) {
   TissueTable tissues;
   tissues.count = 1;
-  tissues.classes[0] = {hu_min, hu_max, damping, stiffness, yield, 1, 0};
+  tissues.classes[0] = {hu_min, hu_max, damping, stiffness, friction, 0.0, 0.0, 1, 0};
   return tissues;
 }
 

@@ -37,7 +37,7 @@ struct TimedCommand {
 Volume block(const Index3& size, const Vec3& spacing_mm, std::int16_t hu, const Index3& origin);
 Volume block(const Vec3& spacing_mm, std::int16_t hu = kBoneHu);  // 32 voxels a side, middle
 
-TissueTable table(double damping, double stiffness, double yield, int hu_min = 226,
+TissueTable table(double damping, double stiffness, double friction, int hu_min = 226,
                   int hu_max = 3071);
 
 struct Setup {

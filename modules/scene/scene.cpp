@@ -47,6 +47,25 @@ Renderable renderableOn(const SceneArm& arm, double rate_hz) {
   return renderable(dynamics, rate_hz, dynamics.delay_ticks, arm.map.fixed.value_or(map));
 }
 
+Impedance demandedOf(const Scene& scene, const Tissue& tissue) {
+  Impedance sum;
+  for (LawKind law : scene.laws) {
+    if (law == LawKind::viscous) sum.damping += tissue.damping_Ns_per_m.value;
+    if (law == LawKind::coulomb) sum.stiffness += tissue.stiffness_N_per_m.value;
+  }
+  // A capsule pushes by the law of rupture, where the scene has it, else as elastic tissue.
+  const auto named = [&](LawKind law) {
+    return std::find(scene.laws.begin(), scene.laws.end(), law) != scene.laws.end();
+  };
+  const bool capsule = tissue.rupture_N && tissue.rupture_N->value > 0.0;
+  if (named(LawKind::rupture) && capsule) {
+    sum.stiffness += tissue.stiffness_N_per_m.value;
+  } else if (named(LawKind::elastic)) {
+    sum.stiffness += tissue.stiffness_N_per_m.value;
+  }
+  return sum;
+}
+
 std::vector<BoundedTissue> boundedTissues(const Scene& scene) {
   std::vector<BoundedTissue> bounded;
   if (scene.controller != ControllerKind::bounded) return bounded;
@@ -54,7 +73,7 @@ std::vector<BoundedTissue> boundedTissues(const Scene& scene) {
     if (!arm.dynamics) continue;
     const Renderable most = renderableOn(arm, scene.rate_hz);
     for (const Tissue& tissue : scene.tissues.tissues) {
-      const Impedance demanded{tissue.damping_Ns_per_m.value, tissue.stiffness_N_per_m.value};
+      const Impedance demanded = demandedOf(scene, tissue);
       const Impedance felt{std::min(demanded.damping, most.b_max),
                            std::min(demanded.stiffness, most.k_max)};
       if (felt.damping < demanded.damping || felt.stiffness < demanded.stiffness) {
@@ -69,6 +88,8 @@ HapticParameters hapticParameters(const Scene& scene) {
   HapticParameters parameters;
   parameters.period_s = 1.0 / scene.rate_hz;
   parameters.laws = scene.laws;
+  parameters.force_at = scene.force_at;
+  parameters.removal = scene.removal;
   parameters.controller = scene.controller;
   parameters.tissues = tissueTable(scene.tissues);
   for (const SceneArm& arm : scene.arms) {

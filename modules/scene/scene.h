@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "haptics/haptic_core.h"
 #include "scene/landmark.h"
+#include "scene/scene_tool.h"
 #include "tissue/tissue_set.h"
 #include "volume/volume.h"
 
@@ -37,12 +38,6 @@ struct SceneArm {
   std::optional<ArmDynamics> dynamics;  // of the device that moved it: in recordings
 };
 
-struct SceneTool {
-  std::string id;
-  double length_mm = 0.0;
-  Tool tool;
-};
-
 struct SceneView {
   std::string landmark;       // looked at from outside; empty: the whole case from the front
   double distance_mm = 350.0;
@@ -57,6 +52,8 @@ struct Scene {
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
   std::vector<LawKind> laws;
+  ForceAt force_at = ForceAt::tip;
+  RemovalKind removal = RemovalKind::work;
   ControllerKind controller = ControllerKind::bounded;
   double rate_hz = 1000.0;
   std::string operator_file;  // default script, empty for none
@@ -87,6 +84,9 @@ Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landm
 
 // What an arm renders at the scene's rate, in the tissue's own numbers.
 Renderable renderableOn(const SceneArm& arm, double rate_hz);
+
+// Damping and stiffness of a tissue, summed over the laws that the scene names.
+Impedance demandedOf(const Scene& scene, const Tissue& tissue);
 
 // A tissue that is firmer than an arm can show: what is demanded, and what will be felt.
 struct BoundedTissue {

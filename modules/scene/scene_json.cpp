@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/names.h"
 #include "scene/scene.h"
 
 namespace trephine {
@@ -8,54 +9,6 @@ namespace trephine {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Kind, std::size_t N>
-std::string nameOf(const std::array<std::pair<std::string_view, Kind>, N>& names, Kind kind) {
-  for (const auto& [name, k] : names) {
-    if (k == kind) return std::string(name);
-  }
-  return {};
-}
-
-template <class Kind, std::size_t N>
-std::optional<Kind> kindOf(const std::array<std::pair<std::string_view, Kind>, N>& names,
-                           const std::string& text) {
-  for (const auto& [name, k] : names) {
-    if (name == text) return k;
-  }
-  return {};
-}
-
-template <class Kind, std::size_t N>
-std::string choices(const std::array<std::pair<std::string_view, Kind>, N>& names) {
-  std::string text;
-  for (const auto& [name, kind] : names) text += (text.empty() ? "" : ", ") + std::string(name);
-  return "Use one of: " + text;
-}
-
-constexpr std::array<std::pair<std::string_view, ToolKind>, 2> kToolNames{
-    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}}};
-
-SceneTool readTool(JsonReader& item) {
-  SceneTool out;
-  out.id = item.text("id");
-  const std::string kind_text = item.text("kind");
-  out.length_mm = item.number("length_mm");
-  const auto points = item.integer("points", 1);
-  const auto kind = kindOf(kToolNames, kind_text);
-  if (!kind) {
-    item.fail("kind", "Unknown tool '" + kind_text + "'", choices(kToolNames));
-    return out;
-  }
-  Result<Tool> tool = makeTool(*kind, out.length_mm / 1000.0,
-                               int(std::clamp<std::int64_t>(points, -1, 1'000'000)));
-  if (tool) {
-    out.tool = *std::move(tool);
-  } else {
-    item.fail(tool.error().where.c_str(), tool.error().what);
-  }
-  return out;
-}
 
 double readScale(JsonReader& map, const char* key) {
   const double scale = map.number(key, 1.0);
@@ -208,7 +161,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) scene.tissues = *std::move(tissues);
   for (JsonReader& item : reader.objects("landmarks")) scene.landmarks.push_back(readLandmark(item));
-  for (JsonReader& item : reader.objects("tools")) scene.tools.push_back(readTool(item));
+  for (JsonReader& item : reader.objects("tools")) scene.tools.push_back(readSceneTool(item, folder));
   for (JsonReader& item : reader.objects("arms")) scene.arms.push_back(readArm(item, folder));
   for (const std::string& name : reader.texts("laws")) {
     if (auto kind = kindOf(kLawNames, name)) {
@@ -217,9 +170,17 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
       reader.fail("laws", "Unknown law '" + name + "'", choices(kLawNames));
     }
   }
-  const std::string removal = reader.text("removal", "on_contact");
-  if (removal != "on_contact") {
-    reader.fail("removal", "Unknown removal '" + removal + "'", "Use one of: on_contact");
+  const std::string force_at = reader.text("force_at", "tip");
+  if (auto kind = kindOf(kForceAtNames, force_at)) {
+    scene.force_at = *kind;
+  } else {
+    reader.fail("force_at", "Unknown place of force '" + force_at + "'", choices(kForceAtNames));
+  }
+  const std::string removal = reader.text("removal", "work");
+  if (auto kind = kindOf(kRemovalNames, removal)) {
+    scene.removal = *kind;
+  } else {
+    reader.fail("removal", "Unknown removal '" + removal + "'", choices(kRemovalNames));
   }
   const std::string controller = reader.text("controller");
   if (auto kind = kindOf(kControllerNames, controller)) {
@@ -274,12 +235,7 @@ Json toJson(const Scene& scene) {
     landmark["run_mm"] = l.run_mm;
     landmarks.push_back(landmark);
   }
-  for (const SceneTool& t : scene.tools) {
-    tools.push_back({{"id", t.id},
-                     {"kind", nameOf(kToolNames, t.tool.kind)},
-                     {"length_mm", t.length_mm},
-                     {"points", t.tool.points_m.size()}});
-  }
+  for (const SceneTool& t : scene.tools) tools.push_back(toJson(t));
   for (const SceneArm& a : scene.arms) {
     Json map;
     if (a.map.fixed) {
@@ -310,7 +266,8 @@ Json toJson(const Scene& scene) {
   json["tools"] = tools;
   json["arms"] = arms;
   json["laws"] = laws;
-  json["removal"] = "on_contact";
+  json["force_at"] = nameOf(kForceAtNames, scene.force_at);
+  json["removal"] = nameOf(kRemovalNames, scene.removal);
   json["controller"] = controllerName(scene.controller);
   json["rate_hz"] = scene.rate_hz;
   if (!scene.view.landmark.empty()) {

@@ -6,7 +6,7 @@ namespace trephine {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, CommandKind>, 8> kCommandNames{
+constexpr std::array<std::pair<std::string_view, CommandKind>, 9> kCommandNames{
     {{"undo", CommandKind::undo},
      {"redo", CommandKind::redo},
      {"reset", CommandKind::reset},
@@ -14,7 +14,8 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 8> kCommandNames{
      {"resume", CommandKind::resume},
      {"clear_faults", CommandKind::clear_faults},
      {"controller", CommandKind::controller},
-     {"tissues", CommandKind::tissues}}};
+     {"tissues", CommandKind::tissues},
+     {"rewind", CommandKind::rewind}}};
 
 ScriptHand readHand(JsonReader& item, const Scene& scene) {
   ScriptHand hand;
@@ -53,7 +54,12 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
         change.number("damping_Ns_per_m", tissue->damping_Ns_per_m.value);
     tissue->stiffness_N_per_m.value =
         change.number("stiffness_N_per_m", tissue->stiffness_N_per_m.value);
-    tissue->yield_N.value = change.number("yield_N", tissue->yield_N.value);
+    tissue->friction_N.value = change.number("friction_N", tissue->friction_N.value);
+    if (tissue->rupture_N) {
+      tissue->rupture_N->value = change.number("rupture_N", tissue->rupture_N->value);
+    }
+    tissue->cutting_J_per_mm3.value =
+        change.number("cutting_J_per_mm3", tissue->cutting_J_per_mm3.value);
     tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
   }
 }
@@ -77,6 +83,13 @@ ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
       item.fail("controller", "Unknown controller '" + wanted + "'");
     } else {
       out.command.value = std::int32_t(found->second);
+    }
+  }
+  if (out.command.kind == CommandKind::rewind) {
+    const std::int64_t second = item.integer("to_s");
+    out.command.value = std::int32_t(std::clamp<std::int64_t>(second, 0, 1'000'000));
+    if (second < 0 || double(second) > out.time_s) {
+      item.fail("to_s", "One can rewind to a second from 0 to now, not " + std::to_string(second));
     }
   }
   if (out.command.kind == CommandKind::tissues) {

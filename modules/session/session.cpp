@@ -108,6 +108,11 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   }
   session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
                                                 *session->grid_->takeWriter());
+  const std::filesystem::path beside = options.recording.parent_path();
+  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(
+      beside.empty() ? std::filesystem::temp_directory_path() : beside);
+  if (!spill) return spill.error();
+  session->spill_ = *std::move(spill);
   std::unique_ptr<Operator> script;
   if (options.script) {
     std::vector<LandmarkFrame> frames(scene.arms.size());
@@ -188,7 +193,8 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   bool cancelled = false;
   for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
     loop_->step(0);
-    if (i % kDrainTicks == 0 || loop_->carves().size() > loop_->carves().capacity() / 2) {
+    const bool waits = core_->journalState() != (kJournalRoom | kJournalReady);
+    if (i % kDrainTicks == 0 || waits || loop_->carves().size() > loop_->carves().capacity() / 2) {
       drain();
       progress.at(double(i) / double(ticks), "Running");
       cancelled = progress.cancelled();
@@ -222,6 +228,7 @@ void Session::record() {
 // Records first: the loop pushes what belongs to a tick before the tick's record, so that all of it
 // is found after the record was.
 void Session::drain() {
+  if (Status spilled = spill_->service(core_->journal()); !spilled) noteFailure(spilled.error());
   try {
     TickRecord record;
     while (loop_->records().pop(record)) {
@@ -270,6 +277,10 @@ Status Session::finishRecording() {
 }
 
 bool Session::send(CommandKind kind) { return loop_->commands().push({kind, 0, {}}); }
+
+bool Session::rewind(std::uint32_t second) {
+  return loop_->commands().push({CommandKind::rewind, std::int32_t(second), {}});
+}
 
 bool Session::setController(ControllerKind kind) {
   return loop_->commands().push({CommandKind::controller, std::int32_t(kind), {}});

@@ -21,6 +21,7 @@
 #include "session/run_statistics.h"
 #include "training/session_recorder.h"
 #include "volume/grid.h"
+#include "volume/journal_spill.h"
 
 namespace trephine {
 
@@ -62,6 +63,8 @@ class Session {
 
   // Live input. Commands are answered within a tick or two; false when 64 of them are waiting.
   bool send(CommandKind kind);
+  // Tissue, counts and law states as they were in that second of the session.
+  bool rewind(std::uint32_t second);
   bool setController(ControllerKind kind);
   // Errors: those of validate().
   Status setTissues(const TissueSet& tissues);
@@ -97,6 +100,7 @@ class Session {
   std::unique_ptr<Operator> operator_;
   std::unique_ptr<HapticLoop> loop_;
   std::unique_ptr<SessionRecorder> recorder_;
+  std::unique_ptr<JournalSpill> spill_;
   std::vector<ArmStatistics> statistics_;
 
   bool running_ = false;

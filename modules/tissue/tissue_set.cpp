@@ -106,7 +106,10 @@ Status validate(const TissueSet& set, const std::string& file) {
     }
     for (auto [key, number] : {std::pair{"damping_Ns_per_m", &t.damping_Ns_per_m},
                                {"stiffness_N_per_m", &t.stiffness_N_per_m},
-                               {"yield_N", &t.yield_N}}) {
+                               {"friction_N", &t.friction_N},
+                               {"rupture_N", t.rupture_N ? &*t.rupture_N : nullptr},
+                               {"cutting_J_per_mm3", &t.cutting_J_per_mm3}}) {
+      if (!number) continue;
       if (Status s = checkNumber(file, field + ".mechanics." + key, *number); !s) return s;
     }
     for (std::size_t j = 0; j < i; ++j) {
@@ -142,7 +145,9 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
     JsonReader mechanics = item.object("mechanics");
     t.damping_Ns_per_m = readSourced(mechanics, "damping_Ns_per_m");
     t.stiffness_N_per_m = readSourced(mechanics, "stiffness_N_per_m");
-    t.yield_N = readSourced(mechanics, "yield_N");
+    t.friction_N = readSourced(mechanics, "friction_N");
+    if (mechanics.has("rupture_N")) t.rupture_N = readSourced(mechanics, "rupture_N");
+    t.cutting_J_per_mm3 = readSourced(mechanics, "cutting_J_per_mm3");
     t.cuttable = mechanics.boolean("cuttable", true);
     set.tissues.push_back(std::move(t));
   }
@@ -169,8 +174,10 @@ Json toJson(const TissueSet& set) {
                  {"mechanics",
                   {{"damping_Ns_per_m", sourced(t.damping_Ns_per_m)},
                    {"stiffness_N_per_m", sourced(t.stiffness_N_per_m)},
-                   {"yield_N", sourced(t.yield_N)},
+                   {"friction_N", sourced(t.friction_N)},
+                   {"cutting_J_per_mm3", sourced(t.cutting_J_per_mm3)},
                    {"cuttable", t.cuttable}}}};
+    if (t.rupture_N) item["mechanics"]["rupture_N"] = sourced(*t.rupture_N);
     if (t.label) item["label"] = *t.label;
     tissues.push_back(std::move(item));
   }
@@ -187,7 +194,9 @@ TissueTable tissueTable(const TissueSet& set) {
                         t.label ? 0 : t.hu_max,
                         t.damping_Ns_per_m.value,
                         t.stiffness_N_per_m.value,
-                        t.yield_N.value,
+                        t.friction_N.value,
+                        t.rupture_N ? t.rupture_N->value : 0.0,
+                        t.cutting_J_per_mm3.value,
                         t.cuttable ? 1 : 0,
                         0};
   }

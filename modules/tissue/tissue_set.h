@@ -33,8 +33,10 @@ struct Tissue {
   Vec3 colour{1.0};          // r, g, b in [0, 1]
   double opacity = 0.0;      // [0, 1] per millimetre of depth; 0 hides the tissue
   SourcedNumber damping_Ns_per_m;   // viscous law
-  SourcedNumber stiffness_N_per_m;  // elastic law
-  SourcedNumber yield_N;            // elastic force at which the tissue gives way
+  SourcedNumber stiffness_N_per_m;  // elastic, coulomb and rupture laws
+  SourcedNumber friction_N;         // coulomb law: of a tool that slides in it
+  std::optional<SourcedNumber> rupture_N;  // rupture law: a capsule's; absent: none
+  SourcedNumber cutting_J_per_mm3;  // work that removes it: its specific cutting energy
   bool cuttable = true;
 };
 
@@ -47,7 +49,7 @@ struct TissueSet {
 
 // Every rule that a set must keep, whether read from a file or typed in a panel: 1 to 16 tissues,
 // unique ids, hu_min <= hu_max within int16, no two ranges that overlap under the same label (or
-// where one has none), finite numbers, no negative damping, stiffness or yield, opacity and colour
+// where one has none), finite numbers, none of the mechanics negative, opacity and colour
 // in [0, 1], a source for each number. The Error names `file`, field and value.
 Status validate(const TissueSet& set, const std::string& file);
 
@@ -61,7 +63,9 @@ struct TissueClass {
   std::int32_t hu_max = 0;
   double damping_Ns_per_m = 0.0;
   double stiffness_N_per_m = 0.0;
-  double yield_N = 0.0;
+  double friction_N = 0.0;
+  double rupture_N = 0.0;
+  double cutting_J_per_mm3 = 0.0;
   std::int32_t cuttable = 0;
   std::int32_t reserved = 0;
 };

@@ -17,12 +17,14 @@ constexpr RecordField kArmFields[] = {
     {"patient_orientation_xyzw", offsetof(ArmRecord, patient_orientation), Type::f64, 4},
     FIELD(ArmRecord, velocity_m_s, f64, 3),
     FIELD(ArmRecord, demanded_N, f64, 3),
+    FIELD(ArmRecord, demanded_torque_Nm, f64, 3),
     FIELD(ArmRecord, bounded_N, f64, 3),
     FIELD(ArmRecord, clamped_N, f64, 3),
     FIELD(ArmRecord, sent_N, f64, 3),
     FIELD(ArmRecord, energy_out_J, f64, 3),
     FIELD(ArmRecord, observer_J, f64, 1),
     FIELD(ArmRecord, alpha, f64, 1),
+    FIELD(ArmRecord, cutting_credit_J, f64, 1),
     FIELD(ArmRecord, controller_parts, u32, 1),
     FIELD(ArmRecord, tissue_class, i32, 1),
     FIELD(ArmRecord, points_in_tissue, i32, 1),
@@ -37,6 +39,7 @@ static_assert(sizeof(Quat) == 4 * sizeof(double) && offsetof(Quat, x) == 0,
 constexpr RecordField kTickFields[] = {
     FIELD(TickRow, tick, u64, 1),
     FIELD(TickRow, late_ns, i64, 1),
+    FIELD(TickRow, journal, u32, 1),
 };
 
 constexpr RecordField kCarveFields[] = {
@@ -48,7 +51,8 @@ constexpr RecordField kCarveFields[] = {
 constexpr RecordField kTissueFields[] = {
     FIELD(TissueClass, hu_min, i32, 1),           FIELD(TissueClass, hu_max, i32, 1),
     FIELD(TissueClass, damping_Ns_per_m, f64, 1), FIELD(TissueClass, stiffness_N_per_m, f64, 1),
-    FIELD(TissueClass, yield_N, f64, 1),          FIELD(TissueClass, cuttable, i32, 1),
+    FIELD(TissueClass, friction_N, f64, 1),       FIELD(TissueClass, rupture_N, f64, 1),
+    FIELD(TissueClass, cutting_J_per_mm3, f64, 1), FIELD(TissueClass, cuttable, i32, 1),
 };
 
 constexpr RecordField kEventFields[] = {

@@ -26,6 +26,7 @@ struct RecordField {
 struct TickRow {
   std::uint64_t tick = 0;
   std::int64_t late_ns = 0;
+  std::uint32_t journal = 0;
 };
 
 std::span<const RecordField> armFields();    // ArmRecord

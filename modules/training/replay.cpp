@@ -6,6 +6,7 @@
 #include "haptics/haptic_core.h"
 #include "scene/scene.h"
 #include "training/recording_layout.h"
+#include "volume/journal_spill.h"
 
 namespace trephine {
 
@@ -66,6 +67,19 @@ std::optional<ReplayDifference> compareCarves(const std::vector<CarveRecord>& re
   return {};
 }
 
+// Gets the journal to where it allows at least what it allowed when this was recorded.
+Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint32_t recorded) {
+  constexpr int kTries = 1000;
+  for (int tries = 0; (core.journalState() & recorded) != recorded; ++tries) {
+    if (Status served = spill.service(core.journal()); !served) return served;
+    if (tries == kTries) {
+      return Error{"NOT_REPLAYABLE", "The journal of what was removed cannot be kept",
+                   "the temporary folder", "Free some space and replay again"};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
@@ -93,6 +107,9 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
   volume.geometry = header.geometry;
   Grid grid(std::move(volume));
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
+  Result<std::unique_ptr<JournalSpill>> spill =
+      JournalSpill::create(std::filesystem::temp_directory_path());
+  if (!spill) return spill.error();
   ReplayResult result;
   result.cut_short = !recording.end();
   std::size_t next_event = 0, next_carve = 0;
@@ -110,7 +127,7 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
                      "The recorder fell behind: tick " + std::to_string(result.ticks) + " is missing",
                      "the recording", "Record again on a machine with less load"};
       }
-      TickInput input{recorded.tick, recorded.late_ns, {}};
+      TickInput input{recorded.tick, recorded.late_ns, recorded.journal, {}};
       for (std::size_t i = 0; i < recording.armCount(); ++i) {
         const ArmRecord& arm = recorded.arms[i];
         input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
@@ -119,6 +136,9 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
       for (; next_event < events->size() && (*events)[next_event].tick <= recorded.tick; ++next_event) {
         const Event& event = (*events)[next_event];
         if (event.kind == EventKind::command) commands.push_back(event.command);
+      }
+      if (Status served = serveJournal(core, **spill, recorded.journal); !served) {
+        return served.error();
       }
       TickRecord replayed;
       core.tick(input, commands.data(), commands.size(), replayed);

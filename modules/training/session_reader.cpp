@@ -194,6 +194,7 @@ Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::u
   for (std::uint64_t i = 0; i < count; ++i) {
     out[i].tick = rows[i].tick;
     out[i].late_ns = rows[i].late_ns;
+    out[i].journal = rows[i].journal;
   }
   for (std::size_t arm = 0; ok && arm < armCount(); ++arm) {
     ok = readRows(file_->arms[arm], compoundType(armFields(), sizeof(ArmRecord)), first, count,

@@ -219,7 +219,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
 
 void SessionRecorder::add(const TickRecord& record) {
   if (file_->failure) return;
-  file_->new_ticks.push_back({record.tick, record.late_ns});
+  file_->new_ticks.push_back({record.tick, record.late_ns, record.journal});
   for (std::size_t i = 0; i < file_->new_arms.size(); ++i) {
     file_->new_arms[i].push_back(record.arms[i]);
   }

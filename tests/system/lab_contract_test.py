@@ -114,8 +114,9 @@ class Run(LabTest):
         answer = lab("explain", SCENES / "liver.json")
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
         parts = {cost["part"] for cost in answer["cost"]}
-        self.assertEqual(parts, {"contact", "law viscous", "law elastic", "controller bounded",
-                                 "clamp and gate", "removal of one voxel"})
+        self.assertEqual(parts, {"contact", "law viscous", "law coulomb", "law elastic", "law rupture",
+                                 "controller bounded", "clamp and gate", "removal sweep",
+                                 "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
         self.assertGreater(answer["tick_ns"], 0)
 

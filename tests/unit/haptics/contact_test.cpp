@@ -11,85 +11,79 @@ using test::boneSlab;
 using test::boneTable;
 
 struct Probe {
-  Grid grid{boneSlab()};
-  Mat4 to_voxel = grid.geometry().patientToVoxel();
-  std::vector<Hit> hits;
-  Contact touch(const Tool& tool, const Vec3& tip_mm, const Contact& before = {},
-                const Quat& orientation = Quat(1, 0, 0, 0)) {
-    hits.reserve(tool.points_m.size());
-    return findContact(grid, to_voxel, boneTable(), tool, {tip_mm, orientation}, before, 1.5, hits);
+  explicit Probe(const Tool& tool, Volume volume = boneSlab(), const TissueTable& tissues = boneTable())
+      : grid(std::move(volume)), table(tissues), contact(tool, grid.geometry()) {
+    lookup.set(table);
   }
+  const Contact& touch(const Vec3& tip_mm, const Quat& orientation = Quat(1, 0, 0, 0)) {
+    return contact.update(grid, lookup, table, {tip_mm, orientation});
+  }
+  Grid grid;
+  TissueTable table;
+  TissueLookup lookup;
+  ToolContact contact;
 };
 
 TEST(Contact, ATipInBoneTouchesBone) {
-  Probe probe;
-  const Contact contact = probe.touch(makeNeedle(0.05), {0, 0, -3});
+  Probe probe(makeNeedle(0.05));
+  const Contact& contact = probe.touch({0, 0, -3});
   EXPECT_EQ(contact.tissue_class, 0);
   EXPECT_EQ(contact.points, 1);
-  ASSERT_EQ(probe.hits.size(), 1u);
-  EXPECT_EQ(probe.grid.hu(probe.hits[0].voxel), test::kBoneHu);
 }
 
 TEST(Contact, AToolOutsideTheVolumeCountsAsAir) {
-  Probe probe;
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Vec3& tip : {Vec3(0, 0, -100), Vec3(1e300, 0, 0), Vec3(inf, 0, 0), Vec3(nan, 0, 0)}) {
-    EXPECT_FALSE(probe.touch(makeNeedle(0.05), tip).touching());
-    EXPECT_TRUE(probe.hits.empty());
+    EXPECT_FALSE(Probe(makeNeedle(0.05)).touch(tip).touching());
   }
 }
 
 TEST(Contact, ABladeCountsOnlyItsPointsInTissue) {
-  Probe probe;
+  Probe probe(makeBlade(0.010, 11));
   // Tip 5 mm below the surface, the blade's 11 points 1 mm apart upwards.
-  const Contact contact = probe.touch(makeBlade(0.010, 11), {0, 0, -5.25});
-  EXPECT_EQ(contact.points, 5);  // bone ends half a voxel above z = -1
+  EXPECT_EQ(probe.touch({0, 0, -5.25}).points, 5);  // bone ends half a voxel above z = -1
+  EXPECT_EQ(probe.contact.classes()[4], 0);
+  EXPECT_EQ(probe.contact.classes()[5], -1);
 }
 
 TEST(Contact, TheBladeTurnsWithTheTool) {
-  Probe probe;
+  Probe probe(makeBlade(0.010, 11));
   const Quat sideways = glm::angleAxis(glm::radians(90.0), Vec3(0, 1, 0));  // +z becomes +x
-  EXPECT_EQ(probe.touch(makeBlade(0.010, 11), {0, 0, -5.25}, {}, sideways).points, 11);
+  EXPECT_EQ(probe.touch({0, 0, -5.25}, sideways).points, 11);
 }
 
-TEST(Contact, IsHeldWhileTissueIsNearAndLostWhenItIsNot) {
-  Probe probe;
-  const Contact before{0, 1};
-  EXPECT_TRUE(probe.touch(makeNeedle(0.05), {0, 0, 0.6}, before).touching());
-  EXPECT_TRUE(probe.hits.empty());
-  EXPECT_FALSE(probe.touch(makeNeedle(0.05), {0, 0, 0.6}).touching());
-  EXPECT_FALSE(probe.touch(makeNeedle(0.05), {0, 0, 3.0}, before).touching());
+TEST(Contact, APointHoldsItsTissueWhileSomeIsNearAndLosesItWhenThereIsNone) {
+  Probe probe(makeNeedle(0.05));
+  EXPECT_FALSE(probe.touch({0, 0, 0.6}).touching());
+  EXPECT_TRUE(probe.touch({0, 0, -1}).touching());
+  EXPECT_TRUE(probe.touch({0, 0, 0.6}).touching());
+  EXPECT_EQ(probe.touch({0, 0, 0.6}).points, 0) << "held, not found";
+  EXPECT_FALSE(probe.touch({0, 0, 3.0}).touching());
+  EXPECT_FALSE(probe.touch({0, 0, 0.6}).touching());
 }
 
 TEST(Contact, TheFirmestTissueTouchedCounts) {
   Volume volume = boneSlab();
   for (std::size_t i = 0; i < 32 * 32 * 8; ++i) volume.hu[i] = 40;  // soft below z = -8
-  Grid grid(std::move(volume));
   TissueTable table = boneTable();
   table.count = 2;
-  table.classes[1] = {0, 80, 50.0, 10.0, 0.1, 1, 0};
-  std::vector<Hit> hits;
-  const Contact contact = findContact(grid, grid.geometry().patientToVoxel(), table,
-                                      makeBlade(0.008, 9), {{0, 0, -12}, {1, 0, 0, 0}}, {}, 1.5, hits);
-  EXPECT_EQ(contact.points, 9);
-  EXPECT_EQ(contact.tissue_class, 0);
+  table.classes[1] = {0, 80, 50.0, 10.0, 0.1, 0.0, 0.0, 1, 0};
+  Probe probe(makeBlade(0.008, 9), std::move(volume), table);
+  EXPECT_EQ(probe.touch({0, 0, -12}).points, 9);
+  EXPECT_EQ(probe.contact.contact().tissue_class, 0);
 }
 
-TEST(Tool, PointKOfABladeLiesKOverITimesItsLengthAlongIt) {
-  const Tool blade = makeBlade(0.020, 5);
-  for (int k = 0; k < 5; ++k) {
-    EXPECT_DOUBLE_EQ(blade.points_m[std::size_t(k)].z, 0.020 * k / 4.0);
-    EXPECT_EQ(blade.points_m[std::size_t(k)].x, 0.0);
+TEST(TissueLookup, AnswersAsClassifyDoesForEveryHu) {
+  TissueTable table = boneTable();
+  table.count = 3;
+  table.classes[1] = {-32768, -1000, 1, 1, 1, 0, 0, 1, 0};
+  table.classes[2] = {3072, 32767, 1, 1, 1, 0, 0, 1, 0};
+  TissueLookup lookup;
+  lookup.set(table);
+  for (int hu = -32768; hu <= 32767; ++hu) {
+    ASSERT_EQ(lookup.classOf(std::int16_t(hu)), classify(table, std::int16_t(hu))) << hu;
   }
-}
-
-TEST(Tool, RefusesLengthsAndPointCountsThatCannotBe) {
-  EXPECT_TRUE(makeTool(ToolKind::blade, 0.0, 1).ok());
-  EXPECT_TRUE(makeTool(ToolKind::blade, 1.0, 10000).ok());
-  EXPECT_EQ(makeTool(ToolKind::blade, 1.1, 5).error().where, "length_mm");
-  EXPECT_EQ(makeTool(ToolKind::blade, std::nan(""), 5).error().code, "BAD_TOOL");
-  EXPECT_EQ(makeTool(ToolKind::blade, 0.1, 0).error().where, "points");
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ inline Volume boneSlab() {
   return volume;
 }
 
-inline TissueTable boneTable(double damping = 10.0, double stiffness = 800.0, double yield = 2.0) {
+inline TissueTable boneTable(double damping = 10.0, double stiffness = 800.0, double friction = 2.0) {
   TissueTable table;
   table.count = 1;
-  table.classes[0] = {226, 3071, damping, stiffness, yield, 1, 0};
+  table.classes[0] = {226, 3071, damping, stiffness, friction, 0.0, 0.05, 1, 0};
   return table;
 }
 
@@ -34,7 +34,8 @@ inline HapticParameters oneArm() {
   HapticParameters p;
   p.arms.push_back({makeNeedle(0.05), WorkspaceMap{}, 3.3, ArmDynamics{}});
   p.controller = ControllerKind::off;
-  p.laws = {LawKind::viscous, LawKind::elastic};
+  p.laws = {LawKind::viscous, LawKind::coulomb};
+  p.removal = RemovalKind::instant;
   p.tissues = boneTable();
   p.journal_voxels = 100000;
   p.journal_strokes = 64;
@@ -51,9 +52,14 @@ struct Bench {
     TickInput input;
     input.tick = tick++;
     input.late_ns = late_ns;
+    input.journal = core.journalState();
     input.arms[0].position_m = tip_mm / 1000.0;
     core.tick(input, commands.data(), commands.size(), record);
     return record.arms[0];
+  }
+  // Ticks on at the same place until an undo, redo, rewind or reset is done.
+  void settle() {
+    while (!core.acceptsCommands()) at(1000.0 * record.arms[0].device_position_m);
   }
   // A straight push at a constant speed; returns the largest sent force.
   double push(Vec3 from_mm, Vec3 to_mm, int ticks) {

@@ -2,58 +2,144 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace trephine {
 namespace {
 
-LawInput inBone(const Vec3& tip_m) {
-  return {tip_m, Contact{0, 1}, TissueClass{226, 3071, 10.0, 800.0, 2.0, 1, 0}};
-}
+// One class: b 10, k 800, friction 2 N, rupture 1 N. A tool of points that all touch it, or none.
+struct Case {
+  TissueTable table;
+  std::vector<TouchPoint> points;
+  LawInput in;
+
+  explicit Case(const Vec3& tip_m = Vec3(0.0), std::size_t count = 1) : points(count) {
+    table.count = 1;
+    table.classes[0] = {226, 3071, 10.0, 800.0, 2.0, 1.0, 0.05, 1, 0};
+    for (TouchPoint& p : points) {
+      p.weight = 1.0 / double(count);
+      p.tissue_class = 0;
+    }
+    in.tip_m = tip_m;
+    in.points = points;
+    in.tissues = &table;
+    in.touching = true;
+    in.tip_class = 0;
+    in.into_m = Vec3(0, 0, -1);
+  }
+  Case(const Case&) = delete;
+
+  Case& inAir() {
+    for (TouchPoint& p : points) p.tissue_class = -1;
+    in.touching = false;
+    in.tip_class = -1;
+    return *this;
+  }
+};
 
 template <class L>
-Vec3 forceOf(L&& law, const LawInput& in, const Vec3& velocity_m_s = Vec3(0.0)) {
+ContactForce contactOf(L&& law, const Case& c) {
   ContactForce force;
-  law.add(in, force);
-  return force.at(velocity_m_s);
+  law.add(c.in, force);
+  return force;
+}
+template <class L>
+Vec3 forceOf(L&& law, const Case& c) {
+  return contactOf(law, c).at(c.in.velocity_m_s);
 }
 
 TEST(ViscousLaw, OpposesTheVelocityWithTheTissuesDamping) {
-  const Vec3 f = forceOf(ViscousLaw{}, inBone(Vec3(0.0)), {0.01, -0.02, 0.03});
+  Case c;
+  c.in.velocity_m_s = {0.01, -0.02, 0.03};
+  const Vec3 f = forceOf(ViscousLaw{}, c);
   EXPECT_DOUBLE_EQ(f.x, -0.1);
   EXPECT_DOUBLE_EQ(f.y, 0.2);
   EXPECT_DOUBLE_EQ(f.z, -0.3);
 }
 
+// Two points 10 mm above and below the tip, turning at 2 rad/s about y: their own 20 mm/s cancel in
+// the force and add in the torque, 2 x 0.5 x 10 N s/m x 0.02 m/s x 0.01 m.
+TEST(ViscousLaw, GivesEachPointItsOwnVelocityAndTheTorqueOfAll) {
+  Case c(Vec3(0.0), 2);
+  c.points[0].arm_m = {0, 0, 0.01};
+  c.points[1].arm_m = {0, 0, -0.01};
+  for (TouchPoint& p : c.points) p.turning_m_s = glm::cross(Vec3(0, 2, 0), p.arm_m);
+  const ContactForce turning = contactOf(ViscousLaw{}, c);
+  EXPECT_NEAR(glm::length(turning.at(Vec3(0.0))), 0.0, 1e-15);
+  EXPECT_NEAR(turning.torque_Nm.y, -0.002, 1e-15);
+  c.points[1].tissue_class = -1;
+  const ContactForce half = contactOf(ViscousLaw{}, c);
+  EXPECT_NEAR(half.at(Vec3(0.0)).x, -0.1, 1e-15);
+  EXPECT_DOUBLE_EQ(half.damping, 5.0);
+}
+
+// Equal power: what the arm feels at the handle is what the points feel.
+TEST(Laws, TheForceAndTorqueAtTheHandleHaveThePowerOfThePoints) {
+  Case c(Vec3(0.0), 5);
+  const Vec3 omega(0.3, -1.1, 0.7);
+  c.in.velocity_m_s = {0.02, 0.01, -0.03};
+  double power_W = 0.0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    TouchPoint& p = c.points[i];
+    p.arm_m = Vec3(0.001 * double(i), -0.002 * double(i), 0.004 * double(i));
+    p.turning_m_s = glm::cross(omega, p.arm_m);
+    const Vec3 v = c.in.velocity_m_s + p.turning_m_s;
+    power_W += glm::dot(-10.0 * p.weight * v, v);
+  }
+  const ContactForce f = contactOf(ViscousLaw{}, c);
+  EXPECT_NEAR(glm::dot(f.at(c.in.velocity_m_s), c.in.velocity_m_s) + glm::dot(f.torque_Nm, omega),
+              power_W, 1e-15);
+}
+
 TEST(Laws, GiveNoForceWithoutContact) {
-  LawInput air = inBone({0, 0, -0.001});
-  air.contact = Contact{};
-  EXPECT_EQ(forceOf(ViscousLaw{}, air, {1, 1, 1}), Vec3(0.0));
-  EXPECT_EQ(forceOf(ElasticLaw{}, air, {1, 1, 1}), Vec3(0.0));
+  for (const auto& [name, kind] : kLawNames) {
+    Law law = makeLaw(kind);
+    Case c({0, 0, -0.001});
+    c.inAir();
+    c.in.velocity_m_s = Vec3(1.0);
+    ContactForce force;
+    addLaw(law, c.in, force);
+    EXPECT_EQ(force.at(c.in.velocity_m_s), Vec3(0.0)) << name;
+    EXPECT_EQ(force.stiffness, 0.0) << name;
+  }
 }
 
-TEST(ElasticLaw, PushesBackTowardsWhereContactBegan) {
-  ElasticLaw law;
-  EXPECT_EQ(forceOf(law, inBone({0, 0, 0})), Vec3(0.0));
-  EXPECT_NEAR(forceOf(law, inBone({0, 0, -0.001})).z, 0.8, 1e-12);
-  EXPECT_NEAR(forceOf(law, inBone({0, 0, -0.001})).z, 0.8, 1e-12) << "holds at rest";
+TEST(CoulombLaw, HoldsAtRestWithoutDrift) {
+  CoulombLaw law;
+  EXPECT_EQ(forceOf(law, Case({0, 0, 0})), Vec3(0.0));
+  const Vec3 held = forceOf(law, Case({0, 0, -0.001}));
+  EXPECT_NEAR(held.z, 0.8, 1e-12);
+  for (int i = 0; i < 100000; ++i) ASSERT_EQ(forceOf(law, Case({0, 0, -0.001})), held);
 }
 
-TEST(ElasticLaw, GivesWayAtTheYieldForceAndNeverExceedsIt) {
-  ElasticLaw law;
-  forceOf(law, inBone({0, 0, 0}));
-  EXPECT_NEAR(glm::length(forceOf(law, inBone({0, 0, -0.010}))), 2.0, 1e-12);
+// An encoder that flickers by one count at rest moves the force by no more than the spring says.
+TEST(CoulombLaw, DoesNotBuzzAtRestOnAFlickeringEncoder) {
+  CoulombLaw law;
+  forceOf(law, Case({0, 0, 0}));
+  forceOf(law, Case({0, 0, -0.010}));
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 f = forceOf(law, Case({0, 0, -0.009 + (i % 2) * 5.5e-5}));
+    ASSERT_NEAR(f.z, 1.2, 800.0 * 5.5e-5 + 1e-9);
+  }
+}
+
+TEST(CoulombLaw, SlidesAtTheTissuesFrictionAndNeverAboveIt) {
+  CoulombLaw law;
+  forceOf(law, Case({0, 0, 0}));
+  EXPECT_NEAR(glm::length(forceOf(law, Case({0, 0, -0.010}))), 2.0, 1e-12);
   // The anchor was dragged along: coming back 1 mm relieves the spring by 0.8 N.
-  EXPECT_NEAR(forceOf(law, inBone({0, 0, -0.009})).z, 1.2, 1e-12);
+  EXPECT_NEAR(forceOf(law, Case({0, 0, -0.009})).z, 1.2, 1e-12);
 }
 
-TEST(ElasticLaw, NeverGivesBackMoreEnergyThanItTook) {
-  ElasticLaw law;
+TEST(CoulombLaw, NeverGivesBackMoreEnergyThanItTook) {
+  CoulombLaw law;
   double given_J = 0.0;
   Vec3 last(0.0), held(0.0);
   for (int i = 0; i < 20000; ++i) {
     const double t = i * 1e-3;
     const Vec3 x(0.004 * std::sin(3.1 * t), 0.003 * std::sin(7.7 * t), 0.005 * std::sin(5.3 * t));
     // The trapezoid of a piecewise linear motion is exact for a spring.
-    const Vec3 f = forceOf(law, inBone(x));
+    const Vec3 f = forceOf(law, Case(x));
     given_J += glm::dot(0.5 * (f + held), x - last);
     ASSERT_LT(given_J, 1e-9);
     last = x;
@@ -62,18 +148,91 @@ TEST(ElasticLaw, NeverGivesBackMoreEnergyThanItTook) {
   EXPECT_LT(given_J, -0.01) << "dragging the anchor loses energy";
 }
 
-TEST(ElasticLaw, ForgetsItsAnchorWhenContactEnds) {
+TEST(CoulombLaw, ForgetsItsAnchorWhenContactEnds) {
+  CoulombLaw law;
+  forceOf(law, Case({0, 0, 0}));
+  forceOf(law, Case({0, 0, 0.002}).inAir());
+  EXPECT_EQ(forceOf(law, Case({0, 0, -0.001})), Vec3(0.0));
+}
+
+TEST(CoulombLaw, OfManyPointsIsThatOfOneWhenTheyMoveTogether) {
+  CoulombLaw one(1), many(7);
+  for (double z : {0.0, -0.001, -0.004, -0.003, -0.0035}) {
+    EXPECT_NEAR(forceOf(one, Case({0, 0, z})).z, forceOf(many, Case({0, 0, z}, 7)).z, 1e-12);
+  }
+}
+
+TEST(ElasticLaw, GivesThePushOfTheBall) {
+  Case c;
+  c.in.push = {Vec3(0.1, 0, 0.2), 500.0, 0.0};
+  c.in.share.stiffness = 0.5;
+  const ContactForce f = contactOf(ElasticLaw{}, c);
+  EXPECT_DOUBLE_EQ(f.elastic_N.z, 0.1);
+  EXPECT_DOUBLE_EQ(f.stiffness, 250.0);
+}
+
+// k = 500, r = 2 mm; the centre 1 mm deep: the ball's sum is k (r - 1 mm), the depth 3 mm.
+TEST(ElasticLaw, PushesABluntToolByItsDepthBeyondTheBallsCentre) {
+  Case c;
+  c.in.ball_radius_m = 0.002;
+  c.in.push = {Vec3(0, 0, 0.5), 500.0, 500.0};
+  EXPECT_DOUBLE_EQ(forceOf(ElasticLaw{}, c).z, 0.5) << "a sharp tool has parted the tissue";
+  c.in.blunt = true;
   ElasticLaw law;
-  forceOf(law, inBone({0, 0, 0}));
-  LawInput air = inBone({0, 0, 0.002});
-  air.contact = Contact{};
-  forceOf(law, air);
-  EXPECT_EQ(forceOf(law, inBone({0, 0, -0.001})), Vec3(0.0));
+  EXPECT_DOUBLE_EQ(forceOf(law, c).z, 1.5);
+  c.in.push.force_N = Vec3(1e-3, 0, 0);  // closed all around: nothing clear to say
+  EXPECT_NEAR(forceOf(law, c).z, 1.999, 1e-9) << "the last clear normal";
+}
+
+TEST(RuptureLaw, IsElasticUpToTheRuptureForceAndThenDrops) {
+  RuptureLaw law;
+  Case entry({0, 0, 0});
+  entry.in.velocity_m_s = {0, 0, -0.01};
+  EXPECT_EQ(contactOf(law, entry).elastic_N, Vec3(0.0));
+  EXPECT_NEAR(contactOf(law, Case({0, 0, -0.001})).elastic_N.z, 0.8, 1e-12);
+  EXPECT_NEAR(contactOf(law, Case({0, 0, -0.00124})).elastic_N.z, 0.992, 1e-12);
+  EXPECT_EQ(contactOf(law, Case({0, 0, -0.00126})).elastic_N, Vec3(0.0));
+  EXPECT_EQ(contactOf(law, Case({0, 0, -0.0005})).elastic_N, Vec3(0.0)) << "stays ruptured";
+}
+
+TEST(RuptureLaw, ACapsuleFromWhichTheTipDrewBackIsWholeAgain) {
+  RuptureLaw law;
+  contactOf(law, Case({0, 0, 0}));
+  contactOf(law, Case({0, 0, -0.001}));
+  EXPECT_EQ(contactOf(law, Case({0, 0, 0.0001})).elastic_N, Vec3(0.0));
+  contactOf(law, Case({0, 0, 0}));
+  EXPECT_NEAR(contactOf(law, Case({0, 0, -0.001})).elastic_N.z, 0.8, 1e-12);
+}
+
+TEST(RuptureLaw, IsWholeAgainAfterTheToolLeftAllTissue) {
+  RuptureLaw law;
+  contactOf(law, Case({0, 0, 0}));
+  contactOf(law, Case({0, 0, -0.002}));
+  EXPECT_EQ(contactOf(law, Case({0, 0, -0.001})).elastic_N, Vec3(0.0));
+  contactOf(law, Case({0, 0, 0.01}).inAir());
+  contactOf(law, Case({0, 0, 0}));
+  EXPECT_NEAR(contactOf(law, Case({0, 0, -0.001})).elastic_N.z, 0.8, 1e-12);
+}
+
+// An arm that renders half the stiffness feels half the force and the same rupture.
+TEST(RuptureLaw, GivesWayAtTheSamePlaceWhateverTheArmRenders) {
+  RuptureLaw law;
+  const auto at = [&](double z) {
+    Case c({0, 0, z});
+    c.in.share.stiffness = 0.5;
+    return contactOf(law, c).elastic_N.z;
+  };
+  at(0.0);
+  EXPECT_NEAR(at(-0.00124), 0.496, 1e-12);
+  EXPECT_EQ(at(-0.00126), 0.0);
 }
 
 TEST(Laws, AreMadeByName) {
-  EXPECT_TRUE(std::holds_alternative<ElasticLaw>(makeLaw(LawKind::elastic)));
   EXPECT_TRUE(std::holds_alternative<ViscousLaw>(makeLaw(LawKind::viscous)));
+  EXPECT_TRUE(std::holds_alternative<CoulombLaw>(makeLaw(LawKind::coulomb, 3)));
+  EXPECT_EQ(std::get<CoulombLaw>(makeLaw(LawKind::coulomb, 3)).anchors_m.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<ElasticLaw>(makeLaw(LawKind::elastic)));
+  EXPECT_TRUE(std::holds_alternative<RuptureLaw>(makeLaw(LawKind::rupture)));
 }
 
 }  // namespace

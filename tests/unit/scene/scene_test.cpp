@@ -27,8 +27,8 @@ TEST(Scene, EveryShippedSceneReads) {
 TEST(Scene, TheCraniumSceneHasTwoArmsWithBlades) {
   const Scene scene = *readScene(shippedFile());
   ASSERT_EQ(scene.arms.size(), 2u);
-  EXPECT_EQ(scene.findTool(scene.arms[0].tool)->tool.kind, ToolKind::blade);
-  EXPECT_EQ(scene.laws.size(), 2u);
+  EXPECT_EQ(scene.findTool(scene.arms[0].tool)->tool.made_from.kind, ToolKind::blade);
+  EXPECT_EQ(scene.laws.size(), 3u);
   EXPECT_EQ(hapticParameters(scene).arms.size(), 2u);
 }
 

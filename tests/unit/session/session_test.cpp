@@ -82,7 +82,7 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   ASSERT_TRUE(session.start().ok());
   const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
   TissueSet softer = session.scene().tissues;
-  softer.tissues[3].yield_N.value = 0.5;
+  softer.tissues[3].friction_N.value = 0.5;
   for (int i = 0; i < 60; ++i) {
     session.moveHand(1, 0.6 * down_mm);
     if (i == 40) {

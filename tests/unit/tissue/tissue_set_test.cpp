@@ -25,7 +25,8 @@ Tissue tissue(const std::string& id, int hu_min, int hu_max) {
   t.opacity = 0.25;
   t.damping_Ns_per_m = {12.5, "a paper"};
   t.stiffness_N_per_m = {800.0, "a table"};
-  t.yield_N = {1.5, "tuned here, uncited"};
+  t.friction_N = {1.5, "tuned here, uncited"};
+  t.cutting_J_per_mm3 = {0.05, "a handbook"};
   return t;
 }
 
@@ -125,7 +126,7 @@ struct Mechanic {
 };
 const Mechanic kMechanics[] = {{"damping_Ns_per_m", &Tissue::damping_Ns_per_m},
                                {"stiffness_N_per_m", &Tissue::stiffness_N_per_m},
-                               {"yield_N", &Tissue::yield_N}};
+                               {"friction_N", &Tissue::friction_N}};
 
 TEST(TissueSet, HasNoNegativeMechanics) {
   for (const Mechanic& m : kMechanics) {
@@ -200,7 +201,7 @@ TEST(TissueFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(skin.damping_Ns_per_m.value, 0.1);
   EXPECT_EQ(skin.damping_Ns_per_m.source, "a paper");
   EXPECT_EQ(skin.stiffness_N_per_m.value, 800.0);
-  EXPECT_EQ(skin.yield_N.source, "tuned here, uncited");
+  EXPECT_EQ(skin.friction_N.source, "tuned here, uncited");
   EXPECT_TRUE(skin.cuttable);
   EXPECT_EQ(read->tissues[1].label, 5);
   EXPECT_FALSE(read->tissues[2].cuttable);
@@ -237,8 +238,8 @@ TEST(TissueFile, RefusesAnUnknownFieldByNameAndValue) {
   EXPECT_EQ(parseErrorAfter([](Json& j) { j["tissues"][0]["mechanics"]["friction"] = 1; }).where,
             "t.json: tissues[0].mechanics.friction");
   EXPECT_EQ(
-      parseErrorAfter([](Json& j) { j["tissues"][0]["mechanics"]["yield_N"]["unit"] = "N"; }).where,
-      "t.json: tissues[0].mechanics.yield_N.unit");
+      parseErrorAfter([](Json& j) { j["tissues"][0]["mechanics"]["friction_N"]["unit"] = "N"; }).where,
+      "t.json: tissues[0].mechanics.friction_N.unit");
 }
 
 TEST(TissueFile, RefusesANewerVersionByName) {
@@ -269,9 +270,9 @@ TEST(TissueFile, RefusesWholeNumbersThatWouldWrapRoundIntoValidOnes) {
 
 TEST(TissueFile, IsHeldToTheRulesOfTheSet) {
   const Error error =
-      parseErrorAfter([](Json& j) { j["tissues"][1]["mechanics"]["yield_N"]["value"] = -3.0; });
+      parseErrorAfter([](Json& j) { j["tissues"][1]["mechanics"]["friction_N"]["value"] = -3.0; });
   EXPECT_EQ(error.code, "BAD_TISSUE");
-  EXPECT_EQ(error.where, "t.json: tissues[1].mechanics.yield_N");
+  EXPECT_EQ(error.where, "t.json: tissues[1].mechanics.friction_N");
   EXPECT_PART(error.what, "-3.0");
 }
 
@@ -319,7 +320,7 @@ TEST(TissueTable, KeepsTheOrderAndTheNumbersOfTheSet) {
   EXPECT_EQ(table.classes[2].hu_max, 3071);
   EXPECT_EQ(table.classes[2].damping_Ns_per_m, 12.5);
   EXPECT_EQ(table.classes[2].stiffness_N_per_m, 800.0);
-  EXPECT_EQ(table.classes[2].yield_N, 1.5);
+  EXPECT_EQ(table.classes[2].friction_N, 1.5);
   EXPECT_EQ(table.classes[0].cuttable, 1);
   EXPECT_EQ(table.classes[1].cuttable, 0);
 }

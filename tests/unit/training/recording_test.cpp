@@ -30,19 +30,20 @@ Scene sceneWithOneArm() {
   bone.hu_min = 226;
   bone.hu_max = 3071;
   bone.hu_source = bone.damping_Ns_per_m.source = bone.stiffness_N_per_m.source =
-      bone.yield_N.source = "test";
+      bone.friction_N.source = bone.cutting_J_per_mm3.source = "test";
   bone.damping_Ns_per_m.value = 10;
   bone.stiffness_N_per_m.value = 800;
-  bone.yield_N.value = 2;
+  bone.friction_N.value = 2;
+  bone.cutting_J_per_mm3.value = 1e-4;
   scene.tissues = {"test", {bone}};
-  scene.tools.push_back({"blade", 8.0, makeBlade(0.008, 17)});
+  scene.tools.push_back({"blade", makeBlade(0.008, 17), {}});
   SceneArm arm;
   arm.name = "right";
   arm.plugin = "simulated";
   arm.tool = "blade";
   arm.map.fixed = WorkspaceMap{};
   scene.arms.push_back(arm);
-  scene.laws = {LawKind::viscous, LawKind::elastic};
+  scene.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
   return scene;
 }
 
@@ -58,6 +59,7 @@ void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bool fini
   for (std::uint64_t t = 0; t < ticks; ++t) {
     TickInput input;
     input.tick = t;
+    input.journal = core.journalState();
     input.arms[0].position_m = Vec3(4e-6 * double(t % 2000) - 4e-3, 1e-3, 2e-3 - 3e-6 * double(t % 2000));
     std::vector<Command> commands;
     if (t == 2500) commands.push_back({CommandKind::undo, 0, {}});
@@ -102,6 +104,7 @@ TEST(Recording, AReplayNamesTheFirstDifference) {
   for (std::uint64_t t = 0; t < 1000; ++t) {
     TickInput input;
     input.tick = t;
+    input.journal = core.journalState();
     input.arms[0].position_m = Vec3(0, 0, 2e-3 - 5e-6 * double(t));
     TickRecord record;
     core.tick(input, nullptr, 0, record);

@@ -17,7 +17,7 @@ namespace {
 
 TissueSet twoTissues() {
   Tissue soft{"soft", "Soft tissue", 0, 200, "a book", {}, Vec3(0.8), 0.1, {}, {}, {}, true};
-  soft.damping_Ns_per_m = soft.stiffness_N_per_m = soft.yield_N = {1.0, "a paper"};
+  soft.damping_Ns_per_m = soft.stiffness_N_per_m = soft.friction_N = soft.cutting_J_per_mm3 = {1.0, "a paper"};
   Tissue bone = soft;
   bone.id = "bone";
   bone.name = "Bone";

@@ -1,0 +1,31 @@
+#include "haptics/laws/coulomb.h"
+
+namespace trephine {
+
+void CoulombLaw::add(const LawInput& in, ContactForce& out) {
+  for (std::size_t i = 0; i < in.points.size(); ++i) {
+    const TouchPoint& p = in.points[i];
+    const double k =
+        p.tissue_class >= 0 ? in.share.stiffness * in.tissue(p).stiffness_N_per_m : 0.0;
+    if (!(k > 0.0)) {
+      held[i] = false;
+      continue;
+    }
+    const Vec3 at_m = in.tip_m + p.arm_m;
+    if (!held[i]) anchors_m[i] = at_m;
+    held[i] = true;
+    Vec3 stretch_m = at_m - anchors_m[i];
+    const double length_m = glm::length(stretch_m);
+    const double limit_m = in.tissue(p).friction_N / k;
+    if (length_m > limit_m) {
+      stretch_m *= limit_m / length_m;
+      anchors_m[i] = at_m - stretch_m;
+    }
+    const Vec3 force_N = -(p.weight * k) * stretch_m;
+    out.elastic_N += force_N;
+    out.stiffness += p.weight * k;
+    out.torque_Nm += glm::cross(p.arm_m, force_N);
+  }
+}
+
+}  // namespace trephine

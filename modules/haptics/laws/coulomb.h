@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "haptics/contact_force.h"
+#include "haptics/law_input.h"
+
+namespace trephine {
+
+// Dry friction with stiction, position-based (Hayward and Armstrong 2000): a spring from each point
+// to an anchor set where its contact began, f = -w k (x - anchor), and |f| <= w F: beyond the
+// tissue's friction F the anchor is dragged along. At rest the anchor stands still, so the force
+// neither drifts nor buzzes; energy is stored or lost, never made. k is the tissue's stiffness [N/m],
+// F its friction [N], both for the whole tool.
+struct CoulombLaw {
+  explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), held(points, false) {}
+  void add(const LawInput& in, ContactForce& out);
+  void forget() { held.assign(held.size(), false); }
+
+  std::vector<Vec3> anchors_m;
+  std::vector<char> held;  // whether a point has an anchor
+};
+
+}  // namespace trephine

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "haptics/contact_force.h"
+#include "haptics/law_input.h"
+
+namespace trephine {
+
+// A capsule before a sharp tip: elastic up to a force, then it gives way and the force drops
+// (puncture of soft tissue: Okamura, Simone and O'Leary 2004). Where the tip enters a tissue that
+// has a rupture force F_r > 0, f = -k (x - entry) while the tip is pressed further in than there;
+// at |x - entry| = F_r / k the tissue ruptures and stays so until the tool has left all tissue. A
+// tip that draws back before that leaves it whole. One capsule at a time.
+struct RuptureLaw {
+  explicit RuptureLaw(std::size_t /*points*/ = 1) {}
+  void add(const LawInput& in, ContactForce& out);
+  void forget() { *this = RuptureLaw(); }
+
+  std::int32_t stretched = -1;  // the tissue class that is being pressed in
+  std::uint32_t ruptured = 0;   // bit c: class c has given way
+  Vec3 entry_m{0.0};
+  Vec3 inwards{0.0};            // the way the tip went at the entry
+};
+
+}  // namespace trephine

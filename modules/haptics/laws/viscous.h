@@ -1,0 +1,16 @@
+#pragma once
+
+#include "haptics/contact_force.h"
+#include "haptics/law_input.h"
+
+namespace trephine {
+
+// Seed paper, eq. 1: f = -b v, b the damping of the tissue touched [N s/m]. Over the points of a
+// tool: f_i = -w_i b_i (v + omega x r_i).
+struct ViscousLaw {
+  explicit ViscousLaw(std::size_t /*points*/ = 1) {}
+  void add(const LawInput& in, ContactForce& out) const;
+  void forget() {}
+};
+
+}  // namespace trephine

@@ -1,0 +1,92 @@
+// Removal of tissue from the solid that a tool sweeps, paid with the work that the tool did.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "haptics/swept_solid.h"
+#include "haptics/tissue_lookup.h"
+#include "haptics/tool.h"
+#include "volume/grid.h"
+
+namespace trephine {
+
+// work: a tool removes V = W / u, W its work on tissue and u the tissue's specific cutting energy.
+// instant: whatever the tool's solid meets goes at once (the seed paper's rule, without its gaps).
+enum class RemovalKind : std::int32_t { work, instant };
+inline constexpr std::array<std::pair<std::string_view, RemovalKind>, 2> kRemovalNames{
+    {{"work", RemovalKind::work}, {"instant", RemovalKind::instant}}};
+
+// A voxel that an arm takes, and what it paid.
+struct Bite {
+  Index3 voxel{0, 0, 0};
+  std::int32_t tissue_class = 0;
+  double cost_J = 0.0;
+};
+
+// One tool's removal. It sweeps in passes over the rows of voxels that the solid crosses, a bounded
+// number a tick, so that a tick costs the same on a fine grid as on a coarse one; on the finest a
+// pass takes a few ticks. A pass looks only at what the last one did not clear.
+//
+// Where work is short, the nearest to the tool's axis goes first: a pass reaches at most one layer
+// beyond what is clear, up to the tool's radius, so that what is cut is a smaller channel, not a
+// sponge.
+class Removal {
+ public:
+  // The solid is never thinner than a voxel, or it would slip between their centres.
+  Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
+
+  // Work that the tool did on tissue that may be cut. What cannot be spent within 20 ms of the
+  // motor, or on one voxel, is heat: the credit is capped there, and so is a debt.
+  void earn(double work_J, const TissueTable& tissues);
+  // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
+  // this tick, to `bites` (room for kMostBites). No allocation.
+  void sweep(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
+             const Pose& pose_mm, std::vector<Bite>& bites);
+  // A voxel was shared with another tool, or could not be removed.
+  void refund(double work_J) { credit_J_ += work_J; }
+  // Tissue came back, or another is meant by a HU: nothing is known to be clear.
+  void forget() {
+    known_ = false;
+    passing_ = false;
+  }
+
+  double credit_J() const { return credit_J_; }
+  void setCredit(double credit_J) { credit_J_ = credit_J; }
+
+  static constexpr std::size_t kMostBites = 512;  // a tick
+
+ private:
+  void begin(const Capsule& now);
+  void end(const Capsule& now);
+  Capsule capsuleAt(const Pose& pose_mm) const;
+
+  Tool tool_;
+  GridGeometry geometry_;
+  Mat4 patient_to_voxel_;
+  RemovalKind kind_;
+  double radius_mm_;
+  double layer_mm_;
+  double still_mm_;
+  double motor_cap_J_;
+  double credit_J_ = 0.0;
+
+  bool known_ = false;  // `clear_` holds: all within it that can be taken has been
+  Capsule clear_;
+  bool passing_ = false;
+  bool paid_ = true;    // every voxel of this pass so far
+  bool backwards_ = false;  // every other pass, so that no side is favoured when work is short
+  Capsule goal_;
+  std::optional<Capsule> last_;  // in the tick before
+  double farthest_mm_;           // that a tool can go in a tick
+  SweptSolid solid_;
+  std::int32_t slice_ = 0, slice_end_ = 0;  // counted from the pass's first
+  std::int32_t row_ = 0;
+  Index3 low_{0, 0, 0}, high_{0, 0, 0};  // bounds of the pass; x unused
+};
+
+}  // namespace trephine

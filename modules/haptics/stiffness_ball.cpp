@@ -1,0 +1,133 @@
+#include "haptics/stiffness_ball.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace trephine {
+
+namespace {
+
+// Where a ray is sampled, in radii. The last part is the shell of the surface term; the radius ends
+// in its middle.
+constexpr int kParts = 4;
+constexpr double kRadii[kParts] = {1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0, 7.0 / 6.0};
+constexpr double kShare[kParts] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0};
+constexpr double kSame = 1e-3;  // HU
+
+double mix(double a, double b, double t) { return a + t * (b - a); }
+
+// Trilinear, all eight voxels in the grid.
+double sampleInside(const Grid& grid, std::size_t row, std::size_t slice, const Vec3& v) {
+  const int i = int(v.x), j = int(v.y), k = int(v.z);  // none is negative
+  const double tx = v.x - i, ty = v.y - j, tz = v.z - k;
+  const std::size_t at = std::size_t(k) * slice + std::size_t(j) * row + std::size_t(i);
+  const auto edge = [&](std::size_t n) { return mix(grid.hu(n), grid.hu(n + 1), tx); };
+  return mix(mix(edge(at), edge(at + row), ty), mix(edge(at + slice), edge(at + slice + row), ty), tz);
+}
+
+// Trilinear anywhere: beyond the grid lies air.
+double sampleAnywhere(const Grid& grid, const Vec3& v) {
+  const auto below = [](double x) { return int(x) - (x < int(x) ? 1 : 0); };
+  const int i = below(v.x), j = below(v.y), k = below(v.z);
+  const Vec3 t = v - Vec3(i, j, k);
+  double c[8];
+  for (int n = 0; n < 8; ++n) c[n] = grid.hu(i + (n & 1), j + (n >> 1 & 1), k + (n >> 2));
+  return mix(mix(mix(c[0], c[1], t.x), mix(c[2], c[3], t.x), t.y),
+             mix(mix(c[4], c[5], t.x), mix(c[6], c[7], t.x), t.y), t.z);
+}
+
+// Evenly spread opposite pairs: a spiral of equal areas over the upper half (Fibonacci lattice).
+std::vector<Vec3> oppositePairs(int count) {
+  const int half = (count + 1) / 2;
+  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Vec3> out;
+  for (int i = 0; i < half; ++i) {
+    const double z = (i + 0.5) / half, flat = std::sqrt(1.0 - z * z);
+    const Vec3 d(flat * std::cos(turn * i), flat * std::sin(turn * i), z);
+    out.push_back(d);
+    out.push_back(-d);
+  }
+  return out;
+}
+
+}  // namespace
+
+void StiffnessOfHu::set(const TissueTable& tissues) {
+  double sum = 0.0;
+  first_ = kLowest + kCount;
+  for (int n = 0; n < kCount; ++n) {
+    integral_[std::size_t(n)] = sum;
+    const int found = classify(tissues, std::int16_t(kLowest + n));
+    if (found < 0) continue;
+    first_ = std::min(first_, kLowest + n - 0.5);
+    sum += tissues.classes[std::size_t(found)].stiffness_N_per_m;
+  }
+  integral_[kCount] = sum;
+}
+
+double StiffnessOfHu::at(double hu) const {
+  const int n = int(std::clamp(hu - kLowest + 0.5, 0.0, double(kCount - 1)));
+  return integral_[std::size_t(n) + 1] - integral_[std::size_t(n)];
+}
+
+double StiffnessOfHu::integral(double hu) const {
+  const double x = std::clamp(hu - kLowest + 0.5, 0.0, double(kCount) - 1e-9);
+  const int n = int(x);
+  const double at = integral_[std::size_t(n)];
+  return at + (x - n) * (integral_[std::size_t(n) + 1] - at);
+}
+
+double StiffnessOfHu::mean(double hu_a, double hu_b) const {
+  if (hu_a < first_ && hu_b < first_) return 0.0;
+  if (std::abs(hu_a - hu_b) < kSame) return at(hu_a);
+  return (integral(hu_a) - integral(hu_b)) / (hu_a - hu_b);
+}
+
+StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions)
+    : patient_to_voxel_(geometry.patientToVoxel()), radius_m_(radius_mm / 1000.0), reach_(0.0) {
+  for (const Vec3& d : oppositePairs(directions)) {
+    const Vec3 reach = Vec3(patient_to_voxel_ * glm::dvec4(d * radius_mm, 0.0));
+    rays_.push_back({d, reach});
+    reach_ = glm::max(reach_, glm::abs(reach) * kRadii[kParts - 1]);
+  }
+}
+
+ElasticPush StiffnessBall::push(const Grid& grid, const StiffnessOfHu& stiffness,
+                                const Vec3& centre_mm) const {
+  ElasticPush out;
+  const GridGeometry& g = grid.geometry();
+  const Vec3 centre = Vec3(patient_to_voxel_ * glm::dvec4(centre_mm, 1.0));
+  const Vec3 low = centre - reach_, high = centre + reach_;
+  const Vec3 size(g.size[0], g.size[1], g.size[2]);
+  // Written so that NaN falls out as "no tissue".
+  const bool meets = high.x > -1.0 && high.y > -1.0 && high.z > -1.0 && low.x < size.x &&
+                     low.y < size.y && low.z < size.z;
+  if (!meets) return out;
+  const bool inside = low.x >= 0.0 && low.y >= 0.0 && low.z >= 0.0 && high.x < size.x - 1.0 &&
+                      high.y < size.y - 1.0 && high.z < size.z - 1.0;
+
+  const auto row = std::size_t(g.size[0]);
+  const std::size_t slice = row * std::size_t(g.size[1]);
+  const auto sample = [&](const Vec3& v) {
+    return inside ? sampleInside(grid, row, slice, v) : sampleAnywhere(grid, v);
+  };
+  const double hu_centre = sample(centre);
+  out.at_centre = stiffness.at(hu_centre);
+  Vec3 sum(0.0);
+  for (const Ray& ray : rays_) {
+    double hu = hu_centre, along = 0.0, mean = 0.0;
+    for (int part = 0; part < kParts; ++part) {
+      const double next = sample(centre + kRadii[part] * ray.reach);
+      mean = stiffness.mean(hu, next);
+      hu = next;
+      along += mean * kShare[part];
+      out.stiffness = std::max(out.stiffness, mean);
+    }
+    sum += ray.direction * (along + mean);
+  }
+  out.force_N = sum * (-2.0 * radius_m_ / double(rays_.size()));
+  return out;
+}
+
+}  // namespace trephine

@@ -1,0 +1,68 @@
+// The push of elastic tissue on a ball: depth and a smoothed normal in one sum, at a cost that does
+// not depend on the size of voxels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/math.h"
+#include "tissue/tissue_set.h"
+#include "volume/grid.h"
+
+namespace trephine {
+
+// K(h), the stiffness [N/m] of the tissue at a HU, as its integral over h: the mean stiffness along
+// a line on which HU runs evenly from a to b is then (C(b) - C(a)) / (b - a), which places a
+// surface within a voxel by its partial volume. Ranges of a class end half-way to the next integer.
+class StiffnessOfHu {
+ public:
+  StiffnessOfHu() : integral_(kCount + 1, 0.0) {}
+  void set(const TissueTable& tissues);  // no allocation
+  // HU below or above the table count as its ends.
+  double mean(double hu_a, double hu_b) const;
+  double at(double hu) const;
+
+  static constexpr int kLowest = -1100, kCount = 4400;  // HU; metal counts as 3300
+
+ private:
+  double integral(double hu) const;
+  std::vector<double> integral_;
+  double first_ = 0.0;  // no tissue below
+};
+
+constexpr int kBallDirections = 64;  // measured: `measure haptics`
+
+struct ElasticPush {
+  Vec3 force_N{0.0};        // on the tool, patient axes
+  double stiffness = 0.0;   // N/m, of the firmest tissue that pushes
+  double at_centre = 0.0;   // N/m, the tissue's at the ball's centre
+};
+
+// For a ball of radius r and tissue of stiffness K(x):
+//
+//   F = -(1 / 2 pi) integral over directions d of  d [ integral_0^r K(c + s d) ds + r K(c + r d) ]
+//
+// Over a half-space this is k times the ball's depth along the surface's normal, exactly, while the
+// centre is outside (the weights were chosen for that: derivation in README.md); over layers it is
+// the sum of (k_i - k_(i-1)) times the depth in each. The directions are a fixed set of opposite
+// pairs, so that evenly surrounded means no push. The surface term is taken over a shell of +-r/6.
+class StiffnessBall {
+ public:
+  // `directions` is rounded up to a whole number of opposite pairs.
+  StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions);
+
+  ElasticPush push(const Grid& grid, const StiffnessOfHu& stiffness, const Vec3& centre_mm) const;
+
+ private:
+  struct Ray {
+    Vec3 direction;  // patient axes
+    Vec3 reach;      // the radius in voxels
+  };
+  std::vector<Ray> rays_;
+  Mat4 patient_to_voxel_;
+  double radius_m_;
+  Vec3 reach_;  // voxels, of the outermost sample on each axis
+};
+
+}  // namespace trephine

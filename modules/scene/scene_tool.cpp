@@ -1,0 +1,104 @@
+#include "scene/scene_tool.h"
+
+#include <algorithm>
+
+#include "scene/names.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr Names<ToolKind, 3> kToolNames{
+    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
+constexpr Names<BurrShape, 2> kShapeNames{
+    {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
+
+int limited(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -1, 1'000'000)); }
+
+template <class Kind, std::size_t N>
+Kind readKind(JsonReader& item, const char* key, const std::string& text,
+              const Names<Kind, N>& names, const char* what) {
+  if (const auto kind = kindOf(names, text)) return *kind;
+  item.fail(key, "Unknown " + std::string(what) + " '" + text + "'", choices(names));
+  return names[0].second;
+}
+
+// The keys that a tool file and a scene's own tool share.
+Tool readTool(JsonReader& item) {
+  ToolDescription d;
+  d.kind = readKind(item, "kind", item.text("kind"), kToolNames, "tool");
+  const bool burr = d.kind == ToolKind::burr;
+  d.length_mm = item.number("length_mm");
+  d.points = limited(item.integer("points", burr ? 64 : 1));
+  d.radius_mm = burr ? item.number("radius_mm") : item.number("radius_mm", 0.6);
+  d.motor_W = item.number("motor_W", 0.0);
+  if (burr) {
+    d.shape = readKind(item, "shape", item.text("shape", "sphere"), kShapeNames, "shape");
+    d.shaft_points = limited(item.integer("shaft_points", 0));
+    if (d.shape == BurrShape::cylinder) d.head_mm = item.number("head_mm");
+  }
+  if (!item.ok()) return {};
+  Result<Tool> tool = makeTool(d);
+  if (tool) return *std::move(tool);
+  item.fail(tool.error().where.c_str(), tool.error().what);
+  return {};
+}
+
+ToolMesh readMesh(JsonReader& item, const std::filesystem::path& folder) {
+  ToolMesh mesh;
+  const std::string file = item.text("mesh", "");
+  if (file.empty()) return mesh;
+  mesh.file = (folder / file).lexically_normal();
+  mesh.tip_mm = item.vec3("tip_mm", Vec3(0.0));
+  mesh.axis = item.vec3("axis", Vec3(0.0, 0.0, 1.0));
+  if (!std::filesystem::is_regular_file(mesh.file)) {
+    item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
+  }
+  if (!(glm::length(mesh.axis) > 0.0)) item.fail("axis", "The direction has no length");
+  return mesh;
+}
+
+}  // namespace
+
+SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
+  SceneTool out;
+  out.id = item.text("id");
+  const std::string name = item.text("file", "");
+  if (name.empty()) {
+    out.tool = readTool(item);
+    out.mesh = readMesh(item, folder);
+    return out;
+  }
+  const std::filesystem::path file = (folder / name).lexically_normal();
+  Result<Json> json = readJsonFile(file);
+  if (!json) {
+    item.fail("file", json.error().what, json.error().next);
+    return out;
+  }
+  JsonReader reader(*json, file.string());
+  reader.format("trephine.tool", 1);
+  (void)reader.text("name");
+  out.tool = readTool(reader);
+  out.mesh = readMesh(reader, file.parent_path());
+  if (Status status = reader.finish(); !status) {
+    item.fail("file", status.error().what + " (" + status.error().where + ")", status.error().next);
+  }
+  return out;
+}
+
+Json toJson(const SceneTool& tool) {
+  const ToolDescription& d = tool.tool.made_from;
+  Json json = {{"id", tool.id},
+               {"kind", nameOf(kToolNames, d.kind)},
+               {"length_mm", d.length_mm},
+               {"points", d.points},
+               {"radius_mm", d.radius_mm},
+               {"motor_W", d.motor_W}};
+  if (d.kind != ToolKind::burr) return json;
+  json["shape"] = nameOf(kShapeNames, d.shape);
+  json["shaft_points"] = d.shaft_points;
+  if (d.shape == BurrShape::cylinder) json["head_mm"] = d.head_mm;
+  return json;
+}
+
+}  // namespace trephine
