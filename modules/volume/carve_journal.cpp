@@ -77,8 +77,8 @@ void CarveJournal::mark(const Credits& now) {
 std::uint64_t CarveJournal::standingEnd(const Stroke& stroke) const {
   Place place = here_;
   while (place.branch > stroke.branch) place = branches_[place.branch].parent;
-  // Its branch is not on the way when the stroke was cut before its first voxel.
-  if (place.branch != stroke.branch) return stroke.first;
+  // A stroke cut before its first voxel may have its branch beside the way: what is on the way is
+  // older then, and the clamp makes it empty.
   return std::clamp(place.entry, stroke.first, stroke.end);
 }
 
@@ -189,7 +189,7 @@ void CarveJournal::nextStretch() {
   way_down_ = branch.way_down;
   stretch_to_ = way_down_ == kNone ? target_ : branches_[way_down_].parent;
   cursor_ = branch.isUndo() ? branch.end : branch.first;
-  limit_ = branch.isUndo() ? branch.first : stretch_to_.entry;
+  limit_ = stretch_to_.entry;  // of an undo: its first
   stretch_arm_ = branch.arm;
 }
 

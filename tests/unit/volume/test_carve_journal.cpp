@@ -371,6 +371,19 @@ TEST_F(CarveJournalTest, GoingBackAndForthNeedsNoRoom) {
   EXPECT_EQ(hash(), at_five);
 }
 
+TEST_F(CarveJournalTest, UndoAndRedoOfOneStrokeCanBeRepeatedForEver) {
+  test::CarveBench small({20, 20, 20}, 16, 2, 2);
+  ASSERT_TRUE(small.journal.beginStroke(0, {}));
+  small.carve(0, {1});
+  ASSERT_TRUE(small.journal.beginStroke(1, {}));
+  small.carve(1, {2});
+  small.carve(0, {3});
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_TRUE(small.undo() && small.isBack(2) && small.isAir(3)) << n;
+    ASSERT_TRUE(small.redo() && small.isAir(2)) << n;
+  }
+}
+
 TEST_F(CarveJournalTest, WhatWasUndoneLengthensNoLaterWay) {
   stroke(0, {0});
   mark();
