@@ -4,132 +4,250 @@
 
 namespace trephine {
 
-CarveJournal::CarveJournal(std::size_t max_voxels, std::size_t max_strokes)
-    : entries_(max_voxels),
-      strokes_(std::min<std::size_t>(max_strokes, 65535)),
-      undone_(strokes_.size()) {}
+// A stroke needs at most one branch to remove on and mostly none to be undone.
+CarveJournal::CarveJournal(std::size_t ring_voxels, std::size_t max_strokes,
+                           std::size_t max_seconds)
+    : log_(ring_voxels),
+      branches_(2 * max_strokes + 2),
+      strokes_(max_strokes),
+      marks_(max_seconds + 1) {}
 
-bool CarveJournal::beginStroke(int arm) {
-  if (busy()) return false;
-  dropUndone();
-  if (stroke_count_ == strokes_.size()) return false;
-  strokes_[stroke_count_] = Stroke{};
-  strokes_[stroke_count_].first = std::uint32_t(entry_count_);
-  strokes_[stroke_count_].end = std::uint32_t(entry_count_);
-  strokes_[stroke_count_].arm = arm;
-  open_[arm] = std::int32_t(stroke_count_++);
+std::size_t CarveJournal::ramBytes() const {
+  return log_.ramBytes() + branches_.size() * sizeof(Branch) + strokes_.size() * sizeof(Stroke) +
+         marks_.size() * sizeof(Mark);
+}
+
+std::uint32_t CarveJournal::addBranch(const Branch& branch) {
+  branches_[branch_count_] = branch;
+  return std::uint32_t(branch_count_++);
+}
+
+// ---- Removal.
+
+bool CarveJournal::beginStroke(int arm, const Credits& now) {
+  if (busy_ || stroke_count_ == strokes_.size()) return false;
+  if (here_ != Place{tip_branch_, log_.size()}) {
+    if (branch_count_ == branches_.size()) return false;
+    Branch branch;
+    branch.parent = here_;
+    branch.first = log_.size();
+    tip_branch_ = addBranch(branch);
+    here_ = Place{tip_branch_, log_.size()};
+  }
+  Stroke& stroke = strokes_[stroke_count_];
+  stroke.first = stroke.end = log_.size();
+  stroke.credits = now;
+  stroke.arm = arm;
+  stroke.branch = tip_branch_;
+  stroke.below = top_;
+  top_ = open_[arm] = std::uint32_t(stroke_count_++);
+  redo_top_ = kNone;
   return true;
 }
 
-void CarveJournal::endStroke(int arm) {
-  open_[arm] = -1;
+bool CarveJournal::hasRoom(std::size_t entries) {
+  const bool room = log_.hasRoom(entries);
+  granted_ = log_.size() + (room ? entries : 0);
+  return room;
 }
 
 bool CarveJournal::erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class) {
-  if (busy() || open_[arm] < 0 || entry_count_ == entries_.size()) return false;
-  // A second entry for a voxel would put back air when the strokes are undone out of order.
+  if (busy_ || open_[arm] == kNone || log_.size() >= granted_) return false;
+  // A second entry for a voxel would put back air.
   if (writer.grid().hu(voxel) == kAirHu) return true;
-  const auto number = std::uint16_t(open_[arm]);
-  const std::int16_t old_hu = writer.store(voxel, kAirHu);
-  entries_[entry_count_++] = Entry{std::uint32_t(voxel), old_hu, number};
-  Stroke& stroke = strokes_[number];
-  stroke.end = std::uint32_t(entry_count_);
-  ++stroke.removed[tissue_class];
+  const std::int16_t hu = writer.store(voxel, kAirHu);
+  log_.append({std::uint32_t(voxel), hu, CarveEntry::makeTag(arm, tissue_class)});
+  here_.entry = log_.size();
+  Stroke& stroke = strokes_[open_[arm]];
+  stroke.end = log_.size();
+  ++stroke.voxels;
   ++removed_[arm][tissue_class];
   return true;
 }
 
-// Strokes that were undone and can no longer be redone. Only those at the end free their room:
-// earlier ones keep it, so that the numbers of standing strokes never change.
-void CarveJournal::dropUndone() {
-  undone_count_ = 0;
-  while (stroke_count_ > 0 && strokes_[stroke_count_ - 1].undone) --stroke_count_;
-  entry_count_ = 0;
-  for (std::size_t i = 0; i < stroke_count_; ++i) {
-    entry_count_ = std::max<std::size_t>(entry_count_, strokes_[i].end);
-  }
+void CarveJournal::mark(const Credits& now) {
+  if (mark_count_ == marks_.size()) return;
+  marks_[mark_count_++] = Mark{here_, top_, now};
+  if (!busy_) settled_marks_ = mark_count_;
 }
 
-bool CarveJournal::startUndo() {
-  for (std::size_t i = stroke_count_; i > 0; --i) {
-    if (!strokes_[i - 1].undone) return startUndo(i - 1);
+// ---- Starting jobs.
+
+// Where the stroke's entries end that stand at the present place: a rewind into the stroke cut it.
+std::uint64_t CarveJournal::standingEnd(const Stroke& stroke) const {
+  Place place = here_;
+  while (place.branch > stroke.branch) place = branches_[place.branch].parent;
+  // A stroke cut before its first voxel may have its branch beside the way: what is on the way is
+  // older then, and the clamp makes it empty.
+  return std::clamp(place.entry, stroke.first, stroke.end);
+}
+
+// The place that is like the present one without the stroke, which is the last that stands.
+CarveJournal::Place CarveJournal::placeWithout(Stroke& stroke) {
+  if (stroke.undone_from == here_) return stroke.undone_to;
+  const std::uint64_t end = standingEnd(stroke);
+  Place place = here_;
+  const bool alone = stroke.voxels == stroke.end - stroke.first;
+  if (alone && here_ == Place{stroke.branch, end}) {
+    place.entry = stroke.first;
+  } else if (end > stroke.first) {
+    Branch branch;
+    branch.parent = here_;
+    branch.first = stroke.first;
+    branch.end = end;
+    branch.arm = stroke.arm;
+    return {addBranch(branch), branch.first};
+  }
+  // A branch's beginning is its parent's place: later ways need not lead over this branch.
+  while (place.branch != 0 && !branches_[place.branch].isUndo() &&
+         place.entry == branches_[place.branch].first) {
+    place = branches_[place.branch].parent;
+  }
+  return place;
+}
+
+bool CarveJournal::startUndo(const Credits& now) {
+  if (busy_ || !canUndo()) return false;
+  Stroke& stroke = strokes_[top_];
+  const Place place = placeWithout(stroke);
+  stroke.undone_from = here_;
+  stroke.undone_to = place;
+  stroke.redo_below = redo_top_;
+  Credits credits = now;
+  credits[std::size_t(stroke.arm)] = stroke.credits[std::size_t(stroke.arm)];
+  startJob(place, stroke.below, top_, credits);
+  return true;
+}
+
+bool CarveJournal::startRedo(const Credits& now) {
+  if (busy_ || !canRedo()) return false;
+  const Stroke& stroke = strokes_[redo_top_];
+  startJob(stroke.undone_from, redo_top_, stroke.redo_below, now);
+  return true;
+}
+
+bool CarveJournal::startRewind(std::size_t second, const Credits& now) {
+  if (busy_ || second >= mark_count_) return false;
+  const Mark& mark = marks_[second];
+  if (mark.place == here_ && mark.top == top_ && mark.credits == now) return false;
+  startJob(mark.place, mark.top, kNone, mark.credits);
+  return true;
+}
+
+void CarveJournal::startJob(const Place& target, std::uint32_t top, std::uint32_t redo_top,
+                            const Credits& credits) {
+  std::fill(std::begin(open_), std::end(open_), kNone);
+  busy_ = true;
+  target_ = target;
+  job_top_ = top;
+  job_redo_top_ = redo_top;
+  job_credits_ = credits;
+  planWay();
+  skipEmptyStretches();
+}
+
+// ---- The way: up from the present place to the branch that both places have in common, along it,
+// and down to the target. Each branch on it is one stretch of the log.
+
+void CarveJournal::planWay() {
+  std::uint32_t up = here_.branch, down = target_.branch;
+  way_down_ = kNone;
+  while (up != down) {
+    if (up > down) {
+      up = branches_[up].parent.branch;
+    } else {
+      branches_[down].way_down = way_down_;
+      way_down_ = down;
+      down = branches_[down].parent.branch;
+    }
+  }
+  meet_branch_ = up;
+  climbing_ = true;
+  cursor_ = limit_ = 0;
+  stretch_to_ = here_;
+}
+
+void CarveJournal::nextStretch() {
+  here_ = stretch_to_;
+  stretch_arm_ = -1;
+  if (climbing_ && here_.branch != meet_branch_) {
+    const Branch& branch = branches_[here_.branch];
+    cursor_ = here_.entry;
+    limit_ = branch.isUndo() ? branch.end : branch.first;
+    stretch_arm_ = branch.arm;
+    stretch_to_ = branch.parent;
+    return;
+  }
+  if (climbing_) {
+    climbing_ = false;
+    cursor_ = here_.entry;
+    stretch_to_ = way_down_ == kNone ? target_ : branches_[way_down_].parent;
+    limit_ = stretch_to_.entry;
+    return;
+  }
+  const Branch& branch = branches_[way_down_];
+  way_down_ = branch.way_down;
+  stretch_to_ = way_down_ == kNone ? target_ : branches_[way_down_].parent;
+  cursor_ = branch.isUndo() ? branch.end : branch.first;
+  limit_ = stretch_to_.entry;  // of an undo: its first
+  stretch_arm_ = branch.arm;
+}
+
+void CarveJournal::skipEmptyStretches() {
+  while (cursor_ == limit_ && (climbing_ || way_down_ != kNone)) nextStretch();
+}
+
+// What the next step visits at most: within one stretch, and no more than is loaded in one go.
+CarveJournal::Slice CarveJournal::nextSlice(std::size_t max_voxels) const {
+  const std::uint64_t visits =
+      std::min(std::min(max_voxels, CarveLog::kLoadEntries) * 8, CarveLog::kLoadEntries);
+  if (cursor_ > limit_) return {cursor_ - std::min(visits, cursor_ - limit_), cursor_};
+  return {cursor_, cursor_ + std::min(visits, limit_ - cursor_)};
+}
+
+bool CarveJournal::canStep(std::size_t max_voxels) {
+  if (!busy_) return true;
+  const Slice slice = nextSlice(max_voxels);
+  if (log_.isReady(slice.first, slice.end)) return true;
+  // As much of the stretch as one load holds, so that the next slices need no other.
+  const std::uint64_t oldest_in_ring = log_.ringBegin();
+  if (cursor_ > limit_) {
+    const std::uint64_t end = std::min(cursor_, oldest_in_ring);
+    log_.requestLoad(end - std::min<std::uint64_t>(end - limit_, CarveLog::kLoadEntries), end);
+  } else {
+    const std::uint64_t end = std::min(limit_, oldest_in_ring);
+    log_.requestLoad(cursor_, std::min(end, cursor_ + CarveLog::kLoadEntries));
   }
   return false;
 }
 
-bool CarveJournal::startUndo(std::size_t number) {
-  if (busy() || number >= stroke_count_ || strokes_[number].undone) return false;
-  std::fill(std::begin(open_), std::end(open_), -1);
-  job_ = Job::undo;
-  job_stroke_ = number;
-  cursor_ = strokes_[number].end;
-  return true;
-}
-
-bool CarveJournal::startRedo() {
-  if (busy() || undone_count_ == 0) return false;
-  std::fill(std::begin(open_), std::end(open_), -1);
-  job_ = Job::redo;
-  job_stroke_ = undone_[undone_count_ - 1];
-  cursor_ = strokes_[job_stroke_].first;
-  return true;
-}
-
-bool CarveJournal::startReset() {
-  if (busy() || stroke_count_ == 0) return false;
-  std::fill(std::begin(open_), std::end(open_), -1);
-  job_ = Job::reset;
-  cursor_ = entry_count_;
-  return true;
-}
-
 bool CarveJournal::step(Grid::Writer& writer, std::size_t max_voxels) {
-  std::size_t visits = max_voxels * 8;
-  while (busy() && max_voxels > 0 && visits > 0) {
-    const bool forward = job_ == Job::redo;
-    const std::size_t limit = forward              ? strokes_[job_stroke_].end
-                              : job_ == Job::reset ? 0
-                                                   : strokes_[job_stroke_].first;
-    if (cursor_ == limit) {
-      finishJob();
-      break;
-    }
-    --visits;
-    const Entry& entry = entries_[forward ? cursor_++ : --cursor_];
-    const bool mine =
-        job_ == Job::reset ? !strokes_[entry.stroke].undone : entry.stroke == job_stroke_;
-    if (!mine) continue;
-    writer.store(entry.voxel, forward ? kAirHu : entry.old_hu);
+  if (!busy_) return false;
+  const Slice slice = nextSlice(max_voxels);
+  if (!log_.isReady(slice.first, slice.end)) return true;
+  const bool put_back = cursor_ > limit_;
+  for (std::uint64_t visits = slice.end - slice.first; visits > 0 && max_voxels > 0; --visits) {
+    const CarveEntry& entry = log_.at(put_back ? --cursor_ : cursor_++);
+    const int arm = entry.arm();
+    if (stretch_arm_ >= 0 && arm != stretch_arm_) continue;
+    writer.store(entry.voxel, put_back ? entry.hu : kAirHu);
+    std::uint64_t& count = removed_[arm][entry.tissueClass()];
+    count = put_back ? count - 1 : count + 1;
     --max_voxels;
   }
-  return busy();
+  skipEmptyStretches();
+  if (cursor_ == limit_) finishJob();
+  return busy_;
 }
 
 void CarveJournal::finishJob() {
-  if (job_ == Job::reset) {
-    entry_count_ = stroke_count_ = undone_count_ = 0;
-    for (auto& arm : removed_) std::fill(std::begin(arm), std::end(arm), 0);
-  } else {
-    Stroke& stroke = strokes_[job_stroke_];
-    stroke.undone = job_ == Job::undo;
-    if (stroke.undone) {
-      undone_[undone_count_++] = std::uint16_t(job_stroke_);
-    } else {
-      --undone_count_;
-    }
-    for (int c = 0; c < kMaxClasses; ++c) {
-      if (stroke.undone) {
-        removed_[stroke.arm][c] -= stroke.removed[c];
-      } else {
-        removed_[stroke.arm][c] += stroke.removed[c];
-      }
-    }
+  busy_ = false;
+  here_ = target_;
+  top_ = job_top_;
+  redo_top_ = job_redo_top_;
+  while (settled_marks_ < mark_count_) {
+    marks_[settled_marks_++] = Mark{here_, top_, job_credits_};
   }
-  job_ = Job::none;
-}
-
-std::uint64_t CarveJournal::removed(int arm, int tissue_class) const {
-  return removed_[arm][tissue_class];
 }
 
 }  // namespace trephine

@@ -1,13 +1,27 @@
-// What was removed, so that it can be put back: a preallocated list of voxels with their old HU,
-// grouped into strokes. A stroke belongs to one arm; strokes of two arms may interleave, and since
-// an erased voxel cannot be erased again, each can be undone without touching the other.
+// What was removed, and every way back: undo, redo, rewind to any second, reset.
 //
-// Used by the holder of the write token only. Nothing here allocates after construction.
+// The log holds the voxels that were taken, in order, and only removal adds to it. What people undo
+// and take up again makes the past a tree: whoever removes after going back starts a new branch
+// there. A place is a point of that tree, and every job is the same: travel from the present place
+// to another, putting back on the way up and taking again on the way down. So no job needs room in
+// the log, going back and forth costs nothing but the way, and what was left can be reached again.
+//
+// A stroke belongs to one arm; strokes of several arms may interleave. Undo takes the last stroke
+// that stands. Where no other arm's voxels came since its beginning, it is a way back to there;
+// else it becomes a branch of its own, which puts back this stroke's voxels alone.
+//
+// Used by the holder of the grid's write token only (the recorder has log() through JournalSpill).
+// After construction nothing here allocates, locks, waits or throws. What another thread decides
+// (room, entries brought back from disk) comes in through hasRoom() and canStep() alone: all else
+// is a function of the calls and of those two answers, so that a recording of them replays bit for
+// bit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "volume/carve_log.h"
 #include "volume/grid.h"
 
 namespace trephine {
@@ -17,70 +31,151 @@ constexpr int kMaxArms = 4;
 
 class CarveJournal {
  public:
-  struct Entry {
-    std::uint32_t voxel;
-    std::int16_t old_hu;
-    std::uint16_t stroke;
-  };
-  struct Stroke {
-    std::uint32_t first = 0;  // entries [first, end) hold this stroke's, perhaps among others'
-    std::uint32_t end = 0;
-    std::int32_t arm = 0;
-    bool undone = false;
-    std::uint32_t removed[kMaxClasses] = {};  // voxels by tissue class when they were removed
-  };
+  // Work not yet spent on removal, by arm [J]. It goes back with the tissue.
+  using Credits = std::array<double, kMaxArms>;
 
-  // `max_voxels` entries of 8 bytes. A grid of over 2^32 voxels is not supported.
-  CarveJournal(std::size_t max_voxels, std::size_t max_strokes);
+  // `ring_voxels` entries of 8 bytes stay in memory (rounded up to a power of two). A grid of over
+  // 2^32 voxels is not supported. Makes mark 0: nothing removed, no credit.
+  CarveJournal(std::size_t ring_voxels, std::size_t max_strokes, std::size_t max_seconds);
 
-  // A new stroke of `arm`; drops whatever could still be redone. False when strokes are used up.
-  bool beginStroke(int arm);
-  void endStroke(int arm);
-  bool inStroke(int arm) const { return open_[arm] >= 0; }
-
+  // ---- Removal.
+  // A new stroke of `arm`; drops whatever could still be redone. False when strokes are used up or
+  // a job runs.
+  bool beginStroke(int arm, const Credits& now);
+  void endStroke(int arm) { open_[arm] = kNone; }
+  bool inStroke(int arm) const { return open_[arm] != kNone; }
+  // Asked at the start of a tick, before what it may erase: grants that many entries until it is
+  // asked again. After a no, nothing can be erased.
+  bool hasRoom(std::size_t entries);
   // Sets the voxel to air in the arm's open stroke; one that is air already is left and not
-  // counted. False, and nothing done, when the journal is full: removal stops, and the caller says
-  // so.
+  // counted. False, and nothing done, outside a stroke, during a job or beyond what was granted.
   bool erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class);
+  // For display: not even one voxel can be removed now, or no stroke can begin.
   bool full() const {
-    const bool can_drop = stroke_count_ > 0 && strokes_[stroke_count_ - 1].undone;
-    return !can_drop && (entry_count_ == entries_.size() || stroke_count_ == strokes_.size());
+    return !log_.hasRoom(1) || stroke_count_ == strokes_.size() ||
+           branch_count_ == branches_.size();
   }
 
-  // Undo, redo and reset run in slices: start one, then step it until it is done. Starting fails
-  // while another runs or when there is nothing to do. Open strokes are ended first.
-  bool startUndo();                    // the last stroke that stands
-  bool startUndo(std::size_t stroke);  // any stroke that stands
-  bool startRedo();                    // the stroke undone last
-  bool startReset();                   // everything; nothing can be redone after it
-  // Restores or erases up to `max_voxels` voxels (visits at most 8 times as many entries); true
-  // while there is more to do.
-  bool step(Grid::Writer& writer, std::size_t max_voxels);
-  bool busy() const { return job_ != Job::none; }
+  // ---- Seconds. Called once per second of session time, so that mark n is second n. During a job
+  // the mark is numbered at once and stands for the state in which the job ends (`now` is not
+  // used). When `max_seconds` are used up, marks stop.
+  void mark(const Credits& now);
+  std::size_t seconds() const { return mark_count_ - 1; }  // the newest mark
 
-  std::size_t strokeCount() const { return stroke_count_; }
-  const Stroke& stroke(std::size_t i) const { return strokes_[i]; }
-  std::size_t entryCount() const { return entry_count_; }
-  // Voxels of `arm` and `tissue_class` that are removed now, undone strokes not counted.
-  std::uint64_t removed(int arm, int tissue_class) const;
+  // ---- Jobs: start one, then step it until it is done. Starting fails while another runs or when
+  // there is nothing to do; it ends open strokes. `now` are the credits at the start.
+  bool canUndo() const { return top_ != kNone && branch_count_ < branches_.size(); }
+  bool canRedo() const { return redo_top_ != kNone; }
+  // The last stroke that stands. Its arm's credit becomes what it was when the stroke began.
+  bool startUndo(const Credits& now);
+  // The stroke undone last. Credits stay.
+  bool startRedo(const Credits& now);
+  // Tissue, counts, credits and the strokes that can be undone become exactly what they were at
+  // that mark, before or after the present place; nothing can be redone then. A stroke that was
+  // open at the mark is ended there.
+  bool startRewind(std::size_t second, const Credits& now);
+  bool startReset(const Credits& now) { return startRewind(0, now); }
+
+  // Whether step() with the same argument has all it needs in memory; if not, asks for it, and the
+  // caller tries again in a later tick. Always so while the log fits into the ring.
+  bool canStep(std::size_t max_voxels);
+  // Changes up to `max_voxels` voxels and visits at most 8 times as many entries; true while there
+  // is more to do. Does nothing where canStep() would say no.
+  bool step(Grid::Writer& writer, std::size_t max_voxels);
+  bool busy() const { return busy_; }
+  // The credits to go on with after a job.
+  const Credits& credits() const { return job_credits_; }
+
+  // Voxels of `arm` and `tissue_class` that are removed now.
+  std::uint64_t removed(int arm, int tissue_class) const { return removed_[arm][tissue_class]; }
+  // Voxels ever removed: the log's length. Jobs do not change it.
+  std::uint64_t entryCount() const { return log_.size(); }
+  std::size_t ramBytes() const;
+
+  // For JournalSpill.
+  CarveLog& log() { return log_; }
 
  private:
-  enum class Job { none, undo, redo, reset };
+  static constexpr std::uint32_t kNone = ~std::uint32_t(0);
 
-  void dropUndone();
+  // After the entries of `branch` below `entry`.
+  struct Place {
+    std::uint32_t branch = 0;
+    std::uint64_t entry = 0;
+    friend bool operator==(const Place&, const Place&) = default;
+  };
+  // Removal: entries from `first` on, in order. Undo of a stroke: the entries of `arm` in
+  // [first, end), put back; its only place has the entry `first`.
+  struct Branch {
+    Place parent;
+    std::uint64_t first = 0;
+    std::uint64_t end = 0;
+    std::int32_t arm = -1;           // -1: removal
+    std::uint32_t way_down = kNone;  // the next branch of a job's way down
+    bool isUndo() const { return arm >= 0; }
+  };
+  struct Stroke {
+    std::uint64_t first = 0;  // its entries are those of its arm in [first, end)
+    std::uint64_t end = 0;
+    std::uint64_t voxels = 0;
+    Credits credits{};  // when it began
+    std::int32_t arm = 0;
+    std::uint32_t branch = 0;
+    std::uint32_t below = kNone;       // the stroke that undo takes next
+    std::uint32_t redo_below = kNone;  // the stroke that redo takes next, while this is undone
+    Place undone_from{kNone, 0};       // where it was undone last, and where that led
+    Place undone_to{kNone, 0};
+  };
+  struct Mark {
+    Place place;
+    std::uint32_t top = kNone;
+    Credits credits{};
+  };
+  struct Slice {
+    std::uint64_t first, end;
+  };
+
+  std::uint32_t addBranch(const Branch& branch);
+  std::uint64_t standingEnd(const Stroke& stroke) const;
+  Place placeWithout(Stroke& stroke);
+  void startJob(const Place& target, std::uint32_t top, std::uint32_t redo_top,
+                const Credits& credits);
+  void planWay();
+  void nextStretch();
+  void skipEmptyStretches();
+  Slice nextSlice(std::size_t max_voxels) const;
   void finishJob();
 
-  std::vector<Entry> entries_;
+  CarveLog log_;
+  std::vector<Branch> branches_;  // a parent has the smaller number; 0 is the root
   std::vector<Stroke> strokes_;
-  std::vector<std::uint16_t> undone_;  // stroke numbers in the order they were undone
-  std::size_t entry_count_ = 0;
+  std::vector<Mark> marks_;
+  std::size_t branch_count_ = 1;
   std::size_t stroke_count_ = 0;
-  std::size_t undone_count_ = 0;
-  std::int32_t open_[kMaxArms] = {-1, -1, -1, -1};
+  std::size_t mark_count_ = 1;
+  std::size_t settled_marks_ = 1;  // those from here on wait for the end of the job
+  std::uint64_t granted_ = 0;      // the log may grow to this length
+
+  Place here_;                    // during a job: where the present stretch began
+  std::uint32_t tip_branch_ = 0;  // the newest branch of removal, the one that can grow
+  std::uint32_t top_ = kNone;     // the last stroke that stands
+  std::uint32_t redo_top_ = kNone;
+  std::uint32_t open_[kMaxArms] = {kNone, kNone, kNone, kNone};
   std::uint64_t removed_[kMaxArms][kMaxClasses] = {};
-  Job job_ = Job::none;
-  std::size_t job_stroke_ = 0;
-  std::size_t cursor_ = 0;
+
+  // The job: its end, its way over `meet_branch_`, and the stretch of the log that it is on.
+  bool busy_ = false;
+  Place target_;
+  std::uint32_t job_top_ = kNone;
+  std::uint32_t job_redo_top_ = kNone;
+  Credits job_credits_{};
+  bool climbing_ = false;
+  std::uint32_t meet_branch_ = 0;
+  std::uint32_t way_down_ = kNone;
+  std::uint64_t cursor_ = 0;  // towards a smaller limit it puts back, towards a larger one it takes
+  std::uint64_t limit_ = 0;
+  std::int32_t stretch_arm_ = -1;  // only this arm's entries; -1: all
+  Place stretch_to_;
 };
 
 }  // namespace trephine

@@ -6,7 +6,11 @@
 
 namespace trephine {
 
-Grid::Grid(Volume volume) : volume_(std::move(volume)), voxels_(volume_.hu.data()) {
+Grid::Grid(Volume volume)
+    : volume_(std::move(volume)),
+      voxels_(volume_.hu.data()),
+      by_width_(std::uint64_t(std::max(geometry().size[0], 1))),
+      by_height_(std::uint64_t(std::max(geometry().size[1], 1))) {
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     bricks_[axis] = (geometry().size[axis] + kBrickEdge - 1) / kBrickEdge;
@@ -19,20 +23,6 @@ Grid::Grid(Volume volume) : volume_(std::move(volume)), voxels_(volume_.hu.data(
 std::optional<Grid::Writer> Grid::takeWriter() {
   if (taken_.exchange(true, std::memory_order_acquire)) return std::nullopt;
   return Writer(this);
-}
-
-std::int16_t Grid::Writer::store(std::size_t index, std::int16_t hu) {
-  std::atomic_ref<std::int16_t> voxel(grid_->voxels_[index]);
-  const std::int16_t before = voxel.load(std::memory_order_relaxed);
-  voxel.store(hu, std::memory_order_relaxed);
-  const Index3 ijk = grid_->geometry().indicesOf(index);
-  const Index3& bricks = grid_->bricks_;
-  const std::size_t brick = (std::size_t(ijk[2] / kBrickEdge) * std::size_t(bricks[1]) +
-                             std::size_t(ijk[1] / kBrickEdge)) *
-                                std::size_t(bricks[0]) +
-                            std::size_t(ijk[0] / kBrickEdge);
-  grid_->dirty_[brick / 64].fetch_or(std::uint64_t(1) << (brick % 64), std::memory_order_release);
-  return before;
 }
 
 void Grid::copyChanges(Volume& copy, std::vector<VoxelBox>& boxes) {

@@ -18,6 +18,8 @@
 namespace trephine {
 
 constexpr int kBrickEdge = 16;
+constexpr int kBrickShift = 4;  // dividing by the edge
+static_assert(1 << kBrickShift == kBrickEdge);
 
 // Voxels [low, high) on each axis.
 struct VoxelBox {
@@ -51,8 +53,19 @@ class Grid {
     ~Writer() {
       if (grid_) grid_->taken_.store(false, std::memory_order_release);
     }
-    // Stores `hu` and marks the brick; returns what was there before.
-    std::int16_t store(std::size_t index, std::int16_t hu);
+    // Stores `hu` and marks the brick; returns what was there before. The voxel lies in the grid.
+    std::int16_t store(std::size_t index, std::int16_t hu) {
+      const std::size_t row = grid_->by_width_.divide(index);
+      const std::size_t k = grid_->by_height_.divide(row);
+      const Index3& size = grid_->geometry().size;
+      return grid_->store(index, index - row * std::size_t(size[0]), row - k * std::size_t(size[1]),
+                          k, hu);
+    }
+    // The same for a caller that knows the voxel by its three numbers.
+    std::int16_t store(int i, int j, int k, std::int16_t hu) {
+      return grid_->store(grid_->geometry().indexOf(i, j, k), std::size_t(i), std::size_t(j),
+                          std::size_t(k), hu);
+    }
     const Grid& grid() const { return *grid_; }
 
    private:
@@ -71,8 +84,33 @@ class Grid {
   Volume snapshot() const;
 
  private:
+  // Divides by a number known in advance, without a division: multiplies by 2^64 / d,
+  // rounded up, and keeps the upper 64 bits. Exact where n * d < 2^64, which a grid's voxel numbers
+  // and edges satisfy.
+  struct Divisor {
+    std::uint64_t factor = 0;  // 0: by one
+    explicit Divisor(std::uint64_t d) : factor(d == 1 ? 0 : ~std::uint64_t(0) / d + 1) {}
+    std::uint64_t divide(std::uint64_t n) const {
+      return factor == 0 ? n : std::uint64_t((static_cast<unsigned __int128>(n) * factor) >> 64);
+    }
+  };
+
+  std::int16_t store(std::size_t index, std::size_t i, std::size_t j, std::size_t k,
+                     std::int16_t hu) {
+    std::atomic_ref<std::int16_t> voxel(voxels_[index]);
+    const std::int16_t before = voxel.load(std::memory_order_relaxed);
+    voxel.store(hu, std::memory_order_relaxed);
+    const std::size_t brick = ((k >> kBrickShift) * std::size_t(bricks_[1]) + (j >> kBrickShift)) *
+                                  std::size_t(bricks_[0]) +
+                              (i >> kBrickShift);
+    dirty_[brick / 64].fetch_or(std::uint64_t(1) << (brick % 64), std::memory_order_release);
+    return before;
+  }
+
   Volume volume_;
   std::int16_t* voxels_;
+  Divisor by_width_;
+  Divisor by_height_;
   Index3 bricks_;
   std::unique_ptr<std::atomic<std::uint64_t>[]> dirty_;  // one bit a brick
   std::size_t dirty_words_;

@@ -56,6 +56,30 @@ TEST(Grid, StoreReturnsWhatWasThere) {
   EXPECT_EQ(writer->store(9, 5), 123);
 }
 
+// Edges that are powers of two, others, and one voxel: the numbers are divided in another way.
+TEST(Grid, StoreByThreeNumbersIsStoreByTheOne) {
+  for (const Index3& size : {Index3{64, 32, 20}, Index3{49, 33, 20}, Index3{1, 100, 20},
+                             Index3{100, 1, 20}, Index3{1, 1, 70}, Index3{17, 16, 40}}) {
+    Grid by_number(patternVolume(size)), by_three(patternVolume(size));
+    auto one = by_number.takeWriter(), other = by_three.takeWriter();
+    Volume copy = by_number.snapshot(), other_copy = copy;
+    for (int k = 0; k < size[2]; ++k) {
+      for (int j = 0; j < size[1]; ++j) {
+        for (int i = 0; i < size[0]; ++i) {
+          const std::size_t index = by_number.geometry().indexOf(i, j, k);
+          ASSERT_EQ(one->store(index, 7), other->store(i, j, k, 7));
+          std::vector<VoxelBox> boxes, other_boxes;
+          by_number.copyChanges(copy, boxes);
+          by_three.copyChanges(other_copy, other_boxes);
+          ASSERT_EQ(boxes, other_boxes);
+          ASSERT_EQ(copy.hu[index], 7);
+          ASSERT_EQ(other_copy.hu[index], 7);
+        }
+      }
+    }
+  }
+}
+
 TEST(Grid, NothingChangedMeansNothingCopied) {
   Grid grid(patternVolume({40, 20, 20}));
   Volume copy = grid.snapshot();
