@@ -61,6 +61,13 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
 
 void HapticCore::useTissues() {
   lookup_.set(parameters_.tissues);
+  tissues_finite_ = true;
+  for (int c = 0; c < parameters_.tissues.count; ++c) {
+    const TissueClass& t = parameters_.tissues.classes[std::size_t(c)];
+    tissues_finite_ = tissues_finite_ && isFinite(t.damping_Ns_per_m) &&
+                      isFinite(t.stiffness_N_per_m) && isFinite(t.friction_N) &&
+                      isFinite(t.rupture_N) && isFinite(t.cutting_J_per_mm3);
+  }
   if (elastic_) {
     TissueTable pushing = parameters_.tissues;
     // A capsule pushes by the law of its own, where the scene has it.
@@ -328,7 +335,8 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
       },
       arm.controller);
 
-  const bool finite = isFinite(law_input.share.damping) && isFinite(law_input.share.stiffness) &&
+  const bool finite = (tissues_finite_ || !law_input.touching) &&
+                      isFinite(law_input.share.damping) && isFinite(law_input.share.stiffness) &&
                       isFinite(model.stiffness) && isFinite(model.damping) &&
                       isFinite(out.demanded_N) && isFinite(out.demanded_torque_Nm) &&
                       isFinite(out.bounded_N) && isFinite(velocity_m_s) &&

@@ -123,6 +123,7 @@ class HapticCore {
   TissueLookup lookup_;
   StiffnessOfHu stiffness_;  // only with the elastic law
   bool elastic_ = false;
+  bool tissues_finite_ = true;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
   std::vector<Event> events_;

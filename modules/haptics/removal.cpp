@@ -11,6 +11,7 @@ namespace {
 // What a tick may look at, in voxels; a row of the solid counts as much as these many.
 constexpr int kLooksPerTick = 4096;
 constexpr int kLooksPerRow = 12;
+constexpr double kHalfVoxel = 0.505;  // and a little, for what rounding takes
 constexpr double kMotorCap_s = 0.02;
 // No hand is as fast: a pose that jumps sweeps nothing between.
 constexpr double kFastest_mm_per_s = 5000.0;
@@ -35,10 +36,10 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
       patient_to_voxel_(geometry.patientToVoxel()),
       kind_(kind),
       motor_cap_J_(tool.made_from.motor_W * std::max(kMotorCap_s, 2.0 * period_s)) {
-  const Vec3& s = geometry.spacing_mm;
-  const double voxel_mm = std::max({s.x, s.y, s.z});
-  radius_mm_ = std::max(1000.0 * tool.radius_m, 0.505 * voxel_mm);
-  layer_mm_ = std::max(voxel_mm, 0.1 * radius_mm_);
+  radius_mm_ = 1000.0 * tool.radius_m;
+  spacing_mm_ = glm::min(geometry.spacing_mm, Vec3(radius_mm_ / kHalfVoxel));
+  const Vec3& s = spacing_mm_;
+  layer_mm_ = std::max({s.x, s.y, s.z, 0.1 * radius_mm_});
   still_mm_ = 0.125 * std::min({s.x, s.y, s.z});
   farthest_mm_ = kFastest_mm_per_s * period_s;
 }
@@ -46,7 +47,7 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
 Capsule Removal::capsuleAt(const Pose& pose_mm) const {
   const auto place = [&](const Vec3& tool_m) {
     const Vec3 patient_mm = pose_mm.position + 1000.0 * (pose_mm.orientation * tool_m);
-    return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0)) * geometry_.spacing_mm;
+    return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0)) * spacing_mm_;
   };
   return {place(tool_.solid_from_m), place(tool_.solid_to_m), radius_mm_};
 }
@@ -70,7 +71,7 @@ void Removal::begin(const Capsule& now) {
   from.radius = goal_.radius;
   solid_ = SweptSolid(from, goal_);
   std::tie(low_[2], high_[2]) =
-      indices(solid_.depth(), geometry_.spacing_mm.z, geometry_.size[2]);
+      indices(solid_.depth(), spacing_mm_.z, geometry_.size[2]);
   slice_ = 0;
   slice_end_ = high_[2] - low_[2] + 1;
   row_ = -1;
@@ -105,7 +106,7 @@ void Removal::sweep(const Grid& grid, const TissueLookup& lookup, const TissueTa
     if (all && moved(clear_, now) < still_mm_) return;
     begin(now);
   }
-  const Vec3& s = geometry_.spacing_mm;
+  const Vec3& s = spacing_mm_;
   const double voxel_mm3 = geometry_.voxelVolume_mm3();
   int looks = kLooksPerTick;
   for (; slice_ < slice_end_; ++slice_) {

@@ -37,7 +37,8 @@ struct Bite {
 // sponge.
 class Removal {
  public:
-  // The solid is never thinner than a voxel, or it would slip between their centres.
+  // Along an axis of the grid the solid is never thinner than a voxel, or it would slip between
+  // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
   // Work that the tool did on tissue that may be cut. What cannot be spent within 20 ms of the
@@ -69,6 +70,7 @@ class Removal {
   GridGeometry geometry_;
   Mat4 patient_to_voxel_;
   RemovalKind kind_;
+  Vec3 spacing_mm_;  // as the sweep sees it: an axis of thick voxels is shrunk to the tool
   double radius_mm_;
   double layer_mm_;
   double still_mm_;

@@ -30,8 +30,9 @@ Tool sharpTool(const ToolDescription& d) {
   addLine(tool, Vec3(0.0), 0.001 * d.length_mm * kAlong, d.points, 1.0);
   tool.radius_m = tool.point_inset_m = 0.001 * d.radius_mm;
   tool.ball_radius_m = std::max(kLeastBall_m, tool.radius_m);
-  // A needle opens tissue with its point, a blade along its edge.
-  tool.solid_to_m = (d.kind == ToolKind::blade ? 0.001 * d.length_mm : 0.0) * kAlong;
+  // A needle opens tissue with its point, a blade along its edge; a blade of one point is its tip.
+  const bool edge = d.kind == ToolKind::blade && d.points > 1;
+  tool.solid_to_m = (edge ? 0.001 * d.length_mm : 0.0) * kAlong;
   return tool;
 }
 

@@ -91,7 +91,8 @@ HapticParameters parametersOf(const Setup& setup, const TrephineCapabilities& ca
                     WorkspaceMap{},
                     peak_N,
                     {capabilities.apparent_mass_kg, capabilities.encoder_step_m, peak_N, 0}});
-  p.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
+  p.laws = {LawKind::viscous, LawKind::coulomb};
+  p.removal = RemovalKind::instant;
   p.controller = setup.controller;
   p.tissues = setup.tissues;
   p.journal_voxels = 100'000;

@@ -42,7 +42,8 @@ TissueTable table(double damping, double stiffness, double friction, int hu_min 
 
 struct Setup {
   Volume volume = block(Vec3(1.0));
-  Tool tool = makeNeedle(0.05);
+  // As thin as a tool can be, so that it takes what its points touch.
+  Tool tool = *makeTool({ToolKind::needle, 50.0, 1, 0.05});
   TissueTable tissues = table(10.0, 800.0, 2.0);
   ControllerKind controller = ControllerKind::bounded;
   std::uint64_t first_tick = 0;

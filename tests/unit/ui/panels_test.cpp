@@ -16,8 +16,15 @@ namespace trephine {
 namespace {
 
 TissueSet twoTissues() {
-  Tissue soft{"soft", "Soft tissue", 0, 200, "a book", {}, Vec3(0.8), 0.1, {}, {}, {}, true};
-  soft.damping_Ns_per_m = soft.stiffness_N_per_m = soft.friction_N = soft.cutting_J_per_mm3 = {1.0, "a paper"};
+  Tissue soft;
+  soft.id = "soft";
+  soft.name = "Soft tissue";
+  soft.hu_max = 200;
+  soft.hu_source = "a book";
+  soft.colour = Vec3(0.8);
+  soft.opacity = 0.1;
+  soft.damping_Ns_per_m = soft.stiffness_N_per_m = {1.0, "a paper"};
+  soft.friction_N = soft.cutting_J_per_mm3 = soft.stiffness_N_per_m;
   Tissue bone = soft;
   bone.id = "bone";
   bone.name = "Bone";
