@@ -30,9 +30,12 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.patient_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
-    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->length_mm,
-                     tool->tool.kind == ToolKind::blade, arm.tissue_class >= 0,
-                     Vec3(colour.redF(), colour.greenF(), colour.blueF())});
+    ToolView& view = tools.emplace_back();
+    view.pose_mm = {arm.patient_position_mm, arm.patient_orientation};
+    view.length_mm = tool->length_mm;
+    view.shape = tool->tool.kind == ToolKind::blade ? ToolShape::blade : ToolShape::needle;
+    view.contact = arm.tissue_class >= 0;
+    view.colour = Vec3(colour.redF(), colour.greenF(), colour.blueF());
   }
   return tools;
 }

@@ -20,11 +20,12 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
     const Tool& tool = scene.findTool(scene.arms[i].tool)->tool;
-    tools.push_back({{arm.patient_position_mm, arm.patient_orientation},
-                     tool.length_m * 1000.0,
-                     tool.kind == ToolKind::blade,
-                     arm.tissue_class >= 0,
-                     Vec3(0.75, 0.78, 0.82)});
+    ToolView& view = tools.emplace_back();
+    view.pose_mm = {arm.patient_position_mm, arm.patient_orientation};
+    view.length_mm = tool.length_m * 1000.0;
+    view.shape = tool.kind == ToolKind::blade ? ToolShape::blade : ToolShape::needle;
+    view.contact = arm.tissue_class >= 0;
+    view.colour = Vec3(0.75, 0.78, 0.82);
   }
   renderer.setTools(tools);
   bool placed = false;
