@@ -1,20 +1,24 @@
 #include "render/tool_drawing.h"
 
 #include <vtkActor.h>
+#include <vtkBoundingBox.h>
 #include <vtkCellArray.h>
-#include <vtkFloatArray.h>
+#include <vtkIdList.h>
+#include <vtkIncrementalOctreePointLocator.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkSphereSource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 
@@ -137,29 +141,64 @@ vtkNew<vtkPolyData> builtIn(const ToolView& view) {
   return solid;
 }
 
-// The triangles whose middle lies in front of (or behind) this z.
-vtkNew<vtkPolyData> partOf(const ToolMesh& mesh, const std::vector<glm::vec3>& normals, double z,
-                           bool front) {
+// What VTK does for normals grows with the square of the faces around a corner. Beyond this, as
+// only damaged files have it, it would take seconds, and the mesh is shaded flat.
+constexpr std::int64_t kMostPairsOfFaces = 500'000'000;
+
+// Corners at one place become one, so that VTK knows which faces meet; it parts them again where
+// the edge is to stay sharp.
+vtkNew<vtkPolyData> withNormals(const ToolMesh& mesh) {
   vtkNew<vtkPoints> points;
-  vtkNew<vtkFloatArray> directions;
-  directions->SetNumberOfComponents(3);
+  vtkBoundingBox box;
+  for (const glm::vec3& p : mesh.corners) box.AddPoint(p.x, p.y, p.z);
+  double bounds[6];
+  box.GetBounds(bounds);
+  // An octree, since a stray corner far off would put all others into one of a grid's cells.
+  vtkNew<vtkIncrementalOctreePointLocator> places;
+  places->SetTolerance(0.0);
+  places->InitPointInsertion(points, bounds);
   vtkNew<vtkCellArray> faces;
+  std::vector<std::int64_t> around(mesh.corners.size());
+  std::int64_t pairs = 0;
   for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
-    const double middle =
-        (double(mesh.corners[i].z) + mesh.corners[i + 1].z + mesh.corners[i + 2].z) / 3.0;
-    if ((middle < z) != front) continue;
     vtkIdType face[3];
     for (std::size_t c = 0; c < 3; ++c) {
-      const glm::vec3& p = mesh.corners[i + c];
-      face[c] = points->InsertNextPoint(p.x, p.y, p.z);
-      directions->InsertNextTuple(&normals[i + c].x);
+      const Vec3 p(mesh.corners[i + c]);
+      places->InsertUniquePoint(&p.x, face[c]);
+      pairs += around[std::size_t(face[c])]++;
     }
-    faces->InsertNextCell(3, face);
+    // In floats, a thin triangle may lose its area where it was moved to.
+    const bool thin = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+    if (!thin) faces->InsertNextCell(3, face);
+  }
+  vtkNew<vtkPolyData> solid;
+  solid->SetPoints(points);
+  solid->SetPolys(faces);
+  if (pairs > kMostPairsOfFaces) return solid;
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(solid);
+  normals->SetFeatureAngle(kFeatureAngle_deg);
+  normals->SplittingOn();
+  normals->ConsistencyOff();  // the file's order of corners holds
+  normals->Update();
+  solid->ShallowCopy(normals->GetOutput());
+  return solid;
+}
+
+// The triangles whose middle lies in front of (or behind) this z.
+vtkNew<vtkPolyData> partOf(vtkPolyData* solid, double z, bool front) {
+  vtkNew<vtkCellArray> faces;
+  vtkNew<vtkIdList> face;
+  for (vtkIdType i = 0; i < solid->GetNumberOfCells(); ++i) {
+    solid->GetPolys()->GetCellAtId(i, face);
+    double sum = 0.0;
+    for (const vtkIdType corner : *face) sum += solid->GetPoint(corner)[2];
+    if ((sum < 3.0 * z) == front) faces->InsertNextCell(face);
   }
   vtkNew<vtkPolyData> part;
-  part->SetPoints(points);
+  part->SetPoints(solid->GetPoints());
   part->SetPolys(faces);
-  part->GetPointData()->SetNormals(directions);
+  part->GetPointData()->SetNormals(solid->GetPointData()->GetNormals());
   return part;
 }
 
@@ -222,9 +261,9 @@ struct ToolDrawing::Tool {
     solid = view;
     meshed = mesh.has_value();
     if (meshed) {
-      const std::vector<glm::vec3> normals = cornerNormals(*mesh, kFeatureAngle_deg);
-      setSolid(body, partOf(*mesh, normals, view.length_mm, true));
-      setSolid(handle, partOf(*mesh, normals, view.length_mm, false));
+      const vtkNew<vtkPolyData> whole = withNormals(*mesh);
+      setSolid(body, partOf(whole, view.length_mm, true));
+      setSolid(handle, partOf(whole, view.length_mm, false));
     } else {
       setSolid(body, builtIn(view));
     }

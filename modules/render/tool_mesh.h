@@ -1,4 +1,4 @@
-// Triangles of a tool, read from an STL file, binary or ASCII, in millimetres. Pure.
+// Triangles of a tool, read by VTK from an STL file, binary or ASCII, in millimetres.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ struct ToolMesh {
 constexpr std::uintmax_t kLargestToolMesh_bytes = std::uintmax_t(64) << 20;
 constexpr double kFarthestToolMesh_mm = 10000.0;  // a corner's place along an axis, or the tip's
 
-// Triangles without area are left out. Errors: MISSING_FILE, CANNOT_READ, MESH_TOO_LARGE, NOT_STL,
-// MESH_TRUNCATED, MESH_EMPTY, MESH_NOT_FINITE, MESH_TOO_FAR (the unit is not mm).
+// Triangles without area are left out. Errors: MISSING_FILE, CANNOT_READ, MESH_TOO_LARGE, NOT_STL
+// (nor where it is damaged), MESH_EMPTY, MESH_NOT_FINITE, MESH_TOO_FAR (the unit is not mm).
 Result<ToolMesh> readToolMesh(const std::filesystem::path& file);
 
 // What readToolMesh would say of the file: for importers.
@@ -27,9 +27,5 @@ Status checkToolMesh(const std::filesystem::path& file);
 // the shortest way; an axis of -z turns about y. So a mesh along +x keeps its y. Errors:
 // BAD_TOOL_FRAME where the tip is not finite or too far off, or the axis has no direction.
 Result<ToolMesh> inToolFrame(const ToolMesh& mesh, const Vec3& tip_mm, const Vec3& axis);
-
-// A normal for each corner: the mean of the faces around it that meet this one at less than the
-// angle, so that curves look round and edges stay sharp.
-std::vector<glm::vec3> cornerNormals(const ToolMesh& mesh, double feature_angle_deg);
 
 }  // namespace trephine

@@ -1,5 +1,12 @@
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
+#include <vtkDataArray.h>
+#include <vtkMapper.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
 #include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 
 #include <cmath>
 
@@ -38,6 +45,26 @@ ToolView barTool(const std::filesystem::path& file) {
   tool.mesh_tip_mm = Vec3(-30, 5, 7);
   tool.mesh_axis = Vec3(1, 0, 0);
   return tool;
+}
+
+// What is drawn of a mesh without a handle: its corners, each with its normal.
+vtkSmartPointer<vtkPolyData> shaded(const std::filesystem::path& file) {
+  vtkNew<vtkRenderer> renderer;
+  ToolDrawing drawing;
+  ToolView tool;
+  tool.length_mm = 100.0;
+  tool.mesh_file = file.string();
+  tool.mesh_axis = Vec3(0, 0, 1);
+  drawing.show({tool}, *renderer);
+  vtkActorCollection* actors = renderer->GetActors();
+  actors->InitTraversal();
+  return vtkPolyData::SafeDownCast(actors->GetNextActor()->GetMapper()->GetInput());
+}
+
+Vec3 normalAt(vtkPolyData* solid, vtkIdType corner) {
+  Vec3 normal;
+  solid->GetPointData()->GetNormals()->GetTuple(corner, &normal.x);
+  return normal;
 }
 
 }  // namespace
@@ -180,6 +207,54 @@ TEST(ToolDrawing, AMeshIsSeenInThePicture) {
   EXPECT_NEAR(bar.centre.x, kWidth / 2.0 + 40.0 / mm, 1.5);
   EXPECT_NEAR(bar.centre.y, kHeight / 2.0, 1.5);
   EXPECT_NEAR(bar.pixels, 80.0 / mm * 4.0 / mm, 0.6 * bar.pixels);
+}
+
+TEST(ToolDrawing, EdgesOfAMeshStaySharp) {
+  const TemporaryFolder folder;
+  const auto box = shaded(put(folder / "box.stl", binaryStl(boxCorners({-1, -2, -3}, {1, 2, 3}))));
+  EXPECT_EQ(box->GetNumberOfPolys(), 12);
+  EXPECT_EQ(box->GetNumberOfPoints(), 24);  // three faces meet in each corner
+  for (vtkIdType i = 0; i < box->GetNumberOfPoints(); ++i) {
+    const Vec3 outward =
+        glm::sign(Vec3(box->GetPoint(i)[0], box->GetPoint(i)[1], box->GetPoint(i)[2]));
+    EXPECT_NEAR(glm::dot(normalAt(box, i), outward), 1.0, 1e-5);
+  }
+}
+
+TEST(ToolDrawing, CurvesOfAMeshLookRound) {
+  const TemporaryFolder folder;
+  constexpr int kSides = 16;  // which meet at 22.5 degrees
+  std::vector<glm::vec3> pipe;
+  const auto corner = [](int side, float z) {
+    const float angle = glm::radians(360.0f / kSides * float(side % kSides));
+    return glm::vec3(10.0f * std::cos(angle), 10.0f * std::sin(angle), z);
+  };
+  for (int i = 0; i < kSides; ++i) {
+    const glm::vec3 a = corner(i, 0), b = corner(i + 1, 0), c = corner(i + 1, 9), d = corner(i, 9);
+    for (const glm::vec3& p : {a, b, c, a, c, d}) pipe.push_back(p);
+  }
+  const auto round = shaded(put(folder / "pipe.stl", binaryStl(pipe)));
+  EXPECT_EQ(round->GetNumberOfPoints(), 2 * kSides);
+  for (vtkIdType i = 0; i < round->GetNumberOfPoints(); ++i) {
+    const Vec3 outward(round->GetPoint(i)[0] / 10.0, round->GetPoint(i)[1] / 10.0, 0.0);
+    // A flat face would be 11 degrees off.
+    EXPECT_GT(glm::dot(normalAt(round, i), outward), std::cos(glm::radians(5.0)));
+  }
+}
+
+TEST(ToolDrawing, ADamagedMeshWithCountlessFacesAroundOneCornerIsDrawnAtOnce) {
+  const TemporaryFolder folder;
+  std::vector<glm::vec3> fan;
+  for (int i = 0; i < 300'000; ++i) {
+    const float x = 1e-4f * float(i);
+    for (const glm::vec3& p :
+         {glm::vec3(0, 0, 0), glm::vec3(x, 1, 0), glm::vec3(x + 1e-4f, 1, 0)}) {
+      fan.push_back(p);
+    }
+  }
+  const auto flat = shaded(put(folder / "fan.stl", binaryStl(fan)));
+  EXPECT_GT(flat->GetNumberOfPolys(), 100'000);
+  EXPECT_EQ(flat->GetPointData()->GetNormals(), nullptr);
 }
 
 TEST(ToolDrawing, BehindItsLengthAMeshHasTheToolsColour) {
