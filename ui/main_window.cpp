@@ -11,6 +11,7 @@
 
 #include "base/system.h"
 #include "render/picture.h"
+#include "render/tool_view.h"
 #include "ui/error_dialog.h"
 #include "ui/words.h"
 #include "volume/volume_files.h"
@@ -30,9 +31,9 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.patient_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
-    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->tool.made_from.length_mm,
-                     tool->tool.made_from.kind == ToolKind::blade, arm.tissue_class >= 0,
-                     Vec3(colour.redF(), colour.greenF(), colour.blueF())});
+    tools.push_back(toolView(*tool, {arm.patient_position_mm, arm.patient_orientation},
+                             arm.tissue_class >= 0,
+                             Vec3(colour.redF(), colour.greenF(), colour.blueF())));
   }
   return tools;
 }
