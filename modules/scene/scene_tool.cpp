@@ -13,6 +13,9 @@ constexpr Names<ToolKind, 3> kToolNames{
 constexpr Names<BurrShape, 2> kShapeNames{
     {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
+// What a scene may set itself of a tool that comes from a file.
+constexpr const char* kOwnNumbers[] = {"length_mm", "points", "radius_mm", "shaft_points", "motor_W"};
+
 int limited(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -1, 1'000'000)); }
 
 template <class Kind, std::size_t N>
@@ -75,7 +78,7 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
     item.fail("file", json.error().what, json.error().next);
     return out;
   }
-  for (const char* own : {"length_mm", "points", "radius_mm", "shaft_points", "motor_W"}) {
+  for (const char* own : kOwnNumbers) {
     if (item.has(own)) (*json)[own] = item.raw(own);
   }
   JsonReader reader(*json, file.string());
@@ -84,7 +87,12 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
   out.tool = readTool(reader);
   out.look = readLook(reader, file.parent_path());
   if (Status status = reader.finish(); !status) {
-    item.fail("file", status.error().what + " (" + status.error().where + ")", status.error().next);
+    const Error& error = status.error();
+    const std::string wrong = error.where.substr(error.where.rfind(' ') + 1);
+    for (const char* own : kOwnNumbers) {
+      if (wrong == own && item.has(own)) item.fail(own, error.what, error.next);
+    }
+    item.fail("file", error.what + " (" + error.where + ")", error.next);
   }
   return out;
 }
