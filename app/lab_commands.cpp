@@ -14,6 +14,7 @@
 #include "lab/exercise_picture.h"
 #include "lab/explain.h"
 #include "lab/extremes_measurement.h"
+#include "lab/haptics_measurement.h"
 #include "lab/jitter_measurement.h"
 #include "lab/stability_maps.h"
 #include "lab/stability_measurement.h"
@@ -299,6 +300,17 @@ int measureExtremesCommand(const std::string& out, bool json, const Progress& pr
     std::printf("%s", toText(*measured).c_str());
   }
   return measured->all_pass() ? 0 : 3;
+}
+
+int measureHapticsCommand(const std::string& out, bool json, const Progress& progress) {
+  Result<HapticsMeasurement> measured = measureHaptics({}, out, progress);
+  if (!measured) return printError("measure.haptics", measured.error(), json);
+  if (json) {
+    printAnswer("measure.haptics", toJson(*measured));
+  } else {
+    std::printf("%s", toText(*measured).c_str());
+  }
+  return 0;
 }
 
 int measureJitterCommand(double seconds, const std::string& out, bool json,

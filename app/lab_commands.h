@@ -31,6 +31,7 @@ int measureUploadCommand(bool json, const Progress&);
 int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
                             const Progress&);
 int measureExtremesCommand(const std::string& out, bool json, const Progress&);
+int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

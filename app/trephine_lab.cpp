@@ -76,6 +76,9 @@ int run(int argc, char** argv) {
   auto* extremes_command = with_json(measure_command->add_subcommand(
       "extremes", "Values at the edge of what can be given, through the real loop"));
   extremes_command->add_option("--out", out, "Folder for the table")->required();
+  auto* haptics_command = with_json(measure_command->add_subcommand(
+      "haptics", "What a tick costs, and how true the push of elastic tissue is"));
+  haptics_command->add_option("--out", out, "Folder for the table")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -98,6 +101,7 @@ int run(int argc, char** argv) {
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(grid, out, json, progress);
   if (*extremes_command) return measureExtremesCommand(out, json, progress);
+  if (*haptics_command) return measureHapticsCommand(out, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

@@ -157,6 +157,35 @@ class Measurements(LabTest):
         self.assertGreater(len(answer["rows"]), 30)
         self.assertEqual([row for row in answer["rows"] if not row["pass"]], [])
 
+    def test_a_tick_is_timed_for_every_tool_grid_and_phase(self):
+        answer = lab("measure", "haptics", "--out", self.folder / "out")
+        self.assertEqual(set(answer), {"schema", "build", "rows", "direction_error_deg",
+                                       "sliding_force_step_percent_p99", "depth_error_percent",
+                                       "bars"})
+        rows = answer["rows"]
+        self.assertEqual({(row["tool"], row["arms"], row["grid"], row["box_mm"], row["phase"])
+                          for row in rows},
+                         {(tool, arms, grid, box, phase)
+                          for tool in ("needle", "blade64", "burr6") for arms in (1, 2)
+                          for grid in (256, 512) for box in (200, 49.2)
+                          for phase in ("free", "contact", "removal")})
+        self.assertEqual(len(rows), 72)
+        for row in rows:
+            self.assertEqual(set(row["ns"]), {"median", "p99", "p999", "max"})
+            self.assertEqual(row["removed_mm3_per_s"] > 0, row["phase"] == "removal", row)
+        strays = [bar for bar in answer["bars"] if bar["name"].startswith("rows that")]
+        self.assertEqual([bar["value"] for bar in strays], [0])
+        # Not of this machine's speed, so they hold anywhere.
+        self.assertLess(answer["direction_error_deg"]["median"], 3)
+        self.assertLess(answer["direction_error_deg"]["p99"], 8)
+        self.assertLess(answer["sliding_force_step_percent_p99"], 3)
+        self.assertEqual(len((self.folder / "out" / "haptics.csv").read_text().splitlines()), 73)
+
+    def test_a_table_that_cannot_be_written_is_an_error(self):
+        (self.folder / "file").write_text("in the way")
+        answer = lab("measure", "haptics", "--out", self.folder / "file", expect=1)
+        self.assert_error(answer, "CANNOT_WRITE", "file")
+
     def test_jitter_is_measured_at_three_rates(self):
         answer = lab("measure", "jitter", "--seconds", 0.2, "--out", self.folder)
         self.assertEqual({row["rate_hz"] for row in answer["rows"]}, {1000, 2000, 4000})
