@@ -108,7 +108,11 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   const double k = in.rendered.stiffness;
   Vec3 spring_N = in.rendered.elastic_N - k * (x - in.position_m);
   if (glm::dot(spring_N, in.rendered.elastic_N) <= 0.0) spring_N = Vec3(0.0);
-  const double stored_J = springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
+  // What the springs hold at the sample, less their one sum there, plus that sum where the arm is.
+  const double sum_N = glm::length(in.rendered.elastic_N);
+  const double beside_J = k > 0.0 ? in.rendered.stored_J - sum_N * sum_N / (2.0 * k) : 0.0;
+  const double stored_J =
+      std::max(0.0, beside_J) + springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
   energy_J_ = std::clamp(energy_J_ + put_in_J, -kMostDebt_J, stored_J + kCreditAbove_J);
 
   if (!in.touching || not_obeyed_ticks_ > 0) {

@@ -34,6 +34,11 @@ ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
       patient_to_voxel_(geometry.patientToVoxel()),
       inset_mm_(1000.0 * tool.point_inset_m) {
   for (const Vec3& p : tool.points_m) points_mm_.push_back(1000.0 * p);
+  low_mm_ = high_mm_ = points_mm_[0];
+  for (const Vec3& p : points_mm_) {
+    low_mm_ = glm::min(low_mm_, p);
+    high_mm_ = glm::max(high_mm_, p);
+  }
   const Vec3& spacing = geometry.spacing_mm;
   const double reach_mm =
       inset_mm_ + std::max({spacing.x, spacing.y, spacing.z});
@@ -69,12 +74,20 @@ bool ToolContact::tissueNear(const Grid& grid, const TissueLookup& lookup, const
   return false;
 }
 
-const Contact& ToolContact::update(const Grid& grid, const TissueLookup& lookup,
-                                   const TissueTable& tissues, const Pose& pose_mm) {
+const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
+                                   const TissueLookup& lookup, const TissueTable& tissues,
+                                   const Pose& pose_mm) {
   follow(pose_mm.position);
   const Vec3 tip = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
   const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
+  const bool held = contact_.touching();
   contact_ = Contact{};
+  // The box of the points, turned: its middle and half its extent along the grid's axes.
+  const Vec3 middle = tip + to_voxel * (0.5 * (low_mm_ + high_mm_));
+  const Vec3 half = 0.5 * (high_mm_ - low_mm_);
+  const Vec3 extent = glm::abs(to_voxel[0]) * half.x + glm::abs(to_voxel[1]) * half.y +
+                      glm::abs(to_voxel[2]) * half.z + glm::abs(lead_) + 1.0;
+  if (!held && !bricks.mayHold(middle - extent, middle + extent)) return contact_;
   std::int8_t firmest = -1;
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     const Vec3 voxel = tip + to_voxel * points_mm_[i];

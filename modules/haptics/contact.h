@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "haptics/tissue_bricks.h"
 #include "haptics/tissue_lookup.h"
 #include "haptics/tool.h"
 #include "volume/grid.h"
@@ -35,8 +36,8 @@ class ToolContact {
   ToolContact(const Tool& tool, const GridGeometry& geometry);
 
   // Looks up every point of the tool at `pose_mm`. No allocation.
-  const Contact& update(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
-                        const Pose& pose_mm);
+  const Contact& update(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
+                        const TissueTable& tissues, const Pose& pose_mm);
   void forget();
 
   const Contact& contact() const { return contact_; }
@@ -51,6 +52,7 @@ class ToolContact {
   std::vector<std::int8_t> classes_;
   Mat4 patient_to_voxel_;
   double inset_mm_;
+  Vec3 low_mm_{0.0}, high_mm_{0.0};  // box of the points, tool frame
   std::optional<Vec3> from_mm_;  // where the way was last measured
   Vec3 lead_{0.0};     // voxels: the way the tool goes, as long as the inset
   Vec3 reach_[6];      // voxels: there and back along the grid's axes

@@ -12,6 +12,7 @@ struct ContactForce {
   Vec3 elastic_N{0.0};
   double stiffness = 0.0;        // N/m
   double damping = 0.0;          // N s/m, the sum over the tool's points
+  double stored_J = 0.0;         // that the springs behind elastic_N hold and can give back
   Vec3 damped_turning_N{0.0};    // sum of damping_i (omega x r_i): the points' own velocities
   Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
 
@@ -21,6 +22,16 @@ struct ContactForce {
   // What the points move by turning, as one velocity; 0 without damping.
   Vec3 turning_m_s() const { return damping > 0.0 ? damped_turning_N / damping : Vec3(0.0); }
 };
+
+// One spring, deflected by elastic_N / stiffness, and a damper.
+inline ContactForce springAndDamper(const Vec3& elastic_N, double stiffness, double damping) {
+  ContactForce out;
+  out.elastic_N = elastic_N;
+  out.stiffness = stiffness;
+  out.damping = damping;
+  out.stored_J = stiffness > 0.0 ? glm::dot(elastic_N, elastic_N) / (2.0 * stiffness) : 0.0;
+  return out;
+}
 
 struct ControllerInput {
   Vec3 demanded_N{0.0};    // of the model, on the arm

@@ -34,7 +34,9 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
   for (LawKind kind : all.laws) {
     laws.push_back(makeLaw(kind, points.size()));
     rendered_laws.push_back(makeLaw(kind, points.size()));
-    if (kind == LawKind::elastic) ball.emplace(geometry, 1000.0 * arm.tool.ball_radius_m, kBallDirections);
+    if (kind == LawKind::elastic) {
+      ball.emplace(geometry, 1000.0 * arm.tool.ball_radius_m, ballDirections(arm.tool.blunt));
+    }
   }
   for (const auto& [name, kind] : kControllerNames) {
     controllers.push_back(makeController(kind, arm.dynamics, all.period_s));
@@ -61,12 +63,19 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
 
 void HapticCore::useTissues() {
   lookup_.set(parameters_.tissues);
+  if (bricks_) {
+    bricks_->markAll();
+  } else {
+    bricks_.emplace(writer_.grid(), lookup_);
+  }
   tissues_finite_ = true;
+  any_cuttable_ = false;
   for (int c = 0; c < parameters_.tissues.count; ++c) {
     const TissueClass& t = parameters_.tissues.classes[std::size_t(c)];
     tissues_finite_ = tissues_finite_ && isFinite(t.damping_Ns_per_m) &&
                       isFinite(t.stiffness_N_per_m) && isFinite(t.friction_N) &&
                       isFinite(t.rupture_N) && isFinite(t.cutting_J_per_mm3);
+    any_cuttable_ = any_cuttable_ || t.cuttable;
   }
   if (elastic_) {
     TissueTable pushing = parameters_.tissues;
@@ -203,7 +212,7 @@ void HapticCore::latch(std::size_t index, std::uint32_t fault, std::uint64_t tic
 // What the laws are told: which points lie in which tissue, and how they move.
 LawInput HapticCore::touch(Arm& arm, const Tool& tool, const Motion& motion) {
   const Contact& contact =
-      arm.contact.update(writer_.grid(), lookup_, parameters_.tissues, motion.pose_mm);
+      arm.contact.update(writer_.grid(), *bricks_, lookup_, parameters_.tissues, motion.pose_mm);
   const std::span<const std::int8_t> classes = arm.contact.classes();
   if (parameters_.force_at == ForceAt::tip) {
     arm.points[0].tissue_class = contact.tissue_class;
@@ -229,7 +238,7 @@ LawInput HapticCore::touch(Arm& arm, const Tool& tool, const Motion& motion) {
   in.ball_radius_m = tool.ball_radius_m;
   if (arm.ball) {
     in.ball_m = -tool.ball_radius_m * in.into_m;
-    in.push = arm.ball->push(writer_.grid(), stiffness_,
+    in.push = arm.ball->push(writer_.grid(), *bricks_, stiffness_,
                              motion.pose_mm.position + 1000.0 * in.ball_m);
   }
   return in;
@@ -317,6 +326,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   for (Law& law : arm.rendered_laws) addLaw(law, law_input, rendered);
   rendered.elastic_N = parameters.map.forceToDevice(rendered.elastic_N);
   rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
+  rendered.stored_J *= parameters.map.force_scale / parameters.map.motion_scale;
   rendered.stiffness *= at_arm;
   rendered.damping *= at_arm;
   const bool in_contact = law_input.touching || model.stiffness > 0.0;
@@ -373,9 +383,9 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
     arm.bites.clear();
-    if (!arm.cuts || !may_remove_) continue;
+    if (!arm.cuts || !may_remove_ || !any_cuttable_) continue;
     const ArmRecord& moved = record.arms[i];
-    arm.removal.sweep(writer_.grid(), lookup_, parameters_.tissues,
+    arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues,
                       {moved.patient_position_mm, moved.patient_orientation}, arm.bites);
   }
   const GridGeometry& geometry = writer_.grid().geometry();

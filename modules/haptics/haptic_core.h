@@ -122,9 +122,11 @@ class HapticCore {
   Grid::Writer writer_;
   CarveJournal journal_;
   TissueLookup lookup_;
+  std::optional<TissueBricks> bricks_;
   StiffnessOfHu stiffness_;  // only with the elastic law
   bool elastic_ = false;
   bool tissues_finite_ = true;
+  bool any_cuttable_ = false;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
   std::vector<Event> events_;

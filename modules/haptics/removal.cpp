@@ -1,8 +1,6 @@
 #include "haptics/removal.h"
 
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 
 namespace trephine {
 
@@ -23,11 +21,17 @@ double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
 }
 
 // The first and last whole index within an interval, cut to 0 .. count - 1; empty: first > last.
-std::pair<int, int> indices(const Interval& mm, double spacing_mm, int count) {
-  if (mm.empty()) return {0, -1};
-  const double low = std::ceil(std::clamp(mm.low / spacing_mm, -1.0, double(count)));
-  const double high = std::floor(std::clamp(mm.high / spacing_mm, -1.0, double(count)));
-  return {std::max(0, int(low)), std::min(count - 1, int(high))};
+// No floor() or ceil(): without SSE 4 these are calls.
+struct Indices {
+  int first = 0, last = -1;
+};
+inline Indices indices(const Interval& mm, double per_spacing, int count) {
+  if (mm.empty()) return {};
+  const double low = mm.low * per_spacing, high = mm.high * per_spacing;
+  if (!(low < count && high >= 0.0)) return {};
+  const int below = low > 0.0 ? int(low) : 0;
+  const int last = high < count ? int(high) : count - 1;
+  return {low > below ? below + 1 : below, last};
 }
 
 }  // namespace
@@ -40,6 +44,7 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
       fading_(1.0 / (1.0 + period_s / kKept_s)) {
   radius_mm_ = 1000.0 * tool.radius_m;
   spacing_mm_ = glm::min(geometry.spacing_mm, Vec3(radius_mm_ / kHalfVoxel));
+  per_spacing_ = 1.0 / spacing_mm_;
   const Vec3& s = spacing_mm_;
   layer_mm_ = std::max({s.x, s.y, s.z, 0.1 * radius_mm_});
   still_mm_ = 0.125 * std::min({s.x, s.y, s.z});
@@ -73,9 +78,11 @@ void Removal::begin(const Capsule& now) {
   if (kind_ == RemovalKind::instant || !known_) goal_.radius = radius_mm_;
   Capsule from = known_ ? clear_ : goal_;
   from.radius = goal_.radius;
-  solid_ = SweptSolid(from, goal_);
-  std::tie(low_[2], high_[2]) =
-      indices(solid_.depth(), spacing_mm_.z, geometry_.size[2]);
+  solid_.set(from, goal_);
+  cleared_ = CapsuleRows(known_ ? clear_ : Capsule{});
+  const Indices slices = indices(solid_.depth(), per_spacing_.z, geometry_.size[2]);
+  low_[2] = slices.first;
+  high_[2] = slices.last;
   slice_ = 0;
   slice_end_ = high_[2] - low_[2] + 1;
   row_ = -1;
@@ -98,8 +105,14 @@ void Removal::end(const Capsule& now) {
   known_ = true;
 }
 
-void Removal::sweep(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
-                    const Pose& pose_mm, std::vector<Bite>& bites) {
+bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const {
+  const Vec3 low = glm::min(glm::min(clear_.from, clear_.to), glm::min(now.from, now.to));
+  const Vec3 high = glm::max(glm::max(clear_.from, clear_.to), glm::max(now.from, now.to));
+  return bricks.mayHold((low - radius_mm_) * per_spacing_, (high + radius_mm_) * per_spacing_);
+}
+
+void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
+                    const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites) {
   const Capsule now = capsuleAt(pose_mm);
   if (last_ && !(moved(*last_, now) <= farthest_mm_)) forget();
   last_ = now;
@@ -108,29 +121,36 @@ void Removal::sweep(const Grid& grid, const TissueLookup& lookup, const TissueTa
   if (!passing_) {
     const bool all = known_ && clear_.radius >= radius_mm_;
     if (all && moved(clear_, now) < still_mm_) return;
+    if (all && !mayMeetTissue(bricks, now)) {
+      clear_ = now;
+      return;
+    }
     begin(now);
   }
   const Vec3& s = spacing_mm_;
   const double voxel_mm3 = geometry_.voxelVolume_mm3();
   int looks = looks_;
+  const int row_looks = (goal_.isBall() ? kLooksPerRow : 2 * kLooksPerRow) * solid_.places();
   for (; slice_ < slice_end_; ++slice_) {
     const int k = backwards_ ? high_[2] - slice_ : low_[2] + slice_;
     const double z = k * s.z;
     if (row_ < 0) {
-      std::tie(low_[1], high_[1]) = indices(solid_.band(z), s.y, geometry_.size[1]);
+      const Indices rows = indices(solid_.band(z), per_spacing_.y, geometry_.size[1]);
+      low_[1] = rows.first;
+      high_[1] = rows.last;
       row_ = 0;
     }
     for (; row_ <= high_[1] - low_[1]; ++row_) {
       const int j = backwards_ ? high_[1] - row_ : low_[1] + row_;
       const double y = j * s.y;
-      looks -= kLooksPerRow * solid_.places();
-      const auto [first, last] = indices(solid_.row(y, z), s.x, geometry_.size[0]);
-      if (first <= last) {
-        const auto [clear_first, clear_last] =
-            known_ ? indices(rowWithin(clear_, y, z), s.x, geometry_.size[0]) : std::pair(0, -1);
-        for (int i = first; i <= last; ++i) {
-          if (i >= clear_first && i <= clear_last) {
-            i = clear_last;
+      looks -= row_looks;
+      const Indices row = indices(solid_.row(y, z), per_spacing_.x, geometry_.size[0]);
+      if (row.first <= row.last) {
+        const Indices clear = known_ ? indices(cleared_.row(y, z), per_spacing_.x, geometry_.size[0])
+                                     : Indices{};
+        for (int i = row.first; i <= row.last; ++i) {
+          if (i >= clear.first && i <= clear.last) {
+            i = clear.last;
             continue;
           }
           --looks;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptics/swept_solid.h"
+#include "haptics/tissue_bricks.h"
 #include "haptics/tissue_lookup.h"
 #include "haptics/tool.h"
 #include "volume/grid.h"
@@ -47,8 +48,8 @@ class Removal {
   void earn(double work_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `bites` (room for kMostBites). No allocation.
-  void sweep(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
-             const Pose& pose_mm, std::vector<Bite>& bites);
+  void sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
+             const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites);
   // A voxel was shared with another tool, or could not be removed.
   void refund(double work_J) { credit_J_ += work_J; }
   // Tissue came back, or another is meant by a HU: nothing is known to be clear.
@@ -65,12 +66,14 @@ class Removal {
  private:
   void begin(const Capsule& now);
   void end(const Capsule& now);
+  bool mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const;
   Capsule capsuleAt(const Pose& pose_mm) const;
 
   Tool tool_;
   GridGeometry geometry_;
   Mat4 patient_to_voxel_;
   RemovalKind kind_;
+  Vec3 per_spacing_;  // 1 / mm
   Vec3 spacing_mm_;  // as the sweep sees it: an axis of thick voxels is shrunk to the tool
   double radius_mm_;
   double layer_mm_;
@@ -89,6 +92,7 @@ class Removal {
   std::optional<Capsule> last_;  // in the tick before
   double farthest_mm_;           // that a tool can go in a tick
   SweptSolid solid_;
+  CapsuleRows cleared_;
   std::int32_t slice_ = 0, slice_end_ = 0;  // counted from the pass's first
   std::int32_t row_ = 0;
   Index3 low_{0, 0, 0}, high_{0, 0, 0};  // bounds of the pass; x unused

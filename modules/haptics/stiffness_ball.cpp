@@ -14,6 +14,8 @@ namespace {
 constexpr int kParts = 4;
 constexpr double kRadii[kParts] = {1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0, 7.0 / 6.0};
 constexpr double kShare[kParts] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0};
+// The integral of s ds over each part, up to the radius.
+constexpr double kMoment[kParts] = {1.0 / 18.0, 3.0 / 18.0, 9.0 / 72.0, 11.0 / 72.0};
 constexpr double kSame = 1e-3;  // HU
 
 double mix(double a, double b, double t) { return a + t * (b - a); }
@@ -115,17 +117,14 @@ StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int
   }
 }
 
-ElasticPush StiffnessBall::push(const Grid& grid, const StiffnessOfHu& stiffness,
-                                const Vec3& centre_mm) const {
+ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
+                                const StiffnessOfHu& stiffness, const Vec3& centre_mm) const {
   ElasticPush out;
   const GridGeometry& g = grid.geometry();
   const Vec3 centre = Vec3(patient_to_voxel_ * glm::dvec4(centre_mm, 1.0));
   const Vec3 low = centre - reach_, high = centre + reach_;
+  if (!bricks.mayHold(low, high)) return out;
   const Vec3 size(g.size[0], g.size[1], g.size[2]);
-  // Written so that NaN falls out as "no tissue".
-  const bool meets = high.x > -1.0 && high.y > -1.0 && high.z > -1.0 && low.x < size.x &&
-                     low.y < size.y && low.z < size.z;
-  if (!meets) return out;
   const bool inside = low.x >= 0.0 && low.y >= 0.0 && low.z >= 0.0 && high.x < size.x - 1.0 &&
                       high.y < size.y - 1.0 && high.z < size.z - 1.0;
 
@@ -137,17 +136,28 @@ ElasticPush StiffnessBall::push(const Grid& grid, const StiffnessOfHu& stiffness
   const double hu_centre = sample(centre);
   out.at_centre = stiffness.at(hu_centre);
   Vec3 sum(0.0);
+  double energy = 0.0;
+  const bool air_at_centre = stiffness.isAir(hu_centre);
   for (const Ray& ray : rays_) {
-    double hu = hu_centre, along = 0.0, mean = 0.0;
+    double hu[kParts];
+    hu[3] = sample(centre + kRadii[3] * ray.reach);
+    hu[1] = sample(centre + kRadii[1] * ray.reach);
+    // Air at the centre, midway and at the end: what could be between is thinner than half the ball.
+    if (air_at_centre && stiffness.isAir(hu[3]) && stiffness.isAir(hu[1])) continue;
+    hu[0] = sample(centre + kRadii[0] * ray.reach);
+    hu[2] = sample(centre + kRadii[2] * ray.reach);
+    double before = hu_centre, along = 0.0, moment = 0.0, mean = 0.0;
     for (int part = 0; part < kParts; ++part) {
-      const double next = sample(centre + kRadii[part] * ray.reach);
-      mean = stiffness.mean(hu, next);
-      hu = next;
+      mean = stiffness.mean(before, hu[part]);
+      before = hu[part];
       along += mean * kShare[part];
+      moment += mean * kMoment[part];
       out.stiffness = std::max(out.stiffness, mean);
     }
     sum += ray.direction * (along + mean);
+    energy += moment;
   }
+  out.stored_J = energy * 2.0 * radius_m_ * radius_m_ / double(rays_.size());
   out.force_N = sum * (-2.0 * radius_m_ / double(rays_.size()));
   return out;
 }

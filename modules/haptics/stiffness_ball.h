@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "haptics/tissue_bricks.h"
 #include "tissue/tissue_set.h"
 #include "volume/grid.h"
 
@@ -21,6 +22,8 @@ class StiffnessOfHu {
   void set(const TissueTable& tissues);  // no allocation
   // HU below or above the table count as its ends.
   double mean(double hu_a, double hu_b) const;
+  // Below every tissue: air, as far as this is concerned.
+  bool isAir(double hu) const { return hu < first_; }
   double at(double hu) const;
 
   static constexpr int kLowest = -1100, kCount = 4400;  // HU; metal counts as 3300
@@ -31,10 +34,14 @@ class StiffnessOfHu {
   double first_ = 0.0;  // no tissue below
 };
 
-constexpr int kBallDirections = 64;  // measured: `measure haptics`
+// Of a blunt tool's ball and of a sharp tool's, whose normal matters less; `measure haptics` has the
+// errors.
+constexpr int kBluntDirections = 48, kSharpDirections = 28;
+inline int ballDirections(bool blunt) { return blunt ? kBluntDirections : kSharpDirections; }
 
 struct ElasticPush {
   Vec3 force_N{0.0};        // on the tool, patient axes
+  double stored_J = 0.0;    // of which the force is the slope
   double stiffness = 0.0;   // N/m, of the firmest tissue that pushes
   double at_centre = 0.0;   // N/m, the tissue's at the ball's centre
 };
@@ -42,6 +49,8 @@ struct ElasticPush {
 // For a ball of radius r and tissue of stiffness K(x):
 //
 //   F = -(1 / 2 pi) integral over directions d of  d [ integral_0^r K(c + s d) ds + r K(c + r d) ]
+//
+// the slope of the energy (1 / 2 pi) integral over d of integral_0^r s K(c + s d) ds.
 //
 // Over a half-space this is k times the ball's depth along the surface's normal, exactly, while the
 // centre is outside (the weights were chosen for that: derivation in README.md); over layers it is
@@ -52,7 +61,8 @@ class StiffnessBall {
   // `directions` is rounded up to a whole number of opposite pairs.
   StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions);
 
-  ElasticPush push(const Grid& grid, const StiffnessOfHu& stiffness, const Vec3& centre_mm) const;
+  ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessOfHu& stiffness,
+                   const Vec3& centre_mm) const;
 
  private:
   struct Ray {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "base/math.h"
-#include "volume/volume.h"
 
 namespace trephine {
 
@@ -13,6 +13,7 @@ namespace trephine {
 struct Capsule {
   Vec3 from{0.0}, to{0.0};
   double radius = 0.0;
+  bool isBall() const { return from == to; }
 };
 
 // From `low` to `high`; empty where low > high.
@@ -21,28 +22,67 @@ struct Interval {
   bool empty() const { return !(low <= high); }
 };
 
-// Where the line along x through (y, z) lies within the capsule.
-Interval rowWithin(const Capsule& capsule, double y, double z);
+inline Interval joined(const Interval& a, const Interval& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::fmin(a.low, b.low), std::fmax(a.high, b.high)};
+}
 
-// Bounds of y for the part of the capsule that the plane z cuts; never too narrow.
-Interval bandWithin(const Capsule& capsule, double z);
+// A capsule made ready to be asked for rows: many thousand times a tick.
+class CapsuleRows {
+ public:
+  CapsuleRows() = default;
+  explicit CapsuleRows(const Capsule& capsule);
+
+  // Where the line along x through (y, z) lies within the capsule.
+  Interval row(double y, double z) const {
+    const Interval from = ballRow(capsule_.from, y, z);
+    return ball_ ? from : joined(joined(from, ballRow(capsule_.to, y, z)), sideRow(y, z));
+  }
+  // Bounds of y for the part of the capsule that the plane z cuts; never too narrow.
+  Interval band(double z) const;
+  const Capsule& capsule() const { return capsule_; }
+  bool isBall() const { return ball_; }
+
+ private:
+  Interval ballRow(const Vec3& centre, double y, double z) const {
+    const double dy = y - centre.y, dz = z - centre.z;
+    const double half2 = radius2_ - dy * dy - dz * dz;
+    if (!(half2 >= 0.0)) return {};
+    const double half = std::sqrt(half2);
+    return {centre.x - half, centre.x + half};
+  }
+  Interval sideRow(double y, double z) const;
+
+  Capsule capsule_;
+  bool ball_ = true;
+  double radius2_ = 0.0;
+  // The axis, its length, and what the quadratic of the side needs of it.
+  Vec3 axis_{0.0};
+  double length_ = 0.0, across2_ = 0.0, per_across2_ = 0.0, per_axis_x_ = 0.0;
+};
 
 // What a capsule sweeps on its way between two places: it stands at up to kMost places between,
-// close enough that what lies between them is within a 1/30 of the radius.
+// close enough that what lies between them is within a 1/30 of the radius. The first place itself
+// is not part of it.
 class SweptSolid {
  public:
   SweptSolid() = default;
-  SweptSolid(const Capsule& from, const Capsule& to);
+  void set(const Capsule& from, const Capsule& to);
 
-  Interval row(double y, double z) const;
+  Interval row(double y, double z) const {
+    Interval out = places_[0].row(y, z);
+    for (int n = 1; n < count_; ++n) out = joined(out, places_[std::size_t(n)].row(y, z));
+    return out;
+  }
   Interval band(double z) const;
   Interval depth() const;  // bounds of z
   int places() const { return count_; }
 
  private:
   static constexpr int kMost = 32;
-  std::array<Capsule, kMost> places_{};
-  int count_ = 0;
+  std::array<CapsuleRows, kMost> places_{};
+  int count_ = 1;
 };
 
 // How far the farther end moved.

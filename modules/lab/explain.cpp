@@ -90,7 +90,8 @@ Result<Json> explainScene(Scene scene) {
     ToolContact contact(tool, grid.geometry());
     TissueLookup lookup;
     lookup.set(parameters.tissues);
-    add("contact", medianNs([&] { contact.update(grid, lookup, parameters.tissues, Pose{}); }));
+    const TissueBricks bricks(grid, lookup);
+    add("contact", medianNs([&] { contact.update(grid, bricks, lookup, parameters.tissues, Pose{}); }));
     std::vector<TouchPoint> points(scene.force_at == ForceAt::tip ? 1 : tool.points_m.size());
     for (std::size_t p = 0; p < points.size(); ++p) {
       points[p].tissue_class = contact.contact().tissue_class;
@@ -108,7 +109,7 @@ Result<Json> explainScene(Scene scene) {
       std::optional<StiffnessBall> ball;
       StiffnessOfHu stiffness;
       if (kind == LawKind::elastic) {
-        ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, kBallDirections);
+        ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, ballDirections(tool.blunt));
         stiffness.set(parameters.tissues);
       }
       const auto name = std::find_if(kLawNames.begin(), kLawNames.end(),
@@ -116,7 +117,7 @@ Result<Json> explainScene(Scene scene) {
       add("law " + std::string(name->first), medianNs([&] {
             input.tip_m.x += 1e-6;
             // Half of the ball in tissue.
-            if (ball) input.push = ball->push(grid, stiffness, Vec3(0.0, 0.0, 10.0));
+            if (ball) input.push = ball->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
             ContactForce force;
             addLaw(law, input, force);
             keep(force.elastic_N);
@@ -128,7 +129,7 @@ Result<Json> explainScene(Scene scene) {
     Pose moving;
     add("removal sweep", medianNs([&] {
           moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
-          removal.sweep(grid, lookup, parameters.tissues, moving, bites);
+          removal.sweep(grid, bricks, lookup, parameters.tissues, moving, bites);
         }));
     Controller controller =
         makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
@@ -138,7 +139,8 @@ Result<Json> explainScene(Scene scene) {
     to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
     add("controller " + std::string(controllerName(scene.controller)), medianNs([&] {
           const Impedance limited = limitImpedance(controller, {12.0, 900.0});
-          to_controller.rendered = {Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping};
+          to_controller.rendered =
+              springAndDamper(Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping);
           to_controller.demanded_N = to_controller.rendered.at(to_controller.velocity_m_s);
           to_controller.position_m.x -= 1e-9;
           to_controller.last_sent_N = boundForce(controller, to_controller);

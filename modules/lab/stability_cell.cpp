@@ -109,8 +109,8 @@ class Chain {
     const Impedance limited = limitImpedance(controller_, inside ? tissue_ : Impedance{});
     if (inside) {
       in.demanded_N.x = -tissue_.stiffness * sample_m - tissue_.damping * in.velocity_m_s.x;
-      in.rendered = {Vec3(-limited.stiffness * sample_m, 0.0, 0.0), limited.stiffness,
-                     limited.damping};
+      in.rendered = springAndDamper(Vec3(-limited.stiffness * sample_m, 0.0, 0.0), limited.stiffness,
+                     limited.damping);
     }
     sent_N_ = std::clamp(boundForce(controller_, in).x, -kCellForce_N, kCellForce_N);
     if (zero_) sent_N_ = 0.0;

@@ -8,13 +8,18 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
     const double k =
         p.tissue_class >= 0 ? in.share.stiffness * in.tissue(p).stiffness_N_per_m : 0.0;
     if (!(k > 0.0)) {
-      held[i] = false;
+      stiffness[i] = 0.0;
       continue;
     }
     const Vec3 at_m = in.tip_m + p.arm_m;
-    if (!held[i]) anchors_m[i] = at_m;
-    held[i] = true;
+    const double before = stiffness[i];
+    if (before == 0.0) anchors_m[i] = at_m;
+    stiffness[i] = k;
     Vec3 stretch_m = at_m - anchors_m[i];
+    if (before > 0.0 && k > before) {
+      stretch_m *= before / k;
+      anchors_m[i] = at_m - stretch_m;
+    }
     const double length_m = glm::length(stretch_m);
     const double limit_m = in.tissue(p).friction_N / k;
     if (length_m > limit_m) {
@@ -24,6 +29,7 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
     const Vec3 force_N = -(p.weight * k) * stretch_m;
     out.elastic_N += force_N;
     out.stiffness += p.weight * k;
+    out.stored_J += 0.5 * p.weight * k * glm::dot(stretch_m, stretch_m);
     out.torque_Nm += glm::cross(p.arm_m, force_N);
   }
 }

@@ -10,15 +10,16 @@ namespace trephine {
 // Dry friction with stiction, position-based (Hayward and Armstrong 2000): a spring from each point
 // to an anchor set where its contact began, f = -w k (x - anchor), and |f| <= w F: beyond the
 // tissue's friction F the anchor is dragged along. At rest the anchor stands still, so the force
-// neither drifts nor buzzes; energy is stored or lost, never made. k is the tissue's stiffness [N/m],
+// neither drifts nor buzzes; energy is stored or lost, never made: where a point comes into stiffer
+// tissue its stretch shrinks with 1 / k, so that the force goes on from what it was. k is the tissue's stiffness [N/m],
 // F its friction [N], both for the whole tool.
 struct CoulombLaw {
-  explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), held(points, false) {}
+  explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), stiffness(points, 0.0) {}
   void add(const LawInput& in, ContactForce& out);
-  void forget() { held.assign(held.size(), false); }
+  void forget() { stiffness.assign(stiffness.size(), 0.0); }
 
   std::vector<Vec3> anchors_m;
-  std::vector<char> held;  // whether a point has an anchor
+  std::vector<double> stiffness;  // of each point's spring; 0: no anchor
 };
 
 }  // namespace trephine

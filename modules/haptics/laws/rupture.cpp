@@ -28,6 +28,7 @@ void RuptureLaw::add(const LawInput& in, ContactForce& out) {
   const double k = in.share.stiffness * tissue.stiffness_N_per_m;
   out.elastic_N -= k * stretch_m;
   out.stiffness += k;
+  out.stored_J += 0.5 * k * glm::dot(stretch_m, stretch_m);
 }
 
 }  // namespace trephine

@@ -72,7 +72,7 @@ struct Touch {
     const Impedance allowed = controller.limit(in.touching ? tissue : Impedance{});
     if (in.touching) {
       in.demanded_N.x = -tissue.stiffness * x - tissue.damping * in.velocity_m_s.x;
-      in.rendered = {{-allowed.stiffness * x, 0.0, 0.0}, allowed.stiffness, allowed.damping};
+      in.rendered = springAndDamper({-allowed.stiffness * x, 0.0, 0.0}, allowed.stiffness, allowed.damping);
     }
     demanded_N = in.demanded_N.x;
     sent_N = controller.bound(in);
@@ -127,7 +127,7 @@ TEST(BoundedController, SendsNoForceInAir) {
     in.position_m = position_m;
     in.velocity_m_s = numbers.vector(1.0);
     in.demanded_N = numbers.vector(3.0);  // whatever the laws say
-    in.rendered = {numbers.vector(3.0), 500.0, 5.0};
+    in.rendered = springAndDamper(numbers.vector(3.0), 500.0, 5.0);
     ASSERT_EQ(controller.bound(in), Vec3(0.0));
   }
   EXPECT_EQ(controller.parts(), 0u);
@@ -286,7 +286,7 @@ TEST(BoundedController, NeverExceedsThePeakAndStaysFiniteWhateverThePose) {
       in.last_sent_N = sent_N;
       in.touching = touching;
       if (touching) {
-        in.rendered = {-allowed.stiffness * position_m, allowed.stiffness, allowed.damping};
+        in.rendered = springAndDamper(-allowed.stiffness * position_m, allowed.stiffness, allowed.damping);
         in.demanded_N = -k * position_m - b * in.velocity_m_s;
       }
       last_m = position_m;
@@ -344,8 +344,8 @@ TEST(BoundedController, IsTheSameInEveryDirection) {
         ASSERT_NEAR(allowed.damping, same.damping, 1e-9);
         if (in.touching) {
           const Vec3 normal(0.8944271909999159, 0.4472135954999579, 0.0);
-          in.rendered = {-allowed.stiffness * glm::dot(in.position_m, normal) * normal,
-                         allowed.stiffness, allowed.damping};
+          in.rendered = springAndDamper(-allowed.stiffness * glm::dot(in.position_m, normal) * normal,
+                         allowed.stiffness, allowed.damping);
           in.demanded_N = in.rendered.at(velocity);
         }
         ControllerInput as_turned = in;

@@ -14,13 +14,15 @@ struct Probe {
   explicit Probe(const Tool& tool, Volume volume = boneSlab(), const TissueTable& tissues = boneTable())
       : grid(std::move(volume)), table(tissues), contact(tool, grid.geometry()) {
     lookup.set(table);
+    bricks = TissueBricks(grid, lookup);
   }
   const Contact& touch(const Vec3& tip_mm, const Quat& orientation = Quat(1, 0, 0, 0)) {
-    return contact.update(grid, lookup, table, {tip_mm, orientation});
+    return contact.update(grid, bricks, lookup, table, {tip_mm, orientation});
   }
   Grid grid;
   TissueTable table;
   TissueLookup lookup;
+  TissueBricks bricks{grid, lookup};
   ToolContact contact;
 };
 

@@ -148,6 +148,25 @@ TEST(CoulombLaw, NeverGivesBackMoreEnergyThanItTook) {
   EXPECT_LT(given_J, -0.01) << "dragging the anchor loses energy";
 }
 
+TEST(CoulombLaw, MakesNoEnergyWhereTheTissueTurnsStifferOrSofter) {
+  CoulombLaw law;
+  const auto at = [&](double z, double k) {
+    Case c({0, 0, z});
+    c.table.classes[0].stiffness_N_per_m = k;
+    return contactOf(law, c);
+  };
+  at(0.0, 100.0);
+  const ContactForce soft = at(-0.003, 100.0);
+  EXPECT_NEAR(soft.elastic_N.z, 0.3, 1e-12);
+  EXPECT_NEAR(soft.stored_J, 0.5 * 100.0 * 9e-6, 1e-12);
+  const ContactForce stiff = at(-0.003, 900.0);
+  EXPECT_NEAR(stiff.elastic_N.z, 0.3, 1e-12) << "the force goes on";
+  EXPECT_LT(stiff.stored_J, soft.stored_J);
+  const ContactForce again = at(-0.003, 100.0);
+  EXPECT_LT(again.elastic_N.z, 0.04);
+  EXPECT_LT(again.stored_J, stiff.stored_J);
+}
+
 TEST(CoulombLaw, ForgetsItsAnchorWhenContactEnds) {
   CoulombLaw law;
   forceOf(law, Case({0, 0, 0}));
@@ -164,7 +183,7 @@ TEST(CoulombLaw, OfManyPointsIsThatOfOneWhenTheyMoveTogether) {
 
 TEST(ElasticLaw, GivesThePushOfTheBall) {
   Case c;
-  c.in.push = {Vec3(0.1, 0, 0.2), 500.0, 0.0};
+  c.in.push = {Vec3(0.1, 0, 0.2), 1e-4, 500.0, 0.0};
   c.in.share.stiffness = 0.5;
   const ContactForce f = contactOf(ElasticLaw{}, c);
   EXPECT_DOUBLE_EQ(f.elastic_N.z, 0.1);
@@ -175,7 +194,7 @@ TEST(ElasticLaw, GivesThePushOfTheBall) {
 TEST(ElasticLaw, PushesABluntToolByItsDepthBeyondTheBallsCentre) {
   Case c;
   c.in.ball_radius_m = 0.002;
-  c.in.push = {Vec3(0, 0, 0.5), 500.0, 500.0};
+  c.in.push = {Vec3(0, 0, 0.5), 1e-4, 500.0, 500.0};
   EXPECT_DOUBLE_EQ(forceOf(ElasticLaw{}, c).z, 0.5) << "a sharp tool has parted the tissue";
   c.in.blunt = true;
   ElasticLaw law;

@@ -69,12 +69,13 @@ Puncture puncture(const std::vector<Layer>& layers, double to_mm) {
 
 // The same by hand. A tip whose ball has a radius of 0.6 mm touches a layer that much earlier, but
 // only from air. In each layer: b v; friction, whose spring of the layer's k is stretched to F / k
-// and keeps its stretch across layers, cut down to the new layer's limit; from the entry of a
+// at most, and which goes on with its force into a stiffer layer, with its stretch into a softer
+// one; from the entry of a
 // capsule k times the way since, until that reaches the rupture force.
 std::vector<double> byHand(const std::vector<Layer>& layers, const std::vector<double>& depths_mm) {
   constexpr double kSpeed_m_s = 0.01, kInset_mm = 0.6;
   std::vector<double> force;
-  double anchor_mm = 0.0;
+  double anchor_mm = 0.0, stiffness = 0.0;
   int stretched = -1;
   double entry_mm = 0.0;
   std::uint32_t ruptured = 0;
@@ -93,7 +94,11 @@ std::vector<double> byHand(const std::vector<Layer>& layers, const std::vector<d
     }
     const TissueClass& t = layers[std::size_t(now)].tissue;
     if (!anchored) anchor_mm = depth_mm;
+    if (anchored && t.stiffness_N_per_m > stiffness) {
+      anchor_mm = depth_mm - (depth_mm - anchor_mm) * stiffness / t.stiffness_N_per_m;
+    }
     anchored = true;
+    stiffness = t.stiffness_N_per_m;
     const double limit_mm = 1000.0 * t.friction_N / t.stiffness_N_per_m;
     anchor_mm = std::max(anchor_mm, depth_mm - limit_mm);
     double f = t.damping_Ns_per_m * kSpeed_m_s +

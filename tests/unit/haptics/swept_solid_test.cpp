@@ -24,7 +24,7 @@ TEST(SweptSolid, ARowHoldsWhatLiesWithinTheRadiusAndNothingElse) {
     if (n % 3 == 0) c.to = c.from;
     if (n % 7 == 0) c.to = c.from + Vec3(any(random), 0, 0);
     const double y = any(random), z = any(random);
-    const Interval row = rowWithin(c, y, z);
+    const Interval row = CapsuleRows(c).row(y, z);
     if (row.empty()) {
       for (double x = -8; x <= 8; x += 0.25) ASSERT_GT(distance({x, y, z}, c), 1.5 - 1e-9);
       continue;
@@ -33,7 +33,7 @@ TEST(SweptSolid, ARowHoldsWhatLiesWithinTheRadiusAndNothingElse) {
     ASSERT_NEAR(distance({row.low, y, z}, c), 1.5, 1e-6);
     ASSERT_NEAR(distance({row.high, y, z}, c), 1.5, 1e-6);
     ASSERT_LE(distance({0.5 * (row.low + row.high), y, z}, c), 1.5 + 1e-9);
-    const Interval band = bandWithin(c, z);
+    const Interval band = CapsuleRows(c).band(z);
     ASSERT_LE(band.low, y + 1e-9);
     ASSERT_GE(band.high, y - 1e-9);
   }
@@ -42,7 +42,8 @@ TEST(SweptSolid, ARowHoldsWhatLiesWithinTheRadiusAndNothingElse) {
 
 TEST(SweptSolid, HoldsAllThatTheCapsulePassesWithinAThirtiethOfItsRadius) {
   const Capsule from{{0, 0, 0}, {0, 0, 4}, 1.0}, to{{3, 1, 0}, {3, 1, 5}, 1.0};
-  const SweptSolid solid(from, to);
+  SweptSolid solid;
+  solid.set(from, to);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-2.0, 6.0);
   for (int n = 0; n < 20000; ++n) {

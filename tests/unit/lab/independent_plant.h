@@ -93,9 +93,8 @@ class IndependentPlant {
       if (sample < 0.0) {
         const Impedance allowed = limitImpedance(controller, cell.tissue);
         in.touching = true;
-        in.rendered.stiffness = allowed.stiffness;
-        in.rendered.damping = allowed.damping;
-        in.rendered.elastic_N = {-allowed.stiffness * sample, 0.0, 0.0};
+        in.rendered = springAndDamper({-allowed.stiffness * sample, 0.0, 0.0}, allowed.stiffness,
+                                      allowed.damping);
         in.demanded_N.x =
             -cell.tissue.stiffness * sample - cell.tissue.damping * in.velocity_m_s.x;
       } else {
