@@ -77,8 +77,7 @@ std::vector<SlidingTick> slide(HapticCore& core, const EllipsoidShell& shell, co
 
 }  // namespace
 
-SlidingMeasurement judgeSliding(const std::vector<std::vector<SlidingTick>>& paths,
-                                double true_N) {
+SlidingMeasurement judgeSliding(const std::vector<std::vector<SlidingTick>>& paths, double true_N) {
   std::vector<double> off_deg, steps_N;
   double sum_N = 0.0;
   for (const std::vector<SlidingTick>& path : paths) {
@@ -117,8 +116,8 @@ Result<SlidingMeasurement> measureSliding(const SlidingOptions& options, const P
   }
   progress.at(from, "sliding");
   const EllipsoidShell shell;
-  Grid grid(scannedShell(shell, cubeGeometry(options.grid, kBox_mm, Vec3(0.0)), options.noise_hu,
-                         kSeed));
+  Grid grid(
+      scannedShell(shell, cubeGeometry(options.grid, kBox_mm, Vec3(0.0)), options.noise_hu, kSeed));
   const auto ticks = std::size_t(std::llround(options.seconds / kPeriod_s));
   std::vector<std::vector<SlidingTick>> paths;
   for (int n = 0; n < options.paths; ++n) {

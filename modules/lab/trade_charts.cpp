@@ -207,15 +207,14 @@ vtkStandardNewMacro(Page);
 Result<std::vector<Chart>> chartsOf(const std::vector<TradeRow>& rows) {
   std::vector<Chart> charts;
   for (const TradeRow& row : rows) {
-    const bool possible = std::isfinite(row.error) && std::isfinite(row.cost) &&
-                          row.error >= 0.0 && row.cost >= 0.0;
+    const bool possible =
+        std::isfinite(row.error) && std::isfinite(row.cost) && row.error >= 0.0 && row.cost >= 0.0;
     if (!possible) {
       return Error{"BAD_ARGUMENT", "A row holds a figure that cannot be",
                    row.knob + " " + row.setting, "Errors and costs are 0 or above"};
     }
-    auto chart = std::find_if(charts.begin(), charts.end(), [&](const Chart& c) {
-      return c.rows.front().knob == row.knob;
-    });
+    auto chart = std::find_if(charts.begin(), charts.end(),
+                              [&](const Chart& c) { return c.rows.front().knob == row.knob; });
     if (chart == charts.end()) chart = charts.insert(charts.end(), Chart());
     chart->rows.push_back(row);
   }
@@ -228,9 +227,8 @@ Result<std::vector<Chart>> chartsOf(const std::vector<TradeRow>& rows) {
       costs.push_back(row.cost);
       errors.push_back(row.error);
     }
-    const auto knob = std::find_if(kKnobs.begin(), kKnobs.end(), [&](const Knob& k) {
-      return k.id == chart.rows.front().knob;
-    });
+    const auto knob = std::find_if(kKnobs.begin(), kKnobs.end(),
+                                   [&](const Knob& k) { return k.id == chart.rows.front().knob; });
     if (knob != kKnobs.end()) chart.knob = &*knob;
     chart.cost = tradeAxis(costs);
     chart.error = tradeAxis(errors);
@@ -281,8 +279,7 @@ Result<std::vector<std::filesystem::path>> writeTradeCharts(const std::vector<Tr
     }
     vtkNew<Page> page;
     page->chart = &chart;
-    const std::filesystem::path file =
-        folder / ("trade-" + chart.rows.front().knob + ".png");
+    const std::filesystem::path file = folder / ("trade-" + chart.rows.front().knob + ".png");
     const Picture picture = drawItems({page.GetPointer()}, kWidth, kHeight);
     if (Status written = writePng(picture, file); !written) return written.error();
     files.push_back(file);

@@ -16,31 +16,6 @@ namespace {
 constexpr double kPeriod_s = 1e-3;
 constexpr int kTissue_hu = 226;
 
-// Every voxel the mean of `factor`^3.
-Volume averaged(const Volume& fine, int factor) {
-  Volume coarse;
-  const GridGeometry& from = fine.geometry;
-  GridGeometry& g = coarse.geometry;
-  g = from;
-  for (int& edge : g.size) edge /= factor;
-  g.spacing_mm = from.spacing_mm * double(factor);
-  g.origin_mm = from.origin_mm + 0.5 * (factor - 1) * from.spacing_mm;
-  coarse.hu.reserve(g.voxelCount());
-  for (int k = 0; k < g.size[2]; ++k) {
-    for (int j = 0; j < g.size[1]; ++j) {
-      for (int i = 0; i < g.size[0]; ++i) {
-        double sum = 0.0;
-        for (int n = 0; n < factor * factor * factor; ++n) {
-          sum += fine.at(factor * i + n % factor, factor * j + n / factor % factor,
-                         factor * k + n / factor / factor);
-        }
-        coarse.hu.push_back(std::int16_t(std::lround(sum / (factor * factor * factor))));
-      }
-    }
-  }
-  return coarse;
-}
-
 // A channel 1.5 mm deep over the top of the shell, at 10 mm/s.
 Pose channelPose_mm(double t_s, double duration_s) {
   const Vec3& a = EllipsoidShell().half_axes_mm;
@@ -74,6 +49,30 @@ std::vector<double> channelHeights_mm(const Grid& grid, const GridGeometry& fine
 
 }  // namespace
 
+Volume averaged(const Volume& fine, int factor) {
+  Volume coarse;
+  const GridGeometry& from = fine.geometry;
+  GridGeometry& g = coarse.geometry;
+  g = from;
+  for (int& edge : g.size) edge /= factor;
+  g.spacing_mm = from.spacing_mm * double(factor);
+  g.origin_mm = from.origin_mm + 0.5 * (factor - 1) * from.spacing_mm;
+  coarse.hu.reserve(g.voxelCount());
+  for (int k = 0; k < g.size[2]; ++k) {
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i) {
+        double sum = 0.0;
+        for (int n = 0; n < factor * factor * factor; ++n) {
+          sum += fine.at(factor * i + n % factor, factor * j + n / factor % factor,
+                         factor * k + n / factor / factor);
+        }
+        coarse.hu.push_back(std::int16_t(std::lround(sum / (factor * factor * factor))));
+      }
+    }
+  }
+  return coarse;
+}
+
 TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
   const Volume fine = hapticsVolume(options.grid, 49.2);
   ToolDescription burr;
@@ -82,20 +81,20 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
   burr.radius_mm = 3.0;
   burr.points = 64;
   burr.motor_W = 4.0;
-  const HapticParameters parameters =
-      tradeParameters(*makeTool(burr), tradeTissue(kTissue_hu, true, 0.06),
-                      {LawKind::viscous, LawKind::coulomb, LawKind::elastic}, ForceAt::tip,
-                      kPeriod_s);
+  const HapticParameters parameters = tradeParameters(
+      *makeTool(burr), tradeTissue(kTissue_hu, true, 0.06),
+      {LawKind::viscous, LawKind::coulomb, LawKind::elastic}, ForceAt::tip, kPeriod_s);
   const auto ticks = std::size_t(std::llround(options.stroke_s / kPeriod_s));
   std::vector<TradeRow> rows;
   std::set<std::pair<int, int>> columns;
   std::vector<double> full_mm;
   double full_mm3 = 0.0;
-  for (const auto& [name, factor] : {std::pair("full", 1), std::pair("half", 2), std::pair("quarter", 4)}) {
+  for (const auto& [name, factor] :
+       {std::pair("full", 1), std::pair("half", 2), std::pair("quarter", 4)}) {
     Grid grid(averaged(fine, factor));
     const std::optional<StrokeRun> run = runStroke(
-        parameters, grid, ticks,
-        [&](double t_s) { return channelPose_mm(t_s, options.stroke_s); }, true, progress);
+        parameters, grid, ticks, [&](double t_s) { return channelPose_mm(t_s, options.stroke_s); },
+        true, progress);
     if (!run) return tradesCancelled();
     const GridGeometry& g = grid.geometry();
     if (factor == 1) {
@@ -120,8 +119,7 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
     row.cost = double(g.voxelCount()) * sizeof(std::int16_t) / (1024.0 * 1024.0);
     row.cost_unit = "MB";
     row.reference = "the same channel milled in the full grid: its volume, and its floor";
-    row.extra = {{"surface_distance_mm",
-                  full_mm.empty() ? 1e3 : off_mm / double(full_mm.size())},
+    row.extra = {{"surface_distance_mm", full_mm.empty() ? 1e3 : off_mm / double(full_mm.size())},
                  {"tick_ns", run->tick_ns},
                  {"removed_mm3", removed_mm3}};
     rows.push_back(row);

@@ -1,5 +1,5 @@
-// The knobs of `measure trades`, one function each: its rows, none recommended yet. Cost is measured
-// on the calling thread. Errors: CANCELLED.
+// The knobs of `measure trades`, one function each: its rows, none recommended yet. Cost is
+// measured on the calling thread. Errors: CANCELLED.
 #pragma once
 
 #include <vector>
@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "haptics/tool.h"
 #include "lab/trades_measurement.h"
+#include "volume/volume.h"
 
 namespace trephine {
 
@@ -30,6 +31,9 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress);
 
 // Estimates of velocity from samples of an encoder, against the true one of a simulated arm.
 TradeRows tradeVelocity(const TradesOptions& options, const Progress& progress);
+
+// Every voxel the mean of `factor`^3, in the same place; edges are whole multiples of the factor.
+Volume averaged(const Volume& fine, int factor);
 
 // The grid as it is, at half and at a quarter of its resolution, against the first.
 TradeRows tradeGrid(const TradesOptions& options, const Progress& progress);

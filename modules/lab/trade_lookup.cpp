@@ -103,8 +103,9 @@ TradeRows tradeLookup(const TradesOptions& options, const Progress& progress) {
     row.error_unit = "mm";
     row.cost = which == 0 ? lookupNs(points_mm, nearest) : lookupNs(points_mm, trilinear);
     row.cost_unit = "ns per 64 look-ups";
-    row.reference = "mean distance along the normal from the known surface of a scanned shell, "
-                    "voxels of 0.78 mm";
+    row.reference =
+        "mean distance along the normal from the known surface of a scanned shell, "
+        "voxels of 0.78 mm";
     rows.push_back(row);
   }
   return rows;

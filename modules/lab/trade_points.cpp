@@ -34,7 +34,9 @@ Tool toolOf(ToolKind kind, int points) {
   return kind == ToolKind::burr ? makeBurr(3e-3, points, 0, 0.06) : makeBlade(16e-3, points);
 }
 
-Quat aboutY(double angle) { return {std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0}; }
+Quat aboutY(double angle) {
+  return {std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0};
+}
 
 // Into the shell's top at a slant, along it and out again, the tool leaning and turning.
 Pose obliquePose_mm(double t_s, double duration_s) {
@@ -68,11 +70,10 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
   };
   const auto run = [&](int points, int times) -> std::optional<Run> {
     const auto stroke = [&](bool cuttable) {
-      return runStroke(tradeParameters(toolOf(kind, points),
-                                       tradeTissue(226, cuttable, kSoftToCut_J_per_mm3),
-                                       {LawKind::viscous, LawKind::coulomb},
-                                       ForceAt::distributed, kPeriod_s),
-                       grid, ticks, pose_mm, cuttable, progress);
+      return runStroke(
+          tradeParameters(toolOf(kind, points), tradeTissue(226, cuttable, kSoftToCut_J_per_mm3),
+                          {LawKind::viscous, LawKind::coulomb}, ForceAt::distributed, kPeriod_s),
+          grid, ticks, pose_mm, cuttable, progress);
     };
     std::optional<StrokeRun> whole = leastCost([&] { return stroke(false); }, times);
     std::optional<StrokeRun> cut = stroke(true);
@@ -94,9 +95,10 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
     row.error_unit = "% of force";
     row.cost = one->whole.tick_ns;
     row.cost_unit = "ns per tick without removal";
-    row.reference = "RMS force over an oblique stroke through the surface of bone, and the volume "
-                    "it removes by the hand's work, with " +
-                    std::to_string(kReferenceTimes * most) + " points";
+    row.reference =
+        "RMS force over an oblique stroke through the surface of bone, and the volume "
+        "it removes by the hand's work, with " +
+        std::to_string(kReferenceTimes * most) + " points";
     const double volume_error =
         reference->removed > 0.0 ? std::abs(one->removed / reference->removed - 1.0) : 1.0;
     row.extra = {{"volume_error_percent", 100.0 * volume_error}};
@@ -129,8 +131,8 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
   exact_N[0] = Vec3(0.0);  // the first sample has no velocity yet
   std::vector<TradeRow> rows;
   for (const auto& [name, kind] : kForceAtNames) {
-    const HapticParameters parameters = tradeParameters(makeBlade(kLength_m, 64), tissues,
-                                                        {LawKind::viscous}, kind, kPeriod_s);
+    const HapticParameters parameters =
+        tradeParameters(makeBlade(kLength_m, 64), tissues, {LawKind::viscous}, kind, kPeriod_s);
     const std::optional<StrokeRun> run = leastCost(
         [&] { return runStroke(parameters, grid, ticks, pose_mm, false, progress); }, kTimes);
     if (!run) return tradesCancelled();
@@ -141,8 +143,9 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
     row.error_unit = "% of force";
     row.cost = run->tick_ns;
     row.cost_unit = "ns per tick without removal";
-    row.reference = "RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
-                    "tissue, that turns at 2 rad/s";
+    row.reference =
+        "RMS force of the line integral of eq. 1 along a blade of 16 mm, half in "
+        "tissue, that turns at 2 rad/s";
     rows.push_back(row);
   }
   return rows;

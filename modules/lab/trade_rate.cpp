@@ -16,7 +16,8 @@ namespace trephine {
 namespace {
 
 constexpr double kReference_hz = 80000.0;
-constexpr double kStep_s = 1.0 / 160000.0;  // of the simulation: a whole number of them in every period
+constexpr double kStep_s =
+    1.0 / 160000.0;  // of the simulation: a whole number of them in every period
 constexpr double kBox_mm = 51.2;
 
 // Where the hand wants to be: from 4 mm above the tissue to 3 mm within, 20 mm along, and out.
@@ -100,7 +101,8 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
   const ArmDynamics dynamics = parametersAt(1000.0, ArmInHand()).arms[0].dynamics;
   std::vector<TradeRow> rows;
   for (double rate_hz : options.rates_hz) {
-    const std::optional<RateRun> run = runAt(rate_hz, ArmInHand(), options.stroke_s, grid, progress);
+    const std::optional<RateRun> run =
+        runAt(rate_hz, ArmInHand(), options.stroke_s, grid, progress);
     if (!run) return tradesCancelled();
     const Renderable most = renderable(dynamics, rate_hz, 0, WorkspaceMap());
     TradeRow row;
@@ -110,11 +112,11 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
     row.error_unit = "% of force";
     row.cost = 100.0 * run->tick_ns * 1e-9 * rate_hz;
     row.cost_unit = "% of a CPU, one arm";
-    row.reference = "RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
-                    "light hand presses into bone and slides (the arms measured: 0.055 mm)";
-    row.extra = {{"b_max_Ns_per_m", most.b_max},
-                 {"k_max_N_per_m", most.k_max},
-                 {"tick_ns", run->tick_ns}};
+    row.reference =
+        "RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
+        "light hand presses into bone and slides (the arms measured: 0.055 mm)";
+    row.extra = {
+        {"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}, {"tick_ns", run->tick_ns}};
     rows.push_back(row);
   }
   return rows;

@@ -20,9 +20,9 @@ HapticParameters tradeParameters(const Tool& tool, const TissueTable& tissues,
 
 struct StrokeRun {
   std::vector<Vec3> demanded_N;
-  std::vector<std::size_t> removed;  // voxels
+  std::vector<std::size_t> removed;      // voxels
   std::vector<std::int16_t> removed_hu;  // of each of them, before
-  double tick_ns = 0.0;  // median
+  double tick_ns = 0.0;                  // median
 };
 
 // `ticks` ticks; nothing where it was cancelled. The grid is left as the stroke left it. Without

@@ -27,9 +27,9 @@ double rest_m(double part) {
 }
 
 struct Motion {
-  std::vector<double> samples_m;     // of the encoder, one a period
-  std::vector<double> true_m_s;      // at the same times
-  std::vector<double> fine_m_s;      // one a step of the simulation
+  std::vector<double> samples_m;  // of the encoder, one a period
+  std::vector<double> true_m_s;   // at the same times
+  std::vector<double> fine_m_s;   // one a step of the simulation
 };
 
 Motion simulate(double duration_s) {
@@ -64,8 +64,7 @@ double BackwardDifference::update(double sample_m) {
 }
 
 LowPassDifference::LowPassDifference(double period_s, double cutoff_hz)
-    : difference_(period_s),
-      share_(period_s / (period_s + 0.5 / (std::numbers::pi * cutoff_hz))) {}
+    : difference_(period_s), share_(period_s / (period_s + 0.5 / (std::numbers::pi * cutoff_hz))) {}
 
 double LowPassDifference::update(double sample_m) {
   filtered_m_s_ += share_ * (difference_.update(sample_m) - filtered_m_s_);
@@ -89,8 +88,8 @@ double AdaptiveWindow::update(double sample_m) {
   return slope_m / period_s_;
 }
 
-double lagOf(const std::vector<double>& estimate, double period_s,
-             const std::vector<double>& truth, double fine_s, double most_s) {
+double lagOf(const std::vector<double>& estimate, double period_s, const std::vector<double>& truth,
+             double fine_s, double most_s) {
   const auto per_period = std::size_t(std::llround(period_s / fine_s));
   const auto most = std::size_t(std::llround(most_s / fine_s));
   const std::size_t first = (most + per_period - 1) / per_period;
@@ -141,8 +140,9 @@ TradeRows tradeVelocity(const TradesOptions& options, const Progress& progress) 
     row.error_unit = "mm/s";
     row.cost = 1e3 * lagOf(estimate_m_s, kPeriod_s, motion.fine_m_s, kPeriod_s / kFine, kMostLag_s);
     row.cost_unit = "ms of lag";
-    row.reference = "RMS, true velocity of a simulated arm with an encoder of 0.055 mm, sampled at "
-                    "1 kHz: at rest, at 2 mm/s, and to and fro at up to 190 mm/s";
+    row.reference =
+        "RMS, true velocity of a simulated arm with an encoder of 0.055 mm, sampled at "
+        "1 kHz: at rest, at 2 mm/s, and to and fro at up to 190 mm/s";
     rows.push_back(row);
   }
   return rows;

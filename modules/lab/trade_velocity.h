@@ -47,7 +47,7 @@ class AdaptiveWindow {
 
 // The delay at which the truth looks most like the estimate (least squares), 0 to `most_s` in whole
 // steps of `fine_s` [s]. estimate[n] belongs to the time n * period_s, truth[i] to i * fine_s.
-double lagOf(const std::vector<double>& estimate, double period_s,
-             const std::vector<double>& truth, double fine_s, double most_s);
+double lagOf(const std::vector<double>& estimate, double period_s, const std::vector<double>& truth,
+             double fine_s, double most_s);
 
 }  // namespace trephine

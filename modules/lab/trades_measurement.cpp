@@ -167,8 +167,8 @@ std::string toText(const TradesMeasurement& measurement) {
   for (const TradeRow& row : measurement.rows) {
     if (row.knob != knob) {
       knob = row.knob;
-      const auto found = std::find_if(kKnobs.begin(), kKnobs.end(),
-                                      [&](const Knob& k) { return k.id == knob; });
+      const auto found =
+          std::find_if(kKnobs.begin(), kKnobs.end(), [&](const Knob& k) { return k.id == knob; });
       text += found == kKnobs.end() ? knob : std::string(found->title);
       text += " (error: " + row.reference + ")\n";
     }

@@ -1,8 +1,8 @@
 // Speed against accuracy: for every knob of touch its settings, what each gets wrong and what each
 // costs, from one run, and which one is recommended on this machine.
 //
-// Of each knob exactly one setting is recommended: the cheapest of those that are good enough, which
-// is what the table of kKnobs says. Where none is, the one with the least error.
+// Of each knob exactly one setting is recommended: the cheapest of those that are good enough,
+// which is what the table of kKnobs says. Where none is, the one with the least error.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace trephine {
 
 struct TradeRow {
-  std::string knob;     // an id of kKnobs
+  std::string knob;  // an id of kKnobs
   std::string setting;
   double error = 0.0;
   std::string error_unit;

@@ -9,8 +9,9 @@
 namespace trephine {
 namespace {
 
-const std::vector<RecommendedSetting> kTwo{{"rate_hz", "1000", 8.5, "% of force", 0.25, "% of a CPU"},
-                                           {"force_at", "tip", 30.0, "% of force", 480.0, "ns"}};
+const std::vector<RecommendedSetting> kTwo{
+    {"rate_hz", "1000", 8.5, "% of force", 0.25, "% of a CPU"},
+    {"force_at", "tip", 30.0, "% of force", 480.0, "ns"}};
 
 Result<std::vector<RecommendedSetting>> read(const Json& json) {
   const test::TemporaryFolder folder;
@@ -63,9 +64,10 @@ TEST(SceneSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
     arm.tool = tool;
     scene.arms.push_back(arm);
   }
-  const std::vector<std::pair<std::string, std::string>> expected{
-      {"points_blade", "33"}, {"points_burr", "64"}, {"force_at", "distributed"},
-      {"rate_hz", "2000"}};
+  const std::vector<std::pair<std::string, std::string>> expected{{"points_blade", "33"},
+                                                                  {"points_burr", "64"},
+                                                                  {"force_at", "distributed"},
+                                                                  {"rate_hz", "2000"}};
   EXPECT_EQ(sceneSettings(scene), expected);
 }
 

@@ -27,7 +27,8 @@ TradeRow row(const char* knob, const char* setting, double error, double cost) {
 
 TEST(TradeAxis, IsLinearFromZeroOverNarrowRangesAndZeroes) {
   for (const std::vector<double>& values :
-       {std::vector<double>{2.0, 10.0}, std::vector<double>{0.0, 1000.0}, std::vector<double>{0.0}}) {
+       {std::vector<double>{2.0, 10.0}, std::vector<double>{0.0, 1000.0},
+        std::vector<double>{0.0}}) {
     const TradeAxis axis = tradeAxis(values);
     EXPECT_FALSE(axis.logarithmic);
     EXPECT_EQ(axis.at(0.0), 0.0);
@@ -51,8 +52,8 @@ TEST(TradeAxis, IsLogarithmicOverWideRanges) {
 TEST(TradeCharts, RefuseWhatCannotBeDrawn) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(writeTradeCharts({}, folder.path()).error().code, "BAD_ARGUMENT");
-  for (double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(),
-                     std::numeric_limits<double>::infinity()}) {
+  for (double bad :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(writeTradeCharts({row("force_at", "tip", bad, 1.0)}, folder.path()).error().code,
               "BAD_ARGUMENT");
     EXPECT_EQ(writeTradeCharts({row("force_at", "tip", 1.0, bad)}, folder.path()).error().code,

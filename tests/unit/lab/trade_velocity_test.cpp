@@ -30,7 +30,7 @@ TEST(AdaptiveWindow, TakesTheLongestWindowThatIsALineWithinTheBand) {
   AdaptiveWindow w(0.001, 1.0);
   EXPECT_EQ(w.update(0.0), 0.0);
   EXPECT_NEAR(w.update(1.0), 1000.0, 1e-9);
-  EXPECT_NEAR(w.update(1.0), 500.0, 1e-9);         // 0 1 1: off the line by 0.5
+  EXPECT_NEAR(w.update(1.0), 500.0, 1e-9);  // 0 1 1: off the line by 0.5
   EXPECT_NEAR(w.update(2.0), 2.0 / 3.0 * 1e3, 1e-9);
   // 0 1 1 2 9: off the line from the first by 2.5 and more; so are 1 1 2 9 (off by 8/3) and 1 2 9
   // (by 3). What is left is one step.
@@ -45,6 +45,20 @@ TEST(AdaptiveWindow, StopsAtTheFirstWindowThatDoesNotFitAndAtItsLongest) {
   AdaptiveWindow at_rest(1.0, 0.5);
   for (int n = 0; n < 200; ++n) at_rest.update(0.0);
   EXPECT_NEAR(at_rest.update(1.0), 1.0 / 2.0, 1e-12);  // 0 0 1 fits in 0.5, 0 0 0 1 does not
+}
+
+TEST(AdaptiveWindow, DoesNotLookBeyondAWindowThatDoesNotFit) {
+  // 0 -0.5 0.5 0: of three 0.5 is off by 0.75; of all four no sample is off by more than 0.5.
+  AdaptiveWindow w(1.0, 0.5);
+  for (double x : {0.0, -0.5, 0.5}) w.update(x);
+  EXPECT_NEAR(w.update(0.0), -0.5, 1e-12);
+}
+
+TEST(AdaptiveWindow, IsNoLongerThanItsMost) {
+  AdaptiveWindow w(1.0, 1e9);
+  double slope = 0.0;
+  for (int n = 0; n < 500; ++n) slope = w.update(double(n) * n);
+  EXPECT_NEAR(slope, 2.0 * 499 - double(AdaptiveWindow::kMost), 1e-9);
 }
 
 TEST(Lag, OfADelayedSignalIsItsDelay) {

@@ -61,7 +61,8 @@ TEST(Recommend, TakesTheCheapestThatIsGoodEnough) {
 }
 
 TEST(Recommend, TakesTheTruestWhereNoneIsGoodEnough) {
-  EXPECT_EQ(chosen({row("force_at", "a", 40.0, 1.0), row("force_at", "b", 30.0, 3.0)}), Chosen{"b"});
+  EXPECT_EQ(chosen({row("force_at", "a", 40.0, 1.0), row("force_at", "b", 30.0, 3.0)}),
+            Chosen{"b"});
 }
 
 TEST(Recommend, HoldsARateToItsShareOfTheProcessor) {
@@ -72,7 +73,8 @@ TEST(Recommend, HoldsARateToItsShareOfTheProcessor) {
   EXPECT_EQ(chosen({row("rate_hz", "slow", 12.0, 1.0), row("rate_hz", "next", 11.0, 2.0),
                     row("rate_hz", "dear", 1.0, 25.1)}),
             Chosen{"next"});
-  EXPECT_EQ(chosen({row("rate_hz", "a", 12.0, 30.0), row("rate_hz", "b", 11.0, 40.0)}), Chosen{"b"});
+  EXPECT_EQ(chosen({row("rate_hz", "a", 12.0, 30.0), row("rate_hz", "b", 11.0, 40.0)}),
+            Chosen{"b"});
 }
 
 TEST(Recommend, HoldsPointsToTheirVolumeToo) {
@@ -146,6 +148,21 @@ TEST(RateKnob, ASlowRateIsFartherFromTheTruthAndCostsLess) {
   EXPECT_LT(slow.cost, usual.cost);
   EXPECT_LT(slow.extraOf("b_max_Ns_per_m"), usual.extraOf("b_max_Ns_per_m"));
   EXPECT_NEAR(usual.cost, 100.0 * usual.extraOf("tick_ns") * 1e-9 * 1000.0, 1e-9);
+}
+
+TEST(GridKnob, AveragesInPlace) {
+  Volume fine;
+  fine.geometry.size = {4, 2, 2};
+  fine.geometry.spacing_mm = {1.0, 2.0, 3.0};
+  fine.geometry.origin_mm = {10.0, 20.0, 30.0};
+  for (int n = 0; n < 16; ++n) fine.hu.push_back(std::int16_t(n % 4 < 2 ? 100 : 10 * n));
+  const Volume coarse = averaged(fine, 2);
+  EXPECT_EQ(coarse.geometry.size, (Index3{2, 1, 1}));
+  EXPECT_EQ(coarse.geometry.spacing_mm, Vec3(2.0, 4.0, 6.0));
+  EXPECT_EQ(coarse.geometry.origin_mm, Vec3(10.5, 21.0, 31.5));  // the middle of 8 voxels
+  // 2 3 6 7 10 11 14 15, times 10.
+  EXPECT_EQ(coarse.hu, (std::vector<std::int16_t>{100, 85}));
+  EXPECT_EQ(averaged(fine, 1).hu, fine.hu);
 }
 
 TEST(GridKnob, CoarserIsWorseAndSmaller) {
