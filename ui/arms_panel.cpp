@@ -67,7 +67,9 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
   journal_ =
-      new QLabel(tr("The undo memory is full: nothing more is removed. Reset to go on."), inside);
+      new QLabel(tr("The way back can no longer be kept on the disk: nothing more is removed. Undo "
+                    "and rewind still work. Free some space, then start the exercise anew."),
+                 inside);
   journal_->setWordWrap(true);
   colourText(journal_, colours::kBad);
   journal_->hide();

@@ -50,6 +50,11 @@ void paintSymbol(QPainter& p, Symbol symbol, const QColor& colour) {
       p.drawPath(turn(60, 300));
       p.drawPolyline(QPolygonF({{15.5, 2.5}, {15.8, 7}, {20.5, 7}}));
       break;
+    case Symbol::back:
+      p.setBrush(colour);
+      p.drawPolygon(QPolygonF({{11, 6}, {11, 18}, {3, 12}}));
+      p.drawPolygon(QPolygonF({{20, 6}, {20, 18}, {12, 12}}));
+      break;
     case Symbol::picture:
       p.drawRoundedRect(QRectF(3, 7, 18, 13), 2, 2);
       p.drawEllipse(QPointF(12, 13.5), 3.5, 3.5);

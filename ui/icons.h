@@ -5,7 +5,7 @@
 
 namespace trephine {
 
-enum class Symbol { open, start, stop, pause, undo, redo, reset, picture, save, view };
+enum class Symbol { open, start, stop, pause, undo, redo, reset, back, picture, save, view };
 
 QIcon symbolIcon(Symbol symbol);
 

@@ -11,6 +11,7 @@
 
 #include "base/system.h"
 #include "render/picture.h"
+#include "render/tool_view.h"
 #include "ui/error_dialog.h"
 #include "ui/words.h"
 #include "volume/volume_files.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kMessage_ms = 15000;
+constexpr std::uint64_t kAnswerTicks = 20;  // by then a command has been taken up, with room
 
 std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
   std::vector<ToolView> tools;
@@ -30,9 +32,9 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.patient_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
-    tools.push_back({Pose{arm.patient_position_mm, arm.patient_orientation}, tool->tool.made_from.length_mm,
-                     tool->tool.made_from.kind == ToolKind::blade, arm.tissue_class >= 0,
-                     Vec3(colour.redF(), colour.greenF(), colour.blueF())});
+    tools.push_back(toolView(*tool, {arm.patient_position_mm, arm.patient_orientation},
+                             arm.tissue_class >= 0,
+                             Vec3(colour.redF(), colour.greenF(), colour.blueF())));
   }
   return tools;
 }
@@ -99,7 +101,8 @@ void MainWindow::showScene() {
     most = most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
                 : on_arm;
   }
-  tissues_->setRenderable(most);
+  tissues_->setRenderable(
+      most, [scene = *scene](const Tissue& tissue) { return demandedOf(scene, tissue); });
   view_->setTissues(scene->tissues);
   arms_->setScene(*scene);
 }
@@ -139,8 +142,12 @@ void MainWindow::showPhase() {
   scenes_->setEnabled(may_open);
   case_->setOpeningAllowed(may_open);
   start_->setEnabled(ready);
-  for (QAction* action : {stop_, pause_, undo_, redo_}) action->setEnabled(running);
-  if (!running) pause_->setChecked(false);
+  for (QAction* action : {stop_, pause_}) action->setEnabled(running);
+  if (!running) {
+    pause_->setChecked(false);
+    for (QAction* action : {undo_, redo_}) action->setEnabled(false);
+    rewind_->showIdle();
+  }
   reset_->setEnabled(running || (ready && carved_));
   for (QAction* action : {picture_, volume_, look_}) action->setEnabled(phase != Phase::empty);
   view_->setTraining(running);
@@ -166,6 +173,7 @@ void MainWindow::sessionStarted() {
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
   recording_failed_ = false;
+  going_back_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
   // The view has the case already, unless an earlier exercise left its cuts there.
@@ -207,7 +215,11 @@ void MainWindow::showState(Session& session, const LoopState& state) {
   view_->pullChanges(session.grid());
   arms_->showState(state, session.scene().tissues, limits_N_);
   pause_->setChecked(state.paused);
-  undo_->setEnabled(state.can_undo && workstation_.session());
+  if (workstation_.session()) {
+    undo_->setEnabled(state.can_undo);
+    redo_->setEnabled(state.can_redo);
+    showRewind(state);
+  }
   if (Status recording = session.recordingStatus(); !recording && !recording_failed_) {
     recording_failed_ = true;
     report(recording.error());
@@ -231,6 +243,24 @@ void MainWindow::showRates() {
 void MainWindow::command(CommandKind kind) {
   Session* session = workstation_.session();
   if (session && !session->send(kind)) say(tr("Busy: try again in a moment."));
+}
+
+void MainWindow::rewind(std::uint32_t second) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  if (!session->rewind(second)) return say(tr("Busy: try again in a moment."));
+  going_back_ = {second, session->state().ticks};
+  showRewind(session->state());
+}
+
+void MainWindow::showRewind(const LoopState& state) {
+  if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + kAnswerTicks) {
+    say(tr("Back at %1: tissue, counts and forces as they were. Take the tools out of the tissue "
+           "to feel again.")
+            .arg(timeWords(going_back_->second)));
+    going_back_.reset();
+  }
+  rewind_->showTime(state.seconds, state.busy || going_back_);
 }
 
 void MainWindow::reset() {

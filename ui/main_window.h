@@ -14,6 +14,7 @@
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
 #include "ui/icons.h"
+#include "ui/rewind_bar.h"
 #include "ui/tissue_panel.h"
 #include "ui/view_widget.h"
 #include "ui/workstation.h"
@@ -65,6 +66,8 @@ class MainWindow : public QMainWindow {
   void lookAtCase();
   void reset();
   void command(CommandKind kind);
+  void rewind(std::uint32_t second);
+  void showRewind(const LoopState& state);
   void moveHand(Hand hand, const Vec3& by_mm);
   void placeHandPoints();
   std::size_t armOf(Hand hand) const;
@@ -86,10 +89,16 @@ class MainWindow : public QMainWindow {
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   ViewWidget* view_;
+  RewindBar* rewind_;
   QLabel *hint_, *rates_;
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_;
   std::vector<double> limits_N_;  // of the running session's arms
+  struct GoingBack {
+    std::uint32_t second;
+    std::uint64_t asked_tick;
+  };
+  std::optional<GoingBack> going_back_;  // until it is said that one is there
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left

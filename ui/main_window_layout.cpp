@@ -4,6 +4,7 @@
 #include <QSplitter>
 #include <QStatusBar>
 #include <QToolBar>
+#include <QVBoxLayout>
 #include <algorithm>
 
 #include "base/system.h"
@@ -81,12 +82,19 @@ void MainWindow::buildPanels() {
   left_->addTab(tissues_, tr("Tissues"));
   left_->setMinimumWidth(260);
   view_ = new ViewWidget;
+  rewind_ = new RewindBar;
+  auto* middle = new QWidget;
+  auto* middle_layout = new QVBoxLayout(middle);
+  middle_layout->setContentsMargins(0, 0, 0, 0);
+  middle_layout->setSpacing(0);
+  middle_layout->addWidget(view_, 1);
+  middle_layout->addWidget(rewind_);
   arms_ = new ArmsPanel;
   arms_->setMinimumWidth(240);
 
   auto* splitter = new QSplitter(Qt::Horizontal);
   splitter->addWidget(left_);
-  splitter->addWidget(view_);
+  splitter->addWidget(middle);
   splitter->addWidget(arms_);
   splitter->setStretchFactor(0, 0);
   splitter->setStretchFactor(1, 1);
@@ -123,7 +131,7 @@ void MainWindow::buildBars() {
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
-  menuBar()->addMenu(tr("&Exercise"))->addActions({start_, stop_, pause_, undo_, redo_, reset_});
+  menuBar()->addMenu(tr("&Exercise"))->addActions({start_, stop_, pause_, undo_, redo_, rewind_->backAction(), reset_});
   menuBar()->addMenu(tr("&View"))->addAction(look_);
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
@@ -152,6 +160,7 @@ void MainWindow::connectParts() {
   connect(undo_, &QAction::triggered, this, [this] { command(CommandKind::undo); });
   connect(redo_, &QAction::triggered, this, [this] { command(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &MainWindow::reset);
+  connect(rewind_, &RewindBar::rewindAsked, this, &MainWindow::rewind);
   connect(look_, &QAction::triggered, this, &MainWindow::lookAtCase);
   connect(picture_, &QAction::triggered, this, [this] {
     askWhereToSave(tr("Save picture"), "trephine.png", tr("Picture (*.png)"),

@@ -158,8 +158,10 @@ void TissuePanel::setTissues(const TissueSet& tissues) {
   showList();
 }
 
-void TissuePanel::setRenderable(const std::optional<Renderable>& most) {
+void TissuePanel::setRenderable(const std::optional<Renderable>& most,
+                                std::function<Impedance(const Tissue&)> demanded) {
   renderable_ = most;
+  demanded_ = std::move(demanded);
   showFelt();
 }
 
@@ -169,13 +171,16 @@ void TissuePanel::showFelt() {
   if (tissue && renderable_) {
     const auto line = [&](const QString& what, const QString& unit, double demanded, double most) {
       if (demanded <= most) return;
-      lines << tr("%1: these arms show at most %2 %3, and that is felt.")
+      lines << tr("%1: the exercise's laws together demand %2 %4, these arms show at most %3 %4, "
+                  "and that is felt.")
                    .arg(what)
+                   .arg(demanded, 0, 'f', 0)
                    .arg(most, 0, 'f', 0)
                    .arg(unit);
     };
-    line(tr("Damping"), tr("N\u00b7s/m"), tissue->damping_Ns_per_m.value, renderable_->b_max);
-    line(tr("Stiffness"), tr("N/m"), tissue->stiffness_N_per_m.value, renderable_->k_max);
+    const Impedance demanded = demanded_(*tissue);
+    line(tr("Damping"), tr("N\u00b7s/m"), demanded.damping, renderable_->b_max);
+    line(tr("Stiffness"), tr("N/m"), demanded.stiffness, renderable_->k_max);
   }
   felt_->setText(lines.join('\n'));
   felt_->setVisible(!lines.isEmpty());

@@ -9,6 +9,7 @@
 #include <QToolButton>
 #include <QWidget>
 
+#include <functional>
 #include <optional>
 
 #include "haptics/arm_dynamics.h"
@@ -24,8 +25,10 @@ class TissuePanel : public QWidget {
   void setTissues(const TissueSet& tissues);
   const TissueSet& tissues() const { return applied_; }
   void select(const std::string& id);
-  // The firmest tissue that the arms show: what lies above is said to be felt as this.
-  void setRenderable(const std::optional<Renderable>& most);
+  // The firmest tissue that the arms show, and what the scene's laws together demand of one: what
+  // lies above the first is said to be felt as that.
+  void setRenderable(const std::optional<Renderable>& most,
+                     std::function<Impedance(const Tissue&)> demanded);
 
  signals:
   // A possible set, changed by a person.
@@ -50,6 +53,7 @@ class TissuePanel : public QWidget {
   TissueSet edited_;   // what the controls say
   TissueSet applied_;  // the last possible one
   std::optional<Renderable> renderable_;
+  std::function<Impedance(const Tissue&)> demanded_;
   bool showing_ = false;
   QListWidget* list_;
   QWidget* editor_;

@@ -29,8 +29,9 @@ Hand handFor(Qt::KeyboardModifiers modifiers) {
 }
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
-  return a.contact == b.contact && a.blade == b.blade && a.length_mm == b.length_mm &&
-         a.colour == b.colour &&
+  return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
+         a.colour == b.colour && a.radius_mm == b.radius_mm && a.mesh_file == b.mesh_file &&
+         a.mesh_tip_mm == b.mesh_tip_mm && a.mesh_axis == b.mesh_axis &&
          glm::distance(a.pose_mm.position, b.pose_mm.position) < kToolMoved_mm &&
          std::abs(glm::dot(a.pose_mm.orientation, b.pose_mm.orientation)) > 1.0 - 1e-7;
 }

@@ -83,6 +83,10 @@ QString findingWords(const SeriesReport& series) {
   return lines.join('\n');
 }
 
+QString timeWords(std::uint32_t seconds) {
+  return QStringLiteral("%1:%2").arg(seconds / 60).arg(seconds % 60, 2, 10, QLatin1Char('0'));
+}
+
 QString sizeWords(const GridGeometry& g) {
   return tr("%1 \u00d7 %2 \u00d7 %3 voxels\n%4 \u00d7 %5 \u00d7 %6 mm")
       .arg(g.size[0])

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QString>
+#include <cstdint>
 #include <filesystem>
 
 #include "base/result.h"
@@ -26,6 +27,8 @@ QString controllerPartWords(std::uint32_t parts);
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.
 QString findingWords(const SeriesReport& series);
+// "1:05" of 65 seconds.
+QString timeWords(std::uint32_t seconds);
 // "512 x 512 x 140 voxels", and on a second line "0.49 x 0.49 x 1.00 mm".
 QString sizeWords(const GridGeometry& geometry);
 

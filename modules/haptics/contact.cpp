@@ -38,9 +38,8 @@ ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
   const double reach_mm =
       inset_mm_ + std::max({spacing.x, spacing.y, spacing.z});
   for (int n = 0; n < 6; ++n) {
-    Vec3 axis(0.0);
-    axis[n / 2] = n % 2 ? -reach_mm : reach_mm;
-    reach_[n] = Vec3(patient_to_voxel_ * glm::dvec4(axis, 0.0));
+    reach_[n] = Vec3(0.0);
+    reach_[n][n / 2] = (n % 2 ? -reach_mm : reach_mm) / spacing[n / 2];
   }
 }
 

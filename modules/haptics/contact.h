@@ -28,7 +28,7 @@ std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_v
 // surface of that solid before it, the way the tool goes: else the tissue would go before it is
 // felt. A tool that erases what it touches would lose contact at
 // once and find it again a voxel later; so a point that was in tissue keeps that tissue while any
-// stands within reach of it along the patient's axes: from the point to the surface of what the
+// stands within reach of it along the grid's axes: from the point to the surface of what the
 // tool cuts, and one voxel on.
 class ToolContact {
  public:
@@ -53,7 +53,7 @@ class ToolContact {
   double inset_mm_;
   std::optional<Vec3> from_mm_;  // where the way was last measured
   Vec3 lead_{0.0};     // voxels: the way the tool goes, as long as the inset
-  Vec3 reach_[6];      // voxels: there and back along the patient's axes
+  Vec3 reach_[6];      // voxels: there and back along the grid's axes
   int last_found_ = 0;  // the first of them to try: walls stay where they are
   Contact contact_;
 };

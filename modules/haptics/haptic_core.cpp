@@ -369,6 +369,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
 // All tools bite into the tissue as it was, then it goes. Who comes second to a voxel that another
 // took in the same tick pays half of it, so that the order of the arms changes no credit.
 void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
+  const CarveJournal::Credits before = credits();
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
     arm.bites.clear();
@@ -393,7 +394,7 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
             break;
           }
         }
-      } else if (erase(i, bite, voxel, tick)) {
+      } else if (erase(i, bite, voxel, before, tick)) {
         ++record.arms[i].removed_voxels;
       } else {
         arm.removal.refund(bite.cost_J);
@@ -409,10 +410,10 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
 }
 
 bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
-                       std::uint64_t tick) {
+                       const CarveJournal::Credits& before, std::uint64_t tick) {
   const int arm = int(index);
   if (!journal_.inStroke(arm)) {
-    if (!journal_.beginStroke(arm, credits())) return false;
+    if (!journal_.beginStroke(arm, before)) return false;
     events_.push_back({tick, EventKind::stroke_began, arm, 0, {}});
   }
   const std::int16_t old_hu = writer_.grid().hu(voxel);

@@ -112,7 +112,8 @@ class HapticCore {
   LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
   void earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model);
   void removeBites(std::uint64_t tick, TickRecord& record);
-  bool erase(std::size_t index, const Bite& bite, std::size_t voxel, std::uint64_t tick);
+  bool erase(std::size_t index, const Bite& bite, std::size_t voxel,
+             const CarveJournal::Credits& before, std::uint64_t tick);
   void useTissues();
   CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);

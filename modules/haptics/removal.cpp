@@ -8,11 +8,13 @@ namespace trephine {
 
 namespace {
 
-// What a tick may look at, in voxels; a row of the solid counts as much as these many.
+// What a tick of a millisecond or less may look at, in voxels, and a slower one more; a row of the
+// solid counts as much as these many.
 constexpr int kLooksPerTick = 4096;
+constexpr double kMostLooks = 4.0;  // times that
 constexpr int kLooksPerRow = 12;
 constexpr double kHalfVoxel = 0.505;  // and a little, for what rounding takes
-constexpr double kMotorCap_s = 0.02;
+constexpr double kKept_s = 0.05;
 // No hand is as fast: a pose that jumps sweeps nothing between.
 constexpr double kFastest_mm_per_s = 5000.0;
 
@@ -35,12 +37,13 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
       geometry_(geometry),
       patient_to_voxel_(geometry.patientToVoxel()),
       kind_(kind),
-      motor_cap_J_(tool.made_from.motor_W * std::max(kMotorCap_s, 2.0 * period_s)) {
+      fading_(1.0 / (1.0 + period_s / kKept_s)) {
   radius_mm_ = 1000.0 * tool.radius_m;
   spacing_mm_ = glm::min(geometry.spacing_mm, Vec3(radius_mm_ / kHalfVoxel));
   const Vec3& s = spacing_mm_;
   layer_mm_ = std::max({s.x, s.y, s.z, 0.1 * radius_mm_});
   still_mm_ = 0.125 * std::min({s.x, s.y, s.z});
+  looks_ = int(kLooksPerTick * std::clamp(1000.0 * period_s, 1.0, kMostLooks));
   farthest_mm_ = kFastest_mm_per_s * period_s;
 }
 
@@ -58,7 +61,8 @@ void Removal::earn(double work_J, const TissueTable& tissues) {
     const TissueClass& t = tissues.classes[std::size_t(c)];
     if (t.cuttable) dearest_J = std::max(dearest_J, voxelWork_J(t, geometry_.voxelVolume_mm3()));
   }
-  const double cap_J = motor_cap_J_ + 2.0 * dearest_J;
+  recent_J_ = fading_ * (recent_J_ + std::max(0.0, work_J));
+  const double cap_J = recent_J_ + 2.0 * dearest_J;
   credit_J_ = std::clamp(credit_J_ + work_J, -cap_J, cap_J);
 }
 
@@ -108,7 +112,7 @@ void Removal::sweep(const Grid& grid, const TissueLookup& lookup, const TissueTa
   }
   const Vec3& s = spacing_mm_;
   const double voxel_mm3 = geometry_.voxelVolume_mm3();
-  int looks = kLooksPerTick;
+  int looks = looks_;
   for (; slice_ < slice_end_; ++slice_) {
     const int k = backwards_ ? high_[2] - slice_ : low_[2] + slice_;
     const double z = k * s.z;

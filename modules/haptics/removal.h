@@ -41,8 +41,9 @@ class Removal {
   // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
-  // Work that the tool did on tissue that may be cut. What cannot be spent within 20 ms of the
-  // motor, or on one voxel, is heat: the credit is capped there, and so is a debt.
+  // Work that the tool did in this tick on tissue that may be cut. What is not spent within 50 ms or
+  // so is heat: the credit is capped by the work of that time and of two voxels, and so is a debt
+  // (a spring gives back what pressing it took).
   void earn(double work_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `bites` (room for kMostBites). No allocation.
@@ -74,7 +75,9 @@ class Removal {
   double radius_mm_;
   double layer_mm_;
   double still_mm_;
-  double motor_cap_J_;
+  int looks_;  // a tick
+  double fading_;          // of recent_J_, a tick
+  double recent_J_ = 0.0;  // work of the last 50 ms, fading
   double credit_J_ = 0.0;
 
   bool known_ = false;  // `clear_` holds: all within it that can be taken has been

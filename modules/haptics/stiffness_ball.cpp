@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "haptics/spiral.h"
 
 namespace trephine {
 
@@ -37,14 +38,35 @@ double sampleAnywhere(const Grid& grid, const Vec3& v) {
              mix(mix(c[4], c[5], t.x), mix(c[6], c[7], t.x), t.y), t.z);
 }
 
-// Evenly spread opposite pairs: a spiral of equal areas over the upper half (Fibonacci lattice).
+// Evenly spread opposite pairs: a spiral of equal areas over the upper half, then let repel each
+// other as equal charges do, which takes the spiral's preference for its axis away.
 std::vector<Vec3> oppositePairs(int count) {
   const int half = (count + 1) / 2;
-  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<Vec3> out;
-  for (int i = 0; i < half; ++i) {
+  std::vector<Vec3> pairs;
+  GoldenTurn turn;
+  for (int i = 0; i < half; ++i, turn.next()) {
     const double z = (i + 0.5) / half, flat = std::sqrt(1.0 - z * z);
-    const Vec3 d(flat * std::cos(turn * i), flat * std::sin(turn * i), z);
+    pairs.push_back({flat * turn.cosine, flat * turn.sine, z});
+  }
+  constexpr int kSteps = 300;
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<Vec3> moved = pairs;
+    for (int i = 0; i < half; ++i) {
+      Vec3 push(0.0);
+      for (int j = 0; j < half; ++j) {
+        if (i == j) continue;
+        for (double sign : {1.0, -1.0}) {
+          const Vec3 away = pairs[std::size_t(i)] - sign * pairs[std::size_t(j)];
+          const double d2 = glm::dot(away, away);
+          push += away / (d2 * std::sqrt(d2));
+        }
+      }
+      moved[std::size_t(i)] = glm::normalize(pairs[std::size_t(i)] + 0.5 / (half * std::sqrt(half)) * push);
+    }
+    pairs = moved;
+  }
+  std::vector<Vec3> out;
+  for (const Vec3& d : pairs) {
     out.push_back(d);
     out.push_back(-d);
   }
@@ -87,8 +109,8 @@ double StiffnessOfHu::mean(double hu_a, double hu_b) const {
 StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions)
     : patient_to_voxel_(geometry.patientToVoxel()), radius_m_(radius_mm / 1000.0), reach_(0.0) {
   for (const Vec3& d : oppositePairs(directions)) {
-    const Vec3 reach = Vec3(patient_to_voxel_ * glm::dvec4(d * radius_mm, 0.0));
-    rays_.push_back({d, reach});
+    const Vec3 reach = d * radius_mm / geometry.spacing_mm;
+    rays_.push_back({geometry.direction * d, reach});
     reach_ = glm::max(reach_, glm::abs(reach) * kRadii[kParts - 1]);
   }
 }

@@ -46,7 +46,7 @@ struct ElasticPush {
 // Over a half-space this is k times the ball's depth along the surface's normal, exactly, while the
 // centre is outside (the weights were chosen for that: derivation in README.md); over layers it is
 // the sum of (k_i - k_(i-1)) times the depth in each. The directions are a fixed set of opposite
-// pairs, so that evenly surrounded means no push. The surface term is taken over a shell of +-r/6.
+// pairs in the grid's axes, so that evenly surrounded means no push. The surface term is taken over a shell of +-r/6.
 class StiffnessBall {
  public:
   // `directions` is rounded up to a whole number of opposite pairs.

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "haptics/spiral.h"
 
 namespace trephine {
 
@@ -39,15 +40,15 @@ Tool sharpTool(const ToolDescription& d) {
 // An equal-area spiral (Fibonacci lattice) over the surface of a rod with round ends: each turn of
 // latitude holds as much surface as the next.
 void addShell(Tool& tool, double radius, double straight, int count, double share) {
-  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < count; ++i) {
+  GoldenTurn turn;
+  for (int i = 0; i < count; ++i, turn.next()) {
     // Archimedes: a band of a ball has the area of that of its cylinder, so height measures area.
     const double height = (i + 0.5) / count * (2.0 * radius + straight);
     const double level = height < radius              ? height - radius
                          : height > radius + straight ? height - radius - straight
                                                       : 0.0;
     const double flat = std::sqrt(std::max(0.0, radius * radius - level * level));
-    tool.points_m.push_back({flat * std::cos(turn * i), flat * std::sin(turn * i), height});
+    tool.points_m.push_back({flat * turn.cosine, flat * turn.sine, height});
     tool.weights.push_back(share / count);
   }
 }

@@ -1,6 +1,7 @@
 #include "lab/exercise_picture.h"
 
 #include "render/scene_renderer.h"
+#include "render/tool_view.h"
 
 namespace trephine {
 
@@ -19,12 +20,9 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   const LoopState& state = session.state();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    const Tool& tool = scene.findTool(scene.arms[i].tool)->tool;
-    tools.push_back({{arm.patient_position_mm, arm.patient_orientation},
-                     tool.made_from.length_mm,
-                     tool.made_from.kind == ToolKind::blade,
-                     arm.tissue_class >= 0,
-                     Vec3(0.75, 0.78, 0.82)});
+    tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
+                             {arm.patient_position_mm, arm.patient_orientation},
+                             arm.tissue_class >= 0, Vec3(0.75, 0.78, 0.82)));
   }
   renderer.setTools(tools);
   bool placed = false;

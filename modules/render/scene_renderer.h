@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/math.h"
@@ -17,13 +18,20 @@
 
 namespace trephine {
 
+enum class ToolShape { needle, blade, burr };
+
 // A tool as it is drawn. The tool points along -z of its pose, its tip is the pose's position.
 struct ToolView {
   Pose pose_mm;            // patient frame
-  double length_mm = 0.0;  // of the working part (blade) or shaft (needle)
-  bool blade = false;
-  bool contact = false;  // shown by a mark at the tip
-  Vec3 colour{0.8};
+  double length_mm = 0.0;  // of the working part (blade, burr) or shaft (needle)
+  ToolShape shape = ToolShape::needle;
+  bool contact = false;    // shown by a mark at the tip
+  Vec3 colour{0.8};        // of the whole tool; with a mesh, of what lies behind length_mm
+  double radius_mm = 0.0;  // of the needle, the burr's ball, half the blade's thickness; 0: usual
+  // An STL file that is drawn instead of `shape`; where it cannot be, a warning says why, once.
+  std::string mesh_file;
+  Vec3 mesh_tip_mm{0.0};          // in the mesh's frame
+  Vec3 mesh_axis{0.0, 0.0, 1.0};  // from the tip to the handle, in the mesh's frame
 };
 
 // How the window lends its OpenGL context to VTK.

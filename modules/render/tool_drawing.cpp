@@ -1,33 +1,46 @@
 #include "render/tool_drawing.h"
 
 #include <vtkActor.h>
+#include <vtkBoundingBox.h>
 #include <vtkCellArray.h>
+#include <vtkIdList.h>
+#include <vtkIncrementalOctreePointLocator.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkSphereSource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <numbers>
+
+#include "base/log.h"
 
 namespace trephine {
 
 namespace {
 
 constexpr double kBladeWidth_mm = 3.0;
-constexpr double kBladeThickness_mm = 0.6;
+constexpr double kBladeHalfThickness_mm = 0.3;
 constexpr double kNeedleRadius_mm = 0.6;
 constexpr double kNeedlePoint_mm = 4.0;
+constexpr double kBurrRadius_mm = 3.0;
+constexpr double kShaftRadius_mm = 1.2;  // of a burr, and less than its ball
 constexpr double kHandleLength_mm = 70.0;
 constexpr double kHandleRadius_mm = 3.5;
 constexpr double kMarkRadius_mm = 1.6;
 constexpr int kSides = 24;
+constexpr double kFeatureAngle_deg = 32.0;
 const Vec3 kMarkColour(1.0, 0.45, 0.1);
+const Vec3 kSteel(0.66, 0.69, 0.73);
 
 // A ring of a solid of revolution about z.
 struct Ring {
@@ -61,8 +74,8 @@ void addRevolved(const std::vector<Ring>& rings, vtkPoints* points, vtkCellArray
 }
 
 // A flat bar in the y-z plane, its end ground to an edge at the tip.
-void addBlade(double length, vtkPoints* points, vtkCellArray* faces) {
-  const double half_width = kBladeWidth_mm / 2.0, half_thickness = kBladeThickness_mm / 2.0;
+void addBlade(double length, double half_thickness, vtkPoints* points, vtkCellArray* faces) {
+  const double half_width = kBladeWidth_mm / 2.0;
   const double bevel = std::min(3.0, length / 3.0);
   const double outline[5][2] = {{0.0, 0.0},
                                 {half_width, bevel},
@@ -85,26 +98,154 @@ void addBlade(double length, vtkPoints* points, vtkCellArray* faces) {
   faces->InsertNextCell(5, front);
 }
 
+// A ball whose far end is the tip, on a shaft.
+std::vector<Ring> burr(double length, double radius) {
+  const double shaft = std::min(kShaftRadius_mm, 0.6 * radius);
+  std::vector<Ring> rings;
+  for (int band = 0; band < kSides; ++band) {
+    const double polar = std::numbers::pi * band / kSides;
+    const double across = radius * std::sin(polar);
+    if (2 * band > kSides && across < shaft) break;
+    rings.push_back({radius * (1.0 - std::cos(polar)), across});
+  }
+  rings.push_back({rings.back().z, shaft});
+  rings.push_back({std::max(length, 2.0 * radius), shaft});
+  return rings;
+}
+
+vtkNew<vtkPolyData> builtIn(const ToolView& view) {
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> faces;
+  const bool known = isFinite(view.radius_mm) && view.radius_mm > 0.0;
+  const auto radius = [&](double usual) { return known ? view.radius_mm : usual; };
+  double handle = view.length_mm;
+  if (view.shape == ToolShape::blade) {
+    addBlade(view.length_mm, radius(kBladeHalfThickness_mm), points, faces);
+  } else if (view.shape == ToolShape::burr) {
+    const std::vector<Ring> rings = burr(view.length_mm, radius(kBurrRadius_mm));
+    handle = rings.back().z;
+    addRevolved(rings, points, faces);
+  } else {
+    const double r = radius(kNeedleRadius_mm), point = std::min(kNeedlePoint_mm, view.length_mm);
+    addRevolved({{0.0, 0.0}, {point, r}, {view.length_mm, r}}, points, faces);
+  }
+  const double end = handle + kHandleLength_mm;
+  addRevolved({{handle, kHandleRadius_mm * 0.6},
+               {handle + 6.0, kHandleRadius_mm},
+               {end - 3.0, kHandleRadius_mm},
+               {end, kHandleRadius_mm * 0.7}},
+              points, faces);
+  vtkNew<vtkPolyData> solid;
+  solid->SetPoints(points);
+  solid->SetPolys(faces);
+  return solid;
+}
+
+// What VTK does for normals grows with the square of the faces around a corner. Beyond this, as
+// only damaged files have it, it would take seconds, and the mesh is shaded flat.
+constexpr std::int64_t kMostPairsOfFaces = 500'000'000;
+
+// Corners at one place become one, so that VTK knows which faces meet; it parts them again where
+// the edge is to stay sharp.
+vtkNew<vtkPolyData> withNormals(const ToolMesh& mesh) {
+  vtkNew<vtkPoints> points;
+  vtkBoundingBox box;
+  for (const glm::vec3& p : mesh.corners) box.AddPoint(p.x, p.y, p.z);
+  double bounds[6];
+  box.GetBounds(bounds);
+  // An octree, since a stray corner far off would put all others into one of a grid's cells.
+  vtkNew<vtkIncrementalOctreePointLocator> places;
+  places->SetTolerance(0.0);
+  places->InitPointInsertion(points, bounds);
+  vtkNew<vtkCellArray> faces;
+  std::vector<std::int64_t> around(mesh.corners.size());
+  std::int64_t pairs = 0;
+  for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+    vtkIdType face[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3 p(mesh.corners[i + c]);
+      places->InsertUniquePoint(&p.x, face[c]);
+      pairs += around[std::size_t(face[c])]++;
+    }
+    // In floats, a thin triangle may lose its area where it was moved to.
+    const bool thin = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+    if (!thin) faces->InsertNextCell(3, face);
+  }
+  vtkNew<vtkPolyData> solid;
+  solid->SetPoints(points);
+  solid->SetPolys(faces);
+  if (pairs > kMostPairsOfFaces) return solid;
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputData(solid);
+  normals->SetFeatureAngle(kFeatureAngle_deg);
+  normals->SplittingOn();
+  normals->ConsistencyOff();  // the file's order of corners holds
+  normals->Update();
+  solid->ShallowCopy(normals->GetOutput());
+  return solid;
+}
+
+// The triangles whose middle lies in front of (or behind) this z.
+vtkNew<vtkPolyData> partOf(vtkPolyData* solid, double z, bool front) {
+  vtkNew<vtkCellArray> faces;
+  vtkNew<vtkIdList> face;
+  for (vtkIdType i = 0; i < solid->GetNumberOfCells(); ++i) {
+    solid->GetPolys()->GetCellAtId(i, face);
+    double sum = 0.0;
+    for (const vtkIdType corner : *face) sum += solid->GetPoint(corner)[2];
+    if ((sum < 3.0 * z) == front) faces->InsertNextCell(face);
+  }
+  vtkNew<vtkPolyData> part;
+  part->SetPoints(solid->GetPoints());
+  part->SetPolys(faces);
+  part->GetPointData()->SetNormals(solid->GetPointData()->GetNormals());
+  return part;
+}
+
 bool drawable(const ToolView& tool) {
   return isFinite(tool.pose_mm) && isFinite(tool.length_mm) && tool.length_mm > 0.0 &&
          glm::length(tool.pose_mm.orientation) > 0.0;
 }
 
+// Numbers that are not finite count as alike, or they would be drawn anew at each frame.
+template <class T>
+bool alike(const T& a, const T& b) {
+  return a == b || (!isFinite(a) && !isFinite(b));
+}
+
+bool sameSolid(const ToolView& a, const ToolView& b) {
+  return a.length_mm == b.length_mm && a.shape == b.shape && alike(a.radius_mm, b.radius_mm) &&
+         a.mesh_file == b.mesh_file && alike(a.mesh_tip_mm, b.mesh_tip_mm) &&
+         alike(a.mesh_axis, b.mesh_axis);
+}
+
+void setColour(vtkActor* actor, const Vec3& colour, bool contact) {
+  const Vec3 seen = contact ? glm::mix(colour, kMarkColour, 0.45) : colour;
+  actor->GetProperty()->SetColor(seen.x, seen.y, seen.z);
+}
+
+void setSolid(vtkActor* actor, vtkPolyData* solid) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(solid);
+  actor->SetMapper(mapper);
+}
+
 }  // namespace
 
 struct ToolDrawing::Tool {
-  vtkNew<vtkActor> body;
+  vtkNew<vtkActor> body;    // a mesh's working part, or the whole built-in tool
+  vtkNew<vtkActor> handle;  // of a mesh
   vtkNew<vtkActor> mark;
   vtkNew<vtkMatrix4x4> place;
-  double length_mm = -1.0;
-  bool blade = false;
+  std::optional<ToolView> solid;  // what the actors hold
+  bool meshed = false;
 
   Tool() {
-    body->SetUserMatrix(place);
-    body->GetProperty()->SetAmbient(0.25);
-    body->GetProperty()->SetDiffuse(0.8);
-    body->GetProperty()->SetSpecular(0.4);
-    body->GetProperty()->SetSpecularPower(30.0);
+    for (vtkActor* actor : {body.Get(), handle.Get(), mark.Get()}) actor->SetUserMatrix(place);
+    handle->GetProperty()->SetAmbient(0.2);
+    handle->GetProperty()->SetDiffuse(0.8);
+    handle->GetProperty()->SetSpecular(0.25);
+    handle->GetProperty()->SetSpecularPower(20.0);
     vtkNew<vtkSphereSource> sphere;
     sphere->SetRadius(kMarkRadius_mm);
     sphere->SetThetaResolution(kSides);
@@ -112,66 +253,89 @@ struct ToolDrawing::Tool {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputConnection(sphere->GetOutputPort());
     mark->SetMapper(mapper);
-    mark->SetUserMatrix(place);
     mark->GetProperty()->SetAmbient(0.7);
     mark->GetProperty()->SetColor(kMarkColour.x, kMarkColour.y, kMarkColour.z);
   }
 
-  void shape(const ToolView& view) {
-    if (view.length_mm == length_mm && view.blade == blade) return;
-    length_mm = view.length_mm;
-    blade = view.blade;
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> faces;
-    if (blade) {
-      addBlade(length_mm, points, faces);
+  void shape(const ToolView& view, const std::optional<ToolMesh>& mesh) {
+    solid = view;
+    meshed = mesh.has_value();
+    if (meshed) {
+      const vtkNew<vtkPolyData> whole = withNormals(*mesh);
+      setSolid(body, partOf(whole, view.length_mm, true));
+      setSolid(handle, partOf(whole, view.length_mm, false));
     } else {
-      const double point = std::min(kNeedlePoint_mm, length_mm);
-      addRevolved({{0.0, 0.0}, {point, kNeedleRadius_mm}, {length_mm, kNeedleRadius_mm}}, points,
-                  faces);
+      setSolid(body, builtIn(view));
     }
-    const double end = length_mm + kHandleLength_mm;
-    addRevolved({{length_mm, kHandleRadius_mm * 0.6},
-                 {length_mm + 6.0, kHandleRadius_mm},
-                 {end - 3.0, kHandleRadius_mm},
-                 {end, kHandleRadius_mm * 0.7}},
-                points, faces);
-    vtkNew<vtkPolyData> solid;
-    solid->SetPoints(points);
-    solid->SetPolys(faces);
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(solid);
-    body->SetMapper(mapper);
+    vtkProperty* look = body->GetProperty();
+    look->SetAmbient(meshed ? 0.1 : 0.25);
+    look->SetDiffuse(meshed ? 0.68 : 0.8);
+    look->SetSpecular(meshed ? 0.6 : 0.4);
+    look->SetSpecularPower(meshed ? 40.0 : 30.0);
   }
 
   void update(const ToolView& view) {
-    shape(view);
     const Mat3 axes = glm::mat3_cast(glm::normalize(view.pose_mm.orientation));
     for (int row = 0; row < 3; ++row) {
       for (int axis = 0; axis < 3; ++axis) place->SetElement(row, axis, axes[axis][row]);
       place->SetElement(row, 3, view.pose_mm.position[row]);
     }
     place->Modified();
-    const Vec3 colour = view.contact ? glm::mix(view.colour, kMarkColour, 0.45) : Vec3(view.colour);
-    body->GetProperty()->SetColor(colour.x, colour.y, colour.z);
-    mark->SetVisibility(view.contact);
+    setColour(body, meshed ? glm::mix(kSteel, view.colour, 0.15) : view.colour, view.contact);
+    setColour(handle, view.colour, view.contact);
+  }
+
+  void setVisible(bool shown, bool contact) {
+    body->SetVisibility(shown);
+    handle->SetVisibility(shown && meshed);
+    mark->SetVisibility(shown && contact);
   }
 };
 
 ToolDrawing::ToolDrawing() = default;
 ToolDrawing::~ToolDrawing() = default;
 
+void ToolDrawing::warn(const std::string& file, const Error& why) {
+  if (!warned_.insert(file).second) return;
+  // The mesh's own name alone: a log names no folder.
+  const Error said{why.code, why.what, std::filesystem::path(file).filename().string(), why.next};
+  spdlog::warn("{} The built-in shape is drawn instead.", said.sentence());
+}
+
+std::optional<ToolMesh> ToolDrawing::meshOf(const ToolView& view) {
+  if (view.mesh_file.empty()) return std::nullopt;
+  const auto [at, fresh] = meshes_.try_emplace(view.mesh_file);
+  if (fresh) {
+    Result<ToolMesh> mesh = readToolMesh(view.mesh_file);
+    if (mesh) {
+      at->second = std::move(*mesh);
+    } else {
+      warn(view.mesh_file, mesh.error());
+    }
+  }
+  if (!at->second) return std::nullopt;
+  Result<ToolMesh> placed = inToolFrame(*at->second, view.mesh_tip_mm, view.mesh_axis);
+  if (placed) return std::move(*placed);
+  warn(view.mesh_file, placed.error());
+  return std::nullopt;
+}
+
 void ToolDrawing::show(const std::vector<ToolView>& tools, vtkRenderer& renderer) {
   while (tools_.size() < tools.size()) {
     tools_.push_back(std::make_unique<Tool>());
     renderer.AddActor(tools_.back()->body);
+    renderer.AddActor(tools_.back()->handle);
     renderer.AddActor(tools_.back()->mark);
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
+    Tool& tool = *tools_[i];
     const bool shown = i < tools.size() && drawable(tools[i]);
-    tools_[i]->body->SetVisibility(shown);
-    tools_[i]->mark->SetVisibility(shown);
-    if (shown) tools_[i]->update(tools[i]);
+    if (shown) {
+      const ToolView& view = tools[i];
+      if (!tool.solid || !sameSolid(*tool.solid, view)) tool.shape(view, meshOf(view));
+      tool.update(view);
+    }
+    tool.setVisible(shown, shown && tools[i].contact);
   }
 }
 

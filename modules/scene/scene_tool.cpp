@@ -13,6 +13,9 @@ constexpr Names<ToolKind, 3> kToolNames{
 constexpr Names<BurrShape, 2> kShapeNames{
     {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
+// What a scene may set itself of a tool that comes from a file.
+constexpr const char* kOwnNumbers[] = {"length_mm", "points", "radius_mm", "shaft_points", "motor_W"};
+
 int limited(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -1, 1'000'000)); }
 
 template <class Kind, std::size_t N>
@@ -44,18 +47,18 @@ Tool readTool(JsonReader& item) {
   return {};
 }
 
-ToolMesh readMesh(JsonReader& item, const std::filesystem::path& folder) {
-  ToolMesh mesh;
+ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
+  ToolLook look;
   const std::string file = item.text("mesh", "");
-  if (file.empty()) return mesh;
-  mesh.file = (folder / file).lexically_normal();
-  mesh.tip_mm = item.vec3("tip_mm", Vec3(0.0));
-  mesh.axis = item.vec3("axis", Vec3(0.0, 0.0, 1.0));
-  if (!std::filesystem::is_regular_file(mesh.file)) {
+  if (file.empty()) return look;
+  look.mesh = (folder / file).lexically_normal();
+  look.tip_mm = item.vec3("tip_mm", Vec3(0.0));
+  look.axis = item.vec3("axis", Vec3(0.0, 0.0, 1.0));
+  if (!std::filesystem::is_regular_file(look.mesh)) {
     item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
   }
-  if (!(glm::length(mesh.axis) > 0.0)) item.fail("axis", "The direction has no length");
-  return mesh;
+  if (!(glm::length(look.axis) > 0.0)) item.fail("axis", "The direction has no length");
+  return look;
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
   const std::string name = item.text("file", "");
   if (name.empty()) {
     out.tool = readTool(item);
-    out.mesh = readMesh(item, folder);
+    out.look = readLook(item, folder);
     return out;
   }
   const std::filesystem::path file = (folder / name).lexically_normal();
@@ -75,13 +78,21 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
     item.fail("file", json.error().what, json.error().next);
     return out;
   }
+  for (const char* own : kOwnNumbers) {
+    if (item.has(own)) (*json)[own] = item.raw(own);
+  }
   JsonReader reader(*json, file.string());
   reader.format("trephine.tool", 1);
   (void)reader.text("name");
   out.tool = readTool(reader);
-  out.mesh = readMesh(reader, file.parent_path());
+  out.look = readLook(reader, file.parent_path());
   if (Status status = reader.finish(); !status) {
-    item.fail("file", status.error().what + " (" + status.error().where + ")", status.error().next);
+    const Error& error = status.error();
+    const std::string wrong = error.where.substr(error.where.rfind(' ') + 1);
+    for (const char* own : kOwnNumbers) {
+      if (wrong == own && item.has(own)) item.fail(own, error.what, error.next);
+    }
+    item.fail("file", error.what + " (" + error.where + ")", error.next);
   }
   return out;
 }

@@ -12,8 +12,8 @@ namespace trephine {
 
 // How a tool looks: an STL file, and where in it the tip is and which way the handle lies. Without
 // a file a plain shape is drawn. Never part of a recording.
-struct ToolMesh {
-  std::filesystem::path file;
+struct ToolLook {
+  std::filesystem::path mesh;
   Vec3 tip_mm{0.0};            // in the mesh's frame
   Vec3 axis{0.0, 0.0, 1.0};    // from the tip to the handle
 };
@@ -21,11 +21,11 @@ struct ToolMesh {
 struct SceneTool {
   std::string id;
   Tool tool;
-  ToolMesh mesh;
+  ToolLook look;
 };
 
-// A scene's tool: `id` and either `file`, a tool file beside the scene, or the keys of one. What is
-// wrong is told to the reader.
+// A scene's tool: `id` and either `file`, a tool file beside the scene, some of whose numbers the
+// scene may set itself, or the keys of one. What is wrong is told to the reader.
 SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder);
 
 // Self-contained, without the mesh: what a recording keeps.

@@ -18,9 +18,9 @@ find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOImage)
 if(TREPHINE_WINDOW)
   find_package(VTK REQUIRED COMPONENTS ChartsCore CommonCore CommonDataModel CommonExecutionModel
-               CommonTransforms FiltersSources InteractionStyle RenderingContext2D
-               RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2
-               RenderingVolume RenderingVolumeOpenGL2 IOImage)
+               CommonTransforms FiltersCore FiltersSources InteractionStyle IOGeometry IOImage
+               RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType
+               RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 vtksys)
   find_package(OpenGL REQUIRED)
   find_package(GLEW REQUIRED)
   find_package(CLI11 REQUIRED)

@@ -12,8 +12,9 @@ set(TREPHINE_LIBRARY_dcmtk DCMTK::DCMTK)
 set(TREPHINE_LIBRARY_hdf5 HDF5::HDF5)
 set(TREPHINE_LIBRARY_vtk-image VTK::CommonCore VTK::CommonDataModel VTK::IOImage)
 set(TREPHINE_LIBRARY_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel
-    VTK::CommonTransforms VTK::FiltersSources VTK::InteractionStyle VTK::RenderingCore
-    VTK::RenderingOpenGL2 VTK::RenderingVolume VTK::RenderingVolumeOpenGL2)
+    VTK::CommonTransforms VTK::FiltersCore VTK::FiltersSources VTK::IOGeometry VTK::InteractionStyle
+    VTK::RenderingCore VTK::RenderingOpenGL2 VTK::RenderingVolume VTK::RenderingVolumeOpenGL2
+    VTK::vtksys)
 set(TREPHINE_LIBRARY_vtk-charts VTK::ChartsCore VTK::CommonCore VTK::IOImage VTK::RenderingContext2D
     VTK::RenderingContextOpenGL2 VTK::RenderingCore VTK::RenderingFreeType VTK::RenderingOpenGL2)
 set(TREPHINE_LIBRARY_opengl OpenGL::GL GLEW::GLEW)

@@ -64,7 +64,7 @@ HEADERS = {
     "openjpeg": r"openjpeg.*",
     "hdf5": r"hdf5(_hl)?\.h|H5.+\.h",
     "vtk-image": r"vtk[A-Z]\w*\.h",
-    "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h",
+    "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h|vtksys/\w+\.hxx",
     "vtk-charts": r"vtk[A-Z]\w*\.h",
     "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
     "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",

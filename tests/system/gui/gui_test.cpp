@@ -10,6 +10,7 @@
 #include <QProgressBar>
 #include <QSignalSpy>
 #include <QStandardPaths>
+#include <QStatusBar>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <cmath>
@@ -128,16 +129,18 @@ class GuiTest : public QObject {
     QTest::mouseRelease(&view(), Qt::LeftButton, modifiers, from + by);
   }
 
-  // Down into the bone, sideways, and out again; until the stroke has ended. Where the machine was
+  // Down into the bone, sideways, and well out until the stroke has ended; then as high above the
+  // bone as before, so that the next cut is as deep. Where the machine was
   // so busy that a step came 20 ms late the arms are without force and cut nothing: then, as a
   // person would, the faults are cleared and the cut is made again.
   void cut(QPoint across, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
     for (int attempt = 0; attempt < 5; ++attempt) {
       const std::uint64_t standing = removedVoxels(*workstation().session());
-      wheel(attempt == 0 ? 30 : 34, modifiers);
+      wheel(30, modifiers);
       drag(attempt % 2 == 0 ? across : -across, modifiers);
       wheel(-34, modifiers);
       QTest::qWait(500);
+      wheel(4, modifiers);
       if (removedVoxels(*workstation().session()) != standing) return;
       qInfo("nothing was cut: the faults are cleared, once more");
       auto* clear = find<QPushButton>("clearFaults");
@@ -340,6 +343,46 @@ class GuiTest : public QObject {
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
     QTRY_COMPARE_WITH_TIMEOUT(shownSha(), sha_before_, 10000);
     QCOMPARE(removedVoxels(*workstation().session()), std::uint64_t(0));
+  }
+
+  void aRewindPutsBackTissueAndCountsAndCuttingGoesOn() {
+    auto* slider = find<QSlider>("rewindSlider");
+    QTRY_VERIFY(slider->isEnabled());
+    QTest::qWait(1500);  // a whole second after the reset
+    const std::uint32_t before_cut = workstation().session()->state().seconds;
+    cut({60, 10});
+    QVERIFY(removedVoxels(*workstation().session()) > 20);
+    wheel(30);  // the tool stays where it cut
+    QTest::qWait(3000);
+    QVERIFY(find<QAction>("undo")->isEnabled());
+    QVERIFY(!find<QAction>("redo")->isEnabled());
+    keepGrab("before-rewind-1280x800.png");
+
+    QApplication::setActiveWindow(window_.get());
+    slider->setFocus();
+    while (slider->value() > int(before_cut)) QTest::keyClick(slider, Qt::Key_Left);
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/choosing-1280x800.png"));
+    const auto back = [&] { return window_->statusBar()->currentMessage().startsWith("Back at "); };
+    QTRY_VERIFY_WITH_TIMEOUT(back(), 10000);
+    QVERIFY2(window_->statusBar()->currentMessage().startsWith("Back at " + timeWords(before_cut)),
+             qPrintable(window_->statusBar()->currentMessage()));
+    QCOMPARE(removedVoxels(*workstation().session()), std::uint64_t(0));
+    QCOMPARE(shownSha(), sha_before_);
+    QVERIFY(!find<QAction>("redo")->isEnabled());
+    QVERIFY(slider->hasFocus());
+    keepGrab("rewound-1280x800.png");
+    const ArmRecord in_tissue = workstation().session()->state().record.arms[1];
+    QVERIFY(in_tissue.tissue_class >= 0);
+    QCOMPARE(glm::length(in_tissue.sent_N), 0.0);
+    wheel(-30);
+    QCOMPARE(shownSha(), sha_before_);
+
+    cut({-60, -10});
+    QVERIFY(removedVoxels(*workstation().session()) > 20);
+    window_->statusBar()->clearMessage();
+    QTest::keyClick(window_.get(), Qt::Key_Backspace, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(back(), 10000);
+    QTRY_VERIFY(slider->isEnabled());
   }
 
   void whatIsSavedIsWhatIsShown() {

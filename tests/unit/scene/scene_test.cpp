@@ -21,7 +21,7 @@ TEST(Scene, EveryShippedSceneReads) {
     EXPECT_FALSE(scene->operator_file.empty());
     ++count;
   }
-  EXPECT_EQ(count, 4);
+  EXPECT_EQ(count, 5);
 }
 
 TEST(Scene, TheCraniumSceneHasTwoArmsWithBlades) {

@@ -114,6 +114,42 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   EXPECT_EQ(result->ticks, report.ticks);
 }
 
+// Both arms cut while everything is changed under them, from another thread than theirs.
+TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdentically) {
+  test::TemporaryFolder folder;
+  auto made = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  ASSERT_TRUE(session.start(6.0).ok());
+  TissueSet tissues = session.scene().tissues;
+  double most_N = 0.0, last_N = 0.0;
+  for (int i = 0; !session.finished(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const double sent_N = glm::length(session.state().record.arms[0].sent_N);
+    most_N = std::max(most_N, sent_N);
+    last_N = sent_N;
+    switch (i % 25) {
+      case 3: session.send(CommandKind::undo); break;
+      case 8: session.send(CommandKind::redo); break;
+      case 13:
+        tissues.tissues[3].friction_N.value = 1.0 + 0.1 * double(i % 7);
+        ASSERT_TRUE(session.setTissues(tissues).ok());
+        break;
+      case 18: session.setController(i % 2 ? ControllerKind::off : ControllerKind::bounded); break;
+      case 23: session.rewind(session.state().seconds / 2); break;
+      default: break;
+    }
+  }
+  ASSERT_TRUE(session.stop().ok());
+  EXPECT_GT(most_N, 0.3);
+  EXPECT_LE(last_N, 3.3);
+  const auto reader = SessionReader::open(folder / "s.h5");
+  const auto result = replay(**reader, smallHead());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->ticks, 6000u);
+}
+
 TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
   Volume air = smallHead();
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);

@@ -108,6 +108,20 @@ TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
   }
 }
 
+TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
+  QLabel& felt = find<QLabel>(panel_, "tissueFelt");
+  find<QDoubleSpinBox>(panel_, "stiffness").setValue(600.0);
+  panel_.setRenderable(Renderable{10.0, 1000.0}, [](const Tissue& tissue) {
+    return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
+  });
+  EXPECT_TRUE(felt.text().contains("demand 1200 N/m")) << felt.text().toStdString();
+  EXPECT_TRUE(felt.text().contains("at most 1000 N/m")) << felt.text().toStdString();
+  find<QDoubleSpinBox>(panel_, "damping").setValue(50.0);
+  EXPECT_FALSE(felt.text().contains("Damping")) << "no law of the exercise uses it";
+  find<QDoubleSpinBox>(panel_, "stiffness").setValue(500.0);
+  EXPECT_TRUE(felt.isHidden());
+}
+
 TEST_F(PanelTest, ASeriesThatIsRefusedCannotBeUsedAndSaysWhy) {
   CasePanel panel;
   ImportReport report;

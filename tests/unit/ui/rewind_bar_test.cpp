@@ -1,0 +1,184 @@
+// The bar without an exercise: what it shows and asks for as time runs and a person chooses.
+#include <gtest/gtest.h>
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include "qt_support.h"
+#include "ui/rewind_bar.h"
+
+namespace trephine {
+namespace {
+
+class RewindBarTest : public ::testing::Test {
+ protected:
+  RewindBarTest() {
+    QObject::connect(&bar_, &RewindBar::rewindAsked, &bar_,
+                     [this](quint32 second) { asked_.push_back(second); });
+    bar_.resize(600, 30);
+    bar_.show();
+    bar_.showTime(70, false);
+  }
+  template <class T>
+  T& find(const char* name) {
+    auto* found = bar_.findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return *found;
+  }
+  void mouse(QEvent::Type type, double x) {
+    const QPointF at(x, slider_.height() / 2.0);
+    const auto button = type == QEvent::MouseMove ? Qt::NoButton : Qt::LeftButton;
+    const auto held = type == QEvent::MouseButtonRelease ? Qt::NoButton : Qt::LeftButton;
+    QMouseEvent event(type, at, slider_.mapToGlobal(at), button, held, Qt::NoModifier);
+    QCoreApplication::sendEvent(&slider_, &event);
+  }
+  void key(int key) {
+    QKeyEvent event(QEvent::KeyPress, key, Qt::NoModifier);
+    QCoreApplication::sendEvent(&slider_, &event);
+  }
+  // Longer than the bar waits for more keys.
+  void pause() {
+    QElapsedTimer timer;
+    timer.start();
+    test::waitFor([&] { return timer.elapsed() > 1200; });
+  }
+  std::string time() { return find<QLabel>("rewindTime").text().toStdString(); }
+
+  QApplication& application_ = test::application();
+  RewindBar bar_;
+  QSlider& slider_ = find<QSlider>("rewindSlider");
+  std::vector<std::uint32_t> asked_;
+};
+
+TEST_F(RewindBarTest, FollowsTheTimeAndSaysItInMinutes) {
+  EXPECT_EQ(slider_.minimum(), 0);
+  EXPECT_EQ(slider_.value(), 70);
+  EXPECT_EQ(time(), "1:10");
+  bar_.showTime(605, false);
+  EXPECT_EQ(slider_.maximum(), 605);
+  EXPECT_EQ(slider_.value(), 605);
+  EXPECT_EQ(time(), "10:05");
+  EXPECT_TRUE(asked_.empty()) << "showing is no question";
+  EXPECT_FALSE(slider_.accessibleName().isEmpty());
+  EXPECT_TRUE(find<QToolButton>("backButton").toolTip().contains("Ctrl+Backspace"));
+}
+
+TEST_F(RewindBarTest, ADragAsksOnceWhenItIsLetGo) {
+  mouse(QEvent::MouseButtonPress, slider_.width() - 10.0);
+  for (double share : {0.9, 0.8, 0.6, 0.5}) mouse(QEvent::MouseMove, share * slider_.width());
+  const int chosen = slider_.value();
+  EXPECT_NEAR(chosen, 35, 2);
+  bar_.showTime(71, false);
+  EXPECT_EQ(slider_.value(), chosen) << "time runs on, the hand's choice stays";
+  EXPECT_EQ(time(), "0:" + std::to_string(chosen) + " of 1:11");
+  pause();
+  EXPECT_TRUE(asked_.empty());
+  mouse(QEvent::MouseButtonRelease, 0.5 * slider_.width());
+  pause();
+  EXPECT_EQ(asked_, std::vector<std::uint32_t>{std::uint32_t(chosen)});
+  bar_.showTime(73, false);
+  EXPECT_EQ(slider_.value(), 73);
+}
+
+TEST_F(RewindBarTest, AClickOnTheWayChoosesThatSecond) {
+  mouse(QEvent::MouseButtonPress, 0.25 * slider_.width());
+  mouse(QEvent::MouseButtonRelease, 0.25 * slider_.width());
+  pause();
+  ASSERT_EQ(asked_.size(), 1u);
+  EXPECT_NEAR(asked_[0], 17.5, 2.0);
+}
+
+TEST_F(RewindBarTest, LetGoAtTheEndNothingIsAsked) {
+  mouse(QEvent::MouseButtonPress, slider_.width() - 5.0);
+  mouse(QEvent::MouseMove, 0.5 * slider_.width());
+  mouse(QEvent::MouseMove, slider_.width() + 20.0);
+  mouse(QEvent::MouseButtonRelease, slider_.width() + 20.0);
+  pause();
+  EXPECT_TRUE(asked_.empty());
+  bar_.showTime(74, false);
+  EXPECT_EQ(slider_.value(), 74);
+}
+
+TEST_F(RewindBarTest, KeysAreWaitedForAndAskOnce) {
+  key(Qt::Key_Left);
+  key(Qt::Key_PageDown);
+  EXPECT_EQ(slider_.value(), 59);
+  bar_.showTime(71, false);
+  EXPECT_EQ(slider_.value(), 59);
+  EXPECT_TRUE(asked_.empty());
+  pause();
+  EXPECT_EQ(asked_, std::vector<std::uint32_t>{59});
+}
+
+TEST_F(RewindBarTest, EscapeStaysAndTheWheelDoesNothing) {
+  key(Qt::Key_Home);
+  EXPECT_EQ(time(), "0:00 of 1:10");
+  key(Qt::Key_Escape);
+  EXPECT_EQ(time(), "1:10");
+  QWheelEvent wheel({10, 10}, slider_.mapToGlobal(QPointF(10, 10)), {}, {0, -120}, Qt::NoButton,
+                    Qt::NoModifier, Qt::NoScrollPhase, false);
+  QCoreApplication::sendEvent(&slider_, &wheel);
+  EXPECT_EQ(slider_.value(), 70);
+  pause();
+  EXPECT_TRUE(asked_.empty());
+}
+
+TEST_F(RewindBarTest, IsDisabledWhileGoingBackAndWithoutAnExercise) {
+  mouse(QEvent::MouseButtonPress, 0.5 * slider_.width());
+  bar_.showTime(71, true);
+  EXPECT_FALSE(slider_.isEnabled());
+  EXPECT_FALSE(bar_.backAction()->isEnabled());
+  EXPECT_EQ(time(), "Going back\u2026");
+  mouse(QEvent::MouseButtonRelease, 0.5 * slider_.width());
+  pause();
+  EXPECT_TRUE(asked_.empty()) << "what was being chosen is dropped, not asked";
+  bar_.showTime(72, false);
+  EXPECT_TRUE(slider_.isEnabled());
+  EXPECT_EQ(slider_.value(), 72);
+  bar_.showIdle();
+  EXPECT_FALSE(slider_.isEnabled());
+  EXPECT_FALSE(bar_.backAction()->isEnabled());
+  EXPECT_EQ(slider_.value(), 0);
+}
+
+TEST_F(RewindBarTest, TheFocusComesBackToTheSlider) {
+  QApplication::setActiveWindow(&bar_);
+  slider_.setFocus();
+  bar_.showTime(71, true);
+  EXPECT_NE(bar_.focusWidget(), &slider_);
+  bar_.showTime(72, false);
+  EXPECT_EQ(bar_.focusWidget(), &slider_);
+}
+
+TEST_F(RewindBarTest, BackTwiceIsTwiceAsFar) {
+  bar_.backAction()->trigger();
+  bar_.showTime(70, true);
+  bar_.showTime(70, false);
+  bar_.backAction()->trigger();
+  bar_.showTime(73, false);
+  EXPECT_EQ(asked_, (std::vector<std::uint32_t>{60, 50}));
+  bar_.showIdle();
+  bar_.showTime(4, false);
+  bar_.backAction()->trigger();
+  EXPECT_EQ(asked_.back(), 0u) << "no further than the beginning";
+}
+
+TEST(WayBack, GoesByTheTimeOfThePersonAtWork) {
+  WayBack way;
+  EXPECT_EQ(way.before(50, 10), 40u);
+  way.went(50, 40);
+  EXPECT_EQ(way.before(50, 10), 30u);
+  EXPECT_EQ(way.before(53, 10), 33u) << "3 s since, then 7 before 0:40";
+  EXPECT_EQ(way.before(60, 10), 40u) << "not 0:50, which is before the jump";
+  EXPECT_EQ(way.before(61, 10), 51u);
+  way.went(53, 33);
+  EXPECT_EQ(way.before(54, 10), 24u);
+  way.went(60, 52);  // into the two seconds between the jumps
+  EXPECT_EQ(way.before(60, 1), 51u);
+  EXPECT_EQ(way.before(60, 10), 32u);
+  EXPECT_EQ(way.before(60, 100), 0u);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,72 @@
+// The way back through a running exercise: a slider over its seconds, and "Back 10 s". The time of
+// the exercise runs on whatever one goes back to, so the slider's end is always now.
+#pragma once
+
+#include <QAction>
+#include <QLabel>
+#include <QSlider>
+#include <QTimer>
+#include <QToolButton>
+#include <QWidget>
+#include <cstdint>
+#include <vector>
+
+namespace trephine {
+
+// Which second lies so many back for the person at work. Who went from 0:50 to 0:40 and asks for
+// ten more means 0:30, not the 0:41 that the clock would give a second later.
+class WayBack {
+ public:
+  void forget() { jumps_.clear(); }
+  void went(std::uint32_t from, std::uint32_t to) { jumps_.push_back({from, to}); }
+  std::uint32_t before(std::uint32_t now, std::uint32_t by) const;
+
+ private:
+  struct Jump {
+    std::uint32_t from, to;
+  };
+  std::vector<Jump> jumps_;  // in the order of time
+};
+
+class RewindBar : public QWidget {
+  Q_OBJECT
+ public:
+  static constexpr int kBack_s = 10;
+
+  explicit RewindBar(QWidget* parent = nullptr);
+
+  // Of the exercise that runs; `going_back` while tissue is being put back. What a person is
+  // choosing stays where it is.
+  void showTime(std::uint32_t now, bool going_back);
+  void showIdle();
+  // "Back 10 s" with its key, for a menu; enabled while it can be used.
+  QAction* backAction() { return back_; }
+
+ signals:
+  // Never the newest second: there nothing is to be gone back to.
+  void rewindAsked(quint32 second);
+
+ protected:
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  bool choosing() const { return slider_->isSliderDown() || keys_.isActive(); }
+  void setUsable(bool usable);
+  void follow();
+  void askChosen();
+  void goBack();
+  void ask(std::uint32_t second);
+  void showChosen();
+
+  QAction* back_;
+  QToolButton* back_button_;
+  QSlider* slider_;
+  QLabel* time_;
+  QTimer keys_;  // runs while more keys may come
+  WayBack way_back_;
+  QWidget* had_focus_ = nullptr;  // and gets it again after going back,
+  QWidget* lent_to_ = nullptr;    // unless the person went on from here
+  std::uint32_t now_ = 0;
+};
+
+}  // namespace trephine
