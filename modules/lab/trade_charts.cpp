@@ -33,7 +33,7 @@ constexpr Colour kBlack{0, 0, 0}, kGrey{90, 90, 90}, kLine{225, 225, 225}, kBlue
 
 std::string number(double value) {
   char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4);
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6);
   return std::string(text, end.ptr);
 }
 
@@ -138,8 +138,7 @@ class Page : public vtkContextItem {
     const double up = chart->error.at(tolerance);
     if (up > 0.0 && up < 1.0) {
       dashes(kLeft, y(tolerance), kLeft + kAcross, y(tolerance));
-      text(kLeft + kAcross - 8.0f, y(tolerance) + 12.0f, "tolerance " + number(tolerance), 14, kRed,
-           Side::right);
+      text(kLeft + 8.0f, y(tolerance) + 12.0f, "tolerance " + number(tolerance), 14, kRed);
     }
     if (chart->knob->limited != "cost") return;
     const double across = chart->cost.at(chart->knob->limit);
@@ -173,8 +172,9 @@ class Page : public vtkContextItem {
       painter_->DrawEllipse(x(row.cost) * kChartFine, y(row.error) * kChartFine,
                             radius * kChartFine, radius * kChartFine);
       const bool beyond = x(row.cost) > kLeft + 0.8f * kAcross;
-      text(x(row.cost) + (beyond ? -13.0f : 13.0f), y(row.error) + 13.0f, row.setting, 16,
-           row.recommended ? kGreen : kBlack, beyond ? Side::right : Side::left, row.recommended);
+      text(x(row.cost) + (beyond ? -13.0f : 13.0f), y(row.error) + (beyond ? -15.0f : 13.0f),
+           row.setting, 16, row.recommended ? kGreen : kBlack, beyond ? Side::right : Side::left,
+           row.recommended);
     }
   }
 
