@@ -131,7 +131,8 @@ void MainWindow::buildBars() {
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
-  menuBar()->addMenu(tr("&Exercise"))->addActions({start_, stop_, pause_, undo_, redo_, rewind_->backAction(), reset_});
+  menuBar()->addMenu(tr("&Exercise"))
+      ->addActions({start_, stop_, pause_, undo_, redo_, rewind_->backAction(), reset_});
   menuBar()->addMenu(tr("&View"))->addAction(look_);
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");

@@ -6,6 +6,7 @@
 #include <QSignalBlocker>
 #include <QWheelEvent>
 #include <algorithm>
+#include <initializer_list>
 
 #include "ui/icons.h"
 #include "ui/words.h"
@@ -113,7 +114,6 @@ RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
 }
 
 void RewindBar::showTime(std::uint32_t now, bool going_back) {
-  if (now < now_) way_back_.forget();  // another exercise
   now_ = now;
   setUsable(!going_back);
   if (going_back) {
