@@ -94,7 +94,7 @@ class Page : public vtkContextItem {
   }
   enum class Side { left, centre, right };
   void text(float at_x, float at_y, const std::string& words, int size, const Colour& colour,
-            Side side = Side::left, bool bold = false, double turned = 0.0) {
+            Side side = Side::left, bool bold = false, double turned = 0.0, bool plate = false) {
     vtkNew<vtkTextProperty> look;
     look->SetFontFamilyToArial();
     look->SetBold(bold);
@@ -111,6 +111,16 @@ class Page : public vtkContextItem {
       float bounds[4];
       painter_->ComputeStringBounds(words, bounds);
       if (bounds[2] / kChartFine <= float(kWidth) - 48.0f) break;
+    }
+    if (plate) {  // so that no line runs through the word
+      float bounds[4];
+      painter_->ComputeStringBounds(words, bounds);
+      const float width = bounds[2] / kChartFine, height = float(size);
+      painter_->GetPen()->SetLineType(vtkPen::NO_PEN);
+      painter_->GetBrush()->SetColor(255, 255, 255, 255);
+      painter_->DrawRect((side == Side::right ? at_x - width : at_x) * kChartFine,
+                         (at_y - 0.5f * height) * kChartFine, width * kChartFine,
+                         height * kChartFine);
     }
     painter_->DrawString(at_x * kChartFine, at_y * kChartFine, words);
   }
@@ -174,7 +184,7 @@ class Page : public vtkContextItem {
       const bool beyond = x(row.cost) > kLeft + 0.8f * kAcross;
       text(x(row.cost) + (beyond ? -13.0f : 13.0f), y(row.error) + (beyond ? -15.0f : 13.0f),
            row.setting, 16, row.recommended ? kGreen : kBlack, beyond ? Side::right : Side::left,
-           row.recommended);
+           row.recommended, 0.0, true);
     }
   }
 
