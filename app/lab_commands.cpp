@@ -18,6 +18,8 @@
 #include "lab/jitter_measurement.h"
 #include "lab/stability_maps.h"
 #include "lab/stability_measurement.h"
+#include "lab/trade_charts.h"
+#include "lab/trades_measurement.h"
 #include "lab/upload_measurement.h"
 #include "render/display_probe.h"
 #include "session/case_source.h"
@@ -239,6 +241,13 @@ int explainCommand(const std::string& scene_file, bool json) {
     printAnswer("explain", *answer);
   } else {
     std::printf("%s\n", answer->dump(2).c_str());
+    if (answer->contains("settings")) {
+      for (const Json& s : (*answer)["settings"]) {
+        std::printf("%s: %s (recommended: %s)\n", s["knob"].get<std::string>().c_str(),
+                    s["setting"].get<std::string>().c_str(),
+                    s["recommended"].get<std::string>().c_str());
+      }
+    }
   }
   return 0;
 }
@@ -307,6 +316,30 @@ int measureHapticsCommand(const std::string& out, bool json, const Progress& pro
   if (!measured) return printError("measure.haptics", measured.error(), json);
   if (json) {
     printAnswer("measure.haptics", toJson(*measured));
+  } else {
+    std::printf("%s", toText(*measured).c_str());
+  }
+  return 0;
+}
+
+int measureTradesCommand(const std::string& out, bool json, const Progress& progress) {
+  constexpr const char* kName = "measure.trades";
+  Result<TradesMeasurement> measured = measureTrades({}, out, progress);
+  if (!measured) return printError(kName, measured.error(), json);
+  Json charts = nullptr;
+  if (Status display = probeDisplay(); !display) {
+    spdlog::warn("No charts: {}", display.error().what);
+  } else {
+    auto drawn = writeTradeCharts(measured->rows, out, progress);
+    if (!drawn) return printError(kName, drawn.error(), json);
+    charts = Json::array();
+    for (const std::filesystem::path& chart : *drawn) charts.push_back(chart.string());
+  }
+  if (json) {
+    Json answer = toJson(*measured);
+    answer["table"] = (std::filesystem::path(out) / "trades.csv").string();
+    answer["charts"] = charts;
+    printAnswer(kName, answer);
   } else {
     std::printf("%s", toText(*measured).c_str());
   }

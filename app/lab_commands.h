@@ -32,6 +32,7 @@ int measureStabilityCommand(const std::string& grid, const std::string& out, boo
                             const Progress&);
 int measureExtremesCommand(const std::string& out, bool json, const Progress&);
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
+int measureTradesCommand(const std::string& out, bool json, const Progress&);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

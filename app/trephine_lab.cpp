@@ -79,6 +79,9 @@ int run(int argc, char** argv) {
   auto* haptics_command = with_json(measure_command->add_subcommand(
       "haptics", "What a tick costs, and how true the push of elastic tissue is"));
   haptics_command->add_option("--out", out, "Folder for the table")->required();
+  auto* trades_command = with_json(measure_command->add_subcommand(
+      "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
+  trades_command->add_option("--out", out, "Folder for tables and charts")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -102,6 +105,7 @@ int run(int argc, char** argv) {
   if (*stability_command) return measureStabilityCommand(grid, out, json, progress);
   if (*extremes_command) return measureExtremesCommand(out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
+  if (*trades_command) return measureTradesCommand(out, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <locale>
+#include <sstream>
 
+#include "base/system.h"
 #include "haptics/haptic_core.h"
+#include "lab/recommended.h"
 #include "scene/names.h"
 #include "session/session.h"
 #include "volume/grid.h"
@@ -62,7 +66,47 @@ void keep(const Vec3& value) {
   asm volatile("" : : "g"(&value) : "memory");
 }
 
+// What the scene sets of the knobs that were measured, beside what is recommended. Null without a
+// recommendation.
+Result<Json> settingsOf(const Scene& scene) {
+  const std::filesystem::path file = resourceFolder() / "recommended.json";
+  if (!std::filesystem::exists(file)) return Json(nullptr);
+  Result<std::vector<RecommendedSetting>> recommended = readRecommended(file);
+  if (!recommended) return recommended.error();
+  Json settings = Json::array();
+  for (const auto& [knob, setting] : sceneSettings(scene)) {
+    for (const RecommendedSetting& r : *recommended) {
+      if (r.knob != knob) continue;
+      settings.push_back({{"knob", knob}, {"setting", setting}, {"recommended", r.setting}});
+    }
+  }
+  return settings;
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  const auto add = [&](const std::string& knob, const std::string& setting) {
+    const std::pair entry(knob, setting);
+    if (std::find(settings.begin(), settings.end(), entry) == settings.end()) {
+      settings.push_back(entry);
+    }
+  };
+  for (const SceneArm& arm : scene.arms) {
+    const SceneTool* tool = scene.findTool(arm.tool);
+    if (!tool) continue;
+    const ToolDescription& made = tool->tool.made_from;
+    if (made.kind == ToolKind::blade) add("points_blade", std::to_string(made.points));
+    if (made.kind == ToolKind::burr) add("points_burr", std::to_string(made.points));
+  }
+  add("force_at", nameOf(kForceAtNames, scene.force_at));
+  std::ostringstream rate;
+  rate.imbue(std::locale::classic());
+  rate << scene.rate_hz;
+  add("rate_hz", rate.str());
+  return settings;
+}
 
 Result<Json> explainScene(Scene scene) {
   if (Status asked = readArmDynamics(scene); !asked) return asked.error();
@@ -183,7 +227,7 @@ Result<Json> explainScene(Scene scene) {
   }
   const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
   const bool named_case = scene.case_source.rfind("phantom:", 0) == 0;
-  return Json{{"scene", scene.name},
+  Json answer{{"scene", scene.name},
               {"case", named_case ? Json(scene.case_source) : Json(nullptr)},
               {"rate_hz", scene.rate_hz},
               {"controller", controllerName(scene.controller)},
@@ -196,6 +240,10 @@ Result<Json> explainScene(Scene scene) {
               {"journal_mb", journal_mb},
               {"cost", cost},
               {"tick_ns", tick_ns}};
+  Result<Json> settings = settingsOf(scene);
+  if (!settings) return settings.error();
+  if (!settings->is_null()) answer["settings"] = *settings;
+  return answer;
 }
 
 }  // namespace trephine

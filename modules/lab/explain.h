@@ -1,6 +1,10 @@
 // What a scene instantiates, and what each part costs in a tick on this machine.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "base/json.h"
 #include "base/result.h"
 #include "scene/scene.h"
@@ -9,9 +13,13 @@ namespace trephine {
 
 // -> {scene, case, rate_hz, controller, laws, removal, tissues,
 //     arms:[{name, plugin, tool, points, renderable}],
+//     settings:[{knob, setting, recommended}] where `recommended.json` is among the resources,
 //     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of many batches) on a small block of the scene's firmest tissue;
 // tick_ns is a whole tick of all arms there, without the devices.
 Result<Json> explainScene(Scene scene);
+
+// The knobs of `measure trades` that a scene sets, each once: knob and setting.
+std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene);
 
 }  // namespace trephine

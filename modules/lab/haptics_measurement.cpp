@@ -81,16 +81,15 @@ HapticParameters parametersOf(const HapticsRow& row) {
   return parameters;
 }
 
-// Where a tool is after a time, patient axes and millimetres: to and fro over the top of the shell in
-// lanes of 16 mm, 3 mm apart, the second arm beside the first. The depth goes up and down, so that
-// the motor's work now suffices for what the tool sweeps and now does not.
+// Where a tool is after a time, patient axes and millimetres: to and fro over the top of the shell
+// in lanes of 16 mm, 3 mm apart, the second arm beside the first. The depth goes up and down, so
+// that the motor's work now suffices for what the tool sweeps and now does not.
 Pose strokePose_mm(const EllipsoidShell& shell, const HapticsRow& row, int arm, double t_s) {
   constexpr double kLane_mm = 16.0, kShift_mm = 3.0, kLanes = 12.0;
   const double way_mm = 14.5 * t_s + 4.5 / 3.0 * (1.0 - std::cos(3.0 * t_s));
   const double lanes = std::fmod(way_mm / kLane_mm, kLanes);
   const double within = std::fmod(lanes, 2.0);
-  const double x_mm =
-      (arm == 0 ? -20.0 : 4.0) + kLane_mm * (within < 1.0 ? within : 2.0 - within);
+  const double x_mm = (arm == 0 ? -20.0 : 4.0) + kLane_mm * (within < 1.0 ? within : 2.0 - within);
   const double y_mm = kShift_mm * (lanes - 0.5 * kLanes);
   const Vec3& a = shell.half_axes_mm;
   const double height =
@@ -104,8 +103,8 @@ Pose strokePose_mm(const EllipsoidShell& shell, const HapticsRow& row, int arm, 
           Quat(std::cos(0.5 * lean), std::sin(0.5 * lean), 0.0, 0.0)};
 }
 
-// The middle of a box that holds every stroke and tool: the shell's own for a large one, near its top
-// for a small one.
+// The middle of a box that holds every stroke and tool: the shell's own for a large one, near its
+// top for a small one.
 Vec3 boxCentre_mm(const EllipsoidShell& shell, double box_mm) {
   const double top_mm = shell.half_axes_mm.z;
   return {0.0, 0.0, std::max(0.0, top_mm + 22.6 - 0.5 * box_mm)};
@@ -145,8 +144,8 @@ Status measureBox(const HapticsOptions& options, double box_mm,
     grids.push_back(std::make_unique<Grid>(hapticsVolume(size, box_mm)));
     if (progress.cancelled()) return cancelled();
   }
-  const std::size_t rows = options.boxes_mm.size() * grids.size() * std::size(kTools) * 2 *
-                           std::size(kPhases);
+  const std::size_t rows =
+      options.boxes_mm.size() * grids.size() * std::size(kTools) * 2 * std::size(kPhases);
   for (const char* tool : kTools) {
     for (int arms : {1, 2}) {
       for (TouchPhase phase : kPhases) {
@@ -187,7 +186,8 @@ std::string toCsv(const HapticsMeasurement& measurement) {
 const HapticsRow* find(const std::vector<HapticsRow>& rows, const char* tool, int grid,
                        double box_mm, TouchPhase phase) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const HapticsRow& r) {
-    return r.tool == tool && r.arms == 2 && r.grid == grid && r.box_mm == box_mm && r.phase == phase;
+    return r.tool == tool && r.arms == 2 && r.grid == grid && r.box_mm == box_mm &&
+           r.phase == phase;
   });
   return found == rows.end() ? nullptr : &*found;
 }
@@ -288,19 +288,20 @@ std::vector<HapticsBar> hapticsBars(const HapticsMeasurement& m) {
   const HapticsRow* coarse = find(m.rows, "burr6", 256, 49.2, TouchPhase::removal);
   const HapticsRow* blade = find(m.rows, "blade64", 512, 200.0, TouchPhase::contact);
   if (fine) {
-    bars.push_back({"burr6, 2 arms, 512^3 at 49.2 mm, removal: median [us]", fine->median_ns / 1e3,
-                    20.0});
-    bars.push_back({"burr6, 2 arms, 512^3 at 49.2 mm, removal: p99.9 [us]", fine->p999_ns / 1e3,
-                    150.0});
+    bars.push_back(
+        {"burr6, 2 arms, 512^3 at 49.2 mm, removal: median [us]", fine->median_ns / 1e3, 20.0});
+    bars.push_back(
+        {"burr6, 2 arms, 512^3 at 49.2 mm, removal: p99.9 [us]", fine->p999_ns / 1e3, 150.0});
   }
   if (fine && coarse && coarse->median_ns > 0.0) {
     bars.push_back({"the same median against 256^3", fine->median_ns / coarse->median_ns, 1.5});
   }
   if (blade) {
-    bars.push_back({"blade64, 2 arms, 512^3 at 200 mm, contact: median [us]",
-                    blade->median_ns / 1e3, 5.0});
+    bars.push_back(
+        {"blade64, 2 arms, 512^3 at 200 mm, contact: median [us]", blade->median_ns / 1e3, 5.0});
   }
-  bars.push_back({"direction of the push: median error [deg]", m.sliding.direction_median_deg, 3.0});
+  bars.push_back(
+      {"direction of the push: median error [deg]", m.sliding.direction_median_deg, 3.0});
   bars.push_back({"direction of the push: p99 error [deg]", m.sliding.direction_p99_deg, 8.0});
   bars.push_back({"sliding: p99 step of force [% of its mean]", m.sliding.step_p99_percent, 3.0});
   const auto strays = std::count_if(m.rows.begin(), m.rows.end(),
@@ -357,12 +358,12 @@ Json toJson(const HapticsMeasurement& measurement) {
         {{"name", bar.name}, {"value", bar.value}, {"limit", bar.limit}, {"pass", bar.pass()}});
   }
   const SlidingMeasurement& s = measurement.sliding;
-  return {{"rows", rows},
-          {"direction_error_deg",
-           {{"median", s.direction_median_deg}, {"p99", s.direction_p99_deg}}},
-          {"sliding_force_step_percent_p99", s.step_p99_percent},
-          {"depth_error_percent", s.depth_error_percent},
-          {"bars", bars}};
+  return {
+      {"rows", rows},
+      {"direction_error_deg", {{"median", s.direction_median_deg}, {"p99", s.direction_p99_deg}}},
+      {"sliding_force_step_percent_p99", s.step_p99_percent},
+      {"depth_error_percent", s.depth_error_percent},
+      {"bars", bars}};
 }
 
 std::string toText(const HapticsMeasurement& measurement) {

@@ -16,8 +16,8 @@ namespace trephine {
 enum class TouchPhase { free, contact, removal };
 const char* touchPhaseName(TouchPhase phase);
 
-// The time of one HapticCore::tick of all arms [ns]: every tick of the phase free, else those with a
-// tool in tissue or a voxel taken.
+// The time of one HapticCore::tick of all arms [ns]: every tick of the phase free, else those with
+// a tool in tissue or a voxel taken.
 struct HapticsRow {
   std::string tool;  // needle, blade64, burr6
   int arms = 1;
@@ -39,9 +39,9 @@ Volume hapticsVolume(int grid, double box_mm);
 // Every tool moves over the top of one shell of bone, the same way in every grid, at 10 to 20 mm/s:
 // the laws viscous, coulomb and elastic over all its points, `bounded`, removal by work.
 struct HapticsOptions {
-  int ticks = 12'000;  // a row, 100 to 1,000,000, at 1 kHz
-  std::vector<int> grids{256, 512};            // 32 to 1024
-  std::vector<double> boxes_mm{200.0, 49.2};   // 49.2 to 300: smaller would not hold the strokes
+  int ticks = 12'000;                         // a row, 100 to 1,000,000, at 1 kHz
+  std::vector<int> grids{256, 512};           // 32 to 1024
+  std::vector<double> boxes_mm{200.0, 49.2};  // 49.2 to 300: smaller would not hold the strokes
   SlidingOptions sliding;
 };
 

@@ -26,8 +26,8 @@ GridGeometry cubeGeometry(int size, double box_mm, const Vec3& centre_mm);
 // Every voxel as its centre is.
 Volume sharpShell(const EllipsoidShell& shell, const GridGeometry& geometry);
 
-// As a scanner sees it: a voxel at a surface is the mean of 4^3 samples, and all have Gaussian noise
-// of `noise_hu` from a generator with this seed.
+// As a scanner sees it: a voxel at a surface is the mean of 4^3 samples, and all have Gaussian
+// noise of `noise_hu` from a generator with this seed.
 Volume scannedShell(const EllipsoidShell& shell, const GridGeometry& geometry, double noise_hu,
                     std::uint32_t seed);
 

@@ -26,6 +26,8 @@ HapticParameters elasticAlone() {
   parameters.controller = ControllerKind::off;
   parameters.tissues.count = 1;
   TissueClass& bone = parameters.tissues.classes[0];
+  // As the scenes' bone. Half-way from air to this shell is 0 HU, so that bone begins a little below
+  // the true surface, by the more the coarser the grid: most of the error of depth.
   bone.hu_min = 226;
   bone.hu_max = 3071;
   bone.stiffness_N_per_m = kStiffness_N_per_m;
@@ -77,8 +79,7 @@ std::vector<SlidingTick> slide(HapticCore& core, const EllipsoidShell& shell, co
 
 }  // namespace
 
-SlidingMeasurement judgeSliding(const std::vector<std::vector<SlidingTick>>& paths,
-                                double true_N) {
+SlidingMeasurement judgeSliding(const std::vector<std::vector<SlidingTick>>& paths, double true_N) {
   std::vector<double> off_deg, steps_N;
   double sum_N = 0.0;
   for (const std::vector<SlidingTick>& path : paths) {
@@ -117,8 +118,8 @@ Result<SlidingMeasurement> measureSliding(const SlidingOptions& options, const P
   }
   progress.at(from, "sliding");
   const EllipsoidShell shell;
-  Grid grid(scannedShell(shell, cubeGeometry(options.grid, kBox_mm, Vec3(0.0)), options.noise_hu,
-                         kSeed));
+  Grid grid(
+      scannedShell(shell, cubeGeometry(options.grid, kBox_mm, Vec3(0.0)), options.noise_hu, kSeed));
   const auto ticks = std::size_t(std::llround(options.seconds / kPeriod_s));
   std::vector<std::vector<SlidingTick>> paths;
   for (int n = 0; n < options.paths; ++n) {

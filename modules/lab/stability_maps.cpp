@@ -4,26 +4,20 @@
 #include <vtkBrush.h>
 #include <vtkChartXY.h>
 #include <vtkContext2D.h>
-#include <vtkContextActor.h>
 #include <vtkContextItem.h>
-#include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPen.h>
 #include <vtkPlotLine.h>
-#include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
 #include <vtkStringArray.h>
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <set>
@@ -31,14 +25,9 @@
 
 #include "base/file.h"
 #include "base/math.h"
+#include "lab/chart_picture.h"
 #include "render/display_probe.h"
 #include "render/picture.h"
-
-// VTK finds its drivers and fonts through these.
-#include <vtkAutoInit.h>
-VTK_MODULE_INIT(vtkRenderingOpenGL2);
-VTK_MODULE_INIT(vtkRenderingContextOpenGL2);
-VTK_MODULE_INIT(vtkRenderingFreeType);
 
 namespace trephine {
 
@@ -360,8 +349,7 @@ namespace {
 constexpr int kWidth = 1200, kHeight = 900;  // lengths on the page are pixels of the picture
 constexpr float kLeft = 120.0f, kBottom = 248.0f, kAcross = 900.0f, kUp = 524.0f;  // the plot
 constexpr float kFringeX = 56.0f, kFringeY = 26.0f;  // between the outer markers and the edge
-// Drawn larger and then averaged: VTK's own smoothing leaves specks below texts.
-constexpr int kFine = 2;
+constexpr int kFine = kChartFine;
 
 using Colour = std::array<unsigned char, 3>;
 constexpr Colour kBlack{0, 0, 0}, kWhite{255, 255, 255}, kGrey{90, 90, 90}, kEdge{60, 60, 60};
@@ -846,27 +834,6 @@ void addPieces(vtkChartXY* chart, const std::vector<glm::vec2>& pieces, const St
   chart->AddPlot(line);
 }
 
-Picture averaged(vtkUnsignedCharArray* pixels) {
-  constexpr std::size_t kRow = std::size_t(kWidth) * kFine * 3,
-                        kSamples = std::size_t(kFine) * kFine;
-  if (pixels->GetNumberOfValues() != vtkIdType(kRow) * kHeight * kFine) return {};
-  Picture picture{kWidth, kHeight, {}};
-  picture.rgb.reserve(std::size_t(kWidth) * kHeight * 3);
-  for (int row = kHeight - 1; row >= 0; --row) {  // VTK's rows go up
-    const unsigned char* from = pixels->GetPointer(vtkIdType(kRow) * row * kFine);
-    for (std::size_t x = 0; x < std::size_t(kWidth); ++x) {
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        std::size_t sum = kSamples / 2;
-        for (std::size_t i = 0; i < kSamples; ++i) {
-          sum += from[(i / kFine) * kRow + (x * kFine + i % kFine) * 3 + channel];
-        }
-        picture.rgb.push_back(std::uint8_t(sum / kSamples));
-      }
-    }
-  }
-  return picture;
-}
-
 Picture draw(const StabilityMap& map) {
   const LogAxis x = periodAxis(map);
   Sheet sheet{map, x, tissueAxis(map, x), {}, {}, {}, 0.0f, 0.0f};
@@ -902,25 +869,8 @@ Picture draw(const StabilityMap& map) {
   vtkNew<Ground> ground;
   vtkNew<Lettering> lettering;
   ground->sheet = lettering->sheet = &sheet;
-  vtkNew<vtkContextActor> actor;
-  for (vtkAbstractContextItem* item :
-       std::initializer_list<vtkAbstractContextItem*>{ground, chart, lettering}) {
-    actor->GetScene()->AddItem(item);
-  }
-  vtkNew<vtkRenderer> renderer;
-  renderer->SetBackground(1.0, 1.0, 1.0);
-  renderer->AddActor(actor);
-  actor->GetScene()->SetRenderer(renderer);
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);
-  window->SetDPI(72);  // a point is a pixel
-  window->SetSize(kWidth * kFine, kHeight * kFine);
-  window->AddRenderer(renderer);
-  window->Render();
-  vtkNew<vtkUnsignedCharArray> pixels;
-  window->GetPixelData(0, 0, kWidth * kFine - 1, kHeight * kFine - 1, 0, pixels);
-  return averaged(pixels);
+  return drawItems({ground.GetPointer(), chart.GetPointer(), lettering.GetPointer()}, kWidth,
+                   kHeight);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, LabTest, lab
+from lab_support import LAB, SCENES, SOURCE, LabTest, lab
 
 IMPORT_KEYS = {
     "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen", "seconds",
@@ -120,6 +120,26 @@ class Run(LabTest):
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
         self.assertGreater(answer["tick_ns"], 0)
 
+    def test_explain_sets_a_scenes_settings_beside_the_recommended_ones(self):
+        recommended = {
+            knob["knob"]: knob["setting"]
+            for knob in json.loads((SOURCE / "resources" / "recommended.json").read_text())["knobs"]}
+        answer = lab("explain", SCENES / "cranium.json")
+        self.assertEqual(answer["settings"],
+                         [{"knob": knob, "setting": setting, "recommended": recommended[knob]}
+                          for knob, setting in (("points_blade", "33"), ("force_at", "tip"),
+                                                ("rate_hz", "1000"))])
+        text = subprocess.run([LAB, "explain", SCENES / "cranium.json"], capture_output=True,
+                              text=True, check=True).stdout
+        self.assertIn(f"points_blade: 33 (recommended: {recommended['points_blade']})", text)
+
+        # Without the resource there is nothing to say; a broken one is an error.
+        bare = {**os.environ, "TREPHINE_RESOURCES": str(self.folder)}
+        self.assertNotIn("settings", lab("explain", SCENES / "cranium.json", environment=bare))
+        (self.folder / "recommended.json").write_text('{"format": "trephine.recommended"}')
+        answer = lab("explain", SCENES / "cranium.json", environment=bare, expect=1)
+        self.assert_error(answer, "BAD_FIELD", "recommended.json")
+
 
 class Measurements(LabTest):
     CELL = {"mass_kg": 0.045, "period_s": 0.001, "delay_samples": 0, "encoder_mm": 0.055,
@@ -181,10 +201,38 @@ class Measurements(LabTest):
         self.assertLess(answer["sliding_force_step_percent_p99"], 3)
         self.assertEqual(len((self.folder / "out" / "haptics.csv").read_text().splitlines()), 73)
 
+    def test_every_knob_has_its_trade_and_one_recommended_setting(self):
+        answer = lab("measure", "trades", "--out", self.folder / "out",
+                     environment=without_display())
+        self.assertEqual(set(answer), {"schema", "build", "rows", "table", "charts"})
+        self.assertIsNone(answer["charts"], "without a display there are none")
+        settings = {}
+        for row in answer["rows"]:
+            self.assertEqual(set(row), {"knob", "setting", "error", "error_unit", "cost",
+                                        "cost_unit", "reference", "recommended", "extra"})
+            settings.setdefault(row["knob"], []).append(row["setting"])
+        self.assertEqual(settings, {
+            "points_blade": ["2", "4", "8", "16", "32", "64", "128", "256"],
+            "points_burr": ["8", "16", "32", "64", "128", "256", "512"],
+            "hu_lookup": ["nearest", "trilinear"],
+            "force_at": ["tip", "distributed"],
+            "rate_hz": ["250", "500", "1000", "2000", "4000", "10000", "20000"],
+            "velocity_estimate": ["backward difference", "low-pass 100 Hz", "low-pass 20 Hz",
+                                  "adaptive window", "kalman"],
+            "grid": ["full", "half", "quarter"]})
+        chosen = [(row["knob"], row["setting"]) for row in answer["rows"] if row["recommended"]]
+        self.assertEqual([knob for knob, _ in chosen], list(settings))
+        written = json.loads((self.folder / "out" / "recommended.json").read_text())
+        self.assertEqual(written["format"], "trephine.recommended")
+        self.assertEqual([(k["knob"], k["setting"]) for k in written["knobs"]], chosen)
+        self.assertEqual(len(Path(answer["table"]).read_text().splitlines()),
+                         1 + len(answer["rows"]))
+
     def test_a_table_that_cannot_be_written_is_an_error(self):
         (self.folder / "file").write_text("in the way")
-        answer = lab("measure", "haptics", "--out", self.folder / "file", expect=1)
-        self.assert_error(answer, "CANNOT_WRITE", "file")
+        for what in ("haptics", "trades"):
+            answer = lab("measure", what, "--out", self.folder / "file", expect=1)
+            self.assert_error(answer, "CANNOT_WRITE", "file")
 
     def test_jitter_is_measured_at_three_rates(self):
         answer = lab("measure", "jitter", "--seconds", 0.2, "--out", self.folder)

@@ -114,6 +114,17 @@ TEST(HapticsRow, OfRemovalLeavesTheGridAsItWasThoughItTookVoxels) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(HapticsRow, ThatIsCancelledIsNoRow) {
+  const test::TemporaryFolder folder;
+  Grid grid(hapticsVolume(32, 49.2));
+  Progress progress;
+  progress.cancel();
+  const Result<HapticsRow> measured = measureHapticsRow(
+      row("needle", 32, 49.2, TouchPhase::free, 0.0), grid, 100, folder.path(), progress);
+  ASSERT_FALSE(measured);
+  EXPECT_EQ(measured.error().code, "CANCELLED");
+}
+
 TEST(HapticsMeasurement, RunsEveryToolArmAndPhase) {
   const test::TemporaryFolder folder;
   const Result<HapticsMeasurement> m = measureHaptics(small(), folder / "a" / "b");

@@ -8,16 +8,16 @@ namespace {
 const Vec3 kUp(0.0, 0.0, 1.0);
 
 TEST(Sliding, JudgesDirectionsStepsAndDepthByHand) {
-  // Angles 0, 0, 90 and 180 degrees; steps within the first path 1, sqrt(4 + 9), and none to the
-  // second.
+  // Angles 0, 90, 0 and 180 degrees; one step of sqrt(1 + 9), and none from path to path.
   const std::vector<std::vector<SlidingTick>> paths{
-      {{{0.0, 0.0, 1.0}, kUp}, {{0.0, 0.0, 2.0}, kUp}, {{3.0, 0.0, 0.0}, kUp}},
+      {{{0.0, 0.0, 1.0}, kUp}, {{3.0, 0.0, 0.0}, kUp}},
+      {{{0.0, 0.0, 2.0}, kUp}},
       {{{0.0, 0.0, -6.0}, kUp}}};
   const SlidingMeasurement m = judgeSliding(paths, 2.0);
   EXPECT_EQ(m.ticks, 4u);
   EXPECT_NEAR(m.direction_median_deg, 0.0, 1e-9);
   EXPECT_NEAR(m.direction_p99_deg, 180.0, 1e-9);
-  EXPECT_NEAR(m.step_p99_percent, 100.0 * std::sqrt(13.0) / 3.0, 1e-9);
+  EXPECT_NEAR(m.step_p99_percent, 100.0 * std::sqrt(10.0) / 3.0, 1e-9);
   EXPECT_NEAR(m.depth_error_percent, 50.0, 1e-9);
 }
 

@@ -1,0 +1,49 @@
+#include "lab/recommended.h"
+
+#include <set>
+
+namespace trephine {
+
+namespace {
+constexpr const char* kFormat = "trephine.recommended";
+constexpr int kVersion = 1;
+}  // namespace
+
+Json toJson(const std::vector<RecommendedSetting>& settings) {
+  Json knobs = Json::array();
+  for (const RecommendedSetting& s : settings) {
+    knobs.push_back({{"knob", s.knob},
+                     {"setting", s.setting},
+                     {"error", s.error},
+                     {"error_unit", s.error_unit},
+                     {"cost", s.cost},
+                     {"cost_unit", s.cost_unit}});
+  }
+  return {{"format", kFormat}, {"version", kVersion}, {"knobs", knobs}};
+}
+
+Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file) {
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  JsonReader reader(*json, file.string());
+  reader.format(kFormat, kVersion);
+  std::vector<RecommendedSetting> settings;
+  std::set<std::string> seen;
+  for (JsonReader& item : reader.objects("knobs")) {
+    RecommendedSetting s;
+    s.knob = item.text("knob");
+    s.setting = item.text("setting");
+    s.error = item.number("error");
+    s.error_unit = item.text("error_unit");
+    s.cost = item.number("cost");
+    s.cost_unit = item.text("cost_unit");
+    if (s.error < 0.0) item.fail("error", "An error is 0 or above");
+    if (s.cost < 0.0) item.fail("cost", "A cost is 0 or above");
+    if (!seen.insert(s.knob).second) item.fail("knob", "The knob '" + s.knob + "' is given twice");
+    settings.push_back(std::move(s));
+  }
+  if (Status read = reader.finish(); !read) return read.error();
+  return settings;
+}
+
+}  // namespace trephine

@@ -1,0 +1,27 @@
+// The recommended settings of a measured machine, as a file: "trephine.recommended", version 1.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct RecommendedSetting {
+  std::string knob, setting;
+  double error = 0.0;
+  std::string error_unit;
+  double cost = 0.0;
+  std::string cost_unit;
+  friend bool operator==(const RecommendedSetting&, const RecommendedSetting&) = default;
+};
+
+// {format, version, knobs:[{knob, setting, error, error_unit, cost, cost_unit}]}
+Json toJson(const std::vector<RecommendedSetting>& settings);
+// Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (a negative figure, a knob given twice).
+Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file);
+
+}  // namespace trephine

@@ -1,0 +1,80 @@
+// Speed against accuracy: for every knob of touch its settings, what each gets wrong and what each
+// costs, from one run, and which one is recommended on this machine.
+//
+// Of each knob exactly one setting is recommended: the cheapest of those that are good enough,
+// which is what the table of kKnobs says. Where none is, the one with the least error.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct TradeRow {
+  std::string knob;  // an id of kKnobs
+  std::string setting;
+  double error = 0.0;
+  std::string error_unit;
+  double cost = 0.0;
+  std::string cost_unit;
+  std::string reference;  // what the error is against
+  bool recommended = false;
+  std::vector<std::pair<std::string, double>> extra;  // name with unit, figure
+
+  double extraOf(std::string_view name) const;  // NaN where there is none
+};
+
+// Good enough is an error of at most `tolerance`; where `limited` names an extra figure, or is
+// "cost", that is at most `limit` as well.
+struct Knob {
+  std::string_view id;
+  std::string_view title;
+  double tolerance;  // in the rows' error unit
+  std::string_view limited = "";
+  double limit = 0.0;
+};
+inline constexpr std::array<Knob, 7> kKnobs{{
+    {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
+    {"points_burr", "Points on a burr's shell", 5.0, "volume_error_percent", 5.0},
+    {"hu_lookup", "Looking up the HU of a point", 0.5},
+    {"force_at", "Where the force acts", 10.0},
+    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0},
+    {"velocity_estimate", "Estimate of velocity", 5.0},
+    {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
+}};
+
+struct TradesOptions {
+  std::vector<int> blade_points{2, 4, 8, 16, 32, 64, 128, 256};
+  std::vector<int> burr_points{8, 16, 32, 64, 128, 256, 512};
+  std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
+  int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
+  double stroke_s = 2.0;  // 0.2 to 20
+  int rays = 4000;        // 10 to 1,000,000
+};
+
+struct TradesMeasurement {
+  std::vector<TradeRow> rows;
+};
+
+// Marks one row of each knob by the rule above. Rows of a knob that is not in kKnobs stay unmarked.
+void recommend(std::vector<TradeRow>& rows);
+
+// Writes trades.csv and recommended.json into the folder `out` unless that is empty. Errors:
+// BAD_ARGUMENT, CANCELLED, CANNOT_WRITE.
+Result<TradesMeasurement> measureTrades(const TradesOptions& options,
+                                        const std::filesystem::path& out = {},
+                                        const Progress& progress = Progress());
+
+// {rows:[{knob, setting, error, error_unit, cost, cost_unit, reference, recommended, extra:{}}]}
+Json toJson(const TradesMeasurement& measurement);
+std::string toText(const TradesMeasurement& measurement);
+
+}  // namespace trephine
