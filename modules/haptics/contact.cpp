@@ -6,8 +6,6 @@ namespace trephine {
 
 namespace {
 
-constexpr double kWay_mm = 0.05;  // a way is measured over this much, or noise would turn it
-
 // -1 outside; written so that NaN falls out as "outside".
 std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
   const Vec3 v = voxel + 0.5;
@@ -31,8 +29,8 @@ std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_v
 
 ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
     : classes_(tool.points_m.size(), -1),
-      patient_to_voxel_(geometry.patientToVoxel()),
-      inset_mm_(1000.0 * tool.point_inset_m) {
+      voxels_(tool.points_m.size(), -1),
+      patient_to_voxel_(geometry.patientToVoxel()) {
   for (const Vec3& p : tool.points_m) points_mm_.push_back(1000.0 * p);
   low_mm_ = high_mm_ = points_mm_[0];
   for (const Vec3& p : points_mm_) {
@@ -40,11 +38,10 @@ ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
     high_mm_ = glm::max(high_mm_, p);
   }
   const Vec3& spacing = geometry.spacing_mm;
-  const double reach_mm =
-      inset_mm_ + std::max({spacing.x, spacing.y, spacing.z});
   for (int n = 0; n < 6; ++n) {
     reach_[n] = Vec3(0.0);
-    reach_[n][n / 2] = (n % 2 ? -reach_mm : reach_mm) / spacing[n / 2];
+    const double reach = 1000.0 * tool.point_inset_m / spacing[n / 2] + 0.5;
+    reach_[n][n / 2] = n % 2 ? -reach : reach;
   }
 }
 
@@ -53,52 +50,43 @@ void ToolContact::forget() {
   contact_ = Contact{};
 }
 
-void ToolContact::follow(const Vec3& tip_mm) {
-  if (!(inset_mm_ > 0.0)) return;
-  const Vec3 way_mm = from_mm_ ? tip_mm - *from_mm_ : Vec3(0.0);
-  const double length_mm = glm::length(way_mm);
-  if (from_mm_ && !(length_mm >= kWay_mm)) return;
-  from_mm_ = tip_mm;
-  if (length_mm > 0.0) {
-    lead_ = Vec3(patient_to_voxel_ * glm::dvec4(way_mm * (inset_mm_ / length_mm), 0.0));
+int ToolContact::classNear(const Grid& grid, const TissueLookup& lookup,
+                           const TissueTable& tissues, const Vec3& voxel) const {
+  int firmest = -1;
+  for (const Vec3& reach : reach_) {
+    const int found = classAt(grid, lookup, voxel + reach);
+    if (found != firmest && firmer(tissues, found, firmest)) firmest = found;
   }
-}
-
-bool ToolContact::tissueNear(const Grid& grid, const TissueLookup& lookup, const Vec3& voxel) {
-  for (int n = 0; n < 6; ++n) {
-    const int which = (last_found_ + n) % 6;
-    if (classAt(grid, lookup, voxel + reach_[which]) < 0) continue;
-    last_found_ = which;
-    return true;
-  }
-  return false;
+  return firmest;
 }
 
 const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
                                    const TissueLookup& lookup, const TissueTable& tissues,
                                    const Pose& pose_mm) {
-  follow(pose_mm.position);
   const Vec3 tip = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
   const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
-  const bool held = contact_.touching();
   contact_ = Contact{};
   // The box of the points, turned: its middle and half its extent along the grid's axes.
   const Vec3 middle = tip + to_voxel * (0.5 * (low_mm_ + high_mm_));
   const Vec3 half = 0.5 * (high_mm_ - low_mm_);
   const Vec3 extent = glm::abs(to_voxel[0]) * half.x + glm::abs(to_voxel[1]) * half.y +
-                      glm::abs(to_voxel[2]) * half.z + glm::abs(lead_) + 1.0;
-  if (!held && !bricks.mayHold(middle - extent, middle + extent)) return contact_;
+                      glm::abs(to_voxel[2]) * half.z + Vec3(reach_[0].x, reach_[2].y, reach_[4].z) + 1.0;
+  if (!bricks.mayHold(middle - extent, middle + extent)) {
+    forget();
+    return contact_;
+  }
   std::int8_t firmest = -1;
+  // The voxels of all points are on the way before the first is looked at.
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
-    const Vec3 voxel = tip + to_voxel * points_mm_[i];
-    int found = classAt(grid, lookup, voxel);
-    if (found < 0 && from_mm_) found = classAt(grid, lookup, voxel + lead_);
-    if (found >= 0) {
-      ++contact_.points;
-      classes_[i] = std::int8_t(found);
-    } else if (classes_[i] >= 0 && !tissueNear(grid, lookup, voxel)) {
-      classes_[i] = -1;
-    }
+    voxels_[i] = voxelAt(grid.geometry(), tip + to_voxel * points_mm_[i]);
+    if (voxels_[i] >= 0) grid.prefetch(std::size_t(voxels_[i]));
+  }
+  for (std::size_t i = 0; i < points_mm_.size(); ++i) {
+    int found = voxels_[i] < 0 ? -1 : lookup.classOf(grid.hu(std::size_t(voxels_[i])));
+    if (found < 0) found = classNear(grid, lookup, tissues, tip + to_voxel * points_mm_[i]);
+    classes_[i] = std::int8_t(found);
+    if (found < 0) continue;
+    ++contact_.points;
     if (classes_[i] != firmest && firmer(tissues, classes_[i], firmest)) firmest = classes_[i];
   }
   contact_.tissue_class = firmest;

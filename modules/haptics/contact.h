@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace trephine {
 
 struct Contact {
   std::int32_t tissue_class = -1;  // the firmest tissue touched; -1 none
-  std::int32_t points = 0;         // sample points in tissue, held ones not counted
+  std::int32_t points = 0;         // sample points that touch
   bool touching() const { return tissue_class >= 0; }
 };
 
@@ -25,12 +24,9 @@ struct Contact {
 std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_voxel,
                           const Vec3& patient_mm);
 
-// The contact of one tool, point by point. A point inside the solid that cuts touches also with the
-// surface of that solid before it, the way the tool goes: else the tissue would go before it is
-// felt. A tool that erases what it touches would lose contact at
-// once and find it again a voxel later; so a point that was in tissue keeps that tissue while any
-// stands within reach of it along the grid's axes: from the point to the surface of what the
-// tool cuts, and one voxel on.
+// The contact of one tool, point by point. A point touches the tissue it lies in; else what stands
+// before the surface of the solid that cuts, half a voxel on, in any of the grid's directions, the
+// firmest of it: the walls of its own slot rub on it, and tissue is felt before it goes.
 class ToolContact {
  public:
   ToolContact(const Tool& tool, const GridGeometry& geometry);
@@ -45,18 +41,15 @@ class ToolContact {
   std::span<const std::int8_t> classes() const { return classes_; }
 
  private:
-  void follow(const Vec3& tip_mm);
-  bool tissueNear(const Grid& grid, const TissueLookup& lookup, const Vec3& voxel);
+  int classNear(const Grid& grid, const TissueLookup& lookup, const TissueTable& tissues,
+                const Vec3& voxel) const;
 
   std::vector<Vec3> points_mm_;  // tool frame
   std::vector<std::int8_t> classes_;
+  std::vector<std::int64_t> voxels_;  // of the points, in this tick; -1 outside
   Mat4 patient_to_voxel_;
-  double inset_mm_;
   Vec3 low_mm_{0.0}, high_mm_{0.0};  // box of the points, tool frame
-  std::optional<Vec3> from_mm_;  // where the way was last measured
-  Vec3 lead_{0.0};     // voxels: the way the tool goes, as long as the inset
   Vec3 reach_[6];      // voxels: there and back along the grid's axes
-  int last_found_ = 0;  // the first of them to try: walls stay where they are
   Contact contact_;
 };
 

@@ -113,6 +113,7 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   events_.clear();
   if (journal_.busy() && (input.journal & kJournalReady)) {
     journal_.step(writer_, kVoxelsPerSlice);
+    bricks_->markAll();
     if (!journal_.busy()) finishRestore();
   }
   if (++ticks_ % second_ticks_ == 0) journal_.mark(credits());
@@ -428,6 +429,7 @@ bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
   }
   const std::int16_t old_hu = writer_.grid().hu(voxel);
   if (!journal_.erase(writer_, arm, voxel, bite.tissue_class)) return false;
+  bricks_->remove(bite.voxel);
   carves_.push_back({tick, std::uint32_t(voxel), old_hu, std::int8_t(index),
                      std::int8_t(bite.tissue_class)});
   return true;

@@ -1,6 +1,7 @@
 #include "haptics/removal.h"
 
 #include <algorithm>
+#include <array>
 
 namespace trephine {
 
@@ -10,7 +11,8 @@ namespace {
 // solid counts as much as these many.
 constexpr int kLooksPerTick = 4096;
 constexpr double kMostLooks = 4.0;  // times that
-constexpr int kLooksPerRow = 12;
+constexpr int kLooksPerRow = 26;
+constexpr int kBatch = 16;
 constexpr double kHalfVoxel = 0.505;  // and a little, for what rounding takes
 constexpr double kKept_s = 0.05;
 // No hand is as fast: a pose that jumps sweeps nothing between.
@@ -24,6 +26,11 @@ double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
 // No floor() or ceil(): without SSE 4 these are calls.
 struct Indices {
   int first = 0, last = -1;
+};
+struct Row {
+  Indices all, clear;
+  int j = 0, number = 0;
+  std::size_t voxel = 0;  // the first of the grid's row
 };
 inline Indices indices(const Interval& mm, double per_spacing, int count) {
   if (mm.empty()) return {};
@@ -83,6 +90,9 @@ void Removal::begin(const Capsule& now) {
   const Indices slices = indices(solid_.depth(), per_spacing_.z, geometry_.size[2]);
   low_[2] = slices.first;
   high_[2] = slices.last;
+  const Indices columns = indices(solid_.width(), per_spacing_.x, geometry_.size[0]);
+  low_[0] = columns.first;
+  high_[0] = columns.last;
   slice_ = 0;
   slice_end_ = high_[2] - low_[2] + 1;
   row_ = -1;
@@ -140,21 +150,47 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
       high_[1] = rows.last;
       row_ = 0;
     }
-    for (; row_ <= high_[1] - low_[1]; ++row_) {
-      const int j = backwards_ ? high_[1] - row_ : low_[1] + row_;
-      const double y = j * s.y;
-      looks -= row_looks;
-      const Indices row = indices(solid_.row(y, z), per_spacing_.x, geometry_.size[0]);
-      if (row.first <= row.last) {
-        const Indices clear = known_ ? indices(cleared_.row(y, z), per_spacing_.x, geometry_.size[0])
-                                     : Indices{};
-        for (int i = row.first; i <= row.last; ++i) {
-          if (i >= clear.first && i <= clear.last) {
-            i = clear.last;
+    const int rows = high_[1] - low_[1] + 1;
+    while (row_ < rows) {
+      // A batch of rows at a time: their first voxels are on the way while the others are found.
+      std::array<Row, kBatch> batch;
+      int count = 0, next = row_;
+      for (; count < kBatch && next < rows; ++next) {
+        const int j = backwards_ ? high_[1] - next : low_[1] + next;
+        // Rows of bricks that hold no tissue are passed over together.
+        const int in_brick = j & (kBrickEdge - 1);
+        if (next == row_ || in_brick == (backwards_ ? kBrickEdge - 1 : 0)) {
+          const int more = backwards_ ? in_brick : kBrickEdge - 1 - in_brick;
+          const Vec3 first(low_[0], backwards_ ? j - more : j, k);
+          const Vec3 last(high_[0] - 1, (backwards_ ? j : j + more) - 1, k - 1);
+          if (!bricks.mayHold(first, last)) {
+            next += more;
+            looks -= kLooksPerRow;
+            continue;
+          }
+        }
+        looks -= row_looks;
+        Row& row = batch[std::size_t(count)];
+        const double y = j * s.y;
+        row.all = indices(solid_.row(y, z), per_spacing_.x, geometry_.size[0]);
+        if (row.all.first > row.all.last) continue;
+        row.clear = known_ ? indices(cleared_.row(y, z), per_spacing_.x, geometry_.size[0]) : Indices{};
+        row.j = j;
+        row.number = next;
+        row.voxel = geometry_.indexOf(0, j, k);
+        grid.prefetch(row.voxel + std::size_t(row.all.first));
+        grid.prefetch(row.voxel + std::size_t(row.all.last));
+        ++count;
+      }
+      for (int n = 0; n < count; ++n) {
+        const Row& row = batch[std::size_t(n)];
+        for (int i = row.all.first; i <= row.all.last; ++i) {
+          if (i >= row.clear.first && i <= row.clear.last) {
+            i = row.clear.last;
             continue;
           }
           --looks;
-          const std::int16_t hu = grid.hu(geometry_.indexOf(i, j, k));
+          const std::int16_t hu = grid.hu(row.voxel + std::size_t(i));
           const int c = hu == kAirHu ? -1 : lookup.classOf(hu);
           if (c < 0 || !tissues.classes[std::size_t(c)].cuttable) continue;
           const double cost_J = kind_ == RemovalKind::instant
@@ -162,17 +198,23 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
                                     : voxelWork_J(tissues.classes[std::size_t(c)], voxel_mm3);
           const bool affords = kind_ == RemovalKind::instant || credit_J_ >= cost_J;
           if (!affords) paid_ = false;
-          if (!affords || bites.size() == kMostBites) return;  // goes on here in the next tick
+          if (!affords || bites.size() == kMostBites) {
+            row_ = row.number;  // goes on here in the next tick
+            return;
+          }
           credit_J_ -= cost_J;
-          bites.push_back({{i, j, k}, c, cost_J});
+          bites.push_back({{i, row.j, k}, c, cost_J});
         }
       }
-      if (looks <= 0) {
-        ++row_;
-        return;
-      }
+      row_ = next;
+      if (looks <= 0 && row_ < rows) return;
     }
     row_ = -1;
+    if (looks <= 0) {
+      ++slice_;
+      if (slice_ < slice_end_) return;
+      break;
+    }
   }
   paid_ = true;  // waited for, but paid in the end
   end(now);

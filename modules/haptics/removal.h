@@ -95,7 +95,7 @@ class Removal {
   CapsuleRows cleared_;
   std::int32_t slice_ = 0, slice_end_ = 0;  // counted from the pass's first
   std::int32_t row_ = 0;
-  Index3 low_{0, 0, 0}, high_{0, 0, 0};  // bounds of the pass; x unused
+  Index3 low_{0, 0, 0}, high_{0, 0, 0};  // bounds of the pass
 };
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 #include "haptics/stiffness_ball.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "haptics/spiral.h"
@@ -16,9 +17,15 @@ constexpr double kRadii[kParts] = {1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0, 7.0 / 6.0};
 constexpr double kShare[kParts] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0};
 // The integral of s ds over each part, up to the radius.
 constexpr double kMoment[kParts] = {1.0 / 18.0, 3.0 / 18.0, 9.0 / 72.0, 11.0 / 72.0};
+constexpr std::size_t kMostRays = 128;
 constexpr double kSame = 1e-3;  // HU
 
 double mix(double a, double b, double t) { return a + t * (b - a); }
+
+// The lowest of the eight voxels around a place within the grid.
+std::size_t cornerOf(const Vec3& v, std::size_t row, std::size_t slice) {
+  return std::size_t(int(v.z)) * slice + std::size_t(int(v.y)) * row + std::size_t(int(v.x));
+}
 
 // Trilinear, all eight voxels in the grid.
 double sampleInside(const Grid& grid, std::size_t row, std::size_t slice, const Vec3& v) {
@@ -110,7 +117,7 @@ double StiffnessOfHu::mean(double hu_a, double hu_b) const {
 
 StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions)
     : patient_to_voxel_(geometry.patientToVoxel()), radius_m_(radius_mm / 1000.0), reach_(0.0) {
-  for (const Vec3& d : oppositePairs(directions)) {
+  for (const Vec3& d : oppositePairs(std::min(directions, int(kMostRays)))) {
     const Vec3 reach = d * radius_mm / geometry.spacing_mm;
     rays_.push_back({geometry.direction * d, reach});
     reach_ = glm::max(reach_, glm::abs(reach) * kRadii[kParts - 1]);
@@ -138,23 +145,42 @@ ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
   Vec3 sum(0.0);
   double energy = 0.0;
   const bool air_at_centre = stiffness.isAir(hu_centre);
-  for (const Ray& ray : rays_) {
-    double hu[kParts];
-    hu[3] = sample(centre + kRadii[3] * ray.reach);
-    hu[1] = sample(centre + kRadii[1] * ray.reach);
+  // In three rounds without branches among the look-ups, so that those of many rays overlap.
+  std::array<std::array<double, kParts>, kMostRays> hu;
+  if (inside) {
+    for (const Ray& ray : rays_) {
+      grid.prefetch(cornerOf(centre + kRadii[3] * ray.reach, row, slice), row, slice);
+      grid.prefetch(cornerOf(centre + kRadii[1] * ray.reach, row, slice), row, slice);
+    }
+  }
+  for (std::size_t n = 0; n < rays_.size(); ++n) {
+    hu[n][3] = sample(centre + kRadii[3] * rays_[n].reach);
+    hu[n][1] = sample(centre + kRadii[1] * rays_[n].reach);
+  }
+  std::array<std::uint8_t, kMostRays> meeting;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < rays_.size(); ++n) {
     // Air at the centre, midway and at the end: what could be between is thinner than half the ball.
-    if (air_at_centre && stiffness.isAir(hu[3]) && stiffness.isAir(hu[1])) continue;
-    hu[0] = sample(centre + kRadii[0] * ray.reach);
-    hu[2] = sample(centre + kRadii[2] * ray.reach);
+    const bool air = air_at_centre && stiffness.isAir(hu[n][3]) && stiffness.isAir(hu[n][1]);
+    meeting[count] = std::uint8_t(n);
+    count += air ? 0 : 1;
+  }
+  for (std::size_t m = 0; m < count; ++m) {
+    const std::size_t n = meeting[m];
+    hu[n][0] = sample(centre + kRadii[0] * rays_[n].reach);
+    hu[n][2] = sample(centre + kRadii[2] * rays_[n].reach);
+  }
+  for (std::size_t m = 0; m < count; ++m) {
+    const std::size_t n = meeting[m];
     double before = hu_centre, along = 0.0, moment = 0.0, mean = 0.0;
     for (int part = 0; part < kParts; ++part) {
-      mean = stiffness.mean(before, hu[part]);
-      before = hu[part];
+      mean = stiffness.mean(before, hu[n][std::size_t(part)]);
+      before = hu[n][std::size_t(part)];
       along += mean * kShare[part];
       moment += mean * kMoment[part];
       out.stiffness = std::max(out.stiffness, mean);
     }
-    sum += ray.direction * (along + mean);
+    sum += rays_[n].direction * (along + mean);
     energy += moment;
   }
   out.stored_J = energy * 2.0 * radius_m_ * radius_m_ / double(rays_.size());

@@ -84,11 +84,12 @@ Interval SweptSolid::band(double z) const {
   return out;
 }
 
-Interval SweptSolid::depth() const {
+Interval SweptSolid::extent(int axis) const {
   Interval out;
   for (int n = 0; n < count_; ++n) {
     const Capsule& c = places_[std::size_t(n)].capsule();
-    out = joined(out, {std::min(c.from.z, c.to.z) - c.radius, std::max(c.from.z, c.to.z) + c.radius});
+    out = joined(out, {std::min(c.from[axis], c.to[axis]) - c.radius,
+                       std::max(c.from[axis], c.to[axis]) + c.radius});
   }
   return out;
 }

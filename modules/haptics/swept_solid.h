@@ -76,10 +76,12 @@ class SweptSolid {
     return out;
   }
   Interval band(double z) const;
-  Interval depth() const;  // bounds of z
+  Interval width() const { return extent(0); }  // bounds of x
+  Interval depth() const { return extent(2); }  // bounds of z
   int places() const { return count_; }
 
  private:
+  Interval extent(int axis) const;
   static constexpr int kMost = 32;
   std::array<CapsuleRows, kMost> places_{};
   int count_ = 1;

@@ -5,15 +5,13 @@ namespace trephine {
 TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
     : size_(grid.geometry().size) {
   for (int axis = 0; axis < 3; ++axis) bricks_[axis] = (size_[axis] + kBrickEdge - 1) / kBrickEdge;
-  marked_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), 0);
+  count_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), 0);
   std::size_t voxel = 0;
   for (int k = 0; k < size_[2]; ++k) {
     for (int j = 0; j < size_[1]; ++j) {
-      const std::size_t row = (std::size_t(k >> kBrickShift) * std::size_t(bricks_[1]) +
-                               std::size_t(j >> kBrickShift)) *
-                              std::size_t(bricks_[0]);
+      const std::size_t row = at(0, j >> kBrickShift, k >> kBrickShift);
       for (int i = 0; i < size_[0]; ++i, ++voxel) {
-        if (lookup.classOf(grid.hu(voxel)) >= 0) marked_[row + std::size_t(i >> kBrickShift)] = 1;
+        if (lookup.classOf(grid.hu(voxel)) >= 0) ++count_[row + std::size_t(i >> kBrickShift)];
       }
     }
   }

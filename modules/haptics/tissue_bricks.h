@@ -1,5 +1,5 @@
-// Which 16^3 bricks of the grid may hold tissue: what lies in others alone is air, and a tool there
-// needs no look at its voxels. Made once, before the first tick; removal leaves a brick marked.
+// How much tissue each 16^3 brick of the grid may hold: where that is nothing, a tool needs no look
+// at its voxels. Counted once, before the first tick, and down with every voxel that is removed.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,14 @@ namespace trephine {
 class TissueBricks {
  public:
   TissueBricks(const Grid& grid, const TissueLookup& lookup);
-  // Other HU mean tissue from now on: every brick may hold some. No allocation.
-  void markAll() { std::fill(marked_.begin(), marked_.end(), std::uint8_t(1)); }
+  // Other HU mean tissue from now on, or tissue came back: every brick may hold some, and what is
+  // removed later is not counted. No allocation.
+  void markAll() { std::fill(count_.begin(), count_.end(), kUnknown); }
+  void remove(const Index3& voxel) {
+    std::uint16_t& count =
+        count_[at(voxel[0] >> kBrickShift, voxel[1] >> kBrickShift, voxel[2] >> kBrickShift)];
+    if (count != kUnknown && count > 0) --count;
+  }
 
   // Whether there may be tissue in a box of voxels, its bounds included. False for bounds that are
   // not numbers.
@@ -30,11 +36,7 @@ class TissueBricks {
     for (int k = from[2]; k <= to[2]; ++k) {
       for (int j = from[1]; j <= to[1]; ++j) {
         for (int i = from[0]; i <= to[0]; ++i) {
-          if (marked_[(std::size_t(k) * std::size_t(bricks_[1]) + std::size_t(j)) *
-                          std::size_t(bricks_[0]) +
-                      std::size_t(i)]) {
-            return true;
-          }
+          if (count_[at(i, j, k)] > 0) return true;
         }
       }
     }
@@ -42,9 +44,15 @@ class TissueBricks {
   }
 
  private:
+  static constexpr std::uint16_t kUnknown = 65535;
+  std::size_t at(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(bricks_[1]) + std::size_t(j)) * std::size_t(bricks_[0]) +
+           std::size_t(i);
+  }
+
   Index3 size_;
   Index3 bricks_;
-  std::vector<std::uint8_t> marked_;
+  std::vector<std::uint16_t> count_;
 };
 
 }  // namespace trephine

@@ -132,7 +132,8 @@ TradeRows tradeRate(const TradesOptions& options, const Progress& progress) {
         "RMS sent force at 80 kHz with a perfect encoder: a simulated arm of 45 g in a "
         "light hand presses into bone and slides, 5 strokes (the arms measured: 0.055 mm)";
     row.extra = {
-        {"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}, {"tick_ns", run->tick_ns}};
+        {"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max},
+        {"bone_of_k_max_percent", 100.0 * 2.0 * tradeTissue(226, true, 0.06).classes[0].stiffness_N_per_m / most.k_max}, {"tick_ns", run->tick_ns}};
     rows.push_back(row);
   }
   return rows;

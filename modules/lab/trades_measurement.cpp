@@ -47,9 +47,12 @@ Status check(const TradesOptions& options) {
 }
 
 bool withinLimit(const Knob& knob, const TradeRow& row) {
-  if (knob.limited.empty()) return true;
-  const double value = knob.limited == "cost" ? row.cost : row.extraOf(knob.limited);
-  return value <= knob.limit;  // NaN, a figure that is not there, is not
+  const auto within = [&row](std::string_view figure, double limit) {
+    if (figure.empty()) return true;
+    const double value = figure == "cost" ? row.cost : row.extraOf(figure);
+    return value <= limit;  // NaN, a figure that is not there, is not
+  };
+  return within(knob.limited, knob.limit) && within(knob.also, knob.also_limit);
 }
 
 std::string toCsv(const TradesMeasurement& measurement) {

@@ -33,20 +33,24 @@ struct TradeRow {
 };
 
 // Good enough is an error of at most `tolerance`; where `limited` names an extra figure, or is
-// "cost", that is at most `limit` as well.
+// "cost", that is at most `limit` as well, and likewise `also`.
 struct Knob {
   std::string_view id;
   std::string_view title;
   double tolerance;  // in the rows' error unit
   std::string_view limited = "";
   double limit = 0.0;
+  std::string_view also = "";
+  double also_limit = 0.0;
 };
 inline constexpr std::array<Knob, 7> kKnobs{{
     {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
     {"points_burr", "Points on a burr's shell", 5.0, "volume_error_percent", 5.0},
     {"hu_lookup", "Looking up the HU of a point", 0.5},
     {"force_at", "Where the force acts", 10.0},
-    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0},
+    // Bone by two springs (coulomb, elastic), of what the arm shows at that rate: the rest is for
+    // what the hand and its delays take.
+    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0},
     {"velocity_estimate", "Estimate of velocity", 5.0},
     {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
 }};

@@ -1,7 +1,6 @@
 #include "volume/grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace trephine {
@@ -16,8 +15,8 @@ Grid::Grid(Volume volume)
     bricks_[axis] = (geometry().size[axis] + kBrickEdge - 1) / kBrickEdge;
     count *= std::size_t(bricks_[axis]);
   }
-  dirty_words_ = (count + 63) / 64;
-  dirty_ = std::make_unique<std::atomic<std::uint64_t>[]>(dirty_words_);
+  brick_count_ = count;
+  dirty_ = std::make_unique<std::atomic<std::uint8_t>[]>(brick_count_);
 }
 
 std::optional<Grid::Writer> Grid::takeWriter() {
@@ -27,35 +26,31 @@ std::optional<Grid::Writer> Grid::takeWriter() {
 
 void Grid::copyChanges(Volume& copy, std::vector<VoxelBox>& boxes) {
   const Index3& size = geometry().size;
-  for (std::size_t word = 0; word < dirty_words_; ++word) {
-    if (dirty_[word].load(std::memory_order_relaxed) == 0) continue;
-    std::uint64_t marks = dirty_[word].exchange(0, std::memory_order_acquire);
-    while (marks) {
-      const std::size_t brick = word * 64 + std::size_t(std::countr_zero(marks));
-      marks &= marks - 1;
-      const auto nx = std::size_t(bricks_[0]), ny = std::size_t(bricks_[1]);
-      const Index3 at{std::int32_t(brick % nx), std::int32_t(brick / nx % ny),
-                      std::int32_t(brick / (nx * ny))};
-      VoxelBox box;
-      for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = at[axis] * kBrickEdge;
-        box.high[axis] = std::min(box.low[axis] + kBrickEdge, size[axis]);
-      }
-      for (int k = box.low[2]; k < box.high[2]; ++k) {
-        for (int j = box.low[1]; j < box.high[1]; ++j) {
-          for (int i = box.low[0]; i < box.high[0]; ++i) {
-            const std::size_t index = geometry().indexOf(i, j, k);
-            copy.hu[index] = hu(index);
-          }
+  for (std::size_t brick = 0; brick < brick_count_; ++brick) {
+    if (dirty_[brick].load(std::memory_order_relaxed) == 0) continue;
+    dirty_[brick].exchange(0, std::memory_order_acquire);
+    const auto nx = std::size_t(bricks_[0]), ny = std::size_t(bricks_[1]);
+    const Index3 at{std::int32_t(brick % nx), std::int32_t(brick / nx % ny),
+                    std::int32_t(brick / (nx * ny))};
+    VoxelBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = at[axis] * kBrickEdge;
+      box.high[axis] = std::min(box.low[axis] + kBrickEdge, size[axis]);
+    }
+    for (int k = box.low[2]; k < box.high[2]; ++k) {
+      for (int j = box.low[1]; j < box.high[1]; ++j) {
+        for (int i = box.low[0]; i < box.high[0]; ++i) {
+          const std::size_t index = geometry().indexOf(i, j, k);
+          copy.hu[index] = hu(index);
         }
       }
-      const bool joins = !boxes.empty() && boxes.back().high[0] == box.low[0] &&
-                         boxes.back().low[1] == box.low[1] && boxes.back().low[2] == box.low[2];
-      if (joins) {
-        boxes.back().high[0] = box.high[0];
-      } else {
-        boxes.push_back(box);
-      }
+    }
+    const bool joins = !boxes.empty() && boxes.back().high[0] == box.low[0] &&
+                       boxes.back().low[1] == box.low[1] && boxes.back().low[2] == box.low[2];
+    if (joins) {
+      boxes.back().high[0] = box.high[0];
+    } else {
+      boxes.push_back(box);
     }
   }
 }

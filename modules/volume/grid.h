@@ -1,7 +1,7 @@
 // The live HU grid: one writer at a time, readers that copy what changed.
 //
 // Protocol (architecture.md): the holder of the write token stores int16 with relaxed atomics, then
-// marks the 16^3 brick with fetch_or(release). The one reader takes marks with exchange(acquire)
+// marks the 16^3 brick with a store(release). The one reader takes marks with exchange(acquire)
 // and copies those bricks with relaxed loads into its own Volume. Drawing, slices, saving and
 // hashing see only such copies.
 #pragma once
@@ -39,6 +39,13 @@ class Grid {
   // Any thread. A voxel outside the grid is air.
   std::int16_t hu(std::size_t index) const {
     return std::atomic_ref<std::int16_t>(voxels_[index]).load(std::memory_order_relaxed);
+  }
+  // Hints that a voxel, or the eight from one on, will be read.
+  void prefetch(std::size_t index) const { __builtin_prefetch(voxels_ + index); }
+  void prefetch(std::size_t index, std::size_t row, std::size_t slice) const {
+    for (std::size_t at : {index, index + row, index + slice, index + slice + row}) {
+      __builtin_prefetch(voxels_ + at);
+    }
   }
   std::int16_t hu(int i, int j, int k) const {
     return geometry().contains(i, j, k) ? hu(geometry().indexOf(i, j, k)) : kAirHu;
@@ -103,7 +110,7 @@ class Grid {
     const std::size_t brick = ((k >> kBrickShift) * std::size_t(bricks_[1]) + (j >> kBrickShift)) *
                                   std::size_t(bricks_[0]) +
                               (i >> kBrickShift);
-    dirty_[brick / 64].fetch_or(std::uint64_t(1) << (brick % 64), std::memory_order_release);
+    dirty_[brick].store(1, std::memory_order_release);
     return before;
   }
 
@@ -112,8 +119,10 @@ class Grid {
   Divisor by_width_;
   Divisor by_height_;
   Index3 bricks_;
-  std::unique_ptr<std::atomic<std::uint64_t>[]> dirty_;  // one bit a brick
-  std::size_t dirty_words_;
+  // A byte a brick: with one writer a plain store marks it, where bits in a shared word would need
+  // a locked one.
+  std::unique_ptr<std::atomic<std::uint8_t>[]> dirty_;
+  std::size_t brick_count_;
   std::atomic<bool> taken_{false};
 };
 

@@ -44,9 +44,10 @@ TEST(Contact, AToolOutsideTheVolumeCountsAsAir) {
 TEST(Contact, ABladeCountsOnlyItsPointsInTissue) {
   Probe probe(makeBlade(0.010, 11));
   // Tip 5 mm below the surface, the blade's 11 points 1 mm apart upwards.
-  EXPECT_EQ(probe.touch({0, 0, -5.25}).points, 5);  // bone ends half a voxel above z = -1
-  EXPECT_EQ(probe.contact.classes()[4], 0);
-  EXPECT_EQ(probe.contact.classes()[5], -1);
+  // Bone ends half a voxel above z = -1; the blade's side reaches 0.6 mm and half a voxel further.
+  EXPECT_EQ(probe.touch({0, 0, -5.25}).points, 6);
+  EXPECT_EQ(probe.contact.classes()[5], 0);
+  EXPECT_EQ(probe.contact.classes()[6], -1);
 }
 
 TEST(Contact, TheBladeTurnsWithTheTool) {
@@ -55,14 +56,20 @@ TEST(Contact, TheBladeTurnsWithTheTool) {
   EXPECT_EQ(probe.touch({0, 0, -5.25}, sideways).points, 11);
 }
 
-TEST(Contact, APointHoldsItsTissueWhileSomeIsNearAndLosesItWhenThereIsNone) {
-  Probe probe(makeNeedle(0.05));
-  EXPECT_FALSE(probe.touch({0, 0, 0.6}).touching());
+TEST(Contact, APointTouchesBeforeTheSurfaceOfItsToolAndNoFurther) {
+  Probe probe(makeNeedle(0.05));  // 0.6 mm, and half a voxel: bone begins at -0.5
+  EXPECT_FALSE(probe.touch({0, 0, 0.7}).touching());
+  EXPECT_TRUE(probe.touch({0, 0, 0.5}).touching());
   EXPECT_TRUE(probe.touch({0, 0, -1}).touching());
-  EXPECT_TRUE(probe.touch({0, 0, 0.6}).touching());
-  EXPECT_EQ(probe.touch({0, 0, 0.6}).points, 0) << "held, not found";
-  EXPECT_FALSE(probe.touch({0, 0, 3.0}).touching());
-  EXPECT_FALSE(probe.touch({0, 0, 0.6}).touching());
+  EXPECT_FALSE(probe.touch({0, 0, 0.7}).touching());
+}
+
+// The tip cuts the slot; what follows in it rubs on its walls.
+TEST(Contact, ABladeTouchesTheWallsOfItsOwnSlot) {
+  Volume volume = boneSlab();
+  for (int k = 0; k < 32; ++k) volume.hu[volume.geometry.indexOf(16, 16, k)] = kAirHu;
+  Probe probe(makeBlade(0.010, 11), std::move(volume));
+  EXPECT_EQ(probe.touch({0, 0, -12}).points, 11);
 }
 
 TEST(Contact, TheFirmestTissueTouchedCounts) {

@@ -81,7 +81,7 @@ TEST(HapticCore, TheBoundedControllerShowsTheTissueThroughAScaledAndTurnedMap) {
   // The tip moves 10 mm/s in the patient, 5 mm/s at the arm.
   bench.push({0, 2, 0}, {0, -2, 0}, 800);
   const ArmRecord& record = bench.record.arms[0];
-  EXPECT_NEAR(record.demanded_N.y, 0.5 * (300.0 * 4.09e-3 + 5.0 * 1e-2), 0.005);  // touches at z = 0.1
+  EXPECT_NEAR(record.demanded_N.y, 0.5 * (300.0 * 4.59e-3 + 5.0 * 1e-2), 0.005);  // touches at z = 0.6
   EXPECT_NEAR(record.bounded_N.y, record.demanded_N.y, 0.02);
   EXPECT_NEAR(glm::length(record.bounded_N), record.bounded_N.y, 1e-6);
 }

@@ -29,6 +29,9 @@ TradeRow row(const char* knob, const char* setting, double error, double cost,
   r.extra = std::move(extra);
   return r;
 }
+TradeRow rate(const char* setting, double error, double cost, double bone_percent = 50.0) {
+  return row("rate_hz", setting, error, cost, {{"bone_of_k_max_percent", bone_percent}});
+}
 
 // The settings that are recommended.
 std::vector<std::string> chosen(std::vector<TradeRow> rows) {
@@ -66,15 +69,19 @@ TEST(Recommend, TakesTheTruestWhereNoneIsGoodEnough) {
 }
 
 TEST(Recommend, HoldsARateToItsShareOfTheProcessor) {
-  EXPECT_EQ(chosen({row("rate_hz", "slow", 12.0, 1.0), row("rate_hz", "right", 9.0, 24.9),
-                    row("rate_hz", "dear", 1.0, 25.1)}),
+  EXPECT_EQ(chosen({rate("slow", 12.0, 1.0), rate("right", 9.0, 24.9),
+                    rate("dear", 1.0, 25.1)}),
             Chosen{"right"});
   // Good enough only beyond the limit: the truest within it.
-  EXPECT_EQ(chosen({row("rate_hz", "slow", 12.0, 1.0), row("rate_hz", "next", 11.0, 2.0),
-                    row("rate_hz", "dear", 1.0, 25.1)}),
+  EXPECT_EQ(chosen({rate("slow", 12.0, 1.0), rate("next", 11.0, 2.0),
+                    rate("dear", 1.0, 25.1)}),
             Chosen{"next"});
-  EXPECT_EQ(chosen({row("rate_hz", "a", 12.0, 30.0), row("rate_hz", "b", 11.0, 40.0)}),
+  EXPECT_EQ(chosen({rate("a", 12.0, 30.0), rate("b", 11.0, 40.0)}),
             Chosen{"b"});
+}
+
+TEST(Recommend, HoldsARateToWhatItLeavesOfTheArmsStiffness) {
+  EXPECT_EQ(chosen({rate("slow", 9.0, 1.0, 61.0), rate("right", 9.0, 2.0, 60.0)}), Chosen{"right"});
 }
 
 TEST(Recommend, HoldsPointsToTheirVolumeToo) {
@@ -92,7 +99,7 @@ TEST(Recommend, MarksExactlyOneOfEachKnobAndNoneOfAnUnknownOne) {
 
 TEST(Recommend, IsNotAskedOfACostOrErrorThatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(chosen({row("rate_hz", "nan", nan, nan), row("rate_hz", "a", 9.0, 2.0)}), Chosen{"a"});
+  EXPECT_EQ(chosen({rate("nan", nan, nan), rate("a", 9.0, 2.0)}), Chosen{"a"});
 }
 
 TEST(RmsError, IsOfTheReferencesSize) {
