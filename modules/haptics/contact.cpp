@@ -6,6 +6,8 @@ namespace trephine {
 
 namespace {
 
+constexpr std::size_t kTurns = 4;  // ticks
+
 // -1 outside; written so that NaN falls out as "outside".
 std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
   const Vec3 v = voxel + 0.5;
@@ -38,11 +40,7 @@ ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
     high_mm_ = glm::max(high_mm_, p);
   }
   const Vec3& spacing = geometry.spacing_mm;
-  for (int n = 0; n < 6; ++n) {
-    reach_[n] = Vec3(0.0);
-    const double reach = 1000.0 * tool.point_inset_m / spacing[n / 2] + 0.5;
-    reach_[n][n / 2] = n % 2 ? -reach : reach;
-  }
+  reach_ = 1000.0 * tool.point_inset_m / spacing + 0.5;
 }
 
 void ToolContact::forget() {
@@ -50,12 +48,35 @@ void ToolContact::forget() {
   contact_ = Contact{};
 }
 
+// Each place differs from the point along one axis alone, so its voxel is a step in memory away.
 int ToolContact::classNear(const Grid& grid, const TissueLookup& lookup,
                            const TissueTable& tissues, const Vec3& voxel) const {
+  const GridGeometry& g = grid.geometry();
+  const Vec3 v = voxel + 0.5;
   int firmest = -1;
-  for (const Vec3& reach : reach_) {
-    const int found = classAt(grid, lookup, voxel + reach);
+  const auto look = [&](int found) {
     if (found != firmest && firmer(tissues, found, firmest)) firmest = found;
+  };
+  const std::int64_t index = voxelAt(g, voxel);
+  if (index < 0) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (double reach : {reach_[axis], -reach_[axis]}) {
+        Vec3 at = voxel;
+        at[axis] += reach;
+        look(classAt(grid, lookup, at));
+      }
+    }
+    return firmest;
+  }
+  std::int64_t step = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int here = int(v[axis]), size = g.size[std::size_t(axis)];
+    for (double reach : {reach_[axis], -reach_[axis]}) {
+      const double there = v[axis] + reach;
+      if (!(there >= 0.0 && there < size)) continue;
+      look(lookup.classOf(grid.hu(std::size_t(index + (int(there) - here) * step))));
+    }
+    step *= size;
   }
   return firmest;
 }
@@ -70,11 +91,12 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
   const Vec3 middle = tip + to_voxel * (0.5 * (low_mm_ + high_mm_));
   const Vec3 half = 0.5 * (high_mm_ - low_mm_);
   const Vec3 extent = glm::abs(to_voxel[0]) * half.x + glm::abs(to_voxel[1]) * half.y +
-                      glm::abs(to_voxel[2]) * half.z + Vec3(reach_[0].x, reach_[2].y, reach_[4].z) + 1.0;
+                      glm::abs(to_voxel[2]) * half.z + reach_ + 1.0;
   if (!bricks.mayHold(middle - extent, middle + extent)) {
     forget();
     return contact_;
   }
+  ++turn_;
   std::int8_t firmest = -1;
   // The voxels of all points are on the way before the first is looked at.
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
@@ -83,7 +105,13 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
   }
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     int found = voxels_[i] < 0 ? -1 : lookup.classOf(grid.hu(std::size_t(voxels_[i])));
-    if (found < 0) found = classNear(grid, lookup, tissues, tip + to_voxel * points_mm_[i]);
+    if (found < 0) {
+      // A point in air among others in air looks around itself in turn with them.
+      const bool among_air = i > 0 && classes_[i] < 0 && classes_[i - 1] < 0 &&
+                             (i + 1 == classes_.size() || classes_[i + 1] < 0);
+      if (among_air && (i + turn_) % kTurns != 0) continue;
+      found = classNear(grid, lookup, tissues, tip + to_voxel * points_mm_[i]);
+    }
     classes_[i] = std::int8_t(found);
     if (found < 0) continue;
     ++contact_.points;

@@ -26,7 +26,8 @@ std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_v
 
 // The contact of one tool, point by point. A point touches the tissue it lies in; else what stands
 // before the surface of the solid that cuts, half a voxel on, in any of the grid's directions, the
-// firmest of it: the walls of its own slot rub on it, and tissue is felt before it goes.
+// firmest of it: the walls of its own slot rub on it, and tissue is felt before it goes. (Where no
+// neighbour touches either, a point but the tip looks around itself every fourth tick.)
 class ToolContact {
  public:
   ToolContact(const Tool& tool, const GridGeometry& geometry);
@@ -49,7 +50,8 @@ class ToolContact {
   std::vector<std::int64_t> voxels_;  // of the points, in this tick; -1 outside
   Mat4 patient_to_voxel_;
   Vec3 low_mm_{0.0}, high_mm_{0.0};  // box of the points, tool frame
-  Vec3 reach_[6];      // voxels: there and back along the grid's axes
+  std::size_t turn_ = 0;
+  Vec3 reach_{0.0};  // voxels: from a point there and back along each of the grid's axes
   Contact contact_;
 };
 

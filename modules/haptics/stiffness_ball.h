@@ -36,7 +36,7 @@ class StiffnessOfHu {
 
 // Of a blunt tool's ball and of a sharp tool's, whose normal matters less; `measure haptics` has the
 // errors.
-constexpr int kBluntDirections = 48, kSharpDirections = 28;
+constexpr int kBluntDirections = 48, kSharpDirections = 24;
 inline int ballDirections(bool blunt) { return blunt ? kBluntDirections : kSharpDirections; }
 
 struct ElasticPush {

@@ -16,7 +16,12 @@ struct Probe {
     lookup.set(table);
     bricks = TissueBricks(grid, lookup);
   }
+  // As it is after a few ticks there.
   const Contact& touch(const Vec3& tip_mm, const Quat& orientation = Quat(1, 0, 0, 0)) {
+    for (int n = 0; n < 3; ++n) look(tip_mm, orientation);
+    return look(tip_mm, orientation);
+  }
+  const Contact& look(const Vec3& tip_mm, const Quat& orientation) {
     return contact.update(grid, bricks, lookup, table, {tip_mm, orientation});
   }
   Grid grid;
