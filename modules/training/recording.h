@@ -11,7 +11,7 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 1;
+constexpr int kRecordingVersion = 2;
 
 struct RecordingHeader {
   Json scene;                 // toJson(Scene) with fixed maps and the controller at the start

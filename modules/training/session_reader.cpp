@@ -136,6 +136,13 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                      std::to_string(kRecordingVersion),
                  path.string(), "Open it with a newer Trephine"};
   }
+  if (version < kRecordingVersion) {
+    return Error{"OLDER_VERSION",
+                 "The recording has version " + std::to_string(version) +
+                     " of trephine.session, and this program reads " +
+                     std::to_string(kRecordingVersion),
+                 path.string(), "Open it with the Trephine that made it"};
+  }
   const auto scene = readText(f.file, "scene");
   const auto volume = readText(f.file, "volume");
   const auto build = readText(f.file, "build");

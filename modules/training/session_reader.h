@@ -14,7 +14,7 @@ namespace trephine {
 
 class SessionReader {
  public:
-  // Errors: MISSING_FILE, BAD_RECORDING (not a recording, or damaged), NEWER_VERSION.
+  // Errors: MISSING_FILE, BAD_RECORDING (not a recording, or damaged), NEWER_VERSION, OLDER_VERSION.
   static Result<std::unique_ptr<SessionReader>> open(const std::filesystem::path& file);
   ~SessionReader();
   SessionReader(const SessionReader&) = delete;

@@ -130,11 +130,11 @@ class Run(LabTest):
         answer = lab("explain", SCENES / "cranium.json")
         self.assertEqual(answer["settings"],
                          [{"knob": knob, "setting": setting, "recommended": recommended[knob]}
-                          for knob, setting in (("points_blade", "33"), ("force_at", "tip"),
+                          for knob, setting in (("points_blade", "16"), ("force_at", "distributed"),
                                                 ("rate_hz", "1000"))])
         text = subprocess.run([LAB, "explain", SCENES / "cranium.json"], capture_output=True,
                               text=True, check=True).stdout
-        self.assertIn(f"points_blade: 33 (recommended: {recommended['points_blade']})", text)
+        self.assertIn(f"points_blade: 16 (recommended: {recommended['points_blade']})", text)
 
         # Without the resource there is nothing to say; a broken one is an error.
         bare = {**os.environ, "TREPHINE_RESOURCES": str(self.folder)}

@@ -13,8 +13,9 @@ inline QApplication& application() {
   static char name[] = "test_ui";
   static char* argv[] = {name, nullptr};
   qputenv("QT_QPA_PLATFORM", "offscreen");
-  static QApplication instance(argc, argv);
-  return instance;
+  // Never destroyed: Qt's own statics go before it and it needs them.
+  static auto* instance = new QApplication(argc, argv);
+  return *instance;
 }
 
 // Runs the event loop until `done`, ten seconds at most.
