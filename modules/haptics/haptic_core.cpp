@@ -249,17 +249,19 @@ LawInput HapticCore::touch(Arm& arm, const Tool& tool, const Motion& motion) {
 // tissue that may be cut.
 void HapticCore::earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model) {
   const Vec3 force_N = model.at(motion.velocity_m_s);
-  const Contact& contact = arm.contact.contact();
-  const bool cutting =
-      contact.touching() &&
-      parameters_.tissues.classes[std::size_t(contact.tissue_class)].cuttable;
-  if (cutting && arm.cuts) {
-    const double T = parameters_.period_s;
+  bool cutting = false;
+  for (std::int8_t c : arm.contact.classes().first(tool.cutting_points)) {
+    cutting = cutting || (c >= 0 && parameters_.tissues.classes[std::size_t(c)].cuttable);
+  }
+  const bool jumped = glm::length(motion.velocity_m_s) > Removal::kFastest_m_s;
+  double work_J = 0.0;
+  if (cutting && arm.cuts && !jumped) {
     const double by_hand_W =
         -0.5 * (glm::dot(force_N + arm.last_demanded_N, motion.velocity_m_s) +
                 glm::dot(model.torque_Nm + arm.last_torque_Nm, motion.turning_rad_s));
-    arm.removal.earn(T * (by_hand_W + tool.made_from.motor_W), parameters_.tissues);
+    work_J = parameters_.period_s * (by_hand_W + tool.made_from.motor_W);
   }
+  arm.removal.earn(work_J, parameters_.tissues);
   arm.last_demanded_N = force_N;
   arm.last_torque_Nm = model.torque_Nm;
 }
@@ -351,7 +353,8 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
                       isFinite(model.stiffness) && isFinite(model.damping) &&
                       isFinite(out.demanded_N) && isFinite(out.demanded_torque_Nm) &&
                       isFinite(out.bounded_N) && isFinite(velocity_m_s) &&
-                      isFinite(out.velocity_m_s) && isFinite(motion.pose_mm) &&
+                      isFinite(out.velocity_m_s) && isFinite(motion.turning_rad_s) &&
+                      isFinite(motion.pose_mm) &&
                       isFinite(out.observer_J) && isFinite(out.alpha) && isFinite(arm.energy_out_J);
   if (!finite) {
     ++nonfinite_;
@@ -378,7 +381,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
 }
 
 // All tools bite into the tissue as it was, then it goes. Who comes second to a voxel that another
-// took in the same tick pays half of it, so that the order of the arms changes no credit.
+// took in the same tick shares its cost, so that the order of the arms changes no credit.
 void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
   const CarveJournal::Credits before = credits();
   for (std::size_t i = 0; i < arms_.size(); ++i) {
@@ -396,14 +399,19 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
       const Index3& v = bite.voxel;
       const std::size_t voxel = geometry.indexOf(v[0], v[1], v[2]);
       if (writer_.grid().hu(voxel) == kAirHu) {
-        arm.removal.refund(0.5 * bite.cost_J);
+        // Those before paid 1/n each, now all pay 1/(n + 1).
+        std::array<bool, kMaxArms> took{};
+        int takers = 0;
         for (std::size_t other = 0; other < i; ++other) {
-          for (const Bite& first : arms_[other].bites) {
-            if (first.voxel != v) continue;
-            arms_[other].removal.refund(0.5 * bite.cost_J);
-            other = i;
-            break;
-          }
+          const auto same = [&v](const Bite& b) { return b.voxel == v; };
+          const std::vector<Bite>& bites = arms_[other].bites;
+          took[other] = std::find_if(bites.begin(), bites.end(), same) != bites.end();
+          takers += took[other];
+        }
+        const double share_J = bite.cost_J / (takers + 1);
+        arm.removal.refund(bite.cost_J - share_J);
+        for (std::size_t other = 0; other < i; ++other) {
+          if (took[other]) arms_[other].removal.refund(bite.cost_J / takers - share_J);
         }
       } else if (erase(i, bite, voxel, before, tick)) {
         ++record.arms[i].removed_voxels;

@@ -15,8 +15,6 @@ constexpr int kLooksPerRow = 26;
 constexpr int kBatch = 16;
 constexpr double kHalfVoxel = 0.505;  // and a little, for what rounding takes
 constexpr double kKept_s = 0.05;
-// No hand is as fast: a pose that jumps sweeps nothing between.
-constexpr double kFastest_mm_per_s = 5000.0;
 
 double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
   return tissue.cutting_J_per_mm3 * voxel_mm3;
@@ -56,7 +54,7 @@ Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kin
   layer_mm_ = std::max({s.x, s.y, s.z, 0.1 * radius_mm_});
   still_mm_ = 0.125 * std::min({s.x, s.y, s.z});
   looks_ = int(kLooksPerTick * std::clamp(1000.0 * period_s, 1.0, kMostLooks));
-  farthest_mm_ = kFastest_mm_per_s * period_s;
+  farthest_mm_ = 1000.0 * kFastest_m_s * period_s;
 }
 
 Capsule Removal::capsuleAt(const Pose& pose_mm) const {
@@ -124,6 +122,10 @@ bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) cons
 void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
                     const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites) {
   const Capsule now = capsuleAt(pose_mm);
+  if (!isFinite(now.from) || !isFinite(now.to)) {
+    forget();
+    return;
+  }
   if (last_ && !(moved(*last_, now) <= farthest_mm_)) forget();
   last_ = now;
   // Work ran short and the tool went on: it must not take later what it has left.

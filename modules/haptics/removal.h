@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -42,7 +43,7 @@ class Removal {
   // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
-  // Work that the tool did in this tick on tissue that may be cut. What is not spent within 50 ms or
+  // Every tick: the work that the tool did in it on tissue that may be cut, or 0. What is not spent within 50 ms or
   // so is heat: the credit is capped by the work of that time and of two voxels, and so is a debt
   // (a spring gives back what pressing it took).
   void earn(double work_J, const TissueTable& tissues);
@@ -59,9 +60,15 @@ class Removal {
   }
 
   double credit_J() const { return credit_J_; }
-  void setCredit(double credit_J) { credit_J_ = credit_J; }
+  // It fades from there as if just earned.
+  void setCredit(double credit_J) {
+    credit_J_ = credit_J;
+    recent_J_ = std::abs(credit_J);
+  }
 
   static constexpr std::size_t kMostBites = 512;  // a tick
+  // No hand is as fast: a pose that jumps sweeps nothing between and does no work.
+  static constexpr double kFastest_m_s = 5.0;
 
  private:
   void begin(const Capsule& now);

@@ -5,7 +5,7 @@
 namespace trephine {
 
 CapsuleRows::CapsuleRows(const Capsule& capsule)
-    : capsule_(capsule), ball_(capsule.isBall()), radius2_(capsule.radius * capsule.radius) {
+    : capsule_(capsule), ball_(capsule.isBall()), radius2_(capsule.radius > 0.0 ? capsule.radius * capsule.radius : -1.0) {
   if (ball_) return;
   axis_ = capsule.to - capsule.from;
   length_ = glm::length(axis_);

@@ -2,6 +2,7 @@
 // grid's own axes: voxel (i, j, k) has its centre at (i sx, j sy, k sz).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -25,7 +26,7 @@ struct Interval {
 inline Interval joined(const Interval& a, const Interval& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
-  return {std::fmin(a.low, b.low), std::fmax(a.high, b.high)};
+  return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
 // A capsule made ready to be asked for rows: many thousand times a tick.
@@ -56,7 +57,7 @@ class CapsuleRows {
 
   Capsule capsule_;
   bool ball_ = true;
-  double radius2_ = 0.0;
+  double radius2_ = -1.0;  // below 0: no radius holds nothing, not even its axis
   // The axis, its length, and what the quadratic of the side needs of it.
   Vec3 axis_{0.0};
   double length_ = 0.0, across2_ = 0.0, per_across2_ = 0.0, per_axis_x_ = 0.0;

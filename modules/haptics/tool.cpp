@@ -29,6 +29,7 @@ Tool sharpTool(const ToolDescription& d) {
   Tool tool;
   tool.made_from = d;
   addLine(tool, Vec3(0.0), 0.001 * d.length_mm * kAlong, d.points, 1.0);
+  tool.cutting_points = tool.points_m.size();
   tool.radius_m = tool.point_inset_m = 0.001 * d.radius_mm;
   tool.ball_radius_m = std::max(kLeastBall_m, tool.radius_m);
   // A needle opens tissue with its point, a blade along its edge; a blade of one point is its tip.
@@ -61,6 +62,7 @@ Tool burr(const ToolDescription& d) {
   const double straight = cylinder ? std::max(0.0, 0.001 * d.head_mm - 2.0 * radius) : 0.0;
   const double head = 2.0 * radius + straight;
   addShell(tool, radius, straight, d.points, d.shaft_points > 0 ? 1.0 - kShaftShare : 1.0);
+  tool.cutting_points = tool.points_m.size();
   if (d.shaft_points > 0) {
     const double gap = std::max(0.0, length - head) / d.shaft_points;
     addLine(tool, (head + gap) * kAlong, (head + gap * d.shaft_points) * kAlong, d.shaft_points,

@@ -31,6 +31,7 @@ struct Tool {
   ToolDescription made_from;
   std::vector<Vec3> points_m;   // tool frame
   std::vector<double> weights;  // of the points, their sum is 1
+  std::size_t cutting_points = 0;  // the first so many are where it cuts; the others are a shaft's
   // What it cuts: all within radius_m of this segment, tool frame.
   Vec3 solid_from_m{0.0}, solid_to_m{0.0};
   double radius_m = 0.0;

@@ -113,6 +113,7 @@ bool CarveJournal::startUndo(const Credits& now) {
   stroke.undone_from = here_;
   stroke.undone_to = place;
   stroke.redo_below = redo_top_;
+  stroke.credit_before_undo = now[std::size_t(stroke.arm)];
   Credits credits = now;
   credits[std::size_t(stroke.arm)] = stroke.credits[std::size_t(stroke.arm)];
   startJob(place, stroke.below, top_, credits);
@@ -122,7 +123,11 @@ bool CarveJournal::startUndo(const Credits& now) {
 bool CarveJournal::startRedo(const Credits& now) {
   if (busy_ || !canRedo()) return false;
   const Stroke& stroke = strokes_[redo_top_];
-  startJob(stroke.undone_from, redo_top_, stroke.redo_below, now);
+  // What the stroke cost is spent again: an undo and a redo must not fill the credit.
+  Credits credits = now;
+  double& of_arm = credits[std::size_t(stroke.arm)];
+  of_arm = std::min(of_arm, stroke.credit_before_undo);
+  startJob(stroke.undone_from, redo_top_, stroke.redo_below, credits);
   return true;
 }
 

@@ -68,7 +68,7 @@ class CarveJournal {
   bool canRedo() const { return redo_top_ != kNone; }
   // The last stroke that stands. Its arm's credit becomes what it was when the stroke began.
   bool startUndo(const Credits& now);
-  // The stroke undone last. Credits stay.
+  // The stroke undone last. Its arm's credit becomes no more than it was before the undo.
   bool startRedo(const Credits& now);
   // Tissue, counts, credits and the strokes that can be undone become exactly what they were at
   // that mark, before or after the present place; nothing can be redone then. A stroke that was
@@ -119,6 +119,7 @@ class CarveJournal {
     std::uint64_t end = 0;
     std::uint64_t voxels = 0;
     Credits credits{};  // when it began
+    double credit_before_undo = 0.0;  // of its arm
     std::int32_t arm = 0;
     std::uint32_t branch = 0;
     std::uint32_t below = kNone;       // the stroke that undo takes next

@@ -4,8 +4,11 @@ namespace trephine {
 
 void RuptureLaw::add(const LawInput& in, ContactForce& out) {
   const auto whole = [this](std::int32_t c) { return !(ruptured >> c & 1u); };
+  if (!in.touching) {  // also where another tool has taken what was pressed in
+    forget();
+    return;
+  }
   if (stretched < 0) {
-    if (!in.touching) ruptured = 0;
     const std::int32_t c = in.tip_class;
     if (c < 0 || !whole(c) || !(in.tissues->classes[std::size_t(c)].rupture_N > 0.0)) return;
     const double speed = glm::length(in.velocity_m_s);

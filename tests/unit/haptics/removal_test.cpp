@@ -251,6 +251,56 @@ TEST(Removal, TheMotorSavesNothingUpInAir) {
   EXPECT_EQ(bench.record.arms[0].cutting_credit_J, 0.0);
 }
 
+TEST(Removal, CreditTurnsToHeatInAirToo) {
+  HapticParameters p = test::oneArm();
+  p.arms[0].tool = burrStroke(10.0, 1.0).tool;
+  p.removal = RemovalKind::work;
+  p.laws = {LawKind::coulomb};
+  Bench bench(p, slope(64, 24.6));
+  bench.push({0, 0, 3}, {0, 0, -1}, 400);
+  for (int n = 0; n < 300; ++n) bench.at({0, 0, -1});
+  ASSERT_GT(bench.record.arms[0].cutting_credit_J, 0.1);
+  bench.push({0, 0, -1}, {0, 0, 6}, 100);
+  for (int n = 0; n < 1000; ++n) bench.at({0, 0, 6});
+  // What is left is worth two voxels.
+  EXPECT_LE(bench.record.arms[0].cutting_credit_J, 2.0 * 0.05 * std::pow(24.6 / 64, 3) + 1e-6);
+}
+
+TEST(Removal, APoseThatJumpsDoesNoWork) {
+  HapticParameters p = test::oneArm();
+  p.arms[0].tool = makeBurr(0.003, 64, 0, 0.03);
+  p.removal = RemovalKind::work;
+  p.laws = {LawKind::viscous};
+  Bench bench(p, slope(64, 24.6));
+  bench.at({0, 0, 9});
+  bench.at({0, 0, -3});
+  EXPECT_EQ(bench.record.arms[0].cutting_credit_J, 0.0);
+}
+
+// A tool that stands on a row of voxels must not take its own axis for cleared while work is short.
+TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
+  const Tool blade = makeBlade(0.010, 11);
+  Grid grid(slope(64, 24.6));
+  TissueLookup lookup;
+  const TissueTable table = test::boneTable();
+  lookup.set(table);
+  const TissueBricks bricks(grid, lookup);
+  Removal removal(blade, grid.geometry(), RemovalKind::work, 1e-3);
+  Grid::Writer writer = *grid.takeWriter();
+  std::vector<Bite> bites;
+  bites.reserve(Removal::kMostBites);
+  const Vec3 on_a_voxel = grid.geometry().toPatient_mm({32, 32, 2});
+  for (int n = 0; n < 400; ++n) {
+    // It comes down along a row that it had no work for.
+    const Vec3 at = on_a_voxel + Vec3(0, 0, std::max(0.0, 0.05 * (20 - n)));
+    removal.earn(n < 30 ? 0.0 : 1.0, table);
+    bites.clear();
+    removal.sweep(grid, bricks, lookup, table, {at, {1, 0, 0, 0}}, bites);
+    for (const Bite& b : bites) writer.store(b.voxel[0], b.voxel[1], b.voxel[2], kAirHu);
+  }
+  for (int k = 3; k < 26; ++k) EXPECT_EQ(grid.hu(32, 32, k), kAirHu) << k;
+}
+
 TEST(Removal, UndoGivesTheCreditBack) {
   HapticParameters p = test::oneArm();
   p.arms[0].tool = burrStroke(3.0, 1.0).tool;

@@ -2,6 +2,7 @@
 // copy of everything at each mark.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -20,6 +21,7 @@ class CarveModel {
     int arm;
     CarveJournal::Credits credits;
     std::vector<Taken> taken;
+    double credit_before_undo = 0.0;
   };
   struct State {
     std::vector<std::int16_t> hu;
@@ -35,7 +37,7 @@ class CarveModel {
 
   void begin(int arm) {
     undone.clear();
-    now.standing.push_back({arm, now.credits, {}});
+    now.standing.push_back({arm, now.credits, {}, 0.0});
     open[arm] = now.standing.size() - 1;
   }
   void end(int arm) { open.erase(arm); }
@@ -53,7 +55,9 @@ class CarveModel {
       now.hu[taken.voxel] = taken.hu;
       --now.removed[{stroke.arm, taken.tissue_class}];
     }
-    now.credits[std::size_t(stroke.arm)] = stroke.credits[std::size_t(stroke.arm)];
+    double& credit = now.credits[std::size_t(stroke.arm)];
+    stroke.credit_before_undo = credit;
+    credit = stroke.credits[std::size_t(stroke.arm)];
     undone.push_back(std::move(stroke));
   }
   void redo() {
@@ -64,6 +68,8 @@ class CarveModel {
       now.hu[taken.voxel] = kAirHu;
       ++now.removed[{stroke.arm, taken.tissue_class}];
     }
+    double& credit = now.credits[std::size_t(stroke.arm)];
+    credit = std::min(credit, stroke.credit_before_undo);
     now.standing.push_back(stroke);
   }
   void rewind(std::size_t second) {

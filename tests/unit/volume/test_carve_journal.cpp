@@ -222,7 +222,18 @@ TEST_F(CarveJournalTest, UndoGivesBackTheCreditOfItsArmAlone) {
   ASSERT_TRUE(undo());
   EXPECT_EQ(credits, (Credits{1, 0.2, 3, 4}));
   ASSERT_TRUE(redo());
-  EXPECT_EQ(credits, (Credits{1, 0.2, 3, 4})) << "redo leaves them";
+  EXPECT_EQ(credits, (Credits{1, 0.2, 3, 4})) << "no more than before";
+}
+
+// Else undo and redo in turn would fill it without work.
+TEST_F(CarveJournalTest, RedoSpendsTheCreditAgain) {
+  credits = {0.1, 2.0, 0.3, 0.4};
+  stroke(1, {1});
+  credits = {1, 0.5, 3, 4};
+  ASSERT_TRUE(undo());
+  EXPECT_EQ(credits[1], 2.0);
+  ASSERT_TRUE(redo());
+  EXPECT_EQ(credits, (Credits{1, 0.5, 3, 4}));
 }
 
 TEST_F(CarveJournalTest, RewindGivesBackAllCredits) {
