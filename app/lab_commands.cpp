@@ -22,6 +22,7 @@
 #include "lab/trades_measurement.h"
 #include "lab/upload_measurement.h"
 #include "render/display_probe.h"
+#include "scene/names.h"
 #include "session/case_source.h"
 #include "session/session.h"
 #include "training/replay.h"
@@ -55,14 +56,12 @@ Status applyChoices(const RunArguments& arguments, Scene& scene) {
     return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
   }
   if (arguments.controller.empty()) return {};
-  for (const auto& [name, kind] : kControllerNames) {
-    if (name == arguments.controller) {
-      scene.controller = kind;
-      return {};
-    }
+  if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
+    scene.controller = *kind;
+    return {};
   }
   return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
-               "--controller", "Use off or seed"};
+               "--controller", choices(kControllerNames)};
 }
 
 Status runRealTime(Session& session, double seconds, const Progress& progress) {
@@ -121,6 +120,30 @@ Result<RunReport> runExercise(const RunArguments& arguments, const Progress& pro
     spdlog::info("No display: no picture is drawn");
   }
   return report;
+}
+
+// What a measurement came to, for a program or for a person.
+template <class Measurement>
+void printMeasured(const char* name, const Measurement& measured, bool json) {
+  if (json) {
+    printAnswer(name, toJson(measured));
+  } else {
+    std::printf("%s", toText(measured).c_str());
+  }
+}
+
+// The files that `draw` makes, or null where there is no display to draw on.
+template <class Draw>
+Result<Json> drawnFiles(const char* what, Draw&& draw) {
+  if (Status display = probeDisplay(); !display) {
+    spdlog::warn("No {}: {}", what, display.error().what);
+    return Json(nullptr);
+  }
+  auto drawn = draw();
+  if (!drawn) return drawn.error();
+  Json files = Json::array();
+  for (const std::filesystem::path& file : *drawn) files.push_back(file.string());
+  return files;
 }
 
 }  // namespace
@@ -279,19 +302,12 @@ int measureStabilityCommand(const std::string& grid, const std::string& out, boo
   if (Status written = writeStabilityTable(*measured, out); !written) {
     return printError(kName, written.error(), json);
   }
-  Json maps = nullptr;
-  if (Status display = probeDisplay(); !display) {
-    spdlog::warn("No maps: {}", display.error().what);
-  } else {
-    auto drawn = writeStabilityMaps(mapCells(*measured), out, progress);
-    if (!drawn) return printError(kName, drawn.error(), json);
-    maps = Json::array();
-    for (const std::filesystem::path& map : *drawn) maps.push_back(map.string());
-  }
+  const Result<Json> maps = drawnFiles("maps", [&] { return writeStabilityMaps(mapCells(*measured), out, progress); });
+  if (!maps) return printError(kName, maps.error(), json);
   if (json) {
     Json answer = toJson(*measured);
     answer["table"] = (std::filesystem::path(out) / "stability.csv").string();
-    answer["maps"] = maps;
+    answer["maps"] = *maps;
     printAnswer(kName, answer);
   } else {
     std::printf("%s", toText(*measured).c_str());
@@ -303,22 +319,14 @@ int measureStabilityCommand(const std::string& grid, const std::string& out, boo
 int measureExtremesCommand(const std::string& out, bool json, const Progress& progress) {
   Result<ExtremesMeasurement> measured = measureExtremes(out, progress);
   if (!measured) return printError("measure.extremes", measured.error(), json);
-  if (json) {
-    printAnswer("measure.extremes", toJson(*measured));
-  } else {
-    std::printf("%s", toText(*measured).c_str());
-  }
+  printMeasured("measure.extremes", *measured, json);
   return measured->all_pass() ? 0 : 3;
 }
 
 int measureHapticsCommand(const std::string& out, bool json, const Progress& progress) {
   Result<HapticsMeasurement> measured = measureHaptics({}, out, progress);
   if (!measured) return printError("measure.haptics", measured.error(), json);
-  if (json) {
-    printAnswer("measure.haptics", toJson(*measured));
-  } else {
-    std::printf("%s", toText(*measured).c_str());
-  }
+  printMeasured("measure.haptics", *measured, json);
   return 0;
 }
 
@@ -326,19 +334,12 @@ int measureTradesCommand(const std::string& out, bool json, const Progress& prog
   constexpr const char* kName = "measure.trades";
   Result<TradesMeasurement> measured = measureTrades({}, out, progress);
   if (!measured) return printError(kName, measured.error(), json);
-  Json charts = nullptr;
-  if (Status display = probeDisplay(); !display) {
-    spdlog::warn("No charts: {}", display.error().what);
-  } else {
-    auto drawn = writeTradeCharts(measured->rows, out, progress);
-    if (!drawn) return printError(kName, drawn.error(), json);
-    charts = Json::array();
-    for (const std::filesystem::path& chart : *drawn) charts.push_back(chart.string());
-  }
+  const Result<Json> charts = drawnFiles("charts", [&] { return writeTradeCharts(measured->rows, out, progress); });
+  if (!charts) return printError(kName, charts.error(), json);
   if (json) {
     Json answer = toJson(*measured);
     answer["table"] = (std::filesystem::path(out) / "trades.csv").string();
-    answer["charts"] = charts;
+    answer["charts"] = *charts;
     printAnswer(kName, answer);
   } else {
     std::printf("%s", toText(*measured).c_str());
@@ -350,11 +351,7 @@ int measureJitterCommand(double seconds, const std::string& out, bool json,
                          const Progress& progress) {
   Result<JitterMeasurement> measured = measureJitter({seconds}, out, progress);
   if (!measured) return printError("measure.jitter", measured.error(), json);
-  if (json) {
-    printAnswer("measure.jitter", toJson(*measured));
-  } else {
-    std::printf("%s", toText(*measured).c_str());
-  }
+  printMeasured("measure.jitter", *measured, json);
   return 0;
 }
 

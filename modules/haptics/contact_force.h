@@ -19,8 +19,6 @@ struct ContactForce {
   Vec3 at(const Vec3& velocity_m_s) const {
     return elastic_N - damping * velocity_m_s - damped_turning_N;
   }
-  // What the points move by turning, as one velocity; 0 without damping.
-  Vec3 turning_m_s() const { return damping > 0.0 ? damped_turning_N / damping : Vec3(0.0); }
 };
 
 // One spring, deflected by elastic_N / stiffness, and a damper.

@@ -51,8 +51,7 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
       journal_(parameters.journal_voxels, parameters.journal_strokes, parameters.journal_seconds),
       stroke_gap_ticks_(std::uint64_t(parameters.stroke_gap_s / parameters.period_s)),
       second_ticks_(std::uint64_t(1.0 / parameters.period_s + 0.5)) {
-  const auto& laws = parameters_.laws;
-  elastic_ = std::find(laws.begin(), laws.end(), LawKind::elastic) != laws.end();
+  elastic_ = names(parameters_.laws, LawKind::elastic);
   for (const ArmParameters& arm : parameters_.arms) {
     arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
@@ -80,8 +79,7 @@ void HapticCore::useTissues() {
   if (elastic_) {
     TissueTable pushing = parameters_.tissues;
     // A capsule pushes by the law of its own, where the scene has it.
-    const auto& laws = parameters_.laws;
-    const bool ruptures = std::find(laws.begin(), laws.end(), LawKind::rupture) != laws.end();
+    const bool ruptures = names(parameters_.laws, LawKind::rupture);
     for (int c = 0; ruptures && c < pushing.count; ++c) {
       TissueClass& tissue = pushing.classes[std::size_t(c)];
       if (tissue.rupture_N > 0.0) tissue.stiffness_N_per_m = 0.0;

@@ -8,10 +8,12 @@
 // To add a law: its file, its lines here, its tests.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "haptics/laws/coulomb.h"
 #include "haptics/laws/elastic.h"
@@ -42,6 +44,9 @@ Law makeLawFrom(std::size_t index, std::size_t points) {
 
 inline Law makeLaw(LawKind kind, std::size_t points = 1) {
   return detail::makeLawFrom(std::size_t(kind), points);
+}
+inline bool names(const std::vector<LawKind>& laws, LawKind law) {
+  return std::find(laws.begin(), laws.end(), law) != laws.end();
 }
 inline void addLaw(Law& law, const LawInput& in, ContactForce& out) {
   std::visit([&](auto& l) { l.add(in, out); }, law);

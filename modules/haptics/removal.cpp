@@ -20,17 +20,21 @@ double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
   return tissue.cutting_J_per_mm3 * voxel_mm3;
 }
 
-// The first and last whole index within an interval, cut to 0 .. count - 1; empty: first > last.
-// No floor() or ceil(): without SSE 4 these are calls.
+// Empty where first > last.
 struct Indices {
   int first = 0, last = -1;
 };
+
+// A row of voxels that the solid crosses, and what of it was cleared before.
 struct Row {
   Indices all, clear;
   int j = 0, number = 0;
   std::size_t voxel = 0;  // the first of the grid's row
 };
-inline Indices indices(const Interval& mm, double per_spacing, int count) {
+
+// The first and last whole index within an interval, cut to 0 .. count - 1. No floor() or ceil():
+// without SSE 4 these are calls.
+Indices indices(const Interval& mm, double per_spacing, int count) {
   if (mm.empty()) return {};
   const double low = mm.low * per_spacing, high = mm.high * per_spacing;
   if (!(low < count && high >= 0.0)) return {};

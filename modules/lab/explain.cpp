@@ -156,9 +156,7 @@ Result<Json> explainScene(Scene scene) {
         ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, ballDirections(tool.blunt));
         stiffness.set(parameters.tissues);
       }
-      const auto name = std::find_if(kLawNames.begin(), kLawNames.end(),
-                                     [&](const auto& entry) { return entry.second == kind; });
-      add("law " + std::string(name->first), medianNs([&] {
+      add("law " + nameOf(kLawNames, kind), medianNs([&] {
             input.tip_m.x += 1e-6;
             // Half of the ball in tissue.
             if (ball) input.push = ball->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
@@ -211,11 +209,7 @@ Result<Json> explainScene(Scene scene) {
 
   Json tissues = Json::array(), laws = Json::array();
   for (const Tissue& tissue : scene.tissues.tissues) tissues.push_back(tissue.id);
-  for (LawKind kind : scene.laws) {
-    for (const auto& [name, k] : kLawNames) {
-      if (k == kind) laws.push_back(name);
-    }
-  }
+  for (LawKind kind : scene.laws) laws.push_back(nameOf(kLawNames, kind));
   Json bounded = Json::array();
   for (const BoundedTissue& b : boundedTissues(scene)) {
     bounded.push_back({{"arm", b.arm},

@@ -54,15 +54,10 @@ Impedance demandedOf(const Scene& scene, const Tissue& tissue) {
     if (law == LawKind::coulomb) sum.stiffness += tissue.stiffness_N_per_m.value;
   }
   // A capsule pushes by the law of rupture, where the scene has it, else as elastic tissue.
-  const auto named = [&](LawKind law) {
-    return std::find(scene.laws.begin(), scene.laws.end(), law) != scene.laws.end();
-  };
   const bool capsule = tissue.rupture_N && tissue.rupture_N->value > 0.0;
-  if (named(LawKind::rupture) && capsule) {
-    sum.stiffness += tissue.stiffness_N_per_m.value;
-  } else if (named(LawKind::elastic)) {
-    sum.stiffness += tissue.stiffness_N_per_m.value;
-  }
+  const LawKind pushing =
+      capsule && names(scene.laws, LawKind::rupture) ? LawKind::rupture : LawKind::elastic;
+  if (names(scene.laws, pushing)) sum.stiffness += tissue.stiffness_N_per_m.value;
   return sum;
 }
 

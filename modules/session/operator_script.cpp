@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/names.h"
+
 namespace trephine {
 
 namespace {
@@ -68,21 +70,18 @@ ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
   ScriptCommand out;
   out.time_s = item.number("t");
   const std::string name = item.text("do");
-  auto kind = std::find_if(kCommandNames.begin(), kCommandNames.end(),
-                           [&](const auto& k) { return k.first == name; });
-  if (kind == kCommandNames.end()) {
+  const auto kind = kindOf(kCommandNames, name);
+  if (!kind) {
     item.fail("do", "Unknown command '" + name + "'");
     return out;
   }
-  out.command.kind = kind->second;
+  out.command.kind = *kind;
   if (out.command.kind == CommandKind::controller) {
     const std::string wanted = item.text("controller");
-    auto found = std::find_if(kControllerNames.begin(), kControllerNames.end(),
-                              [&](const auto& c) { return c.first == wanted; });
-    if (found == kControllerNames.end()) {
-      item.fail("controller", "Unknown controller '" + wanted + "'");
+    if (const auto controller = kindOf(kControllerNames, wanted)) {
+      out.command.value = std::int32_t(*controller);
     } else {
-      out.command.value = std::int32_t(found->second);
+      item.fail("controller", "Unknown controller '" + wanted + "'");
     }
   }
   if (out.command.kind == CommandKind::rewind) {

@@ -9,21 +9,12 @@
 #include "render/display_probe.h"
 #include "render/picture.h"
 #include "support.h"
+#include "trade_rows.h"
 
 namespace trephine {
 namespace {
 
-TradeRow row(const char* knob, const char* setting, double error, double cost) {
-  TradeRow r;
-  r.knob = knob;
-  r.setting = setting;
-  r.error = error;
-  r.error_unit = "%";
-  r.cost = cost;
-  r.cost_unit = "ns";
-  r.reference = "truth";
-  return r;
-}
+using test::row;
 
 TEST(TradeAxis, IsLinearFromZeroOverNarrowRangesAndZeroes) {
   for (const std::vector<double>& values :

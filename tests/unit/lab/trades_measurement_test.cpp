@@ -12,23 +12,13 @@
 #include "lab/trade_knobs.h"
 #include "lab/trade_stroke.h"
 #include "support.h"
+#include "trade_rows.h"
 
 namespace trephine {
 namespace {
 
-TradeRow row(const char* knob, const char* setting, double error, double cost,
-             std::vector<std::pair<std::string, double>> extra = {}) {
-  TradeRow r;
-  r.knob = knob;
-  r.setting = setting;
-  r.error = error;
-  r.error_unit = "%";
-  r.cost = cost;
-  r.cost_unit = "ns";
-  r.reference = "truth";
-  r.extra = std::move(extra);
-  return r;
-}
+using test::row;
+
 TradeRow rate(const char* setting, double error, double cost, double bone_percent = 50.0) {
   return row("rate_hz", setting, error, cost, {{"bone_of_k_max_percent", bone_percent}});
 }
