@@ -189,7 +189,7 @@ int importCommand(const std::string& path, const std::string& series, const std:
                      "The findings say why for each"};
     return fail(folder->report().error.value_or(none), &folder->report());
   }
-  Result<Volume> volume = folder->read(*uid, progress);
+  Result<Volume> volume = folder->read(*uid, {}, progress);
   if (!volume) return fail(volume.error(), &folder->report());
   if (!write.empty()) {
     if (Status written = writeVolume(*volume, write); !written) {

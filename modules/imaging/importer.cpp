@@ -161,7 +161,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   return folder;
 }
 
-std::optional<std::string> CtFolder::bestSeries() const {
+std::optional<std::string> CtFolder::bestSeries(const Answers&) const {
   const SeriesReport* best = nullptr;
   for (const SeriesReport& series : contents_->report.series) {
     if (series.verdict == Verdict::refused || series.modality != "CT") continue;
@@ -171,7 +171,28 @@ std::optional<std::string> CtFolder::bestSeries() const {
   return best->uid;
 }
 
-Result<Volume> CtFolder::read(const std::string& uid, const Progress& progress) {
+Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
+  const ImportReport& report = contents_->report;
+  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
+  if (series == report.series.end()) return Error{"NO_SUCH_SERIES", "There is no such series", "", ""};
+  const auto& headers = contents_->slices[std::size_t(series - report.series.begin())];
+  if (index < 0 || std::size_t(index) >= headers.size()) {
+    return Error{"NO_SUCH_SLICE", "There is no such slice", "", ""};
+  }
+  const DicomHeader& header = headers[std::size_t(index)];
+  if (header.samples != 1 || header.bits_allocated != 16 || header.defect != Defect::none ||
+      !isReadableTransferSyntax(header.transfer_syntax)) {
+    return Error{"NO_PICTURE", "The slice holds no grey pixels", "", ""};
+  }
+  SlicePicture picture{header.columns, header.rows, Vec3(1.0), {}};
+  picture.hu.resize(std::size_t(header.columns) * std::size_t(header.rows));
+  if (const Status read = readStoredWords(header, picture.hu.data()); !read) return read.error();
+  HuConverter().convert(picture.hu.data(), picture.hu.size(), header.format);
+  return picture;
+}
+
+Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest&,
+                              const Progress& progress) {
   ImportReport& report = contents_->report;
   const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
   if (series == report.series.end()) {

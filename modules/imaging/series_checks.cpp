@@ -216,6 +216,7 @@ void assessSeries(Series& series) {
   report.description = first.description;
   report.modality = first.modality.empty() && isCt(first) ? "CT" : first.modality;
   report.transfer_syntax = cleanUtf8(first.transfer_syntax);
+  report.slices = int(series.slices.size());
   report.geometry.size = {first.columns, first.rows, std::int32_t(series.slices.size())};
   report.geometry.spacing_mm = Vec3(0.0);
   if (first.pixel_spacing_mm) {

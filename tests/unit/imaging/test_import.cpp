@@ -289,7 +289,7 @@ TEST_F(Import, TheJsonIsValidUtf8WhateverThePathHolds) {
 TEST_F(Import, AnUnknownSeriesIsNamed) {
   write(rampVolume());
   CtFolder ct = scan();
-  const auto volume = ct.read("1.2.3", Progress());
+  const auto volume = ct.read("1.2.3", {}, Progress());
   ASSERT_FALSE(volume.ok());
   EXPECT_EQ(volume.error().code, "NO_SUCH_SERIES");
 }
@@ -300,8 +300,8 @@ TEST_F(Import, ACancelStopsScanAndRead) {
   Progress cancelled;
   cancelled.cancel();
   EXPECT_EQ(CtFolder::scan(folder(), cancelled).error().code, "CANCELLED");
-  EXPECT_EQ(ct.read(*ct.bestSeries(), cancelled).error().code, "CANCELLED");
-  EXPECT_TRUE(ct.read(*ct.bestSeries(), Progress()).ok());
+  EXPECT_EQ(ct.read(*ct.bestSeries(), {}, cancelled).error().code, "CANCELLED");
+  EXPECT_TRUE(ct.read(*ct.bestSeries(), {}, Progress()).ok());
 }
 
 TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
@@ -309,7 +309,7 @@ TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
   CtFolder ct = scan();
   const std::string best = *ct.bestSeries();
   fs::resize_file(slice(3), fs::file_size(slice(3)) - 10);
-  const auto volume = ct.read(best, Progress());
+  const auto volume = ct.read(best, {}, Progress());
   ASSERT_FALSE(volume.ok());
   EXPECT_EQ(volume.error().code, "MISSING_SLICES");
   EXPECT_FALSE(ct.bestSeries().has_value());

@@ -23,7 +23,7 @@ TEST(RealData, TheSkullPassesWithItsKnownSizeAndRange) {
   auto ct = CtFolder::scan(data / "head-ct-plastic-skull", Progress());
   ASSERT_TRUE(ct.ok());
   ASSERT_TRUE(ct->bestSeries().has_value());
-  const auto volume = ct->read(*ct->bestSeries(), Progress());
+  const auto volume = ct->read(*ct->bestSeries(), {}, Progress());
   ASSERT_TRUE(volume.ok());
   const SeriesReport& series = ct->report().series.front();
   EXPECT_EQ(series.verdict, Verdict::pass);
