@@ -6,7 +6,6 @@
 #include <mutex>
 #include <new>
 
-#include "base/system.h"
 #include "imaging/dicom_pixels.h"
 #include "imaging/slice_mixing.h"
 #include "imaging/text.h"
@@ -116,12 +115,11 @@ class Assembler {
 
 }  // namespace
 
-std::optional<Error> allocate(Volume& volume, double needed_mb) {
-  constexpr double kSpare_mb = 64.0;  // left to everything else
-  if (const double free_mb = availableMemoryMb(); needed_mb + kSpare_mb > free_mb) {
+std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb) {
+  if (needed_mb > most_mb) {
     return Error{"OUT_OF_MEMORY",
                  "Reading the series needs " + fixedText(needed_mb, 0) + " MB of memory, and " +
-                     fixedText(free_mb, 0) + " MB are free",
+                     fixedText(most_mb, 0) + " MB can be had",
                  "", "Close other programs, or use a computer with more memory"};
   }
   const std::size_t count = volume.geometry.voxelCount();
@@ -141,10 +139,11 @@ std::optional<Error> allocate(Volume& volume, double needed_mb) {
   return std::nullopt;
 }
 
-Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Progress& progress) {
+Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
+                          const Progress& progress) {
   Assembly assembly;
   assembly.volume.geometry = plan.stack.geometry;
-  if (auto error = allocate(assembly.volume, series.report.memory_mb)) return *error;
+  if (auto error = allocate(assembly.volume, series.report.memory_mb, most_memory_mb)) return *error;
   Assembler assembler(series, plan, assembly);
   const bool mixed = !plan.stack.oneToOne();
   const Status status =

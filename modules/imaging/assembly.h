@@ -24,10 +24,11 @@ struct Assembly {
 
 // Reads the plan's slices on several threads, straight into the volume where nothing is to be
 // interpolated. Errors: OUT_OF_MEMORY, CANCELLED.
-Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Progress& progress);
+Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
+                          const Progress& progress);
 
 // Zeroed voxels for `volume.geometry`, on large pages where the kernel gives them: page faults are
-// most of a read's cost. `needed_mb` is what the whole job takes and must be free.
-std::optional<Error> allocate(Volume& volume, double needed_mb);
+// most of a read's cost. Refuses, in words, what does not fit.
+std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb);
 
 }  // namespace trephine

@@ -17,6 +17,7 @@ namespace {
 
 constexpr Uint32 kLazyBytes = 1024;  // longer values stay on disk until asked for
 constexpr std::string_view kDicomDir = "1.2.840.10008.1.3.10";
+constexpr const char* kUnnamedSeries = "unnamed";
 constexpr int kMostFrames = 100000;
 
 // A level of nesting takes at least 16 bytes of file and up to 2.1 KB of stack (measured), so that
@@ -274,6 +275,14 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   header.sop_instance = uidText(data, DCM_SOPInstanceUID);
   if (header.sop_instance.empty()) {
     header.sop_instance = uidText(meta, DCM_MediaStorageSOPInstanceUID);
+  }
+  // Anonymising software empties UIDs; that the attribute is there tells such files from debris.
+  if (header.series_uid.empty() && data.tagExists(DCM_SeriesInstanceUID) &&
+      valueText(data, DCM_SeriesInstanceUID).empty()) {
+    header.series_uid = kUnnamedSeries;
+    header.series_key = trimmedText(data, DCM_SeriesNumber) + "\\" +
+                        trimmedText(data, DCM_SeriesDate) + "\\" +
+                        trimmedText(data, DCM_SeriesTime);
   }
   for (const auto& [uid, name] : {std::pair(&header.series_uid, "Series Instance UID"),
                                   std::pair(&header.sop_class, "SOP Class UID"),

@@ -52,6 +52,7 @@ struct DicomHeader {
   int frame = 0;  // from 0
 
   std::string sop_class, sop_instance, study_uid, series_uid, frame_of_reference;
+  std::string series_key;  // where the Series UID was emptied: what tells series apart instead
   std::string modality, description, body_part;  // description: valid UTF-8
   std::string transfer_syntax;                   // UID
   std::string rescale_type;

@@ -139,19 +139,22 @@ struct CtFolder::Contents {
     report.series[std::size_t(&source - sources.data())] = source.series.report;
   }
 
-  Result<Volume> readDicom(Series& series, const Answers& answers, const Progress& progress,
+  Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
                            int& slices_used);
 };
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
-Result<Volume> CtFolder::Contents::readDicom(Series& series, const Answers& answers,
+Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
                                              const Progress& progress, int& slices_used) {
+  constexpr double kSpare_mb = 64.0;  // left to everything else
+  const double most_mb = request.most_memory_mb.value_or(availableMemoryMb() - kSpare_mb);
+  const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
     if (const Status valid = checkAnswers(series.report, answers); !valid) return valid.error();
     if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
-    Result<Assembly> assembly = assemble(series, plan, progress);
+    Result<Assembly> assembly = assemble(series, plan, most_mb, progress);
     if (!assembly) return assembly.error();
     for (const Assembly::Unreadable& lost : assembly->unreadable) {
       series.slices[lost.slice].defect = Defect::cut;
@@ -293,7 +296,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   }
   Result<Volume> volume =
       source->file.empty()
-          ? contents_->readDicom(source->series, request.answers, progress, slices_used)
+          ? contents_->readDicom(source->series, request, progress, slices_used)
           : readFileSeries(source->file, progress, series);
   if (!volume) return fail(volume.error());
   report.seconds.read = secondsSince(start);

@@ -1,6 +1,7 @@
 #include "imaging/series.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -160,17 +161,23 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
 
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
   // Numbered in order of UIDs, which no file name or folder order can change.
-  std::map<std::pair<std::string, std::string>, std::vector<DicomHeader>> groups;
+  std::map<std::array<std::string, 3>, std::vector<DicomHeader>> groups;
   for (DicomHeader& header : headers) {
-    groups[{header.series_uid, header.study_uid}].push_back(std::move(header));
+    groups[{header.series_uid, header.study_uid, header.series_key}].push_back(std::move(header));
   }
   std::vector<Series> all;
   std::map<std::string, int> parts_of_uid;  // a Series UID may occur in two studies
   for (auto& [uids, group] : groups) {
     for (Series& series : splitSeries(std::move(group))) {
-      const int number = ++parts_of_uid[uids.first];
-      series.report.uid = uids.first;
+      const int number = ++parts_of_uid[uids[0]];
+      series.report.uid = uids[0];
       if (number > 1) series.report.uid += "#" + std::to_string(number);
+      if (!uids[2].empty()) {
+        series.report.findings.push_back(
+            {"NO_SERIES_UID", "notice",
+             "The files name no series: their Series Instance UID was emptied", {},
+             "Slices of one study, series number, date and time were taken together"});
+      }
       dropDuplicates(series);
       dropEqualRepeats(series);
       series.findings_kept = series.report.findings.size();

@@ -416,6 +416,10 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
   geometry.origin_mm = input.positions_mm[places.front().input];
   if (places.size() == 1) {
     geometry.size[2] = 1;
+    if (!places.front().usable) {
+      stack.findings.push_back({"MISSING_SLICES", "refusal", "The slice is missing" + input.lost_text,
+                                {}, "Copy the file again from its source"});
+    }
     stack.places_mm.assign(count, places.front().place_mm);
     stack.findings.push_back(
         {"ONE_LOCATION",

@@ -169,7 +169,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   const std::vector<Place> places = placesOf(places_mm);
   const auto [least, most] = std::ranges::minmax(places, {}, &Place::count);
   std::vector<std::size_t> chosen;
-  if (most.count() == 1) {
+  if (most.count() == 1 || places.size() == 1) {
     for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
     return chosen;
   }
