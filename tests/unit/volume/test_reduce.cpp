@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "volume/phantom.h"
 #include "volume/reduce.h"
 #include "volumes.h"
 
@@ -171,10 +170,14 @@ TEST(ReductionLoss, AWallOfOneVoxelIsGoneAndThickBoneStays) {
 }
 
 TEST(ReductionLoss, TheSampledAnswerIsNearTheWholeOne) {
-  GridGeometry geometry = phantomGeometry("cranium").value();
-  geometry.size = {160, 170, 180};  // the smallest that is not asked whole
-  geometry.spacing_mm = {1.28, 1.2, 1.0};
-  const Volume head = makePhantomOn(phantomTruth("cranium").value(), geometry, kPhantomNoiseHu);
+  Volume head;                           // a shell 2.3 mm thick around water
+  head.geometry.size = {160, 160, 160};  // about the smallest that is not asked whole
+  head.hu.resize(head.geometry.voxelCount());
+  for (std::size_t n = 0; n < head.hu.size(); ++n) {
+    const Index3 at = head.geometry.indicesOf(n);
+    const double r = glm::distance(Vec3(at[0], at[1], at[2]), Vec3(80.3, 79.4, 78.1));
+    head.hu[n] = r > 60.0 ? kAirHu : r > 57.7 ? 1000 : 0;
+  }
   const Volume small = reduced(head, 2).value();
   const ReductionLoss sampled = reductionLoss(head, small, 2);
   EXPECT_EQ(sampled.stride, (Index3{3, 1, 1}));
@@ -183,7 +186,6 @@ TEST(ReductionLoss, TheSampledAnswerIsNearTheWholeOne) {
   std::uint64_t bone = 0, lost = 0;
   for (std::size_t n = 0; n < head.hu.size(); ++n) {
     const Index3 at = head.geometry.indicesOf(n);
-    if (at[2] == 0) continue;  // below its middle, sampleHu mixes in air; the neck is cut here
     const double before = head.hu[n];
     const double after = sampleHu(small, head.geometry.toPatient_mm(Vec3(at[0], at[1], at[2])));
     square += (after - before) * (after - before) / double(head.hu.size());
