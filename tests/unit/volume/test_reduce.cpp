@@ -193,7 +193,7 @@ TEST(ReductionLoss, TheSampledAnswerIsNearTheWholeOne) {
     lost += before > kBoneHu && after <= kBoneHu;
   }
   EXPECT_NEAR(sampled.rms_hu, std::sqrt(square), 0.02 * std::sqrt(square));
-  EXPECT_NEAR(sampled.bone_lost_percent, 100.0 * double(lost) / double(bone), 0.2);
+  EXPECT_NEAR(sampled.bone_lost_percent, 100.0 * double(lost) / double(bone), 0.5);
   EXPECT_GT(lost, 0u);
 }
 
