@@ -15,6 +15,9 @@ namespace {
 // that touches the body comes off it: what runs straight along the scan, what is loose (over two
 // cells from all that is thick), and the rest.
 enum Kind : std::uint8_t { nothing, matter, straight, loose, couch, pad };
+bool stays(std::uint8_t kind) {
+  return kind != nothing && kind < couch;
+}
 
 constexpr int kMatterHu = -500;  // a cell's densest voxel: plastic or carbon 1 mm thick has it
 constexpr int kBoneHu = 600;     // and nothing of a couch but its metal is denser
@@ -185,7 +188,7 @@ class CouchSearch {
     measure();
   }
 
-  // Marks the couch's cells; every other cell of matter is `matter` afterwards.
+  // Marks the couch's cells; all other cells stay of their kind.
   void mark(CouchFinding& finding) {
     for (std::size_t n = 0; n < is_couch_.size(); ++n) {
       is_couch_[n] = isCouch(found_.parts[n], shapes_[n]);
@@ -198,21 +201,34 @@ class CouchSearch {
   }
 
   // Once there is a couch with its pads: what else is straight, long parts that touch it, and
-  // crumbs that lie on it with half their cells. False where there is nothing like it.
+  // crumbs that lie on it with half their cells and touch no body (a fingertip does). False where
+  // there is nothing like it.
   bool markRest() {
-    std::vector<std::uint32_t> touching(is_couch_.size());
+    struct Touch {
+      std::uint32_t couch = 0, body = 0;
+    };
+    std::vector<Touch> touching(is_couch_.size());
     for (const CellRun& run : found_.runs) {
       if (is_couch_[run.part] || found_.parts[run.part].kind == matter) continue;
-      for (int a = run.first; a <= run.last; ++a)
-        touching[run.part] += touchesCouch(a, run.b, run.s);
+      Touch& touch = touching[run.part];
+      for (int a = run.first; a <= run.last; ++a) {
+        bool couch_there = false, body_there = false;
+        forNeighbours(a, run.b, run.s, [&](std::uint8_t kind) {
+          couch_there |= kind >= couch;
+          body_there |= kind == matter;
+        });
+        touch.couch += couch_there;
+        touch.body += body_there;
+      }
     }
-    constexpr std::uint32_t kCrumb = 20;
+    constexpr std::uint32_t kCrumb = 60;
     bool more = false;
     for (std::size_t n = 0; n < is_couch_.size(); ++n) {
       const CoarsePart& part = found_.parts[n];
       if (is_couch_[n] || isUnlikeCouch(part, shapes_[n])) continue;
-      const bool crumb = part.cells <= kCrumb && touching[n] * 2 >= part.cells;
-      const bool long_part = touching[n] > 0 && length_mm(part) >= kLong_mm;
+      const Touch& touch = touching[n];
+      const bool crumb = part.cells <= kCrumb && touch.couch * 2 >= part.cells && touch.body == 0;
+      const bool long_part = touch.couch > 0 && length_mm(part) >= kLong_mm;
       if (part.kind != straight && !crumb && !long_part) continue;
       is_couch_[n] = true;
       more = true;
@@ -286,24 +302,22 @@ class CouchSearch {
     }
     return true;
   }
-  bool touchesCouch(int a, int b, int s) const {
+  template <class See>
+  void forNeighbours(int a, int b, int s, const See& see) const {
     const Index3& size = grid_.size;
     for (int z = std::max(0, s - 1); z <= std::min(size[2] - 1, s + 1); ++z) {
       for (int y = std::max(0, b - 1); y <= std::min(size[1] - 1, b + 1); ++y) {
         for (int x = std::max(0, a - 1); x <= std::min(size[0] - 1, a + 1); ++x) {
-          if (kind_[grid_.indexOf(x, y, z)] >= couch) return true;
+          see(kind_[grid_.indexOf(x, y, z)]);
         }
       }
     }
-    return false;
   }
   void markCells() {
     for (const CellRun& run : found_.runs) {
-      const std::size_t row = grid_.indexOf(0, run.b, run.s);
-      for (int a = run.first; a <= run.last; ++a) {
-        std::uint8_t& cell = kind_[row + std::size_t(a)];
-        if (cell != pad) cell = is_couch_[run.part] ? couch : matter;
-      }
+      if (!is_couch_[run.part]) continue;
+      const std::size_t row = grid_.indexOf(run.first, run.b, run.s);
+      std::fill_n(kind_.begin() + std::ptrdiff_t(row), run.last - run.first + 1, couch);
     }
   }
 
@@ -324,7 +338,7 @@ void markPads(const CoarseGrid& grid, CoarseCells& kind) {
     for (int y = std::max(0, b - 1); y <= std::min(nb - 1, b + 1); ++y) {
       for (int x = std::max(0, a - 1); x <= std::min(na - 1, a + 1); ++x) {
         const std::size_t m = n - n % slice + std::size_t(y * na + x);
-        if (kind[m] == matter && grid.mean[m] > kPadHighHu) return true;
+        if (stays(kind[m]) && grid.mean[m] > kPadHighHu) return true;
       }
     }
     return false;
@@ -370,7 +384,7 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
     for (std::size_t n = 0; n < near.size(); n += slice) {
       for (std::size_t m = 0; m < slice; ++m) {
         const std::uint8_t own = kind[n + m];
-        near[n + m] = std::uint8_t((own >= couch ? kGoing : 0) | (own == matter ? kStaying : 0));
+        near[n + m] = std::uint8_t((own >= couch ? kGoing : 0) | (stays(own) ? kStaying : 0));
         in_column[m] += own == couch;
       }
     }
@@ -386,7 +400,7 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
       const std::uint8_t own = kind[n + m];
       std::uint8_t& cell = near[n + m];
       const bool all = cell == kGoing;
-      const bool some = (cell & kGoing) || (own == matter && columns[m]);
+      const bool some = (cell & kGoing) || (stays(own) && columns[m]);
       cell = all ? CouchFinding::remove : some ? CouchFinding::share : CouchFinding::keep;
     }
   }
