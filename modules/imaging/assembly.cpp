@@ -1,7 +1,5 @@
 #include "imaging/assembly.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <mutex>
 #include <new>
@@ -124,13 +122,6 @@ std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb) 
   }
   const std::size_t count = volume.geometry.voxelCount();
   try {
-    volume.hu.reserve(count);
-    constexpr std::uintptr_t kPage = 4096;
-    const auto begin = (reinterpret_cast<std::uintptr_t>(volume.hu.data()) + kPage - 1) / kPage;
-    const auto end = reinterpret_cast<std::uintptr_t>(volume.hu.data() + count) / kPage;
-    if (end > begin) {  // a hint: failing costs time only
-      ::madvise(reinterpret_cast<void*>(begin * kPage), (end - begin) * kPage, MADV_HUGEPAGE);
-    }
     volume.hu.resize(count);
   } catch (const std::bad_alloc&) {
     return Error{"OUT_OF_MEMORY", "There is not enough memory for the volume", "",

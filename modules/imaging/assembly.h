@@ -27,8 +27,7 @@ struct Assembly {
 Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
                           const Progress& progress);
 
-// Zeroed voxels for `volume.geometry`, on large pages where the kernel gives them: page faults are
-// most of a read's cost. Refuses, in words, what does not fit.
+// Voxels for `volume.geometry`; refuses, in words, what does not fit.
 std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb);
 
 }  // namespace trephine

@@ -213,11 +213,11 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
 
 std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   const SeriesReport* best = nullptr;
-  // A DICOM series says that it is CT; a file that is named like a label map comes last.
+  // A file that is named like a label map comes last; of two alike, DICOM says that it is CT.
   const auto rank = [](const SeriesReport& s) {
     const bool labels =
         std::ranges::find(s.findings, "NAMED_AS_LABELS", &Finding::code) != s.findings.end();
-    return std::tuple(!labels, s.source == "DICOM", s.geometry.size[2]);
+    return std::tuple(!labels, s.geometry.size[2], s.source == "DICOM");
   };
   for (const Source& source : contents_->sources) {
     const SeriesReport& listed =

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "base/sha256.h"
 #include "imaging/dicom_pixels.h"
 #include "imaging/series_geometry.h"
 #include "imaging/text.h"
@@ -14,6 +15,7 @@ namespace trephine {
 namespace {
 
 constexpr int kMostPhases = 100;
+constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
 
 // [first, last) of the slices at each place.
 struct Place {
@@ -99,14 +101,16 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
   return result;
 }
 
-bool samePixels(PixelReader& reader, const DicomHeader& a, const DicomHeader& b) {
-  if (a.rows != b.rows || a.columns != b.columns || a.format != b.format ||
-      a.defect != Defect::none || b.defect != Defect::none || !a.has_pixels || !b.has_pixels ||
-      a.samples != 1 || a.pixelCount() > kLargestSlice) {
-    return false;
+// What tells the pixels of two slices apart; nothing where they cannot be read.
+std::optional<std::string> pixelKey(PixelReader& reader, const DicomHeader& slice) {
+  if (slice.defect != Defect::none || !slice.has_pixels || slice.samples != 1 ||
+      (slice.bits_allocated != 8 && slice.bits_allocated != 16) ||
+      slice.pixelCount() > kLargestSlice) {
+    return std::nullopt;
   }
-  std::vector<std::int16_t> words_a(a.pixelCount()), words_b(b.pixelCount());
-  return reader.read(a, words_a.data()) && reader.read(b, words_b.data()) && words_a == words_b;
+  std::vector<std::int16_t> words(slice.pixelCount());
+  if (!reader.read(slice, words.data())) return std::nullopt;
+  return sha256Hex(words.data(), words.size() * sizeof(std::int16_t));
 }
 
 }  // namespace
@@ -129,6 +133,8 @@ void dropEqualRepeats(Series& series) {
   std::vector<double> places_mm;
   for (const Placed& slice : placed) places_mm.push_back(slice.place_mm);
   const std::vector<Place> places = placesOf(places_mm);
+  if (places.size() < 2) return;  // no volume in any case
+  const std::size_t repeats = placed.size() - places.size();
   const bool complete =
       std::ranges::all_of(places, [&](const Place& p) { return p.count() == places[0].count(); });
 
@@ -136,20 +142,25 @@ void dropEqualRepeats(Series& series) {
   std::vector<bool> dropped(series.slices.size(), false);
   Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
   for (const Place& place : places) {
-    std::size_t equal = 0;
-    for (std::size_t n = place.first + 1; n < place.last; ++n) {
-      const std::size_t slice = placed[n].slice;
-      for (std::size_t m = place.first; m < n && !dropped[slice]; ++m) {
-        const std::size_t other = placed[m].slice;
-        if (dropped[other] || !samePixels(reader, series.slices[other], series.slices[slice])) {
-          continue;
-        }
-        dropped[slice] = true;
-        finding.slices.push_back(sliceName(series.slices[slice]));
-        ++equal;
+    if (place.count() == 1) continue;
+    std::vector<std::pair<std::string, const DicomHeader*>> seen;
+    bool different = false;
+    for (std::size_t n = place.first; n < place.last; ++n) {
+      const DicomHeader& slice = series.slices[placed[n].slice];
+      const auto key = pixelKey(reader, slice);
+      const bool repeated = key && std::ranges::any_of(seen, [&](const auto& other) {
+                              return other.first == *key && other.second->format == slice.format;
+                            });
+      if (repeated) {
+        dropped[placed[n].slice] = true;
+        finding.slices.push_back(sliceName(slice));
+      } else {
+        different |= !seen.empty();
+        if (key) seen.emplace_back(*key, &slice);
       }
     }
-    if (complete && equal + 1 < place.count()) break;  // phases: no need to look at all of them
+    // Phases, most likely: no need to read all of them.
+    if (different && (complete || repeats > kMostCompared)) break;
   }
   if (finding.slices.empty()) return;
   finding.text = std::to_string(finding.slices.size()) +

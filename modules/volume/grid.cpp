@@ -56,7 +56,7 @@ void Grid::copyChanges(Volume& copy, std::vector<VoxelBox>& boxes) {
 }
 
 Volume Grid::snapshot() const {
-  Volume copy{geometry(), std::vector<std::int16_t>(volume_.hu.size())};
+  Volume copy{geometry(), Voxels(volume_.hu.size())};
   for (std::size_t index = 0; index < copy.hu.size(); ++index) copy.hu[index] = hu(index);
   return copy;
 }

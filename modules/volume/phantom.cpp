@@ -238,7 +238,7 @@ Result<Volume> makePhantom(const std::string& name, const Progress& progress) {
 }
 
 Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu) {
-  Volume volume{geometry, std::vector<std::int16_t>(geometry.voxelCount())};
+  Volume volume{geometry, Voxels(geometry.voxelCount())};
   const Progress progress;
   Painter(truth, noise_hu, progress, volume).paint();
   return volume;

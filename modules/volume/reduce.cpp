@@ -61,7 +61,7 @@ void moveRows(const GridGeometry& geometry, const std::int16_t* from, const Voxe
 
 // A vector keeps its memory when it shrinks. The whole pages behind its end are given back; they
 // hold nothing, and would come back as zeros.
-void releaseSpare(std::vector<std::int16_t>& hu) {
+void releaseSpare(Voxels& hu) {
   const auto page = std::uintptr_t(::sysconf(_SC_PAGESIZE));
   const auto begin = (reinterpret_cast<std::uintptr_t>(hu.data() + hu.size()) + page - 1) / page;
   const auto end = reinterpret_cast<std::uintptr_t>(hu.data() + hu.capacity()) / page;

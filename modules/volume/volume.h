@@ -8,6 +8,7 @@
 
 #include "base/math.h"
 #include "base/result.h"
+#include "volume/voxels.h"
 
 namespace trephine {
 
@@ -54,7 +55,7 @@ struct VoxelBox {
 
 struct Volume {
   GridGeometry geometry;
-  std::vector<std::int16_t> hu;  // i fastest, then j, then k
+  Voxels hu;  // i fastest, then j, then k
 
   std::int16_t at(int i, int j, int k) const { return hu[geometry.indexOf(i, j, k)]; }
 };

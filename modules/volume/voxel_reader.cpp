@@ -156,7 +156,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   reading.hu_max = -reading.hu_min;
   const VolumeFileHeader& h = reading.header;
   VoxelBytes source(h.data.file, h.data.offset, h.data.bytes, h.data.packed);
-  std::vector<std::int16_t>& hu = reading.volume.hu;
+  Voxels& hu = reading.volume.hu;
   // Memory is reserved here but only filled, and so taken, as voxels come.
   hu.reserve(count);
   bool whole = source.skip(h.data.skip);

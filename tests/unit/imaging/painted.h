@@ -38,7 +38,7 @@ inline GridGeometry centredGrid(const Index3& size, const Vec3& spacing_mm,
 template <class Truth>  // Matter(const Vec3& patient_mm), from two threads
 Painted paint(const GridGeometry& geometry, const Truth& truth) {
   const std::size_t count = geometry.voxelCount();
-  Painted painted{{geometry, std::vector<std::int16_t>(count)},
+  Painted painted{{geometry, Voxels(count)},
                   std::vector<std::uint8_t>(count),
                   std::vector<std::uint8_t>(count)};
   onTwoThreads(geometry.size[2], [&](int k) {
@@ -72,7 +72,7 @@ inline Painted permuted(const Painted& painted, const std::array<int, 3>& order)
     to.direction[n] = from.direction[order[n]];
   }
   Painted result{
-      {to, std::vector<std::int16_t>(painted.volume.hu.size())}, painted.patient, painted.couch};
+      {to, Voxels(painted.volume.hu.size())}, painted.patient, painted.couch};
   for (std::size_t n = 0; n < result.volume.hu.size(); ++n) {
     const Index3 at = to.indicesOf(n);
     Index3 source;

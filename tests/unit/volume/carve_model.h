@@ -24,7 +24,7 @@ class CarveModel {
     double credit_before_undo = 0.0;
   };
   struct State {
-    std::vector<std::int16_t> hu;
+    Voxels hu;
     std::vector<Stroke> standing;
     CarveJournal::Credits credits{};
     std::map<std::pair<int, int>, std::uint64_t> removed;

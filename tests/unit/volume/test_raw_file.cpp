@@ -32,7 +32,7 @@ TEST_F(RawFile, TheSmallestSidecarIsEnoughAndEitherFileOpensIt) {
   for (const char* name : {"ct.raw", "ct.json"}) {
     const auto reading = readVolumeFile(folder / name);
     ASSERT_TRUE(reading) << reading.error().sentence();
-    EXPECT_EQ(reading->volume.hu, (std::vector<std::int16_t>{1, -2, 3, 4, 5, 600}));
+    EXPECT_EQ(reading->volume.hu, (Voxels{1, -2, 3, 4, 5, 600}));
     EXPECT_EQ(reading->volume.geometry.spacing_mm, Vec3(0.5, 0.6, 0.7));
     EXPECT_EQ(reading->volume.geometry.direction, Mat3(1.0));
     EXPECT_EQ(reading->header.format, "raw");
@@ -50,7 +50,7 @@ TEST_F(RawFile, EveryFieldCounts) {
   const auto reading = readVolumeFile(folder / "ct.json");
   ASSERT_TRUE(reading) << reading.error().sentence();
   EXPECT_EQ(reading->volume.hu,
-            (std::vector<std::int16_t>{-1024, 976, -1020, -1018, -1016, -1014}));
+            (Voxels{-1024, 976, -1020, -1018, -1016, -1014}));
   EXPECT_EQ(reading->volume.geometry.toPatient_mm({1, 0, 0}), Vec3(10, 21, 30)) << "i runs to +y";
   EXPECT_EQ(reading->volume.geometry.toPatient_mm({0, 1, 0}), Vec3(8, 20, 30)) << "j runs to -x";
   EXPECT_TRUE(reading->header.notes.empty());

@@ -56,7 +56,7 @@ TEST(Crop, TheWholeVolumeAndOneVoxelAreBoxesToo) {
   EXPECT_EQ(crop(whole, {{0, 0, 0}, {4, 5, 6}})->hu, whole.hu);
   const auto one = crop(whole, {{3, 4, 5}, {4, 5, 6}});
   ASSERT_TRUE(one.ok());
-  EXPECT_EQ(one->hu, std::vector<std::int16_t>{whole.hu.back()});
+  EXPECT_EQ(one->hu, Voxels{whole.hu.back()});
 }
 
 TEST(Crop, ABoxThatIsEmptyOrReachesOutsideIsRefusedAndTheVolumeStays) {
@@ -107,7 +107,7 @@ TEST(Reduced, BlocksThatAreCutByTheFarFacesAverageWhatIsThere) {
   const auto small = reduced(whole, 2);
   ASSERT_TRUE(small.ok());
   EXPECT_EQ(small->geometry.size, (Index3{2, 1, 3}));
-  EXPECT_EQ(small->hu, (std::vector<std::int16_t>{6, 150, 10, 350, 13, 500}));
+  EXPECT_EQ(small->hu, (Voxels{6, 150, 10, 350, 13, 500}));
 }
 
 TEST(Reduced, AVoxelLiesAtTheMiddleOfItsBlock) {

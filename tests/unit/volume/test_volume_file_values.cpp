@@ -39,7 +39,7 @@ TEST_F(VolumeFileValues, FractionsAreRoundedToTheNearestHuAndCounted) {
   for (VoxelType type : {VoxelType::float32, VoxelType::float64}) {
     const auto reading = read(type, {-1000, 0.25, 0.5, -0.5, -0.75, 40.5, 1e-7, 3071});
     ASSERT_TRUE(reading) << reading.error().sentence();
-    EXPECT_EQ(reading->volume.hu, (std::vector<std::int16_t>{-1000, 0, 1, 0, -1, 41, 0, 3071}));
+    EXPECT_EQ(reading->volume.hu, (Voxels{-1000, 0, 1, 0, -1, 41, 0, 3071}));
     EXPECT_EQ(reading->rounded, 6u);
     EXPECT_EQ(reading->clamped, 0u);
     EXPECT_EQ(reading->not_numbers, 0u);
@@ -51,7 +51,7 @@ TEST_F(VolumeFileValues, FractionsAreRoundedToTheNearestHuAndCounted) {
 TEST_F(VolumeFileValues, WhatIsNoNumberBecomesAirAndIsCounted) {
   const auto reading = read(VoxelType::float32, {kNan, 5, kInfinity, -kInfinity, 6});
   ASSERT_TRUE(reading) << reading.error().sentence();
-  EXPECT_EQ(reading->volume.hu, (std::vector<std::int16_t>{-1000, 5, -1000, -1000, 6}));
+  EXPECT_EQ(reading->volume.hu, (Voxels{-1000, 5, -1000, -1000, 6}));
   EXPECT_EQ(reading->not_numbers, 3u);
   EXPECT_EQ(reading->rounded + reading->clamped, 0u);
   EXPECT_EQ(reading->hu_min, 5.0) << "of those that are numbers";
@@ -62,7 +62,7 @@ TEST_F(VolumeFileValues, WhatIsNoNumberBecomesAirAndIsCounted) {
 TEST_F(VolumeFileValues, WhatSixteenBitsCannotHoldIsClampedAndCounted) {
   const auto reading = read(VoxelType::int32, {-40000, 5, 32767, -32768, 32768});
   ASSERT_TRUE(reading) << reading.error().sentence();
-  EXPECT_EQ(reading->volume.hu, (std::vector<std::int16_t>{-32768, 5, 32767, -32768, 32767}));
+  EXPECT_EQ(reading->volume.hu, (Voxels{-32768, 5, 32767, -32768, 32767}));
   EXPECT_EQ(reading->clamped, 2u);
   EXPECT_EQ(reading->rounded, 0u);
   EXPECT_EQ(reading->hu_min, -40000.0) << "before clamping";

@@ -176,7 +176,7 @@ TEST(VolumeFiles, AMetaImageFromElsewhereIsReadInItsConvention) {
   ASSERT_TRUE(read) << read.error().sentence();
   EXPECT_EQ(read->geometry.toPatient_mm({1, 0, 0}), Vec3(5, 8, 7));
   EXPECT_EQ(read->geometry.toPatient_mm({0, 1, 0}), Vec3(2, 6, 7));
-  EXPECT_EQ(read->hu, (std::vector<std::int16_t>{1, 2, -2, 3000}));
+  EXPECT_EQ(read->hu, (Voxels{1, 2, -2, 3000}));
 }
 
 TEST(VolumeFiles, ACompressedMetaImageIsReadAndADamagedOneNoticed) {
@@ -195,7 +195,7 @@ TEST(VolumeFiles, ACompressedMetaImageIsReadAndADamagedOneNoticed) {
   writeBytes(folder / "a.mha", file);
   const auto read = readVolume(folder / "a.mha");
   ASSERT_TRUE(read) << read.error().sentence();
-  EXPECT_EQ(read->hu, (std::vector<std::int16_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(read->hu, (Voxels{1, 2, 3, 4, 5, 6, 7, 8}));
   file[header + 7] = char(file[header + 7] ^ 0x15);
   writeBytes(folder / "b.mha", file);
   EXPECT_EQ(readVolume(folder / "b.mha").error().code, "UNREADABLE");
@@ -232,9 +232,9 @@ TEST(VolumeFiles, MetaImagesOfOtherWholeNumberTypesAreRead) {
                  "ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = -1024\n"
                  "ElementType = MET_USHORT\nElementDataFile = LOCAL\n" +
                  std::string("\x00\x00\x00\x04", 4));
-  EXPECT_EQ(readVolume(folder / "u8.mha").value().hu, (std::vector<std::int16_t>{7, 255}));
-  EXPECT_EQ(readVolume(folder / "i32.mha").value().hu, (std::vector<std::int16_t>{-1000, 256}));
-  EXPECT_EQ(readVolume(folder / "u16.mha").value().hu, (std::vector<std::int16_t>{-1024, 0}));
+  EXPECT_EQ(readVolume(folder / "u8.mha").value().hu, (Voxels{7, 255}));
+  EXPECT_EQ(readVolume(folder / "i32.mha").value().hu, (Voxels{-1000, 256}));
+  EXPECT_EQ(readVolume(folder / "u16.mha").value().hu, (Voxels{-1024, 0}));
 }
 
 TEST(VolumeFiles, NothingOfASourceIsInAWrittenFile) {

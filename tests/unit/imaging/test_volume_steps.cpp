@@ -1,0 +1,123 @@
+#include "imaging/provenance.h"
+#include "imaging/report_page.h"
+#include "series_fixture.h"
+
+namespace trephine::test {
+
+using VolumeSteps = SeriesFixture;
+namespace fs = std::filesystem;
+
+namespace {
+
+Result<Volume> readWith(CtFolder& ct, const ImportRequest& request) {
+  return ct.read(ct.bestSeries(request.answers).value_or("none"), request, Progress());
+}
+
+}  // namespace
+
+TEST_F(VolumeSteps, ACropKeepsEveryVoxelWhereItWas) {
+  const Volume whole = rampVolume({9, 8, 7});
+  write(whole);
+  CtFolder ct = scan();
+  ImportRequest request;
+  request.crop = VoxelBox{{1, 2, 3}, {8, 7, 5}};
+  const auto part = readWith(ct, request);
+  ASSERT_TRUE(part.ok()) << part.error().sentence();
+  EXPECT_EQ(part->geometry.size, (Index3{7, 5, 2}));
+  EXPECT_EQ(part->at(0, 0, 0), whole.at(1, 2, 3));
+  EXPECT_EQ(part->at(6, 4, 1), whole.at(7, 6, 4));
+  EXPECT_LT(glm::distance(part->geometry.toPatient_mm(Vec3(0.0)),
+                          whole.geometry.toPatient_mm(Vec3(1, 2, 3))),
+            1e-9);
+  EXPECT_EQ(ct.report().provenance->crop, request.crop);
+  EXPECT_EQ(ct.report().series.front().geometry, part->geometry);
+}
+
+TEST_F(VolumeSteps, ABoxOutsideTheVolumeIsRefusedAndTheNextReadIsWhole) {
+  const Volume whole = rampVolume();
+  write(whole);
+  CtFolder ct = scan();
+  ImportRequest request;
+  request.crop = VoxelBox{{0, 0, 0}, {8, 5, 6}};
+  EXPECT_EQ(readWith(ct, request).error().code, "BAD_CROP");
+  EXPECT_FALSE(ct.report().chosen.has_value());
+  EXPECT_EQ(readWith(ct, {})->hu, whole.hu);
+}
+
+TEST_F(VolumeSteps, HalfResolutionStatesWhatItCost) {
+  Volume whole = rampVolume({12, 12, 12});
+  for (std::size_t n = 0; n < whole.hu.size(); ++n) whole.hu[n] = n % 2 ? 400 : 200;
+  write(whole);
+  CtFolder ct = scan();
+  ImportRequest request;
+  request.reduction = 2;
+  const auto half = readWith(ct, request);
+  ASSERT_TRUE(half.ok());
+  EXPECT_EQ(half->geometry.size, (Index3{6, 6, 6}));
+  EXPECT_EQ(half->at(2, 2, 2), 300);
+  const auto& provenance = *ct.report().provenance;
+  ASSERT_TRUE(provenance.loss.has_value());
+  EXPECT_NEAR(provenance.loss->rms_hu, 100.0, 1e-9);  // every voxel is off by 100
+  EXPECT_EQ(provenance.reduction, 2);
+  const SeriesReport& series = ct.report().series.front();
+  EXPECT_EQ(series.verdict, Verdict::repaired);
+  EXPECT_NE(find(series, "REDUCED"), nullptr);
+  EXPECT_EQ(series.hu_max, 300);
+}
+
+TEST_F(VolumeSteps, WhatDoesNotFitTheMemoryIsRefusedInWordsBeforeItIsRead) {
+  write(rampVolume({64, 64, 40}));
+  CtFolder ct = scan();
+  EXPECT_NEAR(ct.report().series.front().memory_mb, 64 * 64 * 40 * 2 / 1048576.0, 1e-9);
+  ImportRequest request;
+  request.most_memory_mb = 0.1;
+  const auto volume = readWith(ct, request);
+  ASSERT_FALSE(volume.ok());
+  EXPECT_EQ(volume.error().code, "OUT_OF_MEMORY");
+  EXPECT_NE(volume.error().what.find("can be had"), std::string::npos);
+}
+
+TEST_F(VolumeSteps, AnUnknownChoiceAndAnUnknownOptionAreNamed) {
+  write(rampVolume());
+  fs::remove(slice(3));
+  CtFolder ct = scan();
+  const std::string uid = ct.report().series.front().uid;
+  ImportRequest request;
+  request.answers["MISSING_SLICES"] = "guess";
+  const auto bad_option = ct.read(uid, request, Progress());
+  ASSERT_FALSE(bad_option.ok());
+  EXPECT_EQ(bad_option.error().code, "BAD_CHOICE");
+  EXPECT_NE(bad_option.error().next.find("fill"), std::string::npos);
+  request.answers = {{"MISSING", "fill"}};
+  EXPECT_EQ(ct.read(uid, request, Progress()).error().code, "BAD_CHOICE");
+}
+
+TEST_F(VolumeSteps, ProvenanceAndPageTellWhatWasDoneAndNotWhoseItIs) {
+  write(rampVolume());
+  fs::remove(slice(3));
+  editAll([](DcmDataset& data) {
+    put(data, DCM_PatientName, "Secret^Name");
+    put(data, DCM_PatientID, "ID-4711");
+    put(data, DCM_SeriesDescription, "Skull of Secret");
+  });
+  CtFolder ct = scan();
+  ImportRequest request;
+  request.answers["MISSING_SLICES"] = "fill";
+  const auto volume = readWith(ct, request);
+  ASSERT_TRUE(volume.ok()) << volume.error().sentence();
+  const fs::path target = temporary_ / "out.nii.gz";
+  ASSERT_TRUE(writeProvenance(*ct.report().provenance, target).ok());
+  const std::string file = readBytes(temporary_ / "out.provenance.json");
+  const std::string page = reportPage(ct.report());
+  EXPECT_NE(file.find("\"MISSING_SLICES\": \"fill\""), std::string::npos) << file;
+  EXPECT_NE(file.find("102.50 mm"), std::string::npos) << file;
+  EXPECT_NE(page.find("filled by interpolation"), std::string::npos) << page;
+  for (const std::string& text : {file, page}) {
+    for (const std::string& secret : {std::string("Secret"), std::string("4711"),
+                                      ct.report().series.front().uid, folder().string()}) {
+      EXPECT_EQ(text.find(secret), std::string::npos) << secret;
+    }
+  }
+}
+
+}  // namespace trephine::test
