@@ -237,6 +237,24 @@ TEST(VolumeFiles, MetaImagesOfOtherWholeNumberTypesAreRead) {
   EXPECT_EQ(readVolume(folder / "u16.mha").value().hu, (std::vector<std::int16_t>{-1024, 0}));
 }
 
+TEST(VolumeFiles, AMetaImagesVoxelsMayStandBehindAForeignHeader) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+      "ElementSpacing = 1 1 1\nDimSize = 2 1 1\nElementType = MET_SHORT\n";
+  writeBytes(folder / "a.raw", "seven b" + voxelsAs(VoxelType::int16, {5, -6}));
+  for (const char* size : {"7", "-1"}) {  // -1: the voxels are the end of the file
+    writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
+    const auto read = readVolume(folder / "a.mhd");
+    ASSERT_TRUE(read) << read.error().sentence();
+    EXPECT_EQ(read->hu, (std::vector<std::int16_t>{5, -6})) << size;
+  }
+  for (const char* size : {"8", "-2", "1e20", "many"}) {
+    writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
+    EXPECT_EQ(codeOf(folder / "a.mhd"), "UNREADABLE") << size;
+  }
+}
+
 TEST(VolumeFiles, NothingOfASourceIsInAWrittenFile) {
   const TemporaryFolder folder;
   ASSERT_TRUE(writeVolume(patternVolume({2, 2, 2}), folder / "Doe^Jane.mha"));
