@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <limits>
 
 #include "file_bytes.h"
 #include "support.h"
@@ -160,6 +161,20 @@ TEST(VolumeFiles, NiftiRescaleAndUnitAreHonoured) {
   EXPECT_EQ(read->hu[10], 25 - 1024);
   EXPECT_EQ(read->hu[1], -1021) << "2.5 - 1024, rounded";
   EXPECT_NEAR(read->geometry.spacing_mm.x, 1000.0, 1e-2);
+}
+
+TEST(VolumeFiles, ANiftiSlopeThatIsNoNumberMeansNoneAndIsNoted) {
+  const TemporaryFolder folder;
+  const Volume volume = patternVolume({4, 4, 4});
+  ASSERT_TRUE(writeVolume(volume, folder / "a.nii"));
+  std::string bytes = bytesOf(folder / "a.nii");
+  std::string nan;
+  append(nan, std::numeric_limits<float>::quiet_NaN());
+  writeBytes(folder / "a.nii", bytes.replace(112, 8, nan + nan));
+  const auto reading = readVolumeFile(folder / "a.nii");
+  ASSERT_TRUE(reading) << reading.error().sentence();
+  EXPECT_EQ(reading->volume.hu, volume.hu);
+  EXPECT_EQ(reading->header.notes.size(), 1u);
 }
 
 TEST(VolumeFiles, AMetaImageFromElsewhereIsReadInItsConvention) {

@@ -139,7 +139,8 @@ TEST_F(BadVolumeFiles, ValuesBeyondSixteenBits) {
   writeBytes(folder / "a.mha", metaImage("ElementType", "MET_INT") + std::string(16, '\1'));
   EXPECT_EQ(codeOf(folder / "a.mha"), "NOT_HU");
   EXPECT_EQ(codeOfNifti(112, 1000.0f), "NOT_HU") << "slope";
-  EXPECT_EQ(codeOfNifti(112, std::numeric_limits<float>::quiet_NaN()), "NOT_HU");
+  EXPECT_EQ(codeOfNifti(116, std::numeric_limits<float>::quiet_NaN()), "ok") << "slope 0";
+  EXPECT_EQ(codeOfNifti(112, std::array{1.0f, std::numeric_limits<float>::infinity()}), "NOT_HU");
 }
 
 TEST_F(BadVolumeFiles, NiftiHeadersThatCannotBe) {
