@@ -36,7 +36,7 @@ Result<Volume> openCase(const std::string& source, const Progress& progress) {
     return Error{"ALL_REFUSED", "No series in the folder can be used", source,
                  "The import report says why for each"};
   }
-  return folder->read(*series, progress);
+  return folder->read(*series, {}, progress);
 }
 
 }  // namespace trephine
