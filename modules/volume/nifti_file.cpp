@@ -195,12 +195,15 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   if (!affine) return affine.error();
   header.geometry = geometryFrom(kFlipXy * *affine, *size);
   if (auto status = settle(header, file); !status) return status.error();
-  if (h->slope() != 0.0) {  // 0: values are as they are
+  // 0: values are as they are. So are they by custom where the slope is no number.
+  if (!std::isfinite(h->slope())) {
+    header.notes.push_back("The rescale slope is no number: values are taken as they are");
+  } else if (h->slope() != 0.0) {
     header.slope = h->slope();
     header.intercept = h->intercept();
   }
-  if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
-    return notHu("The rescale slope or intercept is no number", file);
+  if (!std::isfinite(header.intercept)) {
+    return notHu("The rescale intercept is no number", file);
   }
   // 0: right behind the header and the four bytes that follow it.
   const double start =

@@ -233,12 +233,6 @@ std::optional<std::uint64_t> afterLines(const fs::path& file, std::uint64_t at, 
 }
 
 Status findVoxels(const Fields& fields, const fs::path& file, VolumeFileHeader& header) {
-  const std::string encoding = fields.word("encoding");
-  header.data.packed = encoding == "gzip" || encoding == "gz";
-  if (!header.data.packed && encoding != "raw") {
-    return unknownFormat("A NRRD file in the encoding " + shown(encoding) + " is not read", file,
-                         "Export it with the encoding raw or gzip");
-  }
   std::uint64_t offset = fields.length;
   header.data.file = file;
   if (fields.has("datafile")) {
@@ -296,6 +290,12 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
     return notHu("The voxels are not one number each but " + shown(fields->text("type")), file);
   }
   header.type = type->first;
+  const std::string encoding = fields->word("encoding");
+  header.data.packed = encoding == "gzip" || encoding == "gz";
+  if (!header.data.packed && encoding != "raw") {
+    return unknownFormat("A NRRD file in the encoding " + shown(encoding) + " is not read", file,
+                         "Export it with the encoding raw or gzip");
+  }
   const std::string endian = fields->word("endian");
   if (endian != "little" && endian != "big" && !(endian.empty() && bytesOf(header.type) == 1)) {
     return unreadable("The header does not say in which order bytes are (endian)", file);

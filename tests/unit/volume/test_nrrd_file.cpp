@@ -174,6 +174,9 @@ TEST_F(NrrdFile, OtherEncodingsAreRefusedByName) {
     EXPECT_EQ(code("encoding", encoding), "UNKNOWN_FORMAT");
     EXPECT_NE(sentence("encoding", encoding).find(encoding), std::string::npos);
   }
+  std::string text = header("endian", "");  // as text has none
+  text.replace(text.find("raw"), 3, "ascii");
+  EXPECT_EQ(codeOf(write(text, "1 2 3 4 -5 600 7 -1000\n")), "UNKNOWN_FORMAT");
 }
 
 TEST_F(NrrdFile, HeadersThatCannotBe) {

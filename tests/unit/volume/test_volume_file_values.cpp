@@ -149,6 +149,21 @@ TEST_F(VolumeFileValues, AHeaderIsReadWithoutItsVoxels) {
   EXPECT_EQ(codeOf(folder / "b.nii.gz"), "UNREADABLE");
 }
 
+TEST_F(VolumeFileValues, AHeaderThatPromisesTooMuchIsRefusedBeforeVoxelsAreRead) {
+  const std::string head = kNrrd + "type: short\nsizes: 100 100 100\n\n";
+  writeBytes(folder / "a.nrrd", head + std::string(1999999, '\0'));
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code, "UNREADABLE");
+  writeBytes(folder / "a.nrrd", head + std::string(2000000, '\0'));
+  EXPECT_TRUE(readVolumeFileHeader(folder / "a.nrrd"));
+  // 1,500 bytes cannot unpack to 2,000,000, whatever they are; 2,500 might.
+  std::string gzip = head;
+  gzip.replace(gzip.find("raw"), 3, "gzip");
+  writeBytes(folder / "a.nrrd", gzip + std::string(1500, '\0'));
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nrrd").error().code, "UNREADABLE");
+  writeBytes(folder / "a.nrrd", gzip + std::string(2500, '\0'));
+  EXPECT_TRUE(readVolumeFileHeader(folder / "a.nrrd"));
+}
+
 TEST_F(VolumeFileValues, AVolumeFileIsKnownByItsNameInEitherCase) {
   for (const char* name : {"a.mha", "a.MHD", "a.nii", "a.NII.GZ", "a.nrrd", "a.Nhdr", "a.raw"}) {
     EXPECT_TRUE(isVolumeFile(folder / name)) << name;

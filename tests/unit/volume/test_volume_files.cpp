@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <limits>
 
 #include "file_bytes.h"
 #include "support.h"
@@ -162,6 +163,20 @@ TEST(VolumeFiles, NiftiRescaleAndUnitAreHonoured) {
   EXPECT_NEAR(read->geometry.spacing_mm.x, 1000.0, 1e-2);
 }
 
+TEST(VolumeFiles, ANiftiSlopeThatIsNoNumberMeansNoneAndIsNoted) {
+  const TemporaryFolder folder;
+  const Volume volume = patternVolume({4, 4, 4});
+  ASSERT_TRUE(writeVolume(volume, folder / "a.nii"));
+  std::string bytes = bytesOf(folder / "a.nii");
+  std::string nan;
+  append(nan, std::numeric_limits<float>::quiet_NaN());
+  writeBytes(folder / "a.nii", bytes.replace(112, 8, nan + nan));
+  const auto reading = readVolumeFile(folder / "a.nii");
+  ASSERT_TRUE(reading) << reading.error().sentence();
+  EXPECT_EQ(reading->volume.hu, volume.hu);
+  EXPECT_EQ(reading->header.notes.size(), 1u);
+}
+
 TEST(VolumeFiles, AMetaImageFromElsewhereIsReadInItsConvention) {
   // As ITK and 3D Slicer write it: the axes one after another. Here i runs to the back (+y), j to
   // the left's opposite (-x), k up; big-endian, in a file of its own.
@@ -235,6 +250,24 @@ TEST(VolumeFiles, MetaImagesOfOtherWholeNumberTypesAreRead) {
   EXPECT_EQ(readVolume(folder / "u8.mha").value().hu, (Voxels{7, 255}));
   EXPECT_EQ(readVolume(folder / "i32.mha").value().hu, (Voxels{-1000, 256}));
   EXPECT_EQ(readVolume(folder / "u16.mha").value().hu, (Voxels{-1024, 0}));
+}
+
+TEST(VolumeFiles, AMetaImagesVoxelsMayStandBehindAForeignHeader) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+      "ElementSpacing = 1 1 1\nDimSize = 2 1 1\nElementType = MET_SHORT\n";
+  writeBytes(folder / "a.raw", "seven b" + voxelsAs(VoxelType::int16, {5, -6}));
+  for (const char* size : {"7", "-1"}) {  // -1: the voxels are the end of the file
+    writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
+    const auto read = readVolume(folder / "a.mhd");
+    ASSERT_TRUE(read) << read.error().sentence();
+    EXPECT_EQ(read->hu, (std::vector<std::int16_t>{5, -6})) << size;
+  }
+  for (const char* size : {"8", "-2", "1e20", "many"}) {
+    writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
+    EXPECT_EQ(codeOf(folder / "a.mhd"), "UNREADABLE") << size;
+  }
 }
 
 TEST(VolumeFiles, NothingOfASourceIsInAWrittenFile) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cstring>
 
@@ -138,7 +139,9 @@ TEST_F(BadVolumeFiles, ValuesBeyondSixteenBits) {
   writeBytes(folder / "a.mha", metaImage("ElementType", "MET_INT") + std::string(16, '\1'));
   EXPECT_EQ(codeOf(folder / "a.mha"), "NOT_HU");
   EXPECT_EQ(codeOfNifti(112, 1000.0f), "NOT_HU") << "slope";
-  EXPECT_EQ(codeOfNifti(112, std::numeric_limits<float>::quiet_NaN()), "NOT_HU");
+  EXPECT_EQ(codeOfNifti(116, std::numeric_limits<float>::quiet_NaN()), "ok") << "slope 0";
+  EXPECT_EQ(codeOfNifti(112, std::array{1.0f, std::numeric_limits<float>::infinity()}), "NOT_HU");
+  EXPECT_EQ(readVolumeFileHeader(folder / "a.nii").error().code, "NOT_HU");
 }
 
 TEST_F(BadVolumeFiles, NiftiHeadersThatCannotBe) {
@@ -162,6 +165,17 @@ TEST_F(BadVolumeFiles, NiftiHeadersThatCannotBe) {
   EXPECT_EQ(codeOfNifti(280, 0.0f), "BAD_GEOMETRY") << "no first axis";
   EXPECT_EQ(codeOfNifti(292, std::numeric_limits<float>::infinity()), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfNifti(252, std::int32_t(0)), "BAD_GEOMETRY") << "neither sform nor qform";
+  EXPECT_EQ(codeOfNifti(254, std::int16_t(0)), "ok") << "the qform alone";
+  EXPECT_EQ(codeOfNifti(76, std::array{1.0f, 0.0f, 1.0f, 1.0f}), "ok") << "the sform has it";
+}
+
+TEST_F(BadVolumeFiles, AQformOverVoxelsOfNoSizeIsRefused) {
+  ASSERT_TRUE(writeVolume(patternVolume({4, 4, 4}), folder / "a.nii"));
+  std::string bytes = bytesOf(folder / "a.nii");
+  bytes.replace(84, 4, 4, '\0');   // pixdim[2]
+  bytes.replace(254, 2, 2, '\0');  // no sform
+  writeBytes(folder / "a.nii", bytes);
+  EXPECT_EQ(codeOf(folder / "a.nii"), "BAD_GEOMETRY");
 }
 
 TEST_F(BadVolumeFiles, AHugeHeaderOnLittleDataAllocatesNothingLarge) {
