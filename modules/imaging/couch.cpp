@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/coarse_grid.h"
 #include "imaging/coarse_parts.h"
 #include "volume/two_threads.h"
 
@@ -19,8 +18,6 @@ bool stays(std::uint8_t kind) {
   return kind != nothing && kind < couch;
 }
 
-constexpr int kMatterHu = -500;  // a cell's densest voxel: plastic or carbon 1 mm thick has it
-constexpr int kBoneHu = 600;     // and nothing of a couch but its metal is denser
 constexpr int kPadLowHu = -970, kPadHighHu = -300;  // foam and cloth, as a cell's mean
 constexpr double kPad_mm = 60.0;                    // how far pads reach from the couch
 
@@ -28,6 +25,9 @@ constexpr double kPad_mm = 60.0;                    // how far pads reach from t
 constexpr int kSteadyHu = 80;
 constexpr double kStraight_mm = 100.0;
 constexpr double kPressed_mm = 60.0;  // how far the body may press on it in one go
+
+// Larger cells do not tell a hand from a plate.
+constexpr double kCoarsest_mm = 4.6;
 
 // A couch's least size: wide (corner to corner of one slice's piece) and long, or, in a scan that
 // is too short to tell its length, wider.
@@ -37,11 +37,11 @@ constexpr double kWideInShort_mm = 120.0, kShortest_mm = 30.0;
 // Cells whose eight neighbours across are solid too: at least 9 mm both ways. Beyond the volume
 // counts as solid, so that a body part cut by the field of view is not taken for a shell.
 CoarseCells thickCells(const CoarseGrid& grid) {
-  const auto inverted = [](std::uint8_t cell) { return std::uint8_t(cell ^ 1); };
+  const auto isHollow = [](std::uint8_t marks) { return std::uint8_t(~marks & kSolidCell); };
   CoarseCells cells(grid.count());
-  std::transform(grid.solid.begin(), grid.solid.end(), cells.begin(), inverted);
+  std::transform(grid.marks.begin(), grid.marks.end(), cells.begin(), isHollow);
   dilateAcross(grid, cells);
-  std::transform(cells.begin(), cells.end(), cells.begin(), inverted);
+  std::transform(cells.begin(), cells.end(), cells.begin(), isHollow);
   return cells;
 }
 
@@ -273,7 +273,7 @@ class CouchSearch {
       Shape& shape = shapes_[run.part];
       if (isBody(found_.parts[run.part], shape)) continue;
       for (int a = run.first; a <= run.last; ++a) {
-        shape.bony += grid_.highest[grid_.indexOf(a, run.b, run.s)] > kBoneHu;
+        shape.bony += (grid_.marks[grid_.indexOf(a, run.b, run.s)] & kBoneCell) != 0;
         shape.at_rim += rim[grid_.indexOf(a, run.b, 0)];
         shape.enclosed += body.encloses(a, run.b, run.s);
         shape.bulk += isBulk(a, run.b, run.s);
@@ -410,12 +410,17 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
 }  // namespace
 
 CouchFinding findCouch(const Volume& volume) {
+  return findCouch(coarseGrid(volume));
+}
+
+CouchFinding findCouch(const CoarseGrid& grid) {
   CouchFinding finding;
-  const CoarseGrid grid = coarseGrid(volume);
+  if (std::max(grid.cell_mm[0], grid.cell_mm[1]) > kCoarsest_mm) return finding;
   CoarseCells thick = thickCells(grid);
   CoarseCells kind(grid.count());
-  std::transform(grid.highest.begin(), grid.highest.end(), kind.begin(),
-                 [](std::int16_t hu) { return std::uint8_t(hu > kMatterHu ? matter : nothing); });
+  std::transform(grid.marks.begin(), grid.marks.end(), kind.begin(), [](std::uint8_t marks) {
+    return marks & kMatterCell ? std::uint8_t(matter) : std::uint8_t(nothing);
+  });
   {
     CoarseCells near_thick = thick;
     dilateAcross(grid, near_thick);

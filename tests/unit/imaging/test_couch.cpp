@@ -114,8 +114,8 @@ TEST(Couch, TheBuiltInCasesHaveNone) {
   for (const char* name : {"cranium", "abdomen"}) {
     GridGeometry geometry = phantomGeometry(name).value();
     for (int axis = 0; axis < 3; ++axis) {
-      geometry.size[axis] /= 2;
-      geometry.spacing_mm[axis] *= 2.0;
+      geometry.size[axis] /= 3;
+      geometry.spacing_mm[axis] *= 3.0;
     }
     const Volume volume = makePhantomOn(phantomTruth(name).value(), geometry, kPhantomNoiseHu);
     EXPECT_FALSE(findCouch(volume).found) << name;
@@ -176,6 +176,11 @@ TEST(Couch, AShortScanShowsOneOnlyWhenItIsVeryWide) {
   const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 125.0, 30.0)); };
   expectRemoved(paint(centredGrid({200, 160, 16}, {2.5, 2.5, 4.0}), truth), 0.0, "64 mm");
   EXPECT_FALSE(findCouch(paint(centredGrid({200, 160, 5}, {2.5, 2.5, 4.0}), truth).volume).found);
+}
+
+TEST(Couch, VoxelsTooCoarseToTellAHandFromAPlateShowNone) {
+  const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 125.0, 0.0)); };
+  EXPECT_FALSE(findCouch(paint(centredGrid({100, 80, 80}, {5, 5, 5}), truth).volume).found);
 }
 
 TEST(Couch, EmptyAndTinyVolumesHaveNone) {

@@ -138,8 +138,8 @@ TEST(Face, OtherBodyPartsHaveNone) {
   EXPECT_FALSE(findFace(body, "ABDOMEN").found);
   GridGeometry geometry = phantomGeometry("abdomen").value();
   for (int axis = 0; axis < 3; ++axis) {
-    geometry.size[axis] /= 2;
-    geometry.spacing_mm[axis] *= 2.0;
+    geometry.size[axis] /= 3;
+    geometry.spacing_mm[axis] *= 3.0;
   }
   EXPECT_FALSE(
       findFace(makePhantomOn(phantomTruth("abdomen").value(), geometry, kPhantomNoiseHu)).found);
