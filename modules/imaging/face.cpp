@@ -91,9 +91,9 @@ struct Ring {
 CoarseCells braincase(const CoarseGrid& grid, int closing) {
   CoarseCells open(grid.count());
   for (std::size_t n = 0; n < open.size(); ++n) open[n] = isBone(grid, n);
-  for (int n = 0; n < closing; ++n) dilateAcross(grid, open);
+  for (int n = 0; n < closing; ++n) dilateAcross(grid.size, open);
   for (auto& cell : open) cell ^= 1;
-  const CoarseParts found = coarseParts(grid, open);
+  const CoarseParts found = coarseParts(grid.size, open);
 
   struct Filling {
     std::uint32_t cells = 0, brain = 0;
@@ -143,7 +143,7 @@ CoarseCells braincase(const CoarseGrid& grid, int closing) {
                 run.last - run.first + 1, std::uint8_t(1));
   }
   // Back to the bone, from which the closing of gaps kept away.
-  for (int n = 0; n < closing; ++n) dilateAcross(grid, inside);
+  for (int n = 0; n < closing; ++n) dilateAcross(grid.size, inside);
   return inside;
 }
 
@@ -336,6 +336,7 @@ FaceFinding findFace(const Volume& volume, std::string_view body_part_examined) 
 }
 
 FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined) {
+  if (grid.count() == 0) return {};
   const Upright head(grid);
   FaceSearch search(head);
   CoarseCells inside = braincase(grid, 1);

@@ -184,6 +184,7 @@ TEST(Couch, VoxelsTooCoarseToTellAHandFromAPlateShowNone) {
 }
 
 TEST(Couch, EmptyAndTinyVolumesHaveNone) {
+  EXPECT_FALSE(findCouch(Volume()).found);
   Volume air;
   air.geometry.size = {64, 64, 64};
   air.hu.assign(air.geometry.voxelCount(), kAirHu);

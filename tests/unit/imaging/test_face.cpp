@@ -188,6 +188,7 @@ TEST(Face, AChestInTheSameScanStays) {
 }
 
 TEST(Face, EmptyAndTinyVolumesHaveNone) {
+  EXPECT_FALSE(findFace(Volume(), "HEAD").found);
   Volume air;
   air.geometry.size = {40, 40, 40};
   air.hu.assign(air.geometry.voxelCount(), kAirHu);
