@@ -14,6 +14,7 @@
 namespace trephine::test {
 
 enum class Owner : std::uint8_t { air, patient, couch };
+constexpr int kPadding = -2048;  // beyond a round field of view: air without noise
 struct Matter {
   int hu = kAirHu;
   Owner owner = Owner::air;
@@ -53,6 +54,10 @@ Painted paint(const GridGeometry& geometry, const Truth& truth) {
           sum += matter.hu;
           painted.patient[n] += matter.owner == Owner::patient;
           painted.couch[n] += matter.owner == Owner::couch;
+        }
+        if (sum == 4 * kPadding) {
+          painted.volume.hu[n] = kAirHu;
+          continue;
         }
         const auto hash = std::uint32_t((n + 1) * 2654435761u);
         painted.volume.hu[n] = std::int16_t(sum / 4 + int(hash >> 16 & 31) - int(hash >> 24 & 31));
