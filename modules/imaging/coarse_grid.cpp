@@ -11,7 +11,8 @@ namespace trephine {
 namespace {
 
 constexpr double kAcross_mm = 3.0, kAlong_mm = 5.0;
-constexpr std::size_t kMostCells = 1'500'000;
+constexpr std::size_t kMostCells = 1'000'000;
+constexpr int kSolidHu = -400, kMatterHu = -500, kBoneHu = 600;
 
 int alongBody(const GridGeometry& geometry) {
   int along = 2;
@@ -45,6 +46,7 @@ void addRow(const std::int16_t* from, Stride stride, std::size_t n, RowBuffers& 
 CoarseGrid coarseGrid(const Volume& volume) {
   const GridGeometry& g = volume.geometry;
   CoarseGrid grid;
+  grid.voxels = g;
   grid.axis[2] = alongBody(g);
   grid.axis[0] = grid.axis[2] == 0 ? 1 : 0;
   grid.axis[1] = grid.axis[2] == 2 ? 1 : 2;
@@ -61,8 +63,7 @@ CoarseGrid coarseGrid(const Volume& volume) {
     if (grid.count() <= kMostCells) break;
   }
   grid.mean.resize(grid.count());
-  grid.highest.resize(grid.count());
-  grid.solid.resize(grid.count());
+  grid.marks.resize(grid.count());
 
   const std::size_t stride_of[3] = {1, std::size_t(g.size[0]),
                                     std::size_t(g.size[0]) * std::size_t(g.size[1])};
@@ -102,8 +103,9 @@ CoarseGrid coarseGrid(const Volume& volume) {
             lowest = std::min(lowest, row.lowest[std::size_t(v)]);
           }
           grid.mean[cell] = std::int16_t(sum * 8 / ((end - a) * lines) + 3);
-          grid.highest[cell] = highest;
-          grid.solid[cell] = lowest >= kSolidHu;
+          grid.marks[cell] = std::uint8_t((lowest >= kSolidHu ? kSolidCell : 0) |
+                                          (highest > kMatterHu ? kMatterCell : 0) |
+                                          (highest > kBoneHu ? kBoneCell : 0));
         }
       }
     }

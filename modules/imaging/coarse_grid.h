@@ -8,18 +8,24 @@
 
 namespace trephine {
 
+enum CellMark : std::uint8_t {
+  kSolidCell = 1,   // none is below -400 HU
+  kMatterCell = 2,  // one is over -500 HU: plastic or carbon 1 mm thick has it
+  kBoneCell = 4,    // one is over 600 HU: of couches, only metal has it
+};
+
 // Cells lie in axes a, b, s: s is the grid axis nearest to the patient's head-foot axis (the axis
 // of a couch), a and b the other two, a the faster one in memory. A cell spans step[0] x step[1]
 // voxels across, of which at most eight lines are read; along s it is one slice in step[2], the
 // middle one. Means are good to 8 HU.
 struct CoarseGrid {
+  GridGeometry voxels;               // of the volume
   std::array<int, 3> axis{0, 1, 2};  // which of i, j, k runs along a, b, s
   Index3 step{1, 1, 1};
   Index3 size{0, 0, 0};
   Vec3 cell_mm{1.0};
-  std::vector<std::int16_t> mean;     // HU, a fastest, then b, then s
-  std::vector<std::int16_t> highest;  // HU
-  std::vector<std::uint8_t> solid;    // 1 where no voxel is below kSolidHu
+  std::vector<std::int16_t> mean;   // HU, a fastest, then b, then s
+  std::vector<std::uint8_t> marks;  // CellMark bits of the cell's voxels
 
   std::size_t count() const {
     return std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
@@ -35,9 +41,7 @@ struct CoarseGrid {
   }
 };
 
-constexpr std::int16_t kSolidHu = -400;
-
-// Cells of about 3 x 3 x 5 mm, larger where there would be over 1.5 million (7.5 MB). Two threads.
+// Cells of about 3 x 3 x 5 mm, larger where there would be over a million (3 MB). Two threads.
 CoarseGrid coarseGrid(const Volume& volume);
 
 }  // namespace trephine

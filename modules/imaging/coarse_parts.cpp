@@ -28,20 +28,19 @@ class Forest {
   std::vector<std::uint32_t> parent_;
 };
 
-// Calls found(run, first, last, b, s) for every run of one kind.
-std::vector<CellRun> findRuns(const CoarseGrid& grid, const CoarseCells& kind,
+// Every run of one kind; `row_begin` gets the first of each row and, at last, their count.
+std::vector<CellRun> findRuns(const Index3& size, const CoarseCells& kind,
                               std::vector<std::uint32_t>& row_begin) {
   std::vector<CellRun> runs;
-  runs.reserve(grid.count() / 32);
+  runs.reserve(kind.size() / 32);
   const std::uint8_t* cell = kind.data();
-  const int size = grid.size[0];
-  for (int s = 0; s < grid.size[2]; ++s) {
-    for (int b = 0; b < grid.size[1]; ++b, cell += size) {
+  for (int s = 0; s < size[2]; ++s) {
+    for (int b = 0; b < size[1]; ++b, cell += size[0]) {
       row_begin.push_back(std::uint32_t(runs.size()));
-      for (int a = 0; a < size;) {
+      for (int a = 0; a < size[0];) {
         const int first = a;
         const std::uint8_t own = cell[a];
-        while (a < size && cell[a] == own) ++a;
+        while (a < size[0] && cell[a] == own) ++a;
         if (own != 0) runs.push_back({first, a - 1, b, s, 0, 0});
       }
     }
@@ -52,13 +51,15 @@ std::vector<CellRun> findRuns(const CoarseGrid& grid, const CoarseCells& kind,
 
 }  // namespace
 
-CoarseParts coarseParts(const CoarseGrid& grid, const CoarseCells& kind) {
+CoarseParts coarseParts(const Index3& size, const CoarseCells& kind) {
   CoarseParts found;
   std::vector<std::uint32_t> row_begin;  // of row b + s * size
-  found.runs = findRuns(grid, kind, row_begin);
+  found.runs = findRuns(size, kind, row_begin);
   std::vector<CellRun>& runs = found.runs;
   const auto kindOf = [&](const CellRun& run) {
-    return kind[grid.indexOf(run.first, run.b, run.s)];
+    return kind[(std::size_t(run.s) * std::size_t(size[1]) + std::size_t(run.b)) *
+                    std::size_t(size[0]) +
+                std::size_t(run.first)];
   };
 
   Forest parts(runs.size()), pieces(runs.size());
@@ -77,8 +78,8 @@ CoarseParts coarseParts(const CoarseGrid& grid, const CoarseCells& kind) {
       }
     }
   };
-  const auto rows = std::size_t(grid.size[1]);
-  for (std::size_t s = 0; s < std::size_t(grid.size[2]); ++s) {
+  const auto rows = std::size_t(size[1]);
+  for (std::size_t s = 0; s < std::size_t(size[2]); ++s) {
     for (std::size_t b = 0; b < rows; ++b) {
       const std::size_t row = s * rows + b;
       if (b > 0) joinRows(row, row - 1, true);
@@ -120,13 +121,13 @@ static void orInto(std::uint8_t* to, const std::uint8_t* from, std::size_t count
   for (std::size_t n = 0; n < count; ++n) to[n] |= from[n];
 }
 
-void dilateAcross(const CoarseGrid& grid, CoarseCells& cells) {
-  const auto na = std::size_t(grid.size[0]), nb = std::size_t(grid.size[1]);
+void dilateAcross(const Index3& size, CoarseCells& cells) {
+  const auto na = std::size_t(size[0]), nb = std::size_t(size[1]);
   std::vector<CoarseCells> scratch(2, CoarseCells(2 * na));
   onTwoThreads(2, [&](int half) {
     std::uint8_t* before = scratch[std::size_t(half)].data();  // the row before, widened along a
     std::uint8_t* own = before + na;
-    for (int s = half * grid.size[2] / 2; s < (half + 1) * grid.size[2] / 2; ++s) {
+    for (int s = half * size[2] / 2; s < (half + 1) * size[2] / 2; ++s) {
       std::uint8_t* row = cells.data() + std::size_t(s) * na * nb;
       std::fill(before, before + na, std::uint8_t(0));
       for (std::size_t b = 0; b < nb; ++b, row += na) {
@@ -143,11 +144,11 @@ void dilateAcross(const CoarseGrid& grid, CoarseCells& cells) {
   });
 }
 
-void dilate(const CoarseGrid& grid, CoarseCells& cells) {
-  dilateAcross(grid, cells);
-  const auto slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
+void dilate(const Index3& size, CoarseCells& cells) {
+  dilateAcross(size, cells);
+  const auto slice = std::size_t(size[0]) * std::size_t(size[1]);
   CoarseCells before(slice), own(slice);
-  for (int s = 0; s < grid.size[2]; ++s) {
+  for (int s = 0; s < size[2]; ++s) {
     std::uint8_t* to = cells.data() + std::size_t(s) * slice;
     std::copy(to, to + slice, own.begin());
     orInto(to, before.data(), slice);

@@ -9,7 +9,8 @@
 
 namespace trephine {
 
-using CoarseCells = std::vector<std::uint8_t>;  // one byte a cell of a CoarseGrid
+using CoarseCells =
+    std::vector<std::uint8_t>;  // one byte a cell of a CoarseGrid; `size` is its size
 
 // Consecutive cells of one kind in row (b, s), first to last.
 struct CellRun {
@@ -38,10 +39,10 @@ struct CoarseParts {
 };
 
 // Cells of the same kind that touch, if only by a corner, are one part; kind 0 is none.
-CoarseParts coarseParts(const CoarseGrid& grid, const CoarseCells& kind);
+CoarseParts coarseParts(const Index3& size, const CoarseCells& kind);
 
 // Each cell becomes the OR of itself and its eight neighbours across, and of theirs along s too.
-void dilateAcross(const CoarseGrid& grid, CoarseCells& cells);
-void dilate(const CoarseGrid& grid, CoarseCells& cells);
+void dilateAcross(const Index3& size, CoarseCells& cells);
+void dilate(const Index3& size, CoarseCells& cells);
 
 }  // namespace trephine

@@ -3,109 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/coarse_grid.h"
-#include "imaging/coarse_parts.h"
-#include "volume/two_threads.h"
+#include "imaging/couch_kinds.h"
 
 namespace trephine {
 
 namespace {
 
-// What a cell holds. Matter is told apart before parts are formed, so that a couch or its cover
-// that touches the body comes off it: what runs straight along the scan, what is loose (over two
-// cells from all that is thick), and the rest.
-enum Kind : std::uint8_t { nothing, matter, straight, loose, couch, pad };
-bool stays(std::uint8_t kind) {
-  return kind != nothing && kind < couch;
-}
-
-constexpr int kMatterHu = -500;  // a cell's densest voxel: plastic or carbon 1 mm thick has it
-constexpr int kBoneHu = 600;     // and nothing of a couch but its metal is denser
 constexpr int kPadLowHu = -970, kPadHighHu = -300;  // foam and cloth, as a cell's mean
 constexpr double kPad_mm = 60.0;                    // how far pads reach from the couch
 
-// A straight part changes by less from one slice to the next, over at least this length.
-constexpr int kSteadyHu = 80;
-constexpr double kStraight_mm = 100.0;
-constexpr double kPressed_mm = 60.0;  // how far the body may press on it in one go
+// Larger cells do not tell a hand from a plate.
+constexpr double kCoarsest_mm = 4.6;
 
 // A couch's least size: wide (corner to corner of one slice's piece) and long, or, in a scan that
 // is too short to tell its length, wider.
 constexpr double kWide_mm = 70.0, kWideIfStraight_mm = 40.0, kLong_mm = 100.0;
 constexpr double kWideInShort_mm = 120.0, kShortest_mm = 30.0;
-
-// Cells whose eight neighbours across are solid too: at least 9 mm both ways. Beyond the volume
-// counts as solid, so that a body part cut by the field of view is not taken for a shell.
-CoarseCells thickCells(const CoarseGrid& grid) {
-  const auto inverted = [](std::uint8_t cell) { return std::uint8_t(cell ^ 1); };
-  CoarseCells cells(grid.count());
-  std::transform(grid.solid.begin(), grid.solid.end(), cells.begin(), inverted);
-  dilateAcross(grid, cells);
-  std::transform(cells.begin(), cells.end(), cells.begin(), inverted);
-  return cells;
-}
-
-// A column of cells that hardly changes along s, so far. Where the body lies on a couch, cells that
-// hold some of both are denser for a while.
-struct SteadyColumn {
-  int start = 0, last = -1;  // slices
-  int steady = 0, near = 0;  // how many held the column's HU, and how many were near thick cells
-  int hu = 0;
-
-  // Takes slice s if it belongs to the column.
-  bool take(int s, int next_hu, bool is_near, int longest_gap) {
-    if (next_hu < hu - kSteadyHu || s - last > longest_gap) return false;
-    near += is_near;
-    if (next_hu > hu + kSteadyHu) return true;
-    last = s;
-    ++steady;
-    hu += (next_hu - hu) / 4;
-    return true;
-  }
-};
-
-// Marks the matter that is steady over kStraight_mm and, on most of that way, not near anything
-// thick: a flank runs straight, too.
-void markStraight(const CoarseGrid& grid, const CoarseCells& near_thick, CoarseCells& kind) {
-  const int least = int(std::ceil(kStraight_mm / grid.cell_mm[2]));
-  const int gap = 1 + int(kPressed_mm / grid.cell_mm[2]);
-  if (grid.size[2] < least) return;
-  const std::size_t slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
-  const auto mark = [&](const SteadyColumn& column, std::size_t cell) {
-    SteadyColumn again{column.start, column.start - 1, 0, 0,
-                       grid.mean[cell + slice * std::size_t(column.start)]};
-    for (int s = column.start; s <= column.last; ++s) {
-      const std::size_t n = cell + slice * std::size_t(s);
-      again.take(s, grid.mean[n], false, gap);
-      if (again.last == s) kind[n] = straight;
-    }
-  };
-  std::vector<std::vector<SteadyColumn>> rows(2);
-  for (auto& row : rows) row.resize(std::size_t(grid.size[0]));
-  onTwoThreads(2, [&](int half) {
-    std::vector<SteadyColumn>& columns = rows[std::size_t(half)];
-    for (int b = half * grid.size[1] / 2; b < (half + 1) * grid.size[1] / 2; ++b) {
-      std::fill(columns.begin(), columns.end(), SteadyColumn());
-      for (int s = 0; s <= grid.size[2]; ++s) {
-        const bool beyond = s == grid.size[2];
-        std::size_t cell = grid.indexOf(0, b, beyond ? s - 1 : s);
-        for (int a = 0; a < grid.size[0]; ++a, ++cell) {
-          SteadyColumn& column = columns[std::size_t(a)];
-          const bool is_matter = !beyond && kind[cell] != nothing;
-          if (is_matter && column.steady > 0 &&
-              column.take(s, grid.mean[cell], near_thick[cell], gap)) {
-            continue;
-          }
-          if (column.steady >= least && 2 * column.near <= s - column.start) {
-            mark(column, grid.indexOf(a, b, 0));
-          }
-          column = SteadyColumn();
-          if (is_matter) column = {s, s, 1, near_thick[cell], grid.mean[cell]};
-        }
-      }
-    }
-  });
-}
 
 // For each cell across: the last before the border of the volume, or before the rim of a round
 // field of view, beyond which all is one number. There, body parts may be cut to slivers.
@@ -177,7 +90,7 @@ class CouchSearch {
   CouchSearch(const CoarseGrid& grid, const CoarseCells& thick, CoarseCells& kind)
       : grid_(grid),
         kind_(kind),
-        found_(coarseParts(grid, kind)),
+        found_(coarseParts(grid.size, kind)),
         shapes_(found_.parts.size()),
         is_couch_(found_.parts.size()) {
     for (const CellRun& run : found_.runs) {
@@ -273,7 +186,7 @@ class CouchSearch {
       Shape& shape = shapes_[run.part];
       if (isBody(found_.parts[run.part], shape)) continue;
       for (int a = run.first; a <= run.last; ++a) {
-        shape.bony += grid_.highest[grid_.indexOf(a, run.b, run.s)] > kBoneHu;
+        shape.bony += (grid_.marks[grid_.indexOf(a, run.b, run.s)] & kBoneCell) != 0;
         shape.at_rim += rim[grid_.indexOf(a, run.b, 0)];
         shape.enclosed += body.encloses(a, run.b, run.s);
         shape.bulk += isBulk(a, run.b, run.s);
@@ -390,10 +303,8 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
     }
     for (std::size_t m = 0; m < slice; ++m) columns[m] = in_column[m] * 10 >= grid.size[2];
   }
-  dilate(grid, near);
-  CoarseGrid across = grid;
-  across.size[2] = 1;
-  dilateAcross(across, columns);
+  dilate(grid.size, near);
+  dilateAcross({grid.size[0], grid.size[1], 1}, columns);
 
   for (std::size_t n = 0; n < near.size(); n += slice) {
     for (std::size_t m = 0; m < slice; ++m) {
@@ -410,22 +321,16 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
 }  // namespace
 
 CouchFinding findCouch(const Volume& volume) {
+  return findCouch(coarseGrid(volume));
+}
+
+CouchFinding findCouch(const CoarseGrid& grid) {
   CouchFinding finding;
-  const CoarseGrid grid = coarseGrid(volume);
-  CoarseCells thick = thickCells(grid);
-  CoarseCells kind(grid.count());
-  std::transform(grid.highest.begin(), grid.highest.end(), kind.begin(),
-                 [](std::int16_t hu) { return std::uint8_t(hu > kMatterHu ? matter : nothing); });
-  {
-    CoarseCells near_thick = thick;
-    dilateAcross(grid, near_thick);
-    dilate(grid, near_thick);
-    std::transform(kind.begin(), kind.end(), near_thick.begin(), kind.begin(),
-                   [](std::uint8_t own, std::uint8_t near) {
-                     return own == matter && !near ? std::uint8_t(loose) : own;
-                   });
-    markStraight(grid, near_thick, kind);
+  if (std::max(grid.cell_mm[0], grid.cell_mm[1]) > kCoarsest_mm || grid.count() == 0) {
+    return finding;
   }
+  const CoarseCells thick = thickCells(grid);
+  CoarseCells kind = couchKinds(grid, thick);
   CouchSearch search(grid, thick, kind);
   search.mark(finding);
   if (!finding.found) return finding;

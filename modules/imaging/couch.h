@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "imaging/coarse_grid.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -47,8 +48,9 @@ struct CouchFinding {
   }
 };
 
-// At most about 12 MB; 512 x 512 x 300 in some 10 ms on two idle cores.
+// Holds at most about 10 MB. The second form saves time where findFace uses the same grid.
 CouchFinding findCouch(const Volume& volume);
+CouchFinding findCouch(const CoarseGrid& grid);
 
 // Sets the couch to kAirHu; returns how many voxels that were not air (over -900 HU) went. Where
 // couch and patient meet, what is denser than fat's edge (-300 HU) stays unless it is the straight

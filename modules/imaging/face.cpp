@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "imaging/coarse_grid.h"
 #include "imaging/coarse_parts.h"
 #include "volume/two_threads.h"
 
@@ -16,22 +15,22 @@ namespace trephine {
 
 namespace {
 
-constexpr int kBoneMeanHu = 150, kBoneHighestHu = 600;  // noise in brain reaches neither
-constexpr int kSkinHu = -500;                           // half way from air to skin
+constexpr int kBoneMeanHu = 150;    // noise in brain does not reach it, nor 600 HU in a voxel
+constexpr int kSkinHu = -500;       // half way from air to skin
 constexpr double kMargin_mm = 8.0;  // from the braincase's inside to the cut: its bone
 constexpr double kChin_mm = 160.0;  // the chin is nearer below the brow than this
 constexpr double kFront_mm = 70.0;  // without a braincase: how deep the cut goes
 constexpr double kLeastSkin_cm2 = 15.0;
 
 bool isBone(const CoarseGrid& grid, std::size_t n) {
-  return grid.mean[n] > kBoneMeanHu || grid.highest[n] > kBoneHighestHu;
+  return grid.mean[n] > kBoneMeanHu || (grid.marks[n] & kBoneCell);
 }
 
 // The coarse grid as the patient stands: x across, y from front to back, z upwards.
 class Upright {
  public:
-  Upright(const Volume& volume, const CoarseGrid& grid) : grid_(grid) {
-    const GridGeometry& g = volume.geometry;
+  explicit Upright(const CoarseGrid& grid) : grid_(grid) {
+    const GridGeometry& g = grid.voxels;
     const auto part = [&](std::size_t n, int lps) { return g.direction[grid.axis[n]][lps]; };
     const bool a_is_y = std::abs(part(0, 1)) > std::abs(part(1, 1));
     const std::array<std::size_t, 3> from{a_is_y ? 1u : 0u, a_is_y ? 0u : 1u, 2u};
@@ -92,9 +91,9 @@ struct Ring {
 CoarseCells braincase(const CoarseGrid& grid, int closing) {
   CoarseCells open(grid.count());
   for (std::size_t n = 0; n < open.size(); ++n) open[n] = isBone(grid, n);
-  for (int n = 0; n < closing; ++n) dilateAcross(grid, open);
+  for (int n = 0; n < closing; ++n) dilateAcross(grid.size, open);
   for (auto& cell : open) cell ^= 1;
-  const CoarseParts found = coarseParts(grid, open);
+  const CoarseParts found = coarseParts(grid.size, open);
 
   struct Filling {
     std::uint32_t cells = 0, brain = 0;
@@ -144,18 +143,18 @@ CoarseCells braincase(const CoarseGrid& grid, int closing) {
                 run.last - run.first + 1, std::uint8_t(1));
   }
   // Back to the bone, from which the closing of gaps kept away.
-  for (int n = 0; n < closing; ++n) dilateAcross(grid, inside);
+  for (int n = 0; n < closing; ++n) dilateAcross(grid.size, inside);
   return inside;
 }
 
-// Skin or bone, whichever the front of the head shows at (x, z), within kFront_mm of `front`.
+// What the front of the head shows: skin, or bone and what the field of view cuts open.
 struct Seen {
-  double skin_cm2 = 0.0, bone_cm2 = 0.0;
+  double skin_cm2 = 0.0, other_cm2 = 0.0;
 };
 
 class FaceSearch {
  public:
-  FaceSearch(const Upright& head) : head_(head), grid_(head.grid()) {}
+  explicit FaceSearch(const Upright& head) : head_(head), grid_(head.grid()) {}
 
   // A cut that touches the braincase from below and in front.
   FaceFinding belowBraincase(const CoarseCells& inside) {
@@ -241,7 +240,7 @@ class FaceSearch {
           }
           if (grid_.mean[n] < kSkinHu) continue;
           ++matter;
-          if (!grid_.solid[n]) continue;
+          if (!(grid_.marks[n] & kSolidCell)) continue;
           low_x = std::min(low_x, x);
           high_x = std::max(high_x, x);
           low_y = std::min(low_y, y);
@@ -265,7 +264,7 @@ class FaceSearch {
     for (int z = 0; z < head_.size[2]; ++z) {
       for (int y = 0; y < head_.size[1]; ++y) {
         for (int x = 0; x < head_.size[0]; ++x) {
-          if (grid_.solid[head_.at(x, y, z)]) work(x, y, z);
+          if (grid_.marks[head_.at(x, y, z)] & kSolidCell) work(x, y, z);
         }
       }
     }
@@ -287,33 +286,32 @@ class FaceSearch {
     Seen seen;
     const double column_cm2 = head_.cell_mm.x * head_.cell_mm.z / 100.0;
     int front = head_.size[1];
-    std::vector<std::pair<int, bool>> columns;  // first cell, whether bone
+    std::vector<std::pair<int, bool>> columns;  // its first cell, and whether not skin
     for (int z = 0; z < head_.size[2]; ++z) {
       for (int x = 0; x < head_.size[0]; ++x) {
         if (std::abs(head_.place_mm(x, 0, z).x - middle_x) > 70.0) continue;
         int y = 0;
         while (y < head_.size[1] && grid_.mean[head_.at(x, y, z)] < kSkinHu) ++y;
-        // Cut off by the field of view, nothing there, or not in front of the cut.
-        if (y == 0 || y == head_.size[1] || !cut.clears(head_.place_mm(x, y, z))) continue;
-        bool bone = false;
+        if (y == head_.size[1] || !cut.clears(head_.place_mm(x, y, z))) continue;
+        bool other = y == 0;
         const int deep = std::max(1, int(4.0 / head_.cell_mm.y));
         for (int n = 0; n <= deep && y + n < head_.size[1]; ++n) {
-          bone |= isBone(grid_, head_.at(x, y + n, z));
+          other |= isBone(grid_, head_.at(x, y + n, z));
         }
-        columns.emplace_back(y, bone);
+        columns.emplace_back(y, other);
         front = std::min(front, y);
       }
     }
     const int reach = int(kFront_mm / head_.cell_mm.y);
-    for (const auto& [y, bone] : columns) {
+    for (const auto& [y, other] : columns) {
       if (y > front + reach) continue;
-      (bone ? seen.bone_cm2 : seen.skin_cm2) += column_cm2;
+      (other ? seen.other_cm2 : seen.skin_cm2) += column_cm2;
     }
     return seen;
   }
 
   static bool isFace(const Seen& seen) {
-    return seen.skin_cm2 > kLeastSkin_cm2 && seen.skin_cm2 > 0.7 * seen.bone_cm2;
+    return seen.skin_cm2 > kLeastSkin_cm2 && seen.skin_cm2 > 0.7 * seen.other_cm2;
   }
 
   const Upright& head_;
@@ -334,8 +332,12 @@ bool namesHead(std::string_view words) {
 }  // namespace
 
 FaceFinding findFace(const Volume& volume, std::string_view body_part_examined) {
-  const CoarseGrid grid = coarseGrid(volume);
-  const Upright head(volume, grid);
+  return findFace(coarseGrid(volume), body_part_examined);
+}
+
+FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined) {
+  if (grid.count() == 0) return {};
+  const Upright head(grid);
   FaceSearch search(head);
   CoarseCells inside = braincase(grid, 1);
   if (inside.empty()) {

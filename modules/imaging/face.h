@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "imaging/coarse_grid.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -34,9 +35,9 @@ struct FaceFinding {
   }
 };
 
-// `body_part_examined`: DICOM (0018,0015) or any such words, or empty. At most about 12 MB;
-// 512 x 512 x 300 in some 8 ms on two idle cores.
+// `body_part_examined`: DICOM (0018,0015) or any such words, or empty. Holds at most about 5 MB.
 FaceFinding findFace(const Volume& volume, std::string_view body_part_examined = {});
+FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined = {});
 
 // Sets all in front of and below a flat cut to kAirHu; returns how many voxels that were not air
 // (over -900 HU) went. The cut touches the underside of the braincase 8 mm outside it, after

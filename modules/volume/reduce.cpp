@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <mutex>
@@ -93,11 +94,24 @@ void reduceRow(const Volume& volume, int factor, int j, int k, std::vector<std::
       for (int i = 0; i < size[0]; ++i) sums[std::size_t(i)] += from[i];
     }
   }
-  for (int i = 0; i < size[0]; i += factor) {
-    const int columns = std::min(factor, size[0] - i);
+  const auto sumOf = [&](int i, int columns) {
     std::int32_t sum = 0;
     for (int di = 0; di < columns; ++di) sum += sums[std::size_t(i + di)];
-    *to++ = meanHalfToEven(sum, columns * rows * slices);
+    return sum;
+  };
+  // Whole blocks hold a power of two: halves to even by adding just under a half, or a half where
+  // the floor is odd.
+  int i = 0;
+  const int count = factor * rows * slices, shift = std::countr_zero(unsigned(count));
+  if (std::has_single_bit(unsigned(count))) {
+    for (; i + factor <= size[0]; i += factor) {
+      const std::int32_t sum = sumOf(i, factor);
+      *to++ = std::int16_t((sum + count / 2 - 1 + (sum >> shift & 1)) >> shift);
+    }
+  }
+  for (; i < size[0]; i += factor) {
+    const int columns = std::min(factor, size[0] - i);
+    *to++ = meanHalfToEven(sumOf(i, columns), columns * rows * slices);
   }
 }
 

@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "volume/phantom_shapes.h"
 #include "volume/two_threads.h"
 #include "volume/volume.h"
 
 namespace trephine::test {
 
 enum class Owner : std::uint8_t { air, patient, couch };
+constexpr int kPadding = -2048;  // beyond a round field of view: air without noise
 struct Matter {
   int hu = kAirHu;
   Owner owner = Owner::air;
@@ -52,6 +54,10 @@ Painted paint(const GridGeometry& geometry, const Truth& truth) {
           sum += matter.hu;
           painted.patient[n] += matter.owner == Owner::patient;
           painted.couch[n] += matter.owner == Owner::couch;
+        }
+        if (sum == 4 * kPadding) {
+          painted.volume.hu[n] = kAirHu;
+          continue;
         }
         const auto hash = std::uint32_t((n + 1) * 2654435761u);
         painted.volume.hu[n] = std::int16_t(sum / 4 + int(hash >> 16 & 31) - int(hash >> 24 & 31));
@@ -97,8 +103,8 @@ inline double rod(const Vec3& p, const Vec3& a, const Vec3& b, double radius) {
 // A man on his back, 400 mm of him: chest to thighs, arms and hands at his sides, fingers apart.
 // Supine: his back is at y = +100 and below; z is up his body.
 inline Matter man(const Vec3& p) {
-  const double wide = 165.0 + 12.0 * std::sin(p.z / 45.0),
-               deep = 100.0 + 9.0 * std::sin(p.z / 60.0);
+  const double wide = 165.0 + 12.0 * shapes::wave(p.z / 280.0);
+  const double deep = 100.0 + 9.0 * shapes::wave(p.z / 380.0);
   const double trunk = ellipse(p.x, p.y + 8.0 - 0.05 * p.z, wide, deep);
   if (trunk < 0.0) {
     if (p.z > 60 && ellipse(std::abs(p.x) - 75, p.y, 50, 65) < 0.0) return {-850, Owner::patient};

@@ -138,8 +138,8 @@ TEST(Face, OtherBodyPartsHaveNone) {
   EXPECT_FALSE(findFace(body, "ABDOMEN").found);
   GridGeometry geometry = phantomGeometry("abdomen").value();
   for (int axis = 0; axis < 3; ++axis) {
-    geometry.size[axis] /= 2;
-    geometry.spacing_mm[axis] *= 2.0;
+    geometry.size[axis] /= 3;
+    geometry.spacing_mm[axis] *= 3.0;
   }
   EXPECT_FALSE(
       findFace(makePhantomOn(phantomTruth("abdomen").value(), geometry, kPhantomNoiseHu)).found);
@@ -188,6 +188,7 @@ TEST(Face, AChestInTheSameScanStays) {
 }
 
 TEST(Face, EmptyAndTinyVolumesHaveNone) {
+  EXPECT_FALSE(findFace(Volume(), "HEAD").found);
   Volume air;
   air.geometry.size = {40, 40, 40};
   air.hu.assign(air.geometry.voxelCount(), kAirHu);
