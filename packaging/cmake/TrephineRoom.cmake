@@ -9,6 +9,7 @@ set(TREPHINE_LIBRARY_json nlohmann_json::nlohmann_json)
 set(TREPHINE_LIBRARY_spdlog spdlog::spdlog)
 set(TREPHINE_LIBRARY_openssl OpenSSL::Crypto)
 set(TREPHINE_LIBRARY_dcmtk DCMTK::DCMTK)
+set(TREPHINE_LIBRARY_openjpeg openjp2)
 set(TREPHINE_LIBRARY_hdf5 HDF5::HDF5)
 set(TREPHINE_LIBRARY_vtk-image VTK::CommonCore VTK::CommonDataModel VTK::IOImage)
 set(TREPHINE_LIBRARY_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel
