@@ -179,14 +179,14 @@ Loader floorLoader(const LoaderPlaces& places) {
   return loader;
 }
 
-// Whether OUT holds one NIfTI volume, and that the known one.
-bool wroteKnownVolume(const fs::path& out, const KnownVolume& known) {
+// The NIfTI volumes in a folder.
+std::vector<fs::path> volumesIn(const fs::path& out) {
   std::vector<fs::path> volumes;
   std::error_code error;
   for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
     if (it->path().extension() == ".nii") volumes.push_back(it->path());
   }
-  return volumes.size() == 1 && holdsKnownVoxels(volumes.front(), known);
+  return volumes;
 }
 
 Loader peerLoader(const Peer& peer, const LoaderPlaces& places, bool makes_volume) {
@@ -217,14 +217,17 @@ Loader peerLoader(const Peer& peer, const LoaderPlaces& places, bool makes_volum
     }
     if (child->timed_out) return failed(tookTooLong(places.limit_s));
     LoaderRun run;
+    const std::vector<fs::path> volumes = volumesIn(out.path());
     if (child->exit_code != 0) {
       run.problem = "failed with exit code " + std::to_string(child->exit_code);
-    }
-    if (makes_volume && known) {
-      run.correct = run.problem.empty() && wroteKnownVolume(out.path(), *known);
-    }
-    if (run.problem.empty()) {
+    } else if (makes_volume && volumes.size() != 1) {
+      run.problem = "wrote " + std::to_string(volumes.size()) + " volumes";
+    } else {
       run.samples.push_back({child->seconds, child->peak_rss_mb, std::nullopt});
+    }
+    if (makes_volume && !run.problem.empty()) run.correct = false;
+    if (makes_volume && run.problem.empty() && known) {
+      run.correct = holdsKnownVoxels(volumes.front(), *known);
     }
     return run;
   };
@@ -251,7 +254,6 @@ bool holdsKnownVoxels(const fs::path& file, const KnownVolume& known) {
     if (way == 0) return false;
     turned[std::size_t(axis)] = way < 0;
   }
-  // The sum of what the slices hash to would not do: order counts, so all goes into one volume.
   Volume upright{known.geometry, {}};
   upright.hu.reserve(read->hu.size());
   for (int k = 0; k < size[2]; ++k) {

@@ -2,6 +2,8 @@
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcrleerg.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmjpeg/djencode.h>
 #include <dcmtk/dcmjpeg/djrplol.h>
@@ -332,9 +334,9 @@ OFCondition putWords(DcmDataset& data, const SliceFile& slice) {
   std::vector<std::uint8_t> code = encodeJ2k(words, g.size[0], g.size[1], 12);
   if (code.empty()) return EC_CorruptedData;
   code.resize(code.size() + code.size() % 2);
-  auto sequence = std::make_unique<DcmPixelSequence>(DcmTag(DCM_PixelSequenceTag, EVR_OB));
+  auto sequence = std::make_unique<DcmPixelSequence>(DcmTag(DCM_PixelData, EVR_OB));
   for (const bool pixels : {false, true}) {  // the first item, an offset table, stays empty
-    auto item = std::make_unique<DcmPixelItem>(DcmTag(DCM_PixelItemTag, EVR_OB));
+    auto item = std::make_unique<DcmPixelItem>(DcmTag(DCM_Item, EVR_OB));
     OFCondition done = EC_Normal;
     if (pixels) done = item->putUint8Array(code.data(), code.size());
     if (done.good()) done = sequence->insert(item.get());
