@@ -120,15 +120,14 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
 
   const Descriptor process(int(::syscall(SYS_pidfd_open, child, 0)));
   ChildRun run;
-  bool cancelled = false, killed = false;
+  bool killed = false;
   const std::int64_t limit_ns = report.start_ns + std::int64_t(command.limit_s * 1e9);
   while (!killed) {
     pollfd ended{process.get(), POLLIN, 0};
     const int polled = ::poll(&ended, 1, kPoll_ms);
     if (polled > 0 && ended.revents != 0) break;
-    cancelled = progress.cancelled();
-    run.timed_out = !cancelled && now_ns() > limit_ns;
-    if (cancelled || run.timed_out || process.get() < 0) {
+    run.timed_out = now_ns() > limit_ns;
+    if (progress.cancelled() || run.timed_out || process.get() < 0) {
       ::kill(child, SIGKILL);
       killed = true;
     }
@@ -138,7 +137,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   rusage usage{};
   while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
-  if (cancelled) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
   if (report.error != 0) return cannotRun(command, report.error);
   if (process.get() < 0) return cannotRun(command, ENOSYS);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
