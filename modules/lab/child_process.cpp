@@ -94,8 +94,8 @@ std::vector<std::string> environmentWith(const std::filesystem::path& home) {
 }  // namespace
 
 Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress) {
-  const Descriptor output(::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC,
-                                 0600));
+  const Descriptor output(
+      ::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
   const Descriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
   int ends[2] = {-1, -1};
   if (output.get() < 0 || nothing.get() < 0 || ::pipe2(ends, O_CLOEXEC) != 0) {

@@ -33,10 +33,10 @@ const std::vector<Peer>& peers() {
 
 // What an importer needs to know of a file to group and sort it.
 const Peer& scanningPeer() {
-  static const Peer peer{"gdcmscanner",
-                         {"-d", "FOLDER", "-t", "0020,000d", "-t", "0020,000e", "-t", "0008,0018",
-                          "-t", "0020,0032", "-t", "0020,0037", "-t", "0028,0010", "-t",
-                          "0028,0011"}};
+  static const Peer peer{
+      "gdcmscanner",
+      {"-d", "FOLDER", "-t", "0020,000d", "-t", "0020,000e", "-t", "0008,0018", "-t", "0020,0032",
+       "-t", "0020,0037", "-t", "0028,0010", "-t", "0028,0011"}};
   return peer;
 }
 
@@ -166,8 +166,7 @@ Loader floorLoader(const LoaderPlaces& places) {
   loader.names = {"floor", "floor kept"};
   loader.run = [places](const fs::path& folder, const KnownVolume*,
                         const Progress& progress) -> Result<LoaderRun> {
-    Result<OwnRun> ours =
-        runOurs(places, {"measure", "read", folder.string(), "--json"}, progress);
+    Result<OwnRun> ours = runOurs(places, {"measure", "read", folder.string(), "--json"}, progress);
     if (!ours) return ours.error();
     if (!ours->problem.empty()) return failed(ours->problem);
     LoaderRun run;

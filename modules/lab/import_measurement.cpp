@@ -143,7 +143,9 @@ std::optional<double> secondsOf(const ImportMeasurement& m, const std::string& s
   return row->seconds_median;
 }
 
-bool isOurs(const ImportRow& row) { return row.loader.starts_with("trephine"); }
+bool isOurs(const ImportRow& row) {
+  return row.loader.starts_with("trephine");
+}
 
 std::optional<double> fastestPeer(const ImportMeasurement& m, const std::string& series) {
   std::optional<double> fastest;
@@ -159,7 +161,9 @@ Json orNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json textOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+Json textOrNull(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
 
 // "-" for nothing.
 std::string cell(const std::optional<double>& value, int digits) {
@@ -262,9 +266,8 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options, const fs::
       from += part;
     }
   }
-  const Status written = writeManySeries(options.scan_series, options.scan_slices,
-                                         *folder / "scan", {progress, kMakingShare - part,
-                                                            kMakingShare});
+  const Status written = writeManySeries(options.scan_series, options.scan_slices, *folder / "scan",
+                                         {progress, kMakingShare - part, kMakingShare});
   if (!written) return written.error();
   ::sync();  // what is still on its way to the disk would be timed with the first runs
 
@@ -344,7 +347,10 @@ std::string toText(const ImportMeasurement& measurement) {
                   row.series.c_str(), row.loader.c_str(), row.threads,
                   cell(row.seconds_median, 4).c_str(), cell(row.peak_rss_mb, 1).c_str(),
                   cell(row.above_start_mb, 1).c_str(),
-                  !row.correct ? "-" : *row.correct ? "yes" : "NO", row.skipped_reason.c_str());
+                  !row.correct   ? "-"
+                  : *row.correct ? "yes"
+                                 : "NO",
+                  row.skipped_reason.c_str());
     text += line;
   }
   for (const ScanRow& row : measurement.scan) {

@@ -44,13 +44,13 @@ struct ImportMeasurement {
 };
 
 struct ImportOptions {
-  std::filesystem::path program;  // trephine-lab
-  bool peers = false;             // other programs too, where they are installed
-  Index3 size{512, 512, 300};     // of every series, 2 to 2048
-  int repetitions = 5;            // 1 to 100, after one that is not timed
-  int scan_series = 10;           // 1 to 1000
-  int scan_slices = 300;          // 2 to 2048, of each of them
-  double limit_s = 120.0;         // for one run
+  std::filesystem::path program;       // trephine-lab
+  bool peers = false;                  // other programs too, where they are installed
+  Index3 size{512, 512, 300};          // of every series, 2 to 2048
+  int repetitions = 5;                 // 1 to 100, after one that is not timed
+  int scan_series = 10;                // 1 to 1000
+  int scan_slices = 300;               // 2 to 2048, of each of them
+  double limit_s = 120.0;              // for one run
   std::vector<SeriesSyntax> syntaxes;  // all where empty
 };
 

@@ -35,7 +35,8 @@ class Child : public ::testing::Test {
 };
 
 TEST_F(Child, TellsItsExitCodeOutputAndTime) {
-  const Result<ChildRun> run = runChild(shell("echo out; echo lost >&2; sleep 0.2; exit 7"), progress_);
+  const Result<ChildRun> run =
+      runChild(shell("echo out; echo lost >&2; sleep 0.2; exit 7"), progress_);
   ASSERT_TRUE(run) << run.error().sentence();
   EXPECT_EQ(run->exit_code, 7);
   EXPECT_EQ(output(), "out\n");

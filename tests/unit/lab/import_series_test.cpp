@@ -54,8 +54,9 @@ std::vector<Uint16> wordsOf(DcmDataset& data, int columns, int rows) {
     EXPECT_EQ(sequence->card(), 2u) << "an offset table and one fragment";
     EXPECT_TRUE(sequence->getItem(item, 1).good());
     EXPECT_TRUE(item->getUint8Array(bytes).good());
-    const Status decoded = decodeJpeg2000({bytes, item->getLength()}, {rows, columns, 16, 12, false},
-                                          reinterpret_cast<std::int16_t*>(words.data()));
+    const Status decoded =
+        decodeJpeg2000({bytes, item->getLength()}, {rows, columns, 16, 12, false},
+                       reinterpret_cast<std::int16_t*>(words.data()));
     EXPECT_TRUE(decoded) << decoded.error().sentence();
     return words;
   }
@@ -81,7 +82,8 @@ std::string uidOf(DcmDataset& data, const DcmTagKey& tag) {
 }
 
 TEST(NoisyCt, HasTheSameBitsEverywhere) {
-  EXPECT_EQ(volumeSha256(noisyCt({33, 24, 7})), "63faafaef0e73ada68d4f930b8dd1b1bf55a9a01b6aa6277d4320a849b7b3e51");
+  EXPECT_EQ(volumeSha256(noisyCt({33, 24, 7})),
+            "63faafaef0e73ada68d4f930b8dd1b1bf55a9a01b6aa6277d4320a849b7b3e51");
 }
 
 TEST(NoisyCt, HasTheNoiseOfACtInTheBrain) {
