@@ -114,7 +114,7 @@ int run(int argc, char** argv) {
   measure_import_command->add_option("--out", out, "Folder for the table")->required();
   auto* read_command = with_json(
       measure_command->add_subcommand("read", "Read every byte of a folder's files, and no more"));
-  read_command->add_option("path", path, "A folder")->required();
+  read_command->add_option("path", file, "A folder")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -143,7 +143,7 @@ int run(int argc, char** argv) {
     import_options.size[0] = import_options.size[1] = edge;
     return measureImportCommand(import_options, import_series, out, json, progress);
   }
-  if (*read_command) return measureReadCommand(path, json);
+  if (*read_command) return measureReadCommand(file, json);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

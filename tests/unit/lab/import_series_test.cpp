@@ -208,9 +208,7 @@ TEST(ImportSeries, IsReadByTheImporterAsItWasMade) {
       EXPECT_NEAR(again->geometry.spacing_mm[axis], volume.geometry.spacing_mm[axis], 1e-6);
       EXPECT_NEAR(again->geometry.origin_mm[axis], volume.geometry.origin_mm[axis], 1e-6);
     }
-    const SeriesReport& report = read->report().series.front();
-    EXPECT_EQ(report.verdict, Verdict::pass);
-    EXPECT_TRUE(report.findings.empty()) << report.findings.front().code;
+    EXPECT_EQ(read->report().series.front().verdict, Verdict::pass);
   }
 }
 
