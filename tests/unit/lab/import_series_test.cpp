@@ -195,8 +195,9 @@ INSTANTIATE_TEST_SUITE_P(Series, EverySyntax,
 TEST(ImportSeries, IsReadByTheImporterAsItWasMade) {
   const TemporaryFolder folder;
   const Volume volume = noisyCt({40, 32, 6});
-  for (const SeriesSyntax syntax : {SeriesSyntax::int16, SeriesSyntax::u12}) {
-    const fs::path path = folder / nameOf(kSeriesSyntaxes, syntax);
+  for (const auto& [name, syntax] : kSeriesSyntaxes) {
+    SCOPED_TRACE(name);
+    const fs::path path = folder / std::string(name);
     ASSERT_TRUE(writeSeries(volume, syntax, path, {kQuiet}));
     Result<CtFolder> read = CtFolder::scan(path, kQuiet);
     ASSERT_TRUE(read);
