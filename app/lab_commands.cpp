@@ -17,7 +17,9 @@
 #include "lab/explain.h"
 #include "lab/extremes_measurement.h"
 #include "lab/haptics_measurement.h"
+#include "lab/import_measurement.h"
 #include "lab/jitter_measurement.h"
+#include "lab/read_floor.h"
 #include "lab/stability_maps.h"
 #include "lab/stability_measurement.h"
 #include "lab/trade_charts.h"
@@ -398,6 +400,40 @@ int measureTradesCommand(const std::string& out, bool json, const Progress& prog
     printAnswer(kName, answer);
   } else {
     std::printf("%s", toText(*measured).c_str());
+  }
+  return 0;
+}
+
+int measureImportCommand(ImportOptions options, const std::vector<std::string>& series,
+                         const std::string& out, bool json, const Progress& progress) {
+  constexpr const char* kName = "measure.import";
+  for (const std::string& name : series) {
+    const auto syntax = kindOf(kSeriesSyntaxes, name);
+    if (!syntax) {
+      return printError(kName, {"BAD_ARGUMENT", "There is no series '" + name + "'", "--series",
+                                choices(kSeriesSyntaxes)}, json);
+    }
+    options.syntaxes.push_back(*syntax);
+  }
+  std::error_code error;
+  options.program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) {
+    return printError(kName, {"CANNOT_RUN", "The program does not find itself", "", ""}, json);
+  }
+  Result<ImportMeasurement> measured = measureImport(options, out, progress);
+  if (!measured) return printError(kName, measured.error(), json);
+  printMeasured(kName, *measured, json);
+  return 0;
+}
+
+int measureReadCommand(const std::string& path, bool json) {
+  const Result<ReadFloor> floor = readEveryByte(path);
+  if (!floor) return printError("measure.read", floor.error(), json);
+  if (json) {
+    printAnswer("measure.read", toJson(*floor));
+  } else {
+    std::printf("%d files of %.1f MB: read in %.4f s, kept in memory in %.4f s\n", floor->files,
+                double(floor->bytes) / 1048576.0, floor->seconds, floor->kept_seconds);
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "lab/import_measurement.h"
 
 namespace trephine {
 
@@ -44,6 +45,10 @@ int measureStabilityCommand(const std::string& grid, const std::string& out, boo
 int measureExtremesCommand(const std::string& out, bool json, const Progress&);
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureTradesCommand(const std::string& out, bool json, const Progress&);
+// `series` are names; none for all. The program in `options` is filled in.
+int measureImportCommand(ImportOptions options, const std::vector<std::string>& series,
+                         const std::string& out, bool json, const Progress&);
+int measureReadCommand(const std::string& path, bool json);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

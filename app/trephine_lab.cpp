@@ -92,6 +92,29 @@ int run(int argc, char** argv) {
   auto* trades_command = with_json(measure_command->add_subcommand(
       "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
   trades_command->add_option("--out", out, "Folder for tables and charts")->required();
+  auto* measure_import_command = with_json(measure_command->add_subcommand(
+      "import", "How fast CT is read, against a plain read and other programs"));
+  ImportOptions import_options;
+  std::vector<std::string> import_series;
+  int edge = import_options.size[0];
+  measure_import_command->add_flag("--peers", import_options.peers,
+                                   "Other programs too, where they are installed");
+  measure_import_command->add_option("--series", import_series, "Only these; all unless given");
+  measure_import_command->add_option("--size", edge, "Rows and columns")->capture_default_str();
+  measure_import_command->add_option("--slices", import_options.size[2], "Of each series")
+      ->capture_default_str();
+  measure_import_command->add_option("--repetitions", import_options.repetitions)
+      ->capture_default_str();
+  measure_import_command->add_option("--scan-series", import_options.scan_series,
+                                     "Series in the folder whose headers are read")
+      ->capture_default_str();
+  measure_import_command->add_option("--scan-slices", import_options.scan_slices,
+                                     "Slices of each of them")
+      ->capture_default_str();
+  measure_import_command->add_option("--out", out, "Folder for the table")->required();
+  auto* read_command = with_json(
+      measure_command->add_subcommand("read", "Read every byte of a folder's files, and no more"));
+  read_command->add_option("path", file, "A folder")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -116,6 +139,11 @@ int run(int argc, char** argv) {
   if (*extremes_command) return measureExtremesCommand(out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);
+  if (*measure_import_command) {
+    import_options.size[0] = import_options.size[1] = edge;
+    return measureImportCommand(import_options, import_series, out, json, progress);
+  }
+  if (*read_command) return measureReadCommand(file, json);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

@@ -47,7 +47,7 @@ MAY_USE = {
     "training": {"hdf5"},
     "session": set(),
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
-    "lab": {"vtk-charts"},
+    "lab": {"vtk-charts", "dcmtk", "openjpeg"},
     "ui": {"qt"},
     "app": {"qt", "cli11"},
 }

@@ -237,6 +237,62 @@ class Measurements(LabTest):
             answer = lab("measure", what, "--out", self.folder / "file", expect=1)
             self.assert_error(answer, "CANNOT_WRITE", "file")
 
+    def test_the_import_is_measured_beside_a_plain_read_and_absent_peers(self):
+        # A PATH without programs: what is installed here does not matter.
+        answer = lab("measure", "import", "--peers", "--size", 64, "--slices", 4, "--repetitions",
+                     1, "--scan-series", 2, "--scan-slices", 3, "--out", self.folder / "out",
+                     environment={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(set(answer), {"schema", "build", "volume_mb", "rows", "scan", "ratios"})
+        rows = {(row["series"], row["loader"]): row for row in answer["rows"]}
+        self.assertEqual(set(rows), {
+            (series, loader)
+            for series in ("int16", "u12", "big-endian", "deflated", "rle", "jpegls", "jpegll", "j2k")
+            for loader in ("trephine", "trephine command", "floor", "floor kept", "dcm2niix",
+                           "dicomtonifti")})
+        for (series, loader), row in rows.items():
+            with self.subTest(series=series, loader=loader):
+                self.assertEqual(set(row), {"series", "loader", "threads", "seconds_median",
+                                            "peak_rss_mb", "above_start_mb", "correct",
+                                            "skipped_reason"})
+                if loader.startswith("floor"):
+                    self.assertGreater(row["seconds_median"], 0)
+                    self.assertIsNone(row["correct"])
+                elif loader.startswith("trephine"):
+                    self.assertIsNone(row["skipped_reason"])
+                    self.assertEqual(row["correct"], True)
+                    self.assertGreater(row["seconds_median"], 0)
+                else:
+                    self.assertEqual(row["skipped_reason"], "not installed")
+                    self.assertIsNone(row["seconds_median"])
+        ours = rows["int16", "trephine"]
+        self.assertGreater(ours["above_start_mb"], 0)
+        self.assertLess(ours["above_start_mb"], ours["peak_rss_mb"])
+        self.assertLess(ours["seconds_median"], rows["int16", "trephine command"]["seconds_median"])
+        self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
+                         [("trephine", 6), ("gdcmscanner", 6)])
+        self.assertGreater(answer["scan"][0]["seconds_median"], 0)
+        self.assertGreater(answer["ratios"]["int16_to_floor"], 1)
+        self.assertIsNone(answer["ratios"]["command_to_dcm2niix"])
+        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()), ["import.csv"])
+
+    def test_an_import_measurement_of_what_is_not_there_is_refused(self):
+        out = self.folder / "out"
+        answer = lab("measure", "import", "--series", "mp3", "--out", out, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "mp3", "jpegls")
+        answer = lab("measure", "import", "--size", 1, "--out", out, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "2048")
+        self.assertFalse(out.exists())
+
+    def test_every_byte_of_a_folder_is_read(self):
+        (self.folder / "a").write_bytes(b"x" * 1000)
+        (self.folder / "b").write_bytes(b"y" * 24)
+        answer = lab("measure", "read", self.folder)
+        self.assertEqual(set(answer), {"schema", "build", "files", "bytes", "seconds",
+                                       "kept_seconds"})
+        self.assertEqual((answer["files"], answer["bytes"]), (2, 1024))
+        answer = lab("measure", "read", self.folder / "none", expect=1)
+        self.assert_error(answer, "MISSING_FOLDER", "none")
+
     def test_jitter_is_measured_at_three_rates(self):
         answer = lab("measure", "jitter", "--seconds", 0.2, "--out", self.folder)
         self.assertEqual({row["rate_hz"] for row in answer["rows"]}, {1000, 2000, 4000})

@@ -1,0 +1,140 @@
+#include "lab/child_process.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "lab/read_floor.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Child : public ::testing::Test {
+ protected:
+  ChildCommand shell(const std::string& script) const {
+    ChildCommand command;
+    command.words = {"/bin/sh", "-c", script};
+    command.output = folder_ / "stdout";
+    command.home = folder_.path();
+    command.offline = false;
+    return command;
+  }
+  std::string output() const {
+    std::ifstream in(folder_ / "stdout");
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  test::TemporaryFolder folder_;
+  Progress progress_;
+};
+
+TEST_F(Child, TellsItsExitCodeOutputAndTime) {
+  const Result<ChildRun> run =
+      runChild(shell("echo out; echo lost >&2; sleep 0.2; exit 7"), progress_);
+  ASSERT_TRUE(run) << run.error().sentence();
+  EXPECT_EQ(run->exit_code, 7);
+  EXPECT_EQ(output(), "out\n");
+  EXPECT_FALSE(run->timed_out);
+  EXPECT_GE(run->seconds, 0.2);
+  EXPECT_LT(run->seconds, 30.0);
+  const Result<ChildRun> killed = runChild(shell("kill -SEGV $$"), progress_);
+  ASSERT_TRUE(killed);
+  EXPECT_EQ(killed->exit_code, 128 + 11);
+}
+
+TEST_F(Child, TellsThePeakOfItsMemory) {
+  const Result<ChildRun> small = runChild(shell(":"), progress_);
+  const Result<ChildRun> large =
+      runChild(shell("exec dd if=/dev/zero of=/dev/null bs=200M count=1"), progress_);
+  ASSERT_TRUE(small && large);
+  EXPECT_GT(large->peak_rss_mb, 200.0);
+  EXPECT_LT(large->peak_rss_mb, 300.0);
+  EXPECT_LT(small->peak_rss_mb, large->peak_rss_mb - 100.0);
+}
+
+TEST_F(Child, HasItsOwnHomeAndTheRestOfTheEnvironment) {
+  ::setenv("TREPHINE_CHILD_TEST", "kept", 1);
+  ASSERT_TRUE(runChild(shell("echo $HOME $TREPHINE_CHILD_TEST"), progress_));
+  EXPECT_EQ(output(), folder_.path().string() + " kept\n");
+}
+
+TEST_F(Child, IsEndedWhenItTakesTooLong) {
+  ChildCommand command = shell("exec sleep 60");
+  command.limit_s = 0.3;
+  const Result<ChildRun> run = runChild(command, progress_);
+  ASSERT_TRUE(run);
+  EXPECT_TRUE(run->timed_out);
+  EXPECT_LT(run->seconds, 30.0);
+}
+
+TEST_F(Child, IsEndedWhenTheWorkIsCancelled) {
+  std::jthread canceller([&] {
+    std::this_thread::sleep_for(200ms);
+    progress_.cancel();
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const Result<ChildRun> run = runChild(shell("exec sleep 60"), progress_);
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, "CANCELLED");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);
+}
+
+TEST_F(Child, ThatCannotBeRunIsNamed) {
+  ChildCommand command = shell("");
+  command.words = {(folder_ / "no-such-program").string()};
+  const Result<ChildRun> run = runChild(command, progress_);
+  ASSERT_FALSE(run);
+  EXPECT_EQ(run.error().code, "CANNOT_RUN");
+  EXPECT_NE(run.error().sentence().find("no-such-program"), std::string::npos);
+  EXPECT_NE(run.error().sentence().find("No such file"), std::string::npos);
+}
+
+TEST_F(Child, OfflineHasNoNetworkButAnUnconnectedLoopback) {
+  ChildCommand command = shell("cat /proc/net/route; cat /proc/net/dev");
+  command.offline = true;
+  const Result<ChildRun> run = runChild(command, progress_);
+  if (!run) GTEST_SKIP() << "this system grants no namespaces: " << run.error().sentence();
+  const std::string text = output();
+  EXPECT_EQ(std::count(text.begin(), text.end(), ':'), 1) << text;
+  EXPECT_NE(text.find("lo:"), std::string::npos) << text;
+}
+
+TEST_F(Child, ProgramsAreFoundInThePath) {
+  EXPECT_TRUE(findProgram("sh"));
+  EXPECT_FALSE(findProgram("no-such-program-of-anyone"));
+  std::ofstream(folder_ / "text") << "not a program";
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder_.path().c_str(), 1);
+  EXPECT_FALSE(findProgram("text"));
+  ::setenv("PATH", path.c_str(), 1);
+}
+
+TEST(ReadFloor, ReadsEveryByteOfEveryFile) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "a") << std::string(100000, 'a');
+  std::ofstream(folder / "b") << std::string(300, 'b');
+  std::ofstream(folder / "c");
+  const Result<ReadFloor> floor = readEveryByte(folder.path());
+  ASSERT_TRUE(floor) << floor.error().sentence();
+  EXPECT_EQ(floor->files, 3);
+  EXPECT_EQ(floor->bytes, 100300u);
+  EXPECT_GT(floor->seconds, 0.0);
+  EXPECT_GT(floor->kept_seconds, 0.0);
+  EXPECT_EQ(toJson(*floor)["bytes"], 100300u);
+}
+
+TEST(ReadFloor, SaysWhatItCannotRead) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(readEveryByte(folder / "none").error().code, "MISSING_FOLDER");
+  std::filesystem::create_directory(folder / "sub");
+  EXPECT_EQ(readEveryByte(folder.path()).error().code, "UNREADABLE");
+}
+
+}  // namespace
+}  // namespace trephine
