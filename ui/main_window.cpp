@@ -47,14 +47,30 @@ std::filesystem::path ownRecordings() {
 
 // --- Opening ---
 
+QWidget* MainWindow::front() {
+  return import_->isVisible() ? static_cast<QWidget*>(import_) : this;
+}
+
 void MainWindow::askForFolder() {
-  auto* dialog = new QFileDialog(this, tr("Open a folder of CT"));
+  auto* dialog = new QFileDialog(front(), tr("Open a folder of CT"));
   dialog->setObjectName("folderDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& folder) { workstation_.openPath(toPath(folder)); });
+  dialog->open();
+}
+
+void MainWindow::askForFile() {
+  auto* dialog = new QFileDialog(
+      front(), tr("Open a file of CT"), {},
+      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
+  dialog->setObjectName("fileDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.openPath(toPath(file)); });
   dialog->open();
 }
 
@@ -113,7 +129,9 @@ void MainWindow::showCase() {
   carved_ = false;
   view_->setTools({});
   view_->showVolume(Grid(*volume));
-  case_->showCase(sizeWords(volume->geometry));
+  const QString size = sizeWords(volume->geometry);
+  const QString name = workstation_.caseName();
+  case_->showCase(name.isEmpty() ? size : name + '\n' + size);
   lookAtCase();
   showPhase();
 }
@@ -138,7 +156,7 @@ void MainWindow::showPhase() {
   const Phase phase = workstation_.phase();
   const bool running = phase == Phase::running, ready = phase == Phase::ready;
   const bool may_open = ready || phase == Phase::empty;
-  for (QAction* action : {open_, open_scene_}) action->setEnabled(may_open);
+  for (QAction* action : {open_, open_file_, open_scene_}) action->setEnabled(may_open);
   scenes_->setEnabled(may_open);
   case_->setOpeningAllowed(may_open);
   start_->setEnabled(ready);
@@ -332,7 +350,7 @@ void MainWindow::say(const QString& text) {
 }
 
 void MainWindow::report(const Error& error) {
-  showError(this, error);
+  showError(front(), error);
   emit failed(error);
 }
 
