@@ -53,7 +53,7 @@ const SeverityWords kSeverities[] = {
 };
 
 QString findingHtml(const Finding& finding) {
-  QString html = "<p style='margin-top:2px; margin-bottom:6px;'>" +
+  QString html = "<p style='margin-top:3px; margin-bottom:7px; line-height:115%;'>" +
                  sentence(toQt(finding.text)).toHtmlEscaped();
   if (!finding.slices.empty()) {
     html += QString(" <span style='color:%1'>").arg(colours::kQuiet.name()) +
@@ -238,7 +238,7 @@ QString reportHtml(const SeriesReport& series) {
   QString html = factsHtml(series);
   for (const SeverityWords& words : kSeverities) {
     if (countOf(series, words.severity) == 0) continue;
-    html += QString("<p style='margin-top:10px; margin-bottom:0px;'>"
+    html += QString("<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"
                     "<b style='color:%1'>%2</b><br><span style='color:%3'>%4</span></p>")
                 .arg(words.colour.name(), tr(words.title).toHtmlEscaped(), colours::kQuiet.name(),
                      tr(words.meaning).toHtmlEscaped());

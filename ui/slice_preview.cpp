@@ -16,7 +16,6 @@ constexpr int kPageOfSlices = 10;
 }
 
 SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
-  setFocusPolicy(Qt::StrongFocus);
   canvas_ = new SliceCanvas(this);
   canvas_->setObjectName("sliceCanvas");
 
@@ -37,7 +36,7 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
                            .arg(i + 1));
     button->setCheckable(true);
     button->setProperty("segment", true);
-    button->setFocusPolicy(Qt::TabFocus);
+    button->setFocusPolicy(Qt::StrongFocus);
     windows_->addButton(button, i);
     window_row->addWidget(button);
   }
@@ -48,7 +47,8 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   slider_->setObjectName("sliceSlider");
   slider_->setAccessibleName(tr("Slice"));
   slider_->setPageStep(kPageOfSlices);
-  setFocusProxy(slider_);
+  canvas_->setFocusPolicy(Qt::ClickFocus);
+  canvas_->setFocusProxy(slider_);
   position_ = new QLabel(this);
   position_->setObjectName("slicePosition");
   position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));

@@ -209,7 +209,7 @@ class SlicePreviewTest : public ImportWidgetsTest {
   }
   void press(int key) {
     QKeyEvent event(QEvent::KeyPress, key, Qt::NoModifier, QString(QChar(key)));
-    QCoreApplication::sendEvent(preview_.focusProxy(), &event);
+    QCoreApplication::sendEvent(&find<QSlider>(preview_, "sliceSlider"), &event);
   }
   SlicePreview preview_;
   std::vector<int> wanted_;
