@@ -99,6 +99,12 @@ void ImportDialog::dropEvent(QDropEvent* event) {
   emit pathDropped(event->mimeData()->urls().front().toLocalFile());
 }
 
+void ImportDialog::say(const QString& text) {
+  if (task_.isWorking()) return;
+  status_->setText(text);
+  status_->show();
+}
+
 void ImportDialog::showStep(Step step) {
   step_ = step;
   const bool working = step == Step::scanning || step == Step::reading;
@@ -116,6 +122,7 @@ void ImportDialog::showStep(Step step) {
   purpose_->setVisible(!working);
   close_->setVisible(!working && step != Step::asking);
   import_->setVisible(step != Step::asking);
+  report_->setVisible(choosing && task_.hasFolder());
   back_->setVisible(step == Step::asking);
   open_case_->setVisible(step == Step::asking);
   if (step == Step::scanning) {
@@ -213,7 +220,7 @@ void ImportDialog::boxDrawn(const QRect& pixels) {
 
 void ImportDialog::import() {
   if (!import_->isEnabled()) return;
-  request_ = {answers(), size_->crop(), size_->reduction()};
+  request_ = {answers(), size_->crop(), size_->reduction(), {}};
   loss_told_ = false;
   showStep(Step::reading);
   task_.read(list_->selectedUid(), request_);

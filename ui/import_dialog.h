@@ -27,6 +27,7 @@ class ImportDialog : public QDialog {
   explicit ImportDialog(ImportTask& task, QWidget* parent = nullptr);
 
   void open() override;  // the folder scanned last, once more
+  void say(const QString& text);
 
  public slots:
   void reject() override;
@@ -35,6 +36,7 @@ class ImportDialog : public QDialog {
   void folderWanted();
   void fileWanted();
   void pathDropped(const QString& path);
+  void reportWanted();
   void caseRead(const std::shared_ptr<const trephine::Volume>& volume, const QString& name);
 
  protected:
@@ -94,7 +96,7 @@ class ImportDialog : public QDialog {
   QLabel *size_note_, *loss_, *face_;
   QLabel *status_, *purpose_;
   QProgressBar* progress_;
-  QPushButton *open_folder_, *open_file_, *cancel_, *close_, *back_, *import_, *open_case_;
+  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_, *open_case_;
 };
 
 }  // namespace trephine

@@ -150,6 +150,7 @@ QLayout* ImportDialog::buildBottomRow() {
   progress_->setRange(0, kProgressSteps);
   progress_->setTextVisible(false);
   progress_->setMaximumHeight(14);
+  report_ = button("saveReport", tr("Save &report\u2026"));
   cancel_ = button("cancelImport", tr("&Cancel"));
   close_ = button("closeImport", tr("&Close"));
   back_ = button("importBack", tr("&Back"));
@@ -163,7 +164,7 @@ QLayout* ImportDialog::buildBottomRow() {
   row->addWidget(status_);
   row->addWidget(progress_, 1);
   row->addStretch(1);
-  for (QPushButton* each : {back_, close_, cancel_, import_, open_case_}) {
+  for (QPushButton* each : {report_, back_, close_, cancel_, import_, open_case_}) {
     each->setMinimumWidth(110);
     row->addWidget(each);
   }
@@ -186,6 +187,7 @@ void ImportDialog::connectParts() {
           [this] { open_case_->setEnabled(late_choices_->allAnswered()); });
   connect(import_, &QPushButton::clicked, this, &ImportDialog::import);
   connect(open_case_, &QPushButton::clicked, this, &ImportDialog::answered);
+  connect(report_, &QPushButton::clicked, this, &ImportDialog::reportWanted);
   connect(back_, &QPushButton::clicked, this, &ImportDialog::back);
   connect(close_, &QPushButton::clicked, this, &ImportDialog::reject);
   connect(cancel_, &QPushButton::clicked, &task_, &ImportTask::cancel);

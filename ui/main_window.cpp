@@ -13,6 +13,7 @@
 #include "render/picture.h"
 #include "render/tool_view.h"
 #include "ui/error_dialog.h"
+#include "ui/report_file.h"
 #include "ui/words.h"
 #include "volume/volume_files.h"
 
@@ -318,7 +319,7 @@ void MainWindow::placeHandPoints() {
 
 void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
                                 const QString& filter, void (MainWindow::*save)(const QString&)) {
-  auto* dialog = new QFileDialog(this, title, {}, filter);
+  auto* dialog = new QFileDialog(front(), title, {}, filter);
   dialog->setObjectName("saveDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
@@ -345,8 +346,16 @@ void MainWindow::saveVolume(const QString& file) {
                     [copy, path = toPath(file)] { return writeVolume(*copy, path); });
 }
 
+void MainWindow::saveReport(const QString& file) {
+  workstation_.save(tr("The report is saved."),
+                    [report = workstation_.import().report(), path = toPath(file)] {
+                      return writeReport(report, path);
+                    });
+}
+
 void MainWindow::say(const QString& text) {
   statusBar()->showMessage(text, kMessage_ms);
+  if (import_->isVisible()) import_->say(text);
 }
 
 void MainWindow::report(const Error& error) {

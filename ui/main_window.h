@@ -36,6 +36,7 @@ class MainWindow : public QMainWindow {
   // The 3-D view as a PNG, and the voxels as they are now; errors become dialogs.
   void savePicture(const QString& file);
   void saveVolume(const QString& file);
+  void saveReport(const QString& file);  // of the folder scanned last: PDF or HTML
 
  signals:
   // Beside the dialog that is shown.

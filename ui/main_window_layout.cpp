@@ -186,6 +186,10 @@ void MainWindow::connectParts() {
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
   connect(import_, &ImportDialog::fileWanted, this, &MainWindow::askForFile);
+  connect(import_, &ImportDialog::reportWanted, this, [this] {
+    askWhereToSave(tr("Save report"), "import-report.pdf",
+                   tr("PDF (*.pdf);;Web page (*.html *.htm)"), &MainWindow::saveReport);
+  });
   connect(import_, &ImportDialog::pathDropped, this,
           [this](const QString& path) { workstation_.openPath(toPath(path)); });
   connect(import_, &ImportDialog::caseRead, &workstation_, &Workstation::openVolume);

@@ -47,8 +47,6 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   slider_->setObjectName("sliceSlider");
   slider_->setAccessibleName(tr("Slice"));
   slider_->setPageStep(kPageOfSlices);
-  canvas_->setFocusPolicy(Qt::ClickFocus);
-  canvas_->setFocusProxy(slider_);
   position_ = new QLabel(this);
   position_->setObjectName("slicePosition");
   position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));
@@ -122,6 +120,10 @@ void SlicePreview::wheelEvent(QWheelEvent* event) {
   turned_ -= notches * QWheelEvent::DefaultDeltasPerStep;  // a touchpad sends parts of a notch
   slider_->setValue(slider_->value() - notches);
   event->accept();
+}
+
+void SlicePreview::mousePressEvent(QMouseEvent*) {
+  slider_->setFocus();
 }
 
 void SlicePreview::keyPressEvent(QKeyEvent* event) {
