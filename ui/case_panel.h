@@ -1,14 +1,11 @@
-// Where the case comes from: open a folder, choose among its series by their verdicts, or take a
-// built-in case. Shows how far opening is and lets it be cancelled.
+// Where the case comes from: a folder or file of CT, another series of it, or a built-in case; which
+// one is open; how far opening is.
 #pragma once
 
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QTreeWidget>
 #include <QWidget>
-
-#include "imaging/importer.h"
 
 namespace trephine {
 
@@ -17,10 +14,9 @@ class CasePanel : public QWidget {
  public:
   explicit CasePanel(QWidget* parent = nullptr);
 
-  void showReport(const ImportReport& report);
-  void showChosen(const QString& uid);
-  void forgetReport();  // a built-in case has none
   void showCase(const QString& what);
+  // A folder is at hand, so that another series of it can be used.
+  void setSeriesAtHand(bool at_hand);
   void showProgress(double fraction, const QString& step);
   void endProgress();
   // While an exercise runs no other case can be opened.
@@ -29,22 +25,16 @@ class CasePanel : public QWidget {
  signals:
   void folderWanted();
   void phantomWanted(const QString& name);
-  void seriesWanted(const QString& uid);
+  void seriesWanted();
   void cancelWanted();
 
  private:
-  void showDetails();
   void showButtons();
-  const SeriesReport* selected() const;
 
-  ImportReport report_;
-  QString chosen_;
-  bool allowed_ = true, busy_ = false;
-  QPushButton *folder_, *cranium_, *abdomen_, *use_series_, *cancel_;
-  QLabel *case_, *skipped_, *details_;
-  QTreeWidget* series_;
+  bool at_hand_ = false, allowed_ = true, busy_ = false;
+  QPushButton *folder_, *series_, *cranium_, *abdomen_, *cancel_;
+  QLabel *case_, *step_;
   QProgressBar* progress_;
-  QLabel* step_;
   QWidget* progress_box_;
 };
 

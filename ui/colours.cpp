@@ -45,8 +45,21 @@ void applyTheme(QApplication& application) {
               "QStatusBar::item { border: none; }"
               "QLabel[quiet=\"true\"] { color: %5; }"
               "QLabel[title=\"true\"] { font-weight: bold; }"
+              "QToolButton[segment=\"true\"] { padding: 3px 10px; border: 1px solid %3;"
+              " border-radius: 4px; background: %2; }"
+              "QToolButton[segment=\"true\"]:hover { border-color: %5; }"
+              "QToolButton[segment=\"true\"]:focus { border-color: %7; }"
+              "QToolButton[segment=\"true\"]:checked { background: %6; color: white; }"
+              "QRadioButton::indicator { width: 14px; height: 14px; border-radius: 8px;"
+              " border: 1px solid %5; background: %4; }"
+              "QRadioButton::indicator:checked { border-color: %6; background:"
+              " qradialgradient(cx: 0.5, cy: 0.5, radius: 0.5, fx: 0.5, fy: 0.5, stop: 0.48 white,"
+              " stop: 0.58 %6); }"
+              "QRadioButton::indicator:focus { border: 1px solid white; }"
+              "QRadioButton::indicator:disabled { border-color: %3; }"
               "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }")
-          .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name()));
+          .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
+               kAccent.darker(125).name(), kAccent.name()));
 }
 
 }  // namespace trephine::colours

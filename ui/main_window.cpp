@@ -13,6 +13,7 @@
 #include "render/picture.h"
 #include "render/tool_view.h"
 #include "ui/error_dialog.h"
+#include "ui/report_file.h"
 #include "ui/words.h"
 #include "volume/volume_files.h"
 
@@ -47,14 +48,30 @@ std::filesystem::path ownRecordings() {
 
 // --- Opening ---
 
+QWidget* MainWindow::front() {
+  return import_->isVisible() ? static_cast<QWidget*>(import_) : this;
+}
+
 void MainWindow::askForFolder() {
-  auto* dialog = new QFileDialog(this, tr("Open a folder of CT"));
+  auto* dialog = new QFileDialog(front(), tr("Open a folder of CT"));
   dialog->setObjectName("folderDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& folder) { workstation_.openPath(toPath(folder)); });
+  dialog->open();
+}
+
+void MainWindow::askForFile() {
+  auto* dialog = new QFileDialog(
+      front(), tr("Open a file of CT"), {},
+      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
+  dialog->setObjectName("fileDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.openPath(toPath(file)); });
   dialog->open();
 }
 
@@ -113,7 +130,9 @@ void MainWindow::showCase() {
   carved_ = false;
   view_->setTools({});
   view_->showVolume(Grid(*volume));
-  case_->showCase(sizeWords(volume->geometry));
+  const QString size = sizeWords(volume->geometry);
+  const QString name = workstation_.caseName();
+  case_->showCase(name.isEmpty() ? size : name + '\n' + size);
   lookAtCase();
   showPhase();
 }
@@ -138,7 +157,7 @@ void MainWindow::showPhase() {
   const Phase phase = workstation_.phase();
   const bool running = phase == Phase::running, ready = phase == Phase::ready;
   const bool may_open = ready || phase == Phase::empty;
-  for (QAction* action : {open_, open_scene_}) action->setEnabled(may_open);
+  for (QAction* action : {open_, open_file_, open_scene_}) action->setEnabled(may_open);
   scenes_->setEnabled(may_open);
   case_->setOpeningAllowed(may_open);
   start_->setEnabled(ready);
@@ -300,7 +319,7 @@ void MainWindow::placeHandPoints() {
 
 void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
                                 const QString& filter, void (MainWindow::*save)(const QString&)) {
-  auto* dialog = new QFileDialog(this, title, {}, filter);
+  auto* dialog = new QFileDialog(front(), title, {}, filter);
   dialog->setObjectName("saveDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
@@ -327,12 +346,20 @@ void MainWindow::saveVolume(const QString& file) {
                     [copy, path = toPath(file)] { return writeVolume(*copy, path); });
 }
 
+void MainWindow::saveReport(const QString& file) {
+  workstation_.save(tr("The report is saved."),
+                    [report = workstation_.import().report(), path = toPath(file)] {
+                      return writeReport(report, path);
+                    });
+}
+
 void MainWindow::say(const QString& text) {
   statusBar()->showMessage(text, kMessage_ms);
+  if (import_->isVisible()) import_->say(text);
 }
 
 void MainWindow::report(const Error& error) {
-  showError(this, error);
+  showError(front(), error);
   emit failed(error);
 }
 

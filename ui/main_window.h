@@ -14,6 +14,7 @@
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
 #include "ui/icons.h"
+#include "ui/import_dialog.h"
 #include "ui/rewind_bar.h"
 #include "ui/tissue_panel.h"
 #include "ui/view_widget.h"
@@ -35,6 +36,7 @@ class MainWindow : public QMainWindow {
   // The 3-D view as a PNG, and the voxels as they are now; errors become dialogs.
   void savePicture(const QString& file);
   void saveVolume(const QString& file);
+  void saveReport(const QString& file);  // of the folder scanned last: PDF or HTML
 
  signals:
   // Beside the dialog that is shown.
@@ -55,7 +57,9 @@ class MainWindow : public QMainWindow {
                       const QString& tip);
   void fillScenes();
 
+  QWidget* front();  // the window or dialog that a further dialog belongs to
   void askForFolder();
+  void askForFile();
   void askForScene();
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
@@ -81,11 +85,12 @@ class MainWindow : public QMainWindow {
 
   Workstation workstation_;
   std::filesystem::path recordings_;
-  QAction *open_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_, *picture_,
+  QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_, *picture_,
       *volume_, *look_;
   QComboBox* scenes_;
   QTabWidget* left_;
   CasePanel* case_;
+  ImportDialog* import_;
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   ViewWidget* view_;

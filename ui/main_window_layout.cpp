@@ -49,6 +49,8 @@ QAction* MainWindow::makeAction(Symbol symbol, const char* name, const QString& 
 void MainWindow::buildActions() {
   open_ = makeAction(Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
+  open_file_ = makeAction(Symbol::open, "openFile", tr("Open file\u2026"), {},
+                          tr("Open a DICOMDIR or a volume file (NIfTI, NRRD, MetaImage, raw)"));
   open_scene_ = makeAction(Symbol::open, "openScene", tr("Open scene\u2026"),
                            QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O), tr("Open a scene file"));
   start_ = makeAction(Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
@@ -74,6 +76,7 @@ void MainWindow::buildActions() {
 
 void MainWindow::buildPanels() {
   case_ = new CasePanel;
+  import_ = new ImportDialog(workstation_.import(), this);
   tissues_ = new TissuePanel;
   left_ = new QTabWidget;
   left_->setObjectName("leftTabs");
@@ -125,7 +128,7 @@ void MainWindow::buildBars() {
   tools->addActions({look_, picture_, volume_});
 
   QMenu* file = menuBar()->addMenu(tr("&File"));
-  file->addActions({open_, open_scene_});
+  file->addActions({open_, open_file_, open_scene_});
   file->addSeparator();
   file->addActions({picture_, volume_});
   file->addSeparator();
@@ -177,12 +180,21 @@ void MainWindow::connectParts() {
           [this] { (stop_->isEnabled() ? stop_ : start_)->trigger(); });
 
   connect(case_, &CasePanel::folderWanted, this, &MainWindow::askForFolder);
-  connect(case_, &CasePanel::phantomWanted, this, [this](const QString& name) {
-    case_->forgetReport();
-    workstation_.openPhantom(name.toStdString());
+  connect(open_file_, &QAction::triggered, this, &MainWindow::askForFile);
+  connect(case_, &CasePanel::phantomWanted, this,
+          [this](const QString& name) { workstation_.openPhantom(name.toStdString()); });
+  connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
+  connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
+  connect(import_, &ImportDialog::fileWanted, this, &MainWindow::askForFile);
+  connect(import_, &ImportDialog::reportWanted, this, [this] {
+    askWhereToSave(tr("Save report"), "import-report.pdf",
+                   tr("PDF (*.pdf);;Web page (*.html *.htm)"), &MainWindow::saveReport);
   });
-  connect(case_, &CasePanel::seriesWanted, this,
-          [this](const QString& uid) { workstation_.openSeries(uid.toStdString()); });
+  connect(import_, &ImportDialog::pathDropped, this,
+          [this](const QString& path) { workstation_.openPath(toPath(path)); });
+  connect(import_, &ImportDialog::caseRead, &workstation_, &Workstation::openVolume);
+  connect(&workstation_.import(), &ImportTask::scanned, this,
+          [this] { case_->setSeriesAtHand(true); });
   connect(case_, &CasePanel::cancelWanted, &workstation_, &Workstation::cancelOpening);
   connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
     workstation_.setTissues(set);
@@ -206,8 +218,6 @@ void MainWindow::connectParts() {
             left_->setCurrentWidget(case_);
           });
   connect(&workstation_, &Workstation::openingEnded, case_, &CasePanel::endProgress);
-  connect(&workstation_, &Workstation::seriesFound, case_, &CasePanel::showReport);
-  connect(&workstation_, &Workstation::seriesChosen, case_, &CasePanel::showChosen);
   connect(&workstation_, &Workstation::sceneChanged, this, &MainWindow::showScene);
   connect(&workstation_, &Workstation::caseOpened, this, &MainWindow::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &MainWindow::showPhase);

@@ -16,6 +16,7 @@ struct Workstation::Opened {
   std::vector<PlacedLandmark> landmarks;
   std::optional<Error> misfit;  // the case has not what the scene looks for
   bool own_case = false;
+  QString case_name;
 };
 
 namespace {
@@ -42,6 +43,7 @@ std::filesystem::path defaultScene(const std::string& anatomy) {
 Workstation::Workstation(QObject* parent) : QObject(parent) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
+  connect(&import_, &ImportTask::failed, this, &Workstation::failed);
 }
 
 Workstation::~Workstation() = default;
@@ -87,16 +89,7 @@ void Workstation::openPath(const std::filesystem::path& path) {
     openSource(*std::move(scene), path, source);
     return;
   }
-  std::error_code ec;
-  const std::string name = path.filename().string();
-  for (const char* ending : {".mha", ".mhd", ".nii", ".nii.gz"}) {
-    if (!name.ends_with(ending) || std::filesystem::is_directory(path, ec)) continue;
-    const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
-    std::optional<Scene> scene = readSceneOrFail(file);
-    if (scene) openSource(*std::move(scene), file, path.string());
-    return;
-  }
-  openFolder(path);
+  import_.scan(path);
 }
 
 void Workstation::openPhantom(const std::string& name) {
@@ -112,14 +105,7 @@ void Workstation::useScene(const std::filesystem::path& file) {
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (volume_ && (own_case_ || scene->case_source.empty())) {
-    opening_.run(
-        [scene = *scene, file, volume = volume_,
-         own = own_case_](const Progress& progress) -> Result<Opened> {
-          Opened out{scene, file, volume, {}, {}, own};
-          place(out, progress);
-          return out;
-        },
-        [this](Result<Opened> outcome) { opened(std::move(outcome)); });
+    placeAndOpen({*std::move(scene), file, volume_, {}, {}, own_case_, case_name_});
   } else {
     const std::string source = scene->case_source;
     openSource(*std::move(scene), file, source);
@@ -139,50 +125,29 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
         Result<Volume> volume = openCase(source, progress);
         if (!volume) return volume.error();
         Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
-                   {},    {},         !isPhantom(source)};
+                   {},    {},         !isPhantom(source), {}};
         place(out, progress);
         return out;
       },
       [this](Result<Opened> outcome) { opened(std::move(outcome)); });
 }
 
-void Workstation::openFolder(const std::filesystem::path& folder) {
-  opening_.run([folder](const Progress& progress) { return CtFolder::scan(folder, progress); },
-               [this](Result<CtFolder> scanned) {
-                 if (!scanned) return fail(scanned.error());
-                 folder_ = std::make_shared<CtFolder>(*std::move(scanned));
-                 emit seriesFound(folder_->report());
-                 const std::optional<std::string> best = folder_->bestSeries();
-                 if (best) {
-                   openSeries(*best);
-                 } else {
-                   fail(folder_->report().error.value_or(
-                       Error{"ALL_REFUSED", "No series in the folder can be used", "the folder",
-                             "The list of series says why for each"}));
-                 }
-               });
-}
-
-void Workstation::openSeries(const std::string& uid) {
-  if (!folder_ || !mayOpen()) return;
+void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const QString& name) {
+  if (!mayOpen()) return;
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
-  emit seriesChosen(toQt(uid));
+  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name});
+}
+
+void Workstation::placeAndOpen(Opened opening) {
   opening_.run(
-      [folder = folder_, uid, scene = *std::move(scene),
-       file](const Progress& progress) -> Result<Opened> {
-        Result<Volume> volume = folder->read(uid, {}, progress);
-        if (!volume) return volume.error();
-        Opened out{scene, file, std::make_shared<const Volume>(*std::move(volume)), {}, {}, true};
-        place(out, progress);
-        return out;
+      [opening = std::move(opening)](const Progress& progress) mutable -> Result<Opened> {
+        place(opening, progress);
+        return std::move(opening);
       },
-      [this](Result<Opened> outcome) {
-        emit seriesFound(folder_->report());
-        opened(std::move(outcome));
-      });
+      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
 }
 
 void Workstation::opened(Result<Opened> outcome) {
@@ -192,6 +157,7 @@ void Workstation::opened(Result<Opened> outcome) {
   volume_ = std::move(outcome->volume);
   landmarks_ = std::move(outcome->landmarks);
   own_case_ = outcome->own_case;
+  case_name_ = std::move(outcome->case_name);
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);

@@ -7,9 +7,9 @@
 #include <memory>
 #include <optional>
 
-#include "imaging/importer.h"
 #include "session/session.h"
 #include "ui/background_task.h"
+#include "ui/import_task.h"
 
 namespace trephine {
 
@@ -21,22 +21,23 @@ class Workstation : public QObject {
   explicit Workstation(QObject* parent = nullptr);
   ~Workstation() override;
 
-  // A folder or file of CT (scanned, the best series is read), a volume file, or a scene (.json),
-  // which brings its own case.
+  // A scene (.json) brings its own case; any other folder or file is scanned for import().
   void openPath(const std::filesystem::path& path);
   // One of the built-in cases, with the scene that fits it.
   void openPhantom(const std::string& name);
-  // Another series of the folder scanned last.
-  void openSeries(const std::string& uid);
+  // What an import has read; `name` is for the screen only.
+  void openVolume(const std::shared_ptr<const Volume>& volume, const QString& name);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   void cancelOpening() { opening_.cancel(); }
   bool isOpening() const { return opening_.busy(); }
+  ImportTask& import() { return import_; }
 
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }
   const std::filesystem::path& sceneFile() const { return scene_file_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  const QString& caseName() const { return case_name_; }
   // Where the scene wants to be looked at, when the case has that landmark.
   std::optional<LandmarkFrame> viewLandmark() const;
 
@@ -58,8 +59,6 @@ class Workstation : public QObject {
  signals:
   void openingProgressed(double fraction, const QString& step);
   void openingEnded();
-  void seriesFound(const trephine::ImportReport& report);
-  void seriesChosen(const QString& uid);
   void sceneChanged();
   void caseOpened();
   void phaseChanged();
@@ -74,7 +73,7 @@ class Workstation : public QObject {
   bool mayOpen();
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source);
-  void openFolder(const std::filesystem::path& folder);
+  void placeAndOpen(Opened opening);
   void opened(Result<Opened> outcome);
   void setPhase(Phase phase);
   void fail(const Error& error);
@@ -83,11 +82,12 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   std::shared_ptr<const Volume> volume_;
+  QString case_name_;  // empty where it has none
   std::vector<PlacedLandmark> landmarks_;
   bool own_case_ = false;  // the user's, not a built-in one
-  std::shared_ptr<CtFolder> folder_;
   std::unique_ptr<Session> session_;
   // Last, so that they are joined before what they work on goes.
+  ImportTask import_;
   BackgroundTask opening_, running_, saving_;
 };
 

@@ -5,7 +5,6 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
-#include <QTreeWidget>
 
 #include "qt_support.h"
 #include "ui/arms_panel.h"
@@ -122,40 +121,21 @@ TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
   EXPECT_TRUE(felt.isHidden());
 }
 
-TEST_F(PanelTest, ASeriesThatIsRefusedCannotBeUsedAndSaysWhy) {
+TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
   CasePanel panel;
-  ImportReport report;
-  SeriesReport good, bad;
-  good.uid = "1.2";
-  good.description = "Head";
-  good.verdict = Verdict::pass;
-  bad.uid = "1.3";
-  bad.verdict = Verdict::refused;
-  bad.findings.push_back({"GAP", "refusal", "Slices are missing", {}, "Export it again"});
-  report.series = {good, bad};
-  panel.showReport(report);
-  QTreeWidget& list = find<QTreeWidget>(panel, "seriesList");
-  QPushButton& use = find<QPushButton>(panel, "useSeries");
-  ASSERT_EQ(list.topLevelItemCount(), 2);
-  EXPECT_EQ(list.topLevelItem(0)->text(2), "Pass");
-  EXPECT_EQ(list.topLevelItem(1)->text(2), "Refused");
-  EXPECT_TRUE(list.topLevelItem(1)->toolTip(0).contains("Slices are missing"));
-  list.setCurrentItem(list.topLevelItem(1));
-  EXPECT_FALSE(use.isEnabled());
-  EXPECT_TRUE(find<QLabel>(panel, "seriesDetails").text().contains("Export it again"));
-
-  QString wanted;
-  QObject::connect(&panel, &CasePanel::seriesWanted, &panel,
-                   [&](const QString& uid) { wanted = uid; });
-  list.setCurrentItem(list.topLevelItem(0));
-  ASSERT_TRUE(use.isEnabled());
-  use.click();
-  EXPECT_EQ(wanted, "1.2");
-  panel.showChosen("1.2");
-  EXPECT_FALSE(use.isEnabled()) << "it is in use already";
-  panel.showChosen("");
+  QPushButton& folder = find<QPushButton>(panel, "openFolder");
+  QPushButton& another = find<QPushButton>(panel, "anotherSeries");
+  EXPECT_TRUE(another.isHidden()) << "there is no folder yet";
+  panel.setSeriesAtHand(true);
+  EXPECT_FALSE(another.isHidden());
+  EXPECT_TRUE(folder.isEnabled() && another.isEnabled());
   panel.setOpeningAllowed(false);
-  EXPECT_FALSE(use.isEnabled());
+  EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
+  panel.setOpeningAllowed(true);
+  panel.showProgress(0.5, "Reading");
+  EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
+  panel.endProgress();
+  EXPECT_TRUE(folder.isEnabled() && another.isEnabled());
 }
 
 TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {

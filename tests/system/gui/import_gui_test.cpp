@@ -1,0 +1,281 @@
+// Importing as a person does it: open a folder, look at its series and slices, import one; by mouse
+// and by keys alone. Real DICOM files, the real window.
+#include <QApplication>
+#include <QDir>
+#include <QLabel>
+#include <QListWidget>
+#include <QMessageBox>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QSpinBox>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <cstdio>
+#include <filesystem>
+
+#include "imaging/ct_writer.h"
+#include "ui/colours.h"
+#include "ui/main_window.h"
+#include "ui/start_up.h"
+#include "ui/words.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 120000;
+constexpr int kManySeries = 10, kSlicesOfMany = 300;
+// With this between two turns of the event loop a window still feels alive.
+constexpr double kLongestGap_ms = 200.0;
+
+// A block of bone in air. `seed` makes it another one.
+Volume block(Index3 size, int seed) {
+  Volume volume;
+  volume.geometry.size = size;
+  volume.geometry.spacing_mm = {2.0, 2.0, 3.0};
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  for (int k = size[2] / 4; k < size[2] * 3 / 4; ++k) {
+    for (int j = size[1] / 4; j < size[1] * 3 / 4; ++j) {
+      for (int i = size[0] / 4; i < size[0] * 3 / 4; ++i) {
+        volume.hu[volume.geometry.indexOf(i, j, k)] = std::int16_t(700 + seed * 10 + k);
+      }
+    }
+  }
+  return volume;
+}
+
+// The longest time between two turns of the event loop while it lives.
+class Gaps {
+ public:
+  Gaps() {
+    timer_.setTimerType(Qt::PreciseTimer);
+    timer_.setInterval(2);
+    QObject::connect(&timer_, &QTimer::timeout, &timer_, [this] {
+      longest_ms_ = std::max(longest_ms_, double(since_.nsecsElapsed()) * 1e-6);
+      since_.restart();
+    });
+    since_.start();
+    timer_.start();
+  }
+  double longest_ms() const { return longest_ms_; }
+
+ private:
+  QTimer timer_;
+  QElapsedTimer since_;
+  double longest_ms_ = 0.0;
+};
+
+}  // namespace
+
+class ImportGuiTest : public QObject {
+  Q_OBJECT
+
+ private:
+  QTemporaryDir temporary_;
+  std::unique_ptr<MainWindow> window_;
+
+  Workstation& workstation() { return window_->workstation(); }
+  template <class Widget>
+  Widget* find(const char* name) {
+    auto* widget = window_->findChild<Widget*>(name);
+    if (!widget) qFatal("the window has no %s", name);
+    return widget;
+  }
+  ImportDialog* dialog() { return find<ImportDialog>("importDialog"); }
+  SeriesList* list() { return find<SeriesList>("seriesList"); }
+  SliceCanvas* canvas() { return find<SliceCanvas>("sliceCanvas"); }
+  void open(const QString& path) {
+    workstation().openPath(toPath(path));
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+  }
+  void write(const Volume& volume, const char* text, const QString& folder) {
+    const Status written = writeCtSeries(volume, {text, "HEAD"}, toPath(folder));
+    QVERIFY2(written.ok(), written.ok() ? "" : written.error().sentence().c_str());
+  }
+  void keepGrab(const char* name) {
+    QVERIFY(dialog()->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
+  }
+
+ private slots:
+  void initTestCase() {
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    write(block({64, 48, 40}, 0), "Head 3.0", temporary_.filePath("two/a"));
+    write(block({64, 48, 20}, 1), "Head 6.0", temporary_.filePath("two/b"));
+    QFile text(temporary_.filePath("two/read.me"));
+    QVERIFY(text.open(QIODevice::WriteOnly) && text.write("no CT") > 0);
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+  }
+
+  void aFolderWithoutCtSaysSoInTheDialog() {
+    QVERIFY(QDir().mkpath(temporary_.filePath("empty")));
+    open(temporary_.filePath("empty"));
+    QVERIFY(dialog()->isVisible());
+    QCOMPARE(list()->count(), 0);
+    QVERIFY(!find<QPushButton>("import")->isEnabled());
+    QTest::keyClick(dialog(), Qt::Key_Escape);
+    QTRY_VERIFY(!dialog()->isVisible());
+  }
+
+  void theLargestUsableSeriesIsShownFirstWithItsPictures() {
+    open(temporary_.filePath("two"));
+    QVERIFY(dialog()->isVisible());
+    QCOMPARE(list()->count(), 2);
+    QCOMPARE(list()->item(0)->text(), QString("Head 3.0"));
+    QCOMPARE(list()->currentRow(), 0);
+    QVERIFY(find<QLabel>("folderWords")->text().contains("1 left out"));
+    QTRY_VERIFY_WITH_TIMEOUT(list()->withoutThumbnail().empty(), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!canvas()->image().isNull(), kLong_ms);
+    QCOMPARE(find<QLabel>("slicePosition")->text(), QString("Slice 21 of 40"));
+    keepGrab("import.png");
+  }
+
+  void aSliceIsFoundByKeysAlone() {
+    auto* slider = find<QSlider>("sliceSlider");
+    slider->setFocus();
+    const QImage middle = canvas()->image();
+    QTest::keyClick(slider, Qt::Key_Home);
+    QCOMPARE(slider->value(), 0);
+    QTRY_VERIFY(canvas()->image() != middle);
+    QTest::keyClick(slider, Qt::Key_PageUp);
+    QTest::keyClick(slider, Qt::Key_Right);
+    QCOMPARE(slider->value(), 11);
+  }
+
+  // Every control is reached by Tab, and none twice.
+  void tabGoesAroundTheDialog() {
+    list()->setFocus();
+    QSet<QWidget*> reached;
+    for (int i = 0; i < 60 && !reached.contains(QApplication::focusWidget()); ++i) {
+      reached.insert(QApplication::focusWidget());
+      QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+    }
+    QCOMPARE(QApplication::focusWidget(), static_cast<QWidget*>(list()));
+    for (const char* name : {"seriesList", "sliceSlider", "window1", "reduction1", "cropFrom0",
+                             "cropTo2", "import", "closeImport", "importFolder", "importFile"}) {
+      QVERIFY2(reached.contains(find<QWidget>(name)), name);
+    }
+  }
+
+  void aBoxAndAResolutionAreSaidAsWhatComesOut() {
+    find<QSpinBox>("cropTo2")->setValue(20);
+    find<QRadioButton>("reduction2")->click();
+    const QString outcome = find<QLabel>("sizeOutcome")->text();
+    QVERIFY2(outcome.contains(QString::fromUtf8("32 \u00d7 24 \u00d7 10")), qPrintable(outcome));
+    keepGrab("import-cropped.png");
+    find<QPushButton>("cropReset")->click();
+    find<QRadioButton>("reduction1")->click();
+  }
+
+  void returnImportsAndAnotherSeriesIsAtHandAfterwards() {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    list()->setFocus();
+    QTest::keyClick(list(), Qt::Key_Return);
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(!dialog()->isVisible());
+    QVERIFY(workstation().volume()->hu == block({64, 48, 40}, 0).hu);
+    QCOMPARE(workstation().caseName(), QString("Head 3.0"));
+
+    QTRY_VERIFY(find<QPushButton>("anotherSeries")->isEnabled());
+    if (auto* error = window_->findChild<QMessageBox*>("errorDialog")) error->close();
+    QTest::mouseClick(find<QPushButton>("anotherSeries"), Qt::LeftButton);
+    QTRY_VERIFY(dialog()->isVisible());
+    list()->setFocus();
+    QTest::keyClick(list(), Qt::Key_Down);
+    QTRY_COMPARE(find<QLabel>("slicePosition")->text(), QString("Slice 11 of 20"));
+    QTest::keyClick(list(), Qt::Key_Return);
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(workstation().volume()->hu == block({64, 48, 20}, 1).hu);
+    if (auto* error = window_->findChild<QMessageBox*>("errorDialog")) error->close();
+  }
+
+  void manyFilesAreListedWhileTheWindowStaysAlive() {
+    for (int series = 0; series < kManySeries; ++series) {
+      write(block({8, 8, kSlicesOfMany}, series), qPrintable(QString("Many %1").arg(series)),
+            temporary_.filePath(QString("many/%1").arg(series)));
+    }
+    // The case opened before is drawn finely while nothing moves; that is not what is timed here.
+    QSignalSpy painted(&window_->view(), &ViewWidget::framePainted);
+    while (painted.wait(1500)) {
+    }
+    QSignalSpy progressed(&workstation().import(), &ImportTask::progressed);
+    Gaps gaps;
+    QElapsedTimer clock;
+    clock.start();
+    open(temporary_.filePath("many"));
+    const qint64 listed_ms = clock.elapsed();
+    QCOMPARE(list()->count(), kManySeries);
+    QTRY_VERIFY_WITH_TIMEOUT(list()->withoutThumbnail().empty(), kLong_ms);
+    qInfo("%d files listed after %lld ms, pictures after %lld ms, longest gap %.1f ms",
+          workstation().import().report().files_seen, static_cast<long long>(listed_ms),
+          static_cast<long long>(clock.elapsed()), gaps.longest_ms());
+    QCOMPARE(workstation().import().report().files_seen, kManySeries * kSlicesOfMany);
+    QVERIFY(progressed.count() > 0);
+    QVERIFY2(gaps.longest_ms() < kLongestGap_ms, qPrintable(QString::number(gaps.longest_ms())));
+  }
+
+  void aScanIsCancelledAndTheFolderBeforeIsThereAgain() {
+    workstation().openPath(toPath(temporary_.filePath("two")));
+    auto* cancel = find<QPushButton>("cancelImport");
+    QVERIFY(cancel->isVisible());
+    QTest::mouseClick(cancel, Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QVERIFY(!cancel->isVisible());
+    QCOMPARE(list()->count(), kManySeries);
+    QVERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
+  }
+
+  void realFoldersAreListedAndEverySliceWantedIsShownOrExplained() {
+    const QString data = qEnvironmentVariable("TREPHINE_TEST_DATA");
+    if (data.isEmpty()) QSKIP("TREPHINE_TEST_DATA is not set");
+    for (const char* folder : {"hard", "head-ct-plastic-skull", "head-ct-gantry-tilt"}) {
+      open(data + '/' + folder);
+      QVERIFY(dialog()->isVisible());
+      QVERIFY(list()->count() > 0);
+      QTRY_VERIFY_WITH_TIMEOUT(list()->withoutThumbnail().empty(), kLong_ms);
+      for (int row = 1; row < list()->count(); ++row) {
+        QSignalSpy shown(&workstation().import(), &ImportTask::sliceReady);
+        list()->setCurrentRow(row);
+        if (find<QLabel>("slicePosition")->text().isEmpty()) continue;
+        QVERIFY(shown.count() > 0 || shown.wait(kLong_ms));
+        QVERIFY(!find<QLabel>("verdictSentence")->text().isEmpty());
+      }
+      list()->setCurrentRow(0);
+      QTest::qWait(300);
+      keepGrab(qPrintable(QString("import-%1.png").arg(folder)));
+    }
+  }
+
+  void nothingIsWritten() {
+    // The folder of a recording is not even made.
+    QVERIFY(!QDir(temporary_.filePath("sessions")).exists());
+    QStringList files;
+    for (const auto& entry : std::filesystem::directory_iterator(toPath(temporary_.path()))) {
+      files << toQt(entry.path().filename());
+    }
+    files.sort();
+    QCOMPARE(files, QStringList({"empty", "many", "two"}));
+  }
+
+  void cleanupTestCase() { window_.reset(); }
+};
+
+int main(int argc, char** argv) {
+  if (Status display = prepareDisplay(); !display) {
+    std::printf("SKIP: %s\n", display.error().sentence().c_str());
+    return 77;
+  }
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("trephine-test");
+  QStandardPaths::setTestModeEnabled(true);
+  colours::applyTheme(application);
+  ImportGuiTest test;
+  return QTest::qExec(&test, argc, argv);
+}
+
+#include "import_gui_test.moc"

@@ -1,0 +1,170 @@
+#include "ui/import_task.h"
+
+#include <gtest/gtest.h>
+
+#include <QPushButton>
+#include <QTemporaryDir>
+
+#include "imaging/ct_writer.h"
+#include "qt_support.h"
+#include "ui/import_dialog.h"
+#include "ui/words.h"
+
+namespace trephine {
+namespace {
+
+using test::waitFor;
+
+// Every voxel says in which slice it lies.
+Volume stack(int slices, std::int16_t first_hu) {
+  Volume volume;
+  volume.geometry.size = {16, 12, slices};
+  volume.geometry.spacing_mm = {1.0, 1.0, 2.0};
+  for (int k = 0; k < slices; ++k) {
+    volume.hu.insert(volume.hu.end(), std::size_t(16 * 12), std::int16_t(first_hu + k));
+  }
+  return volume;
+}
+
+class ImportTaskTest : public ::testing::Test {
+ protected:
+  ImportTaskTest() {
+    write(stack(40, 0), "forty");
+    write(stack(10, 200), "ten");
+    QObject::connect(&task_, &ImportTask::scanned, &task_, [this] { ++scanned_; });
+    QObject::connect(&task_, &ImportTask::readDone, &task_, [this] { ++read_; });
+    QObject::connect(&task_, &ImportTask::stopped, &task_, [this] { ++stopped_; });
+    QObject::connect(&task_, &ImportTask::failed, &task_,
+                     [this](const Error& error) { error_ = error; });
+    QObject::connect(&task_, &ImportTask::sliceReady, &task_,
+                     [this](const QString&, int index, const Result<SlicePicture>& picture) {
+                       slices_.push_back(index);
+                       last_hu_ = picture ? int(picture->hu[0]) : -1;
+                     });
+  }
+  void write(const Volume& volume, const char* name) {
+    const Status written = writeCtSeries(volume, {name, "HEAD"}, path() / name);
+    ASSERT_TRUE(written.ok()) << written.error().sentence();
+  }
+  std::filesystem::path path() const { return toPath(folder_.path()); }
+  void scan() {
+    task_.scan(path());
+    ASSERT_TRUE(waitFor([&] { return scanned_ == 1; }));
+  }
+
+  QApplication& application_ = test::application();
+  QTemporaryDir folder_;
+  ImportTask task_;
+  int scanned_ = 0, read_ = 0, stopped_ = 0, last_hu_ = -1;
+  std::vector<int> slices_;
+  std::optional<Error> error_;
+};
+
+TEST_F(ImportTaskTest, AScanListsTheSeriesAndARreadGivesTheVoxels) {
+  scan();
+  ASSERT_EQ(task_.report().series.size(), 2u);
+  ASSERT_TRUE(task_.bestSeries());
+  task_.read(*task_.bestSeries(), {});
+  ASSERT_TRUE(waitFor([&] { return read_ == 1; }));
+  ASSERT_TRUE(task_.volume());
+  EXPECT_EQ(task_.volume()->hu, stack(40, 0).hu);
+  EXPECT_EQ(task_.report().chosen, task_.bestSeries());
+  EXPECT_FALSE(task_.isWorking());
+}
+
+TEST_F(ImportTaskTest, OfManySlicesWantedInARushTheLastIsShownAndMostAreNeverRead) {
+  scan();
+  for (int i = 0; i < 40; ++i) task_.wantSlice(*task_.bestSeries(), i);
+  ASSERT_TRUE(waitFor([&] { return !slices_.empty() && slices_.back() == 39; }));
+  EXPECT_EQ(last_hu_, 39);
+  EXPECT_LE(slices_.size(), 2u) << "the one under way, and the last";
+}
+
+TEST_F(ImportTaskTest, EverySeriesGetsItsThumbnail) {
+  scan();
+  std::map<QString, QImage> thumbnails;
+  QObject::connect(&task_, &ImportTask::thumbnailReady, &task_,
+                   [&](const QString& uid, const QImage& picture) { thumbnails[uid] = picture; });
+  std::vector<std::string> uids;
+  for (const SeriesReport& series : task_.report().series) uids.push_back(series.uid);
+  task_.wantThumbnails(uids);
+  ASSERT_TRUE(waitFor([&] { return thumbnails.size() == 2; }));
+  for (const auto& [uid, picture] : thumbnails) EXPECT_FALSE(picture.isNull());
+}
+
+TEST_F(ImportTaskTest, AReadGoesBeforeTheThumbnailsThatWait) {
+  scan();
+  std::vector<QString> order;
+  QObject::connect(&task_, &ImportTask::thumbnailReady, &task_,
+                   [&](const QString&, const QImage&) { order.push_back("thumbnail"); });
+  QObject::connect(&task_, &ImportTask::readDone, &task_, [&] { order.push_back("read"); });
+  const std::string uid = *task_.bestSeries();
+  task_.wantThumbnails({uid, uid, uid});
+  task_.read(uid, {});
+  ASSERT_TRUE(waitFor([&] { return order.size() == 4; }));
+  EXPECT_EQ(order[1], "read") << "only the thumbnail under way comes before";
+}
+
+TEST_F(ImportTaskTest, AFolderThatIsMissingLeavesTheOneBefore) {
+  scan();
+  task_.scan(path() / "nowhere");
+  ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
+  EXPECT_EQ(error_->code, "MISSING_FOLDER");
+  EXPECT_EQ(stopped_, 1);
+  EXPECT_EQ(task_.report().series.size(), 2u);
+}
+
+TEST_F(ImportTaskTest, WhatIsCancelledStopsWithoutAnError) {
+  task_.scan(path());
+  task_.cancel();
+  ASSERT_TRUE(waitFor([&] { return stopped_ + scanned_ == 1; }));
+  EXPECT_EQ(stopped_, 1);
+  EXPECT_FALSE(error_.has_value());
+  EXPECT_FALSE(task_.hasFolder());
+}
+
+TEST_F(ImportTaskTest, AnotherFolderTakesThePlaceOfTheOneBeingScanned) {
+  task_.scan(path());
+  task_.scan(path() / "ten");
+  ASSERT_TRUE(waitFor([&] { return scanned_ == 1; }));
+  EXPECT_FALSE(waitFor([&] { return scanned_ > 1 || stopped_ > 0; }) && scanned_ > 1);
+  EXPECT_EQ(task_.report().series.size(), 1u);
+  EXPECT_EQ(stopped_, 0);
+}
+
+TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
+  ImportDialog dialog(task_);
+  std::shared_ptr<const Volume> volume;
+  QString name;
+  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog,
+                   [&](const std::shared_ptr<const Volume>& read, const QString& called) {
+                     volume = read;
+                     name = called;
+                   });
+  task_.scan(path());
+  EXPECT_TRUE(dialog.isVisible()) << "it opens by itself";
+  auto* import = dialog.findChild<QPushButton*>("import");
+  EXPECT_FALSE(import->isEnabled());
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  import->click();
+  ASSERT_TRUE(waitFor([&] { return volume != nullptr; }));
+  EXPECT_EQ(volume->hu, stack(40, 0).hu);
+  EXPECT_EQ(name, "forty");
+  EXPECT_FALSE(dialog.isVisible());
+  EXPECT_FALSE(task_.volume()) << "the dialog keeps no second copy";
+
+  dialog.open();
+  EXPECT_TRUE(import->isEnabled()) << "another series of the same folder";
+}
+
+TEST_F(ImportTaskTest, ADialogThatIsClosedStopsItsWork) {
+  ImportDialog dialog(task_);
+  task_.scan(path());
+  dialog.reject();
+  ASSERT_TRUE(waitFor([&] { return !task_.isWorking(); }));
+  EXPECT_FALSE(dialog.isVisible());
+  EXPECT_FALSE(task_.hasFolder());
+}
+
+}  // namespace
+}  // namespace trephine

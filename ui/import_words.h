@@ -1,0 +1,51 @@
+// What an import says to a person: states, sentences, sizes. Text from files is plain text here;
+// only reportHtml() returns marked-up text, with what came from files escaped.
+#pragma once
+
+#include <QColor>
+#include <QString>
+
+#include "imaging/importer.h"
+
+namespace trephine {
+
+// A series as the list shows it: its verdict, and whether questions stand between it and a volume.
+enum class SeriesState { pass, repaired, answered, asks, refused };
+
+// `answered`: refused as it is, but all that it asks has been answered. Whether that is enough is
+// for the reader to say.
+SeriesState seriesState(const SeriesReport& series, const Answers& answers);
+bool mayBeRead(SeriesState state);
+QString stateWord(SeriesState state);
+QColor stateColour(SeriesState state);
+// "Ready to use. Nothing had to be changed."
+QString verdictSentence(const SeriesReport& series, const Answers& answers);
+
+// The description, or words for its lack.
+QString seriesName(const SeriesReport& series);
+// "CT, 140 slices, 512 x 512"
+QString seriesLine(const SeriesReport& series);
+
+// Choices of `after` that nobody has answered and that were not there `before` the read.
+std::vector<Choice> newChoices(const SeriesReport& before, const SeriesReport& after,
+                               const Answers& answers);
+
+// "3.0, 4.0, 5.0 and 17 more"; empty for none.
+QString slicesWords(const std::vector<std::string>& slices);
+// "850 MB", "1.4 GB", of 2^20 and 2^30 bytes.
+QString megabytes(double mb);
+// What reading the series needs against what is free; `free_mb` 0: not known.
+QString memoryWords(double needed_mb, double free_mb);
+QString lossWords(const MeasuredLoss& loss);
+// "512 x 512 x 140 voxels of 0.45 x 0.45 x 1.00 mm", in one line.
+QString gridWords(const GridGeometry& geometry);
+
+// Facts and findings of a series for a label.
+QString reportHtml(const SeriesReport& series);
+// What the folder holds beside its series: files seen, and what was left out and why.
+QString folderWords(const ImportReport& report);
+
+// Memory that the system can still give, in MB of 2^20 bytes; 0 where it does not say.
+double availableMemory_mb();
+
+}  // namespace trephine

@@ -1,0 +1,56 @@
+// Draws one slice in its true proportions, with what is marked in it. Positions are the slice's
+// pixels: column to the right, row downwards.
+#pragma once
+
+#include <QImage>
+#include <QWidget>
+#include <optional>
+
+#include "ui/hu_window.h"
+
+namespace trephine {
+
+class SliceCanvas : public QWidget {
+  Q_OBJECT
+ public:
+  explicit SliceCanvas(QWidget* parent = nullptr);
+
+  void setSlice(SlicePicture slice);
+  void setWindow(const HuWindow& window);
+  // In place of a slice.
+  void setMessage(const QString& text);
+  // What is kept of the slice, [left, right) x [top, bottom): the rest is drawn darker.
+  void setKept(std::optional<QRect> pixels);
+  // What would be taken out: tinted where `mask` (Format_Alpha8, a value a pixel) is opaque.
+  void setMarked(const QImage& mask);
+  // Whether dragging with the left button draws a box.
+  void setDrawable(bool drawable);
+
+  const QImage& image() const { return image_; }
+  // Where the slice is drawn in the widget; empty without one.
+  QRectF target() const;
+
+ signals:
+  void boxDrawn(const QRect& pixels);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+
+ private:
+  void draw();
+  QPoint pixelAt(const QPointF& position) const;
+  QRectF inWidget(const QRect& pixels) const;
+  void paintKept(QPainter& painter) const;
+
+  SlicePicture slice_;
+  HuWindow window_ = kWindowPresets[0].window;
+  QImage image_, marked_;
+  QString message_;
+  std::optional<QRect> kept_;
+  bool drawable_ = false;
+  std::optional<QPoint> pressed_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,138 @@
+#include "ui/slice_preview.h"
+
+#include <QCoreApplication>
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QWheelEvent>
+
+#include "ui/words.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kPageOfSlices = 10;
+}
+
+SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
+  canvas_ = new SliceCanvas(this);
+  canvas_->setObjectName("sliceCanvas");
+
+  windows_ = new QButtonGroup(this);
+  auto* window_row = new QHBoxLayout;
+  window_row->setSpacing(4);
+  auto* title = new QLabel(tr("Window"), this);
+  title->setProperty("quiet", true);
+  window_row->addWidget(title);
+  for (int i = 0; i < int(kWindowPresets.size()); ++i) {
+    const WindowPreset& preset = kWindowPresets[std::size_t(i)];
+    auto* button = new QToolButton(this);
+    button->setObjectName(QString("window%1").arg(i + 1));
+    button->setText(QCoreApplication::translate("HuWindow", preset.name));
+    button->setToolTip(tr("Width %1 HU around %2 HU (key %3). Only the picture changes.")
+                           .arg(preset.window.width_hu)
+                           .arg(preset.window.centre_hu)
+                           .arg(i + 1));
+    button->setCheckable(true);
+    button->setProperty("segment", true);
+    button->setFocusPolicy(Qt::StrongFocus);
+    windows_->addButton(button, i);
+    window_row->addWidget(button);
+  }
+  window_row->addStretch(1);
+  windows_->button(0)->setChecked(true);
+
+  slider_ = new QSlider(Qt::Horizontal, this);
+  slider_->setObjectName("sliceSlider");
+  slider_->setAccessibleName(tr("Slice"));
+  slider_->setPageStep(kPageOfSlices);
+  position_ = new QLabel(this);
+  position_->setObjectName("slicePosition");
+  position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));
+  position_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  auto* slider_row = new QHBoxLayout;
+  slider_row->addWidget(slider_, 1);
+  slider_row->addWidget(position_);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 0, 8, 0);
+  layout->addLayout(window_row);
+  layout->addWidget(canvas_, 1);
+  layout->addLayout(slider_row);
+
+  connect(windows_, &QButtonGroup::idClicked, this, [this](int i) {
+    canvas_->setWindow(kWindowPresets[std::size_t(i)].window);
+  });
+  connect(slider_, &QSlider::valueChanged, this, [this](int index) {
+    showPosition();
+    emit sliceWanted(index);
+  });
+  showNothing({});
+}
+
+void SlicePreview::showStack(int count) {
+  if (count <= 0) return showNothing(tr("There is nothing to show."));
+  {
+    const QSignalBlocker quiet(slider_);
+    slider_->setRange(0, count - 1);
+    slider_->setValue(count / 2);
+  }
+  slider_->setEnabled(count > 1);
+  showPosition();
+  emit sliceWanted(slider_->value());
+}
+
+void SlicePreview::showNothing(const QString& why) {
+  {
+    const QSignalBlocker quiet(slider_);
+    slider_->setRange(0, 0);
+  }
+  slider_->setEnabled(false);
+  position_->clear();
+  canvas_->setMessage(why);
+}
+
+void SlicePreview::showSlice(int index, const Result<SlicePicture>& picture) {
+  if (index < slider_->minimum() || index > slider_->maximum()) return;
+  if (picture) {
+    canvas_->setSlice(*picture);
+  } else if (index == slider_->value()) {
+    canvas_->setMessage(tr("This slice cannot be shown: %1.").arg(toQt(picture.error().what)));
+  }
+}
+
+void SlicePreview::showPosition() {
+  position_->setText(tr("Slice %1 of %2").arg(slider_->value() + 1).arg(slider_->maximum() + 1));
+}
+
+SlicePicture sliceOf(const Volume& volume, int k) {
+  const GridGeometry& g = volume.geometry;
+  if (!g.contains(0, 0, k)) return {};
+  const auto begin = volume.hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, k));
+  return {g.size[0], g.size[1], g.spacing_mm,
+          {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+}
+
+void SlicePreview::wheelEvent(QWheelEvent* event) {
+  turned_ += event->angleDelta().y();
+  const int notches = turned_ / QWheelEvent::DefaultDeltasPerStep;
+  turned_ -= notches * QWheelEvent::DefaultDeltasPerStep;  // a touchpad sends parts of a notch
+  slider_->setValue(slider_->value() - notches);
+  event->accept();
+}
+
+void SlicePreview::mousePressEvent(QMouseEvent*) {
+  slider_->setFocus();
+}
+
+void SlicePreview::keyPressEvent(QKeyEvent* event) {
+  const int window = event->key() - Qt::Key_1;
+  if (QAbstractButton* button = windows_->button(window)) {
+    button->click();
+  } else {
+    QWidget::keyPressEvent(event);
+  }
+}
+
+}  // namespace trephine
