@@ -240,7 +240,7 @@ TEST_F(TrapTilt, EveryOrientationKeepsEveryVoxelAtItsPlace) {
         for (int j = 0; j < 20; ++j) {
           for (int i = 0; i < 24; ++i) {
             const Vec3 p = place(image, frame.position, i, j);
-            const Vec3 v = Vec3(to_voxel * Vec4(p, 1.0));
+            const Vec3 v = Vec3(to_voxel * glm::dvec4(p, 1.0));
             const Vec3 nearest = glm::round(v);
             ASSERT_LT(glm::distance(v, nearest), 1e-5);
             ASSERT_EQ(volume.at(int(nearest.x), int(nearest.y), int(nearest.z)),
