@@ -163,7 +163,7 @@ TEST_F(TrapGaps, JitteredStepsAreResampledAndALinearRampStaysOne) {
 }
 
 TEST_F(TrapGaps, StepsWithinOneHundredthAreNotTouched) {
-  addPatterns({100, 102.015, 104.01, 106.02, 108.01});
+  addPatterns({100, 102.01, 104.01, 106.02, 108.015});
   const Volume volume = import();
   EXPECT_EQ(chosen().verdict, Verdict::pass);
   for (std::size_t v = 0; v < volume.hu.size(); ++v) {
