@@ -201,6 +201,14 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     return decodeFrame(*syntax, codestream, header, words);
   }
 
+  if (header.swapped_pairs) {
+    const std::uint64_t first = skipped & ~std::uint64_t(1);
+    const auto pairs = readBytes(header.file, header.pixels->offset + first,
+                                 ((skipped + bytes + 1) & ~std::uint64_t(1)) - first);
+    if (!pairs) return failed("its file vanished, changed or is cut short");
+    for (std::uint64_t n = 0; n < bytes; ++n) words[n] = (*pairs)[((skipped + n) ^ 1) - first];
+    return {};
+  }
   // 8-bit pixels go to the upper half of the words' memory and are widened from there.
   auto* to = reinterpret_cast<std::uint8_t*>(words) + (narrow ? bytes : 0);
   if (syntax->codec == Codec::deflated) {
