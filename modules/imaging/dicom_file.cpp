@@ -174,9 +174,13 @@ void readFunctionalGroups(DcmItem* shared, DcmItem* own, DicomHeader& header) {
   }
 }
 
-// Whether a frame's words lie before the end of a file that is cut.
+// Whether a frame's pixels lie before the end of a file that is cut.
 bool isThere(const DicomHeader& frame) {
-  if (frame.defect != Defect::cut || !frame.pixels || frame.pixels->encapsulated) return false;
+  if (frame.defect != Defect::cut || !frame.pixels) return false;
+  if (frame.pixels->encapsulated) {
+    const auto& frames = frame.pixels->frames;
+    return std::size_t(frame.frame) < frames.size() && !frames[std::size_t(frame.frame)].empty();
+  }
   const TransferSyntax* syntax = findTransferSyntax(frame.transfer_syntax);
   return syntax && syntax->codec == Codec::none && frame.frameBytes() > 0 &&
          frame.pixels->offset + frame.frameBytes() * std::uint64_t(frame.frame + 1) <=

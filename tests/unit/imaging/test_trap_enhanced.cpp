@@ -183,6 +183,24 @@ TEST_F(TrapEnhanced, ACutFileKeepsTheFramesThatAreWhole) {
   for (int k = 0; k < 4; ++k) expectFrame(volume, k, k);
 }
 
+TEST_F(TrapEnhanced, ACutFileKeepsTheCompressedFramesThatAreWhole) {
+  for (const int fragments : {1, 3}) {
+    for (const int cut : {9, 60}) {  // in the mark behind the last frame, or in that frame
+      SCOPED_TRACE(std::to_string(fragments) + " fragments, without " + std::to_string(cut));
+      std::filesystem::remove_all(folder());
+      Packing packing{EXS_JPEGLSLossless};
+      packing.fragments = fragments;
+      add(makeEnhanced(frames(5), {at(100), at(101), at(102), at(103), at(104)}), packing);
+      const auto file = std::filesystem::directory_iterator(folder())->path();
+      std::filesystem::resize_file(file, std::filesystem::file_size(file) - std::uintmax_t(cut));
+      EXPECT_EQ(expectRefused("MISSING_SLICES").slices, std::vector<std::string>{"104.00 mm"});
+      const Volume volume = import({{"MISSING_SLICES", "part"}});
+      ASSERT_EQ(volume.geometry.size[2], 4);
+      for (int k = 0; k < 4; ++k) expectFrame(volume, k, k);
+    }
+  }
+}
+
 TEST_F(TrapEnhanced, AClaimOfAHundredThousandFramesCostsLittle) {
   DcmDataset data = makeEnhanced(frames(3), {at(100), at(101), at(102)});
   put(data, DCM_NumberOfFrames, "100000");
