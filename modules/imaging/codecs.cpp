@@ -4,6 +4,7 @@
 #include <dcmtk/dcmdata/dcpixseq.h>
 #include <dcmtk/dcmdata/dcpxitem.h>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -21,15 +22,29 @@ Error failed(std::string what) {
 
 struct JpegFrame {
   int rows = 0, columns = 0, components = 0, precision = 0;
+  std::optional<bool> lossy;  // nothing where the scan header is not there
 };
+
+// What the scan header at `at` says of a scan of one component: in lossless JPEG the point transform
+// (T.81 H.1), in JPEG-LS NEAR (T.87 C.2.3). A DCT always loses.
+std::optional<bool> isLossyScan(std::span<const std::uint8_t> bytes, std::size_t at,
+                                std::uint8_t frame_marker) {
+  const bool jpeg_ls = frame_marker == 0xF7;
+  const bool lossless = jpeg_ls || (frame_marker & 3) == 3;  // SOF3, 7, 11, 15
+  if (!lossless) return true;
+  if (at + 10 > bytes.size() || bytes[at + 4] != 1) return std::nullopt;
+  return jpeg_ls ? bytes[at + 7] != 0 : (bytes[at + 9] & 15) != 0;
+}
 
 // What the frame header of a JPEG or JPEG-LS codestream says (ITU T.81 B.2.2, T.87 C.2.2).
 std::optional<JpegFrame> jpegFrame(std::span<const std::uint8_t> bytes) {
   const auto number16 = [&](std::size_t at) { return int(bytes[at]) << 8 | bytes[at + 1]; };
   std::size_t at = 2;
+  std::optional<JpegFrame> found;
+  std::uint8_t frame_marker = 0;
   if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return std::nullopt;
   while (at + 4 <= bytes.size()) {
-    if (bytes[at] != 0xFF) return std::nullopt;
+    if (bytes[at] != 0xFF) return found;
     const std::uint8_t marker = bytes[at + 1];
     if (marker == 0xFF) {  // fill
       ++at;
@@ -39,13 +54,48 @@ std::optional<JpegFrame> jpegFrame(std::span<const std::uint8_t> bytes) {
                         marker != 0xCC) ||
                        marker == 0xF7;
     if (frame) {
-      if (at + 10 > bytes.size()) return std::nullopt;
-      return JpegFrame{number16(at + 5), number16(at + 7), bytes[at + 9], bytes[at + 4]};
+      if (at + 10 > bytes.size() || found) return std::nullopt;
+      found = JpegFrame{number16(at + 5), number16(at + 7), bytes[at + 9], bytes[at + 4], {}};
+      frame_marker = marker;
     }
-    if (marker == 0xDA || marker == 0xD9) return std::nullopt;
+    if (marker == 0xDA && found) found->lossy = isLossyScan(bytes, at, frame_marker);
+    if (marker == 0xDA || marker == 0xD9) return found;
     at += 2 + std::size_t(number16(at + 2));
   }
-  return std::nullopt;
+  return found;
+}
+
+// Whether the segments of an RLE frame hold these many bytes each, and no more (PS3.5 annex G).
+// DCMTK fills up what is short, and leaves out what is too much.
+bool fitsRle(std::span<const std::uint8_t> bytes, std::size_t segments, std::uint64_t pixels) {
+  const auto number32 = [&](std::size_t at) {
+    return std::size_t(bytes[at]) | std::size_t(bytes[at + 1]) << 8 |
+           std::size_t(bytes[at + 2]) << 16 | std::size_t(bytes[at + 3]) << 24;
+  };
+  if (bytes.size() < 64 || number32(0) != segments) return false;
+  for (std::size_t segment = 0; segment < segments; ++segment) {
+    std::size_t at = number32(4 + 4 * segment);
+    const std::size_t end = segment + 1 < segments ? number32(8 + 4 * segment) : bytes.size();
+    if (at < 64 || end > bytes.size() || at > end) return false;
+    std::uint64_t count = 0;
+    while (count < pixels && at < end) {
+      const std::uint8_t code = bytes[at];
+      if (code < 128) {
+        count += code + 1U;
+        at += code + 2U;
+      } else {
+        if (code > 128) count += 257U - code;
+        at += code > 128 ? 2 : 1;
+      }
+    }
+    // An odd number of pixels may be padded by one, and the segment by a byte.
+    if (count < pixels || count > pixels + pixels % 2 || at > end) return false;
+    const auto rest = bytes.subspan(at, end - at);
+    if (rest.size() > 1 && std::ranges::any_of(rest, [](std::uint8_t b) { return b != 0; })) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // DCMTK decodes what is there of a codestream that was cut, so its end is looked for.
@@ -111,6 +161,16 @@ Status decodeWithDcmtk(const TransferSyntax& syntax, std::span<const std::uint8_
 
 }  // namespace
 
+std::optional<bool> isLossyCodestream(const TransferSyntax& syntax,
+                                      std::span<const std::uint8_t> first_bytes) {
+  if (syntax.codec == Codec::jpeg2000) {
+    const Result<bool> irreversible = isIrreversibleJpeg2000(first_bytes);
+    return irreversible ? std::optional(*irreversible) : std::nullopt;
+  }
+  const auto frame = jpegFrame(first_bytes);
+  return frame ? frame->lossy : std::nullopt;
+}
+
 Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> codestream,
                    const DicomHeader& header, std::int16_t* words) {
   const StoredFormat& format = header.format;
@@ -121,7 +181,11 @@ Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> c
                           words);
   }
   const bool rle = syntax.uid == "1.2.840.10008.1.2.5";
-  if (!rle) {
+  if (rle) {
+    if (!fitsRle(codestream, std::size_t(header.bits_allocated / 8), header.pixelCount())) {
+      return failed("its RLE pixels are not as many as rows and columns say, or are damaged");
+    }
+  } else {
     if (const Status valid = checkJpeg(codestream, header); !valid) return valid;
   }
   const std::uint64_t bytes = header.frameBytes();

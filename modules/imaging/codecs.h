@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "base/result.h"
@@ -9,6 +10,11 @@
 #include "imaging/transfer_syntax.h"
 
 namespace trephine {
+
+// Whether a codestream of this syntax lost something, by its first bytes: a DCT, a JPEG-LS that is
+// near, a point transform, the irreversible wavelet. Nothing where they do not tell. Any thread.
+std::optional<bool> isLossyCodestream(const TransferSyntax& syntax,
+                                      std::span<const std::uint8_t> first_bytes);
 
 // Decodes one grey frame into rows * columns words in native byte order; 8-bit pixels are widened.
 // The codestream's own size must be that of the header. Error: `what` says why not. Any thread.

@@ -5,10 +5,11 @@
 #include <cctype>
 #include <cstring>
 #include <fstream>
+#include <functional>
 
+#include "imaging/codecs.h"
 #include "imaging/dicom_pixels.h"
 #include "imaging/dicom_values.h"
-#include "imaging/jpeg2000.h"
 #include "imaging/transfer_syntax.h"
 
 namespace trephine {
@@ -16,6 +17,7 @@ namespace trephine {
 namespace {
 
 constexpr Uint32 kLazyBytes = 1024;  // longer values stay on disk until asked for
+constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr std::string_view kDicomDir = "1.2.840.10008.1.3.10";
 constexpr const char* kUnnamedSeries = "unnamed";
 constexpr int kMostFrames = 100000;
@@ -44,14 +46,13 @@ bool looksLikeDicom(std::string_view head) {
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
 }
 
-bool tooManyItems(const std::filesystem::path& file) {
+// `read` fills the given room and says how much of it, 0 at the end.
+bool tooManyItems(const std::function<std::size_t(char*, std::size_t)>& read) {
   constexpr std::string_view kLittle("\xFE\xFF\x00\xE0", 4), kBig("\xFF\xFE\xE0\x00", 4);
-  std::ifstream in(file, std::ios::binary);
   std::string block(std::size_t(1) << 20, '\0');
   std::size_t items = 0, kept = 0;
-  while (in) {
-    in.read(block.data() + kept, std::streamsize(block.size() - kept));
-    const std::string_view view(block.data(), kept + std::size_t(in.gcount()));
+  while (const std::size_t count = read(block.data() + kept, block.size() - kept)) {
+    const std::string_view view(block.data(), kept + count);
     for (const std::string_view tag : {kLittle, kBig}) {
       for (std::size_t at = view.find(tag); at != view.npos; at = view.find(tag, at + 4)) ++items;
     }
@@ -60,6 +61,27 @@ bool tooManyItems(const std::filesystem::path& file) {
     std::memmove(block.data(), view.data() + view.size() - kept, kept);
   }
   return false;
+}
+
+bool tooManyItems(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return tooManyItems([&](char* to, std::size_t bytes) {
+    in.read(to, std::streamsize(bytes));
+    return std::size_t(in.gcount());
+  });
+}
+
+// The same of a deflated data set, of which a small file can hold any number.
+bool tooManyDeflatedItems(const std::filesystem::path& file) {
+  DcmInputFileStream stream{OFFilename(file.c_str())};
+  DcmMetaInfo meta;
+  meta.transferInit();
+  if (meta.read(stream, EXS_Unknown, EGL_noChange, kLazyBytes).bad()) return false;
+  meta.transferEnd();
+  if (stream.installCompressionFilter(ESC_zlib).bad()) return false;
+  return tooManyItems([&](char* to, std::size_t bytes) {
+    return std::size_t(std::max<offile_off_t>(stream.read(to, offile_off_t(bytes)), 0));
+  });
 }
 
 // Slope and intercept stand in the data set, or in a functional group of an enhanced image.
@@ -71,6 +93,7 @@ void readRescale(DcmItem& item, DicomHeader& header) {
   header.rescale_bad = (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
   format.slope = slope_value.value_or(1.0);
   format.intercept = intercept_value.value_or(0.0);
+  header.intercept_given = intercept_value.has_value();
   header.rescale_given = slope_value && intercept_value && *slope_value != 0.0;
   if (format.slope == 0.0) format.slope = 1.0;
   header.rescale_type = trimmedText(item, DCM_RescaleType);
@@ -151,17 +174,36 @@ void readFunctionalGroups(DcmItem* shared, DcmItem* own, DicomHeader& header) {
   }
 }
 
+// Whether a frame's pixels lie before the end of a file that is cut.
+bool isThere(const DicomHeader& frame) {
+  if (frame.defect != Defect::cut || !frame.pixels) return false;
+  if (frame.pixels->encapsulated) {
+    const auto& frames = frame.pixels->frames;
+    return std::size_t(frame.frame) < frames.size() && !frames[std::size_t(frame.frame)].empty();
+  }
+  const TransferSyntax* syntax = findTransferSyntax(frame.transfer_syntax);
+  return syntax && syntax->codec == Codec::none && frame.frameBytes() > 0 &&
+         frame.pixels->offset + frame.frameBytes() * std::uint64_t(frame.frame + 1) <=
+             frame.file_bytes;
+}
+
 std::vector<DicomHeader> splitFrames(DcmItem& data, DicomHeader whole) {
   DcmItem* shared = firstItem(&data, DCM_SharedFunctionalGroupsSequence);
   DcmSequenceOfItems* per_frame = nullptr;
   data.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, per_frame);
   if (whole.frames == 1 && !shared && !per_frame) return {std::move(whole)};
+  // A claim of frames that are not there is refused once, not a hundred thousand times.
+  if (whole.defect == Defect::size_mismatch) return {std::move(whole)};
   // Without functional groups nothing says where a frame lies.
   if (!shared && !per_frame) whole.position_mm.reset();
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
   for (int n = 0; n < whole.frames; ++n) {
     DicomHeader& frame = frames[std::size_t(n)];
     frame.frame = n;
+    if (isThere(frame)) {
+      frame.defect = Defect::none;
+      frame.defect_text.clear();
+    }
     if (whole.frames > 1) frame.instance_number = std::to_string(n + 1);
     const bool there = per_frame && std::size_t(n) < per_frame->card();
     readFunctionalGroups(shared, there ? per_frame->getItem(std::size_t(n)) : nullptr, frame);
@@ -177,8 +219,9 @@ void checkPixels(bool cut, DicomHeader& header) {
     header.defect = defect;
     header.defect_text = std::move(text);
   };
-  if (cut) return spoilt(Defect::cut, "its pixels are cut short");
   const PixelPlace& place = *header.pixels;
+  if (cut) spoilt(Defect::cut, "its pixels are cut short");
+  if (cut && (header.frames == 1 || place.encapsulated)) return;
   const bool encapsulated = syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000;
   if (place.encapsulated != encapsulated) {
     return spoilt(Defect::size_mismatch, "its pixels are not stored as its transfer syntax says");
@@ -192,6 +235,10 @@ void checkPixels(bool cut, DicomHeader& header) {
   const std::uint64_t needed = header.frameBytes() * std::uint64_t(std::max(header.frames, 1));
   if (header.bits_allocated % 8 != 0 || needed == 0) return;
   // Writers pad, by less than a row; more means that rows or columns are wrong.
+  // Deflate shrinks to a thousandth at most.
+  if (syntax->codec == Codec::deflated && needed / 1032 > header.file_bytes) {
+    return spoilt(Defect::size_mismatch, "it is too small for the pixels that it claims");
+  }
   const std::uint64_t row = header.frameBytes() / std::uint64_t(header.rows);
   if (place.bytes < needed || place.bytes - needed >= std::max<std::uint64_t>(row, 2)) {
     spoilt(Defect::size_mismatch,
@@ -201,26 +248,36 @@ void checkPixels(bool cut, DicomHeader& header) {
   }
 }
 
-// Whether HU can differ from what the scanner made. JPEG 2000 may say so only in its codestream.
+// The first bytes of the first frame's codestream, whatever fragments they lie in.
+std::vector<std::uint8_t> firstBytes(const DicomHeader& header) {
+  constexpr std::uint64_t kEnough = 4096;
+  std::vector<std::uint8_t> bytes;
+  for (const PixelPlace::Fragment& fragment : header.pixels->frames.front()) {
+    const auto wanted = std::min<std::uint64_t>(fragment.bytes, kEnough - bytes.size());
+    const auto part = readBytes(header.file, fragment.offset, wanted);
+    if (!part || wanted == 0) break;
+    bytes.insert(bytes.end(), part->begin(), part->end());
+  }
+  return bytes;
+}
+
+// Whether HU can differ from what the scanner made. The codestream may tell what its name does not.
 bool isLossy(DcmItem& data, const DicomHeader& header) {
   if (trimmedText(data, DCM_LossyImageCompression) == "01") return true;
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   if (!syntax || syntax->loss == Loss::never) return false;
   if (syntax->loss == Loss::always) return true;
   if (!header.pixels || header.pixels->frames.empty()) return false;
-  const PixelPlace::Fragment first = header.pixels->frames.front().front();
-  const auto head =
-      readBytes(header.file, first.offset, std::min<std::uint32_t>(first.bytes, 4096));
-  if (!head) return false;
-  const Result<bool> irreversible = isIrreversibleJpeg2000(*head);
-  return !irreversible || *irreversible;
+  return isLossyCodestream(*syntax, firstBytes(header)).value_or(syntax->loss == Loss::may_be);
 }
 
-void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, DicomHeader& header) {
+void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, bool at_end, DicomHeader& header) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   bool cut = false;
   std::string vr;
-  if (syntax && syntax->codec == Codec::deflated) {
+  if (syntax && syntax->codec == Codec::deflated && at_end) {
+    // No pixels follow.
+  } else if (syntax && syntax->codec == Codec::deflated) {
     // Its offset lies in the inflated data set; its length is compared when it is inflated.
     auto place = std::make_shared<PixelPlace>();
     place->bytes = header.frameBytes() * std::uint64_t(header.frames);
@@ -233,6 +290,7 @@ void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, DicomHeader& hea
                                header.big_endian, header.frames, vr, cut);
   }
   header.has_pixels = header.pixels != nullptr;
+  header.swapped_pairs = header.big_endian && header.bits_allocated == 8 && vr == "OW";
   header.ambiguous_order = header.big_endian && header.bits_allocated > 8 && vr == "OB";
   if (header.has_pixels) checkPixels(cut, header);
 }
@@ -254,7 +312,11 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
-  if (file_bytes > kSafeFileBytes && tooManyItems(file)) return skip("nested too deeply");
+  const bool deflated = head.find(kDeflated) != head.npos;
+  if ((file_bytes > kSafeFileBytes && tooManyItems(file)) ||
+      (deflated && tooManyDeflatedItems(file))) {
+    return skip("nested too deeply");
+  }
 
   DcmInputFileStream stream{OFFilename(file.c_str())};
   DcmFileFormat dicom;
@@ -263,6 +325,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
       dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLazyBytes, DCM_PixelData).bad();
   dicom.transferEnd();
   const std::uint64_t value_offset = std::uint64_t(stream.tell());
+  const bool at_end = stream.eos();
   DcmDataset& data = *dicom.getDataset();
   DcmMetaInfo& meta = *dicom.getMetaInfo();
 
@@ -318,7 +381,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.defect = Defect::cut;
     header.defect_text = "its header is cut short";
   } else {
-    findPixelsOf(data, value_offset, header);
+    findPixelsOf(data, value_offset, at_end, header);
   }
   header.lossy = isLossy(data, header);
   return splitFrames(data, std::move(header));

@@ -66,9 +66,11 @@ struct DicomHeader {
   std::string photometric;
   bool lossy = false;
   bool big_endian = false;
+  bool swapped_pairs = false;    // 8-bit pixels in big-endian words
   bool ambiguous_order = false;  // 16-bit words declared as bytes in a big-endian file
   StoredFormat format;           // slope and intercept 1 and 0 where absent, slope 0 read as 1
   bool rescale_given = true;     // false where absent or slope 0
+  bool intercept_given = true;
   bool rescale_bad = false;      // there, but no number
 
   std::optional<Vec3> position_mm;

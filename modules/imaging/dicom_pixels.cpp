@@ -119,6 +119,29 @@ std::vector<std::vector<PixelPlace::Fragment>> groupFragments(
   return grouped;
 }
 
+// The same where the file ends early: frames that are not whole have no fragments. Only the offset
+// table tells.
+std::vector<std::vector<PixelPlace::Fragment>> wholeFrames(
+    const std::vector<PixelPlace::Fragment>& fragments, const std::vector<std::uint32_t>& offsets,
+    std::size_t frames) {
+  if (fragments.empty() || offsets.size() != frames) return {};
+  const std::uint64_t base = fragments.front().offset - 8;
+  std::vector<std::vector<PixelPlace::Fragment>> whole(frames);
+  auto fragment = fragments.begin();
+  for (std::size_t frame = 0; frame + 1 < frames; ++frame) {
+    std::uint64_t end = base + offsets[frame];
+    std::vector<PixelPlace::Fragment> own;
+    while (fragment != fragments.end() && end < base + offsets[frame + 1]) {
+      own.push_back(*fragment);
+      end = fragment->offset + fragment->bytes;
+      ++fragment;
+    }
+    if (end != base + offsets[frame + 1]) break;
+    whole[frame] = std::move(own);
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& path,
@@ -146,7 +169,9 @@ std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& path,
   std::vector<std::uint32_t> frame_offsets;
   std::vector<PixelPlace::Fragment> fragments;
   cut = !walkItems(file, value_offset, file_bytes, frame_offsets, fragments);
-  if (!cut) place->frames = groupFragments(fragments, frame_offsets, std::size_t(frames));
+  const auto count = std::size_t(frames);
+  place->frames = cut ? wholeFrames(fragments, frame_offsets, count)
+                      : groupFragments(fragments, frame_offsets, count);
   return place;
 }
 
@@ -201,6 +226,14 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     return decodeFrame(*syntax, codestream, header, words);
   }
 
+  if (header.swapped_pairs) {
+    const std::uint64_t first = skipped & ~std::uint64_t(1);
+    const auto pairs = readBytes(header.file, header.pixels->offset + first,
+                                 ((skipped + bytes + 1) & ~std::uint64_t(1)) - first);
+    if (!pairs) return failed("its file vanished, changed or is cut short");
+    for (std::uint64_t n = 0; n < bytes; ++n) words[n] = (*pairs)[((skipped + n) ^ 1) - first];
+    return {};
+  }
   // 8-bit pixels go to the upper half of the words' memory and are widened from there.
   auto* to = reinterpret_cast<std::uint8_t*>(words) + (narrow ? bytes : 0);
   if (syntax->codec == Codec::deflated) {

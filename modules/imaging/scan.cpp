@@ -98,7 +98,8 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
   if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path);
   if (named.empty()) {
     const bool stale = isDicomDir(path);
-    walk.visit(stale && path.has_parent_path() ? path.parent_path() : path, 0);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    walk.visit(stale ? folder : path, 0);
   }
   for (const fs::path& file : named) walk.visit(file, 0);
 

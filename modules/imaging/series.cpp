@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "imaging/series_repeats.h"
+#include "imaging/text.h"
+#include "imaging/workers.h"
 
 namespace trephine {
 
@@ -98,7 +100,8 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
   std::vector<DicomHeader> headless;  // cut before their pixels: they go with the largest part
   std::vector<std::string> reasons;
   for (DicomHeader& header : headers) {
-    if (!header.has_pixels) {
+    // A CT image without pixels is one that was cut between two elements.
+    if (!header.has_pixels && (header.defect == Defect::cut || isCt(header))) {
       headless.push_back(std::move(header));
       continue;
     }
@@ -148,8 +151,9 @@ bool isLocalizer(const DicomHeader& header) {
 }
 
 std::string sliceName(const DicomHeader& header) {
-  return header.instance_number.empty() ? "a slice without number"
-                                        : "slice " + header.instance_number;
+  // A number only: whatever else stands there could be a name.
+  const auto number = parseInteger(header.instance_number);
+  return number ? "slice " + std::to_string(*number) : "a slice without number";
 }
 
 Verdict verdictOf(const std::vector<Finding>& findings) {
@@ -179,7 +183,10 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
              "Slices of one study, series number, date and time were taken together"});
       }
       dropDuplicates(series);
-      dropEqualRepeats(series);
+      // On a worker, since it may load a whole file (deep recursion). Where that fails for want of
+      // memory, the repeats stay and are asked about.
+      static_cast<void>(
+          forEachFile(1, Progress(), {}, [&](std::size_t) { dropEqualRepeats(series); }));
       series.findings_kept = series.report.findings.size();
       assessSeries(series);
       all.push_back(std::move(series));

@@ -79,7 +79,7 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   } else if (isLocalizer(first)) {
     findings.refuse("LOCALIZER", "The series is a localizer (scout), not a stack of slices",
                     kChooseCt);
-  } else if (first.frames > 1 && !first.position_mm) {
+  } else if (first.frames > 1 && !first.position_mm && first.defect != Defect::size_mismatch) {
     findings.refuse("MULTIFRAME",
                     "The series is stored as multi-frame pictures that do not say where each frame "
                     "lies",
@@ -145,17 +145,27 @@ void checkValues(const Series& series, Findings& findings) {
                     "Export the series again as CT with 16-bit pixels", odd_format);
   }
   const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
-    return !h.rescale_type.empty() && h.rescale_type != "HU" && h.rescale_type != "US";
+    return h.has_pixels && !h.rescale_type.empty() && h.rescale_type != "HU" && h.rescale_type != "US";
   });
   if (!not_hu.empty()) {
     findings.refuse("NOT_HU", "The values are " + first.rescale_type + ", not HU",
                     "Choose the series in HU", not_hu);
   }
-  const auto bad = findings.slicesWhere([](const DicomHeader& h) { return h.rescale_bad; });
+  const auto bad = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && h.rescale_bad; });
   if (!bad.empty()) {
     findings.refuse("BAD_RESCALE",
                     "The rescale slope or intercept of " + countOfSlices(bad) + " is no number",
                     "Export the series again", bad);
+  }
+  const auto raw = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && !h.intercept_given && !h.rescale_bad; });
+  const auto scaled = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && h.intercept_given; });
+  if (!raw.empty() && !scaled.empty()) {
+    findings.refuse("BAD_RESCALE",
+                    countOfSlices(raw) + " lack the rescale intercept that the others have",
+                    "Export the series again", raw);
   }
   const auto unscaled = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });

@@ -63,14 +63,13 @@ Steps stepsOf(const Slices& slices) {
   return result;
 }
 
-// The longest row of usable slices whose steps are even.
-Slices longestPart(const Slices& slices, double step_mm) {
+// The longest row of usable slices whose steps are `step_mm` within the tolerance.
+Slices longestPart(const Slices& slices, double step_mm, double tolerance_mm) {
   std::size_t best = 0, best_count = 0, first = 0;
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const bool goes_on =
         i > first && slices[i].usable && slices[i - 1].usable &&
-        std::abs(slices[i].place_mm - slices[i - 1].place_mm - step_mm) <=
-            stepTolerance_mm(step_mm);
+        std::abs(slices[i].place_mm - slices[i - 1].place_mm - step_mm) <= tolerance_mm;
     if (!goes_on) first = i;
     if (slices[i].usable && i - first + 1 > best_count) {
       best = first;
@@ -173,7 +172,9 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const std::string text = std::to_string(missing) +
                            (missing == 1 ? " slice is" : " slices are") +
                            " missing from a stack with a step of " + placeText(steps.median_mm) + lost_text;
-  const Slices part = longestPart(slices, steps.median_mm);
+  const Slices part =
+      longestPart(slices, steps.median_mm,
+                  steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
   Choice choice{"MISSING_SLICES",
                 "What shall become of the gap?",
                 {"refuse", "fill"},
@@ -213,7 +214,8 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
   const std::string text = "The steps between slices vary from " + fixedText(steps.least_mm, 3) +
                            " to " + fixedText(steps.most_mm, 3) + " mm (median " +
                            fixedText(steps.median_mm, 3) + " mm)";
-  const Slices part = longestPart(slices, steps.median_mm);
+  const Slices part =
+      longestPart(slices, steps.median_mm, stepTolerance_mm(steps.median_mm));
   Choice choice{"UNEVEN_SPACING", "How shall the uneven steps be used?", {"refuse"},
                 {"Do not use the series"}};
   if (count > 1 && count <= kMostSlices) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -36,6 +37,13 @@ const char* const kKeyNames[kPhaseKeys] = {"temporal position", "cardiac phase",
                                            "acquisition",       "trigger time",
                                            "acquisition time",  "content time"};
 
+// Whether the series was scanned more than once, rather than that some slices repeat others.
+bool areMostRepeated(const std::vector<Place>& places) {
+  const auto repeated =
+      std::ranges::count_if(places, [](const Place& place) { return place.count() > 1; });
+  return places.size() > 1 && 2 * std::size_t(repeated) >= places.size();
+}
+
 // A slice's phase by each key's value, if the values make phases: at most one slice of each value
 // at a place, and each value at half of the places at least.
 std::optional<std::vector<int>> phasesBy(PhaseKey key, const std::vector<const DicomHeader*>& slices,
@@ -58,6 +66,40 @@ std::optional<std::vector<int>> phasesBy(PhaseKey key, const std::vector<const D
       phases[n] = int(std::distance(counts.begin(), counts.find(*slices[n]->phase[key])));
     }
   }
+  return phases;
+}
+
+// Phases that were scanned one after the other, by a number that grows from slice to slice: a place
+// that comes again starts the next. Each is at half of the places at least.
+std::optional<std::vector<int>> phasesInTurn(
+    const std::function<std::optional<double>(const DicomHeader&)>& number,
+    const std::vector<const DicomHeader*>& slices, const std::vector<Place>& places) {
+  struct Taken {
+    double number;
+    std::size_t slice, place;
+  };
+  std::vector<Taken> taken;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    for (std::size_t n = places[p].first; n < places[p].last; ++n) {
+      const std::optional<double> value = number(*slices[n]);
+      if (!value) return std::nullopt;
+      taken.push_back({*value, n, p});
+    }
+  }
+  std::ranges::sort(taken, {}, &Taken::number);
+  std::vector<int> phases(slices.size());
+  std::vector<int> last_phase(places.size(), -1);
+  std::vector<std::size_t> counts{0};
+  for (std::size_t n = 0; n < taken.size(); ++n) {
+    if (n > 0 && taken[n].number == taken[n - 1].number) return std::nullopt;
+    if (last_phase[taken[n].place] + 1 == int(counts.size())) counts.push_back(0);
+    const int phase = int(counts.size()) - 1;
+    last_phase[taken[n].place] = phase;
+    phases[taken[n].slice] = phase;
+    ++counts.back();
+  }
+  const auto few = [&](std::size_t count) { return count < 2 || 2 * count < places.size(); };
+  if (counts.size() > std::size_t(kMostPhases) || std::ranges::any_of(counts, few)) return std::nullopt;
   return phases;
 }
 
@@ -135,8 +177,7 @@ void dropEqualRepeats(Series& series) {
   const std::vector<Place> places = placesOf(places_mm);
   if (places.size() < 2) return;  // no volume in any case
   const std::size_t repeats = placed.size() - places.size();
-  const bool complete =
-      std::ranges::all_of(places, [&](const Place& p) { return p.count() == places[0].count(); });
+  const bool scanned_again = areMostRepeated(places);
 
   PixelReader reader;
   std::vector<bool> dropped(series.slices.size(), false);
@@ -159,8 +200,9 @@ void dropEqualRepeats(Series& series) {
         if (key) seen.emplace_back(*key, &slice);
       }
     }
-    // Phases, most likely: no need to read all of them.
-    if (different && (complete || repeats > kMostCompared)) break;
+    // Phases: where two of them are all air, a slice is still one of each.
+    if (different && scanned_again) return;
+    if (different && repeats > kMostCompared) break;  // too many to read them all
   }
   if (finding.slices.empty()) return;
   finding.text = std::to_string(finding.slices.size()) +
@@ -186,13 +228,22 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   }
   std::optional<std::vector<int>> phases;
   std::string told_apart_by = "order";
-  for (int key = 0; key < kPhaseKeys && !phases; ++key) {
+  const bool scanned_again = areMostRepeated(places);
+  for (int key = 0; scanned_again && key < kPhaseKeys && !phases; ++key) {
     phases = phasesBy(PhaseKey(key), slices, places);
     if (phases) told_apart_by = kKeyNames[key];
   }
-  if (!phases && least.count() == most.count() && most.count() <= kMostPhases &&
-      places.size() > 1) {
+  if (!phases && least.count() == most.count() && most.count() <= kMostPhases) {
     phases = ranks(slices, places);
+  }
+  for (int key = kAcquisitionTime; scanned_again && key < kPhaseKeys && !phases; ++key) {
+    phases = phasesInTurn([key](const DicomHeader& h) { return h.phase[std::size_t(key)]; }, slices,
+                          places);
+    if (phases) told_apart_by = kKeyNames[key];
+  }
+  if (!phases && scanned_again) {
+    phases = phasesInTurn([](const DicomHeader& h) { return parseDecimal(h.instance_number); },
+                          slices, places);
   }
   const auto take = [&](const std::vector<int>& of, int wanted) {
     for (const Place& place : places) {
@@ -230,13 +281,16 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   finding.text = std::to_string(finding.slices.size()) +
                  (finding.slices.size() == 1 ? " place holds" : " places hold") +
                  " more than one slice, with different pixels";
-  const std::string answer =
-      ask({"DUPLICATE_POSITIONS",
-           "Which of the slices at one place shall be used?",
-           {"refuse", "first", "last"},
-           {"Do not use the series", "The one that was acquired first",
-            "The one that was acquired last"}},
-          answers, report.choices);
+  // Where most places repeat and nothing tells the phases apart, any choice would mix them.
+  std::string answer = "refuse";
+  if (!scanned_again) {
+    answer = ask({"DUPLICATE_POSITIONS",
+                  "Which of the slices at one place shall be used?",
+                  {"refuse", "first", "last"},
+                  {"Do not use the series", "The one that was acquired first",
+                   "The one that was acquired last"}},
+                 answers, report.choices);
+  }
   std::vector<int> rank = ranks(slices, places);
   if (answer == "last") {
     for (const Place& place : places) {

@@ -16,8 +16,9 @@ enum class Codec {
 
 enum class Loss {
   never,
+  named,   // by name only: the codestream tells, and is taken for lossless where it does not
+  may_be,  // the codestream tells, and is taken for lossy where it does not
   always,
-  may_be,  // the codestream tells
 };
 
 struct TransferSyntax {

@@ -41,6 +41,13 @@ void SeriesFixture::write(const Volume& volume) {
   ASSERT_TRUE(written.ok()) << written.error().sentence();
 }
 
+void SeriesFixture::add(DcmDataset data, const Packing& packing) {
+  // Neither the order in which files are made nor their names' order is that of the slices.
+  ++added_;
+  save(data, folder() / (std::to_string(added_ * 7919 % 1000) + "_" + std::to_string(added_)),
+       packing);
+}
+
 void SeriesFixture::edit(const fs::path& file, const Change& change, E_TransferSyntax syntax) {
   DcmFileFormat dicom;
   ASSERT_TRUE(dicom.loadFile(file.c_str()).good());
@@ -69,21 +76,36 @@ CtFolder SeriesFixture::scan(const fs::path& path) {
   return std::move(result).value();
 }
 
-Volume SeriesFixture::import() {
+Volume SeriesFixture::import(const Answers& answers) {
   CtFolder ct = scan();
-  const auto best = ct.bestSeries();
+  const auto best = ct.bestSeries(answers);
   report_ = ct.report();
   if (!best) {
     ADD_FAILURE() << "no series: " << (report_.error ? report_.error->sentence() : "");
     return {};
   }
-  auto volume = ct.read(*best, {}, Progress());
+  ImportRequest request;
+  request.answers = answers;
+  auto volume = ct.read(*best, request, Progress());
   report_ = ct.report();
   if (!volume.ok()) {
     ADD_FAILURE() << volume.error().sentence();
     return {};
   }
   return std::move(volume).value();
+}
+
+Error SeriesFixture::refusal(const Answers& answers) {
+  CtFolder ct = scan();
+  report_ = ct.report();
+  EXPECT_EQ(report_.series.size(), 1U);
+  if (report_.series.empty()) return {};
+  ImportRequest request;
+  request.answers = answers;
+  const auto volume = ct.read(report_.series.front().uid, request, Progress());
+  report_ = ct.report();
+  EXPECT_FALSE(volume.ok());
+  return volume.ok() ? Error{} : volume.error();
 }
 
 const SeriesReport& SeriesFixture::chosen() const {

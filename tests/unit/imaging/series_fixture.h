@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+#include "dicom_maker.h"
 #include "imaging/ct_writer.h"
 #include "imaging/importer.h"
 #include "support.h"
@@ -27,6 +28,8 @@ class SeriesFixture : public ::testing::Test {
   std::filesystem::path slice(int number) const;  // as written, from 1
 
   void write(const Volume& volume);
+  // One more file in the folder, under a name that says nothing.
+  void add(DcmDataset data, const Packing& packing = {});
 
   using Change = std::function<void(DcmDataset&)>;
   void edit(const std::filesystem::path& file, const Change& change,
@@ -38,7 +41,9 @@ class SeriesFixture : public ::testing::Test {
   CtFolder scan() { return scan(folder()); }
   CtFolder scan(const std::filesystem::path& path);
   // Reads the default series; the report is left in `report_`.
-  Volume import();
+  Volume import(const Answers& answers = {});
+  // Why read() refuses the one series under these answers.
+  Error refusal(const Answers& answers = {});
   const SeriesReport& chosen() const;
 
   static const Finding* find(const SeriesReport& series, const std::string& code);
@@ -48,6 +53,7 @@ class SeriesFixture : public ::testing::Test {
 
   TemporaryFolder temporary_;
   ImportReport report_;
+  int added_ = 0;
 };
 
 }  // namespace trephine::test

@@ -1,7 +1,6 @@
 #include <dcmtk/dcmdata/dcpixel.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
 #include <dcmtk/dcmdata/dcpxitem.h>
-#include <openjpeg.h>
 
 #include <chrono>
 #include <random>
@@ -9,21 +8,14 @@
 #include <vector>
 
 #include "imaging/jpeg2000.h"
+#include "jpeg2000_writer.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 using Words = std::vector<std::int16_t>;
-
-struct Picture {
-  int columns = 61, rows = 47;  // odd, so that edges of tiles and wavelet levels are not whole
-  int bits = 12;
-  bool is_signed = false;
-  std::vector<int> samples = {};
-};
 
 // Every sample differs from its neighbours; the range is that of the bits.
 Picture ramp(int bits, bool is_signed, int columns = 61, int rows = 47) {
@@ -35,87 +27,6 @@ Picture ramp(int bits, bool is_signed, int columns = 61, int rows = 47) {
     }
   }
   return picture;
-}
-
-struct Coding {
-  int tile = 0;  // columns and rows of a tile; 0: one tile
-  bool irreversible = false;
-  float ratio = 0;  // of compression; 0: lossless
-  int layers = 1;
-  int precinct = 0;  // columns and rows of a precinct; 0: one a resolution
-  bool jp2 = false;
-  int channels = 1;
-};
-
-// What OpenJPEG itself writes.
-Bytes encode(const Picture& picture, const Coding& coding = {}) {
-  opj_cparameters_t parameters;
-  opj_set_default_encoder_parameters(&parameters);
-  parameters.numresolution = 4;
-  parameters.irreversible = coding.irreversible;
-  parameters.tcp_numlayers = coding.layers;
-  for (int i = 0; i < coding.layers; ++i) {
-    parameters.tcp_rates[i] = coding.ratio * float(coding.layers - i);
-  }
-  parameters.tcp_rates[coding.layers - 1] = coding.ratio;
-  parameters.cp_disto_alloc = 1;
-  if (coding.tile) {
-    parameters.tile_size_on = OPJ_TRUE;
-    parameters.cp_tdx = parameters.cp_tdy = coding.tile;
-  }
-  if (coding.precinct) {
-    parameters.csty |= 1;
-    parameters.res_spec = parameters.numresolution;
-    for (int i = 0; i < parameters.res_spec; ++i) {
-      parameters.prcw_init[i] = parameters.prch_init[i] = coding.precinct;
-    }
-  }
-  std::vector<opj_image_cmptparm_t> components(std::size_t(coding.channels));
-  for (auto& component : components) {
-    component = {};
-    component.dx = component.dy = 1;
-    component.w = unsigned(picture.columns);
-    component.h = unsigned(picture.rows);
-    component.prec = unsigned(picture.bits);
-    component.sgnd = picture.is_signed;
-  }
-  opj_image_t* image =
-      opj_image_create(unsigned(coding.channels), components.data(), OPJ_CLRSPC_GRAY);
-  image->x1 = unsigned(picture.columns);
-  image->y1 = unsigned(picture.rows);
-  for (int c = 0; c < coding.channels; ++c) {
-    std::ranges::copy(picture.samples, image->comps[c].data);
-  }
-
-  struct Sink {
-    Bytes bytes;
-    std::size_t at = 0;
-  } sink;
-  opj_stream_t* stream = opj_stream_default_create(OPJ_FALSE);
-  opj_stream_set_user_data(stream, &sink, nullptr);
-  opj_stream_set_write_function(stream, [](void* from, OPJ_SIZE_T count, void* user) {
-    Sink& to = *static_cast<Sink*>(user);
-    to.bytes.resize(std::max(to.bytes.size(), to.at + count));
-    std::copy_n(static_cast<std::uint8_t*>(from), count, to.bytes.begin() + std::ptrdiff_t(to.at));
-    to.at += count;
-    return count;
-  });
-  opj_stream_set_skip_function(stream, [](OPJ_OFF_T count, void* user) {
-    static_cast<Sink*>(user)->at += std::size_t(count);
-    return count;
-  });
-  opj_stream_set_seek_function(stream, [](OPJ_OFF_T to, void* user) -> OPJ_BOOL {
-    static_cast<Sink*>(user)->at = std::size_t(to);
-    return OPJ_TRUE;
-  });
-  opj_codec_t* codec = opj_create_compress(coding.jp2 ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K);
-  EXPECT_TRUE(opj_setup_encoder(codec, &parameters, image));
-  EXPECT_TRUE(opj_start_compress(codec, image, stream) && opj_encode(codec, stream) &&
-              opj_end_compress(codec, stream));
-  opj_stream_destroy(stream);
-  opj_destroy_codec(codec);
-  opj_image_destroy(image);
-  return sink.bytes;
 }
 
 Jpeg2000Expectation expectation(const Picture& picture) {

@@ -1,0 +1,282 @@
+// Several slices at one place: phases, copies, overlaps.
+#include "series_fixture.h"
+
+namespace trephine::test {
+
+class TrapRepeats : public SeriesFixture {
+ protected:
+  static constexpr int kSlices = 6;
+
+  // Slice k of a phase; its pixels differ from phase to phase.
+  static Image image(int phase, int k, int instance) {
+    Image image;
+    image.position_mm.z = 100.0 + 2.0 * k;
+    image.instance = instance;
+    fillPattern(image, 100 * phase + k);
+    return image;
+  }
+
+  void addSlice(const Image& image, const Change& change = {}) {
+    DcmDataset data = makeImage(image);
+    if (change) change(data);
+    add(data);
+  }
+
+  // Every slice of two phases; `mark` says which phase a slice is of.
+  void addPhases(const std::function<void(DcmDataset&, int phase, int k)>& mark,
+                 const std::function<bool(int phase, int k)>& wanted = {}) {
+    for (int phase = 0; phase < 2; ++phase) {
+      for (int k = 0; k < kSlices; ++k) {
+        if (wanted && !wanted(phase, k)) continue;
+        // By instance number the phases take turns, the wrong way round in every second place.
+        const int instance = 1 + 2 * k + (k % 2 ? 1 - phase : phase);
+        addSlice(image(phase, k, instance), [&](DcmDataset& data) { mark(data, phase, k); });
+      }
+    }
+  }
+
+  static void expectPhase(const Volume& volume, int phase, int from = 0, int to = kSlices) {
+    ASSERT_EQ(volume.geometry.size, (Index3{7, 5, to - from})) << "phase " << phase;
+    EXPECT_DOUBLE_EQ(volume.geometry.origin_mm.z, 100.0 + 2.0 * from);
+    EXPECT_DOUBLE_EQ(volume.geometry.spacing_mm.z, 2.0);
+    for (int k = from; k < to; ++k) {
+      for (int j = 0; j < 5; ++j) {
+        for (int i = 0; i < 7; ++i) {
+          ASSERT_EQ(volume.at(i, j, k - from), patternValue(i, j, 100 * phase + k) - 1024)
+              << "phase " << phase << " at " << i << " " << j << " " << k;
+        }
+      }
+    }
+  }
+
+  void expectTwoPhases() {
+    expectRefused("PHASES");
+    EXPECT_EQ(report_.series.front().phases, 2);
+    EXPECT_EQ(report_.series.front().choices.front().options,
+              (std::vector<std::string>{"refuse", "1", "2"}));
+    expectPhase(import({{"PHASES", "1"}}), 0);
+    expectPhase(import({{"PHASES", "2"}}), 1);
+    EXPECT_EQ(chosen().verdict, Verdict::repaired);
+    EXPECT_EQ(report_.provenance->answers, (Answers{{"PHASES", "2"}}));
+    EXPECT_EQ(refusal({{"PHASES", "3"}}).code, "BAD_CHOICE");
+  }
+};
+
+TEST_F(TrapRepeats, PhasesByTemporalPosition) {
+  addPhases([](DcmDataset& data, int phase, int) {
+    put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1));
+    put(data, DCM_AcquisitionNumber, std::to_string(9 - phase));  // says the contrary
+  });
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesByAcquisitionNumber) {
+  addPhases([](DcmDataset& data, int phase, int) {
+    put(data, DCM_AcquisitionNumber, std::to_string(phase + 9));  // "9" and "10"
+  });
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesByOneAcquisitionTimeEach) {
+  addPhases([](DcmDataset& data, int phase, int) {
+    put(data, DCM_AcquisitionTime, phase ? "101500.25" : "095959");
+  });
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesByAcquisitionTimesThatDifferFromSliceToSlice) {
+  addPhases([](DcmDataset& data, int phase, int k) {
+    put(data, DCM_AcquisitionTime, std::to_string(100000 + 100 * phase + k));
+  });
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesByAcquisitionTimesAcrossMidnight) {
+  addPhases([](DcmDataset& data, int phase, int k) {
+    put(data, DCM_AcquisitionDateTime,
+        (phase ? "20240301000010.5" : "20240229235950.2") + std::to_string(k) + "+0100");
+    put(data, DCM_AcquisitionTime, phase ? "000010" : "235950");
+  });
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesByInstanceNumberOnly) {
+  for (int phase = 0; phase < 2; ++phase) {
+    for (int k = 0; k < kSlices; ++k) addSlice(image(phase, k, phase * kSlices + k + 1));
+  }
+  expectTwoPhases();
+}
+
+TEST_F(TrapRepeats, PhasesThatShareASliceOfAirStayWhole) {
+  for (int phase = 0; phase < 2; ++phase) {
+    for (int k = 0; k < kSlices; ++k) {
+      Image slice = image(phase, k, phase * kSlices + k + 1);
+      if (k == 0 || k == 3) slice.stored.assign(35, 24);
+      addSlice(slice, [&](DcmDataset& data) {
+        put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1));
+      });
+    }
+  }
+  expectRefused("PHASES");
+  for (const char* phase : {"1", "2"}) {
+    const Volume volume = import({{"PHASES", phase}});
+    ASSERT_EQ(volume.geometry.size[2], kSlices) << phase;
+    EXPECT_EQ(volume.at(3, 3, 0), -1000);
+    EXPECT_EQ(volume.at(3, 3, 3), -1000);
+    EXPECT_EQ(find(chosen(), "MISSING_SLICES"), nullptr);
+  }
+}
+
+TEST_F(TrapRepeats, OfAPhaseWithAMissingSliceOnlyThatPhaseIsIncomplete) {
+  addPhases(
+      [](DcmDataset& data, int phase, int) {
+        put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1));
+      },
+      [](int phase, int k) { return phase == 0 || k != 2; });
+  expectRefused("PHASES");
+  expectPhase(import({{"PHASES", "1"}}), 0);
+  EXPECT_EQ(refusal({{"PHASES", "2"}}).code, "MISSING_SLICES");
+  expectPhase(import({{"PHASES", "2"}, {"MISSING_SLICES", "part"}}), 1, 3, 6);
+  const Volume filled = import({{"PHASES", "2"}, {"MISSING_SLICES", "fill"}});
+  ASSERT_EQ(filled.geometry.size[2], kSlices);
+  for (int j = 0; j < 5; ++j) {
+    for (int i = 0; i < 7; ++i) {
+      const double middle = (patternValue(i, j, 101) + patternValue(i, j, 103)) / 2.0 - 1024;
+      ASSERT_NEAR(filled.at(i, j, 2), middle, 0.5);
+    }
+  }
+}
+
+TEST_F(TrapRepeats, AnIncompletePhaseIsNeverMixedFromTheOther) {
+  // Nothing but times that differ from slice to slice, or numbers, tells the phases apart.
+  for (const bool times : {true, false}) {
+    std::filesystem::remove_all(folder());
+    for (int phase = 0; phase < 2; ++phase) {
+      for (int k = 0; k < kSlices; ++k) {
+        if (phase == 0 && k == 2) continue;
+        addSlice(image(phase, k, phase * kSlices + k + 1), [&](DcmDataset& data) {
+          if (times) {
+            put(data, DCM_AcquisitionTime, std::to_string(100000 + 100 * phase + k));
+          }
+        });
+      }
+    }
+    CtFolder ct = scan();
+    const SeriesReport series = ct.report().series.front();
+    ASSERT_EQ(series.verdict, Verdict::refused);
+    for (const Choice& choice : series.choices) {
+      for (const std::string& option : choice.options) {
+        ImportRequest request;
+        request.answers = {{choice.code, option}};
+        const auto volume = ct.read(series.uid, request, Progress());
+        if (!volume.ok()) continue;
+        const int phase = volume->at(0, 0, 0) == patternValue(0, 0, 0) - 1024 ? 0 : 1;
+        expectPhase(*volume, phase);
+      }
+    }
+  }
+}
+
+TEST_F(TrapRepeats, PhasesWithJitteredSteps) {
+  const double zs[] = {100, 102.1, 104, 106, 108.1, 110};
+  for (int phase = 0; phase < 2; ++phase) {
+    for (int k = 0; k < kSlices; ++k) {
+      Image slice = image(phase, k, phase * kSlices + k + 1);
+      slice.position_mm.z = zs[k];
+      addSlice(slice, [&](DcmDataset& data) {
+        put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1));
+      });
+    }
+  }
+  const Volume volume = import({{"PHASES", "2"}});
+  ASSERT_EQ(volume.geometry.size[2], kSlices);
+  ASSERT_NE(find(chosen(), "RESAMPLED_SPACING"), nullptr);
+  ASSERT_NE(find(chosen(), "PHASES"), nullptr);
+  for (const int k : {0, 2, 3, 5}) {  // these lie on the grid
+    for (int i = 0; i < 7; ++i) {
+      ASSERT_EQ(volume.at(i, 2, k), patternValue(i, 2, 100 + k) - 1024) << k;
+    }
+  }
+  for (int i = 0; i < 7; ++i) {  // 102 mm of 100 and 102.1
+    const double share = 2.0 / 2.1;
+    const double hu =
+        (1 - share) * patternValue(i, 2, 100) + share * patternValue(i, 2, 101) - 1024;
+    ASSERT_NEAR(volume.at(i, 2, 1), hu, 0.5 + 1e-6);
+  }
+}
+
+TEST_F(TrapRepeats, TwoStationsThatOverlapByASliceAreNoPhases) {
+  for (int k = 0; k < 5; ++k) {
+    addSlice(image(0, k, k + 1), [](DcmDataset& d) { put(d, DCM_AcquisitionNumber, "1"); });
+    addSlice(image(1, k + 4, k + 6), [](DcmDataset& d) { put(d, DCM_AcquisitionNumber, "2"); });
+  }
+  EXPECT_EQ(expectRefused("DUPLICATE_POSITIONS").slices, std::vector<std::string>{"108.00 mm"});
+  for (const int phase : {0, 1}) {
+    const Volume volume = import({{"DUPLICATE_POSITIONS", phase ? "last" : "first"}});
+    ASSERT_EQ(volume.geometry.size[2], 9);
+    for (int k = 0; k < 9; ++k) {
+      const int of = k < 4 ? 0 : k > 4 ? 1 : phase;
+      for (int i = 0; i < 7; ++i) {
+        ASSERT_EQ(volume.at(i, 2, k), patternValue(i, 2, 100 * of + k) - 1024) << k;
+      }
+    }
+  }
+}
+
+TEST_F(TrapRepeats, AnEqualSliceUnderANewNameIsDropped) {
+  for (int k = 0; k < kSlices; ++k) addSlice(image(0, k, k + 1));
+  for (const int k : {0, 3}) addSlice(image(0, k, 20 + k));
+  expectPhase(import(), 0);
+  EXPECT_EQ(chosen().verdict, Verdict::pass);
+  ASSERT_NE(find(chosen(), "DUPLICATE_FILES"), nullptr);
+  EXPECT_EQ(find(chosen(), "DUPLICATE_FILES")->severity, "notice");
+}
+
+TEST_F(TrapRepeats, ASeriesThatWasSentTwiceUnderNewNamesIsOneSeries) {
+  for (int k = 0; k < kSlices; ++k) {
+    addSlice(image(0, k, k + 1));
+    addSlice(image(0, k, 20 + k));
+  }
+  expectPhase(import(), 0);
+  EXPECT_EQ(chosen().phases, 1);
+}
+
+TEST_F(TrapRepeats, EqualWordsWithAnotherInterceptAreNotEqualSlices) {
+  for (int k = 0; k < kSlices; ++k) addSlice(image(0, k, k + 1));
+  addSlice(image(0, 3, 20), [](DcmDataset& data) { put(data, DCM_RescaleIntercept, "-1000"); });
+  expectRefused("DUPLICATE_POSITIONS");
+}
+
+TEST_F(TrapRepeats, ADifferentSliceAtOnePlaceAsksWhich) {
+  for (int k = 0; k < kSlices; ++k) addSlice(image(0, k, 10 + k));
+  addSlice(image(7, 3, 9));  // of a smaller number: acquired first
+  EXPECT_EQ(expectRefused("DUPLICATE_POSITIONS").slices, std::vector<std::string>{"106.00 mm"});
+  for (const bool first : {true, false}) {
+    const Volume volume = import({{"DUPLICATE_POSITIONS", first ? "first" : "last"}});
+    ASSERT_EQ(volume.geometry.size[2], kSlices);
+    for (int k = 0; k < kSlices; ++k) {
+      const int pattern = first && k == 3 ? 703 : k;
+      for (int i = 0; i < 7; ++i) {
+        ASSERT_EQ(volume.at(i, 4, k), patternValue(i, 4, pattern) - 1024) << k << first;
+      }
+    }
+    EXPECT_EQ(chosen().verdict, Verdict::repaired);
+  }
+}
+
+TEST_F(TrapRepeats, AWholeSliceIsTakenRatherThanACutOneAtItsPlace) {
+  for (int k = 0; k < kSlices; ++k) addSlice(image(0, k, k + 1));
+  addSlice(image(0, 3, 20));
+  const auto name = folder() / std::to_string(7 * 7919 % 1000).append("_7");
+  ASSERT_TRUE(std::filesystem::exists(name));
+  std::filesystem::resize_file(name, std::filesystem::file_size(name) - 8);
+  const SeriesReport series = scan().report().series.front();
+  if (series.verdict == Verdict::refused) {  // asking is right too, mixing is not
+    ASSERT_NE(find(series, "DUPLICATE_POSITIONS"), nullptr);
+    expectPhase(import({{"DUPLICATE_POSITIONS", "first"}}), 0);
+  } else {
+    expectPhase(import(), 0);
+  }
+}
+
+}  // namespace trephine::test
