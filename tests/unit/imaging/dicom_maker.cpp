@@ -6,8 +6,8 @@
 #include <dcmtk/dcmdata/dcrleerg.h>
 #include <dcmtk/dcmdata/dcrlerp.h>
 #include <dcmtk/dcmjpeg/djencode.h>
-#include <dcmtk/dcmjpeg/djrploss.h>
 #include <dcmtk/dcmjpeg/djrplol.h>
+#include <dcmtk/dcmjpeg/djrploss.h>
 #include <dcmtk/dcmjpls/djencode.h>
 #include <dcmtk/dcmjpls/djrparam.h>
 #include <gtest/gtest.h>
@@ -185,8 +185,7 @@ void fillPattern(Image& image, int k) {
   for (int frame = 0; frame < image.frames; ++frame) {
     for (int j = 0; j < image.rows; ++j) {
       for (int i = 0; i < image.columns; ++i) {
-        image.stored.push_back(
-            patternValue(i, j, k + frame, image.bits_stored, image.is_signed));
+        image.stored.push_back(patternValue(i, j, k + frame, image.bits_stored, image.is_signed));
       }
     }
   }
@@ -217,8 +216,8 @@ DcmDataset makeImage(const Image& image) {
 }
 
 DcmItem& functionalGroup(DcmDataset& data, const DcmTagKey& macro, int frame) {
-  const DcmTagKey sequence = frame < 0 ? DCM_SharedFunctionalGroupsSequence
-                                       : DCM_PerFrameFunctionalGroupsSequence;
+  const DcmTagKey sequence =
+      frame < 0 ? DCM_SharedFunctionalGroupsSequence : DCM_PerFrameFunctionalGroupsSequence;
   DcmItem *group = nullptr, *item = nullptr;
   EXPECT_TRUE(data.findOrCreateSequenceItem(sequence, group, std::max(frame, 0)).good());
   EXPECT_TRUE(group->findOrCreateSequenceItem(macro, item, 0).good());
@@ -283,8 +282,7 @@ void saveEncapsulated(DcmDataset& data, const std::vector<Bytes>& codestreams,
     table->putUint8Array(reinterpret_cast<const Uint8*>(offsets.data()),
                          static_cast<unsigned long>(offsets.size() * sizeof(Uint32)));
   }
-  const E_TransferSyntax syntax =
-      packing.called == EXS_Unknown ? packing.syntax : packing.called;
+  const E_TransferSyntax syntax = packing.called == EXS_Unknown ? packing.syntax : packing.called;
   auto* pixels = new DcmPixelData(DCM_PixelData);  // owned by the file
   pixels->putOriginalRepresentation(syntax, nullptr, sequence);
   DcmFileFormat dicom(&data);

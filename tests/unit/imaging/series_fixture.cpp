@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace trephine::test {
 
@@ -81,17 +82,13 @@ Volume SeriesFixture::import(const Answers& answers) {
   const auto best = ct.bestSeries(answers);
   report_ = ct.report();
   if (!best) {
-    ADD_FAILURE() << "no series: " << (report_.error ? report_.error->sentence() : "");
-    return {};
+    throw std::runtime_error("no series: " + (report_.error ? report_.error->sentence() : ""));
   }
   ImportRequest request;
   request.answers = answers;
   auto volume = ct.read(*best, request, Progress());
   report_ = ct.report();
-  if (!volume.ok()) {
-    ADD_FAILURE() << volume.error().sentence();
-    return {};
-  }
+  if (!volume.ok()) throw std::runtime_error(volume.error().sentence());
   return std::move(volume).value();
 }
 

@@ -40,7 +40,8 @@ class SeriesFixture : public ::testing::Test {
 
   CtFolder scan() { return scan(folder()); }
   CtFolder scan(const std::filesystem::path& path);
-  // Reads the default series; the report is left in `report_`.
+  // Reads the default series; the report is left in `report_`. Throws where none can be read, which
+  // fails the test.
   Volume import(const Answers& answers = {});
   // Why read() refuses the one series under these answers.
   Error refusal(const Answers& answers = {});

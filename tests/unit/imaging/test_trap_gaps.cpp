@@ -1,5 +1,5 @@
-// Stacks that are not even: missing slices, several spacings, jitter. What must come out is computed
-// here from the slices that were written.
+// Stacks that are not even: missing slices, several spacings, jitter. What must come out is
+// computed here from the slices that were written.
 #include <cmath>
 
 #include "series_fixture.h"
@@ -214,7 +214,7 @@ TEST_F(TrapGaps, AnAnswerThatCannotBeIsRefusedAndOneThatIsNotAskedForIsNot) {
   EXPECT_EQ(refusal({{"MISING_SLICES", "fill"}}).code, "BAD_CHOICE");
   EXPECT_EQ(refusal({{"missing_slices", "fill"}}).code, "BAD_CHOICE");
   EXPECT_EQ(refusal({{"MISSING_SLICES", "refuse"}}).code, "MISSING_SLICES");
-  import({{"MISSING_SLICES", "fill"}, {"PHASES", "7"}, {"LOSSY_SOURCE", "accept"}});
+  import({{"MISSING_SLICES", "fill"}, {"PHASES", "7"}, { "LOSSY_SOURCE", "accept" }});
   EXPECT_EQ(report_.provenance->answers, (Answers{{"MISSING_SLICES", "fill"}}));
 }
 

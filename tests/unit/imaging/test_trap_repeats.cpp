@@ -128,11 +128,9 @@ TEST_F(TrapRepeats, PhasesThatShareASliceOfAirStayWhole) {
 }
 
 TEST_F(TrapRepeats, OfAPhaseWithAMissingSliceOnlyThatPhaseIsIncomplete) {
-  addPhases(
-      [](DcmDataset& data, int phase, int) {
-        put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1));
-      },
-      [](int phase, int k) { return phase == 0 || k != 2; });
+  addPhases([](DcmDataset& data, int phase,
+               int) { put(data, DCM_TemporalPositionIdentifier, std::to_string(phase + 1)); },
+            [](int phase, int k) { return phase == 0 || k != 2; });
   expectRefused("PHASES");
   expectPhase(import({{"PHASES", "1"}}), 0);
   EXPECT_EQ(refusal({{"PHASES", "2"}}).code, "MISSING_SLICES");

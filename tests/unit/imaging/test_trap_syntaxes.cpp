@@ -83,9 +83,9 @@ class TrapSyntaxes : public SeriesFixture {
   static constexpr Form kForms[] = {{8, 8, false},   {16, 12, false}, {16, 12, true},
                                     {16, 16, false}, {16, 16, true},  {16, 10, false},
                                     {16, 8, false}};
-  static constexpr E_TransferSyntax kCompressed[] = {
-      EXS_RLELossless,    EXS_JPEGProcess14,       EXS_JPEGProcess14SV1,
-      EXS_JPEGLSLossless, EXS_JPEG2000LosslessOnly, EXS_JPEG2000};
+  static constexpr E_TransferSyntax kCompressed[] = {EXS_RLELossless,          EXS_JPEGProcess14,
+                                                     EXS_JPEGProcess14SV1,     EXS_JPEGLSLossless,
+                                                     EXS_JPEG2000LosslessOnly, EXS_JPEG2000};
 };
 
 TEST_F(TrapSyntaxes, EveryLosslessSyntaxGivesEveryForm) {
@@ -196,8 +196,8 @@ TEST_F(TrapSyntaxes, PixelsThatAreClaimedToBeFourGigavoxelsAllocateNothing) {
 TEST_F(TrapSyntaxes, AFileThatIsCutIsAMissingSliceWhereverItLies) {
   for (const E_TransferSyntax syntax :
        {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit,
-        EXS_DeflatedLittleEndianExplicit, EXS_RLELossless, EXS_JPEGProcess14SV1,
-        EXS_JPEGLSLossless, EXS_JPEG2000LosslessOnly}) {
+        EXS_DeflatedLittleEndianExplicit, EXS_RLELossless, EXS_JPEGProcess14SV1, EXS_JPEGLSLossless,
+        EXS_JPEG2000LosslessOnly}) {
     for (const int instance : {1, 3, 5}) {
       for (const unsigned cut : {9U, 120U}) {
         SCOPED_TRACE(nameOf({syntax}, kForms[1]) + ", slice " + std::to_string(instance) +

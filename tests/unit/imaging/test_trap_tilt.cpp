@@ -69,10 +69,12 @@ class TrapTilt : public SeriesFixture {
           // The line of positions tells where a slice at this height would lie.
           const double t = glm::dot(p - frames_[0].position, normal) /
                            glm::dot(frames_.back().position - frames_[0].position, normal);
-          const Vec3 from = frames_[0].position + (frames_.back().position - frames_[0].position) * t;
+          const Vec3 from =
+              frames_[0].position + (frames_.back().position - frames_[0].position) * t;
           const double x = glm::dot(p - from, row(image_)) / image_.spacing_mm[1];
           const double y = glm::dot(p - from, column(image_)) / image_.spacing_mm[0];
-          const double outside = std::max({-x, -y, x - (image_.columns - 1), y - (image_.rows - 1)});
+          const double outside =
+              std::max({-x, -y, x - (image_.columns - 1), y - (image_.rows - 1)});
           if (hu == kAirHu) {
             ++air;
             ASSERT_TRUE(outside > -1e-6 || nearPadding(x, y)) << i << " " << j << " " << k;

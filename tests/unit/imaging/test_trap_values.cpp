@@ -32,9 +32,8 @@ constexpr Form kForms[] = {
 };
 
 TEST_F(TrapValues, EveryWidthAndSignWithAnythingInTheOtherBits) {
-  for (const E_TransferSyntax syntax :
-       {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit,
-        EXS_DeflatedLittleEndianExplicit}) {
+  for (const E_TransferSyntax syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit,
+                                        EXS_BigEndianExplicit, EXS_DeflatedLittleEndianExplicit}) {
     for (const Form& form : kForms) {
       SCOPED_TRACE(std::to_string(form.allocated) + " " + std::to_string(form.stored) + " " +
                    std::to_string(form.high) + (form.is_signed ? " signed " : " unsigned ") +
@@ -110,9 +109,9 @@ TEST_F(TrapValues, EightBitPixelsInWordsOfEitherOrder) {
 }
 
 TEST_F(TrapValues, SlopeAndInterceptDifferFromSliceToSlice) {
-  const std::pair<const char*, const char*> scales[] = {
-      {"1", "-1024"}, {"2", "-2000"}, {"0.5", "-1000.25"}, {"1.0e0", "-1.024E3"}, {"-1", "900"},
-      {"16", "-1024"}};
+  const std::pair<const char*, const char*> scales[] = {{"1", "-1024"},      {"2", "-2000"},
+                                                        {"0.5", "-1000.25"}, {"1.0e0", "-1.024E3"},
+                                                        {"-1", "900"},       {"16", "-1024"}};
   for (int k = 0; k < 6; ++k) {
     Image image = imageAt(k);
     image.slope = scales[k].first;
@@ -154,12 +153,12 @@ TEST_F(TrapValues, PaddingIsComparedWithWhatIsStored) {
     bool is_signed;
     int value, limit;  // equal: no range
   };
-  const Case cases[] = {{false, 0, 0},      {false, 63, 63},      {false, 10, 900},
-                        {false, 900, 10},   {true, -2048, -2048}, {true, -2048, -1500},
+  const Case cases[] = {{false, 0, 0},        {false, 63, 63},      {false, 10, 900},
+                        {false, 900, 10},     {true, -2048, -2048}, {true, -2048, -1500},
                         {true, -1500, -2048}, {true, -3, 4}};
   for (const Case& c : cases) {
-    for (const E_TransferSyntax syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit,
-                                          EXS_BigEndianExplicit}) {
+    for (const E_TransferSyntax syntax :
+         {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit}) {
       SCOPED_TRACE(std::to_string(c.value) + ".." + std::to_string(c.limit));
       std::filesystem::remove_all(folder());
       for (int k = 0; k < 3; ++k) {
