@@ -1,14 +1,10 @@
-#include <dcmtk/dcmdata/dcpixel.h>
-#include <dcmtk/dcmdata/dcpixseq.h>
-#include <dcmtk/dcmdata/dcpxitem.h>
-#include <openjpeg.h>
-
+#include <array>
 #include <chrono>
 #include <random>
 #include <thread>
 #include <vector>
 
-#include "imaging/jpeg2000.h"
+#include "jpeg2000_fixture.h"
 #include "series_fixture.h"
 
 namespace trephine::test {
@@ -18,134 +14,8 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Words = std::vector<std::int16_t>;
 
-struct Picture {
-  int columns = 61, rows = 47;  // odd, so that edges of tiles and wavelet levels are not whole
-  int bits = 12;
-  bool is_signed = false;
-  std::vector<int> samples = {};
-};
-
-// Every sample differs from its neighbours; the range is that of the bits.
-Picture ramp(int bits, bool is_signed, int columns = 61, int rows = 47) {
-  Picture picture{columns, rows, bits, is_signed};
-  const int range = 1 << bits, low = is_signed ? -range / 2 : 0;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      picture.samples.push_back(low + (x * 1021 + y * 617 + (x * y) % 13) % range);
-    }
-  }
-  return picture;
-}
-
-struct Coding {
-  int tile = 0;  // columns and rows of a tile; 0: one tile
-  bool irreversible = false;
-  float ratio = 0;  // of compression; 0: lossless
-  int layers = 1;
-  int precinct = 0;  // columns and rows of a precinct; 0: one a resolution
-  bool jp2 = false;
-  int channels = 1;
-};
-
-// What OpenJPEG itself writes.
-Bytes encode(const Picture& picture, const Coding& coding = {}) {
-  opj_cparameters_t parameters;
-  opj_set_default_encoder_parameters(&parameters);
-  parameters.numresolution = 4;
-  parameters.irreversible = coding.irreversible;
-  parameters.tcp_numlayers = coding.layers;
-  for (int i = 0; i < coding.layers; ++i) {
-    parameters.tcp_rates[i] = coding.ratio * float(coding.layers - i);
-  }
-  parameters.tcp_rates[coding.layers - 1] = coding.ratio;
-  parameters.cp_disto_alloc = 1;
-  if (coding.tile) {
-    parameters.tile_size_on = OPJ_TRUE;
-    parameters.cp_tdx = parameters.cp_tdy = coding.tile;
-  }
-  if (coding.precinct) {
-    parameters.csty |= 1;
-    parameters.res_spec = parameters.numresolution;
-    for (int i = 0; i < parameters.res_spec; ++i) {
-      parameters.prcw_init[i] = parameters.prch_init[i] = coding.precinct;
-    }
-  }
-  std::vector<opj_image_cmptparm_t> components(std::size_t(coding.channels));
-  for (auto& component : components) {
-    component = {};
-    component.dx = component.dy = 1;
-    component.w = unsigned(picture.columns);
-    component.h = unsigned(picture.rows);
-    component.prec = unsigned(picture.bits);
-    component.sgnd = picture.is_signed;
-  }
-  opj_image_t* image =
-      opj_image_create(unsigned(coding.channels), components.data(), OPJ_CLRSPC_GRAY);
-  image->x1 = unsigned(picture.columns);
-  image->y1 = unsigned(picture.rows);
-  for (int c = 0; c < coding.channels; ++c) {
-    std::ranges::copy(picture.samples, image->comps[c].data);
-  }
-
-  struct Sink {
-    Bytes bytes;
-    std::size_t at = 0;
-  } sink;
-  opj_stream_t* stream = opj_stream_default_create(OPJ_FALSE);
-  opj_stream_set_user_data(stream, &sink, nullptr);
-  opj_stream_set_write_function(stream, [](void* from, OPJ_SIZE_T count, void* user) {
-    Sink& to = *static_cast<Sink*>(user);
-    to.bytes.resize(std::max(to.bytes.size(), to.at + count));
-    std::copy_n(static_cast<std::uint8_t*>(from), count, to.bytes.begin() + std::ptrdiff_t(to.at));
-    to.at += count;
-    return count;
-  });
-  opj_stream_set_skip_function(stream, [](OPJ_OFF_T count, void* user) {
-    static_cast<Sink*>(user)->at += std::size_t(count);
-    return count;
-  });
-  opj_stream_set_seek_function(stream, [](OPJ_OFF_T to, void* user) -> OPJ_BOOL {
-    static_cast<Sink*>(user)->at = std::size_t(to);
-    return OPJ_TRUE;
-  });
-  opj_codec_t* codec = opj_create_compress(coding.jp2 ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K);
-  EXPECT_TRUE(opj_setup_encoder(codec, &parameters, image));
-  EXPECT_TRUE(opj_start_compress(codec, image, stream) && opj_encode(codec, stream) &&
-              opj_end_compress(codec, stream));
-  opj_stream_destroy(stream);
-  opj_destroy_codec(codec);
-  opj_image_destroy(image);
-  return sink.bytes;
-}
-
-Jpeg2000Expectation expectation(const Picture& picture) {
-  return {picture.rows, picture.columns, picture.bits > 8 ? 16 : 8, picture.bits,
-          picture.is_signed};
-}
-
-// The values of the words in the sense of `expected`; none, and the reason, after an error.
-struct Decoded {
-  std::vector<int> values;
-  std::string error;
-};
-
-Decoded decode(const Bytes& bytes, const Jpeg2000Expectation& expected) {
-  Words words(std::size_t(expected.rows) * std::size_t(expected.columns));
-  const Status status = decodeJpeg2000(bytes, expected, words.data());
-  if (!status.ok()) {
-    EXPECT_EQ(status.error().code, "UNREADABLE");
-    return {{}, status.error().what};
-  }
-  Decoded decoded;
-  for (const std::int16_t word : words) {
-    decoded.values.push_back(expected.is_signed ? word : int(std::uint16_t(word)));
-  }
-  return decoded;
-}
-
 std::string whyRefused(const Bytes& bytes, const Jpeg2000Expectation& expected) {
-  const Decoded decoded = decode(bytes, expected);
-  return decoded.error;
+  return decode(bytes, expected).error;
 }
 
 constexpr auto kDamaged = "its JPEG 2000 picture is cut short or damaged";
@@ -211,36 +81,6 @@ Picture pictureOf(const HighThroughput& source) {
     for (int x = 0; x < picture.columns; ++x) picture.samples.push_back(source.sample(x, y));
   }
   return picture;
-}
-
-// The first frame of a DICOM file, and what its header says.
-std::pair<Bytes, Jpeg2000Expectation> frameOf(const std::filesystem::path& file) {
-  DcmFileFormat dicom;
-  EXPECT_TRUE(dicom.loadFile(file.c_str()).good()) << "the file cannot be read";
-  DcmDataset& data = *dicom.getDataset();
-  DcmElement* element = nullptr;
-  EXPECT_TRUE(data.findAndGetElement(DCM_PixelData, element).good());
-  auto& pixels = dynamic_cast<DcmPixelData&>(*element);
-  E_TransferSyntax syntax = EXS_Unknown;
-  const DcmRepresentationParameter* parameter = nullptr;
-  pixels.getOriginalRepresentationKey(syntax, parameter);
-  DcmPixelSequence* items = nullptr;
-  EXPECT_TRUE(pixels.getEncapsulatedRepresentation(syntax, parameter, items).good());
-  Bytes bytes;
-  for (unsigned long i = 1; i < items->card(); ++i) {  // 0 is the offset table
-    DcmPixelItem* item = nullptr;
-    Uint8* fragment = nullptr;
-    EXPECT_TRUE(items->getItem(item, i).good() && item->getUint8Array(fragment).good());
-    bytes.insert(bytes.end(), fragment, fragment + item->getLength());
-  }
-  const auto value = [&](const DcmTagKey& tag) {
-    Uint16 number = 0;
-    EXPECT_TRUE(data.findAndGetUint16(tag, number).good());
-    return int(number);
-  };
-  return {bytes,
-          {value(DCM_Rows), value(DCM_Columns), value(DCM_BitsAllocated), value(DCM_BitsStored),
-           value(DCM_PixelRepresentation) == 1}};
 }
 
 }  // namespace
@@ -526,47 +366,6 @@ TEST(Jpeg2000, ManyThreadsDecodeAtOnce) {
     }
   }
   for (const Decoded& one : decoded) EXPECT_EQ(one.values, picture.samples);
-}
-
-TEST(Jpeg2000, ThePhantomIsReadToThePixel) {
-  TREPHINE_TEST_DATA_OR_SKIP(data);
-  const auto folder = data / "hard/derived_phantom_ts";
-  const auto [bytes, expected] = frameOf(folder / "j2k_lossless.dcm");
-  const Decoded decoded = decode(bytes, expected);
-
-  DcmFileFormat plain;
-  ASSERT_TRUE(plain.loadFile((folder / "explicit_le.dcm").c_str()).good());
-  const Uint16* words = nullptr;
-  unsigned long count = 0;
-  ASSERT_TRUE(plain.getDataset()->findAndGetUint16Array(DCM_PixelData, words, &count).good());
-  EXPECT_EQ(decoded.values, std::vector<int>(words, words + count));
-}
-
-// The range and the sum that pydicom 2.3.1 reads.
-TEST(Jpeg2000, RealCtIsReadAsPydicomReadsIt) {
-  TREPHINE_TEST_DATA_OR_SKIP(data);
-  const auto summary = [](const std::filesystem::path& file) {
-    const auto [bytes, expected] = frameOf(file);
-    const std::vector<int> values = decode(bytes, expected).values;
-    std::int64_t sum = 0;
-    for (const int value : values) sum += value;
-    if (values.empty()) return std::array<std::int64_t, 3>{};
-    return std::array<std::int64_t, 3>{std::ranges::min(values), std::ranges::max(values), sum};
-  };
-  using Summary = std::array<std::int64_t, 3>;
-  // Coded without a sign, though the header says that it has one.
-  EXPECT_EQ(summary(data / "hard/pydicom/J2K_pixelrep_mismatch.dcm"),
-            (Summary{-2000, 1896, -172605258}));
-
-  std::vector<std::filesystem::path> slices;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(data / "abdomen-ct-totalsegmentator/example_ct_dicom")) {
-    slices.push_back(entry.path());
-  }
-  std::ranges::sort(slices);
-  ASSERT_EQ(slices.size(), 20u);
-  EXPECT_EQ(summary(slices.front()), (Summary{0, 2460, 105356346}));
-  EXPECT_EQ(summary(slices.back()), (Summary{0, 2429, 103453060}));
 }
 
 }  // namespace trephine::test
