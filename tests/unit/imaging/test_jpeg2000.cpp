@@ -35,7 +35,7 @@ std::size_t find(const Bytes& bytes, std::uint8_t marker, std::size_t from = 0) 
   return std::size_t(at - bytes.begin());
 }
 
-constexpr std::uint8_t kCod = 0x52, kCom = 0x64, kSot = 0x90;
+constexpr std::uint8_t kCod = 0x52, kCom = 0x64, kSot = 0x90, kSod = 0x93;
 constexpr std::size_t kSiz = 2;  // the first marker behind the start
 
 Bytes first(const Bytes& bytes, std::size_t count) {
@@ -233,6 +233,35 @@ TEST(Jpeg2000, AMissingPartOfATileIsAnError) {
   EXPECT_EQ(whyRefused(bytes, expectation(picture)), kDamaged);
 }
 
+TEST(Jpeg2000, AShortenedTileIsAnError) {
+  const Picture picture = ramp(12, false);
+  Bytes bytes = encode(picture, {.tile = 32});
+  const std::size_t second = find(bytes, kSot, find(bytes, kSot) + 12);
+  const auto third = bytes.begin() + std::ptrdiff_t(find(bytes, kSot, second + 12));
+  put(bytes, second + 6, std::uint32_t(third - bytes.begin() - std::ptrdiff_t(second)) - 100, 4);
+  bytes.erase(third - 100, third);
+  EXPECT_EQ(whyRefused(bytes, expectation(picture)), kDamaged);
+}
+
+// OpenJPEG ends the program where a code block holds one.
+TEST(Jpeg2000, AMarkerInHighThroughputDataIsAnError) {
+  const Picture picture = pictureOf(kLossless[0]);
+  const Bytes whole = bytesOf(kLossless[0]);
+  const std::size_t data = find(whole, kSod) + 2, end = whole.size() - 2;
+  for (std::size_t at = data; at < end; ++at) {
+    Bytes spoilt = whole;
+    put(spoilt, at, at + 1 < end ? 0xFFA0 : 0xFF, at + 1 < end ? 2 : 1);
+    ASSERT_EQ(whyRefused(spoilt, expectation(picture)), kDamaged) << at;
+  }
+  for (const std::size_t at : {4, 7}) {  // packet markers; two layers
+    Bytes other = whole;
+    put(other, find(other, kCod) + at, 2, 1);
+    EXPECT_EQ(whyRefused(other, expectation(picture)),
+              "its JPEG 2000 picture is HTJ2K in several layers or with packet markers, which "
+              "cannot be read");
+  }
+}
+
 TEST(Jpeg2000, AnotherSizeOrFormatThanTheHeaderSaysIsRefused) {
   const Picture picture = ramp(12, false);
   const Bytes bytes = encode(picture);
@@ -300,8 +329,9 @@ TEST(Jpeg2000, HostileHeadersAreRefusedAtOnce) {
           patched({{siz + 6, 0xFFFFFFFF, 4}, {siz + 10, 0, 4}, {siz + 22, 1, 4}}));
   refused("tiles of one pixel", patched({{siz + 22, 1, 4}, {siz + 26, 1, 4}}),
           "its JPEG 2000 picture is cut into over 4096 tiles, which cannot be read");
-  refused("no tiles", patched({{siz + 22, 0, 4}}));
-  refused("65535 layers of small precincts", patched({{cod + 6, 65535, 2}, {cod + 17, 0x11, 1}}));
+  refused("no tile columns", patched({{siz + 22, 0, 4}}));
+  refused("no tile rows", patched({{siz + 26, 0, 4}}));
+  refused("65535 layers of small precincts", patched({{cod + 6, 65535, 2}, {cod + 17, 0x33, 1}}));
   refused("more levels than there are", patched({{cod + 9, 33, 1}}));
   refused("a segment longer than the file", patched({{cod + 2, 65535, 2}}));
   refused("a segment without a length", patched({{std::uint32_t(find(bytes, kCom)) + 2, 0, 2}}));
