@@ -199,8 +199,11 @@ Status compare(const MainHeader& header, const Jpeg2000Expectation& expected) {
 // at the end. The HTJ2K decoder of OpenJPEG 2.5.0, as Debian builds it, asserts that no data of a
 // code block do, and so would end the program; with one layer, those are the bytes of one packet.
 bool holdsMarker(Bytes data) {
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (data[i] == 0xFF && (i + 1 == data.size() || data[i + 1] > 0x8F)) return true;
+  while (!data.empty()) {
+    const void* found = std::memchr(data.data(), 0xFF, data.size());
+    if (!found) return false;
+    data = data.subspan(std::size_t(static_cast<const std::uint8_t*>(found) - data.data()) + 1);
+    if (data.empty() || data.front() > 0x8F) return true;
   }
   return false;
 }

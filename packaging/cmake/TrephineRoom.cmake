@@ -21,6 +21,7 @@ set(TREPHINE_LIBRARY_vtk-charts VTK::ChartsCore VTK::CommonCore VTK::IOImage VTK
 set(TREPHINE_LIBRARY_opengl OpenGL::GL GLEW::GLEW)
 set(TREPHINE_LIBRARY_qt Qt6::Widgets Qt6::OpenGLWidgets)
 set(TREPHINE_LIBRARY_cli11 CLI11::CLI11)
+set(TREPHINE_LIBRARY_zlib ZLIB::ZLIB)
 set(TREPHINE_LIBRARY_threads Threads::Threads)
 set(TREPHINE_LIBRARY_dl ${CMAKE_DL_LIBS})
 
