@@ -81,6 +81,7 @@ struct MainHeader {
   int precision = 0;
   bool is_signed = false;
   bool irreversible = false;
+  bool high_throughput = false;
   std::uint64_t packets = 0;  // that all tiles hold together
   std::size_t bytes = 0;      // up to the first tile-part
 };
@@ -133,6 +134,10 @@ Status readCodingStyle(Bytes segment, MainHeader& header) {
     return cutOrDamaged();
   }
   header.irreversible = segment[9] != 1;
+  header.high_throughput = segment[8] & 0x40;
+  if (header.high_throughput && (layers != 1 || segment[0] & 6)) {
+    return unsupported("is HTJ2K in several layers or with packet markers");
+  }
   for (int r = 0; r <= levels; ++r) {
     const unsigned exponents = has_precincts ? segment[10 + std::size_t(r)] : 0xFF;
     header.packets +=
@@ -190,6 +195,19 @@ Status compare(const MainHeader& header, const Jpeg2000Expectation& expected) {
   return {};
 }
 
+// Whether what only a marker may hold stands in coded data: a byte over 8F behind an FF, or an FF
+// at the end. The HTJ2K decoder of OpenJPEG 2.5.0, as Debian builds it, asserts that no data of a
+// code block do, and so would end the program; with one layer, those are the bytes of one packet.
+bool holdsMarker(Bytes data) {
+  while (!data.empty()) {
+    const void* found = std::memchr(data.data(), 0xFF, data.size());
+    if (!found) return false;
+    data = data.subspan(std::size_t(static_cast<const std::uint8_t*>(found) - data.data()) + 1);
+    if (data.empty() || data.front() > 0x8F) return true;
+  }
+  return false;
+}
+
 // Follows the tile-parts to the end mark and returns the bytes up to behind it. OpenJPEG leaves a
 // tile that it does not meet black, and takes packets that it does not meet for empty.
 Result<Bytes> wholeCodestream(Bytes stream, const MainHeader& header) {
@@ -202,7 +220,8 @@ Result<Bytes> wholeCodestream(Bytes stream, const MainHeader& header) {
     const Bytes part = segmentAt(stream, at);
     if (part.size() != 8) return cutOrDamaged();
     const std::uint64_t tile = number(part, 0, 2), length = number(part, 2, 4);
-    if (tile >= tiles.size() || ++tiles[tile].found > 255) return cutOrDamaged();
+    if (tile >= tiles.size()) return cutOrDamaged();
+    ++tiles[tile].found;
     tiles[tile].said = std::max(tiles[tile].said, unsigned(part[7]));
 
     std::size_t end = at + length;
@@ -217,7 +236,9 @@ Result<Bytes> wholeCodestream(Bytes stream, const MainHeader& header) {
       if (number(stream, at, 2) == kCod) return unsupported("has tiles of several kinds");
       at += 4 + segment.size();
     }
-    if (end < at + 2) return cutOrDamaged();
+    at += 2;
+    if (end < at || end > stream.size()) return cutOrDamaged();
+    if (header.high_throughput && holdsMarker(stream.subspan(at, end - at))) return cutOrDamaged();
     at = end;
   }
   const bool complete = std::ranges::all_of(

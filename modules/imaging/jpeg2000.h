@@ -30,9 +30,10 @@ struct Jpeg2000Expectation {
 //
 // Sizes, sample format, tiles and packets are compared with `expected` and with the bytes given
 // before anything is allocated, and the memory used grows with rows * columns alone. Errors,
-// UNREADABLE: it is no such frame, or it is cut short, damaged or of another size. What has no
-// checksum can be damaged unseen: spoilt bytes may also decode to other values. `words` is
-// undefined after an error.
+// UNREADABLE: it is no such frame; it is cut short, damaged or of another size; or it is of a kind
+// that no scanner is known to write (over 8192x8192 pixels or 4096 tiles, tiles of several kinds,
+// HTJ2K in several layers or with packet markers). JPEG 2000 has no checksum: spoilt bytes may also
+// decode to other values. `words` is undefined after an error.
 Status decodeJpeg2000(std::span<const std::uint8_t> bytes, const Jpeg2000Expectation& expected,
                       std::int16_t* words);
 

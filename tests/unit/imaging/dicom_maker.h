@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "base/math.h"
-#include "jpeg2000_writer.h"
+#include "jpeg2000_fixture.h"
 
 namespace trephine::test {
+
+using Bytes = std::vector<std::uint8_t>;
 
 // One CT file: a slice, or the frames of an enhanced image.
 struct Image {

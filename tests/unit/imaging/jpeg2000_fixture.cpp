@@ -1,4 +1,4 @@
-#include "jpeg2000_writer.h"
+#include "jpeg2000_fixture.h"
 
 #include <gtest/gtest.h>
 #include <openjpeg.h>
@@ -7,7 +7,18 @@
 
 namespace trephine::test {
 
-Bytes encode(const Picture& picture, const Coding& coding) {
+Picture ramp(int bits, bool is_signed, int columns, int rows) {
+  Picture picture{columns, rows, bits, is_signed};
+  const int range = 1 << bits, low = is_signed ? -range / 2 : 0;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      picture.samples.push_back(low + (x * 1021 + y * 617 + (x * y) % 13) % range);
+    }
+  }
+  return picture;
+}
+
+std::vector<std::uint8_t> encode(const Picture& picture, const Coding& coding) {
   opj_cparameters_t parameters;
   opj_set_default_encoder_parameters(&parameters);
   parameters.numresolution = 4;
@@ -16,7 +27,6 @@ Bytes encode(const Picture& picture, const Coding& coding) {
   for (int i = 0; i < coding.layers; ++i) {
     parameters.tcp_rates[i] = coding.ratio * float(coding.layers - i);
   }
-  parameters.tcp_rates[coding.layers - 1] = coding.ratio;
   parameters.cp_disto_alloc = 1;
   if (coding.tile) {
     parameters.tile_size_on = OPJ_TRUE;
@@ -47,7 +57,7 @@ Bytes encode(const Picture& picture, const Coding& coding) {
   }
 
   struct Sink {
-    Bytes bytes;
+    std::vector<std::uint8_t> bytes;
     std::size_t at = 0;
   } sink;
   opj_stream_t* stream = opj_stream_default_create(OPJ_FALSE);
@@ -75,6 +85,25 @@ Bytes encode(const Picture& picture, const Coding& coding) {
   opj_destroy_codec(codec);
   opj_image_destroy(image);
   return sink.bytes;
+}
+
+Jpeg2000Expectation expectation(const Picture& picture) {
+  return {picture.rows, picture.columns, picture.bits > 8 ? 16 : 8, picture.bits,
+          picture.is_signed};
+}
+
+Decoded decode(const std::vector<std::uint8_t>& bytes, const Jpeg2000Expectation& expected) {
+  std::vector<std::int16_t> words(std::size_t(expected.rows) * std::size_t(expected.columns));
+  const Status status = decodeJpeg2000(bytes, expected, words.data());
+  if (!status.ok()) {
+    EXPECT_EQ(status.error().code, "UNREADABLE");
+    return {{}, status.error().what};
+  }
+  Decoded decoded;
+  for (const std::int16_t word : words) {
+    decoded.values.push_back(expected.is_signed ? word : int(std::uint16_t(word)));
+  }
+  return decoded;
 }
 
 }  // namespace trephine::test
