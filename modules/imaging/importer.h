@@ -44,15 +44,9 @@ struct Choice {
 // What was answered: code -> option.
 using Answers = std::map<std::string, std::string>;
 
-// Voxels that a crop keeps: first and last, both included, of the grid that the report states.
-struct VoxelBox {
-  Index3 first{0, 0, 0}, last{0, 0, 0};
-  friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
-};
-
 struct ImportRequest {
   Answers answers;               // a code that the series does not ask for is no error
-  std::optional<VoxelBox> crop;  // before the reduction
+  std::optional<VoxelBox> crop;  // of the grid that the report states; before the reduction
   int reduction = 1;             // 1, 2 (half resolution) or 4 (a quarter)
 };
 
