@@ -26,10 +26,13 @@ class TissueLookup {
       *at(row, kAirHu) = -1;
     }
   }
+  int classOf(std::int16_t hu, std::uint8_t label = 0) const {
+    return class_of_[rows_.row[label] * kHus + std::size_t(int(hu) + 32768)];
+  }
   // Of a voxel whose HU is known already.
   int classAt(const Grid& grid, std::size_t voxel, std::int16_t hu) const {
-    const int row = rows_.count == 1 ? 0 : rows_.row[grid.label(voxel)];
-    return class_of_[std::size_t(row) * kHus + std::size_t(int(hu) + 32768)];
+    if (rows_.count > 1) return classOf(hu, grid.label(voxel));
+    return class_of_[std::size_t(int(hu) + 32768)];
   }
   int classAt(const Grid& grid, std::size_t voxel) const {
     return classAt(grid, voxel, grid.hu(voxel));

@@ -28,7 +28,7 @@ namespace trephine {
 struct SessionOptions {
   std::filesystem::path recording;       // empty: not recorded
   std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
-  std::shared_ptr<const LabelMap> labels;  // null: none; is fitted to the volume
+  std::shared_ptr<const LabelMap> labels{};  // null: none; is fitted to the volume
 };
 
 // Asks the plugins of the scene's arms what those arms are, without starting them: fills in the

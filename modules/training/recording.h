@@ -19,7 +19,7 @@ struct RecordingHeader {
   std::string volume_sha256;  // before the first tick
   GridGeometry geometry;
   std::string build;
-  std::string labels_sha256;  // of the label map, fitted to the volume; empty: none
+  std::string labels_sha256{};  // of the label map, fitted to the volume; empty: none
 };
 
 // Written when a session ends by itself; a recording without it was cut short.
