@@ -48,6 +48,7 @@ struct ImportRequest {
   Answers answers;               // a code that the series does not ask for is no error
   std::optional<VoxelBox> crop;  // of the grid that the report states; before the reduction
   int reduction = 1;             // 1, 2 (half resolution) or 4 (a quarter)
+  std::optional<double> most_memory_mb;  // to be used for it; absent: what is free
 };
 
 // What a reduction cost, measured against the full resolution (volume/reduce.h).

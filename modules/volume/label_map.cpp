@@ -21,18 +21,22 @@ Error notLabels(const std::string& what, const std::filesystem::path& file) {
 }  // namespace
 
 Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
-  const Result<Volume> volume = readVolume(file);
-  if (!volume) {
-    if (volume.error().code != "NOT_HU") return volume.error();
-    return notLabels(volume.error().what, file);
+  const Result<VolumeFileReading> read = readVolumeFile(file);
+  if (!read) {
+    return read.error().code == "NOT_HU" ? notLabels(read.error().what, file) : read.error();
   }
-  const auto [lowest, highest] = std::minmax_element(volume->hu.begin(), volume->hu.end());
-  if (*lowest < 0 || *highest > 255) {
-    return notLabels("The value " + std::to_string(*lowest < 0 ? *lowest : *highest) +
-                         " is no label",
+  if (read->rounded + read->not_numbers > 0) {
+    return notLabels(std::to_string(read->rounded + read->not_numbers) +
+                         " of the voxels are not whole numbers",
                      file);
   }
-  return LabelMap{volume->geometry, {volume->hu.begin(), volume->hu.end()}};
+  if (read->hu_min < 0.0 || read->hu_max > 255.0) {
+    constexpr double kMost = 1e15;  // that the number below holds
+    const double value = std::clamp(read->hu_min < 0.0 ? read->hu_min : read->hu_max, -kMost, kMost);
+    return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label", file);
+  }
+  const std::vector<std::int16_t>& values = read->volume.hu;
+  return LabelMap{read->volume.geometry, {values.begin(), values.end()}};
 }
 
 Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {

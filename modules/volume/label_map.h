@@ -16,8 +16,8 @@ struct LabelMap {
   std::vector<std::uint8_t> labels;  // i fastest, then j, then k; 0: none
 };
 
-// Any file that readVolume reads. Errors: those of readVolume, and NOT_LABELS where a voxel is no
-// whole number from 0 to 255. (A file that scales its voxels is rounded to whole numbers first.)
+// Any volume file. Errors: those of readVolumeFile, and NOT_LABELS where a voxel is no whole number
+// from 0 to 255.
 Result<LabelMap> readLabelMap(const std::filesystem::path& file);
 
 // The label of each voxel of a CT: that of the label map's voxel which its centre lies in, by their

@@ -260,10 +260,11 @@ TEST_F(Import, TheJsonHasTheKeysOfTheContract) {
     return all;
   };
   EXPECT_EQ(keys(json),
-            "path files_seen files_read skipped series chosen seconds start_rss_mb peak_rss_mb ");
+            "path files_seen files_read skipped series chosen provenance seconds start_rss_mb "
+            "peak_rss_mb ");
   EXPECT_EQ(keys(json["series"][0]),
-            "uid description modality verdict size spacing_mm origin_mm direction hu_min hu_max "
-            "tilt_deg transfer_syntax lossy findings volume_sha256 ");
+            "uid description modality source slices phases memory_mb verdict size spacing_mm origin_mm direction hu_min hu_max "
+            "tilt_deg transfer_syntax lossy findings choices volume_sha256 ");
   EXPECT_EQ(keys(json["seconds"]), "scan read hash ");
   EXPECT_EQ(json["series"][0]["direction"], Json::parse("[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0]"));
   EXPECT_GT(report_.start_rss_mb, 0.0);
@@ -314,7 +315,7 @@ TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
   EXPECT_EQ(volume.error().code, "MISSING_SLICES");
   EXPECT_FALSE(ct.bestSeries().has_value());
   EXPECT_EQ(find(ct.report().series.front(), "MISSING_SLICES")->slices,
-            std::vector<std::string>{"slice 3"});
+            std::vector<std::string>{"102.50 mm"});
 }
 
 }  // namespace trephine::test

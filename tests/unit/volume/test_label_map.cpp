@@ -81,14 +81,23 @@ TEST(LabelMap, RefusesAFileWhoseValuesAreNoLabelsAndNamesTheValue) {
 
 TEST(LabelMap, RefusesVoxelsThatAreNoWholeNumbers) {
   const test::TemporaryFolder folder;
-  std::ofstream(folder / "a.mha", std::ios::binary)
-      << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
-         "ElementSpacing = 1 1 1\nDimSize = 2 2 2\nElementType = MET_FLOAT\n"
-         "ElementDataFile = LOCAL\n"
-      << std::string(32, '\0');
-  const Result<LabelMap> map = readLabelMap(folder / "a.mha");
-  ASSERT_FALSE(map.ok());
-  EXPECT_EQ(map.error().code, "NOT_LABELS");
+  for (float value : {5.0f, 5.5f, std::nanf("")}) {
+    std::vector<float> voxels(8, 1.0f);
+    voxels[3] = value;
+    std::ofstream(folder / "a.mha", std::ios::binary)
+        << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+           "ElementSpacing = 1 1 1\nDimSize = 2 2 2\nElementType = MET_FLOAT\n"
+           "ElementDataFile = LOCAL\n"
+        << std::string(reinterpret_cast<const char*>(voxels.data()), 32);
+    const Result<LabelMap> map = readLabelMap(folder / "a.mha");
+    ASSERT_EQ(map.ok(), value == 5.0f) << "as whole numbers, floats are labels too";
+    if (map) {
+      EXPECT_EQ(map->labels[3], 5);
+    } else {
+      EXPECT_EQ(map.error().code, "NOT_LABELS");
+      EXPECT_NE(map.error().what.find("1 of the voxels"), std::string::npos) << map.error().what;
+    }
+  }
   EXPECT_EQ(readLabelMap(folder / "none.mha").error().code, "MISSING_FILE");
 }
 
