@@ -47,7 +47,9 @@ float lookOf(float hu)
 )";
 }
 
+// In VTK's place, with its tables.
 inline const std::string kLabelledOpacity = R"(
+uniform sampler2D in_opacityTransferFunc_0[1];
 float computeOpacity(vec4 scalar)
   {
   return texture2D(in_opacityTransferFunc_0[0], vec2(lookOf(scalar.w), 0.0)).r;
@@ -55,6 +57,7 @@ float computeOpacity(vec4 scalar)
 )";
 
 inline const std::string kLabelledColour = R"(
+uniform sampler2D in_colorTransferFunc_0[1];
 vec4 computeColor(vec4 scalar, float opacity)
   {
   vec3 l_colour = texture2D(in_colorTransferFunc_0[0], vec2(lookOf(scalar.w), 0.0)).xyz;

@@ -187,12 +187,12 @@ struct CarveVolume::Parts {
       opacity->AddPoint(0.0, 0.0);
     }
     // VTK makes its tables as fine as the two nearest points need, and at least 1024 wide.
-    const double width = std::min(1024.0 * double(count), 8192.0);
+    const double entries = std::min(1024.0 * double(count), 8192.0);
     const double share_HU = (high_HU - low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
-    lookup_step_HU = (count > 1 ? share_HU : high_HU - low_HU) / (width - 1.0);
+    lookup_step_HU = (count > 1 ? share_HU : high_HU - low_HU) / (entries - 1.0);
     if (count > 1) {
       const TransferPoint& first = points.front();
-      const double near_HU = first.hu - (high_HU - low_HU) / width;
+      const double near_HU = first.hu - (high_HU - low_HU) / entries;
       colour->AddRGBPoint(near_HU, first.colour.x, first.colour.y, first.colour.z);
       opacity->AddPoint(near_HU, first.opacity);
     }
