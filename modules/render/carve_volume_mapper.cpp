@@ -114,7 +114,8 @@ struct CarveVolume::Parts {
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
   std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
-  std::vector<HuInterval> visible;
+  std::vector<std::vector<HuInterval>> visible;  // of each row
+  std::vector<std::uint32_t> rows_of_bricks;
   double low_HU = -1024.0;  // over which VTK spreads its tables
   double high_HU = 3071.0;
   BrickRanges bricks;
@@ -133,9 +134,13 @@ struct CarveVolume::Parts {
   // Leaves the texture active.
   void sendLeaps(vtkRenderer& renderer) {
     const Index3& n = bricks.size();
-    if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
-    const std::uint8_t* distances = leap_map.distances().data();
     const bool by_label = rowCount() > 1;
+    if (labels_stale) {
+      rows_of_bricks.clear();
+      if (by_label) rows_of_bricks = rowsOfBricks(*labels, label_rows);
+    }
+    if (leap_map_stale) leap_map = LeapMap(bricks, visible, rows_of_bricks, 2.0 * lookup_step_HU);
+    const std::uint8_t* distances = leap_map.distances().data();
     const bool anew = labels_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
     if (anew) {
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
@@ -197,10 +202,7 @@ struct CarveVolume::Parts {
       opacity->AddPoint(near_HU, first.opacity);
     }
     visible.clear();
-    for (std::size_t row = 0; row < count; ++row) {
-      const std::vector<HuInterval> seen = visibleIntervals(looks[row]);
-      visible.insert(visible.end(), seen.begin(), seen.end());
-    }
+    for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
     leap_map_stale = true;
     updateShader();
   }
