@@ -94,7 +94,10 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
 
 // Puts the command line's choices into the scene.
 Status applyChoices(const RunArguments& arguments, Scene& scene) {
-  if (!arguments.case_source.empty()) scene.case_source = arguments.case_source;
+  if (!arguments.case_source.empty()) {
+    if (!scene.case_source.empty()) scene.labels_file.clear();  // of another case
+    scene.case_source = arguments.case_source;
+  }
   if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
   if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {

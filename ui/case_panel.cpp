@@ -45,6 +45,10 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   abdomen_ = new QPushButton(tr("Abdomen phantom"), this);
   abdomen_->setObjectName("abdomenPhantom");
 
+  labels_ = new QPushButton(tr("Label map\u2026"), this);
+  labels_->setObjectName("openLabels");
+  labels_->setToolTip(tr("Open the case's label map, to which tissues can be restricted"));
+
   case_ = new QLabel(tr("No case is open."), this);
   case_->setObjectName("caseLabel");
   case_->setWordWrap(true);
@@ -103,6 +107,7 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   layout->addLayout(built_in);
   layout->addSpacing(4);
   layout->addWidget(case_);
+  layout->addWidget(labels_);
   layout->addWidget(progress_box_);
   layout->addWidget(series_, 1);
   layout->addWidget(use_series_);
@@ -112,6 +117,7 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   connect(folder_, &QPushButton::clicked, this, &CasePanel::folderWanted);
   connect(cranium_, &QPushButton::clicked, this, [this] { emit phantomWanted("cranium"); });
   connect(abdomen_, &QPushButton::clicked, this, [this] { emit phantomWanted("abdomen"); });
+  connect(labels_, &QPushButton::clicked, this, &CasePanel::labelsWanted);
   connect(cancel_, &QPushButton::clicked, this, &CasePanel::cancelWanted);
   connect(series_, &QTreeWidget::itemSelectionChanged, this, &CasePanel::showDetails);
   const auto want_selected = [this] {
@@ -227,6 +233,7 @@ void CasePanel::showButtons() {
   folder_->setEnabled(may);
   cranium_->setEnabled(may);
   abdomen_->setEnabled(may);
+  labels_->setEnabled(may);
   const SeriesReport* one = selected();
   use_series_->setEnabled(may && one && one->verdict != Verdict::refused &&
                           toQt(one->uid) != chosen_);

@@ -31,6 +31,7 @@ class CasePanel : public QWidget {
   void phantomWanted(const QString& name);
   void seriesWanted(const QString& uid);
   void cancelWanted();
+  void labelsWanted();
 
  private:
   void showDetails();
@@ -40,7 +41,7 @@ class CasePanel : public QWidget {
   ImportReport report_;
   QString chosen_;
   bool allowed_ = true, busy_ = false;
-  QPushButton *folder_, *cranium_, *abdomen_, *use_series_, *cancel_;
+  QPushButton *folder_, *cranium_, *abdomen_, *labels_, *use_series_, *cancel_;
   QLabel *case_, *skipped_, *details_;
   QTreeWidget* series_;
   QProgressBar* progress_;

@@ -68,6 +68,16 @@ void MainWindow::askForScene() {
   dialog->open();
 }
 
+void MainWindow::askForLabels() {
+  auto* dialog = new QFileDialog(this, tr("Open the case's label map"));
+  dialog->setObjectName("labelsDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.useLabels(toPath(file)); });
+  dialog->open();
+}
+
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
@@ -112,8 +122,10 @@ void MainWindow::showCase() {
   if (!volume) return;
   carved_ = false;
   view_->setTools({});
-  view_->showVolume(Grid(*volume));
-  case_->showCase(sizeWords(volume->geometry));
+  view_->showVolume(Grid(*volume, workstation_.labels()));
+  case_->showCase(sizeWords(volume->geometry) +
+                  (workstation_.labels() ? tr("\nwith a label map") : QString()));
+  tissues_->setLabelsOpen(workstation_.labels() != nullptr);
   lookAtCase();
   showPhase();
 }
@@ -268,7 +280,7 @@ void MainWindow::reset() {
     command(CommandKind::reset);
   } else if (workstation_.phase() == Workstation::Phase::ready) {
     carved_ = false;
-    view_->showVolume(Grid(*workstation_.volume()));
+    view_->showVolume(Grid(*workstation_.volume(), workstation_.labels()));
     showPhase();
   }
 }

@@ -57,6 +57,7 @@ class MainWindow : public QMainWindow {
 
   void askForFolder();
   void askForScene();
+  void askForLabels();
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();

@@ -183,6 +183,7 @@ void MainWindow::connectParts() {
   });
   connect(case_, &CasePanel::seriesWanted, this,
           [this](const QString& uid) { workstation_.openSeries(uid.toStdString()); });
+  connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);
   connect(case_, &CasePanel::cancelWanted, &workstation_, &Workstation::cancelOpening);
   connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
     workstation_.setTissues(set);

@@ -16,17 +16,27 @@ struct Workstation::Opened {
   std::vector<PlacedLandmark> landmarks;
   std::optional<Error> misfit;  // the case has not what the scene looks for
   bool own_case = false;
+  std::shared_ptr<const LabelMap> labels{};
 };
 
 namespace {
 
 constexpr double kVolumeShare = 0.9;  // of the work of opening; the rest is finding landmarks
 
-// Places the landmarks of `scene`; a case without them can be looked at all the same.
+// Reads the label map that `scene` names, unless there is one, and places the landmarks; a case
+// without them can be looked at all the same.
 template <class Opened>
 void place(Opened& opened, const Progress& progress) {
   progress.at(kVolumeShare, "Finding landmarks");
-  if (auto placed = placeLandmarks(opened.scene, *opened.volume)) {
+  if (!opened.labels) {
+    auto labels = openLabels(opened.scene.labels_file, opened.volume->geometry);
+    if (!labels) {
+      opened.misfit = labels.error();
+      return;
+    }
+    opened.labels = *std::move(labels);
+  }
+  if (auto placed = placeLandmarks(opened.scene, *opened.volume, opened.labels.get())) {
     opened.landmarks = *std::move(placed);
   } else {
     opened.misfit = placed.error();
@@ -113,9 +123,9 @@ void Workstation::useScene(const std::filesystem::path& file) {
   if (!scene) return;
   if (volume_ && (own_case_ || scene->case_source.empty())) {
     opening_.run(
-        [scene = *scene, file, volume = volume_,
+        [scene = *scene, file, volume = volume_, labels = labels_,
          own = own_case_](const Progress& progress) -> Result<Opened> {
-          Opened out{scene, file, volume, {}, {}, own};
+          Opened out{scene, file, volume, {}, {}, own, labels};
           place(out, progress);
           return out;
         },
@@ -126,6 +136,25 @@ void Workstation::useScene(const std::filesystem::path& file) {
   }
 }
 
+void Workstation::useLabels(const std::filesystem::path& file) {
+  if (!mayOpen()) return;
+  if (!volume_) {
+    fail({"NO_CASE", "There is no case that a label map could belong to", "",
+          "Open the case first, then its label map"});
+    return;
+  }
+  opening_.run(
+      [scene = *scene_, scene_file = scene_file_, volume = volume_, own = own_case_,
+       file](const Progress& progress) -> Result<Opened> {
+        auto labels = openLabels(file.string(), volume->geometry);
+        if (!labels) return labels.error();
+        Opened out{scene, scene_file, volume, {}, {}, own, *std::move(labels)};
+        place(out, progress);
+        return out;
+      },
+      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
+}
+
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
                              const std::string& source) {
   if (source.empty()) {  // the scene waits for a case of the user's
@@ -134,6 +163,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     emit sceneChanged();
     return;
   }
+  if (!scene.case_source.empty() && source != scene.case_source) scene.labels_file.clear();
   opening_.run(
       [scene = std::move(scene), scene_file, source](const Progress& progress) -> Result<Opened> {
         Result<Volume> volume = openCase(source, progress);
@@ -169,6 +199,7 @@ void Workstation::openSeries(const std::string& uid) {
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
+  if (!scene->case_source.empty()) scene->labels_file.clear();  // of another case
   emit seriesChosen(toQt(uid));
   opening_.run(
       [folder = folder_, uid, scene = *std::move(scene),
@@ -192,6 +223,7 @@ void Workstation::opened(Result<Opened> outcome) {
   volume_ = std::move(outcome->volume);
   landmarks_ = std::move(outcome->landmarks);
   own_case_ = outcome->own_case;
+  labels_ = std::move(outcome->labels);
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);
@@ -213,10 +245,10 @@ void Workstation::start(const std::filesystem::path& recordings,
   const std::string stem =
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   running_.run(
-      [scene = *scene_, volume = volume_, recordings, stem,
+      [scene = *scene_, volume = volume_, labels = labels_, recordings, stem,
        script = std::move(script)](const Progress&) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
-        SessionOptions options{freshFile(recordings, stem, ".h5"), script};
+        SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels};
         return Session::create(scene, Volume(*volume), options);
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {

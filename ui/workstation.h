@@ -30,6 +30,8 @@ class Workstation : public QObject {
   void openSeries(const std::string& uid);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
+  // The label map of the open case. Another case has none until it is given.
+  void useLabels(const std::filesystem::path& file);
   void cancelOpening() { opening_.cancel(); }
   bool isOpening() const { return opening_.busy(); }
 
@@ -37,6 +39,8 @@ class Workstation : public QObject {
   const std::optional<Scene>& scene() const { return scene_; }
   const std::filesystem::path& sceneFile() const { return scene_file_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  // Fitted to the volume; null: none.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
   // Where the scene wants to be looked at, when the case has that landmark.
   std::optional<LandmarkFrame> viewLandmark() const;
 
@@ -83,6 +87,7 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const LabelMap> labels_;
   std::vector<PlacedLandmark> landmarks_;
   bool own_case_ = false;  // the user's, not a built-in one
   std::shared_ptr<CtFolder> folder_;

@@ -47,7 +47,7 @@ struct Scene {
   std::string name;
   std::string anatomy;        // "cranium", "abdomen": which cases the scene fits
   std::string case_source;    // "phantom:cranium", a path, or empty: given when it is run
-  std::string labels_file;    // of the case's label map, empty for none or given when it is run
+  std::string labels_file;    // label map of that case, empty for none or given when it is run
   TissueSet tissues;
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
