@@ -1,5 +1,5 @@
-// NIfTI (.nii, .nii.gz), versions 1 and 2: VTK reads the header and writes the file; the voxels are
-// read as every format's. What the header means: nifti1.h.
+// NIfTI (.nii, .nii.gz), versions 1 and 2. What the header's fields mean: nifti1.h, nifti2.h.
+// Written through VTK; VTK 9.1's reader is not used: it crashes on a spoilt header (measured).
 //
 // NIfTI is RAS, we are LPS: x and y change sign here and nowhere else. The sform counts where there
 // is one, else the qform; its unit of length, slope and intercept are honoured.
@@ -8,7 +8,6 @@
 #include <vtkImageData.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNIFTIImageHeader.h>
-#include <vtkNIFTIImageReader.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -16,9 +15,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <map>
 
 #include "volume/file_format.h"
+#include "volume/voxel_reader.h"
 
 namespace trephine::file_format {
 
@@ -28,28 +30,69 @@ namespace {
 
 const Mat4 kFlipXy{{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 
-// Keeps what VTK would print.
-class VtkErrors : public vtkCommand {
+// The numbers of a header of either version, by where they lie in version 1 and in version 2.
+class Header {
  public:
-  static VtkErrors* New() { return new VtkErrors; }
-  void Execute(vtkObject*, unsigned long event, void*) override {
-    seen = seen || event == vtkCommand::ErrorEvent;
+  // Nothing where `bytes` are no header of a NIfTI image in one file.
+  static std::optional<Header> from(const std::string& bytes) {
+    for (const bool big : {false, true}) {
+      Header h(bytes, big);
+      if (bytes.size() >= 348 && h.at<std::int32_t>(0) == 348 &&
+          bytes.compare(344, 3, "n+1") == 0) {
+        return h;
+      }
+      h.second_ = true;
+      if (bytes.size() >= 540 && h.at<std::int32_t>(0) == 540 && bytes.compare(4, 3, "n+2") == 0) {
+        return h;
+      }
+    }
+    return std::nullopt;
   }
-  bool seen = false;
+
+  bool bigEndian() const { return big_; }
+  std::uint64_t length() const { return second_ ? 540 : 348; }
+  double dim(std::size_t i) const {
+    return second_ ? double(at<std::int64_t>(16 + 8 * i)) : at<std::int16_t>(40 + 2 * i);
+  }
+  int type() const { return at<std::int16_t>(second_ ? 12 : 70); }
+  double pixdim(std::size_t i) const { return real(76 + 4 * i, 104 + 8 * i); }
+  double voxelOffset() const {
+    return second_ ? double(at<std::int64_t>(168)) : double(at<float>(108));
+  }
+  double slope() const { return real(112, 176); }
+  double intercept() const { return real(116, 184); }
+  int units() const { return second_ ? at<std::int32_t>(500) : std::uint8_t(bytes_[123]); }
+  int qform() const { return second_ ? at<std::int32_t>(344) : at<std::int16_t>(252); }
+  int sform() const { return second_ ? at<std::int32_t>(348) : at<std::int16_t>(254); }
+  double quaternion(std::size_t i) const { return real(256 + 4 * i, 352 + 8 * i); }  // b, c, d
+  double qoffset(std::size_t i) const { return real(268 + 4 * i, 376 + 8 * i); }
+  double srow(std::size_t row, std::size_t i) const {
+    return real(280 + 16 * row + 4 * i, 400 + 32 * row + 8 * i);
+  }
+
+ private:
+  Header(const std::string& bytes, bool big) : bytes_(bytes), big_(big) {}
+  template <class T>
+  T at(std::size_t offset) const {
+    char raw[sizeof(T)];
+    std::memcpy(raw, bytes_.data() + offset, sizeof raw);
+    if (big_) std::reverse(raw, raw + sizeof raw);
+    T value;
+    std::memcpy(&value, raw, sizeof value);
+    return value;
+  }
+  double real(std::size_t first, std::size_t second) const {
+    return second_ ? at<double>(second) : double(at<float>(first));
+  }
+
+  std::string bytes_;
+  bool big_ = false;
+  bool second_ = false;
 };
 
-template <class Algorithm>
-void listen(Algorithm& algorithm, VtkErrors& errors) {
-  for (unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
-    algorithm.AddObserver(event, &errors);
-    algorithm.GetExecutive()->AddObserver(event, &errors);
-  }
-}
-
-// A number from a NIfTI matrix row or quaternion is a float.
-Result<Mat4> voxelToRas(vtkNIFTIImageHeader& h, const fs::path& file) {
+Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
   double unit_mm = 1.0;
-  switch (h.GetXYZTUnits() & 7) {
+  switch (h.units() & 7) {
     case 0:  // unknown: by custom mm
     case 2:
       break;
@@ -63,64 +106,59 @@ Result<Mat4> voxelToRas(vtkNIFTIImageHeader& h, const fs::path& file) {
       return badGeometry("The unit of length is unknown", file);
   }
   Mat4 affine(1.0);
-  if (h.GetSFormCode() > 0) {
-    const double* rows[3] = {h.GetSRowX(), h.GetSRowY(), h.GetSRowZ()};
+  if (h.sform() > 0) {
     for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 4; ++column) affine[column][row] = rows[row][column] * unit_mm;
+      for (int column = 0; column < 4; ++column) {
+        affine[column][row] = h.srow(std::size_t(row), std::size_t(column)) * unit_mm;
+      }
     }
     return affine;
   }
-  if (h.GetQFormCode() > 0) {
-    const double b = h.GetQuaternB(), c = h.GetQuaternC(), d = h.GetQuaternD();
+  if (h.qform() > 0) {
+    const double b = h.quaternion(0), c = h.quaternion(1), d = h.quaternion(2);
     const Quat q(std::sqrt(std::max(0.0, 1.0 - b * b - c * c - d * d)), b, c, d);
     const Mat3 rotation = glm::mat3_cast(glm::normalize(q));
     for (int axis = 0; axis < 3; ++axis) {
-      const double sign = axis == 2 && h.GetPixDim(0) < 0.0 ? -1.0 : 1.0;
-      affine[axis] = glm::dvec4(rotation[axis] * (sign * h.GetPixDim(axis + 1) * unit_mm), 0.0);
+      const double sign = axis == 2 && h.pixdim(0) < 0.0 ? -1.0 : 1.0;
+      affine[axis] =
+          glm::dvec4(rotation[axis] * (sign * h.pixdim(std::size_t(axis) + 1) * unit_mm), 0.0);
     }
-    affine[3] = glm::dvec4(Vec3(h.GetQOffsetX(), h.GetQOffsetY(), h.GetQOffsetZ()) * unit_mm, 1.0);
+    affine[3] = glm::dvec4(Vec3(h.qoffset(0), h.qoffset(1), h.qoffset(2)) * unit_mm, 1.0);
     return affine;
   }
   return badGeometry("The file does not say how the image lies in the patient (no sform, no qform)",
                      file);
 }
 
-std::optional<VoxelType> typeFrom(int type) {
-  switch (type) {
-    case vtkNIFTIImageHeader::TypeInt8:
-      return VoxelType::int8;
-    case vtkNIFTIImageHeader::TypeUInt8:
-      return VoxelType::uint8;
-    case vtkNIFTIImageHeader::TypeInt16:
-      return VoxelType::int16;
-    case vtkNIFTIImageHeader::TypeUInt16:
-      return VoxelType::uint16;
-    case vtkNIFTIImageHeader::TypeInt32:
-      return VoxelType::int32;
-    case vtkNIFTIImageHeader::TypeUInt32:
-      return VoxelType::uint32;
-    case vtkNIFTIImageHeader::TypeInt64:
-      return VoxelType::int64;
-    case vtkNIFTIImageHeader::TypeUInt64:
-      return VoxelType::uint64;
-    case vtkNIFTIImageHeader::TypeFloat32:
-      return VoxelType::float32;
-    case vtkNIFTIImageHeader::TypeFloat64:
-      return VoxelType::float64;
-    default:
-      return std::nullopt;
-  }
+std::optional<VoxelType> typeFrom(int code) {
+  static const std::map<int, VoxelType> types{{256, VoxelType::int8},   {2, VoxelType::uint8},
+                                              {4, VoxelType::int16},    {512, VoxelType::uint16},
+                                              {8, VoxelType::int32},    {768, VoxelType::uint32},
+                                              {1024, VoxelType::int64}, {1280, VoxelType::uint64},
+                                              {16, VoxelType::float32}, {64, VoxelType::float64}};
+  const auto found = types.find(code);
+  return found == types.end() ? std::nullopt : std::optional(found->second);
 }
 
-Result<Index3> sizeOf(vtkNIFTIImageHeader& h, const fs::path& file) {
-  if (h.GetDim(0) < 3 || h.GetDim(0) > 7) {
+Result<Index3> sizeOf(const Header& h, const fs::path& file) {
+  if (!(h.dim(0) >= 3 && h.dim(0) <= 7)) {
     return unreadable("The image is not three-dimensional", file);
   }
-  for (int d = 4; d <= int(h.GetDim(0)); ++d) {
-    if (h.GetDim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
+  for (std::size_t d = 4; d <= std::size_t(h.dim(0)); ++d) {
+    if (h.dim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
   }
-  return sizeFrom({double(h.GetDim(1)), double(h.GetDim(2)), double(h.GetDim(3))}, file);
+  return sizeFrom({h.dim(1), h.dim(2), h.dim(3)}, file);
 }
+
+// Keeps what VTK would print.
+class VtkErrors : public vtkCommand {
+ public:
+  static VtkErrors* New() { return new VtkErrors; }
+  void Execute(vtkObject*, unsigned long event, void*) override {
+    seen = seen || event == vtkCommand::ErrorEvent;
+  }
+  bool seen = false;
+};
 
 // VTK 9.1 does not notice when the disk is full while gzip writes its last buffers, so the length
 // is checked: the file's own, or the one that ends a gzip file (modulo 2^32).
@@ -138,45 +176,40 @@ bool isComplete(const fs::path& nifti, const Volume& volume) {
 }  // namespace
 
 Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
-  vtkNew<VtkErrors> errors;
-  vtkNew<vtkNIFTIImageReader> reader;
-  listen(*reader, *errors);
-  reader->SetFileName(file.c_str());
-  reader->UpdateInformation();
-  vtkNIFTIImageHeader* h = reader->GetNIFTIHeader();
-  const std::string magic = h ? h->GetMagic() : "";
-  if (magic != "n+1" && magic != "n+2") return unreadable("The file is not a NIfTI image", file);
-
   VolumeFileHeader header;
   header.format = "NIfTI";
+  header.data.file = file;
+  const auto first = readStart(file, 2);
+  if (!first) return first.error();
+  header.data.packed = *first == "\x1f\x8b";  // gzip, whatever the name says
+  const auto h = Header::from(unpackedStart(file, header.data.packed, 540));
+  if (!h) return unreadable("The file is not a NIfTI image", file);
+
   const auto size = sizeOf(*h, file);
   if (!size) return size.error();
-  const auto type = typeFrom(h->GetDataType());
+  const auto type = typeFrom(h->type());
   if (!type) return notHu("The voxels are not one number each", file);
   header.type = *type;
+  header.big_endian = h->bigEndian();
   const auto affine = voxelToRas(*h, file);
   if (!affine) return affine.error();
   header.geometry = geometryFrom(kFlipXy * *affine, *size);
   if (auto status = settle(header, file); !status) return status.error();
-  if (h->GetSclSlope() != 0.0) {  // 0: values are as they are
-    header.slope = h->GetSclSlope();
-    header.intercept = h->GetSclInter();
+  if (h->slope() != 0.0) {  // 0: values are as they are
+    header.slope = h->slope();
+    header.intercept = h->intercept();
   }
   if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
     return notHu("The rescale slope or intercept is no number", file);
   }
-  if (errors->seen) return unreadable("The file's header cannot be read", file);
-  header.big_endian = reader->GetDataByteOrder() == VTK_FILE_BYTE_ORDER_BIG_ENDIAN;
-
   // 0: right behind the header and the four bytes that follow it.
-  const std::uint64_t header_bytes = magic == "n+1" ? 348 : 540;
-  const auto start = std::uint64_t(h->GetVoxOffset() == 0 ? header_bytes + 4 : h->GetVoxOffset());
-  if (start < header_bytes) return unreadable("The header's voxels start inside of it", file);
-  const auto first = readStart(file, 2);
-  header.data.file = file;
-  header.data.packed = first && *first == "\x1f\x8b";
-  if (header.data.packed) header.data.skip = start;
-  const std::uint64_t offset = header.data.packed ? 0 : start;
+  const double start =
+      h->voxelOffset() == 0.0 ? double(h->length()) + 4.0 : std::floor(h->voxelOffset());
+  if (!(start >= double(h->length()) && start <= 1e15)) {
+    return unreadable("The header's voxels start inside of it or nowhere", file);
+  }
+  if (header.data.packed) header.data.skip = std::uint64_t(start);
+  const std::uint64_t offset = header.data.packed ? 0 : std::uint64_t(start);
   if (auto status = placeVoxels(header, offset, file); !status) return status.error();
   return header;
 }
@@ -200,7 +233,10 @@ Status writeNifti(const Volume& volume, const fs::path& temporary, const fs::pat
   }
   vtkNew<VtkErrors> errors;
   vtkNew<vtkNIFTIImageWriter> writer;
-  listen(*writer, *errors);
+  for (unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
+    writer->AddObserver(event, errors);
+    writer->GetExecutive()->AddObserver(event, errors);
+  }
   writer->SetInputData(image);
   writer->SetFileName(temporary.c_str());
   writer->SetDescription("Trephine");

@@ -20,11 +20,10 @@ constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 18;
 // several streams one after another, as compressors with threads write them.
 class VoxelBytes {
  public:
-  explicit VoxelBytes(const VolumeFileHeader& header)
-      : in_(header.data.file, std::ios::binary),
-        left_(header.data.bytes),
-        packed_(header.data.packed) {
-    in_.seekg(std::streamoff(header.data.offset));
+  VoxelBytes(const std::filesystem::path& file, std::uint64_t offset, std::uint64_t bytes,
+             bool packed)
+      : in_(file, std::ios::binary), left_(bytes), packed_(packed) {
+    in_.seekg(std::streamoff(offset));
     // 15: the largest window; 32: either format, by its first bytes.
     if (packed_ && inflateInit2(&zlib_, 15 + 32) != Z_OK) throw std::bad_alloc();
   }
@@ -34,17 +33,21 @@ class VoxelBytes {
   VoxelBytes(const VoxelBytes&) = delete;
   VoxelBytes& operator=(const VoxelBytes&) = delete;
 
-  // False where the file ends before, or what is packed is damaged.
-  bool read(std::uint8_t* to, std::size_t count) {
-    if (!packed_) return bool(in_.read(reinterpret_cast<char*>(to), std::streamsize(count)));
+  // As many as there are before the file ends or what is packed is damaged.
+  std::size_t readSome(std::uint8_t* to, std::size_t count) {
+    if (!packed_) {
+      in_.read(reinterpret_cast<char*>(to), std::streamsize(count));
+      return std::size_t(in_.gcount());
+    }
     zlib_.next_out = to;
     zlib_.avail_out = uInt(count);
     while (zlib_.avail_out > 0) {
-      if (ended_ && inflateReset(&zlib_) != Z_OK) return false;
-      if (!step()) return false;
+      if (ended_ && inflateReset(&zlib_) != Z_OK) break;
+      if (!step()) break;
     }
-    return true;
+    return count - zlib_.avail_out;
   }
+  bool read(std::uint8_t* to, std::size_t count) { return readSome(to, count) == count; }
 
   bool skip(std::uint64_t count) {
     std::uint8_t unused[4096];
@@ -137,6 +140,13 @@ const TypeRow& rowOf(VoxelType type) {
 
 }  // namespace
 
+std::string unpackedStart(const std::filesystem::path& file, bool packed, std::size_t most) {
+  std::string start(most, '\0');
+  VoxelBytes source(file, 0, std::numeric_limits<std::uint64_t>::max(), packed);
+  start.resize(source.readSome(reinterpret_cast<std::uint8_t*>(start.data()), most));
+  return start;
+}
+
 Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesystem::path& file,
                                      const Progress& progress) {
   const std::size_t count = header.geometry.voxelCount();
@@ -145,7 +155,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
   reading.hu_min = std::numeric_limits<double>::infinity();
   reading.hu_max = -reading.hu_min;
   const VolumeFileHeader& h = reading.header;
-  VoxelBytes source(h);
+  VoxelBytes source(h.data.file, h.data.offset, h.data.bytes, h.data.packed);
   std::vector<std::int16_t>& hu = reading.volume.hu;
   // Memory is reserved here but only filled, and so taken, as voxels come.
   hu.reserve(count);

@@ -6,6 +6,9 @@
 
 namespace trephine::file_format {
 
+// The first bytes, at most `most`, of a file or of what it unpacks to.
+std::string unpackedStart(const std::filesystem::path& file, bool packed, std::size_t most);
+
 // `file` is what errors name. Errors: readVolumeFile's own.
 Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesystem::path& file,
                                      const Progress& progress);

@@ -1,0 +1,43 @@
+// A quick look at a large CT: cells of a few millimetres, so that a finding takes milliseconds.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "volume/volume.h"
+
+namespace trephine {
+
+// Cells lie in axes a, b, s: s is the grid axis nearest to the patient's head-foot axis (the axis
+// of a couch), a and b the other two, a the faster one in memory. A cell spans step[0] x step[1]
+// voxels across, of which at most eight lines are read; along s it is one slice in step[2], the
+// middle one. Means are good to 8 HU.
+struct CoarseGrid {
+  std::array<int, 3> axis{0, 1, 2};  // which of i, j, k runs along a, b, s
+  Index3 step{1, 1, 1};
+  Index3 size{0, 0, 0};
+  Vec3 cell_mm{1.0};
+  std::vector<std::int16_t> mean;     // HU, a fastest, then b, then s
+  std::vector<std::int16_t> highest;  // HU
+  std::vector<std::uint8_t> solid;    // 1 where no voxel is below kSolidHu
+
+  std::size_t count() const {
+    return std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
+  }
+  std::size_t indexOf(int a, int b, int s) const {
+    return (std::size_t(s) * std::size_t(size[1]) + std::size_t(b)) * std::size_t(size[0]) +
+           std::size_t(a);
+  }
+  // The cell that a voxel lies in.
+  std::size_t cellOf(const Index3& voxel) const {
+    return indexOf(voxel[std::size_t(axis[0])] / step[0], voxel[std::size_t(axis[1])] / step[1],
+                   voxel[std::size_t(axis[2])] / step[2]);
+  }
+};
+
+constexpr std::int16_t kSolidHu = -400;
+
+// Cells of about 3 x 3 x 5 mm, larger where there would be over 1.5 million (7.5 MB). Two threads.
+CoarseGrid coarseGrid(const Volume& volume);
+
+}  // namespace trephine

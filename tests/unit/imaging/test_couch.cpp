@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include "imaging/couch.h"
+#include "painted.h"
+#include "volume/phantom.h"
+
+namespace trephine::test {
+
+namespace {
+
+const GridGeometry kManGrid = centredGrid({200, 160, 100}, {2.5, 2.5, 4.0});
+
+// He gives way to what he lies on.
+Matter manOn(const Vec3& p, const Matter& couch) {
+  return couch.owner == Owner::couch ? couch : man(p);
+}
+
+// What became of patient and couch.
+struct Outcome {
+  bool found = false;
+  std::uint64_t patient_lost = 0;     // voxels of the patient that changed
+  std::uint64_t preview_patient = 0;  // and that the preview shows as couch
+  double couch_left_percent = 0.0;    // of the voxels that the couch's plates touch
+  double said_percent = 0.0;          // the finding's voxels against what went
+};
+
+Outcome outcomeOf(const Painted& painted) {
+  const CouchFinding finding = findCouch(painted.volume);
+  Outcome outcome;
+  outcome.found = finding.found;
+  Volume after = painted.volume;
+  const std::uint64_t gone = removeCouch(after, finding);
+  outcome.said_percent = gone > 0 ? 100.0 * double(finding.voxels) / double(gone) : 0.0;
+  std::uint64_t plates = 0, left = 0;
+  for (std::size_t n = 0; n < after.hu.size(); ++n) {
+    const Index3 at = after.geometry.indicesOf(n);
+    // A voxel that he and the couch share belongs to neither.
+    if (painted.patient[n] >= 2 && painted.couch[n] == 0) {
+      outcome.patient_lost += after.hu[n] != painted.volume.hu[n];
+      outcome.preview_patient += finding.isCouch(at[0], at[1], at[2]);
+    }
+    if (painted.couch[n] == 0 || painted.patient[n] > 0 || painted.volume.hu[n] < -850) continue;
+    ++plates;
+    left += after.hu[n] != kAirHu;
+  }
+  outcome.couch_left_percent = plates > 0 ? 100.0 * double(left) / double(plates) : 0.0;
+  return outcome;
+}
+
+void expectRemoved(const Painted& painted, double left_percent, const char* what) {
+  const Outcome outcome = outcomeOf(painted);
+  EXPECT_TRUE(outcome.found) << what;
+  EXPECT_EQ(outcome.patient_lost, 0u) << what;
+  EXPECT_EQ(outcome.preview_patient, 0u) << what;
+  EXPECT_LE(outcome.couch_left_percent, left_percent) << what;
+  EXPECT_NEAR(outcome.said_percent, 100.0, 25.0) << what;
+}
+
+}  // namespace
+
+TEST(Couch, AFlatCouchGoesWhollyAndThePatientStays) {
+  const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 125.0, 0.0)); };
+  expectRemoved(paint(kManGrid, truth), 0.0, "flat, on a mattress");
+}
+
+TEST(Couch, ACurvedCouchThatThePatientLiesOnGoesToo) {
+  const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 104.0, 25.0)); };
+  expectRemoved(paint(kManGrid, truth), 2.0, "curved, touching");
+}
+
+TEST(Couch, ItMayLieOnAnySideOfThePatientAndAlongAnyAxis) {
+  for (const double turned : {1.0, -1.0}) {  // prone: the couch is in front
+    const auto truth = [&](const Vec3& p) {
+      return manOn(p, couchPlates({p.x, turned * p.y, p.z}, turned > 0 ? 125.0 : 122.0, 20.0));
+    };
+    const Painted axial = paint(kManGrid, truth);
+    expectRemoved(axial, 0.0, turned > 0 ? "supine" : "prone");
+    expectRemoved(permuted(axial, {0, 2, 1}), 0.0, "coronal");
+    expectRemoved(permuted(axial, {1, 2, 0}), 0.0, "sagittal");
+    Painted feet_first = axial;
+    feet_first.volume.geometry.direction = Mat3(-1, 0, 0, 0, 1, 0, 0, 0, -1);
+    expectRemoved(feet_first, 0.0, "feet first");
+  }
+}
+
+TEST(Couch, OnItsSideThePatientKeepsTheArmHeLiesOn) {
+  const auto truth = [](const Vec3& p) {
+    return manOn(p, couchPlates({p.y, p.x, p.z}, 258.0, 10.0));
+  };
+  expectRemoved(paint(centredGrid({240, 160, 100}, {2.75, 2.75, 4.0}), truth), 0.0, "on his side");
+}
+
+TEST(Couch, HandsThatLieOnItStay) {
+  const auto truth = [](const Vec3& p) {
+    // A board under each arm: the wrist presses on it, the fingertips touch it.
+    const bool board = std::abs(p.x) > 175 && std::abs(p.x) < 240 && p.y > 78 && p.y < 82;
+    return manOn(p, board ? Matter{80, Owner::couch} : couchPlates(p, 125.0, 0.0));
+  };
+  expectRemoved(paint(kManGrid, truth), 3.0, "arm boards");
+}
+
+TEST(Couch, APatientWithoutOneIsLeftAlone) {
+  const Painted painted = paint(kManGrid, man);
+  const CouchFinding finding = findCouch(painted.volume);
+  EXPECT_FALSE(finding.found);
+  EXPECT_EQ(finding.voxels, 0u);
+  EXPECT_FALSE(finding.isCouch(10, 10, 10));
+  Volume after = painted.volume;
+  EXPECT_EQ(removeCouch(after, finding), 0u);
+  EXPECT_EQ(after.hu, painted.volume.hu);
+}
+
+TEST(Couch, TheBuiltInCasesHaveNone) {
+  for (const char* name : {"cranium", "abdomen"}) {
+    GridGeometry geometry = phantomGeometry(name).value();
+    for (int axis = 0; axis < 3; ++axis) {
+      geometry.size[axis] /= 2;
+      geometry.spacing_mm[axis] *= 2.0;
+    }
+    const Volume volume = makePhantomOn(phantomTruth(name).value(), geometry, kPhantomNoiseHu);
+    EXPECT_FALSE(findCouch(volume).found) << name;
+  }
+}
+
+TEST(Couch, AHeadHolderThatTheScalpTouchesGoesAndTheEarsStay) {
+  const PhantomTruth head = phantomTruth("cranium").value();
+  const auto truth = [&](const Vec3& p) -> Matter {
+    // Half a ring, open in front: 4 mm thick, pressed 2 mm into the back of the scalp.
+    const double radius = std::sqrt(p.x * p.x + (p.y + 5.0) * (p.y + 5.0));
+    if (p.y > 0.0 && radius > 99.0 && radius < 103.0) return {150, Owner::couch};
+    const PhantomTissue tissue = head(p);
+    const bool inside = tissue != PhantomTissue::air || ellipse(p.x, p.y, 60, 70) < 0.0;
+    return inside ? Matter{phantomHu(tissue), Owner::patient} : Matter{};
+  };
+  const Painted painted = paint(centredGrid({220, 220, 90}, {1.0, 1.0, 2.0}), truth);
+  expectRemoved(painted, 1.0, "head holder");
+}
+
+TEST(Couch, SliversOfABodyThatTheFieldOfViewCutsAreNotTakenForOne) {
+  // All but the last millimetres of the flanks hollow: the worst case for a shell finder.
+  const auto slivers = [](const Vec3& p) -> Matter {
+    const double r = std::sqrt(p.x * p.x + p.y * p.y);
+    if (r > 150.0) return {};  // a round field
+    if (ellipse(p.x, p.y, 60, 60) < 0.0) return {45, Owner::patient};
+    return std::abs(p.x) > 143.0 ? Matter{-95, Owner::patient} : Matter{};
+  };
+  const GridGeometry grid = centredGrid({120, 120, 80}, {2.5, 2.5, 3.0});
+  EXPECT_FALSE(findCouch(paint(grid, slivers).volume).found);
+  const auto square = [](const Vec3& p) -> Matter {
+    if (ellipse(p.x, p.y, 60, 60) < 0.0) return {45, Owner::patient};
+    return p.x > 143.0 ? Matter{-95, Owner::patient} : Matter{};
+  };
+  EXPECT_FALSE(findCouch(paint(grid, square).volume).found);
+}
+
+TEST(Couch, ThinBoneIsNotTakenForOne) {
+  const auto dry_skull = [](const Vec3& p) -> Matter {
+    const double r = glm::length(p / Vec3(70, 85, 75));
+    if (p.z < -40 && ellipse(p.x, p.y, 40, 40) < 0.0) return {700, Owner::patient};
+    return r < 1.0 && r > 0.94 ? Matter{900, Owner::patient} : Matter{};
+  };
+  EXPECT_FALSE(findCouch(paint(centredGrid({100, 100, 80}, {2, 2, 2}), dry_skull).volume).found);
+}
+
+TEST(Couch, WhatIsThinButNotWideOrNotLongStays) {
+  // Tubes along the patient, and a plate of 60 mm across his chest.
+  const auto truth = [](const Vec3& p) {
+    const bool tube = ellipse(p.x - 90, p.y + 150, 5, 5) < 0.0;
+    const bool plate = std::abs(p.z) < 30 && std::abs(p.x) < 100 && std::abs(p.y + 160) < 3;
+    return manOn(p, tube || plate ? Matter{100, Owner::couch} : Matter{});
+  };
+  EXPECT_FALSE(findCouch(paint(kManGrid, truth).volume).found);
+}
+
+TEST(Couch, AShortScanShowsOneOnlyWhenItIsVeryWide) {
+  const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 125.0, 30.0)); };
+  expectRemoved(paint(centredGrid({200, 160, 16}, {2.5, 2.5, 4.0}), truth), 0.0, "64 mm");
+  EXPECT_FALSE(findCouch(paint(centredGrid({200, 160, 5}, {2.5, 2.5, 4.0}), truth).volume).found);
+}
+
+TEST(Couch, EmptyAndTinyVolumesHaveNone) {
+  Volume air;
+  air.geometry.size = {64, 64, 64};
+  air.hu.assign(air.geometry.voxelCount(), kAirHu);
+  EXPECT_FALSE(findCouch(air).found);
+  Volume one;
+  one.geometry.size = {1, 1, 1};
+  one.hu = {40};
+  EXPECT_FALSE(findCouch(one).found);
+}
+
+}  // namespace trephine::test
