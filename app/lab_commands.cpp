@@ -96,7 +96,11 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
 
 // Puts the command line's choices into the scene.
 Status applyChoices(const RunArguments& arguments, Scene& scene) {
-  if (!arguments.case_source.empty()) scene.case_source = arguments.case_source;
+  if (!arguments.case_source.empty()) {
+    if (!scene.case_source.empty()) scene.labels_file.clear();  // of another case
+    scene.case_source = arguments.case_source;
+  }
+  if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
   if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
     return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
@@ -144,6 +148,10 @@ Result<RunReport> runExercise(const RunArguments& arguments, const Progress& pro
 
   Result<Volume> volume = openCase(scene->case_source, progress);
   if (!volume) return volume.error();
+  Result<std::shared_ptr<const LabelMap>> labels =
+      openLabels(scene->labels_file, volume->geometry);
+  if (!labels) return labels.error();
+  options.labels = *std::move(labels);
   options.recording = freshFile(out, "session", ".h5");
   Result<std::unique_ptr<Session>> session =
       Session::create(*scene, *std::move(volume), options);
@@ -272,8 +280,8 @@ int runCommand(const RunArguments& arguments, bool json, const Progress& progres
   return 0;
 }
 
-int replayCommand(const std::string& file, const std::string& case_source, bool json,
-                  const Progress& progress) {
+int replayCommand(const std::string& file, const std::string& case_source,
+                  const std::string& labels_file, bool json, const Progress& progress) {
   Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(file);
   if (!recording) return printError("replay", recording.error(), json);
   const Json& scene = (*recording)->header().scene;
@@ -288,7 +296,14 @@ int replayCommand(const std::string& file, const std::string& case_source, bool 
   }
   Result<Volume> volume = openCase(source, progress);
   if (!volume) return printError("replay", volume.error(), json);
-  Result<ReplayResult> result = replay(**recording, *std::move(volume), progress);
+  std::optional<LabelMap> labels;
+  if (!labels_file.empty()) {
+    Result<LabelMap> read = readLabelMap(labels_file);
+    if (!read) return printError("replay", read.error(), json);
+    labels = *std::move(read);
+  }
+  Result<ReplayResult> result =
+      replay(**recording, *std::move(volume), labels ? &*labels : nullptr, progress);
   if (!result) return printError("replay", result.error(), json);
   if (result->cut_short) spdlog::warn("The recording was cut short; what it holds was replayed");
   Json difference = nullptr;

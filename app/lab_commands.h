@@ -13,6 +13,7 @@ namespace trephine {
 struct RunArguments {
   std::string scene;
   std::string case_source;  // empty: the scene's own
+  std::string labels;       // empty: the scene's own
   std::string operator_file;  // empty: the scene's default
   std::optional<double> seconds;  // empty: as long as the script
   std::optional<double> rate_hz;
@@ -36,7 +37,8 @@ struct ImportArguments {
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
 int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 int runCommand(const RunArguments& arguments, bool json, const Progress&);
-int replayCommand(const std::string& file, const std::string& case_source, bool json, const Progress&);
+int replayCommand(const std::string& file, const std::string& case_source,
+                  const std::string& labels, bool json, const Progress&);
 int explainCommand(const std::string& scene, bool json);
 int measureUploadCommand(bool json, const Progress&);
 // `grid` is empty for the full grid.

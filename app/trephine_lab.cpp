@@ -28,7 +28,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", buildName());
   bool json = false;
 
-  std::string phantom, out, file, case_source;
+  std::string phantom, out, file, case_source, labels;
   RunArguments arguments;
   auto with_json = [&](CLI::App* command) {
     command->add_flag("--json", json, "Answer as JSON on stdout; logs go to stderr");
@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
   run_command->add_option("scene", arguments.scene, "A scene file")->required();
   run_command->add_option("--case", arguments.case_source,
                           "A folder of CT, a volume file, phantom:cranium or phantom:abdomen");
+  run_command->add_option("--labels", arguments.labels, "The case's label map, a volume file");
   run_command->add_option("--operator", arguments.operator_file, "An operator script");
   run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
   run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
@@ -69,6 +70,7 @@ int run(int argc, char** argv) {
   auto* replay_command = with_json(app.add_subcommand("replay", "Run a recording again and compare"));
   replay_command->add_option("file", file, "A session file")->required();
   replay_command->add_option("--case", case_source, "The case, when it was not a phantom");
+  replay_command->add_option("--labels", labels, "The label map, when the session had one");
 
   auto* explain_command =
       with_json(app.add_subcommand("explain", "What a scene instantiates and what it costs"));
@@ -132,7 +134,7 @@ int run(int argc, char** argv) {
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
   if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, json, progress);
-  if (*replay_command) return replayCommand(file, case_source, json, progress);
+  if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*explain_command) return explainCommand(file, json);
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(grid, out, json, progress);

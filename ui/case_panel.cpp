@@ -30,6 +30,10 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   abdomen_ = new QPushButton(tr("Abdomen phantom"), this);
   abdomen_->setObjectName("abdomenPhantom");
 
+  labels_ = new QPushButton(tr("Label map\u2026"), this);
+  labels_->setObjectName("openLabels");
+  labels_->setToolTip(tr("Open the case's label map, to which tissues can be restricted"));
+
   auto* card = new QFrame(this);
   card->setProperty("card", true);
   case_ = new QLabel(tr("No case is open.\nOpen a folder of CT, or drop one on this window."), card);
@@ -63,6 +67,7 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(8);
   layout->addWidget(card);
+  layout->addWidget(labels_);
   layout->addWidget(progress_box_);
   layout->addWidget(folder_);
   layout->addWidget(series_);
@@ -75,6 +80,7 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   connect(series_, &QPushButton::clicked, this, &CasePanel::seriesWanted);
   connect(cranium_, &QPushButton::clicked, this, [this] { emit phantomWanted("cranium"); });
   connect(abdomen_, &QPushButton::clicked, this, [this] { emit phantomWanted("abdomen"); });
+  connect(labels_, &QPushButton::clicked, this, &CasePanel::labelsWanted);
   connect(cancel_, &QPushButton::clicked, this, &CasePanel::cancelWanted);
   showButtons();
 }
@@ -109,7 +115,7 @@ void CasePanel::setOpeningAllowed(bool allowed) {
 
 void CasePanel::showButtons() {
   const bool may = allowed_ && !busy_;
-  for (QPushButton* button : {folder_, cranium_, abdomen_}) button->setEnabled(may);
+  for (QPushButton* button : {folder_, cranium_, abdomen_, labels_}) button->setEnabled(may);
   series_->setVisible(at_hand_);
   series_->setEnabled(may);
 }

@@ -27,12 +27,13 @@ class CasePanel : public QWidget {
   void phantomWanted(const QString& name);
   void seriesWanted();
   void cancelWanted();
+  void labelsWanted();
 
  private:
   void showButtons();
 
   bool at_hand_ = false, allowed_ = true, busy_ = false;
-  QPushButton *folder_, *series_, *cranium_, *abdomen_, *cancel_;
+  QPushButton *folder_, *series_, *cranium_, *abdomen_, *labels_, *cancel_;
   QLabel *case_, *step_;
   QProgressBar* progress_;
   QWidget* progress_box_;

@@ -85,6 +85,16 @@ void MainWindow::askForScene() {
   dialog->open();
 }
 
+void MainWindow::askForLabels() {
+  auto* dialog = new QFileDialog(this, tr("Open the case's label map"));
+  dialog->setObjectName("labelsDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.useLabels(toPath(file)); });
+  dialog->open();
+}
+
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
@@ -129,10 +139,12 @@ void MainWindow::showCase() {
   if (!volume) return;
   carved_ = false;
   view_->setTools({});
-  view_->showVolume(Grid(*volume));
-  const QString size = sizeWords(volume->geometry);
-  const QString name = workstation_.caseName();
-  case_->showCase(name.isEmpty() ? size : name + '\n' + size);
+  view_->showVolume(Grid(*volume, workstation_.labels()));
+  QString about = sizeWords(volume->geometry);
+  if (const QString name = workstation_.caseName(); !name.isEmpty()) about = name + '\n' + about;
+  if (workstation_.labels()) about += tr("\nwith a label map");
+  case_->showCase(about);
+  tissues_->setLabelsOpen(workstation_.labels() != nullptr);
   lookAtCase();
   showPhase();
 }
@@ -287,7 +299,7 @@ void MainWindow::reset() {
     command(CommandKind::reset);
   } else if (workstation_.phase() == Workstation::Phase::ready) {
     carved_ = false;
-    view_->showVolume(Grid(*workstation_.volume()));
+    view_->showVolume(Grid(*workstation_.volume(), workstation_.labels()));
     showPhase();
   }
 }

@@ -61,6 +61,7 @@ class MainWindow : public QMainWindow {
   void askForFolder();
   void askForFile();
   void askForScene();
+  void askForLabels();
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();

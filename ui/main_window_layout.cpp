@@ -195,6 +195,7 @@ void MainWindow::connectParts() {
   connect(import_, &ImportDialog::caseRead, &workstation_, &Workstation::openVolume);
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { case_->setSeriesAtHand(true); });
+  connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);
   connect(case_, &CasePanel::cancelWanted, &workstation_, &Workstation::cancelOpening);
   connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
     workstation_.setTissues(set);

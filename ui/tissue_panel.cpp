@@ -86,6 +86,14 @@ void TissuePanel::build() {
     connect(box, &QSpinBox::valueChanged, this, &TissuePanel::edited);
   }
 
+  label_ = new QSpinBox(editor_);
+  label_->setObjectName("label");
+  label_->setRange(0, 255);
+  label_->setSpecialValueText(tr("any"));
+  label_->setAccelerated(true);
+  label_->setKeyboardTracking(false);
+  connect(label_, &QSpinBox::valueChanged, this, &TissuePanel::edited);
+
   auto* head = new QHBoxLayout;
   head->addWidget(title_, 1);
   head->addWidget(colour_);
@@ -98,6 +106,7 @@ void TissuePanel::build() {
   form->setVerticalSpacing(6);
   form->addRow(tr("From"), low_);
   form->addRow(tr("To"), high_);
+  form->addRow(tr("Label"), label_);
   form->addRow(tr("Opacity"), opacity_row);
   form->addRow(tr("Damping"),
                addNumber("damping", tr(" N\u00b7s/m"), 1e5, 0.1, &Tissue::damping_Ns_per_m));
@@ -192,6 +201,11 @@ void TissuePanel::select(const std::string& id) {
   }
 }
 
+void TissuePanel::setLabelsOpen(bool open) {
+  labels_open_ = open;
+  showSelected();
+}
+
 void TissuePanel::showList() {
   const int row = std::max(0, list_->currentRow());
   showing_ = true;
@@ -202,9 +216,10 @@ void TissuePanel::showList() {
     QListWidgetItem& item = *list_->item(i);
     item.setText(toQt(tissue.name));
     item.setIcon(swatch(toColour(tissue.colour), tissue.opacity == 0.0));
-    item.setToolTip(tr("%1 to %2 HU%3")
+    item.setToolTip(tr("%1 to %2 HU%3%4")
                         .arg(tissue.hu_min)
                         .arg(tissue.hu_max)
+                        .arg(tissue.label ? tr(", label %1").arg(*tissue.label) : QString())
                         .arg(tissue.opacity == 0.0 ? tr(", not drawn") : QString()));
   }
   showing_ = false;
@@ -230,6 +245,10 @@ void TissuePanel::showSelected() {
   high_->setValue(tissue->hu_max);
   for (QSpinBox* box : {low_, high_})
     box->setToolTip(tr("Source: %1").arg(toQt(tissue->hu_source)));
+  label_->setValue(tissue->label.value_or(0));
+  label_->setEnabled(labels_open_ || tissue->label);
+  label_->setToolTip(labels_open_ ? tr("Only where the label map has this label")
+                                  : tr("Open the case's label map first, on the Case tab"));
   opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
   opacity_text_->setText(tr("%1 /mm").arg(tissue->opacity, 0, 'f', 3));
   for (const Number& number : numbers_) {
@@ -265,6 +284,8 @@ void TissuePanel::edited() {
     tissue->hu_max = high_->value();
     tissue->hu_source = kOwnSource;
   }
+  tissue->label.reset();
+  if (label_->value() > 0) tissue->label = label_->value();
   // Only what was moved: a slider's step must not round a number that a file gave.
   if (opacity_->value() != int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps))) {
     tissue->opacity = opacityAtSlider(double(opacity_->value()) / kOpacitySteps);

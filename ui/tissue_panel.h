@@ -25,6 +25,8 @@ class TissuePanel : public QWidget {
   void setTissues(const TissueSet& tissues);
   const TissueSet& tissues() const { return applied_; }
   void select(const std::string& id);
+  // Without a label map a tissue can be freed from a label, but not restricted to one.
+  void setLabelsOpen(bool open);
   // The firmest tissue that the arms show, and what the scene's laws together demand of one: what
   // lies above the first is said to be felt as that.
   void setRenderable(const std::optional<Renderable>& most,
@@ -55,12 +57,13 @@ class TissuePanel : public QWidget {
   std::optional<Renderable> renderable_;
   std::function<Impedance(const Tissue&)> demanded_;
   bool showing_ = false;
+  bool labels_open_ = false;
   QListWidget* list_;
   QWidget* editor_;
   QLabel *title_, *opacity_text_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
-  QSpinBox *low_, *high_;
+  QSpinBox *low_, *high_, *label_;
   std::vector<Number> numbers_;
 };
 

@@ -17,17 +17,27 @@ struct Workstation::Opened {
   std::optional<Error> misfit;  // the case has not what the scene looks for
   bool own_case = false;
   QString case_name;
+  std::shared_ptr<const LabelMap> labels{};
 };
 
 namespace {
 
 constexpr double kVolumeShare = 0.9;  // of the work of opening; the rest is finding landmarks
 
-// Places the landmarks of `scene`; a case without them can be looked at all the same.
+// Reads the label map that `scene` names, unless there is one, and places the landmarks; a case
+// without them can be looked at all the same.
 template <class Opened>
 void place(Opened& opened, const Progress& progress) {
   progress.at(kVolumeShare, "Finding landmarks");
-  if (auto placed = placeLandmarks(opened.scene, *opened.volume)) {
+  if (!opened.labels) {
+    auto labels = openLabels(opened.scene.labels_file, opened.volume->geometry);
+    if (!labels) {
+      opened.misfit = labels.error();
+      return;
+    }
+    opened.labels = *std::move(labels);
+  }
+  if (auto placed = placeLandmarks(opened.scene, *opened.volume, opened.labels.get())) {
     opened.landmarks = *std::move(placed);
   } else {
     opened.misfit = placed.error();
@@ -105,11 +115,30 @@ void Workstation::useScene(const std::filesystem::path& file) {
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (volume_ && (own_case_ || scene->case_source.empty())) {
-    placeAndOpen({*std::move(scene), file, volume_, {}, {}, own_case_, case_name_});
+    placeAndOpen({*std::move(scene), file, volume_, {}, {}, own_case_, case_name_, labels_});
   } else {
     const std::string source = scene->case_source;
     openSource(*std::move(scene), file, source);
   }
+}
+
+void Workstation::useLabels(const std::filesystem::path& file) {
+  if (!mayOpen()) return;
+  if (!volume_) {
+    fail({"NO_CASE", "There is no case that a label map could belong to", "",
+          "Open the case first, then its label map"});
+    return;
+  }
+  opening_.run(
+      [scene = *scene_, scene_file = scene_file_, volume = volume_, own = own_case_,
+       name = case_name_, file](const Progress& progress) -> Result<Opened> {
+        auto labels = openLabels(file.string(), volume->geometry);
+        if (!labels) return labels.error();
+        Opened out{scene, scene_file, volume, {}, {}, own, name, *std::move(labels)};
+        place(out, progress);
+        return out;
+      },
+      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
@@ -120,12 +149,13 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     emit sceneChanged();
     return;
   }
+  if (!scene.case_source.empty() && source != scene.case_source) scene.labels_file.clear();
   opening_.run(
       [scene = std::move(scene), scene_file, source](const Progress& progress) -> Result<Opened> {
         Result<Volume> volume = openCase(source, progress);
         if (!volume) return volume.error();
         Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
-                   {},    {},         !isPhantom(source), {}};
+                   {},    {},         !isPhantom(source), {}, {}};
         place(out, progress);
         return out;
       },
@@ -138,7 +168,8 @@ void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const 
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
-  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name});
+  if (!scene->case_source.empty()) scene->labels_file.clear();  // of another case
+  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name, {}});
 }
 
 void Workstation::placeAndOpen(Opened opening) {
@@ -158,6 +189,7 @@ void Workstation::opened(Result<Opened> outcome) {
   landmarks_ = std::move(outcome->landmarks);
   own_case_ = outcome->own_case;
   case_name_ = std::move(outcome->case_name);
+  labels_ = std::move(outcome->labels);
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);
@@ -179,10 +211,10 @@ void Workstation::start(const std::filesystem::path& recordings,
   const std::string stem =
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   running_.run(
-      [scene = *scene_, volume = volume_, recordings, stem,
+      [scene = *scene_, volume = volume_, labels = labels_, recordings, stem,
        script = std::move(script)](const Progress&) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
-        SessionOptions options{freshFile(recordings, stem, ".h5"), script};
+        SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels};
         return Session::create(scene, Volume(*volume), options);
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {

@@ -29,6 +29,8 @@ class Workstation : public QObject {
   void openVolume(const std::shared_ptr<const Volume>& volume, const QString& name);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
+  // The label map of the open case. Another case has none until it is given.
+  void useLabels(const std::filesystem::path& file);
   void cancelOpening() { opening_.cancel(); }
   bool isOpening() const { return opening_.busy(); }
   ImportTask& import() { return import_; }
@@ -38,6 +40,8 @@ class Workstation : public QObject {
   const std::filesystem::path& sceneFile() const { return scene_file_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
   const QString& caseName() const { return case_name_; }
+  // Fitted to the volume; null: none.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
   // Where the scene wants to be looked at, when the case has that landmark.
   std::optional<LandmarkFrame> viewLandmark() const;
 
@@ -83,6 +87,7 @@ class Workstation : public QObject {
   std::filesystem::path scene_file_;
   std::shared_ptr<const Volume> volume_;
   QString case_name_;  // empty where it has none
+  std::shared_ptr<const LabelMap> labels_;
   std::vector<PlacedLandmark> landmarks_;
   bool own_case_ = false;  // the user's, not a built-in one
   std::unique_ptr<Session> session_;

@@ -19,7 +19,7 @@ std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
 
 int classAt(const Grid& grid, const TissueLookup& lookup, const Vec3& voxel) {
   const std::int64_t index = voxelAt(grid.geometry(), voxel);
-  return index < 0 ? -1 : lookup.classOf(grid.hu(std::size_t(index)));
+  return index < 0 ? -1 : lookup.classAt(grid, std::size_t(index));
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ int ToolContact::classNear(const Grid& grid, const TissueLookup& lookup,
     for (double reach : {reach_[axis], -reach_[axis]}) {
       const double there = v[axis] + reach;
       if (!(there >= 0.0 && there < size)) continue;
-      look(lookup.classOf(grid.hu(std::size_t(index + (int(there) - here) * step))));
+      look(lookup.classAt(grid, std::size_t(index + (int(there) - here) * step)));
     }
     step *= size;
   }
@@ -104,7 +104,7 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
     if (voxels_[i] >= 0) grid.prefetch(std::size_t(voxels_[i]));
   }
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
-    int found = voxels_[i] < 0 ? -1 : lookup.classOf(grid.hu(std::size_t(voxels_[i])));
+    int found = voxels_[i] < 0 ? -1 : lookup.classAt(grid, std::size_t(voxels_[i]));
     if (found < 0) {
       // A point in air among others in air looks around itself in turn with them.
       const bool among_air = i > 0 && classes_[i] < 0 && classes_[i - 1] < 0 &&

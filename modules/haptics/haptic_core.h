@@ -123,7 +123,7 @@ class HapticCore {
   CarveJournal journal_;
   TissueLookup lookup_;
   std::optional<TissueBricks> bricks_;
-  StiffnessOfHu stiffness_;  // only with the elastic law
+  StiffnessByLabel stiffness_;  // only with the elastic law
   bool elastic_ = false;
   bool tissues_finite_ = true;
   bool any_cuttable_ = false;

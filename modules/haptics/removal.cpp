@@ -196,8 +196,9 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
             continue;
           }
           --looks;
-          const std::int16_t hu = grid.hu(row.voxel + std::size_t(i));
-          const int c = hu == kAirHu ? -1 : lookup.classOf(hu);
+          const std::size_t voxel = row.voxel + std::size_t(i);
+          const std::int16_t hu = grid.hu(voxel);
+          const int c = hu == kAirHu ? -1 : lookup.classAt(grid, voxel, hu);
           if (c < 0 || !tissues.classes[std::size_t(c)].cuttable) continue;
           const double cost_J = kind_ == RemovalKind::instant
                                     ? 0.0

@@ -47,6 +47,93 @@ double sampleAnywhere(const Grid& grid, const Vec3& v) {
              mix(mix(c[4], c[5], t.x), mix(c[6], c[7], t.x), t.y), t.z);
 }
 
+// What the sum asks of the tissue around the ball. A sample is what there is at a place.
+struct FieldOfHu {
+  using Sample = double;
+  using Stiffness = StiffnessOfHu;
+
+  Sample sample(const Vec3& v) const {
+    return inside ? sampleInside(grid, row, slice, v) : sampleAnywhere(grid, v);
+  }
+  bool isAir(Sample hu) const { return stiffness.isAir(hu); }
+  double at(Sample hu) const { return stiffness.at(hu); }
+  double mean(Sample a, Sample b) const { return stiffness.mean(a, b); }
+
+  const Grid& grid;
+  const Stiffness& stiffness;
+  std::size_t row, slice;
+  bool inside;  // of the grid lies all that will be asked for
+};
+
+struct FieldOfLabels {
+  // HU, and the share of each row of labels, over the voxels that hold anything.
+  struct Sample {
+    double hu = kAirHu;
+    int count = 0;
+    std::array<std::uint8_t, 8> row;
+    std::array<double, 8> share;
+  };
+  using Stiffness = StiffnessByLabel;
+
+  Sample sample(const Vec3& v) const {
+    const auto below = [](double x) { return int(x) - (x < int(x) ? 1 : 0); };
+    const int i = below(v.x), j = below(v.y), k = below(v.z);
+    const Vec3 t = v - Vec3(i, j, k);
+    Sample out;
+    double sum = 0.0, held = 0.0;
+    for (int n = 0; n < 8; ++n) {
+      const int a = n & 1, b = n >> 1 & 1, c = n >> 2;
+      if (!inside && !grid.geometry().contains(i + a, j + b, k + c)) continue;
+      const std::size_t voxel = grid.geometry().indexOf(i + a, j + b, k + c);
+      const std::int16_t hu = grid.hu(voxel);
+      const double share = (a ? t.x : 1.0 - t.x) * (b ? t.y : 1.0 - t.y) * (c ? t.z : 1.0 - t.z);
+      if (hu == kAirHu || !(share > 0.0)) continue;
+      sum += share * hu;
+      held += share;
+      const std::uint8_t label_row = stiffness.rowOf(grid.label(voxel));
+      int at = 0;
+      while (at < out.count && out.row[std::size_t(at)] != label_row) ++at;
+      if (at == out.count) {
+        out.row[std::size_t(out.count)] = label_row;
+        out.share[std::size_t(out.count++)] = 0.0;
+      }
+      out.share[std::size_t(at)] += share;
+    }
+    if (out.count > 0) out.hu = sum / held;
+    return out;
+  }
+  bool isAir(const Sample& s) const {
+    for (int n = 0; n < s.count; ++n) {
+      if (!stiffness.ofRow(s.row[std::size_t(n)]).isAir(s.hu)) return false;
+    }
+    return true;
+  }
+  double at(const Sample& s) const {
+    double sum = 0.0;
+    for (int n = 0; n < s.count; ++n) {
+      sum += s.share[std::size_t(n)] * stiffness.ofRow(s.row[std::size_t(n)]).at(s.hu);
+    }
+    return sum;
+  }
+  // Shares, too, run evenly from one place to the other.
+  double mean(const Sample& a, const Sample& b) const {
+    const double hu_a = a.count > 0 ? a.hu : b.hu, hu_b = b.count > 0 ? b.hu : a.hu;
+    double sum = 0.0;
+    for (const Sample* s : {&a, &b}) {
+      for (int n = 0; n < s->count; ++n) {
+        sum += s->share[std::size_t(n)] *
+               stiffness.ofRow(s->row[std::size_t(n)]).mean(hu_a, hu_b);
+      }
+    }
+    return 0.5 * sum;
+  }
+
+  const Grid& grid;
+  const Stiffness& stiffness;
+  std::size_t row, slice;
+  bool inside;
+};
+
 // Evenly spread opposite pairs: a spiral of equal areas over the upper half, then let repel each
 // other as equal charges do, which takes the spiral's preference for its axis away.
 std::vector<Vec3> oppositePairs(int count) {
@@ -84,12 +171,12 @@ std::vector<Vec3> oppositePairs(int count) {
 
 }  // namespace
 
-void StiffnessOfHu::set(const TissueTable& tissues) {
+void StiffnessOfHu::set(const TissueTable& tissues, int label) {
   double sum = 0.0;
   first_ = kLowest + kCount;
   for (int n = 0; n < kCount; ++n) {
     integral_[std::size_t(n)] = sum;
-    const int found = classify(tissues, std::int16_t(kLowest + n));
+    const int found = classify(tissues, kLowest + n, label);
     if (found < 0) continue;
     first_ = std::min(first_, kLowest + n - 0.5);
     sum += tissues.classes[std::size_t(found)].stiffness_N_per_m;
@@ -126,6 +213,18 @@ StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int
 
 ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
                                 const StiffnessOfHu& stiffness, const Vec3& centre_mm) const {
+  return pushIn<FieldOfHu>(grid, bricks, stiffness, centre_mm);
+}
+
+ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
+                                const StiffnessByLabel& stiffness, const Vec3& centre_mm) const {
+  if (stiffness.oneForAll()) return push(grid, bricks, stiffness.ofRow(0), centre_mm);
+  return pushIn<FieldOfLabels>(grid, bricks, stiffness, centre_mm);
+}
+
+template <class Field, class Stiffness>
+ElasticPush StiffnessBall::pushIn(const Grid& grid, const TissueBricks& bricks,
+                                  const Stiffness& stiffness, const Vec3& centre_mm) const {
   ElasticPush out;
   const GridGeometry& g = grid.geometry();
   const Vec3 centre = Vec3(patient_to_voxel_ * glm::dvec4(centre_mm, 1.0));
@@ -137,16 +236,14 @@ ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
 
   const auto row = std::size_t(g.size[0]);
   const std::size_t slice = row * std::size_t(g.size[1]);
-  const auto sample = [&](const Vec3& v) {
-    return inside ? sampleInside(grid, row, slice, v) : sampleAnywhere(grid, v);
-  };
-  const double hu_centre = sample(centre);
-  out.at_centre = stiffness.at(hu_centre);
+  const Field field{grid, stiffness, row, slice, inside};
+  const auto at_centre = field.sample(centre);
+  out.at_centre = field.at(at_centre);
   Vec3 sum(0.0);
   double energy = 0.0;
-  const bool air_at_centre = stiffness.isAir(hu_centre);
+  const bool air_at_centre = field.isAir(at_centre);
   // In three rounds without branches among the look-ups, so that those of many rays overlap.
-  std::array<std::array<double, kParts>, kMostRays> hu;
+  std::array<std::array<typename Field::Sample, kParts>, kMostRays> met;
   if (inside) {
     for (const Ray& ray : rays_) {
       grid.prefetch(cornerOf(centre + kRadii[3] * ray.reach, row, slice), row, slice);
@@ -154,28 +251,29 @@ ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
     }
   }
   for (std::size_t n = 0; n < rays_.size(); ++n) {
-    hu[n][3] = sample(centre + kRadii[3] * rays_[n].reach);
-    hu[n][1] = sample(centre + kRadii[1] * rays_[n].reach);
+    met[n][3] = field.sample(centre + kRadii[3] * rays_[n].reach);
+    met[n][1] = field.sample(centre + kRadii[1] * rays_[n].reach);
   }
   std::array<std::uint8_t, kMostRays> meeting;
   std::size_t count = 0;
   for (std::size_t n = 0; n < rays_.size(); ++n) {
     // Air at the centre, midway and at the end: what could be between is thinner than half the ball.
-    const bool air = air_at_centre && stiffness.isAir(hu[n][3]) && stiffness.isAir(hu[n][1]);
+    const bool air = air_at_centre && field.isAir(met[n][3]) && field.isAir(met[n][1]);
     meeting[count] = std::uint8_t(n);
     count += air ? 0 : 1;
   }
   for (std::size_t m = 0; m < count; ++m) {
     const std::size_t n = meeting[m];
-    hu[n][0] = sample(centre + kRadii[0] * rays_[n].reach);
-    hu[n][2] = sample(centre + kRadii[2] * rays_[n].reach);
+    met[n][0] = field.sample(centre + kRadii[0] * rays_[n].reach);
+    met[n][2] = field.sample(centre + kRadii[2] * rays_[n].reach);
   }
   for (std::size_t m = 0; m < count; ++m) {
     const std::size_t n = meeting[m];
-    double before = hu_centre, along = 0.0, moment = 0.0, mean = 0.0;
+    const auto* before = &at_centre;
+    double along = 0.0, moment = 0.0, mean = 0.0;
     for (int part = 0; part < kParts; ++part) {
-      mean = stiffness.mean(before, hu[n][std::size_t(part)]);
-      before = hu[n][std::size_t(part)];
+      mean = field.mean(*before, met[n][std::size_t(part)]);
+      before = &met[n][std::size_t(part)];
       along += mean * kShare[part];
       moment += mean * kMoment[part];
       out.stiffness = std::max(out.stiffness, mean);

@@ -19,7 +19,7 @@ namespace trephine {
 class StiffnessOfHu {
  public:
   StiffnessOfHu() : integral_(kCount + 1, 0.0) {}
-  void set(const TissueTable& tissues);  // no allocation
+  void set(const TissueTable& tissues, int label = 0);  // of voxels with that label; no allocation
   // HU below or above the table count as its ends.
   double mean(double hu_a, double hu_b) const;
   // Below every tissue: air, as far as this is concerned.
@@ -32,6 +32,24 @@ class StiffnessOfHu {
   double integral(double hu) const;
   std::vector<double> integral_;
   double first_ = 0.0;  // no tissue below
+};
+
+// The same for each label that the tissues name.
+class StiffnessByLabel {
+ public:
+  void set(const TissueTable& tissues) {
+    rows_ = LabelRows(tissues);
+    for (int row = 0; row < rows_.count; ++row) {
+      of_row_[std::size_t(row)].set(tissues, rows_.label[std::size_t(row)]);
+    }
+  }
+  bool oneForAll() const { return rows_.count == 1; }
+  std::uint8_t rowOf(std::uint8_t label) const { return rows_.row[label]; }
+  const StiffnessOfHu& ofRow(std::size_t row) const { return of_row_[row]; }
+
+ private:
+  LabelRows rows_;
+  std::array<StiffnessOfHu, LabelRows::kMost> of_row_;
 };
 
 // Of a blunt tool's ball and of a sharp tool's, whose normal matters less; `measure haptics` has the
@@ -55,7 +73,12 @@ struct ElasticPush {
 // Over a half-space this is k times the ball's depth along the surface's normal, exactly, while the
 // centre is outside (the weights were chosen for that: derivation in README.md); over layers it is
 // the sum of (k_i - k_(i-1)) times the depth in each. The directions are a fixed set of opposite
-// pairs in the grid's axes, so that evenly surrounded means no push. The surface term is taken over a shell of +-r/6.
+// pairs in the grid's axes, so that evenly surrounded means no push. The surface term is taken over
+// a shell of +-r/6.
+//
+// Where tissues are restricted to labels, K at a place is the sum of each label's K(HU) by its share
+// among the eight voxels around the place, so that a border between labels is smooth as one of HU
+// is. What was removed has no share there, and its HU does not count.
 class StiffnessBall {
  public:
   // `directions` is rounded up to a whole number of opposite pairs.
@@ -63,8 +86,14 @@ class StiffnessBall {
 
   ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessOfHu& stiffness,
                    const Vec3& centre_mm) const;
+  ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessByLabel& stiffness,
+                   const Vec3& centre_mm) const;
 
  private:
+  template <class Field, class Stiffness>
+  ElasticPush pushIn(const Grid& grid, const TissueBricks& bricks, const Stiffness& stiffness,
+                     const Vec3& centre_mm) const;
+
   struct Ray {
     Vec3 direction;  // patient axes
     Vec3 reach;      // the radius in voxels

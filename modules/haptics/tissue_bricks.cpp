@@ -11,7 +11,7 @@ TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
     for (int j = 0; j < size_[1]; ++j) {
       const std::size_t row = at(0, j >> kBrickShift, k >> kBrickShift);
       for (int i = 0; i < size_[0]; ++i, ++voxel) {
-        if (lookup.classOf(grid.hu(voxel)) >= 0) ++count_[row + std::size_t(i >> kBrickShift)];
+        if (lookup.classAt(grid, voxel) >= 0) ++count_[row + std::size_t(i >> kBrickShift)];
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <locale>
+#include <memory>
 #include <sstream>
 
 #include "base/system.h"
@@ -34,8 +35,8 @@ double medianNs(const std::function<void()>& call) {
 }
 
 // A 64 mm cube around the origin, its lower half and 10 mm more of the firmest tissue, not cuttable,
-// so that contact lasts.
-Volume block(const TissueSet& tissues) {
+// so that contact lasts; all of it carries that tissue's label.
+Grid block(const TissueSet& tissues) {
   const auto firmest = std::max_element(
       tissues.tissues.begin(), tissues.tissues.end(),
       [](const Tissue& a, const Tissue& b) { return a.friction_N.value < b.friction_N.value; });
@@ -43,8 +44,14 @@ Volume block(const TissueSet& tissues) {
   volume.geometry.size = {64, 64, 64};
   volume.geometry.origin_mm = Vec3(-31.5);
   volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
-  std::fill_n(volume.hu.begin(), 64 * 64 * 42, std::int16_t(firmest->hu_min));
-  return volume;
+  const int hu = firmest->hu_min == kAirHu ? kAirHu + 1 : firmest->hu_min;
+  std::fill_n(volume.hu.begin(), 64 * 64 * 42, std::int16_t(hu));
+  std::shared_ptr<const LabelMap> labels;
+  if (firmest->label) {
+    labels = std::make_shared<const LabelMap>(LabelMap{
+        volume.geometry, std::vector(volume.hu.size(), std::uint8_t(*firmest->label))});
+  }
+  return Grid(std::move(volume), std::move(labels));
 }
 
 // One voxel erased with its journal entry: the mean over a row of voxels, median of the rows.
@@ -115,7 +122,7 @@ Result<Json> explainScene(Scene scene) {
     parameters.tissues.classes[std::size_t(i)].cuttable = 0;
   }
   for (ArmParameters& arm : parameters.arms) arm.map.centre_mm = Vec3(0.0);
-  Grid grid(block(scene.tissues));
+  Grid grid = block(scene.tissues);
 
   Json cost = Json::array(), arms = Json::array();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
@@ -151,7 +158,7 @@ Result<Json> explainScene(Scene scene) {
     for (LawKind kind : scene.laws) {
       Law law = makeLaw(kind, points.size());
       std::optional<StiffnessBall> ball;
-      StiffnessOfHu stiffness;
+      StiffnessByLabel stiffness;
       if (kind == LawKind::elastic) {
         ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, ballDirections(tool.blunt));
         stiffness.set(parameters.tissues);

@@ -31,6 +31,7 @@
 #include <optional>
 #include <utility>
 
+#include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
@@ -77,74 +78,19 @@ class UnpackRows {
   GLint alignment_ = 4;
 };
 
-// Sends a part of `grid`, of this size, into a texture that holds all of it.
+// Sends a part of `grid`, of this size, into a texture that holds all of it from this slice on.
 template <class Value>
-void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size,
-             const VoxelBox& box) {
+void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, const VoxelBox& box,
+             int slice = 0) {
   const auto [i, j, k] = box.low;
   const UnpackRows layout(size);
   texture.Activate();
   glTexSubImage3D(
-      GL_TEXTURE_3D, 0, i, j, k, box.high[0] - i, box.high[1] - j, box.high[2] - k, GL_RED,
+      GL_TEXTURE_3D, 0, i, j, slice + k, box.high[0] - i, box.high[1] - j, box.high[2] - k, GL_RED,
       sizeof(Value) == 1 ? GL_UNSIGNED_BYTE : GL_SHORT,
       grid + (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
           std::size_t(i));
 }
-
-static_assert(kLeapEdge == 8, "the shader below counts in bricks of 8");
-constexpr char kLeapDeclarations[] = R"(//VTK::Base::Dec
-uniform sampler3D in_leaps;  // bricks to the nearest visible one, as a byte
-vec3 g_bricks;               // bricks per texture coordinate
-vec3 g_start;
-vec3 g_forward;
-vec3 g_stepsPerBrick;
-float g_lastT;
-)";
-
-// Where the ray leaves the box, in steps; the sample that VTK takes past the depth buffer stays in.
-constexpr char kLeapStart[] = R"(//VTK::Terminate::Init
-  g_bricks = vec3(textureSize(in_volume[0], 0)) / 8.0;
-  g_start = g_dataPos;
-  g_forward = step(vec3(0.0), g_dirStep);
-  vec3 l_step = mix(min(g_dirStep, vec3(-1e-9)), max(g_dirStep, vec3(1e-9)), g_forward);
-  g_stepsPerBrick = 1.0 / (l_step * g_bricks);
-  vec3 l_exit = (mix(in_texMin[0], in_texMax[0], g_forward) - g_start) / l_step;
-  g_lastT = min(g_terminatePointMax + 1.0, min(l_exit.x, min(l_exit.y, l_exit.z)));
-)";
-
-// Goes to the next sample that is not transparent: by whole steps, so that samples are taken where
-// VTK would take them. A software rasteriser pays for shading whether or not a sample needs it,
-// so transparent samples are passed here too. The condition also ends a ray that is not a number.
-constexpr char kLeap[] = R"(//VTK::Base::Impl
-    while (g_currentT <= g_lastT)
-      {
-      vec3 l_place = g_dataPos * g_bricks;
-      vec3 l_brick = clamp(floor(l_place), vec3(0.0), vec3(textureSize(in_leaps, 0)) - 1.0);
-      float l_free = floor(texelFetch(in_leaps, ivec3(l_brick), 0).r * 255.0 + 0.5);
-      float l_steps = 1.0;
-      if (l_free > 0.0)
-        {
-        vec3 l_face = l_brick + mix(vec3(1.0 - l_free), vec3(l_free), g_forward);
-        vec3 l_t = (l_face - l_place) * g_stepsPerBrick;
-        l_steps = max(1.0, ceil(min(l_t.x, min(l_t.y, l_t.z))));
-        }
-      else
-        {
-        float l_hu = texture3D(in_volume[0], g_dataPos).r;
-        l_hu = l_hu * in_volume_scale[0].r + in_volume_bias[0].r;
-        if (texture2D(in_opacityTransferFunc_0[0], vec2(l_hu, 0.0)).r > 0.0)
-          {
-          break;
-          }
-        }
-      g_currentT += l_steps;
-      g_dataPos = g_start + g_currentT * g_dirStep;
-      }
-    if (!(g_currentT <= g_lastT))
-      {
-      break;
-      }
-)";
 
 }  // namespace
 
@@ -164,8 +110,14 @@ struct CarveVolume::Parts {
   int height = 0;
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
+  std::shared_ptr<const LabelMap> labels;
   std::vector<VoxelBox> boxes;
-  std::vector<HuInterval> visible;
+  LabelRows label_rows;
+  std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
+  std::vector<std::vector<HuInterval>> visible;  // of each row
+  std::vector<std::uint32_t> rows_of_bricks;
+  double low_HU = -1024.0;  // over which VTK spreads its tables
+  double high_HU = 3071.0;
   BrickRanges bricks;
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
@@ -174,25 +126,85 @@ struct CarveVolume::Parts {
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
+  bool labels_stale = true;    // to be sent, or no longer there
+
+  // Looks that are told apart: without a label map all voxels are of the first row.
+  std::size_t rowCount() const { return labels ? looks.size() : 1; }
 
   // Leaves the texture active.
   void sendLeaps(vtkRenderer& renderer) {
     const Index3& n = bricks.size();
-    if (leap_map_stale) leap_map = LeapMap(bricks, visible, 2.0 * lookup_step_HU);
+    const bool by_label = rowCount() > 1;
+    if (labels_stale) {
+      rows_of_bricks.clear();
+      if (by_label) rows_of_bricks = rowsOfBricks(*labels, label_rows);
+    }
+    if (leap_map_stale) leap_map = LeapMap(bricks, visible, rows_of_bricks, 2.0 * lookup_step_HU);
     const std::uint8_t* distances = leap_map.distances().data();
-    if (leap_map_stale || !leaps->GetHandle()) {
-      const UnpackRows layout(n);
+    const bool anew = labels_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
+    if (anew) {
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
       leaps->SetMinificationFilter(vtkTextureObject::Nearest);
       leaps->SetMagnificationFilter(vtkTextureObject::Nearest);
+    }
+    if (anew && by_label) sendLabels();
+    if (anew && !by_label) {
+      const UnpackRows layout(n);
       // VTK takes a pointer to what it only reads.
       leaps->Create3DFromRaw(unsigned(n[0]), unsigned(n[1]), unsigned(n[2]), 1, VTK_UNSIGNED_CHAR,
                              const_cast<std::uint8_t*>(distances));
-    } else if (leaps_stale) {
-      sendBox(*leaps, distances, n, {{0, 0, 0}, n});
+    } else if (anew || leap_map_stale || leaps_stale) {
+      sendBox(*leaps, distances, n, {{0, 0, 0}, n}, by_label ? copy->geometry.size[2] : 0);
     }
-    leap_map_stale = leaps_stale = false;
+    leap_map_stale = leaps_stale = labels_stale = false;
     leaps->Activate();
+  }
+
+  // Makes the texture of labels and leaps, and fills in the row of each voxel's label.
+  void sendLabels() {
+    const Index3& size = copy->geometry.size;
+    leaps->Create3DFromRaw(unsigned(size[0]), unsigned(size[1]), unsigned(size[2] + bricks.size()[2]),
+                           1, VTK_UNSIGNED_CHAR, nullptr);
+    const std::size_t slice = std::size_t(size[0]) * std::size_t(size[1]);
+    std::vector<std::uint8_t> rows_of_slice(slice);
+    for (int k = 0; k < size[2]; ++k) {
+      const std::uint8_t* label = labels->labels.data() + std::size_t(k) * slice;
+      std::transform(label, label + slice, rows_of_slice.begin(),
+                     [&](std::uint8_t l) { return label_rows.row[l]; });
+      sendBox(*leaps, rows_of_slice.data(), {size[0], size[1], 1}, {{0, 0, 0}, {size[0], size[1], 1}},
+              k);
+    }
+  }
+
+  // Tells VTK the colours and what is visible.
+  void updateLooks() {
+    const std::size_t count = rowCount();
+    std::vector<TransferPoint> points = looks[0];
+    if (count > 1) points = sideBySide(looks, low_HU, high_HU);
+    colour->RemoveAllPoints();
+    opacity->RemoveAllPoints();
+    for (const TransferPoint& point : points) {
+      colour->AddRGBPoint(point.hu, point.colour.x, point.colour.y, point.colour.z);
+      opacity->AddPoint(point.hu, point.opacity);
+    }
+    if (points.empty()) {  // VTK would make up a function of its own
+      colour->AddRGBPoint(0.0, 0.0, 0.0, 0.0);
+      opacity->AddPoint(0.0, 0.0);
+    }
+    // VTK makes its tables as fine as the two nearest points need, and at least 1024 wide.
+    const double entries = std::min(1024.0 * double(count), 8192.0);
+    const double share_HU = (high_HU - low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
+    lookup_step_HU = (count > 1 ? share_HU : high_HU - low_HU) / (entries - 1.0);
+    if (count > 1) {
+      const TransferPoint& first = points.front();
+      const double near_HU = first.hu - (high_HU - low_HU) / entries;
+      colour->AddRGBPoint(near_HU, first.colour.x, first.colour.y, first.colour.z);
+      opacity->AddPoint(near_HU, first.opacity);
+    }
+    visible.clear();
+    for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
+    leap_map_stale = true;
+    updateShader();
   }
 
   // The rest of the picture is drawn whole: only rays cost time.
@@ -210,10 +222,20 @@ struct CarveVolume::Parts {
   void updateShader() {
     vtkShaderProperty* shader = prop->GetShaderProperty();
     shader->ClearAllFragmentShaderReplacements();
+    const auto replace = [&](const char* tag, const std::string& text) {
+      shader->AddFragmentShaderReplacement(tag, true, text, false);
+    };
+    const bool by_label = rowCount() > 1;
+    if (!leaping && !by_label) return;
+    replace("//VTK::Base::Dec", kLeapDeclarations +
+                                    (by_label ? labelledLookUps(rowCount()) : kPlainLookUps));
+    if (by_label) {
+      replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
+      replace("//VTK::ComputeColor::Dec", kLabelledColour);
+    }
     if (!leaping) return;
-    shader->AddFragmentShaderReplacement("//VTK::Base::Dec", true, kLeapDeclarations, false);
-    shader->AddFragmentShaderReplacement("//VTK::Terminate::Init", true, kLeapStart, false);
-    shader->AddFragmentShaderReplacement("//VTK::Base::Impl", true, kLeap, false);
+    replace("//VTK::Terminate::Init", kLeapStart);
+    replace("//VTK::Base::Impl", kLeap);
   }
 };
 
@@ -249,20 +271,21 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
   p.look->SetSpecularPower(20.0);
   p.prop->SetMapper(p.mapper);
   p.prop->SetProperty(p.look);
-  p.updateShader();
-  setTransferFunction({});
+  p.updateLooks();
 }
 
 CarveVolume::~CarveVolume() = default;
 
-void CarveVolume::show(Volume& copy, vtkRenderer& renderer) {
+void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
+                       vtkRenderer& renderer) {
   Parts& p = *parts_;
   const GridGeometry& g = copy.geometry;
   p.copy = &copy;
+  p.labels = std::move(labels);
+  p.labels_stale = true;
   p.boxes.clear();
   p.sent = false;
   p.bricks = BrickRanges(copy);
-  p.leap_map_stale = true;
 
   vtkNew<vtkShortArray> voxels;
   voxels->SetArray(copy.hu.data(), vtkIdType(copy.hu.size()), 1 /* not VTK's to free */);
@@ -280,7 +303,9 @@ void CarveVolume::show(Volume& copy, vtkRenderer& renderer) {
   voxels->GetFiniteRange(0);
   last = kept.second;
   first = kept.first;
-  p.lookup_step_HU = (double(high) - double(low)) / 1023.0;
+  p.low_HU = low;
+  p.high_HU = high;
+  p.updateLooks();
 
   p.image = vtkSmartPointer<vtkImageData>::New();
   p.image->SetDimensions(g.size[0], g.size[1], g.size[2]);
@@ -305,23 +330,20 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->mapper->RemoveAllInputs();
   parts_->image = nullptr;
   parts_->copy = nullptr;
+  parts_->labels = nullptr;
   parts_->boxes.clear();
 }
 
-void CarveVolume::setTransferFunction(const std::vector<TransferPoint>& points) {
+void CarveVolume::setTissues(const TissueSet& tissues) {
   Parts& p = *parts_;
-  p.colour->RemoveAllPoints();
-  p.opacity->RemoveAllPoints();
-  for (const TransferPoint& point : points) {
-    p.colour->AddRGBPoint(point.hu, point.colour.x, point.colour.y, point.colour.z);
-    p.opacity->AddPoint(point.hu, point.opacity);
+  const LabelRows rows(tissueTable(tissues));
+  p.labels_stale |= rows.row != p.label_rows.row;
+  p.label_rows = rows;
+  p.looks.clear();
+  for (int row = 0; row < p.label_rows.count; ++row) {
+    p.looks.push_back(transferFunction(tissues, p.label_rows.label[std::size_t(row)]));
   }
-  if (points.empty()) {  // VTK would make up a function of its own
-    p.colour->AddRGBPoint(0.0, 0.0, 0.0, 0.0);
-    p.opacity->AddPoint(0.0, 0.0);
-  }
-  p.visible = visibleIntervals(points);
-  p.leap_map_stale = true;
+  p.updateLooks();
 }
 
 void CarveVolume::changed(const VoxelBox& box) {

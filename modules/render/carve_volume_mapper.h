@@ -11,6 +11,7 @@
 
 #include "render/transfer_function.h"
 #include "volume/grid.h"
+#include "volume/label_map.h"
 
 class vtkRenderer;
 
@@ -25,9 +26,10 @@ class CarveVolume {
 
   // Draws `copy`, which stays the caller's and must outlive its use here: VTK reads the voxels in
   // place. All of them are sent at the next draw.
-  void show(Volume& copy, vtkRenderer& renderer);
+  // `labels`, fitted to it, say where tissues of a label are; null: nowhere.
+  void show(Volume& copy, std::shared_ptr<const LabelMap> labels, vtkRenderer& renderer);
   void remove(vtkRenderer& renderer);
-  void setTransferFunction(const std::vector<TransferPoint>& points);
+  void setTissues(const TissueSet& tissues);
 
   // Voxels in the box were changed in the copy: sent by sendChanges, or with all the others.
   void changed(const VoxelBox& box);

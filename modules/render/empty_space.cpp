@@ -108,23 +108,53 @@ BrickRanges::Range BrickRanges::whole() const {
   return whole;
 }
 
-bool LeapMap::visible(BrickRanges::Range range) const {
-  return std::any_of(visible_.begin(), visible_.end(), [&](const HuInterval& interval) {
-    return range.high >= interval.low && range.low <= interval.high;
-  });
+std::vector<std::uint32_t> rowsOfBricks(const LabelMap& labels, const LabelRows& rows) {
+  static_assert(LabelRows::kMost <= 32);
+  const Index3& n = labels.geometry.size;
+  const auto count = [](int size) { return std::size_t((size + kLeapEdge - 1) / kLeapEdge); };
+  std::vector<std::uint32_t> bits(count(n[0]) * count(n[1]) * count(n[2]));
+  const std::uint8_t* label = labels.labels.data();
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      std::uint32_t* row = bits.data() + (std::size_t(k / kLeapEdge) * count(n[1]) +
+                                          std::size_t(j / kLeapEdge)) * count(n[0]);
+      for (int i = 0; i < n[0]; ++i, ++label) row[i / kLeapEdge] |= 1u << rows.row[*label];
+    }
+  }
+  return bits;
+}
+
+bool LeapMap::visible(const BrickRanges& bricks, std::size_t brick) const {
+  const BrickRanges::Range range = bricks.ranges()[brick];
+  const std::uint32_t rows = rows_.empty() ? 1u : rows_[brick];
+  for (std::size_t row = 0; row < visible_.size(); ++row) {
+    if (!(rows >> row & 1u)) continue;
+    for (const HuInterval& interval : visible_[row]) {
+      if (range.high >= interval.low && range.low <= interval.high) return true;
+    }
+  }
+  return false;
 }
 
 // Chessboard distance in two sweeps, each from the 13 neighbours already visited (Rosenfeld and
 // Pfaltz, Sequential operations in digital picture processing, J. ACM 13, 1966).
 LeapMap::LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU)
-    : visible_(std::move(visible)), distances_(bricks.ranges().size(), kFarthest) {
-  for (HuInterval& interval : visible_) {
-    interval.low -= margin_HU;
-    interval.high += margin_HU;
+    : LeapMap(bricks, std::vector<std::vector<HuInterval>>{std::move(visible)}, {}, margin_HU) {}
+
+LeapMap::LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
+                 std::vector<std::uint32_t> rows, double margin_HU)
+    : visible_(std::move(visible_by_row)),
+      rows_(std::move(rows)),
+      distances_(bricks.ranges().size(), kFarthest) {
+  for (std::vector<HuInterval>& intervals : visible_) {
+    for (HuInterval& interval : intervals) {
+      interval.low -= margin_HU;
+      interval.high += margin_HU;
+    }
   }
   const Index3& n = bricks.size();
   for (std::size_t b = 0; b < distances_.size(); ++b) {
-    if (this->visible(bricks.ranges()[b])) distances_[b] = 0;
+    if (visible(bricks, b)) distances_[b] = 0;
   }
   const auto sweep = [&](int sign) {
     const auto order = [&](int size, int step) { return sign > 0 ? step : size - 1 - step; };
@@ -156,7 +186,7 @@ void LeapMap::update(const BrickRanges& bricks, const BrickBox& changed) {
   // brick that became visible holds nothing too far, no ring beyond it does.
   forEachBrick(changed, [&](int i, int j, int k) {
     std::uint8_t& here = distances_[bricks.indexOf(i, j, k)];
-    if (here == 0 || !visible(bricks.ranges()[bricks.indexOf(i, j, k)])) return;
+    if (here == 0 || !visible(bricks, bricks.indexOf(i, j, k))) return;
     here = 0;
     bool shortened = true;
     for (int ring = 1; shortened && ring < kFarthest; ++ring) {
@@ -177,7 +207,7 @@ void LeapMap::update(const BrickRanges& bricks, const BrickBox& changed) {
   for (int round = 0; round < kRounds; ++round) {
     forEachBrick(grown(changed, kRounds, n), [&](int i, int j, int k) {
       const std::size_t index = bricks.indexOf(i, j, k);
-      if (distances_[index] == 0 && visible(bricks.ranges()[index])) return;
+      if (distances_[index] == 0 && visible(bricks, index)) return;
       int nearest = kFarthest - 1;
       forEachBrick(grown({{i, j, k}, {i + 1, j + 1, k + 1}}, 1, n), [&](int x, int y, int z) {
         if (x == i && y == j && z == k) return;

@@ -7,6 +7,7 @@
 
 #include "render/transfer_function.h"
 #include "volume/grid.h"
+#include "volume/label_map.h"
 
 namespace trephine {
 
@@ -44,6 +45,10 @@ class BrickRanges {
   std::vector<Range> ranges_;
 };
 
+// Which rows of labels the voxels of each 8^3 brick have, a bit a row. A ray takes the label of the
+// voxel it is in, so that what lies beyond a brick does not count.
+std::vector<std::uint32_t> rowsOfBricks(const LabelMap& labels, const LabelRows& rows);
+
 // One byte a brick, i fastest: 0 where a visible HU can be met, else at most the number of bricks
 // (in the largest of the three axes, up to 255) to the nearest brick where one can. From a brick
 // with n a ray may leap to the faces of the cube of 2n - 1 bricks around it.
@@ -52,6 +57,9 @@ class LeapMap {
   LeapMap() = default;
   // `margin_HU` widens the intervals, for a lookup table whose entries smear.
   LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU);
+  // The same where each row of labels has its own visible HU; `rows`: rowsOfBricks().
+  LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
+          std::vector<std::uint32_t> rows, double margin_HU);
 
   // After the ranges in `changed` did. Only the bricks around them are looked at, so that a cut
   // costs the same in any volume; distances stay true, but where matter went they may stay short.
@@ -60,9 +68,10 @@ class LeapMap {
   const std::vector<std::uint8_t>& distances() const { return distances_; }
 
  private:
-  bool visible(BrickRanges::Range range) const;
+  bool visible(const BrickRanges& bricks, std::size_t brick) const;
 
-  std::vector<HuInterval> visible_;
+  std::vector<std::vector<HuInterval>> visible_;  // by row
+  std::vector<std::uint32_t> rows_;               // of each brick; empty: all of the first
   std::vector<std::uint8_t> distances_;
 };
 

@@ -254,7 +254,7 @@ void SceneRenderer::setVolume(const Grid& grid) {
   p.copy = Volume{};  // its memory goes back before the new copy takes as much
   if (grid.geometry().voxelCount() == 0) return;
   p.copy = grid.snapshot();
-  p.volume.show(p.copy, *p.renderer);
+  p.volume.show(p.copy, grid.labels(), *p.renderer);
   if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
 }
 
@@ -264,7 +264,7 @@ bool SceneRenderer::hasVolume() const {
 
 void SceneRenderer::setTissues(const TissueSet& tissues) {
   parts_->stale = true;
-  parts_->volume.setTransferFunction(transferFunction(tissues));
+  parts_->volume.setTissues(tissues);
 }
 
 bool SceneRenderer::pullChanges(Grid& grid) {

@@ -56,7 +56,7 @@ class SceneRenderer {
   void detach();  // before the context goes
   std::string openGlDescription() const;
 
-  // Takes a copy of the grid and looks at it. Full upload at the next paint.
+  // Takes a copy of the grid, with its labels, and looks at it. Full upload at the next paint.
   void setVolume(const Grid& grid);
   bool hasVolume() const;
   void setTissues(const TissueSet& tissues);

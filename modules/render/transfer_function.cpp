@@ -18,17 +18,37 @@ struct Segment {
   bool visible() const { return opacity() > 0.0; }
 };
 
-std::vector<Segment> segments(const TissueSet& set) {
-  std::set<double> edges;
+// The tissues of voxels with a label, those that go before others first.
+std::vector<const Tissue*> tissuesOf(const TissueSet& set, int label) {
+  std::vector<const Tissue*> result;
   for (const Tissue& tissue : set.tissues) {
-    edges.insert(tissue.hu_min - 0.5);
-    edges.insert(tissue.hu_max + 0.5);
+    if (tissue.label && *tissue.label == label) result.push_back(&tissue);
   }
+  for (const Tissue& tissue : set.tissues) {
+    if (!tissue.label) result.push_back(&tissue);
+  }
+  return result;
+}
+
+std::vector<Segment> segments(const std::vector<const Tissue*>& tissues) {
+  constexpr double removed_low = kRemovedHu - kRampHalfWidth_HU,
+                   removed_high = kRemovedHu + kRampHalfWidth_HU;
+  std::set<double> edges;
+  bool holds_removed = false;
+  for (const Tissue* tissue : tissues) {
+    edges.insert(tissue->hu_min - 0.5);
+    edges.insert(tissue->hu_max + 0.5);
+    holds_removed |= tissue->hu_min <= kRemovedHu && tissue->hu_max >= kRemovedHu;
+  }
+  if (holds_removed) edges.insert({removed_low, removed_high});
   std::vector<Segment> result;
   if (edges.empty()) return result;
   const auto at = [&](double low, double high) {
-    for (const Tissue& tissue : set.tissues) {
-      if (low > tissue.hu_min - 1.0 && high < tissue.hu_max + 1.0) return &tissue;
+    if (holds_removed && low >= removed_low && high <= removed_high) {
+      return static_cast<const Tissue*>(nullptr);
+    }
+    for (const Tissue* tissue : tissues) {
+      if (low > tissue->hu_min - 1.0 && high < tissue->hu_max + 1.0) return tissue;
     }
     return static_cast<const Tissue*>(nullptr);
   };
@@ -56,8 +76,8 @@ Vec3 colourTowards(const Segment& segment, const Segment& neighbour) {
 
 }  // namespace
 
-std::vector<TransferPoint> transferFunction(const TissueSet& set) {
-  const std::vector<Segment> parts = segments(set);
+std::vector<TransferPoint> transferFunction(const TissueSet& set, int label) {
+  const std::vector<Segment> parts = segments(tissuesOf(set, label));
   std::vector<TransferPoint> points;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const Segment& before = parts[i - 1];
@@ -70,6 +90,35 @@ std::vector<TransferPoint> transferFunction(const TissueSet& set) {
     points.push_back({edge + half, colourTowards(after, before), after.opacity()});
   }
   return points;
+}
+
+double sideBySide_HU(double hu, std::size_t function, std::size_t count, double low_HU,
+                     double high_HU) {
+  const double within = (hu - low_HU) / (high_HU - low_HU);
+  const double share = double(function) + kSideMargin + (1.0 - 2.0 * kSideMargin) * within;
+  return low_HU + (high_HU - low_HU) * share / double(count);
+}
+
+std::vector<TransferPoint> sideBySide(const std::vector<std::vector<TransferPoint>>& functions,
+                                      double low_HU, double high_HU) {
+  std::vector<TransferPoint> all;
+  for (std::size_t n = 0; n < functions.size(); ++n) {
+    const auto add = [&](TransferPoint point) {
+      point.hu = sideBySide_HU(point.hu, n, functions.size(), low_HU, high_HU);
+      all.push_back(point);
+    };
+    const auto end = [&](double hu) {
+      TransferPoint point = evaluate(functions[n], hu);
+      point.hu = hu;
+      add(point);
+    };
+    end(low_HU);
+    for (const TransferPoint& point : functions[n]) {
+      if (point.hu > low_HU && point.hu < high_HU) add(point);
+    }
+    end(high_HU);
+  }
+  return all;
 }
 
 TransferPoint evaluate(const std::vector<TransferPoint>& points, double hu) {

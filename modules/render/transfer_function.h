@@ -31,10 +31,19 @@ constexpr double kRampHalfWidth_HU = 12.0;
 // An opacity of 1 per mm would make every step of a ray a hard shell of its own.
 constexpr double kMaxOpacity = 0.995;
 
-// Where ranges overlap (under different labels) the first tissue in the set wins, as in classify().
-// HU of no tissue are transparent. A transparent tissue lends its colour to no ramp, so that the
-// edge of a visible tissue keeps the tissue's colour.
-std::vector<TransferPoint> transferFunction(const TissueSet& set);
+// Of voxels with a label (0: none), as in classify(): a tissue of the label goes before one of any
+// voxel, and what removal leaves is of no tissue, with all HU within a ramp of it. HU of no tissue
+// are transparent. A transparent tissue lends its colour to no ramp, so that the edge of a visible
+// tissue keeps the tissue's colour.
+std::vector<TransferPoint> transferFunction(const TissueSet& set, int label = 0);
+
+// Several functions as one, so that one look-up table serves them all: each is squeezed into its
+// share of [low_HU, high_HU], with a margin at its ends. sideBySide_HU says where a HU of it went.
+std::vector<TransferPoint> sideBySide(const std::vector<std::vector<TransferPoint>>& functions,
+                                      double low_HU, double high_HU);
+double sideBySide_HU(double hu, std::size_t function, std::size_t count, double low_HU,
+                     double high_HU);
+constexpr double kSideMargin = 0.01;  // of a share
 
 // The function at a HU, as the ray caster interpolates it. Transparent black for no points.
 TransferPoint evaluate(const std::vector<TransferPoint>& points, double hu);

@@ -14,11 +14,32 @@ struct Box {
   bool found = false;
 };
 
-bool inTissue(const Tissue& tissue, double hu) { return hu >= tissue.hu_min && hu <= tissue.hu_max; }
+// A tissue in a case: which places are of it.
+struct Sought {
+  const Volume& volume;
+  const LabelMap* labels;
+  TissueTable tissues;
+  int tissue;
+
+  bool in(double hu, std::uint8_t label) const { return classify(tissues, hu, label) == tissue; }
+  std::uint8_t label(int i, int j, int k) const {
+    return labels ? labels->labels[volume.geometry.indexOf(i, j, k)] : 0;
+  }
+  // 0 outside the volume.
+  std::uint8_t labelNear(const Vec3& at_mm) const {
+    if (!labels) return 0;
+    const GridGeometry& g = volume.geometry;
+    const Vec3 v = glm::floor(Vec3(g.patientToVoxel() * glm::dvec4(at_mm, 1.0)) + 0.5);
+    const bool inside = v.x >= 0.0 && v.y >= 0.0 && v.z >= 0.0 && v.x < g.size[0] &&
+                        v.y < g.size[1] && v.z < g.size[2];
+    return inside ? label(int(v.x), int(v.y), int(v.z)) : 0;
+  }
+};
 
 // 1st to 99th percentile of the tissue's voxels along each patient axis, in bins of 1 mm. Every
 // second voxel on each axis is looked at.
-Box tissueBox(const Volume& volume, const Tissue& tissue) {
+Box tissueBox(const Sought& sought) {
+  const Volume& volume = sought.volume;
   const GridGeometry& g = volume.geometry;
   const Vec3 centre_mm = g.centre_mm();
   const double half_mm = g.diagonal_mm() / 2.0 + 1.0;
@@ -30,7 +51,7 @@ Box tissueBox(const Volume& volume, const Tissue& tissue) {
   for (int k = 0; k < g.size[2]; k += 2) {
     for (int j = 0; j < g.size[1]; j += 2) {
       for (int i = 0; i < g.size[0]; i += 2) {
-        if (!inTissue(tissue, volume.at(i, j, k))) continue;
+        if (!sought.in(volume.at(i, j, k), sought.label(i, j, k))) continue;
         const Vec3 p = Vec3(affine * glm::dvec4(i, j, k, 1.0)) - centre_mm + half_mm;
         for (int axis = 0; axis < 3; ++axis) ++counts[std::size_t(axis)][std::size_t(p[axis])];
         ++total;
@@ -65,8 +86,9 @@ double meanHu(const Volume& volume, const Vec3& at_mm, double radius_mm) {
 }
 
 // The centre of the ball that holds most of the tissue: cells of a third of the radius, each judged
-// by its mean HU, then counted in boxes of the ball's size.
-std::optional<Vec3> bulkOf(const Volume& volume, const Tissue& tissue, double radius_mm) {
+// by its mean HU and the label in its middle, then counted in boxes of the ball's size.
+std::optional<Vec3> bulkOf(const Sought& sought, double radius_mm) {
+  const Volume& volume = sought.volume;
   const GridGeometry& g = volume.geometry;
   Index3 stride{}, cells{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,7 +114,10 @@ std::optional<Vec3> bulkOf(const Volume& volume, const Tissue& tissue, double ra
           }
         }
         const double mean = double(sum) / (double(stride[0]) * stride[1] * stride[2]);
-        inside[cell(i, j, k)] = inTissue(tissue, mean);
+        const std::uint8_t label =
+            sought.label(i * stride[0] + stride[0] / 2, j * stride[1] + stride[1] / 2,
+                         k * stride[2] + stride[2] / 2);
+        inside[cell(i, j, k)] = sought.in(mean, label);
       }
     }
   }
@@ -122,16 +147,18 @@ struct Ray {
   Vec3 from_mm, towards_mm;
 };
 
-Result<Ray> rayOf(const Landmark& landmark, const Volume& volume, const Tissue& tissue) {
-  const Error none{"TISSUE_NOT_FOUND", "The case has no voxel of the tissue '" + tissue.id + "'",
+Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
+  const GridGeometry& g = sought.volume.geometry;
+  const Error none{"TISSUE_NOT_FOUND",
+                   "The case has no voxel of the tissue '" + landmark.tissue + "'",
                    "landmark '" + landmark.id + "'",
-                   "Check the HU range, or choose a case of the scene's anatomy"};
+                   "Check the HU range and label, or choose a case of the scene's anatomy"};
   if (landmark.bulk_radius_mm > 0.0) {
-    const std::optional<Vec3> centre = bulkOf(volume, tissue, landmark.bulk_radius_mm);
+    const std::optional<Vec3> centre = bulkOf(sought, landmark.bulk_radius_mm);
     if (!centre) return none;
-    return Ray{*centre + landmark.outward * volume.geometry.diagonal_mm() / 2.0, *centre};
+    return Ray{*centre + landmark.outward * g.diagonal_mm() / 2.0, *centre};
   }
-  const Box box = tissueBox(volume, tissue);
+  const Box box = tissueBox(sought);
   if (!box.found) return none;
   const Vec3 extent_mm = box.high_mm - box.low_mm;
   return Ray{box.low_mm + landmark.from * extent_mm, box.low_mm + landmark.towards * extent_mm};
@@ -148,14 +175,15 @@ Quat frameAlong(const Vec3& outward) {
 }
 
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
-                                   const TissueSet& tissues) {
+                                   const TissueSet& tissues, const LabelMap* labels) {
   const std::string where = "landmark '" + landmark.id + "'";
   const Tissue* tissue = tissues.find(landmark.tissue);
   if (!tissue) {
     return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
                  where, "Name one of its tissues"};
   }
-  const Result<Ray> ray = rayOf(landmark, volume, *tissue);
+  const Sought sought{volume, labels, tissueTable(tissues), int(tissue - tissues.tissues.data())};
+  const Result<Ray> ray = rayOf(landmark, sought);
   if (!ray) return ray.error();
   const auto [from_mm, towards_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
@@ -167,7 +195,8 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
   const double radius_mm = std::min(3.0, landmark.run_mm / 4.0);
   double run_mm = 0.0;
   for (double at_mm = 0.0; at_mm <= length_mm; at_mm += kStep_mm) {
-    const bool inside = inTissue(*tissue, meanHu(volume, from_mm + at_mm * along, radius_mm));
+    const Vec3 place_mm = from_mm + at_mm * along;
+    const bool inside = sought.in(meanHu(volume, place_mm, radius_mm), sought.labelNear(place_mm));
     run_mm = inside ? run_mm + kStep_mm : 0.0;
     if (run_mm >= landmark.run_mm) {
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};

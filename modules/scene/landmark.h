@@ -6,6 +6,7 @@
 #include "base/math.h"
 #include "base/result.h"
 #include "tissue/tissue_set.h"
+#include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -43,8 +44,9 @@ struct LandmarkFrame {
 Quat frameAlong(const Vec3& outward);
 
 // HU are averaged over a quarter of `run_mm`, at most 3 mm, so that noise does not break a run.
+// `labels`, where there are any, are fitted to the volume.
 // Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
-                                   const TissueSet& tissues);
+                                   const TissueSet& tissues, const LabelMap* labels = nullptr);
 
 }  // namespace trephine

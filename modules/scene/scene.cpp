@@ -15,10 +15,23 @@ const Landmark* Scene::findLandmarkById(const std::string& id) const {
   return it == landmarks.end() ? nullptr : &*it;
 }
 
-Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume) {
+Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
+  for (const Tissue& tissue : tissues.tissues) {
+    if (!tissue.label || labels) continue;
+    return Error{"NO_LABELS",
+                 "The tissue '" + tissue.id + "' is restricted to label " +
+                     std::to_string(*tissue.label) + ", and no label map was given",
+                 "the label map", "Give the case's label map, or free the tissue from its label"};
+  }
+  return {};
+}
+
+Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume,
+                                                   const LabelMap* labels) {
+  if (Status known = checkLabels(scene.tissues, labels); !known) return known.error();
   std::vector<PlacedLandmark> placed;
   for (const Landmark& landmark : scene.landmarks) {
-    Result<LandmarkFrame> frame = findLandmark(landmark, volume, scene.tissues);
+    Result<LandmarkFrame> frame = findLandmark(landmark, volume, scene.tissues, labels);
     if (!frame) return frame.error();
     placed.push_back({landmark.id, *frame});
   }

@@ -47,6 +47,7 @@ struct Scene {
   std::string name;
   std::string anatomy;        // "cranium", "abdomen": which cases the scene fits
   std::string case_source;    // "phantom:cranium", a path, or empty: given when it is run
+  std::string labels_file;    // label map of that case, empty for none or given when it is run
   TissueSet tissues;
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
@@ -68,8 +69,8 @@ struct Scene {
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 
-// Self-contained: tissues inline, no file names but the plugin's, and a case only where it is a
-// phantom (a path could name a patient). What a recording keeps.
+// Self-contained: tissues inline, no file names but the plugin's, no label map, and a case only
+// where it is a phantom (a path could name a patient). What a recording keeps.
 Json toJson(const Scene& scene);
 
 // A landmark's place in a case, found once and used for maps, scripts and the camera.
@@ -77,7 +78,13 @@ struct PlacedLandmark {
   std::string id;
   LandmarkFrame frame;
 };
-Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume);
+// `labels` are fitted to the volume. Errors: those of checkLabels and findLandmark.
+Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume,
+                                                   const LabelMap* labels = nullptr);
+
+// NO_LABELS where a tissue is restricted to a label and there is no label map: it would be nowhere,
+// and nothing would say so.
+Status checkLabels(const TissueSet& tissues, const LabelMap* labels);
 
 // The same scene with every arm's map fixed at its landmark.
 Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);

@@ -157,6 +157,8 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   scene.name = reader.text("name");
   scene.anatomy = reader.text("anatomy");
   scene.case_source = reader.text("case", "");
+  const std::string labels = reader.text("labels", "");
+  if (!labels.empty()) scene.labels_file = (folder / labels).lexically_normal().string();
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) scene.tissues = *std::move(tissues);

@@ -17,6 +17,16 @@ constexpr std::string_view kPhantom = "phantom:";
 
 bool isPhantom(const std::string& source) { return source.starts_with(kPhantom); }
 
+Result<std::shared_ptr<const LabelMap>> openLabels(const std::string& file,
+                                                   const GridGeometry& geometry) {
+  if (file.empty()) return std::shared_ptr<const LabelMap>();
+  const Result<LabelMap> map = readLabelMap(file);
+  if (!map) return map.error();
+  Result<LabelMap> fitted = fitTo(*map, geometry);
+  if (!fitted) return fitted.error();
+  return std::make_shared<const LabelMap>(*std::move(fitted));
+}
+
 Result<Volume> openCase(const std::string& source, const Progress& progress) {
   if (source.empty()) {
     return Error{"NO_CASE", "The scene names no case and none was given", "--case",

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -17,5 +18,10 @@ namespace trephine {
 Result<Volume> openCase(const std::string& source, const Progress& progress = Progress());
 
 bool isPhantom(const std::string& source);
+
+// The label map of a file, fitted to a case; null for no file. Errors: those of readLabelMap and
+// fitTo. Any thread.
+Result<std::shared_ptr<const LabelMap>> openLabels(const std::string& file,
+                                                   const GridGeometry& geometry);
 
 }  // namespace trephine

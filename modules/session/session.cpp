@@ -70,6 +70,18 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
   return {};
 }
 
+// Such a tissue is nowhere: a wrong number, or another label map.
+void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
+  if (!labels) return;
+  for (const Tissue& tissue : tissues.tissues) {
+    if (!tissue.label) continue;
+    const auto& all = labels->labels;
+    if (std::find(all.begin(), all.end(), std::uint8_t(*tissue.label)) == all.end()) {
+      spdlog::warn("No voxel of the case has the label {} of '{}'", *tissue.label, tissue.id);
+    }
+  }
+}
+
 }  // namespace
 
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
@@ -88,7 +100,13 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
                  "Crop it or export it at a lower resolution"};
   }
   std::unique_ptr<Session> session(new Session);
-  Result<std::vector<PlacedLandmark>> landmarks = placeLandmarks(scene, volume);
+  std::shared_ptr<const LabelMap> labels = options.labels;
+  if (labels && !(labels->geometry == volume.geometry)) {
+    Result<LabelMap> fitted = fitTo(*labels, volume.geometry);
+    if (!fitted) return fitted.error();
+    labels = std::make_shared<const LabelMap>(*std::move(fitted));
+  }
+  Result<std::vector<PlacedLandmark>> landmarks = placeLandmarks(scene, volume, labels.get());
   if (!landmarks) return landmarks.error();
   session->landmarks_ = *std::move(landmarks);
   session->scene_ = withFixedMaps(scene, session->landmarks_);
@@ -99,7 +117,8 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   }
 
   session->sha256_before_ = volumeSha256(volume);
-  session->grid_ = std::make_unique<Grid>(std::move(volume));
+  session->grid_ = std::make_unique<Grid>(std::move(volume), labels);
+  warnOfAbsentLabels(scene.tissues, labels.get());
   for (const BoundedTissue& b : boundedTissues(session->scene_)) {
     spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
                  "{:.4g} are felt",
@@ -135,7 +154,8 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   if (!options.recording.empty()) {
     session->recording_file_ = options.recording;
     const RecordingHeader header{toJson(session->scene_), session->sha256_before_,
-                                 session->grid_->geometry(), buildName()};
+                                 session->grid_->geometry(), buildName(),
+                                 labels ? labelsSha256(*labels) : ""};
     Result<std::unique_ptr<SessionRecorder>> recorder =
         SessionRecorder::create(options.recording, header, session->scene_.arms.size());
     if (!recorder) return recorder.error();
@@ -288,6 +308,7 @@ bool Session::setController(ControllerKind kind) {
 
 Status Session::setTissues(const TissueSet& tissues) {
   if (Status valid = validate(tissues, "tissues"); !valid) return valid;
+  if (Status known = checkLabels(tissues, grid_->labels().get()); !known) return known;
   // Voxels are counted by a tissue's place in the set, so the places stay.
   const bool same_ids = std::equal(
       tissues.tissues.begin(), tissues.tissues.end(), scene_.tissues.tissues.begin(),

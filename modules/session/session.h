@@ -28,6 +28,7 @@ namespace trephine {
 struct SessionOptions {
   std::filesystem::path recording;       // empty: not recorded
   std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
+  std::shared_ptr<const LabelMap> labels{};  // null: none; is fitted to the volume
 };
 
 // Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
@@ -66,7 +67,7 @@ class Session {
   // Tissue, counts and law states as they were in that second of the session.
   bool rewind(std::uint32_t second);
   bool setController(ControllerKind kind);
-  // Errors: those of validate().
+  // Errors: those of validate() and checkLabels().
   Status setTissues(const TissueSet& tissues);
   // Moves the rest position of a simulated arm's hand, in patient mm, within the arm's workspace.
   void moveHand(std::size_t arm, const Vec3& by_mm);

@@ -18,8 +18,7 @@ std::string range(const Tissue& t) {
 }
 
 bool sameVoxels(const Tissue& a, const Tissue& b) {
-  const bool labels_meet = !a.label || !b.label || *a.label == *b.label;
-  return labels_meet && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
+  return a.label == b.label && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
 }
 
 std::string shown(double value) {
@@ -93,6 +92,11 @@ Status validate(const TissueSet& set, const std::string& file) {
     if (t.hu_source.empty()) {
       return bad(file, field + ".hu_source", "The HU range " + range(t) + " has no source",
                  "Cite one, or write \"tuned here, uncited\"");
+    }
+    if (t.label && (*t.label < 1 || *t.label > 255)) {
+      return bad(file, field + ".label",
+                 "The label " + std::to_string(*t.label) + " is not between 1 and 255",
+                 "Give a label of the label map, or none for every voxel");
     }
     if (!isFinite(t.opacity) || t.opacity < 0.0 || t.opacity > 1.0) {
       return bad(file, field + ".opacity",
@@ -189,18 +193,26 @@ TissueTable tissueTable(const TissueSet& set) {
   table.count = std::int32_t(std::min(set.tissues.size(), table.classes.size()));
   for (std::size_t i = 0; i < std::size_t(table.count); ++i) {
     const Tissue& t = set.tissues[i];
-    // The tick has no label map, so a tissue bound to a label gets a range that holds nothing.
-    table.classes[i] = {t.label ? 1 : t.hu_min,
-                        t.label ? 0 : t.hu_max,
+    table.classes[i] = {t.hu_min,
+                        t.hu_max,
                         t.damping_Ns_per_m.value,
                         t.stiffness_N_per_m.value,
                         t.friction_N.value,
                         t.rupture_N ? t.rupture_N->value : 0.0,
                         t.cutting_J_per_mm3.value,
                         t.cuttable ? 1 : 0,
-                        0};
+                        t.label.value_or(0)};
   }
   return table;
+}
+
+LabelRows::LabelRows(const TissueTable& table) {
+  for (int i = 0; i < table.count; ++i) {
+    const std::int32_t named = table.classes[std::size_t(i)].label;
+    if (named < 1 || named > 255 || row[std::size_t(named)] != 0) continue;
+    row[std::size_t(named)] = std::uint8_t(count);
+    label[std::size_t(count++)] = std::uint8_t(named);
+  }
 }
 
 }  // namespace trephine

@@ -29,7 +29,7 @@ struct Tissue {
   int hu_min = 0;    // [hu_min, hu_max], both included
   int hu_max = 0;
   std::string hu_source;
-  std::optional<int> label;  // only voxels with this label of a label map; absent: every voxel
+  std::optional<int> label;  // 1..255: only voxels with this label of a label map; absent: any voxel
   Vec3 colour{1.0};          // r, g, b in [0, 1]
   double opacity = 0.0;      // [0, 1] per millimetre of depth; 0 hides the tissue
   SourcedNumber damping_Ns_per_m;   // viscous law
@@ -48,9 +48,9 @@ struct TissueSet {
 };
 
 // Every rule that a set must keep, whether read from a file or typed in a panel: 1 to 16 tissues,
-// unique ids, hu_min <= hu_max within int16, no two ranges that overlap under the same label (or
-// where one has none), finite numbers, none of the mechanics negative, opacity and colour
-// in [0, 1], a source for each number. The Error names `file`, field and value.
+// unique ids, hu_min <= hu_max within int16, labels from 1 to 255, no two ranges that overlap under
+// the same label or both without one, finite numbers, none of the mechanics negative, opacity and
+// colour in [0, 1], a source for each number. The Error names `file`, field and value.
 Status validate(const TissueSet& set, const std::string& file);
 
 Result<TissueSet> readTissueSet(const std::filesystem::path& file);
@@ -67,7 +67,7 @@ struct TissueClass {
   double rupture_N = 0.0;
   double cutting_J_per_mm3 = 0.0;
   std::int32_t cuttable = 0;
-  std::int32_t reserved = 0;
+  std::int32_t label = 0;  // 0: of any voxel
 };
 
 struct TissueTable {
@@ -76,18 +76,35 @@ struct TissueTable {
   std::array<TissueClass, kMaxTissues> classes{};
 };
 
-// Classes keep the order of the set's tissues, which must be valid. The tick knows no label map, so
-// a tissue with a label keeps its place and matches no voxel.
+// Classes keep the order of the set's tissues, which must be valid.
 TissueTable tissueTable(const TissueSet& set);
 
-// The class of a HU, or -1: free space.
-inline int classify(const TissueTable& table, std::int16_t hu) {
-  for (int i = 0; i < table.count; ++i) {
-    if (hu >= table.classes[std::size_t(i)].hu_min && hu <= table.classes[std::size_t(i)].hu_max) {
-      return i;
-    }
+// The HU that removal leaves: free space, also where a tissue's range holds it.
+constexpr std::int16_t kRemovedHu = -1000;
+
+// The class of a HU in a voxel of this label (0: none), or -1: free space. A tissue restricted to
+// the label goes before one that is of any voxel.
+inline int classify(const TissueTable& table, double hu, int label = 0) {
+  int of_any = -1;
+  for (int i = 0; i < table.count && hu != kRemovedHu; ++i) {
+    const TissueClass& t = table.classes[std::size_t(i)];
+    if (!(hu >= t.hu_min && hu <= t.hu_max)) continue;
+    if (t.label != 0 && t.label == label) return i;
+    if (t.label == 0 && of_any < 0) of_any = i;
   }
-  return -1;
+  return of_any;
 }
+
+// The labels that a table tells apart, each with a row of its own in look-ups by HU. Row 0 is of
+// voxels with any other label, or none.
+struct LabelRows {
+  static constexpr int kMost = kMaxTissues + 1;
+  LabelRows() = default;
+  explicit LabelRows(const TissueTable& table);
+
+  int count = 1;
+  std::array<std::uint8_t, kMost> label{};  // of a row
+  std::array<std::uint8_t, 256> row{};      // of a label
+};
 
 }  // namespace trephine

@@ -11,13 +11,15 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 2;
+constexpr int kRecordingVersion = 3;
+constexpr int kOldestRecordingVersion = 2;  // knew no label maps
 
 struct RecordingHeader {
   Json scene;                 // toJson(Scene) with fixed maps and the controller at the start
   std::string volume_sha256;  // before the first tick
   GridGeometry geometry;
   std::string build;
+  std::string labels_sha256{};  // of the label map, fitted to the volume; empty: none
 };
 
 // Written when a session ends by itself; a recording without it was cut short.

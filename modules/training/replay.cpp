@@ -80,9 +80,33 @@ Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint32_t recorde
   return {};
 }
 
+// The label map as the session had it; null where it had none.
+Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& header,
+                                                       const LabelMap* given) {
+  const auto wrong = [](const char* what, const char* next) {
+    return Error{"WRONG_LABELS", what, "--labels", next};
+  };
+  const bool had = !header.labels_sha256.empty();
+  if (had && !given) {
+    return wrong("The session was recorded with a label map, and none was given",
+                 "Give the label map that the session was run with");
+  }
+  if (!had && given) {
+    return wrong("The session was recorded without a label map", "Leave the label map out");
+  }
+  if (!given) return std::shared_ptr<const LabelMap>();
+  Result<LabelMap> fitted = fitTo(*given, header.geometry);
+  if (!fitted) return fitted.error();
+  if (labelsSha256(*fitted) != header.labels_sha256) {
+    return wrong("The label map is not the one that was recorded: its labels differ",
+                 "Give the label map that the session was run with");
+  }
+  return std::make_shared<const LabelMap>(*std::move(fitted));
+}
+
 }  // namespace
 
-Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
+Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const LabelMap* labels,
                             const Progress& progress) {
   const RecordingHeader& header = recording.header();
   if (volume.geometry.size != header.geometry.size ||
@@ -103,9 +127,12 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
+  Result<std::shared_ptr<const LabelMap>> fitted = recordedLabels(header, labels);
+  if (!fitted) return fitted.error();
+
   // The same voxels may come from a file that rounds their place.
   volume.geometry = header.geometry;
-  Grid grid(std::move(volume));
+  Grid grid(std::move(volume), *std::move(fitted));
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
   Result<std::unique_ptr<JournalSpill>> spill =
       JournalSpill::create(std::filesystem::temp_directory_path());

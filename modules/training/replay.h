@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "training/session_reader.h"
+#include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -27,9 +28,12 @@ struct ReplayResult {
   bool cut_short = false;     // the recording has no end: it was killed
 };
 
-// `volume` is the case before the first tick. Errors: WRONG_CASE (another sha256 than recorded),
-// NOT_REPLAYABLE (the recorder dropped something), BAD_RECORDING, CANCELLED.
+// `volume` is the case before the first tick, `labels` the label map that the session had, as it
+// was read, or null. Errors: WRONG_CASE (another sha256 than recorded), WRONG_LABELS (another label
+// map, one too many, or none), those of fitTo, NOT_REPLAYABLE (the recorder dropped something),
+// BAD_RECORDING, CANCELLED.
 Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
+                            const LabelMap* labels = nullptr,
                             const Progress& progress = Progress());
 
 }  // namespace trephine

@@ -136,11 +136,11 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                      std::to_string(kRecordingVersion),
                  path.string(), "Open it with a newer Trephine"};
   }
-  if (version < kRecordingVersion) {
+  if (version < kOldestRecordingVersion) {
     return Error{"OLDER_VERSION",
                  "The recording has version " + std::to_string(version) +
-                     " of trephine.session, and this program reads " +
-                     std::to_string(kRecordingVersion),
+                     " of trephine.session, and this program reads from " +
+                     std::to_string(kOldestRecordingVersion) + " on",
                  path.string(), "Open it with the Trephine that made it"};
   }
   const auto scene = readText(f.file, "scene");
@@ -156,6 +156,7 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   JsonReader volume_reader(*volume_json, path.string(), "volume");
   f.header.scene = *std::move(scene_json);
   f.header.volume_sha256 = volume_reader.text("sha256");
+  f.header.labels_sha256 = volume_reader.text("labels_sha256", "");
   Result<GridGeometry> geometry = readGeometry(volume_reader.object("geometry"));
   if (!geometry) return geometry.error();
   f.header.geometry = *geometry;

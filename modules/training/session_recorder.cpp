@@ -192,7 +192,8 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   writeText(f.file, "format", "trephine.session");
   writeText(f.file, "build", header.build);
   writeText(f.file, "scene", header.scene.dump(1));
-  const Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
+  Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
+  if (!header.labels_sha256.empty()) volume["labels_sha256"] = header.labels_sha256;
   writeText(f.file, "volume", volume.dump(1));
 
   bool ok = f.ticks.create(f.file, "ticks", compoundType(tickFields(), sizeof(TickRow)), 4096);

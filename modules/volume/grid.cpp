@@ -5,9 +5,11 @@
 
 namespace trephine {
 
-Grid::Grid(Volume volume)
+Grid::Grid(Volume volume, std::shared_ptr<const LabelMap> labels)
     : volume_(std::move(volume)),
       voxels_(volume_.hu.data()),
+      labels_(std::move(labels)),
+      of_voxel_(labels_ ? labels_->labels.data() : nullptr),
       by_width_(std::uint64_t(std::max(geometry().size[0], 1))),
       by_height_(std::uint64_t(std::max(geometry().size[1], 1))) {
   std::size_t count = 1;

@@ -3,7 +3,7 @@
 // Protocol (architecture.md): the holder of the write token stores int16 with relaxed atomics, then
 // marks the 16^3 brick with a store(release). The one reader takes marks with exchange(acquire)
 // and copies those bricks with relaxed loads into its own Volume. Drawing, slices, saving and
-// hashing see only such copies.
+// hashing see only such copies. Labels never change, so any thread may read them.
 #pragma once
 
 #include <atomic>
@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -23,7 +24,8 @@ static_assert(1 << kBrickShift == kBrickEdge);
 
 class Grid {
  public:
-  explicit Grid(Volume volume);
+  // `labels`, where there are any, are fitted to the volume: fitTo().
+  explicit Grid(Volume volume, std::shared_ptr<const LabelMap> labels = nullptr);
   Grid(const Grid&) = delete;
   Grid& operator=(const Grid&) = delete;
 
@@ -33,12 +35,17 @@ class Grid {
   std::int16_t hu(std::size_t index) const {
     return std::atomic_ref<std::int16_t>(voxels_[index]).load(std::memory_order_relaxed);
   }
+  // 0: none. Any thread.
+  std::uint8_t label(std::size_t index) const { return of_voxel_ ? of_voxel_[index] : 0; }
+  // Null where the case has none.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
   // Hints that a voxel, or the eight from one on, will be read.
-  void prefetch(std::size_t index) const { __builtin_prefetch(voxels_ + index); }
+  void prefetch(std::size_t index) const {
+    __builtin_prefetch(voxels_ + index);
+    if (of_voxel_) __builtin_prefetch(of_voxel_ + index);
+  }
   void prefetch(std::size_t index, std::size_t row, std::size_t slice) const {
-    for (std::size_t at : {index, index + row, index + slice, index + slice + row}) {
-      __builtin_prefetch(voxels_ + at);
-    }
+    for (std::size_t at : {index, index + row, index + slice, index + slice + row}) prefetch(at);
   }
   std::int16_t hu(int i, int j, int k) const {
     return geometry().contains(i, j, k) ? hu(geometry().indexOf(i, j, k)) : kAirHu;
@@ -109,6 +116,8 @@ class Grid {
 
   Volume volume_;
   std::int16_t* voxels_;
+  std::shared_ptr<const LabelMap> labels_;
+  const std::uint8_t* of_voxel_;  // the labels; null: none
   Divisor by_width_;
   Divisor by_height_;
   Index3 bricks_;

@@ -100,6 +100,23 @@ TEST(EmptySpace, ValuesBetweenTwoVoxelsCount) {
   EXPECT_EQ(LeapMap(bricks, {{2100.0, 3000.0}}, 101.0).distances()[0], 0);
 }
 
+TEST(EmptySpace, WhatIsVisibleUnderALabelCountsInBricksThatHaveIt) {
+  const Volume volume = air({32, 8, 12});
+  LabelMap labels{volume.geometry, std::vector<std::uint8_t>(volume.hu.size())};
+  labels.labels[volume.geometry.indexOf(9, 3, 8)] = 5;
+  labels.labels[volume.geometry.indexOf(31, 0, 0)] = 7;
+  LabelRows rows;
+  rows.count = 2;
+  rows.row[5] = 1;
+  const std::vector<std::uint32_t> of_bricks = rowsOfBricks(labels, rows);
+  EXPECT_EQ(of_bricks, (std::vector<std::uint32_t>{1, 1, 1, 1, 1, 3, 1, 1}));
+  const BrickRanges bricks(volume);
+  const std::vector<HuInterval> air_too{{-1000.0, 1000.0}};
+  EXPECT_EQ(LeapMap(bricks, {kBone, air_too}, of_bricks, 0.0).distances(),
+            (std::vector<std::uint8_t>{1, 1, 1, 2, 1, 0, 1, 2}));
+  EXPECT_EQ(LeapMap(bricks, {kBone, kBone}, of_bricks, 0.0).distances()[5], 255);
+}
+
 TEST(EmptySpace, AnUpdatedBoxEqualsAFreshLook) {
   std::mt19937 random(11);
   Volume volume = air({70, 60, 40});

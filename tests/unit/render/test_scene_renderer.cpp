@@ -182,6 +182,99 @@ TEST(SceneRenderer, ABoxSentAloneGivesThePictureOfAFullUpload) {
   EXPECT_EQ(fresh.picture(), by_box);
 }
 
+// Label 5 on the patient's right, x < 0, and label 7 on the left.
+std::shared_ptr<const LabelMap> halves() {
+  const GridGeometry g = ball().geometry;
+  LabelMap map{g, std::vector<std::uint8_t>(g.voxelCount())};
+  for (std::size_t i = 0; i < map.labels.size(); ++i) map.labels[i] = g.indicesOf(i)[0] < 32 ? 5 : 7;
+  return std::make_shared<const LabelMap>(std::move(map));
+}
+
+// The bone of one label in this colour, of the other not at all.
+TissueSet boneOf(int label, const Vec3& colour = Vec3(0.9, 0.9, 0.8)) {
+  TissueSet set = tissues();
+  set.tissues[1].label = label;
+  set.tissues[1].colour = colour;
+  return set;
+}
+
+TEST(SceneRenderer, ATissueOfALabelIsDrawnWhereItsLabelIs) {
+  RENDERER_OR_SKIP(renderer);
+  renderer.setVolume(Grid(ball(), halves()));
+  renderer.setTissues(tissues(0.0, 0.0));
+  const Picture empty = renderer.picture();
+  const double middle = (kWidth - 1) / 2.0;
+  renderer.setTissues(boneOf(5));
+  const Picture right = renderer.picture();
+  const Difference seen = difference(empty, right);
+  EXPECT_GT(seen.pixels, 500);
+  EXPECT_LT(seen.centre.x, middle - 10.0) << "seen from the front, the right is on the left";
+  renderer.setTissues(boneOf(7));
+  const Picture left = renderer.picture();
+  EXPECT_GT(difference(empty, left).centre.x, middle + 10.0);
+  renderer.setTissues(boneOf(6));
+  EXPECT_EQ(renderer.picture(), empty);
+  renderer.setTissues(boneOf(5));
+  EXPECT_EQ(renderer.picture(), right);
+
+  // Both labels, each with its own colour.
+  TissueSet both = boneOf(5, Vec3(1, 0, 0));
+  both.tissues.push_back(both.tissues[1]);
+  both.tissues[2].id = "other";
+  both.tissues[2].label = 7;
+  both.tissues[2].colour = Vec3(0, 0, 1);
+  renderer.setTissues(both);
+  const Picture coloured = renderer.picture();
+  const auto at = [&](int x, int colour) {
+    return int(coloured.rgb[(std::size_t(kHeight / 2) * kWidth + std::size_t(x)) * 3 +
+                            std::size_t(colour)]);
+  };
+  EXPECT_GT(at(kWidth / 2 - 12, 0), at(kWidth / 2 - 12, 2) + 50);
+  EXPECT_GT(at(kWidth / 2 + 12, 2), at(kWidth / 2 + 12, 0) + 50);
+
+  // Without a label map it is nowhere.
+  renderer.setTissues(boneOf(5));
+  renderer.setVolume(Grid(ball()));
+  EXPECT_EQ(renderer.picture(), empty);
+}
+
+TEST(SceneRenderer, ALabelThatAllVoxelsHaveChangesNothingVisible) {
+  RENDERER_OR_SKIP(renderer);
+  const GridGeometry g = ball().geometry;
+  const auto all = std::make_shared<const LabelMap>(
+      LabelMap{g, std::vector<std::uint8_t>(g.voxelCount(), 5)});
+  renderer.setTissues(tissues());
+  renderer.setVolume(Grid(ball()));
+  const Picture plain = renderer.picture();
+  renderer.setVolume(Grid(ball(), all));
+  EXPECT_EQ(renderer.picture(), plain) << "no tissue asks for a label";
+  renderer.setTissues(boneOf(5));
+  EXPECT_GE(psnr_dB(renderer.picture(), plain), 45.0);
+  UploadProbe::setLeaping(renderer, false);
+  const Picture stock = renderer.picture();
+  UploadProbe::setLeaping(renderer, true);
+  EXPECT_GE(psnr_dB(renderer.picture(), stock), 60.0);
+}
+
+TEST(SceneRenderer, ACutInATissueOfALabelIsSeenAlsoWhenItsRangeHoldsAir) {
+  RENDERER_OR_SKIP(renderer);
+  Grid grid(ball(), halves());
+  TissueSet set = boneOf(5);
+  set.tissues[1].hu_min = -1000;
+  renderer.setTissues(set);
+  renderer.setVolume(grid);
+  const Picture whole = renderer.picture();
+  const Vec3 place(-12, -21, 6);
+  carve(grid, place, 9.0);
+  ASSERT_TRUE(renderer.pullChanges(grid));
+  const Picture cut = renderer.picture();
+  const Difference seen = difference(whole, cut);
+  EXPECT_GT(seen.pixels, 100);
+  EXPECT_LT(glm::distance(seen.centre, pixelOf(renderer, Vec3(0.0), place)), 10.0);
+  UploadProbe::fullUpload_ms(renderer);
+  EXPECT_EQ(renderer.picture(), cut);
+}
+
 TEST(SceneRenderer, ChangesOfAnotherGridAreNotTaken) {
   RENDERER_OR_SKIP(renderer);
   renderer.setVolume(Grid(ball()));

@@ -66,14 +66,40 @@ TEST(TransferFunction, ARangeOfOneValueIsStillSeenAndPointsStayInOrder) {
   for (std::size_t i = 1; i < f.size(); ++i) EXPECT_LT(f[i - 1].hu, f[i].hu);
 }
 
-TEST(TransferFunction, WhereRangesOverlapTheFirstTissueWins) {
-  Tissue first = tissue("first", 0, 200, kRed, 0.5),
-         second = tissue("second", 100, 300, kBlue, 0.9);
-  first.label = 1;
-  second.label = 2;
-  const auto f = transferFunction({"", {first, second}});
-  EXPECT_EQ(evaluate(f, 150).colour, kRed);
-  EXPECT_EQ(evaluate(f, 250).colour, kBlue);
+TEST(TransferFunction, ATissueOfALabelIsSeenThereBeforeOneOfAnyVoxelAndNowhereElse) {
+  Tissue any = tissue("any", 0, 200, kRed, 0.5), bound = tissue("bound", 100, 300, kBlue, 0.9);
+  bound.label = 2;
+  const TissueSet set{"", {any, bound}};
+  EXPECT_EQ(evaluate(transferFunction(set), 150).colour, kRed);
+  EXPECT_EQ(evaluate(transferFunction(set), 250).opacity, 0.0);
+  EXPECT_EQ(evaluate(transferFunction(set, 2), 50).colour, kRed);
+  EXPECT_EQ(evaluate(transferFunction(set, 2), 150).colour, kBlue);
+  EXPECT_EQ(evaluate(transferFunction(set, 2), 250).colour, kBlue);
+}
+
+TEST(TransferFunction, WhatRemovalLeavesIsClearInATissueThatHoldsItsHu) {
+  const auto f = transferFunction({"", {tissue("all", -2000, 3000, kRed, 0.8)}});
+  EXPECT_EQ(evaluate(f, kRemovedHu).opacity, 0.0);
+  EXPECT_DOUBLE_EQ(evaluate(f, kRemovedHu + 30).opacity, 0.8);
+  EXPECT_DOUBLE_EQ(evaluate(f, kRemovedHu - 30).opacity, 0.8);
+  const auto near = transferFunction({"", {tissue("near", -999, -990, kRed, 0.8)}});
+  EXPECT_GT(evaluate(near, -995).opacity, 0.0);
+}
+
+TEST(TransferFunction, SideBySideEachIsItselfInItsShare) {
+  const auto one = transferFunction({"", {tissue("a", 0, 200, kRed, 0.5)}});
+  const auto two = transferFunction({"", {tissue("b", 100, 4000, kBlue, 0.9)}});
+  const auto all = sideBySide({one, {}, two}, -1024, 3071);
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_LT(all[i - 1].hu, all[i].hu);
+  for (double hu = -1024; hu <= 3071; hu += 1.0) {
+    const auto at = [&](std::size_t n) {
+      return evaluate(all, sideBySide_HU(hu, n, 3, -1024, 3071));
+    };
+    ASSERT_NEAR(at(0).opacity, evaluate(one, hu).opacity, 1e-9) << hu;
+    ASSERT_EQ(at(1).opacity, 0.0) << hu;
+    ASSERT_NEAR(at(2).opacity, evaluate(two, hu).opacity, 1e-9) << hu;
+    ASSERT_NEAR(glm::distance(at(2).colour, evaluate(two, hu).colour), 0.0, 1e-9) << hu;
+  }
 }
 
 TEST(TransferFunction, FullOpacityStaysBelowOne) {

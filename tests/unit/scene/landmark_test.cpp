@@ -84,6 +84,44 @@ TEST(Landmark, SaysWhenTheTissueIsNotThere) {
             "NO_SURFACE");
 }
 
+// Two balls of the same HU: a label tells them apart.
+TEST(Landmark, LooksForATissueWhereItsLabelIs) {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {80, 40, 40};
+  v.hu.assign(g.voxelCount(), kAirHu);
+  LabelMap labels{g, std::vector<std::uint8_t>(g.voxelCount())};
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 at = g.indicesOf(i);
+    const Vec3 p(at[0], at[1], at[2]);
+    const bool left = glm::length(p - Vec3(20, 20, 20)) < 15.0;
+    const bool right = glm::length(p - Vec3(60, 20, 20)) < 10.0;
+    if (left || right) v.hu[i] = 1000;
+    if (right) labels.labels[i] = 5;
+  }
+  TissueSet set = boneOnly();
+  set.tissues[0].label = 5;
+  set.tissues[0].hu_min = -1000;
+  const Landmark from_above{"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}};
+  const Landmark bulk{"bulk", "bone", {}, {}, 6.0, {0, 0, 1}, 4.0};
+  for (const Landmark& landmark : {from_above, bulk}) {
+    const auto frame = findLandmark(landmark, v, set, &labels);
+    ASSERT_TRUE(frame.ok()) << frame.error().sentence();
+    EXPECT_NEAR(glm::length(frame->position_mm - Vec3(60, 20, 30)), 0.0, 3.0) << landmark.id;
+  }
+  std::fill(labels.labels.begin(), labels.labels.end(), std::uint8_t(6));
+  EXPECT_EQ(findLandmark(from_above, v, set, &labels).error().code, "TISSUE_NOT_FOUND");
+
+  // What a tissue with the label holds is not the other's.
+  Tissue any = set.tissues[0];
+  any.id = "any";
+  any.label.reset();
+  set.tissues.push_back(any);
+  std::fill(labels.labels.begin(), labels.labels.end(), std::uint8_t(5));
+  EXPECT_EQ(findLandmark({"a", "any", Vec3(1), Vec3(0)}, v, set, &labels).error().code,
+            "TISSUE_NOT_FOUND");
+}
+
 TEST(Landmark, IgnoresARunShorterThanAsked) {
   Volume v = ball(0);
   // A sheet of one voxel above the ball.

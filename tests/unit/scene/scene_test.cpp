@@ -55,6 +55,33 @@ TEST(Scene, ACopyNeverHoldsACasePath) {
   EXPECT_EQ(toJson(scene).dump().find("DOE"), std::string::npos);
 }
 
+TEST(Scene, ALabelMapIsFoundBesideTheSceneAndLeftOutOfACopy) {
+  Json json = shipped();
+  EXPECT_EQ(parseScene(json, shippedFile())->labels_file, "");
+  json["labels"] = "../DOE^JANE/seg.nii.gz";
+  Scene scene = *parseScene(json, shippedFile());
+  EXPECT_EQ(scene.labels_file,
+            (resourceFolder() / "DOE^JANE" / "seg.nii.gz").lexically_normal().string());
+  EXPECT_EQ(toJson(scene).dump().find("DOE"), std::string::npos);
+  EXPECT_FALSE(toJson(scene).contains("labels"));
+  json["labels"] = "/elsewhere/seg.nii.gz";
+  EXPECT_EQ(parseScene(json, shippedFile())->labels_file, "/elsewhere/seg.nii.gz");
+}
+
+TEST(Scene, ATissueOfALabelNeedsALabelMap) {
+  Scene scene = *readScene(shippedFile());
+  EXPECT_TRUE(checkLabels(scene.tissues, nullptr).ok());
+  scene.tissues.tissues[1].label = 5;
+  const Status status = checkLabels(scene.tissues, nullptr);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, "NO_LABELS");
+  EXPECT_NE(status.error().what.find("'" + scene.tissues.tissues[1].id + "'"), std::string::npos);
+  EXPECT_NE(status.error().what.find("label 5"), std::string::npos);
+  const LabelMap map;
+  EXPECT_TRUE(checkLabels(scene.tissues, &map).ok());
+  EXPECT_EQ(placeLandmarks(scene, Volume{}).error().code, "NO_LABELS");
+}
+
 struct Bad {
   const char* name;
   void (*change)(Json&);

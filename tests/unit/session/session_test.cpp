@@ -150,6 +150,88 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   EXPECT_EQ(result->ticks, 6000u);
 }
 
+// Bone is label 7, and a strip of it in every 8 voxels has another label.
+std::shared_ptr<const LabelMap> strips() {
+  const GridGeometry geometry = smallHead().geometry;
+  LabelMap map{geometry, std::vector<std::uint8_t>(geometry.voxelCount())};
+  for (std::size_t i = 0; i < map.labels.size(); ++i) {
+    map.labels[i] = geometry.indicesOf(i)[1] % 8 == 5 ? 8 : 7;
+  }
+  return std::make_shared<const LabelMap>(std::move(map));
+}
+
+Scene craniumOfLabels() {
+  Scene scene = cranium();
+  scene.tissues.tissues.back().label = 7;
+  return scene;
+}
+
+TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
+  test::TemporaryFolder folder;
+  SessionOptions options = scripted(folder / "s.h5");
+  const auto labels = options.labels = strips();
+  auto session = Session::create(craniumOfLabels(), smallHead(), options);
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  ASSERT_TRUE((*session)->freewheel(10.0).ok());
+  const RunReport report = (*session)->report();
+  EXPECT_GT(report.removed_mm3.back().second, 100.0);
+  const Volume before = smallHead(), after = (*session)->grid().snapshot();
+  for (std::size_t i = 0; i < before.hu.size(); ++i) {
+    if (before.hu[i] == 1200 && labels->labels[i] == 8) {
+      ASSERT_EQ(after.hu[i], 1200);
+    }
+  }
+
+  const auto reader = *SessionReader::open(folder / "s.h5");
+  const auto result = replay(*reader, smallHead(), labels.get());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->volume_sha256, report.volume_sha256);
+
+  LabelMap other = *labels;
+  other.labels[0] = 9;
+  for (const LabelMap* given : {static_cast<const LabelMap*>(nullptr), &std::as_const(other)}) {
+    const auto refused = replay(*reader, smallHead(), given);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "WRONG_LABELS");
+  }
+}
+
+// As a file may have it: the axes in another order.
+TEST(Session, FitsALabelMapToTheCase) {
+  test::TemporaryFolder folder;
+  SessionOptions options = scripted(folder / "s.h5");
+  const auto straight = strips();
+  LabelMap turned = *straight;
+  const GridGeometry& g = straight->geometry;
+  turned.geometry.origin_mm = g.toPatient_mm(Vec3(0, 0, g.size[2] - 1));
+  turned.geometry.direction[2] = -g.direction[2];
+  const std::size_t slice = g.voxelCount() / std::size_t(g.size[2]);
+  for (std::size_t i = 0; i < turned.labels.size(); ++i) {
+    turned.labels[i] = straight->labels[i % slice + slice * (std::size_t(g.size[2]) - 1 - i / slice)];
+  }
+  options.labels = std::make_shared<const LabelMap>(turned);
+  auto session = Session::create(craniumOfLabels(), smallHead(), options);
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  EXPECT_EQ((*session)->grid().labels()->labels, straight->labels);
+  ASSERT_TRUE((*session)->freewheel(0.5).ok());
+  EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
+  turned.geometry.origin_mm.x += 1000.0;
+  options.labels = std::make_shared<const LabelMap>(turned);
+  EXPECT_EQ(Session::create(craniumOfLabels(), smallHead(), options).error().code,
+            "LABELS_ELSEWHERE");
+}
+
+TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
+  const auto refused = Session::create(craniumOfLabels(), smallHead(), {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, "NO_LABELS");
+  EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
+
+  const auto session = *Session::create(cranium(), smallHead(), {});
+  EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
+}
+
 TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
   Volume air = smallHead();
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);
@@ -179,6 +261,15 @@ TEST(Session, AMissingCaseIsNamed) {
   const auto missing = openCase("/no/such/folder");
   ASSERT_FALSE(missing.ok());
   EXPECT_NE(missing.error().where.find("/no/such/folder"), std::string::npos);
+}
+
+TEST(Session, AMissingLabelMapIsNamedAndNoneIsNoError) {
+  const GridGeometry geometry = smallHead().geometry;
+  EXPECT_EQ(*openLabels("", geometry), nullptr);
+  const auto missing = openLabels("/no/such/seg.nii", geometry);
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, "MISSING_FILE");
+  EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
 }
 
 TEST(FreshFile, NeverNamesAFileThatIsThere) {

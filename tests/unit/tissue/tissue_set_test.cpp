@@ -97,13 +97,26 @@ TEST(TissueSet, HasNoTwoRangesThatOverlap) {
   EXPECT_FALSE(validate(falling, "t.json").ok()) << "the order in the list does not matter";
 }
 
-TEST(TissueSet, MayOverlapUnderDifferentLabelsOnly) {
+TEST(TissueSet, MayOverlapWhereTheLabelsDifferOrOneHasNone) {
   TissueSet set{"x", {tissue("liver", 0, 200), tissue("kidney", 100, 300)}};
+  EXPECT_FALSE(validate(set, "t.json").ok());
   set.tissues[0].label = 5;
-  EXPECT_FALSE(validate(set, "t.json").ok()) << "the kidney without a label holds label 5 too";
+  EXPECT_TRUE(validate(set, "t.json").ok()) << "the liver holds label 5, the other the rest";
   set.tissues[1].label = 5;
   EXPECT_FALSE(validate(set, "t.json").ok());
   set.tissues[1].label = 6;
+  EXPECT_TRUE(validate(set, "t.json").ok());
+}
+
+TEST(TissueSet, HasLabelsFromOneTo255) {
+  for (int label : {0, -1, 256}) {
+    const Error error = errorAfter([&](TissueSet& s) { s.tissues[1].label = label; });
+    EXPECT_EQ(error.where, "t.json: tissues[1].label");
+    EXPECT_PART(error.what, std::to_string(label));
+  }
+  TissueSet set = head();
+  set.tissues[0].label = 1;
+  set.tissues[1].label = 255;
   EXPECT_TRUE(validate(set, "t.json").ok());
 }
 
@@ -323,6 +336,9 @@ TEST(TissueTable, KeepsTheOrderAndTheNumbersOfTheSet) {
   EXPECT_EQ(table.classes[2].friction_N, 1.5);
   EXPECT_EQ(table.classes[0].cuttable, 1);
   EXPECT_EQ(table.classes[1].cuttable, 0);
+  EXPECT_EQ(table.classes[1].label, 0);
+  set.tissues[1].label = 7;
+  EXPECT_EQ(tissueTable(set).classes[1].label, 7);
 }
 
 TEST(Classify, HoldsBothEndsOfARange) {
@@ -350,6 +366,43 @@ TEST(Classify, FindsNoTissueThatIsBoundToALabel) {
   EXPECT_EQ(table.count, 3);
   EXPECT_EQ(classify(table, 200), -1);
   EXPECT_EQ(classify(table, 500), 2) << "the others keep their place";
+}
+
+TEST(Classify, PutsATissueOfTheLabelBeforeOneOfAnyVoxelInWhateverOrder) {
+  for (bool labelled_first : {true, false}) {
+    TissueSet set{"x", {tissue("soft", -100, 300), tissue("liver", -1000, 1000)}};
+    set.tissues[1].label = 5;
+    if (labelled_first) std::swap(set.tissues[0], set.tissues[1]);
+    const int liver = labelled_first ? 0 : 1, soft = 1 - liver;
+    const TissueTable table = tissueTable(set);
+    EXPECT_EQ(classify(table, 50, 5), liver);
+    EXPECT_EQ(classify(table, 50, 6), soft);
+    EXPECT_EQ(classify(table, 50), soft);
+    EXPECT_EQ(classify(table, 900, 5), liver);
+    EXPECT_EQ(classify(table, 900, 6), -1);
+  }
+}
+
+TEST(Classify, HoldsWhatRemovalLeavesToBeFreeSpace) {
+  TissueSet set{"x", {tissue("all", -2000, 3000)}};
+  EXPECT_EQ(classify(tissueTable(set), kRemovedHu), -1);
+  EXPECT_EQ(classify(tissueTable(set), kRemovedHu + 1), 0);
+  EXPECT_EQ(classify(tissueTable(set), kRemovedHu - 1), 0);
+}
+
+TEST(LabelRows, GivesEachLabelThatIsNamedARowAndAllOthersTheFirst) {
+  TissueSet set = head();
+  EXPECT_EQ(LabelRows(tissueTable(set)).count, 1);
+  set.tissues[0].label = 5;
+  set.tissues[1].label = 200;
+  set.tissues[2].label = 5;
+  const LabelRows rows(tissueTable(set));
+  EXPECT_EQ(rows.count, 3);
+  EXPECT_EQ(rows.row[5], 1);
+  EXPECT_EQ(rows.row[200], 2);
+  EXPECT_EQ(rows.label[1], 5);
+  EXPECT_EQ(rows.label[2], 200);
+  EXPECT_EQ(rows.row[0] + rows.row[6] + rows.row[255], 0);
 }
 
 TEST(TissueTable, TakesNoMoreThanItHoldsOfASetThatIsTooLong) {

@@ -1,3 +1,4 @@
+#include <hdf5.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -143,6 +144,85 @@ TEST(Recording, RefusesAnotherCase) {
   Volume other = slab();
   other.hu[5] += 1;
   EXPECT_EQ(replay(**SessionReader::open(folder / "a.h5"), other).error().code, "WRONG_CASE");
+}
+
+// Label 5 where x < 0. A tissue change moves the tissue to the rest.
+std::shared_ptr<const LabelMap> halves() {
+  const GridGeometry geometry = slab().geometry;
+  LabelMap map{geometry, std::vector<std::uint8_t>(geometry.voxelCount())};
+  for (std::size_t i = 0; i < map.labels.size(); ++i) {
+    map.labels[i] = geometry.indicesOf(i)[0] < 12 ? 5 : 6;
+  }
+  return std::make_shared<const LabelMap>(std::move(map));
+}
+
+TEST(Recording, KeepsTheLabelsOfTissuesAlsoOfAChange) {
+  test::TemporaryFolder folder;
+  Scene scene = sceneWithOneArm();
+  scene.tissues.tissues[0].label = 5;
+  const auto labels = halves();
+  Grid grid(slab(), labels);
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      folder / "a.h5",
+      {toJson(scene), volumeSha256(slab()), grid.geometry(), "test", labelsSha256(*labels)}, 1);
+  ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
+  TissueSet other = scene.tissues;
+  other.tissues[0].label = 6;
+  for (std::uint64_t t = 0; t < 4000; ++t) {
+    TickInput input;
+    input.tick = t;
+    input.journal = core.journalState();
+    input.arms[0].position_m = Vec3(4e-6 * double(t % 2000) - 4e-3, 1e-3, -3e-6 * double(t % 2000));
+    Command change{CommandKind::tissues, 0, tissueTable(other)};
+    TickRecord record;
+    core.tick(input, &change, t == 2000 ? 1 : 0, record);
+    (*recorder)->add(record);
+    for (const CarveRecord& c : core.carves()) {
+      ASSERT_EQ(labels->labels[c.voxel], t < 2000 ? 5 : 6);
+      (*recorder)->add(c);
+    }
+    for (const Event& e : core.events()) (*recorder)->add(e);
+  }
+  ASSERT_TRUE((*recorder)->finish({4000, 0, 0, volumeSha256(grid.snapshot())}).ok());
+
+  const auto reader = *SessionReader::open(folder / "a.h5");
+  EXPECT_EQ(reader->header().labels_sha256, labelsSha256(*labels));
+  ASSERT_GT(reader->carves()->size(), 20u);
+  EXPECT_GT(reader->carves()->back().tick, 2000u);
+  const auto result = replay(*reader, slab(), labels.get());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->ticks, 4000u);
+}
+
+TEST(Recording, RefusesAnotherLabelMapAndOneTooMany) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 100);
+  EXPECT_EQ((*SessionReader::open(folder / "a.h5"))->header().labels_sha256, "");
+  const auto too_many = replay(**SessionReader::open(folder / "a.h5"), slab(), halves().get());
+  ASSERT_FALSE(too_many.ok());
+  EXPECT_EQ(too_many.error().code, "WRONG_LABELS");
+  EXPECT_NE(too_many.error().what.find("without a label map"), std::string::npos);
+}
+
+// Version 2 knew no label maps and had no field for a tissue's label.
+TEST(Recording, OfTheVersionBeforeLabelMapsReplays) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 500);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
+  for (int number : {2, 1}) {
+    ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &number), 0);
+    H5Fflush(file, H5F_SCOPE_GLOBAL);
+    if (number == 2) {
+      EXPECT_TRUE(replay(**SessionReader::open(folder / "a.h5"), slab())->identical);
+    } else {
+      EXPECT_EQ(SessionReader::open(folder / "a.h5").error().code, "OLDER_VERSION");
+    }
+  }
+  H5Aclose(version);
+  H5Fclose(file);
 }
 
 TEST(Recording, RefusesToReplayWhatWasDropped) {

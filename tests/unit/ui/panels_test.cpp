@@ -96,6 +96,32 @@ TEST_F(TissuePanelTest, AnOverlapIsSaidAndNotApplied) {
   EXPECT_EQ(changes_, 1);
 }
 
+TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedAlways) {
+  QSpinBox& label = find<QSpinBox>(panel_, "label");
+  EXPECT_EQ(label.text(), "any");
+  EXPECT_FALSE(label.isEnabled());
+  EXPECT_TRUE(label.toolTip().contains("label map"));
+  panel_.setLabelsOpen(true);
+  ASSERT_TRUE(label.isEnabled());
+  EXPECT_EQ(changes_, 0);
+  label.setValue(5);
+  ASSERT_EQ(changes_, 1);
+  EXPECT_EQ(changed_.tissues[1].label, 5);
+  EXPECT_FALSE(changed_.tissues[0].label);
+  EXPECT_TRUE(find<QListWidget>(panel_, "tissueList").item(1)->toolTip().contains("label 5"));
+  find<QSpinBox>(panel_, "huLow").setValue(150);
+  EXPECT_EQ(changes_, 2) << "under a label it may overlap one that has none";
+
+  panel_.setLabelsOpen(false);
+  ASSERT_TRUE(label.isEnabled());
+  find<QSpinBox>(panel_, "huLow").setValue(201);
+  label.setValue(0);
+  EXPECT_EQ(label.text(), "any");
+  EXPECT_FALSE(changed_.tissues[1].label);
+  panel_.select("soft");
+  EXPECT_FALSE(label.isEnabled());
+}
+
 TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
   QSlider& slider = find<QSlider>(panel_, "opacity");
   slider.setValue(slider.maximum());
@@ -136,6 +162,17 @@ TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
   EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
   panel.endProgress();
   EXPECT_TRUE(folder.isEnabled() && another.isEnabled());
+}
+
+TEST_F(PanelTest, ALabelMapIsAskedForUnlessAnExerciseRuns) {
+  CasePanel panel;
+  int wanted = 0;
+  QObject::connect(&panel, &CasePanel::labelsWanted, &panel, [&] { ++wanted; });
+  QPushButton& button = find<QPushButton>(panel, "openLabels");
+  button.click();
+  EXPECT_EQ(wanted, 1);
+  panel.setOpeningAllowed(false);
+  EXPECT_FALSE(button.isEnabled());
 }
 
 TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {

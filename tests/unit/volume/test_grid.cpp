@@ -26,6 +26,16 @@ TEST(Grid, AVoxelOutsideIsAir) {
   EXPECT_EQ(grid.hu(3, 4, 5), patternVolume({4, 5, 6}).at(3, 4, 5));
 }
 
+TEST(Grid, KnowsTheLabelOfEachVoxelWhereThereIsALabelMap) {
+  const Volume volume = patternVolume({4, 5, 6});
+  EXPECT_EQ(Grid(volume).label(7), 0);
+  LabelMap map{volume.geometry, std::vector<std::uint8_t>(volume.hu.size())};
+  map.labels[7] = 5;
+  const Grid grid(volume, std::make_shared<const LabelMap>(map));
+  EXPECT_EQ(grid.label(6), 0);
+  EXPECT_EQ(grid.label(7), 5);
+}
+
 TEST(Grid, HasOneWriterAtATime) {
   Grid grid(patternVolume({4, 4, 4}));
   auto first = grid.takeWriter();

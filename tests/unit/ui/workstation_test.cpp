@@ -1,0 +1,111 @@
+// The workstation without a window: a case, its label map, an exercise on both.
+#include "ui/workstation.h"
+
+#include <gtest/gtest.h>
+
+#include "qt_support.h"
+#include "support.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+namespace {
+
+using test::waitFor;
+
+// A ball of bone: enough for the landmark of the default scene.
+Volume ball() {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {60, 60, 60};
+  g.spacing_mm = Vec3(1.5);
+  g.origin_mm = Vec3(-44.25);
+  for (std::size_t i = 0; i < g.voxelCount(); ++i) {
+    const Index3 at = g.indicesOf(i);
+    const double r = glm::length(g.toPatient_mm(Vec3(at[0], at[1], at[2])));
+    v.hu.push_back(std::int16_t(r < 40.0 ? 1200 : kAirHu));
+  }
+  return v;
+}
+
+class WorkstationTest : public ::testing::Test {
+ protected:
+  WorkstationTest() {
+    QObject::connect(&workstation_, &Workstation::failed, &workstation_,
+                     [this](const Error& error) { failed_ = error; });
+  }
+  // Runs until what was begun is over.
+  bool wait() {
+    return waitFor([this] { return !workstation_.isOpening(); });
+  }
+  std::filesystem::path written(const char* name, const Volume& volume) {
+    EXPECT_TRUE(writeVolume(volume, folder_ / name));
+    return folder_ / name;
+  }
+  std::filesystem::path labels(int label) {
+    Volume map = ball();
+    std::fill(map.hu.begin(), map.hu.end(), std::int16_t(label));
+    return written("labels.nii.gz", map);
+  }
+
+  QApplication& application_ = test::application();
+  test::TemporaryFolder folder_;
+  Workstation workstation_;
+  std::optional<Error> failed_;
+};
+
+TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
+  workstation_.useLabels(labels(7));
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NO_CASE");
+  failed_.reset();
+
+  const std::filesystem::path ct = written("ct.mha", ball());
+  workstation_.openPath(ct);
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(workstation_.volume());
+  EXPECT_EQ(workstation_.labels(), nullptr);
+  workstation_.useLabels(labels(7));
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  ASSERT_TRUE(workstation_.labels());
+  EXPECT_EQ(workstation_.labels()->labels, std::vector<std::uint8_t>(ball().hu.size(), 7));
+
+  workstation_.useLabels(labels(700));
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NOT_LABELS");
+  EXPECT_TRUE(workstation_.labels()) << "the one before stays";
+  workstation_.useScene(workstation_.sceneFile());
+  ASSERT_TRUE(wait());
+  EXPECT_TRUE(workstation_.labels()) << "another exercise on the same case";
+  workstation_.openPath(ct);
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(workstation_.labels(), nullptr);
+}
+
+TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
+  workstation_.openPath(written("ct.mha", ball()));
+  ASSERT_TRUE(wait());
+  TissueSet tissues = workstation_.scene()->tissues;
+  tissues.tissues.back().label = 7;
+  workstation_.setTissues(tissues);
+  const auto started = [&] {
+    workstation_.start(folder_.path(), {}, 1e9);
+    (void)waitFor([&] { return workstation_.phase() != Workstation::Phase::starting; });
+    return workstation_.session() != nullptr;
+  };
+  EXPECT_FALSE(started());
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NO_LABELS");
+  failed_.reset();
+
+  workstation_.useLabels(labels(7));
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(started()) << (failed_ ? failed_->sentence() : "");
+  EXPECT_EQ(workstation_.session()->grid().labels(), workstation_.labels());
+  workstation_.stop();
+  EXPECT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+}
+
+}  // namespace
+}  // namespace trephine
