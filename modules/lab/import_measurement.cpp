@@ -27,11 +27,7 @@ Error badArgument(const char* what, const char* where) {
 }
 
 Status check(const ImportOptions& options) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (options.size[axis] < 2 || options.size[axis] > 2048) {
-      return badArgument("A series has 2 to 2048 voxels along an edge", "--size, --slices");
-    }
-  }
+  if (Status can = checkSeriesSize(options.size); !can) return can;
   if (options.repetitions < 1 || options.repetitions > 100) {
     return badArgument("There are 1 to 100 repetitions", "--repetitions");
   }

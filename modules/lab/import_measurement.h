@@ -46,7 +46,7 @@ struct ImportMeasurement {
 struct ImportOptions {
   std::filesystem::path program;       // trephine-lab
   bool peers = false;                  // other programs too, where they are installed
-  Index3 size{512, 512, 300};          // of every series, 2 to 2048
+  Index3 size{512, 512, 300};          // of every series (checkSeriesSize)
   int repetitions = 5;                 // 1 to 100, after one that is not timed
   int scan_series = 10;                // 1 to 1000
   int scan_slices = 300;               // 2 to 2048, of each of them

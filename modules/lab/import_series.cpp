@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr Vec3 kExtent_mm{230.0, 230.0, 180.0};
 constexpr double kNoiseHu = 15.0;
+constexpr std::uint64_t kMostVoxels = std::uint64_t(1) << 28;
 constexpr int kLowestHu = -1024, kHighestHu = 3071;
 
 // The sum of a hash's eight bytes about its mean: variance 8 * (256^2 - 1) / 12 = 43690.
@@ -196,6 +198,19 @@ Status writeSlice(const SliceFile& slice, const fs::path& file) {
                file.parent_path().string(), "See whether the disk is full"};
 }
 
+// Calls work(k) for every k below `count`, on a few threads.
+Status forEachSlice(int count, const std::string& step, const ProgressShare& share,
+                    const std::function<void(int)>& work) {
+  const Status ran = forEachFile(std::size_t(count), share.progress, {share.from, share.to, step},
+                                 [&](std::size_t k) { work(int(k)); });
+  if (ran) return ran;
+  const bool cancelled = ran.error().code == "CANCELLED";
+  return Error{
+      ran.error().code,
+      cancelled ? "The measurement was cancelled" : "There is not enough memory to make the series",
+      "measure import", cancelled ? "" : "Close other programs and try again"};
+}
+
 // Writes what `slice` gives for 0..count-1.
 template <class Slice>
 Status writeAll(int count, const fs::path& folder, const std::string& step,
@@ -204,25 +219,31 @@ Status writeAll(int count, const fs::path& folder, const std::string& step,
   registerEncoders();
   std::mutex mutex;
   Status result;
-  const Status ran = forEachFile(std::size_t(count), share.progress, {share.from, share.to, step},
-                                 [&](std::size_t n) {
-                                   char name[32];
-                                   std::snprintf(name, sizeof name, "I%06d", int(n) + 1);
-                                   const Status written = writeSlice(slice(int(n)), folder / name);
-                                   const std::lock_guard lock(mutex);
-                                   if (!written && result) result = written;
-                                 });
+  const Status ran = forEachSlice(count, step, share, [&](int n) {
+    char name[32];
+    std::snprintf(name, sizeof name, "I%06d", n + 1);
+    const Status written = writeSlice(slice(n), folder / name);
+    const std::lock_guard lock(mutex);
+    if (!written && result) result = written;
+  });
   return ran ? result : ran;
 }
 
 }  // namespace
 
-Result<Volume> makeNoisyCt(const Index3& size, const ProgressShare& share) {
+Status checkSeriesSize(const Index3& size) {
+  std::uint64_t voxels = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    if (size[axis] < 2 || size[axis] > 2048) {
-      return Error{"BAD_ARGUMENT", "A series has 2 to 2048 voxels along an edge", "size", ""};
-    }
+    if (size[axis] < 2 || size[axis] > 2048) voxels = kMostVoxels;
+    voxels *= std::uint64_t(std::clamp(size[axis], 2, 2048));
   }
+  if (voxels <= kMostVoxels) return {};
+  return Error{"BAD_ARGUMENT",
+               "A series has 2 to 2048 voxels along an edge, and 2^28 (512 MB) in all", "size", ""};
+}
+
+Result<Volume> makeNoisyCt(const Index3& size, const ProgressShare& share) {
+  if (Status can = checkSeriesSize(size); !can) return can.error();
   share.progress.at(share.from, "Making the phantom");
   const Result<PhantomTruth> truth = phantomTruth("cranium");
   if (!truth) return truth.error();
@@ -231,9 +252,9 @@ Result<Volume> makeNoisyCt(const Index3& size, const ProgressShare& share) {
   Volume fine{geometryOf(size), {}};
   fine.hu.resize(fine.geometry.voxelCount());
   const Refinement refinement(coarse, fine);
-  const Status done = forEachFile(std::size_t(size[2]), share.progress,
-                                  {0.5 * (share.from + share.to), share.to, "Making the phantom"},
-                                  [&](std::size_t k) { refinement.slice(int(k)); });
+  const Status done = forEachSlice(size[2], "Making the phantom",
+                                   {share.progress, 0.5 * (share.from + share.to), share.to},
+                                   [&](int k) { refinement.slice(k); });
   if (!done) return done.error();
   return fine;
 }

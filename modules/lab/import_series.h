@@ -32,10 +32,13 @@ struct ProgressShare {
   double from = 0.0, to = 1.0;
 };
 
+// BAD_ARGUMENT unless edges are of 2 to 2048 voxels, and all are at most 2^28.
+Status checkSeriesSize(const Index3& size);
+
 // The head of the cranium phantom, 230 x 230 x 180 mm, with the noise of a CT: standard deviation
 // 15 HU, neighbours within a slice correlated by 0.44 (a head CT with a bone kernel: 13 HU, 0.25 to
 // 0.53). All of it comes from formulas in whole numbers, so the bits are the same everywhere.
-// HU -1024 to 3071. Errors: BAD_ARGUMENT (edges of 2 to 2048), CANCELLED, OUT_OF_MEMORY.
+// HU -1024 to 3071. Errors: BAD_ARGUMENT (checkSeriesSize), CANCELLED, OUT_OF_MEMORY.
 Result<Volume> makeNoisyCt(const Index3& size, const ProgressShare& share);
 
 // Writes the volume, one file a slice, into the folder, which is made. A header is as long as a

@@ -119,7 +119,7 @@ TEST(NoisyCt, FillsTheRangeOfAScannerAndNoMore) {
 }
 
 TEST(NoisyCt, RefusesEdgesThatItCannotMake) {
-  for (const Index3 size : {Index3{1, 8, 8}, Index3{8, 2049, 8}, Index3{8, 8, 0}}) {
+  for (const Index3 size : {Index3{1, 8, 8}, Index3{8, 2049, 8}, Index3{8, 8, 0}, Index3{1024, 1024, 257}}) {
     const Result<Volume> volume = makeNoisyCt(size, {kQuiet});
     ASSERT_FALSE(volume);
     EXPECT_EQ(volume.error().code, "BAD_ARGUMENT");
