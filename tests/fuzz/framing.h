@@ -1,0 +1,79 @@
+// How several files make one input: a byte of modes, then the files, each a byte for its name and
+// its contents, with kNextFile between them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "imaging/importer.h"
+
+namespace trephine::fuzz {
+
+enum Mode : std::uint8_t {
+  kOpenFirstFile = 1,  // not the folder
+  kReduce = 2,
+  kCrop = 4,
+  kOtherAnswers = 8,
+};
+
+constexpr std::string_view kNextFile = "\nNEXT\n";
+
+// The first is numbered, so that a series has any number of slices; of the others one each.
+enum Name : std::uint8_t {
+  kSlice,
+  kDicomDir,
+  kNifti,
+  kNiftiGz,
+  kNrrd,
+  kNhdr,
+  kMha,
+  kMhd,
+  kRaw,
+  kJson,
+  kNames
+};
+constexpr const char* kFileNames[kNames] = {"IM",     "DICOMDIR", "v.nii", "v.nii.gz", "v.nrrd",
+                                            "v.nhdr", "v.mha",    "v.mhd", "v.raw",    "v.json"};
+
+// To every question; the second where the input asks for it.
+inline const Answers kAnswers{{"MISSING_SLICES", "fill"},
+                              {"UNEVEN_SPACING", "resample"},
+                              {"PHASES", "1"},
+                              {"DUPLICATE_POSITIONS", "first"},
+                              {"LOSSY_SOURCE", "accept"},
+                              {"COUCH", "remove"},
+                              {"FACE", "deface"}};
+inline const Answers kOther{{"MISSING_SLICES", "part"},
+                            {"UNEVEN_SPACING", "part"},
+                            {"PHASES", "2"},
+                            {"DUPLICATE_POSITIONS", "last"},
+                            {"LOSSY_SOURCE", "accept"}};
+
+struct File {
+  std::string name;
+  std::string_view bytes;
+};
+
+inline std::string fileName(std::uint8_t name, std::size_t number) {
+  const std::uint8_t known = name % kNames;
+  return known == kSlice ? kFileNames[kSlice] + std::to_string(number) : kFileNames[known];
+}
+
+inline std::vector<File> filesIn(std::string_view input) {
+  std::vector<File> files;
+  while (!input.empty()) {
+    const std::size_t end = input.find(kNextFile);
+    const std::string_view part = input.substr(0, end);
+    if (!part.empty()) {
+      files.push_back({fileName(std::uint8_t(part[0]), files.size()), part.substr(1)});
+    }
+    if (end == input.npos) break;
+    input.remove_prefix(end + kNextFile.size());
+  }
+  return files;
+}
+
+}  // namespace trephine::fuzz
