@@ -35,7 +35,7 @@ Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
     const double value = std::clamp(read->hu_min < 0.0 ? read->hu_min : read->hu_max, -kMost, kMost);
     return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label", file);
   }
-  const std::vector<std::int16_t>& values = read->volume.hu;
+  const Voxels& values = read->volume.hu;
   return LabelMap{read->volume.geometry, {values.begin(), values.end()}};
 }
 
