@@ -11,6 +11,8 @@
 #include "base/system.h"
 #include "imaging/ct_writer.h"
 #include "imaging/importer.h"
+#include "imaging/provenance.h"
+#include "imaging/report_page.h"
 #include "lab/exercise_picture.h"
 #include "lab/explain.h"
 #include "lab/extremes_measurement.h"
@@ -41,11 +43,53 @@ void printReport(const ImportReport& report) {
                 s.geometry.size[0], s.geometry.size[1], s.geometry.size[2], s.geometry.spacing_mm.x,
                 s.geometry.spacing_mm.y, s.geometry.spacing_mm.z, s.modality.c_str(),
                 s.description.c_str());
-    for (const Finding& f : s.findings) std::printf("          %s %s\n", f.text.c_str(), f.action.c_str());
+    for (const Finding& f : s.findings) {
+      std::printf("          %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+    }
+    for (const Choice& c : s.choices) {
+      std::printf("          %s\n", c.question.c_str());
+      for (std::size_t n = 0; n < c.options.size(); ++n) {
+        std::printf("            --choice %s=%s  %s\n", c.code.c_str(), c.options[n].c_str(),
+                    c.words[n].c_str());
+      }
+    }
   }
   for (const SkippedFiles& s : report.skipped) {
     std::printf("skipped   %d: %s\n", s.count, s.reason.c_str());
   }
+}
+
+// Three ranges "A:B", each of voxels A to B - 1.
+std::optional<VoxelBox> parseBox(const std::string& text) {
+  VoxelBox box;
+  int end = 0;
+  const int read = std::sscanf(text.c_str(), "%d:%d,%d:%d,%d:%d%n", &box.low[0], &box.high[0],
+                               &box.low[1], &box.high[1], &box.low[2], &box.high[2], &end);
+  if (read != 6 || std::size_t(end) != text.size()) return std::nullopt;
+  return box;
+}
+
+Result<ImportRequest> importRequest(const ImportArguments& arguments) {
+  ImportRequest request;
+  for (const std::string& choice : arguments.choices) {
+    const std::size_t equals = choice.find('=');
+    if (equals == std::string::npos) {
+      return Error{"BAD_ARGUMENT", "A choice is written CODE=OPTION, not '" + choice + "'",
+                   "--choice", "The report lists codes and options"};
+    }
+    request.answers[choice.substr(0, equals)] = choice.substr(equals + 1);
+  }
+  if (arguments.phase) request.answers["PHASES"] = std::to_string(*arguments.phase);
+  if (!arguments.crop.empty()) {
+    request.crop = parseBox(arguments.crop);
+    if (!request.crop) {
+      return Error{"BAD_ARGUMENT", "'" + arguments.crop + "' is no box of voxels", "--crop",
+                   "Write I0:I1,J0:J1,K0:K1"};
+    }
+  }
+  if (arguments.half) request.reduction = 2;
+  if (arguments.quarter) request.reduction = 4;
+  return request;
 }
 
 // Puts the command line's choices into the scene.
@@ -169,32 +213,43 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
   return 0;
 }
 
-int importCommand(const std::string& path, const std::string& series, const std::string& write,
-                  bool json, const Progress& progress) {
+int importCommand(const ImportArguments& arguments, bool json, const Progress& progress) {
   const auto fail = [&](const Error& error, const ImportReport* report) {
     ImportReport nothing;
-    nothing.path = path;
+    nothing.path = arguments.path;
     Json extra = toJson(report ? *report : nothing);
     extra["chosen"] = nullptr;
     if (!json && report) printReport(*report);
     printError("import", error, json, extra);
     return 2;
   };
-  Result<CtFolder> folder = CtFolder::scan(path, progress);
+  Result<ImportRequest> request = importRequest(arguments);
+  if (!request) return fail(request.error(), nullptr);
+  if (!arguments.write.empty()) {
+    if (Status can = checkVolumeFileName(arguments.write); !can) return fail(can.error(), nullptr);
+  }
+  Result<CtFolder> folder = CtFolder::scan(arguments.path, progress);
   if (!folder) return fail(folder.error(), nullptr);
-  const std::optional<std::string> uid =
-      series.empty() ? folder->bestSeries() : std::optional<std::string>(series);
+  const auto saveReport = [&]() -> Status {
+    if (arguments.report.empty()) return {};
+    return writeTextFile(arguments.report, reportPage(folder->report()));
+  };
+  const std::optional<std::string> uid = arguments.series.empty()
+                                             ? folder->bestSeries(request->answers)
+                                             : std::optional<std::string>(arguments.series);
   if (!uid) {
-    const Error none{"ALL_REFUSED", "No series in the folder can be used", path,
+    if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
+    const Error none{"ALL_REFUSED", "No series in the folder can be used", arguments.path,
                      "The findings say why for each"};
     return fail(folder->report().error.value_or(none), &folder->report());
   }
-  Result<Volume> volume = folder->read(*uid, progress);
+  Result<Volume> volume = folder->read(*uid, *request, progress);
+  if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
   if (!volume) return fail(volume.error(), &folder->report());
-  if (!write.empty()) {
-    if (Status written = writeVolume(*volume, write); !written) {
-      return fail(written.error(), &folder->report());
-    }
+  if (!arguments.write.empty()) {
+    Status written = writeVolume(*volume, arguments.write);
+    if (written) written = writeProvenance(*folder->report().provenance, arguments.write);
+    if (!written) return fail(written.error(), &folder->report());
   }
   if (json) {
     printAnswer("import", toJson(folder->report()));

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
 
@@ -20,9 +21,19 @@ struct RunArguments {
   bool realtime = false;
 };
 
+struct ImportArguments {
+  std::string path;
+  std::string series;                // empty: the CT series with most slices
+  std::vector<std::string> choices;  // CODE=OPTION
+  std::optional<int> phase;          // from 1
+  bool half = false, quarter = false;
+  std::string crop;    // "I0:I1,J0:J1,K0:K1"
+  std::string write;   // a volume file
+  std::string report;  // an HTML file
+};
+
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
-int importCommand(const std::string& path, const std::string& series, const std::string& write,
-                  bool json, const Progress&);
+int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 int runCommand(const RunArguments& arguments, bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source, bool json, const Progress&);
 int explainCommand(const std::string& scene, bool json);

@@ -28,7 +28,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", buildName());
   bool json = false;
 
-  std::string phantom, out, path, series, write, file, case_source;
+  std::string phantom, out, file, case_source;
   RunArguments arguments;
   auto with_json = [&](CLI::App* command) {
     command->add_flag("--json", json, "Answer as JSON on stdout; logs go to stderr");
@@ -40,9 +40,19 @@ int run(int argc, char** argv) {
   phantom_command->add_option("--out", out, "Folder for the slices")->required();
 
   auto* import_command = with_json(app.add_subcommand("import", "Read a folder of CT, with a report"));
-  import_command->add_option("path", path, "A folder or a file")->required();
-  import_command->add_option("--series", series, "The series to read, by its UID in the report");
-  import_command->add_option("--write", write, "Save the volume as .mha or .nii.gz");
+  ImportArguments wanted;
+  import_command->add_option("path", wanted.path, "A folder or a file")->required();
+  import_command->add_option("--series", wanted.series, "The series to read, by its UID in the report");
+  import_command->add_option("--choice", wanted.choices,
+                             "CODE=OPTION: the answer to a question of the report; may be repeated");
+  import_command->add_option("--phase", wanted.phase, "Which phase, from 1: as --choice PHASES=N")
+      ->check(CLI::PositiveNumber);
+  auto* half = import_command->add_flag("--half", wanted.half, "Half the resolution along each axis");
+  import_command->add_flag("--quarter", wanted.quarter, "A quarter of the resolution")->excludes(half);
+  import_command->add_option("--crop", wanted.crop,
+                             "I0:I1,J0:J1,K0:K1: keep voxels I0 to I1 - 1 and so on, before --half");
+  import_command->add_option("--write", wanted.write, "Save the volume as .mha, .nii or .nii.gz");
+  import_command->add_option("--report", wanted.report, "Save the report card as a page (.html)");
 
   auto* run_command = with_json(app.add_subcommand("run", "Run an exercise with a scripted operator"));
   run_command->add_option("scene", arguments.scene, "A scene file")->required();
@@ -97,7 +107,7 @@ int run(int argc, char** argv) {
   }
   setUpLog(json);
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
-  if (*import_command) return importCommand(path, series, write, json, progress);
+  if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, json, progress);
   if (*replay_command) return replayCommand(file, case_source, json, progress);
   if (*explain_command) return explainCommand(file, json);

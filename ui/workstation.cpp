@@ -173,7 +173,7 @@ void Workstation::openSeries(const std::string& uid) {
   opening_.run(
       [folder = folder_, uid, scene = *std::move(scene),
        file](const Progress& progress) -> Result<Opened> {
-        Result<Volume> volume = folder->read(uid, progress);
+        Result<Volume> volume = folder->read(uid, {}, progress);
         if (!volume) return volume.error();
         Opened out{scene, file, std::make_shared<const Volume>(*std::move(volume)), {}, {}, true};
         place(out, progress);

@@ -40,6 +40,18 @@ double peakResidentMb() {
   return static_cast<double>(usage.ru_maxrss) * 1024.0 / kMb;
 }
 
+double availableMemoryMb() {
+  std::ifstream in("/proc/meminfo");
+  std::string name, unit;
+  double kilobytes = 0.0;
+  while (in >> name >> kilobytes) {
+    if (name == "MemAvailable:") return kilobytes / 1024.0;
+    std::getline(in, unit);
+  }
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(::sysconf(_SC_PAGESIZE)) / kMb;
+}
+
 std::filesystem::path resourceFolder() {
   return fromEnvironment("TREPHINE_RESOURCES", build_info::resources);
 }

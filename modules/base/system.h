@@ -12,6 +12,8 @@ std::string buildName();
 // Resident memory now and at its peak, in MB of 2^20 bytes.
 double residentMb();
 double peakResidentMb();
+// What could be allocated now without pushing anything out to disk.
+double availableMemoryMb();
 
 // Where scenes, tissues and devices are; the environment's TREPHINE_RESOURCES comes first.
 std::filesystem::path resourceFolder();

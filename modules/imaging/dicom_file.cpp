@@ -1,40 +1,29 @@
 #include "imaging/dicom_file.h"
 
-#include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dcspchrs.h>
-#include <dcmtk/dcmdata/dctk.h>
-#include <dcmtk/oflog/oflog.h>
+#include <dcmtk/dcmdata/dcistrmf.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <fstream>
-#include <map>
-#include <mutex>
 
-#include "imaging/text.h"
+#include "imaging/dicom_pixels.h"
+#include "imaging/dicom_values.h"
+#include "imaging/jpeg2000.h"
+#include "imaging/transfer_syntax.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr Uint32 kLazyBytes = 1024;      // longer values stay on disk until asked for
-constexpr Uint32 kLongestValue = 16384;  // no attribute that we read is longer
-constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
+constexpr Uint32 kLazyBytes = 1024;  // longer values stay on disk until asked for
 constexpr std::string_view kDicomDir = "1.2.840.10008.1.3.10";
+constexpr const char* kUnnamedSeries = "unnamed";
+constexpr int kMostFrames = 100000;
 
 // A level of nesting takes at least 16 bytes of file and up to 2.1 KB of stack (measured), so that
 // a file of this size cannot exhaust a worker's stack; the items of larger ones are counted first.
 constexpr std::uint64_t kSafeFileBytes = std::uint64_t(2) << 20;
 constexpr std::size_t kMostItems = 100000;
-
-void quietDcmtk() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    dcmEnableUnknownVRConversion.set(OFTrue);  // known attributes sent as VR UN
-  });
-}
 
 Error skip(std::string reason) {
   return Error{"SKIPPED", std::move(reason), "", ""};
@@ -73,57 +62,18 @@ bool tooManyItems(const std::filesystem::path& file) {
   return false;
 }
 
-std::string valueText(DcmItem& item, const DcmTagKey& tag) {
-  DcmElement* element = nullptr;
-  if (item.findAndGetElement(tag, element).bad() || !element) return "";
-  if (element->getLength() > kLongestValue) return "";
-  OFString text;
-  if (element->getOFStringArray(text).bad()) return "";
-  return std::string(text.c_str(), text.length());
-}
-
-std::string trimmedText(DcmItem& item, const DcmTagKey& tag) {
-  return cleanUtf8(valueText(item, tag));
-}
-
-// A UID, or nothing where it holds what no UID can.
-std::string uidText(DcmItem& item, const DcmTagKey& tag) {
-  const std::string text = trimmedText(item, tag);
-  const bool valid = text.size() <= 64 && std::ranges::all_of(text, [](char c) {
-                       return c == '.' || (c >= '0' && c <= '9');
-                     });
-  return valid ? text : "";
-}
-
-// A count: `fallback` where absent, 0 where it is more than `most` or negative, so that products of
-// counts fit 64 bit.
-int countOr(DcmItem& item, const DcmTagKey& tag, int fallback, int most) {
-  const int count = parseInteger(valueText(item, tag)).value_or(fallback);
-  return count >= 0 && count <= most ? count : 0;
-}
-
-std::string decodedText(DcmItem& item, const DcmTagKey& tag) {
-  const std::string raw = valueText(item, tag);
-  const bool plain = std::ranges::all_of(raw, [](char c) { return c >= 0x20 && c < 0x7F; });
-  if (plain) return cleanUtf8(raw);
-  const std::string charset = valueText(item, DCM_SpecificCharacterSet);
-  DcmSpecificCharacterSet converter;
-  OFString utf8;
-  if (!charset.empty() &&
-      converter.selectCharacterSet(OFString(charset.data(), charset.size()), "ISO_IR 192").good() &&
-      converter.convertString(OFString(raw.data(), raw.size()), utf8).good()) {
-    return cleanUtf8(std::string_view(utf8.c_str(), utf8.length()));
-  }
-  return guessUtf8(raw);
-}
-
-template <std::size_t kCount>
-std::optional<std::array<double, kCount>> decimals(DcmItem& item, const DcmTagKey& tag) {
-  const auto values = parseDecimals(valueText(item, tag));
-  if (!values || values->size() != kCount) return std::nullopt;
-  std::array<double, kCount> array;
-  std::ranges::copy(*values, array.begin());
-  return array;
+// Slope and intercept stand in the data set, or in a functional group of an enhanced image.
+void readRescale(DcmItem& item, DicomHeader& header) {
+  StoredFormat& format = header.format;
+  const std::string slope = trimmedText(item, DCM_RescaleSlope);
+  const std::string intercept = trimmedText(item, DCM_RescaleIntercept);
+  const auto slope_value = parseDecimal(slope), intercept_value = parseDecimal(intercept);
+  header.rescale_bad = (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
+  format.slope = slope_value.value_or(1.0);
+  format.intercept = intercept_value.value_or(0.0);
+  header.rescale_given = slope_value && intercept_value && *slope_value != 0.0;
+  if (format.slope == 0.0) format.slope = 1.0;
+  header.rescale_type = trimmedText(item, DCM_RescaleType);
 }
 
 void readFormat(DcmItem& data, DicomHeader& header) {
@@ -132,16 +82,6 @@ void readFormat(DcmItem& data, DicomHeader& header) {
   format.bits_stored = countOr(data, DCM_BitsStored, header.bits_allocated, 64);
   format.high_bit = countOr(data, DCM_HighBit, format.bits_stored - 1, 63);
   format.is_signed = countOr(data, DCM_PixelRepresentation, 0, 1) == 1;
-
-  const std::string slope = trimmedText(data, DCM_RescaleSlope);
-  const std::string intercept = trimmedText(data, DCM_RescaleIntercept);
-  const auto slope_value = parseDecimal(slope), intercept_value = parseDecimal(intercept);
-  header.rescale_bad = (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
-  format.slope = slope_value.value_or(1.0);
-  format.intercept = intercept_value.value_or(0.0);
-  header.rescale_given = slope_value && intercept_value && *slope_value != 0.0;
-  if (format.slope == 0.0) format.slope = 1.0;
-
   // US or SS: kept as the word that the pixels would hold.
   const auto padding = parseInteger(valueText(data, DCM_PixelPaddingValue));
   const auto limit = parseInteger(valueText(data, DCM_PixelPaddingRangeLimit));
@@ -151,47 +91,157 @@ void readFormat(DcmItem& data, DicomHeader& header) {
   }
 }
 
-// Compares what the pixel element holds with what rows, columns and bits need, in 64 bit.
-void checkPixels(DcmElement& pixels, bool cut, DicomHeader& header) {
-  if (!isReadableTransferSyntax(header.transfer_syntax)) return;
-  const std::uint64_t needed = header.frameBytes() * std::uint64_t(std::max(header.frames, 1)) *
-                               std::uint64_t(std::max(header.samples, 1));
-  const std::uint64_t length = pixels.getLength();
-  if (cut || length > header.file_bytes) {
-    header.defect = Defect::cut;
-    header.defect_text = "its pixels are cut short";
-  } else if (header.bits_allocated % 8 == 0 && needed > 0) {
-    // Writers pad, by less than a row; more means that rows or columns are wrong.
-    const std::uint64_t row = needed / std::uint64_t(header.rows);
-    if (length < needed || length - needed >= std::max<std::uint64_t>(row, 2)) {
-      header.defect = Defect::size_mismatch;
-      header.defect_text = "it holds " + std::to_string(length) + " bytes of pixels where " +
-                           std::to_string(header.columns) + "x" + std::to_string(header.rows) +
-                           " need " + std::to_string(needed);
-    }
+void readSpacing(DcmItem& item, DicomHeader& header) {
+  header.pixel_spacing_mm = decimals<2>(item, DCM_PixelSpacing);
+  if (header.pixel_spacing_mm && std::ranges::min(*header.pixel_spacing_mm) <= 0.0) {
+    header.pixel_spacing_mm.reset();
   }
+}
+
+void readPosition(DcmItem& item, DicomHeader& header) {
+  header.position_mm.reset();
+  if (const auto p = decimals<3>(item, DCM_ImagePositionPatient)) {
+    header.position_mm = Vec3((*p)[0], (*p)[1], (*p)[2]);
+  }
+}
+
+std::optional<double> number(DcmItem& item, const DcmTagKey& tag) {
+  return parseDecimal(trimmedText(item, tag));
+}
+
+void readPhase(DcmItem& data, DicomHeader& header) {
+  header.phase[kTemporalPosition] = number(data, DCM_TemporalPositionIdentifier);
+  header.phase[kCardiacPercent] = number(data, DCM_NominalPercentageOfCardiacPhase);
+  header.phase[kAcquisitionNumber] = number(data, DCM_AcquisitionNumber);
+  header.phase[kTriggerTime] = number(data, DCM_TriggerTime);
+  const auto date_time = timeNumber(data, DCM_AcquisitionDateTime);
+  header.phase[kAcquisitionTime] = date_time ? date_time : timeNumber(data, DCM_AcquisitionTime);
+  header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
+}
+
+// The first item of a sequence, or null.
+DcmItem* firstItem(DcmItem* item, const DcmTagKey& sequence) {
+  DcmItem* found = nullptr;
+  if (!item || item->findAndGetSequenceItem(sequence, found, 0).bad()) return nullptr;
+  return found;
+}
+
+// Enhanced CT: what a frame says of itself overrides what all share (PS3.3 C.7.6.16).
+void readFunctionalGroups(DcmItem* shared, DcmItem* own, DicomHeader& header) {
+  const auto group = [&](const DcmTagKey& macro) {
+    DcmItem* item = firstItem(own, macro);
+    return item ? item : firstItem(shared, macro);
+  };
+  if (DcmItem* item = group(DCM_PixelMeasuresSequence)) readSpacing(*item, header);
+  if (DcmItem* item = group(DCM_PlanePositionSequence)) readPosition(*item, header);
+  if (DcmItem* item = group(DCM_PlaneOrientationSequence)) {
+    header.orientation = decimals<6>(*item, DCM_ImageOrientationPatient);
+  }
+  if (DcmItem* item = group(DCM_PixelValueTransformationSequence)) readRescale(*item, header);
+  if (DcmItem* item = group(DCM_CTImageFrameTypeSequence)) {
+    header.image_type = splitValues(trimmedText(*item, DCM_FrameType));
+  }
+  if (DcmItem* item = group(DCM_CardiacSynchronizationSequence)) {
+    header.phase[kCardiacPercent] = number(*item, DCM_NominalPercentageOfCardiacPhase);
+  }
+  if (DcmItem* item = group(DCM_FrameContentSequence)) {
+    header.phase[kTemporalPosition] = number(*item, DCM_TemporalPositionIndex);
+    header.phase[kAcquisitionNumber] = number(*item, DCM_FrameAcquisitionNumber);
+    header.phase[kAcquisitionTime] = timeNumber(*item, DCM_FrameAcquisitionDateTime);
+  }
+}
+
+std::vector<DicomHeader> splitFrames(DcmItem& data, DicomHeader whole) {
+  DcmItem* shared = firstItem(&data, DCM_SharedFunctionalGroupsSequence);
+  DcmSequenceOfItems* per_frame = nullptr;
+  data.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, per_frame);
+  if (whole.frames == 1 && !shared && !per_frame) return {std::move(whole)};
+  // Without functional groups nothing says where a frame lies.
+  if (!shared && !per_frame) whole.position_mm.reset();
+  std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
+  for (int n = 0; n < whole.frames; ++n) {
+    DicomHeader& frame = frames[std::size_t(n)];
+    frame.frame = n;
+    if (whole.frames > 1) frame.instance_number = std::to_string(n + 1);
+    const bool there = per_frame && std::size_t(n) < per_frame->card();
+    readFunctionalGroups(shared, there ? per_frame->getItem(std::size_t(n)) : nullptr, frame);
+  }
+  return frames;
+}
+
+// Compares what the pixel element holds with what rows, columns and bits need, in 64 bit.
+void checkPixels(bool cut, DicomHeader& header) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  if (!syntax) return;
+  const auto spoilt = [&](Defect defect, std::string text) {
+    header.defect = defect;
+    header.defect_text = std::move(text);
+  };
+  if (cut) return spoilt(Defect::cut, "its pixels are cut short");
+  const PixelPlace& place = *header.pixels;
+  const bool encapsulated = syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000;
+  if (place.encapsulated != encapsulated) {
+    return spoilt(Defect::size_mismatch, "its pixels are not stored as its transfer syntax says");
+  }
+  if (encapsulated) {
+    if (place.frames.empty()) {
+      spoilt(Defect::size_mismatch, "its frames cannot be told apart");
+    }
+    return;
+  }
+  const std::uint64_t needed = header.frameBytes() * std::uint64_t(std::max(header.frames, 1));
+  if (header.bits_allocated % 8 != 0 || needed == 0) return;
+  // Writers pad, by less than a row; more means that rows or columns are wrong.
+  const std::uint64_t row = header.frameBytes() / std::uint64_t(header.rows);
+  if (place.bytes < needed || place.bytes - needed >= std::max<std::uint64_t>(row, 2)) {
+    spoilt(Defect::size_mismatch,
+           "it holds " + std::to_string(place.bytes) + " bytes of pixels where " +
+               std::to_string(header.columns) + "x" + std::to_string(header.rows) + " need " +
+               std::to_string(needed));
+  }
+}
+
+// Whether HU can differ from what the scanner made. JPEG 2000 may say so only in its codestream.
+bool isLossy(DcmItem& data, const DicomHeader& header) {
+  if (trimmedText(data, DCM_LossyImageCompression) == "01") return true;
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  if (!syntax || syntax->loss == Loss::never) return false;
+  if (syntax->loss == Loss::always) return true;
+  if (!header.pixels || header.pixels->frames.empty()) return false;
+  const PixelPlace::Fragment first = header.pixels->frames.front().front();
+  const auto head =
+      readBytes(header.file, first.offset, std::min<std::uint32_t>(first.bytes, 4096));
+  if (!head) return false;
+  const Result<bool> irreversible = isIrreversibleJpeg2000(*head);
+  return !irreversible || *irreversible;
+}
+
+void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, DicomHeader& header) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  bool cut = false;
+  std::string vr;
+  if (syntax && syntax->codec == Codec::deflated) {
+    // Its offset lies in the inflated data set; its length is compared when it is inflated.
+    auto place = std::make_shared<PixelPlace>();
+    place->bytes = header.frameBytes() * std::uint64_t(header.frames);
+    header.pixels = std::move(place);
+    vr = "OW";
+  } else {
+    const DcmXfer xfer(data.getOriginalXfer());
+    header.big_endian = xfer.getByteOrder() == EBO_BigEndian;
+    header.pixels = findPixels(header.file, header.file_bytes, value_offset, xfer.isExplicitVR(),
+                               header.big_endian, header.frames, vr, cut);
+  }
+  header.has_pixels = header.pixels != nullptr;
+  header.ambiguous_order = header.big_endian && header.bits_allocated > 8 && vr == "OB";
+  if (header.has_pixels) checkPixels(cut, header);
 }
 
 }  // namespace
 
-std::string transferSyntaxName(const std::string& uid) {
-  static const std::map<std::string, std::string> newer = {
-      {"1.2.840.10008.1.2.4.201", "High-Throughput JPEG 2000 (Lossless only)"},
-      {"1.2.840.10008.1.2.4.202", "High-Throughput JPEG 2000 with RPCL (Lossless only)"},
-      {"1.2.840.10008.1.2.4.203", "High-Throughput JPEG 2000"}};
-  if (const auto it = newer.find(uid); it != newer.end()) return it->second;
-  const DcmXfer syntax(uid.c_str());
-  return syntax.getXfer() == EXS_Unknown ? "unknown" : syntax.getXferName();
-}
-
-bool isReadableTransferSyntax(const std::string& uid) {
-  return uid == UID_LittleEndianImplicitTransferSyntax ||
-         uid == UID_LittleEndianExplicitTransferSyntax ||
-         uid == UID_BigEndianExplicitTransferSyntax;
-}
-
-Result<DicomHeader> readDicomHeader(const std::filesystem::path& file, std::uint64_t file_bytes) {
-  quietDcmtk();
+Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& file,
+                                                  std::uint64_t file_bytes) {
+  setUpDcmtk();
   if (file_bytes == 0) return skip("the file is empty");
   std::string head(1024, '\0');
   {
@@ -204,15 +254,15 @@ Result<DicomHeader> readDicomHeader(const std::filesystem::path& file, std::uint
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
-  if (head.find(kDeflated) != head.npos) {
-    return skip("the transfer syntax Deflated Explicit VR Little Endian (" +
-                std::string(kDeflated) + ") cannot be read yet");
-  }
   if (file_bytes > kSafeFileBytes && tooManyItems(file)) return skip("nested too deeply");
 
+  DcmInputFileStream stream{OFFilename(file.c_str())};
   DcmFileFormat dicom;
+  dicom.transferInit();
   const bool cut =
-      dicom.loadFile(file.c_str(), EXS_Unknown, EGL_noChange, kLazyBytes, ERM_autoDetect).bad();
+      dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLazyBytes, DCM_PixelData).bad();
+  dicom.transferEnd();
+  const std::uint64_t value_offset = std::uint64_t(stream.tell());
   DcmDataset& data = *dicom.getDataset();
   DcmMetaInfo& meta = *dicom.getMetaInfo();
 
@@ -226,6 +276,14 @@ Result<DicomHeader> readDicomHeader(const std::filesystem::path& file, std::uint
   if (header.sop_instance.empty()) {
     header.sop_instance = uidText(meta, DCM_MediaStorageSOPInstanceUID);
   }
+  // Anonymising software empties UIDs; that the attribute is there tells such files from debris.
+  if (header.series_uid.empty() && data.tagExists(DCM_SeriesInstanceUID) &&
+      valueText(data, DCM_SeriesInstanceUID).empty()) {
+    header.series_uid = kUnnamedSeries;
+    header.series_key = trimmedText(data, DCM_SeriesNumber) + "\\" +
+                        trimmedText(data, DCM_SeriesDate) + "\\" +
+                        trimmedText(data, DCM_SeriesTime);
+  }
   for (const auto& [uid, name] : {std::pair(&header.series_uid, "Series Instance UID"),
                                   std::pair(&header.sop_class, "SOP Class UID"),
                                   std::pair(&header.sop_instance, "SOP Instance UID")}) {
@@ -237,11 +295,10 @@ Result<DicomHeader> readDicomHeader(const std::filesystem::path& file, std::uint
   header.frame_of_reference = uidText(data, DCM_FrameOfReferenceUID);
   header.modality = trimmedText(data, DCM_Modality);
   header.description = decodedText(data, DCM_SeriesDescription);
+  header.body_part = trimmedText(data, DCM_BodyPartExamined);
   header.image_type = splitValues(trimmedText(data, DCM_ImageType));
   header.instance_number = trimmedText(data, DCM_InstanceNumber);
-  header.rescale_type = trimmedText(data, DCM_RescaleType);
   header.photometric = trimmedText(data, DCM_PhotometricInterpretation);
-  header.lossy = trimmedText(data, DCM_LossyImageCompression) == "01";
   header.transfer_syntax = uidText(meta, DCM_TransferSyntaxUID);
   if (header.transfer_syntax.empty()) {
     header.transfer_syntax = DcmXfer(data.getOriginalXfer()).getXferID();
@@ -249,48 +306,22 @@ Result<DicomHeader> readDicomHeader(const std::filesystem::path& file, std::uint
   header.rows = countOr(data, DCM_Rows, 0, 65535);
   header.columns = countOr(data, DCM_Columns, 0, 65535);
   header.samples = countOr(data, DCM_SamplesPerPixel, 1, 4);
-  header.frames = countOr(data, DCM_NumberOfFrames, 1, 1000000);
+  header.frames = std::max(countOr(data, DCM_NumberOfFrames, 1, kMostFrames), 1);
   readFormat(data, header);
-
-  if (const auto p = decimals<3>(data, DCM_ImagePositionPatient)) {
-    header.position_mm = Vec3((*p)[0], (*p)[1], (*p)[2]);
-  }
+  readRescale(data, header);
+  readPosition(data, header);
+  readSpacing(data, header);
+  readPhase(data, header);
   header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
-  header.pixel_spacing_mm = decimals<2>(data, DCM_PixelSpacing);
-  if (header.pixel_spacing_mm && std::ranges::min(*header.pixel_spacing_mm) <= 0.0) {
-    header.pixel_spacing_mm.reset();
-  }
 
-  DcmElement* pixels = nullptr;
-  if (data.findAndGetElement(DCM_PixelData, pixels).good() && pixels) {
-    header.has_pixels = true;
-    const bool big = DcmXfer(data.getOriginalXfer()).getByteOrder() == EBO_BigEndian;
-    header.ambiguous_order = big && header.bits_allocated > 8 && pixels->getVR() == EVR_OB;
-    checkPixels(*pixels, cut, header);
-  } else if (cut) {
+  if (cut) {
     header.defect = Defect::cut;
     header.defect_text = "its header is cut short";
+  } else {
+    findPixelsOf(data, value_offset, header);
   }
-  return header;
-}
-
-Status readStoredWords(const DicomHeader& header, std::int16_t* words) {
-  const auto failed = [](std::string what) { return Error{"UNREADABLE", std::move(what), "", ""}; };
-  DcmFileFormat dicom;
-  if (dicom.loadFile(header.file.c_str(), EXS_Unknown, EGL_noChange, kLazyBytes, ERM_autoDetect)
-          .bad()) {
-    return failed("its file vanished, changed or is cut short");
-  }
-  DcmElement* pixels = nullptr;
-  const std::uint64_t bytes = header.frameBytes();
-  if (dicom.getDataset()->findAndGetElement(DCM_PixelData, pixels).bad() || !pixels ||
-      pixels->getLength() < bytes || bytes > 0xFFFFFFFEU) {
-    return failed("its file changed while it was read");
-  }
-  if (pixels->getPartialValue(words, 0, Uint32(bytes), nullptr, gLocalByteOrder).bad()) {
-    return failed("its pixels are cut short");
-  }
-  return {};
+  header.lossy = isLossy(data, header);
+  return splitFrames(data, std::move(header));
 }
 
 }  // namespace trephine

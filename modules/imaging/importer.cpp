@@ -1,19 +1,19 @@
 #include "imaging/importer.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
-#include <mutex>
-#include <new>
+#include <set>
 #include <utility>
 
 #include "base/system.h"
+#include "imaging/assembly.h"
+#include "imaging/dicom_pixels.h"
+#include "imaging/file_series.h"
 #include "imaging/scan.h"
 #include "imaging/series.h"
 #include "imaging/text.h"
+#include "imaging/transfer_syntax.h"
+#include "imaging/volume_steps.h"
 #include "imaging/workers.h"
 
 namespace trephine {
@@ -52,36 +52,6 @@ std::optional<Error> folderError(const ImportReport& report) {
                report.path, refusal->action};
 }
 
-std::optional<Error> memoryError(const GridGeometry& geometry) {
-  const double machine = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
-  const double needed = double(geometry.voxelCount()) * sizeof(std::int16_t);
-  if (needed <= 0.7 * machine) return std::nullopt;
-  return Error{"OUT_OF_MEMORY",
-               "The volume needs " + fixedText(needed / 1048576.0, 0) +
-                   " MB, more than this computer can hold",
-               "", "Use a computer with more memory or export fewer slices"};
-}
-
-// Zeroed voxels on large pages where the kernel gives them: page faults are most of a read's cost.
-std::optional<Error> allocate(Volume& volume) {
-  if (auto error = memoryError(volume.geometry)) return error;
-  const std::size_t count = volume.geometry.voxelCount();
-  try {
-    volume.hu.reserve(count);
-    constexpr std::uintptr_t kPage = 4096;
-    const auto begin = (reinterpret_cast<std::uintptr_t>(volume.hu.data()) + kPage - 1) / kPage;
-    const auto end = reinterpret_cast<std::uintptr_t>(volume.hu.data() + count) / kPage;
-    if (end > begin) {  // a hint: failing costs time only
-      ::madvise(reinterpret_cast<void*>(begin * kPage), (end - begin) * kPage, MADV_HUGEPAGE);
-    }
-    volume.hu.resize(count);
-  } catch (const std::bad_alloc&) {
-    return Error{"OUT_OF_MEMORY", "There is not enough memory for the volume", "",
-                 "Close other programs and try again"};
-  }
-  return std::nullopt;
-}
-
 void addValueFindings(const HuCounts& counts, SeriesReport& report) {
   const auto add = [&](const char* code, const char* severity, std::uint64_t voxels,
                        const char* what, const char* action) {
@@ -95,39 +65,108 @@ void addValueFindings(const HuCounts& counts, SeriesReport& report) {
       "They were set to the nearest limit");
 }
 
-bool isValueFinding(const Finding& finding) {
-  return finding.code == "PADDING_TO_AIR" || finding.code == "HU_ROUNDED" ||
-         finding.code == "HU_CLAMPED";
+Error refusalOf(const SeriesReport& series) {
+  const auto finding = std::ranges::find(series.findings, "refusal", &Finding::severity);
+  return Error{finding->code, finding->text, series.uid, finding->action};
 }
+
+Error noSuchSeries(const std::string& uid, std::size_t listed) {
+  return Error{"NO_SUCH_SERIES", "There is no such series in the folder", cleanUtf8(uid),
+               "Choose one of the " + std::to_string(listed) + " listed"};
+}
+
+// Answers to questions that the series asks must be among the options.
+Status checkAnswers(const SeriesReport& series, const Answers& answers) {
+  static const std::set<std::string> known = {"PHASES",   "MISSING_SLICES", "UNEVEN_SPACING",
+                                              "FACE",     "LOSSY_SOURCE",   "DUPLICATE_POSITIONS",
+                                              "COUCH"};
+  for (const auto& [code, option] : answers) {
+    if (!known.contains(code)) {
+      std::string codes;
+      for (const std::string& one : known) codes += (codes.empty() ? "" : ", ") + one;
+      return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
+                   "Choose among " + codes};
+    }
+    const auto choice = std::ranges::find(series.choices, code, &Choice::code);
+    if (choice == series.choices.end()) continue;
+    if (std::ranges::find(choice->options, option) != choice->options.end()) continue;
+    std::string options;
+    for (const std::string& one : choice->options) options += (options.empty() ? "" : ", ") + one;
+    return Error{"BAD_CHOICE", "The choice " + code + " has no option '" + cleanUtf8(option) + "'",
+                 series.uid, "Choose one of " + options};
+  }
+  return {};
+}
+
+Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request) {
+  Provenance provenance;
+  provenance.source = series.source;
+  if (!series.transfer_syntax.empty()) {
+    provenance.transfer_syntax = transferSyntaxName(series.transfer_syntax);
+  }
+  provenance.lossy = series.lossy;
+  for (const Choice& choice : series.choices) {
+    const auto given = request.answers.find(choice.code);
+    provenance.answers[choice.code] =
+        given == request.answers.end() ? choice.options.front() : given->second;
+  }
+  std::ranges::copy_if(series.findings, std::back_inserter(provenance.changes),
+                       [](const Finding& f) { return f.severity == "repair"; });
+  provenance.crop = request.crop;
+  provenance.reduction = request.reduction;
+  provenance.build = buildName();
+  return provenance;
+}
+
+// A series of DICOM slices, or a volume file.
+struct Source {
+  Series series;
+  std::filesystem::path file;  // empty for DICOM
+};
 
 }  // namespace
 
 struct CtFolder::Contents {
   ImportReport report;
-  std::vector<std::vector<DicomHeader>> slices;  // of report.series, in stack order
+  std::vector<Source> sources;  // of report.series
 
-  // The slices' pixels into `volume`; `unreadable` gets the names of those that failed.
-  Status readSlices(const std::vector<DicomHeader>& headers, const Progress& progress,
-                    Volume& volume, HuCounts& counts, Finding& unreadable) const;
+  Source* find(const std::string& uid) {
+    const auto it = std::ranges::find(report.series, uid, &SeriesReport::uid);
+    return it == report.series.end() ? nullptr : &sources[std::size_t(it - report.series.begin())];
+  }
+  // The report's copy of what the source says of itself.
+  void publish(const Source& source) {
+    report.series[std::size_t(&source - sources.data())] = source.series.report;
+  }
+
+  Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
+                           int& slices_used);
 };
 
-Status CtFolder::Contents::readSlices(const std::vector<DicomHeader>& headers,
-                                      const Progress& progress, Volume& volume, HuCounts& counts,
-                                      Finding& unreadable) const {
-  const std::size_t slice = std::size_t(volume.geometry.size[0]) * volume.geometry.size[1];
-  std::mutex mutex;
-  return forEachFile(headers.size(), progress, {0.0, 0.9, "Reading slices"}, [&](std::size_t k) {
-    thread_local HuConverter converter;
-    std::int16_t* words = volume.hu.data() + k * slice;
-    const Status read = readStoredWords(headers[k], words);
-    const HuCounts slice_counts =
-        read ? converter.convert(words, slice, headers[k].format) : HuCounts{};
-    const std::lock_guard lock(mutex);
-    counts.add(slice_counts);
-    if (read) return;
-    unreadable.slices.push_back(sliceName(headers[k]));
-    unreadable.text = "A slice cannot be read: " + read.error().what;
-  });
+// Slices that turn out to be unreadable are missing slices: they are marked, and the series is
+// looked at again, until it is read or refused.
+Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
+                                             const Progress& progress, int& slices_used) {
+  constexpr double kSpare_mb = 64.0;  // left to everything else
+  const double most_mb = request.most_memory_mb.value_or(availableMemoryMb() - kSpare_mb);
+  const Answers& answers = request.answers;
+  while (true) {
+    const SeriesPlan plan = assessSeries(series, answers);
+    if (const Status valid = checkAnswers(series.report, answers); !valid) return valid.error();
+    if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
+    Result<Assembly> assembly = assemble(series, plan, most_mb, progress);
+    if (!assembly) return assembly.error();
+    for (const Assembly::Unreadable& lost : assembly->unreadable) {
+      series.slices[lost.slice].defect = Defect::cut;
+      series.slices[lost.slice].defect_text = lost.why;
+    }
+    if (!assembly->unreadable.empty()) continue;
+    addValueFindings(assembly->counts, series.report);
+    series.report.hu_min = assembly->counts.hu_min;
+    series.report.hu_max = assembly->counts.hu_max;
+    slices_used = int(plan.sources.size());
+    return std::move(assembly->volume);
+  }
 }
 
 CtFolder::CtFolder() : contents_(std::make_unique<Contents>()) {}
@@ -141,7 +180,8 @@ const ImportReport& CtFolder::report() const {
 
 Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progress& progress) {
   CtFolder folder;
-  ImportReport& report = folder.contents_->report;
+  Contents& contents = *folder.contents_;
+  ImportReport& report = contents.report;
   report.start_rss_mb = residentMb();
   const auto start = Clock::now();
   Result<ScannedFiles> files = scanFiles(path, progress);
@@ -149,75 +189,138 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
 
   report.path = cleanUtf8(path.string());
   report.files_seen = files->files_seen;
-  report.files_read = int(files->headers.size());
+  report.files_read = files->dicom_files + int(files->volume_files.size());
   for (const auto& [reason, count] : files->skipped) report.skipped.push_back({reason, count});
   for (Series& series : groupSeries(std::move(files->headers))) {
-    report.series.push_back(std::move(series.report));
-    folder.contents_->slices.push_back(std::move(series.slices));
+    contents.sources.push_back({std::move(series), {}});
   }
+  std::error_code error;
+  const bool one_file = std::filesystem::is_regular_file(path, error);
+  for (const std::filesystem::path& file : files->volume_files) {
+    if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
+    const auto name = one_file ? file.filename() : file.lexically_relative(path);
+    Source source;
+    source.series.report = assessFile(file, name.string());
+    source.file = file;
+    contents.sources.push_back(std::move(source));
+  }
+  for (const Source& source : contents.sources) report.series.push_back(source.series.report);
   report.error = folderError(report);
   report.seconds.scan = secondsSince(start);
   report.peak_rss_mb = peakResidentMb();
   return folder;
 }
 
-std::optional<std::string> CtFolder::bestSeries() const {
+std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   const SeriesReport* best = nullptr;
-  for (const SeriesReport& series : contents_->report.series) {
-    if (series.verdict == Verdict::refused || series.modality != "CT") continue;
-    if (!best || series.geometry.size[2] > best->geometry.size[2]) best = &series;
+  // A DICOM series says that it is CT; a file that is named like a label map comes last.
+  const auto rank = [](const SeriesReport& s) {
+    const bool labels =
+        std::ranges::find(s.findings, "NAMED_AS_LABELS", &Finding::code) != s.findings.end();
+    return std::tuple(!labels, s.source == "DICOM", s.geometry.size[2]);
+  };
+  for (const Source& source : contents_->sources) {
+    const SeriesReport& listed =
+        contents_->report.series[std::size_t(&source - contents_->sources.data())];
+    if (listed.modality != "CT") continue;
+    bool usable = listed.verdict != Verdict::refused;
+    if (!usable && !listed.choices.empty() && !answers.empty()) {
+      Series answered = source.series;
+      assessSeries(answered, answers);
+      usable = answered.report.verdict != Verdict::refused;
+    }
+    if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
   }
   if (!best) return std::nullopt;
   return best->uid;
 }
 
-Result<Volume> CtFolder::read(const std::string& uid, const Progress& progress) {
+Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
+  Source* source = contents_->find(uid);
+  if (!source) return noSuchSeries(uid, contents_->report.series.size());
+  const Error no_slice{"NO_SUCH_SLICE", "There is no such slice", std::to_string(index), ""};
+  if (!source->file.empty()) return fileSlice(source->file, index);
+  const std::vector<DicomHeader>& slices = source->series.slices;
+  if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
+  const DicomHeader& header = slices[std::size_t(index)];
+  const StoredFormat& format = header.format;
+  if (!header.has_pixels || header.samples != 1 || header.pixelCount() == 0 ||
+      header.pixelCount() > kLargestSlice || format.bits_stored < 1 ||
+      (header.bits_allocated != 8 && header.bits_allocated != 16) ||
+      format.bits_stored > header.bits_allocated || format.high_bit >= header.bits_allocated ||
+      format.high_bit < format.bits_stored - 1 || header.rescale_bad ||
+      !findTransferSyntax(header.transfer_syntax)) {
+    return Error{"NO_PICTURE", "The slice holds no grey pixels that can be shown", "", ""};
+  }
+  if (header.defect != Defect::none) {
+    return Error{"UNREADABLE", "The slice cannot be read: " + header.defect_text, "", ""};
+  }
+  SlicePicture picture;
+  picture.columns = header.columns;
+  picture.rows = header.rows;
+  if (const auto& spacing = header.pixel_spacing_mm) {
+    picture.spacing_mm = Vec3((*spacing)[1], (*spacing)[0], 1.0);
+  }
+  picture.hu.resize(header.pixelCount());
+  Status read;
+  const Status done = forEachFile(1, Progress(), {}, [&](std::size_t) {
+    read = PixelReader().read(header, picture.hu.data());
+    if (read) HuConverter().convert(picture.hu.data(), picture.hu.size(), format);
+  });
+  if (!done) return done.error();
+  if (!read) {
+    return Error{"UNREADABLE", "The slice cannot be read: " + read.error().what, "", ""};
+  }
+  return picture;
+}
+
+Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& request,
+                              const Progress& progress) {
   ImportReport& report = contents_->report;
-  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
-  if (series == report.series.end()) {
-    return Error{"NO_SUCH_SERIES", "There is no such series in the folder", cleanUtf8(uid),
-                 "Choose one of the " + std::to_string(report.series.size()) + " listed"};
-  }
-  const auto refusal = [&] {
-    const auto finding = std::ranges::find(series->findings, "refusal", &Finding::severity);
-    return Error{finding->code, finding->text, series->uid, finding->action};
+  Source* source = contents_->find(uid);
+  if (!source) return noSuchSeries(uid, report.series.size());
+  SeriesReport& series = source->series.report;
+  report.chosen.reset();
+  report.provenance.reset();
+  const auto fail = [&](const Error& error) {
+    contents_->publish(*source);
+    if (error.code != "CANCELLED") report.error = error;
+    return error;
   };
-  if (series->verdict == Verdict::refused) {
-    report.chosen.reset();
-    report.error = refusal();
-    return *report.error;
-  }
-  const std::vector<DicomHeader>& headers =
-      contents_->slices[std::size_t(series - report.series.begin())];
+
   const auto start = Clock::now();
-  Volume volume;
-  volume.geometry = series->geometry;
-  if (auto error = allocate(volume)) return *error;
-  HuCounts counts;
-  Finding unreadable{"MISSING_SLICES", "refusal", "", {}, "Copy these files again"};
-  if (const Status read = contents_->readSlices(headers, progress, volume, counts, unreadable);
-      !read) {
-    return read.error();
+  int slices_used = 0;
+  if (!source->file.empty()) {
+    series = assessFile(source->file, series.description);
+    if (series.verdict == Verdict::refused) return fail(refusalOf(series));
   }
+  Result<Volume> volume =
+      source->file.empty()
+          ? contents_->readDicom(source->series, request, progress, slices_used)
+          : readFileSeries(source->file, progress, series);
+  if (!volume) return fail(volume.error());
   report.seconds.read = secondsSince(start);
 
-  if (!unreadable.slices.empty()) {
-    series->findings.push_back(std::move(unreadable));
-    series->verdict = Verdict::refused;
-    report.chosen.reset();
-    report.error = refusal();
-    return *report.error;
+  Provenance provenance;
+  const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
+  if (!stepped) return fail(stepped.error());
+  if (const Status valid = checkAnswers(series, request.answers); !valid) {
+    return fail(valid.error());
   }
-  std::erase_if(series->findings, isValueFinding);  // of an earlier read
-  addValueFindings(counts, *series);
-  series->verdict = verdictOf(series->findings);
-  series->hu_min = counts.hu_min;
-  series->hu_max = counts.hu_max;
+  series.verdict = verdictOf(series.findings);
+  series.geometry = volume->geometry;
 
-  progress.at(0.9, "Checking");
+  progress.at(0.95, "Checking");
   const auto hash_start = Clock::now();
-  series->volume_sha256 = volumeSha256(volume);
+  series.volume_sha256 = volumeSha256(*volume);
   report.seconds.hash = secondsSince(hash_start);
+  const auto loss = provenance.loss;
+  provenance = provenanceOf(series, request);
+  provenance.loss = loss;
+  provenance.slices_used = source->file.empty() ? slices_used : series.slices;
+  provenance.volume_sha256 = *series.volume_sha256;
+  contents_->publish(*source);
+  report.provenance = std::move(provenance);
   report.chosen = uid;
   report.error.reset();
   report.peak_rss_mb = peakResidentMb();

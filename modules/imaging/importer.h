@@ -1,11 +1,12 @@
-// Any image folder -> series -> report card -> volume. Today: DICOM in uncompressed transfer
-// syntaxes; whatever cannot be read yet is refused by name, never guessed.
+// Any image folder -> series -> report card -> choices -> volume.
 //
-// Nothing here throws. Reports are for the screen: they may hold a series description, never a
-// patient's name, and are not written to disk by this room.
+// Nothing here throws. A report is for the screen: it may hold a series description and paths, never
+// a patient's name. What may leave the machine is the provenance and the page (report_page.h), which
+// hold neither.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,10 +32,53 @@ struct Finding {
   std::string action;
 };
 
+// A question that only a person can answer. `options` are what `--choice CODE=OPTION` takes, the
+// first is what happens where nobody answers ("refuse" or "keep"); `words` say what each does.
+struct Choice {
+  std::string code;
+  std::string question;
+  std::vector<std::string> options;
+  std::vector<std::string> words;
+};
+
+// What was answered: code -> option.
+using Answers = std::map<std::string, std::string>;
+
+struct ImportRequest {
+  Answers answers;               // a code that the series does not ask for is no error
+  std::optional<VoxelBox> crop;  // of the grid that the report states; before the reduction
+  int reduction = 1;             // 1, 2 (half resolution) or 4 (a quarter)
+  std::optional<double> most_memory_mb;  // to be used for it; absent: what is free
+};
+
+// What a reduction cost, measured against the full resolution (volume/reduce.h).
+struct MeasuredLoss {
+  double rms_hu = 0.0;
+  double p99_hu = 0.0;
+  double bone_volume_change_percent = 0.0;
+};
+
+// What became of the source: written beside the volume, so it names no patient, path or UID.
+struct Provenance {
+  std::string source;           // "DICOM", "NIfTI", ...
+  std::string transfer_syntax;  // its name; empty where there is none
+  bool lossy = false;
+  int slices_used = 0;
+  Answers answers;               // those that the series asked for
+  std::vector<Finding> changes;  // findings of severity repair
+  std::optional<VoxelBox> crop;
+  int reduction = 1;
+  std::optional<MeasuredLoss> loss;
+  std::string volume_sha256;
+  std::string build;
+};
+
 struct SeriesReport {
   std::string uid;  // "#2", "#3" appended when a Series UID is split
   std::string description;
   std::string modality;
+  std::string body_part;
+  std::string source = "DICOM";  // or the name of a volume file's format
   Verdict verdict = Verdict::refused;
   GridGeometry geometry;                     // of the volume that comes (or would come) out
   std::optional<int> hu_min, hu_max;         // null while the series is not chosen
@@ -42,7 +86,11 @@ struct SeriesReport {
   double tilt_deg = 0.0;
   std::string transfer_syntax;  // its UID
   bool lossy = false;
+  int slices = 0;  // frames or slices found, usable or not
+  int phases = 1;
+  double memory_mb = 0.0;  // at the peak of reading it
   std::vector<Finding> findings;
+  std::vector<Choice> choices;  // still open or answered: all that the series asks
 };
 
 struct SkippedFiles {
@@ -57,7 +105,8 @@ struct ImportReport {
   std::vector<SkippedFiles> skipped;
   std::vector<SeriesReport> series;
   std::optional<std::string> chosen;  // uid
-  std::optional<Error> error;         // why no volume can come out of it
+  std::optional<Provenance> provenance;
+  std::optional<Error> error;  // why no volume can come out of it
   struct {
     double scan = 0.0, read = 0.0, hash = 0.0;
   } seconds;
@@ -66,6 +115,12 @@ struct ImportReport {
 
 // The contract of `trephine-lab import --json`, without schema and build.
 Json toJson(const ImportReport& report);
+
+struct SlicePicture {
+  int columns = 0, rows = 0;
+  Vec3 spacing_mm{1.0};
+  std::vector<std::int16_t> hu;  // row by row
+};
 
 // A scanned folder: headers only. Cheap to keep; reading a series opens its files again.
 class CtFolder {
@@ -81,11 +136,18 @@ class CtFolder {
 
   // Every series with its verdict so far; read() completes the chosen one.
   const ImportReport& report() const;
-  // The CT series with most slices that is not refused; nothing where none can be read.
-  std::optional<std::string> bestSeries() const;
+  // The CT series with most slices that is not refused once `answers` are given; nothing where none
+  // can be read.
+  std::optional<std::string> bestSeries(const Answers& answers = {}) const;
   // Reads one series into a volume and completes its entry in report(). Errors: NO_SUCH_SERIES,
-  // the refusal's own code, CANCELLED, or OUT_OF_MEMORY.
-  Result<Volume> read(const std::string& uid, const Progress& progress);
+  // BAD_CHOICE, BAD_CROP, the refusal's own code, CANCELLED, or OUT_OF_MEMORY. The report then
+  // tells what else could be chosen (COUCH, FACE); reading again with the answers does it.
+  Result<Volume> read(const std::string& uid, const ImportRequest& request,
+                      const Progress& progress);
+  // One slice as it is stored, in HU, for thumbnails and previews: of any grey series, refused or
+  // not. `index` counts report().series' `slices` along the stack, from 0. Errors: NO_SUCH_SERIES,
+  // NO_SUCH_SLICE, NO_PICTURE (colour, or no pixels), UNREADABLE.
+  Result<SlicePicture> slice(const std::string& uid, int index) const;
 
  private:
   CtFolder();

@@ -1,4 +1,5 @@
 #include "imaging/importer.h"
+#include "imaging/provenance.h"
 #include "imaging/text.h"
 
 namespace trephine {
@@ -24,6 +25,13 @@ Json findingJson(const Finding& finding) {
           {"action", cleanUtf8(finding.action)}};
 }
 
+Json choiceJson(const Choice& choice) {
+  return {{"code", choice.code},
+          {"question", choice.question},
+          {"options", choice.options},
+          {"words", choice.words}};
+}
+
 Json seriesJson(const SeriesReport& series) {
   const GridGeometry& g = series.geometry;
   Json direction = Json::array();
@@ -32,9 +40,15 @@ Json seriesJson(const SeriesReport& series) {
   }
   Json findings = Json::array();
   for (const Finding& finding : series.findings) findings.push_back(findingJson(finding));
+  Json choices = Json::array();
+  for (const Choice& choice : series.choices) choices.push_back(choiceJson(choice));
   return {{"uid", cleanUtf8(series.uid)},
           {"description", cleanUtf8(series.description)},
           {"modality", cleanUtf8(series.modality)},
+          {"source", series.source},
+          {"slices", series.slices},
+          {"phases", series.phases},
+          {"memory_mb", series.memory_mb},
           {"verdict", verdictName(series.verdict)},
           {"size", g.size},
           {"spacing_mm", vectorJson(g.spacing_mm)},
@@ -46,6 +60,7 @@ Json seriesJson(const SeriesReport& series) {
           {"transfer_syntax", cleanUtf8(series.transfer_syntax)},
           {"lossy", series.lossy},
           {"findings", std::move(findings)},
+          {"choices", std::move(choices)},
           {"volume_sha256", orNull(series.volume_sha256)}};
 }
 
@@ -76,6 +91,7 @@ Json toJson(const ImportReport& report) {
                {"skipped", std::move(skipped)},
                {"series", std::move(series)},
                {"chosen", orNull(report.chosen)},
+               {"provenance", report.provenance ? toJson(*report.provenance) : Json(nullptr)},
                {"seconds",
                 {{"scan", report.seconds.scan},
                  {"read", report.seconds.read},

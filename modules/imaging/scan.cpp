@@ -9,8 +9,10 @@
 #include <tuple>
 #include <utility>
 
+#include "imaging/dicomdir.h"
 #include "imaging/text.h"
 #include "imaging/workers.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -92,24 +94,37 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
   ScannedFiles result;
   progress.at(0.0, "Looking for files");
   Walk walk(result, progress);
-  walk.visit(path, 0);
+  std::vector<fs::path> named;
+  if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path);
+  if (named.empty()) {
+    const bool stale = isDicomDir(path);
+    walk.visit(stale && path.has_parent_path() ? path.parent_path() : path, 0);
+  }
+  for (const fs::path& file : named) walk.visit(file, 0);
 
   const std::vector<FoundFile>& files = walk.files();
-  std::vector<std::optional<Result<DicomHeader>>> headers(files.size());
+  std::vector<std::optional<Result<std::vector<DicomHeader>>>> headers(files.size());
   const Status read = forEachFile(
       files.size(), progress, {0.0, 1.0, "Reading headers"},
-      [&](std::size_t i) { headers[i] = readDicomHeader(files[i].path, files[i].bytes); });
+      [&](std::size_t i) { headers[i] = readDicomHeaders(files[i].path, files[i].bytes); });
   if (!read) return read.error();
 
-  for (auto& header : headers) {
-    if (*header) {
-      result.headers.push_back(std::move(header->value()));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    auto& frames = *headers[i];
+    if (frames) {
+      ++result.dicom_files;
+      std::ranges::move(frames.value(), std::back_inserter(result.headers));
+    } else if (isVolumeFile(files[i].path) && files[i].bytes > 0) {
+      result.volume_files.push_back(files[i].path);
     } else {
-      ++result.skipped[header->error().what];
+      ++result.skipped[frames.error().what];
     }
+    headers[i].reset();
   }
-  std::ranges::sort(result.headers, {},
-                    [](const DicomHeader& h) { return std::tie(h.sop_instance, h.file); });
+  std::ranges::sort(result.headers, {}, [](const DicomHeader& h) {
+    return std::tie(h.sop_instance, h.frame, h.file);
+  });
+  std::ranges::sort(result.volume_files);
   return result;
 }
 

@@ -13,13 +13,16 @@
 namespace trephine {
 
 struct ScannedFiles {
-  std::vector<DicomHeader> headers;    // sorted by SOP Instance UID, then path
+  std::vector<DicomHeader> headers;    // sorted by SOP Instance UID, then frame and path
+  std::vector<std::filesystem::path> volume_files;  // NIfTI and the like, sorted
+  int dicom_files = 0;                 // that were read
   int files_seen = 0;                  // everything that is not a folder
   std::map<std::string, int> skipped;  // by reason; none names a file
 };
 
-// `path` is a folder, taken with its subfolders, or one file. Links are followed, each file and
-// folder once. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY.
+// `path` is a folder, taken with its subfolders, or one file. Of a DICOMDIR the files that it names
+// are taken, or its folder where one of them is not there. Links are followed, each file and folder
+// once. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY.
 Result<ScannedFiles> scanFiles(const std::filesystem::path& path, const Progress& progress);
 
 }  // namespace trephine

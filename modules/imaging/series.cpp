@@ -1,10 +1,14 @@
 #include "imaging/series.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <tuple>
 #include <utility>
+
+#include "imaging/series_repeats.h"
 
 namespace trephine {
 
@@ -29,7 +33,7 @@ const char* difference(const DicomHeader& a, const DicomHeader& b) {
   if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) return "pixel spacing";
   if (!near(a.orientation, b.orientation, 1e-4)) return "orientation";
   if (a.photometric != b.photometric) return "photometric interpretation";
-  if (a.samples != b.samples || a.frames != b.frames) return "samples or frames";
+  if (a.samples != b.samples) return "samples";
   if (a.frame_of_reference != b.frame_of_reference) return "frame of reference";
   return nullptr;
 }
@@ -51,18 +55,24 @@ bool sameBytes(const DicomHeader& a, const DicomHeader& b) {
 // Keeps one of each set of equal files, and prefers a whole file to a cut copy of it.
 void dropDuplicates(Series& series) {
   std::vector<DicomHeader> kept;
+  std::map<std::pair<std::filesystem::path, std::filesystem::path>, bool> compared;  // of frames
+  const auto equal = [&](const DicomHeader& a, const DicomHeader& b) {
+    const auto [it, first_time] = compared.try_emplace({a.file, b.file}, false);
+    if (first_time) it->second = sameBytes(a, b);
+    return it->second;
+  };
+  const auto image = [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame); };
   Finding dropped{"DUPLICATE_FILES", "notice", "", {}, "One copy of each was kept"};
   Finding different{"DUPLICATE_INSTANCES", "notice", "", {}, "Both were kept; places decide"};
-  std::ranges::stable_sort(series.slices, {}, &DicomHeader::sop_instance);
+  std::ranges::stable_sort(series.slices, {}, image);
   for (DicomHeader& header : series.slices) {
-    const auto first =
-        std::ranges::lower_bound(kept, header.sop_instance, {}, &DicomHeader::sop_instance);
-    if (first == kept.end() || first->sop_instance != header.sop_instance) {
+    const auto first = std::ranges::lower_bound(kept, image(header), {}, image);
+    if (first == kept.end() || image(*first) != image(header)) {
       kept.push_back(std::move(header));
       continue;
     }
     const bool one_cut = (first->defect == Defect::cut) != (header.defect == Defect::cut);
-    if (one_cut || sameBytes(*first, header)) {
+    if (one_cut || equal(*first, header)) {
       dropped.slices.push_back(sliceName(header));
       if (first->defect == Defect::cut) *first = std::move(header);
     } else {
@@ -151,18 +161,26 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
 
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
   // Numbered in order of UIDs, which no file name or folder order can change.
-  std::map<std::pair<std::string, std::string>, std::vector<DicomHeader>> groups;
+  std::map<std::array<std::string, 3>, std::vector<DicomHeader>> groups;
   for (DicomHeader& header : headers) {
-    groups[{header.series_uid, header.study_uid}].push_back(std::move(header));
+    groups[{header.series_uid, header.study_uid, header.series_key}].push_back(std::move(header));
   }
   std::vector<Series> all;
   std::map<std::string, int> parts_of_uid;  // a Series UID may occur in two studies
   for (auto& [uids, group] : groups) {
     for (Series& series : splitSeries(std::move(group))) {
-      const int number = ++parts_of_uid[uids.first];
-      series.report.uid = uids.first;
+      const int number = ++parts_of_uid[uids[0]];
+      series.report.uid = uids[0];
       if (number > 1) series.report.uid += "#" + std::to_string(number);
+      if (!uids[2].empty()) {
+        series.report.findings.push_back(
+            {"NO_SERIES_UID", "notice",
+             "The files name no series: their Series Instance UID was emptied", {},
+             "Slices of one study, series number, date and time were taken together"});
+      }
       dropDuplicates(series);
+      dropEqualRepeats(series);
+      series.findings_kept = series.report.findings.size();
       assessSeries(series);
       all.push_back(std::move(series));
     }

@@ -1,5 +1,4 @@
-// Headers -> series, each with its verdict so far. Pure: no file is opened but to compare two that
-// claim to be the same image.
+// Headers -> series, and what each comes to under given answers.
 #pragma once
 
 #include <optional>
@@ -7,23 +6,35 @@
 
 #include "imaging/dicom_file.h"
 #include "imaging/importer.h"
+#include "imaging/series_geometry.h"
 
 namespace trephine {
 
+// Larger slices are refused before anything is allocated for them: a compressed one can claim any
+// size.
+constexpr std::uint64_t kLargestSlice = std::uint64_t(8192) * 8192;
+
 struct Series {
-  SeriesReport report;
-  // In increasing place along the stack's k axis unless the series is refused.
-  std::vector<DicomHeader> slices;
+  SeriesReport report;              // of the last assessment; grouping's own findings come first
+  std::size_t findings_kept = 0;    // how many those are
+  std::vector<DicomHeader> slices;  // in increasing place along the stack's k axis
+};
+
+// How a series becomes a volume. `sources` index Series::slices, in the order of `stack.order`.
+struct SeriesPlan {
+  Stack stack;
+  std::vector<std::size_t> sources;
 };
 
 // Groups by Study and Series UID and splits what cannot be one stack: different size, spacing,
 // orientation, photometric interpretation, samples, frame of reference, kind, or a localizer.
 // `headers` are sorted by SOP Instance UID; the result does not depend on names or order of files.
+// Files are opened only to compare those that claim to be the same image or lie at one place.
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers);
 
-// Fills one series' report: every finding that headers can give, geometry and verdict; orders its
-// slices. (series_checks.cpp)
-void assessSeries(Series& series);
+// Fills the report anew: every finding that headers can give under these answers, choices, geometry
+// and verdict; orders the slices. Pure. (series_checks.cpp)
+SeriesPlan assessSeries(Series& series, const Answers& answers = {});
 
 // The worst of the findings' severities.
 Verdict verdictOf(const std::vector<Finding>& findings);

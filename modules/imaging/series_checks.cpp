@@ -1,12 +1,15 @@
 // What a series' headers say about it: kind, values, pixels, geometry. Each check adds a finding
 // with its own code; README.md lists them.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
 #include "imaging/series.h"
 #include "imaging/series_geometry.h"
+#include "imaging/series_repeats.h"
 #include "imaging/text.h"
+#include "imaging/transfer_syntax.h"
 
 namespace trephine {
 
@@ -20,6 +23,11 @@ class Findings {
               std::vector<std::string> slices = {}) {
     series_.report.findings.push_back(
         {code, "refusal", std::move(text), std::move(slices), std::move(action)});
+  }
+  void repaired(const char* code, std::string text, std::string action,
+                std::vector<std::string> slices = {}) {
+    series_.report.findings.push_back(
+        {code, "repair", std::move(text), std::move(slices), std::move(action)});
   }
   void notice(const char* code, std::string text, std::string action,
               std::vector<std::string> slices = {}) {
@@ -71,10 +79,11 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   } else if (isLocalizer(first)) {
     findings.refuse("LOCALIZER", "The series is a localizer (scout), not a stack of slices",
                     kChooseCt);
-  } else if (first.frames != 1 || kind != "1.2.840.10008.5.1.4.1.1.2") {
+  } else if (first.frames > 1 && !first.position_mm) {
     findings.refuse("MULTIFRAME",
-                    "The series is stored as multi-frame CT, which cannot be read yet",
-                    "Export it as classic CT, one file a slice");
+                    "The series is stored as multi-frame pictures that do not say where each frame "
+                    "lies",
+                    "Export it as enhanced CT, or as classic CT with one file a slice");
   } else {
     return false;
   }
@@ -85,11 +94,31 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
   std::map<std::string, int> counts;
   for (const DicomHeader& header : series.slices) ++counts[header.transfer_syntax];
   for (const auto& [uid, count] : counts) {
-    if (isReadableTransferSyntax(uid)) continue;
+    if (findTransferSyntax(uid)) continue;
     findings.refuse("UNSUPPORTED_TRANSFER_SYNTAX",
                     "The transfer syntax " + transferSyntaxName(uid) + " (" + cleanUtf8(uid) +
-                        ") of " + std::to_string(count) + " slices cannot be read yet",
+                        ") of " + std::to_string(count) + " slices cannot be read",
                     "Export the series uncompressed (Explicit VR Little Endian)");
+  }
+}
+
+void checkLoss(Series& series, const Answers& answers, Findings& findings) {
+  const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
+  if (lossy.empty()) return;
+  const std::string text = countOfSlices(lossy) + " were compressed with loss";
+  const std::string answer =
+      ask({"LOSSY_SOURCE",
+           "The series was compressed with loss: its HU are not those of the scanner. Use it?",
+           {"refuse", "accept"},
+           {"Do not use the series", "Use it for training, marked as lossy"}},
+          answers, series.report.choices);
+  if (answer == "accept") {
+    findings.repaired("LOSSY_SOURCE", text,
+                      "They were taken as they are, as was agreed: small differences of HU are "
+                      "not real",
+                      lossy);
+  } else {
+    findings.refuse("LOSSY_SOURCE", text, "Use the original series, or agree to the loss", lossy);
   }
 }
 
@@ -103,15 +132,16 @@ void checkValues(const Series& series, Findings& findings) {
   const auto odd_format = findings.slicesWhere([](const DicomHeader& h) {
     const StoredFormat& f = h.format;
     return h.has_pixels &&
-           (h.bits_allocated != 16 || f.bits_stored < 1 || f.bits_stored > 16 ||
-            f.high_bit < f.bits_stored - 1 || f.high_bit > 15 || h.ambiguous_order ||
-            h.photometric.empty() || h.rows == 0 || h.columns == 0);
+           ((h.bits_allocated != 8 && h.bits_allocated != 16) || f.bits_stored < 1 ||
+            f.bits_stored > h.bits_allocated || f.high_bit < f.bits_stored - 1 ||
+            f.high_bit >= h.bits_allocated || h.ambiguous_order || h.photometric.empty() ||
+            h.rows == 0 || h.columns == 0 || h.pixelCount() > kLargestSlice);
   });
   if (!odd_format.empty()) {
     findings.refuse("PIXEL_FORMAT",
                     countOfSlices(odd_format) +
-                        " do not say 16 allocated bits, 1 to 16 stored bits, rows, columns and "
-                        "photometric interpretation as CT must",
+                        " do not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+                        "columns up to 8192 and photometric interpretation as CT must",
                     "Export the series again as CT with 16-bit pixels", odd_format);
   }
   const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
@@ -127,11 +157,6 @@ void checkValues(const Series& series, Findings& findings) {
                     "The rescale slope or intercept of " + countOfSlices(bad) + " is no number",
                     "Export the series again", bad);
   }
-  const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
-  if (!lossy.empty()) {
-    findings.refuse("LOSSY_SOURCE", countOfSlices(lossy) + " were compressed with loss before",
-                    "Use the original series; lossy ones are not taken without being asked", lossy);
-  }
   const auto unscaled = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
   if (!unscaled.empty()) {
@@ -145,77 +170,158 @@ void checkValues(const Series& series, Findings& findings) {
   }
 }
 
-void checkPixels(const Series& series, Findings& findings) {
-  std::vector<std::string> cut, mismatched;
-  std::string cut_text, mismatch_text;
+void checkSizes(const Series& series, Findings& findings) {
+  std::vector<std::string> mismatched;
+  std::string text;
   for (const DicomHeader& header : series.slices) {
-    if (header.defect == Defect::cut) {
-      cut.push_back(sliceName(header));
-      cut_text = header.defect_text;
-    } else if (header.defect == Defect::size_mismatch) {
-      mismatched.push_back(sliceName(header));
-      mismatch_text = header.defect_text;
-    } else if (!header.has_pixels) {
-      cut.push_back(sliceName(header));
-      cut_text = "it has no pixels";
-    }
+    if (header.defect != Defect::size_mismatch) continue;
+    mismatched.push_back(sliceName(header));
+    text = header.defect_text;
   }
-  if (!cut.empty()) {
-    findings.refuse("MISSING_SLICES",
-                    countOfSlices(cut) + " cannot be read (the last of them: " + cut_text + ")",
-                    "Copy these files again from their source", cut);
+  if (mismatched.empty()) return;
+  findings.refuse("SIZE_MISMATCH",
+                  countOfSlices(mismatched) + " contradict themselves (the last: " + text + ")",
+                  "Export the series again", mismatched);
+}
+
+bool isLost(const DicomHeader& header) {
+  return header.defect == Defect::cut || !header.has_pixels;
+}
+
+bool isPlaced(const DicomHeader& header) {
+  constexpr double kFarthest_mm = 1e6, kWidestPixel_mm = 1e3, kNarrowestPixel_mm = 1e-4;
+  if (!header.position_mm || !header.orientation || !header.pixel_spacing_mm) return false;
+  const auto& p = *header.position_mm;
+  const auto [least, most] = std::ranges::minmax(*header.pixel_spacing_mm);
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < kFarthest_mm &&
+         most < kWidestPixel_mm && least > kNarrowestPixel_mm;
+}
+
+// "; of these cannot be read: slice 2 (its pixels are cut short)"
+std::string lostText(const std::vector<const DicomHeader*>& lost) {
+  if (lost.empty()) return "";
+  std::string text = "; " + std::to_string(lost.size()) + " of these cannot be read:";
+  for (std::size_t n = 0; n < std::min<std::size_t>(lost.size(), 5); ++n) {
+    text += (n == 0 ? " " : ", ") + sliceName(*lost[n]);
   }
-  if (!mismatched.empty()) {
-    findings.refuse(
-        "SIZE_MISMATCH",
-        countOfSlices(mismatched) + " contradict themselves (the last: " + mismatch_text + ")",
-        "Export the series again", mismatched);
+  if (lost.size() > 5) text += " and others";
+  const std::string& why = lost.back()->defect_text;
+  return text + " (" + (why.empty() ? "it has no pixels" : why) + ")";
+}
+
+// Slices that are cut before they say where they lie: their gap may not show.
+void checkUnplaced(const std::vector<const DicomHeader*>& lost, const Answers& answers,
+                   SeriesReport& report, Findings& findings) {
+  if (lost.empty()) return;
+  std::vector<std::string> names;
+  for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
+  const auto given = answers.find("MISSING_SLICES");
+  const bool agreed = given != answers.end() && given->second != "refuse";
+  const bool asked = std::ranges::find(report.choices, "MISSING_SLICES", &Choice::code) !=
+                     report.choices.end();
+  if (!asked) {
+    report.choices.push_back({"MISSING_SLICES",
+                              "Slices are damaged before they say where they belong. Use the rest?",
+                              {"refuse", "part"},
+                              {"Do not use the series", "Use it without them"}});
+  }
+  const std::string text = countOfSlices(names) + " cannot be read, nor where they belong (" +
+                           lost.back()->defect_text + ")";
+  if (agreed) {
+    findings.repaired("MISSING_SLICES", text, "They were left out", names);
+  } else {
+    findings.refuse("MISSING_SLICES", text, "Copy these files again from their source", names);
   }
 }
 
-void checkGeometry(Series& series, Findings& findings) {
-  const auto lost = findings.slicesWhere([](const DicomHeader& h) {
-    return h.has_pixels && (!h.position_mm || !h.orientation || !h.pixel_spacing_mm);
-  });
-  if (!lost.empty()) {
+SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findings) {
+  SeriesPlan plan;
+  const auto nowhere =
+      findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
+  if (!nowhere.empty()) {
     findings.refuse("NO_GEOMETRY",
-                    countOfSlices(lost) + " lack a usable position, orientation or pixel spacing",
-                    "Export the series again with its geometry", lost);
-    return;
+                    countOfSlices(nowhere) +
+                        " lack a usable position, orientation or pixel spacing",
+                    "Export the series again with its geometry", nowhere);
+    return plan;
   }
-  // Slices with bad pixels keep their place, so that a gap means a file that is not there at all.
-  std::vector<DicomHeader> placed, unplaced;
-  for (DicomHeader& header : series.slices) {
-    (header.position_mm && header.orientation ? placed : unplaced).push_back(std::move(header));
+  std::vector<const DicomHeader*> placed, unplaced, lost;
+  for (const DicomHeader& header : series.slices) {
+    (isPlaced(header) ? placed : unplaced).push_back(&header);
   }
-  if (!placed.empty() && typicalSlice(placed).pixel_spacing_mm) {
-    const DicomHeader& first = typicalSlice(placed);
-    StackInput input{first.rows, first.columns, *first.pixel_spacing_mm, *first.orientation, {}};
-    for (const DicomHeader& header : placed) input.positions_mm.push_back(*header.position_mm);
-    Stack stack = stackSlices(input);
-    series.report.geometry = stack.geometry;
-    series.report.tilt_deg = stack.tilt_deg;
-    std::ranges::move(stack.findings, std::back_inserter(series.report.findings));
-    series.slices.clear();
-    for (const std::size_t i : stack.order) series.slices.push_back(std::move(placed[i]));
-  } else {
-    series.slices = std::move(placed);
+  SeriesReport& report = series.report;
+  if (!placed.empty()) {
+    const auto whole = std::ranges::find_if(placed, [](const auto* h) { return h->has_pixels; });
+    const DicomHeader& first = whole == placed.end() ? *placed.front() : **whole;
+    std::vector<std::size_t> used(placed.size());
+    for (std::size_t n = 0; n < used.size(); ++n) used[n] = n;
+    if (const auto axes = axesOf(*first.orientation)) {
+      std::vector<double> places_mm;
+      for (const DicomHeader* h : placed) {
+        places_mm.push_back(glm::dot(*h->position_mm, (*axes)[2]));
+      }
+      used = chooseRepeats(placed, places_mm, answers, report);
+    }
+    StackInput input{first.rows, first.columns, *first.pixel_spacing_mm, *first.orientation, {}, {},
+                     ""};
+    for (const std::size_t n : used) {
+      input.positions_mm.push_back(*placed[n]->position_mm);
+      input.usable.push_back(!isLost(*placed[n]));
+      if (isLost(*placed[n])) lost.push_back(placed[n]);
+    }
+    input.lost_text = lostText(lost);
+    plan.stack = stackSlices(input, answers);
+    report.geometry = plan.stack.geometry;
+    report.tilt_deg = plan.stack.tilt_deg;
+    std::ranges::move(plan.stack.findings, std::back_inserter(report.findings));
+    std::ranges::move(plan.stack.choices, std::back_inserter(report.choices));
+    for (const std::size_t n : plan.stack.order) {
+      plan.sources.push_back(std::size_t(placed[used[n]] - series.slices.data()));
+    }
   }
-  std::ranges::move(unplaced, std::back_inserter(series.slices));
+  checkUnplaced(unplaced, answers, report, findings);
+  return plan;
+}
+
+// By place where every slice has one, else by instance number.
+void orderSlices(std::vector<DicomHeader>& slices) {
+  std::ranges::stable_sort(slices, {}, [](const DicomHeader& header) {
+    return parseInteger(header.instance_number).value_or(std::numeric_limits<int>::max());
+  });
+  const auto first = std::ranges::find_if(slices, isPlaced);
+  if (first == slices.end()) return;
+  const auto axes = axesOf(*first->orientation);
+  if (!axes) return;
+  std::ranges::stable_sort(slices, {}, [&](const DicomHeader& header) {
+    return isPlaced(header) ? glm::dot(*header.position_mm, (*axes)[2])
+                            : std::numeric_limits<double>::max();
+  });
+}
+
+double memoryMb(const SeriesPlan& plan, const SeriesReport& report) {
+  double voxels = double(report.geometry.voxelCount());
+  if (!plan.stack.oneToOne()) {
+    voxels += double(plan.sources.size()) * report.geometry.size[0] * report.geometry.size[1];
+  }
+  return voxels * sizeof(std::int16_t) / 1048576.0;
 }
 
 }  // namespace
 
-void assessSeries(Series& series) {
+SeriesPlan assessSeries(Series& series, const Answers& answers) {
   SeriesReport& report = series.report;
+  report.findings.resize(series.findings_kept);
+  report.choices.clear();
+  report.phases = 1;
   Findings findings(series);
-  std::ranges::stable_sort(series.slices, {}, [](const DicomHeader& header) {
-    return parseInteger(header.instance_number).value_or(std::numeric_limits<int>::max());
-  });
+  orderSlices(series.slices);
   const DicomHeader& first = typicalSlice(series.slices);
   report.description = first.description;
+  report.body_part = first.body_part;
   report.modality = first.modality.empty() && isCt(first) ? "CT" : first.modality;
   report.transfer_syntax = cleanUtf8(first.transfer_syntax);
+  report.slices = int(series.slices.size());
+  report.geometry = {};
   report.geometry.size = {first.columns, first.rows, std::int32_t(series.slices.size())};
   report.geometry.spacing_mm = Vec3(0.0);
   if (first.pixel_spacing_mm) {
@@ -224,17 +330,21 @@ void assessSeries(Series& series) {
   }
   report.lossy = std::ranges::any_of(series.slices, &DicomHeader::lossy);
 
+  SeriesPlan plan;
   if (!refusedByKind(first, findings)) {
     checkTransferSyntax(series, findings);
     checkValues(series, findings);
-    checkPixels(series, findings);
-    checkGeometry(series, findings);
+    checkLoss(series, answers, findings);
+    checkSizes(series, findings);
+    plan = checkGeometry(series, answers, findings);
     if (const Status size = checkSize(report.geometry.size, ""); !size) {
       findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",
                       size.error().what, size.error().next);
     }
+    report.memory_mb = memoryMb(plan, report);
   }
   report.verdict = verdictOf(report.findings);
+  return plan;
 }
 
 }  // namespace trephine

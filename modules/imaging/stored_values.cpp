@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/volume.h"
-
 namespace trephine {
 
 namespace {
@@ -77,13 +75,13 @@ int storedValue(std::uint16_t word, const StoredFormat& format) {
   return format.is_signed ? static_cast<std::int16_t>(top) >> down : top >> down;
 }
 
-void HuConverter::buildTable(const StoredFormat& format) {
-  if (table_format_ == format) return;
+void HuConverter::buildTable(const StoredFormat& format, std::int16_t padding_hu) {
+  if (table_format_ == format && table_padding_hu_ == padding_hu) return;
   hu_.resize(65536);
   events_.assign(65536, 0);
   for (unsigned word = 0; word < 65536; ++word) {
     if (isPadding(std::uint16_t(word), format)) {
-      hu_[word] = kAirHu;
+      hu_[word] = padding_hu;
       events_[word] = kPadding;
       continue;
     }
@@ -98,16 +96,18 @@ void HuConverter::buildTable(const StoredFormat& format) {
     hu_[word] = static_cast<std::int16_t>(clamped);
   }
   table_format_ = format;
+  table_padding_hu_ = padding_hu;
 }
 
-HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const StoredFormat& format) {
+HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const StoredFormat& format,
+                              std::int16_t padding_hu) {
   const bool whole_shift = format.slope == 1.0 && std::abs(format.intercept) < 1e6 &&
                            format.intercept == std::floor(format.intercept);
   if (whole_shift && !format.padding) {
     return format.is_signed ? shiftValues<true>(words, count, format)
                             : shiftValues<false>(words, count, format);
   }
-  buildTable(format);
+  buildTable(format, padding_hu);
   HuCounts counts;
   int low = 32767, high = -32768;
   for (std::size_t i = 0; i < count; ++i) {

@@ -9,7 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "volume/volume.h"
+
 namespace trephine {
+
+// Not a value: marks voxels that were not scanned, until they become air. No CT holds it.
+constexpr std::int16_t kLostHu = -32768;
 
 struct StoredFormat {
   int bits_stored = 16;  // 1..16
@@ -44,12 +49,15 @@ struct HuCounts {
 // thread.
 class HuConverter {
  public:
-  HuCounts convert(std::int16_t* words, std::size_t count, const StoredFormat& format);
+  // `padding_hu` is what padding becomes: kLostHu where the words are yet to be interpolated.
+  HuCounts convert(std::int16_t* words, std::size_t count, const StoredFormat& format,
+                   std::int16_t padding_hu = kAirHu);
 
  private:
-  void buildTable(const StoredFormat& format);
+  void buildTable(const StoredFormat& format, std::int16_t padding_hu);
 
   std::optional<StoredFormat> table_format_;
+  std::int16_t table_padding_hu_ = kAirHu;
   std::vector<std::int16_t> hu_;      // by whole word
   std::vector<std::uint8_t> events_;  // by whole word: rounded 1, clamped 2, padding 4
 };

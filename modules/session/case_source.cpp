@@ -13,13 +13,6 @@ namespace {
 
 constexpr std::string_view kPhantom = "phantom:";
 
-bool isVolumeFile(const std::string& source) {
-  for (const char* ending : {".mha", ".mhd", ".nii", ".nii.gz"}) {
-    if (source.ends_with(ending)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 bool isPhantom(const std::string& source) { return source.starts_with(kPhantom); }
@@ -31,7 +24,9 @@ Result<Volume> openCase(const std::string& source, const Progress& progress) {
   }
   if (isPhantom(source)) return makePhantom(source.substr(kPhantom.size()), progress);
   std::error_code ec;
-  if (isVolumeFile(source) && !std::filesystem::is_directory(source, ec)) return readVolume(source);
+  if (isVolumeFile(source) && !std::filesystem::is_directory(source, ec)) {
+    return readVolume(source, progress);
+  }
 
   Result<CtFolder> folder = CtFolder::scan(source, progress);
   if (!folder) return folder.error();
@@ -41,7 +36,7 @@ Result<Volume> openCase(const std::string& source, const Progress& progress) {
     return Error{"ALL_REFUSED", "No series in the folder can be used", source,
                  "The import report says why for each"};
   }
-  return folder->read(*series, progress);
+  return folder->read(*series, {}, progress);
 }
 
 }  // namespace trephine

@@ -10,9 +10,10 @@
 
 namespace trephine {
 
-// `source` is "phantom:cranium", "phantom:abdomen", a DICOM folder or file, or a .mha, .mhd, .nii
-// or .nii.gz file; from a folder the best CT series is taken. Errors are those of the importer and
-// the readers, and NO_CASE for an empty source. Any thread; reports progress and can be cancelled.
+// `source` is "phantom:cranium", "phantom:abdomen", a DICOM folder or file, or a volume file
+// (volume/volume_files.h); from a folder the best CT series is taken. Errors are those of the
+// importer and the readers, and NO_CASE for an empty source. Any thread; reports progress and can be
+// cancelled.
 Result<Volume> openCase(const std::string& source, const Progress& progress = Progress());
 
 bool isPhantom(const std::string& source);

@@ -21,13 +21,6 @@ constexpr int kBrickEdge = 16;
 constexpr int kBrickShift = 4;  // dividing by the edge
 static_assert(1 << kBrickShift == kBrickEdge);
 
-// Voxels [low, high) on each axis.
-struct VoxelBox {
-  Index3 low{0, 0, 0};
-  Index3 high{0, 0, 0};
-  friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
-};
-
 class Grid {
  public:
   explicit Grid(Volume volume);

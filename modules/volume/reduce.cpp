@@ -27,33 +27,35 @@ Error noMemory(const std::string& where) {
           "Close other programs"};
 }
 
-Status checkBox(const GridGeometry& geometry, const IndexBox& box) {
-  const std::string where = text(box.first) + " to " + text(box.last);
+Status checkBox(const GridGeometry& geometry, const VoxelBox& box) {
+  const std::string where = text(box.low) + " up to " + text(box.high);
   for (int axis = 0; axis < 3; ++axis) {
-    if (box.first[axis] > box.last[axis]) {
-      return Error{"BAD_BOX", "The box to keep has nothing in it", where, "Choose a larger box"};
+    if (box.low[axis] >= box.high[axis]) {
+      return Error{"BAD_CROP", "The box to keep has nothing in it", where, "Choose a larger box"};
     }
-    if (box.first[axis] < 0 || box.last[axis] >= geometry.size[axis]) {
-      return Error{"BAD_BOX", "The box to keep reaches outside the volume", where,
+    if (box.low[axis] < 0 || box.high[axis] > geometry.size[axis]) {
+      return Error{"BAD_CROP", "The box to keep reaches outside the volume", where,
                    "The volume has " + text(geometry.size) + " voxels"};
     }
   }
   return {};
 }
 
-GridGeometry croppedGeometry(GridGeometry geometry, const IndexBox& box) {
-  geometry.origin_mm = geometry.toPatient_mm(Vec3(box.first[0], box.first[1], box.first[2]));
-  geometry.size = box.size();
+GridGeometry croppedGeometry(GridGeometry geometry, const VoxelBox& box) {
+  geometry.origin_mm = geometry.toPatient_mm(Vec3(box.low[0], box.low[1], box.low[2]));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    geometry.size[axis] = box.high[axis] - box.low[axis];
+  }
   return geometry;
 }
 
 // Row by row, first to last: `to` may be the same memory, since no row moves up.
-void moveRows(const GridGeometry& geometry, const std::int16_t* from, const IndexBox& box,
+void moveRows(const GridGeometry& geometry, const std::int16_t* from, const VoxelBox& box,
               std::int16_t* to) {
-  const auto row = std::size_t(box.size()[0]);
-  for (int k = box.first[2]; k <= box.last[2]; ++k) {
-    for (int j = box.first[1]; j <= box.last[1]; ++j, to += row) {
-      std::memmove(to, from + geometry.indexOf(box.first[0], j, k), row * sizeof(std::int16_t));
+  const auto row = std::size_t(box.high[0] - box.low[0]);
+  for (int k = box.low[2]; k < box.high[2]; ++k) {
+    for (int j = box.low[1]; j < box.high[1]; ++j, to += row) {
+      std::memmove(to, from + geometry.indexOf(box.low[0], j, k), row * sizeof(std::int16_t));
     }
   }
 }
@@ -156,7 +158,7 @@ struct LossSums {
 
 }  // namespace
 
-Result<Volume> crop(const Volume& volume, const IndexBox& box) {
+Result<Volume> crop(const Volume& volume, const VoxelBox& box) {
   if (const Status status = checkBox(volume.geometry, box); !status.ok()) return status.error();
   try {
     Volume part{croppedGeometry(volume.geometry, box), {}};
@@ -168,7 +170,7 @@ Result<Volume> crop(const Volume& volume, const IndexBox& box) {
   }
 }
 
-Result<Volume> crop(Volume&& volume, const IndexBox& box) {
+Result<Volume> crop(Volume&& volume, const VoxelBox& box) {
   if (const Status status = checkBox(volume.geometry, box); !status.ok()) return status.error();
   Volume part{croppedGeometry(volume.geometry, box), std::move(volume.hu)};
   moveRows(volume.geometry, part.hu.data(), box, part.hu.data());

@@ -9,23 +9,12 @@
 
 namespace trephine {
 
-// Voxels from `first` to `last`, both included.
-struct IndexBox {
-  Index3 first{0, 0, 0};
-  Index3 last{0, 0, 0};
-
-  Index3 size() const {
-    return {last[0] - first[0] + 1, last[1] - first[1] + 1, last[2] - first[2] + 1};
-  }
-  friend bool operator==(const IndexBox&, const IndexBox&) = default;
-};
-
-// The voxels in the box; each keeps its place in the patient. Errors: BAD_BOX (nothing in it, or
+// The voxels in the box; each keeps its place in the patient. Errors: BAD_CROP (nothing in it, or
 // not wholly inside the volume), OUT_OF_MEMORY.
-Result<Volume> crop(const Volume& volume, const IndexBox& box);
+Result<Volume> crop(const Volume& volume, const VoxelBox& box);
 // The same within the memory that `volume` has; what the box leaves free goes back to the system.
 // After an error `volume` is as it was.
-Result<Volume> crop(Volume&& volume, const IndexBox& box);
+Result<Volume> crop(Volume&& volume, const VoxelBox& box);
 
 // Each voxel the mean of factor^3 (2 or 4), rounded to the nearest, halves to even; at the far
 // faces the mean of those there are, so that no air is mixed in. Voxel (0, 0, 0) lies at the middle

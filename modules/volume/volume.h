@@ -45,6 +45,13 @@ struct GridGeometry {
   friend bool operator==(const GridGeometry&, const GridGeometry&) = default;
 };
 
+// Voxels [low, high) on each axis.
+struct VoxelBox {
+  Index3 low{0, 0, 0};
+  Index3 high{0, 0, 0};
+  friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
+};
+
 struct Volume {
   GridGeometry geometry;
   std::vector<std::int16_t> hu;  // i fastest, then j, then k

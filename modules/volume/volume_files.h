@@ -1,26 +1,83 @@
-// Volumes as files, through VTK's readers and writers, with the full affine both ways.
+// Volumes as files, with the full voxel-to-patient affine: MetaImage, NIfTI, NRRD, raw voxels.
 //
-// MetaImage (.mha, .mhd + .raw) is LPS, as we are. NIfTI (.nii, .nii.gz) is RAS: converted here,
-// and only here. VTK 9.1's MetaImage writer drops the direction; we see to it that the file has it.
+// Patients are LPS here. MetaImage is LPS; NIfTI is RAS; NRRD says which it is; a raw file's
+// sidecar is LPS (resources/schemas/raw.md). Each is converted in its own file of this room and
+// nowhere else. Direction comes out right-handed: the slices of a left-handed file are reversed,
+// and every voxel stays where it was in the patient.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
+#include "base/progress.h"
 #include "base/result.h"
 #include "volume/volume.h"
 
 namespace trephine {
 
-// MetaImage's TransformMatrix is read and written as ITK and 3D Slicer do (meta_image_header.h).
-// NIfTI: the sform where there is one, else the qform; its unit of length, rescale slope and
-// intercept are honoured, and values are rounded to whole HU. Direction comes out right-handed: the
-// slices of a left-handed file are reversed, and every voxel stays where it was in the patient.
+enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+const char* voxelTypeName(VoxelType type);  // "int16"
+int bytesOf(VoxelType type);
 
-// Chooses the format by extension, not by content. Header and file size are compared before
-// anything large is allocated. Errors: MISSING_FILE, UNKNOWN_FORMAT, UNREADABLE, BAD_GEOMETRY (a
-// direction that is not orthonormal, a spacing that is not positive), TOO_LARGE, NOT_HU (a pixel
-// type or range that does not fit int16).
-Result<Volume> readVolume(const std::filesystem::path& file);
+// What a file says of itself, without its voxels.
+struct VolumeFileHeader {
+  std::string format;            // "MetaImage", "NIfTI", "NRRD" or "raw"
+  GridGeometry geometry;         // of the volume that comes out
+  bool reversed_slices = false;  // the file is left-handed: its last slice comes out first
+  VoxelType type = VoxelType::int16;
+  bool big_endian = false;
+  double slope = 1.0;  // HU = slope * stored + intercept
+  double intercept = 0.0;
+  std::vector<std::string> notes;  // what the file leaves unsaid, and what is taken instead
+
+  // Where the voxels lie: `bytes` bytes of `file` from `offset`, unpacked by zlib if `packed`, less
+  // the first `skip` of what comes out.
+  struct {
+    std::filesystem::path file;  // this one, or one beside it
+    std::uint64_t offset = 0;
+    std::uint64_t bytes = 0;
+    bool packed = false;
+    std::uint64_t skip = 0;
+  } data;
+
+  std::uint64_t storedBytes() const { return geometry.voxelCount() * std::uint64_t(bytesOf(type)); }
+  // What reading takes, but for some fixed buffers.
+  std::uint64_t memoryBytes() const { return geometry.voxelCount() * sizeof(std::int16_t); }
+};
+
+// A volume and what was done to its values. Values are HU as the file's slope and intercept give
+// them, rounded to the nearest whole HU (halves up).
+struct VolumeFileReading {
+  VolumeFileHeader header;
+  Volume volume;
+  std::uint64_t rounded = 0;      // voxels that were not whole numbers
+  std::uint64_t clamped = 0;      // beyond int16: set to its end
+  std::uint64_t not_numbers = 0;  // NaN or infinite: set to kAirHu
+  double hu_min = 0.0;            // of all that are numbers, before rounding and clamping
+  double hu_max = 0.0;
+};
+
+// By name, in either case: .mha, .mhd, .nii, .nii.gz, .nrrd, .nhdr, .raw; and a .json beside which
+// a .raw of the same name lies.
+bool isVolumeFile(const std::filesystem::path& file);
+
+// Chooses the format by name. Reads headers only. Sizes are held against the file's length, so a
+// header that promises too much is refused here. Errors: MISSING_FILE, UNKNOWN_FORMAT (also a
+// variant of a format that is not read, by name), UNREADABLE, BAD_GEOMETRY (no place or no axes,
+// axes that are not at right angles, a spacing that is not positive), TOO_LARGE, NOT_HU (several
+// values a voxel), NO_SIDECAR, BAD_JSON and BAD_FIELD (a raw file's sidecar).
+Result<VolumeFileHeader> readVolumeFileHeader(const std::filesystem::path& file);
+
+// Memory is taken as voxels arrive, not as the header promises. Errors: the header's, and
+// UNREADABLE (cut short, or packed voxels that are damaged), NOT_HU (over half of the voxels are
+// beyond int16, or none is a number), CANCELLED.
+Result<VolumeFileReading> readVolumeFile(const std::filesystem::path& file,
+                                         const Progress& progress = Progress());
+
+// The volume alone.
+Result<Volume> readVolume(const std::filesystem::path& file, const Progress& progress = Progress());
 
 // .mha (uncompressed), .nii or .nii.gz by extension; written beside the target and renamed, so a
 // full disk loses nothing. NIfTI keeps the affine as float. Errors: UNKNOWN_FORMAT, BAD_GEOMETRY,

@@ -5,6 +5,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(glm REQUIRED)
 find_package(DCMTK REQUIRED)
+find_package(OpenJPEG REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Several Debian packages bring the MPI build of HDF5 along; recordings must use the serial one.
 set(HDF5_PREFER_PARALLEL OFF)

@@ -9,6 +9,7 @@ set(TREPHINE_LIBRARY_json nlohmann_json::nlohmann_json)
 set(TREPHINE_LIBRARY_spdlog spdlog::spdlog)
 set(TREPHINE_LIBRARY_openssl OpenSSL::Crypto)
 set(TREPHINE_LIBRARY_dcmtk DCMTK::DCMTK)
+set(TREPHINE_LIBRARY_openjpeg openjp2)
 set(TREPHINE_LIBRARY_hdf5 HDF5::HDF5)
 set(TREPHINE_LIBRARY_vtk-image VTK::CommonCore VTK::CommonDataModel VTK::IOImage)
 set(TREPHINE_LIBRARY_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel
@@ -20,6 +21,7 @@ set(TREPHINE_LIBRARY_vtk-charts VTK::ChartsCore VTK::CommonCore VTK::IOImage VTK
 set(TREPHINE_LIBRARY_opengl OpenGL::GL GLEW::GLEW)
 set(TREPHINE_LIBRARY_qt Qt6::Widgets Qt6::OpenGLWidgets)
 set(TREPHINE_LIBRARY_cli11 CLI11::CLI11)
+set(TREPHINE_LIBRARY_zlib ZLIB::ZLIB)
 set(TREPHINE_LIBRARY_threads Threads::Threads)
 set(TREPHINE_LIBRARY_dl ${CMAKE_DL_LIBS})
 

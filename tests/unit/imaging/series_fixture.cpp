@@ -77,7 +77,7 @@ Volume SeriesFixture::import() {
     ADD_FAILURE() << "no series: " << (report_.error ? report_.error->sentence() : "");
     return {};
   }
-  auto volume = ct.read(*best, Progress());
+  auto volume = ct.read(*best, {}, Progress());
   report_ = ct.report();
   if (!volume.ok()) {
     ADD_FAILURE() << volume.error().sentence();
@@ -114,7 +114,7 @@ Finding SeriesFixture::expectRefused(const std::string& code) {
   const SeriesReport series = report_.series.front();
   EXPECT_EQ(series.verdict, Verdict::refused);
   EXPECT_FALSE(ct.bestSeries().has_value());
-  EXPECT_FALSE(ct.read(series.uid, Progress()).ok());
+  EXPECT_FALSE(ct.read(series.uid, {}, Progress()).ok());
   EXPECT_FALSE(ct.report().chosen.has_value());
   const Finding* finding = find(series, code);
   EXPECT_NE(finding, nullptr) << "found only: " << codes(series);

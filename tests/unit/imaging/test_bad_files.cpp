@@ -119,7 +119,7 @@ TEST_F(BadFiles, NoSpoiltByteCrashesTheImport) {
     writeBytes(slice(2), bytes);
     CtFolder ct = scan();
     for (const SeriesReport& series : ImportReport(ct.report()).series) {
-      const auto result = ct.read(series.uid, Progress());
+      const auto result = ct.read(series.uid, {}, Progress());
       EXPECT_TRUE(result.ok() || !result.error().code.empty());
     }
     EXPECT_NO_THROW(toJson(ct.report()).dump());

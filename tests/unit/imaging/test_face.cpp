@@ -26,8 +26,8 @@ const Volume& head() {
 }
 
 // Part of the head: voxels from `first` to `last`.
-Volume part(const Index3& first, const Index3& last) {
-  return crop(head(), {first, last}).value();
+Volume part(const Index3& low, const Index3& high) {
+  return crop(head(), {low, high}).value();
 }
 
 bool isBrain(Tissue tissue) {
@@ -146,16 +146,16 @@ TEST(Face, OtherBodyPartsHaveNone) {
 }
 
 TEST(Face, AVaultAloneShowsNone) {
-  const FaceFinding finding = findFace(part({0, 0, 55}, {127, 127, 89}), "HEAD");
+  const FaceFinding finding = findFace(part({0, 0, 55}, {128, 128, 90}), "HEAD");
   EXPECT_FALSE(finding.found);
 }
 
 TEST(Face, AFaceThatTheFieldOfViewCutsOffIsNotSeen) {
-  EXPECT_FALSE(findFace(part({0, 42, 0}, {127, 127, 89})).found);
+  EXPECT_FALSE(findFace(part({0, 42, 0}, {128, 128, 90})).found);
 }
 
 TEST(Face, JawsWithoutABraincaseAreAFaceInDoubt) {
-  const Volume jaws = part({0, 0, 0}, {127, 127, 24});
+  const Volume jaws = part({0, 0, 0}, {128, 128, 25});
   for (const char* words : {"", "SINUS", "Orbits and facial bones"}) {
     const FaceFinding finding = findFace(jaws, words);
     EXPECT_TRUE(finding.found) << words;

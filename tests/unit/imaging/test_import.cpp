@@ -260,10 +260,11 @@ TEST_F(Import, TheJsonHasTheKeysOfTheContract) {
     return all;
   };
   EXPECT_EQ(keys(json),
-            "path files_seen files_read skipped series chosen seconds start_rss_mb peak_rss_mb ");
+            "path files_seen files_read skipped series chosen provenance seconds start_rss_mb "
+            "peak_rss_mb ");
   EXPECT_EQ(keys(json["series"][0]),
-            "uid description modality verdict size spacing_mm origin_mm direction hu_min hu_max "
-            "tilt_deg transfer_syntax lossy findings volume_sha256 ");
+            "uid description modality source slices phases memory_mb verdict size spacing_mm origin_mm direction hu_min hu_max "
+            "tilt_deg transfer_syntax lossy findings choices volume_sha256 ");
   EXPECT_EQ(keys(json["seconds"]), "scan read hash ");
   EXPECT_EQ(json["series"][0]["direction"], Json::parse("[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0]"));
   EXPECT_GT(report_.start_rss_mb, 0.0);
@@ -289,7 +290,7 @@ TEST_F(Import, TheJsonIsValidUtf8WhateverThePathHolds) {
 TEST_F(Import, AnUnknownSeriesIsNamed) {
   write(rampVolume());
   CtFolder ct = scan();
-  const auto volume = ct.read("1.2.3", Progress());
+  const auto volume = ct.read("1.2.3", {}, Progress());
   ASSERT_FALSE(volume.ok());
   EXPECT_EQ(volume.error().code, "NO_SUCH_SERIES");
 }
@@ -300,8 +301,8 @@ TEST_F(Import, ACancelStopsScanAndRead) {
   Progress cancelled;
   cancelled.cancel();
   EXPECT_EQ(CtFolder::scan(folder(), cancelled).error().code, "CANCELLED");
-  EXPECT_EQ(ct.read(*ct.bestSeries(), cancelled).error().code, "CANCELLED");
-  EXPECT_TRUE(ct.read(*ct.bestSeries(), Progress()).ok());
+  EXPECT_EQ(ct.read(*ct.bestSeries(), {}, cancelled).error().code, "CANCELLED");
+  EXPECT_TRUE(ct.read(*ct.bestSeries(), {}, Progress()).ok());
 }
 
 TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
@@ -309,12 +310,12 @@ TEST_F(Import, AFileThatIsCutAfterTheScanRefusesTheSeries) {
   CtFolder ct = scan();
   const std::string best = *ct.bestSeries();
   fs::resize_file(slice(3), fs::file_size(slice(3)) - 10);
-  const auto volume = ct.read(best, Progress());
+  const auto volume = ct.read(best, {}, Progress());
   ASSERT_FALSE(volume.ok());
   EXPECT_EQ(volume.error().code, "MISSING_SLICES");
   EXPECT_FALSE(ct.bestSeries().has_value());
   EXPECT_EQ(find(ct.report().series.front(), "MISSING_SLICES")->slices,
-            std::vector<std::string>{"slice 3"});
+            std::vector<std::string>{"102.50 mm"});
 }
 
 }  // namespace trephine::test

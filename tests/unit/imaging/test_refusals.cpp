@@ -18,7 +18,10 @@ TEST_F(Refusal, AMissingSliceIsNamedInMillimetres) {
 TEST_F(Refusal, ATruncatedSliceIsAMissingSliceAndTheOthersAreStillListed) {
   write(rampVolume());
   fs::resize_file(slice(2), fs::file_size(slice(2)) - 8);
-  EXPECT_EQ(expectRefused("MISSING_SLICES").slices, std::vector<std::string>{"slice 2"});
+  const Finding finding = expectRefused("MISSING_SLICES");
+  EXPECT_EQ(finding.slices, std::vector<std::string>{"101.25 mm"});
+  EXPECT_NE(finding.text.find("slice 2 (its pixels are cut short)"), std::string::npos)
+      << finding.text;
   EXPECT_EQ(report_.series.front().geometry.size, (Index3{7, 5, 6}));
 }
 
@@ -45,9 +48,13 @@ TEST_F(Refusal, TwoPhases) {
     const fs::path second = folder() / ("phase2-" + std::to_string(n));
     fs::copy_file(slice(n), second);
     edit(second,
-         [&](DcmDataset& data) { put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n)); });
+         [&](DcmDataset& data) {
+           put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+           put(data, DCM_RescaleIntercept, "-1000");
+         });
   }
-  expectRefused("PHASES");
+  EXPECT_NE(expectRefused("PHASES").text.find("2 phases"), std::string::npos);
+  EXPECT_EQ(report_.series.front().phases, 2);
 }
 
 TEST_F(Refusal, UnevenSpacing) {
@@ -56,7 +63,7 @@ TEST_F(Refusal, UnevenSpacing) {
   expectRefused("UNEVEN_SPACING");
 }
 
-TEST_F(Refusal, GantryTilt) {
+TEST_F(Refusal, SlicesThatLieFartherAsideThanTheyAreWide) {
   write(rampVolume());
   for (int n = 1; n <= 6; ++n) {
     edit(slice(n), [&](DcmDataset& data) {
@@ -126,9 +133,13 @@ TEST_F(Refusal, ObjectsWithoutPixels) {
   expectRefused("NOT_AN_IMAGE_SERIES");
 }
 
-TEST_F(Refusal, MultiFrameCt) {
-  write(rampVolume({7, 5, 2}));
-  editAll([](DcmDataset& data) { put(data, DCM_SOPClassUID, UID_EnhancedCTImageStorage); });
+TEST_F(Refusal, FramesThatDoNotSayWhereTheyLie) {
+  write(rampVolume({7, 5, 1}));
+  editAll([](DcmDataset& data) {
+    const std::vector<Uint16> frames(7 * 5 * 3, 1024);
+    data.putAndInsertUint16Array(DCM_PixelData, frames.data(), frames.size());
+    put(data, DCM_NumberOfFrames, "3");
+  });
   expectRefused("MULTIFRAME");
 }
 

@@ -13,7 +13,7 @@ using test::patternVolume;
 
 TEST(Crop, EveryVoxelKeepsItsValueAndItsPlaceInThePatient) {
   const Volume whole = obliqueVolume({9, 8, 7});
-  const IndexBox box{{2, 0, 3}, {6, 7, 5}};
+  const VoxelBox box{{2, 0, 3}, {7, 8, 6}};
   const auto part = crop(whole, box);
   ASSERT_TRUE(part.ok());
   EXPECT_EQ(part->geometry.size, (Index3{5, 8, 3}));
@@ -32,7 +32,7 @@ TEST(Crop, EveryVoxelKeepsItsValueAndItsPlaceInThePatient) {
 
 TEST(Crop, InPlaceIsTheSameInTheSameMemory) {
   Volume whole = patternVolume({70, 60, 50});
-  const IndexBox box{{3, 5, 7}, {60, 40, 49}};
+  const VoxelBox box{{3, 5, 7}, {61, 41, 50}};
   const Volume expected = crop(whole, box).value();
   const std::int16_t* memory = whole.hu.data();
   const auto part = crop(std::move(whole), box);
@@ -43,7 +43,7 @@ TEST(Crop, InPlaceIsTheSameInTheSameMemory) {
 }
 
 TEST(Crop, WhatIsCroppedInPlaceCanGrowAgain) {
-  Volume part = crop(patternVolume({64, 64, 64}), {{0, 0, 0}, {63, 63, 3}}).value();
+  Volume part = crop(patternVolume({64, 64, 64}), {{0, 0, 0}, {64, 64, 4}}).value();
   const std::int16_t last = part.hu.back();
   part.hu.resize(std::size_t(64) * 64 * 64, 77);
   EXPECT_EQ(part.hu[64 * 64 * 4 - 1], last);
@@ -53,18 +53,18 @@ TEST(Crop, WhatIsCroppedInPlaceCanGrowAgain) {
 
 TEST(Crop, TheWholeVolumeAndOneVoxelAreBoxesToo) {
   const Volume whole = patternVolume({4, 5, 6});
-  EXPECT_EQ(crop(whole, {{0, 0, 0}, {3, 4, 5}})->hu, whole.hu);
-  const auto one = crop(whole, {{3, 4, 5}, {3, 4, 5}});
+  EXPECT_EQ(crop(whole, {{0, 0, 0}, {4, 5, 6}})->hu, whole.hu);
+  const auto one = crop(whole, {{3, 4, 5}, {4, 5, 6}});
   ASSERT_TRUE(one.ok());
   EXPECT_EQ(one->hu, std::vector<std::int16_t>{whole.hu.back()});
 }
 
 TEST(Crop, ABoxThatIsEmptyOrReachesOutsideIsRefusedAndTheVolumeStays) {
   Volume whole = patternVolume({4, 5, 6});
-  for (const IndexBox& box : {IndexBox{{2, 0, 0}, {1, 4, 5}}, IndexBox{{-1, 0, 0}, {3, 4, 5}},
-                              IndexBox{{0, 0, 0}, {3, 5, 5}}, IndexBox{{0, 0, 6}, {3, 4, 6}}}) {
-    EXPECT_EQ(crop(whole, box).error().code, "BAD_BOX");
-    EXPECT_EQ(crop(std::move(whole), box).error().code, "BAD_BOX");
+  for (const VoxelBox& box : {VoxelBox{{2, 0, 0}, {2, 5, 6}}, VoxelBox{{-1, 0, 0}, {4, 5, 6}},
+                              VoxelBox{{0, 0, 0}, {4, 6, 6}}, VoxelBox{{0, 0, 6}, {4, 5, 7}}}) {
+    EXPECT_EQ(crop(whole, box).error().code, "BAD_CROP");
+    EXPECT_EQ(crop(std::move(whole), box).error().code, "BAD_CROP");
   }
   EXPECT_EQ(whole.hu.size(), 4u * 5 * 6);
 }

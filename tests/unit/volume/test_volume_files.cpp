@@ -3,30 +3,16 @@
 
 #include <csignal>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 
+#include "file_bytes.h"
 #include "support.h"
-#include "volume/volume_files.h"
 #include "volumes.h"
 
 namespace trephine {
 namespace {
 
 namespace fs = std::filesystem;
-using test::obliqueVolume;
-using test::patternVolume;
-using test::TemporaryFolder;
-
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void writeBytes(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
+using namespace test;
 
 template <class T>
 T at(const std::string& bytes, std::size_t offset) {

@@ -1,0 +1,77 @@
+#include "imaging/dicom_values.h"
+
+#include <dcmtk/dcmdata/dcrledrg.h>
+#include <dcmtk/dcmdata/dcspchrs.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+#include <dcmtk/oflog/oflog.h>
+
+#include <mutex>
+
+namespace trephine {
+
+namespace {
+
+constexpr Uint32 kLongestValue = 16384;  // no attribute that we read is longer
+
+}  // namespace
+
+void setUpDcmtk() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    dcmEnableUnknownVRConversion.set(OFTrue);  // known attributes sent as VR UN
+    DcmRLEDecoderRegistration::registerCodecs();
+    DJDecoderRegistration::registerCodecs();
+    DJLSDecoderRegistration::registerCodecs();
+  });
+}
+
+std::string valueText(DcmItem& item, const DcmTagKey& tag) {
+  DcmElement* element = nullptr;
+  if (item.findAndGetElement(tag, element).bad() || !element) return "";
+  if (element->getLength() > kLongestValue) return "";
+  OFString text;
+  if (element->getOFStringArray(text).bad()) return "";
+  return std::string(text.c_str(), text.length());
+}
+
+std::string trimmedText(DcmItem& item, const DcmTagKey& tag) {
+  return cleanUtf8(valueText(item, tag));
+}
+
+std::string decodedText(DcmItem& item, const DcmTagKey& tag) {
+  const std::string raw = valueText(item, tag);
+  const bool plain = std::ranges::all_of(raw, [](char c) { return c >= 0x20 && c < 0x7F; });
+  if (plain) return cleanUtf8(raw);
+  const std::string charset = valueText(item, DCM_SpecificCharacterSet);
+  DcmSpecificCharacterSet converter;
+  OFString utf8;
+  if (!charset.empty() &&
+      converter.selectCharacterSet(OFString(charset.data(), charset.size()), "ISO_IR 192").good() &&
+      converter.convertString(OFString(raw.data(), raw.size()), utf8).good()) {
+    return cleanUtf8(std::string_view(utf8.c_str(), utf8.length()));
+  }
+  return guessUtf8(raw);
+}
+
+std::string uidText(DcmItem& item, const DcmTagKey& tag) {
+  const std::string text = trimmedText(item, tag);
+  const bool valid = text.size() <= 64 && std::ranges::all_of(text, [](char c) {
+                       return c == '.' || (c >= '0' && c <= '9');
+                     });
+  return valid ? text : "";
+}
+
+int countOr(DcmItem& item, const DcmTagKey& tag, int fallback, int most) {
+  const int count = parseInteger(valueText(item, tag)).value_or(fallback);
+  return count >= 0 && count <= most ? count : 0;
+}
+
+std::optional<double> timeNumber(DcmItem& item, const DcmTagKey& tag) {
+  std::string text = trimmedText(item, tag);
+  text = text.substr(0, text.find_first_of("+-"));  // the offset from UTC is the same for all
+  return parseDecimal(text);
+}
+
+}  // namespace trephine

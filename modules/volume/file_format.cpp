@@ -1,0 +1,202 @@
+#include "volume/file_format.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+namespace trephine::file_format {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// zlib and gzip cannot shrink data further than this, so a small file with a huge size is a lie.
+constexpr double kMostCompression = 1040.0;
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+}  // namespace
+
+Error unreadable(const std::string& what, const fs::path& file) {
+  return Error{"UNREADABLE", what, file.string(), "Copy or export the file again"};
+}
+
+Error badGeometry(const std::string& what, const fs::path& file) {
+  return Error{"BAD_GEOMETRY", what, file.string(),
+               "Export it again with its orientation, position and voxel size"};
+}
+
+Error notHu(const std::string& what, const fs::path& file) {
+  return Error{"NOT_HU", what, file.string(), "Export the CT as 16-bit whole numbers in HU"};
+}
+
+Error unknownFormat(const std::string& what, const fs::path& file, const std::string& next) {
+  return Error{"UNKNOWN_FORMAT", what, file.string(), next};
+}
+
+Error cannotWrite(const fs::path& file) {
+  return Error{"CANNOT_WRITE", "The volume could not be written", file.string(),
+               "Check free space and that you may write there; nothing that was there is lost"};
+}
+
+Result<Index3> sizeFrom(const std::vector<double>& sizes, const fs::path& file) {
+  Index3 size{};
+  if (sizes.size() != size.size()) return unreadable("The image's size is not three numbers", file);
+  for (std::size_t axis = 0; axis < size.size(); ++axis) {
+    const double n = sizes[axis];
+    if (!(n >= 1.0) || n != std::floor(n)) {
+      return unreadable("The image's size is not three positive whole numbers", file);
+    }
+    size[axis] = std::int32_t(std::min(n, double(std::numeric_limits<std::int32_t>::max())));
+  }
+  if (auto status = checkSize(size, file.string()); !status) return status.error();
+  return size;
+}
+
+GridGeometry geometryFrom(const Mat4& affine, const Index3& size) {
+  GridGeometry geometry;
+  geometry.size = size;
+  geometry.origin_mm = Vec3(affine[3]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 column(affine[axis]);
+    geometry.spacing_mm[axis] = glm::length(column);
+    geometry.direction[axis] = column / geometry.spacing_mm[axis];
+  }
+  return geometry;
+}
+
+Status checkGeometry(const GridGeometry& geometry, const fs::path& file) {
+  const Mat3& d = geometry.direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double spacing = geometry.spacing_mm[axis];
+    if (!std::isfinite(spacing) || spacing <= 0.0) {
+      return badGeometry("A voxel size of " + std::to_string(spacing) + " mm is not possible",
+                         file);
+    }
+    const double length = glm::length(d[axis]), dot = glm::dot(d[axis], d[(axis + 1) % 3]);
+    // Also false for anything not finite.
+    if (!(std::abs(length - 1.0) < 1e-3 && std::abs(dot) < 1e-3)) {
+      return badGeometry("The image's axes are not at right angles or not of unit length", file);
+    }
+  }
+  if (!isFinite(geometry.origin_mm)) return badGeometry("The image's position is no number", file);
+  return {};
+}
+
+bool leftHanded(const GridGeometry& geometry) {
+  return glm::determinant(geometry.direction) < 0.0;
+}
+
+void turnSliceAxis(GridGeometry& geometry) {
+  geometry.origin_mm = geometry.toPatient_mm({0, 0, geometry.size[2] - 1});
+  geometry.direction[2] = -geometry.direction[2];
+}
+
+void reverseSlices(Volume& volume) {
+  const Index3& size = volume.geometry.size;
+  const auto slice = std::ptrdiff_t(size[0]) * size[1];
+  for (int low = 0, high = size[2] - 1; low < high; ++low, --high) {
+    std::swap_ranges(volume.hu.begin() + low * slice, volume.hu.begin() + (low + 1) * slice,
+                     volume.hu.begin() + high * slice);
+  }
+}
+
+Status settle(VolumeFileHeader& header, const fs::path& file) {
+  if (auto status = checkGeometry(header.geometry, file); !status) return status;
+  header.reversed_slices = leftHanded(header.geometry);
+  if (header.reversed_slices) turnSliceAxis(header.geometry);
+  return {};
+}
+
+Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
+  std::error_code ec;
+  const fs::path folder = fs::canonical(fs::absolute(header, ec).parent_path(), ec);
+  const fs::path found = fs::weakly_canonical(folder / name, ec);  // symbolic links followed
+  if (ec || found.parent_path() != folder) {
+    return Error{"UNREADABLE", "The header leads to voxels outside of its own folder",
+                 header.string(), "Put both files into one folder and name the data file there"};
+  }
+  if (!fs::is_regular_file(found, ec)) {
+    return Error{"MISSING_FILE", "The file with the voxels is not beside the header",
+                 (header.parent_path() / name).string(),
+                 "Keep the header and its data file together"};
+  }
+  return header.parent_path() / name;
+}
+
+Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
+                   const fs::path& file) {
+  std::error_code ec;
+  const std::uint64_t all = fs::file_size(header.data.file, ec);
+  if (ec) return unreadable("The file with the voxels cannot be read", header.data.file);
+  const std::uint64_t stored = header.storedBytes();
+  const std::uint64_t start = offset ? *offset : all > stored ? all - stored : 0;
+  const std::uint64_t bytes = all > start ? all - start : 0;
+  const double most = double(bytes) * (header.data.packed ? kMostCompression : 1.0);
+  if (most < double(stored) + double(header.data.skip)) {
+    return unreadable("The file is cut short: its header promises more voxels than it holds", file);
+  }
+  header.data.offset = start;
+  header.data.bytes = bytes;
+  return {};
+}
+
+Result<std::string> readStart(const fs::path& file, std::size_t most) {
+  std::error_code ec;
+  const std::uint64_t all = fs::file_size(file, ec);
+  std::ifstream in(file, std::ios::binary);
+  if (!in || ec) return unreadable("The file cannot be opened", file);
+  std::string text(std::size_t(std::min<std::uint64_t>(most, all)), '\0');
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(in.gcount()));
+  return text;
+}
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(kBlanks) - first + 1));
+}
+
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return lower;
+}
+
+bool endsWith(const fs::path& file, std::string_view ending) {
+  return lowerCase(file.filename().string()).ends_with(ending);
+}
+
+std::optional<double> numberIn(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<std::vector<double>> numbersIn(std::string_view text) {
+  std::vector<double> values;
+  while (true) {
+    const auto first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return values;
+    text.remove_prefix(first);
+    const auto length = std::min(text.find_first_of(kBlanks), text.size());
+    const auto value = numberIn(text.substr(0, length));
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+    text.remove_prefix(length);
+  }
+}
+
+std::string shown(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out + (text.size() > 40 ? "...'" : "'");
+}
+
+}  // namespace trephine::file_format

@@ -1,0 +1,255 @@
+// NIfTI (.nii, .nii.gz), versions 1 and 2. What the header's fields mean: nifti1.h, nifti2.h.
+// Written through VTK; VTK 9.1's reader is not used: it crashes on a spoilt header (measured).
+//
+// NIfTI is RAS, we are LPS: x and y change sign here and nowhere else. The sform counts where there
+// is one, else the qform; its unit of length, slope and intercept are honoured.
+#include <vtkCommand.h>
+#include <vtkExecutive.h>
+#include <vtkImageData.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNIFTIImageHeader.h>
+#include <vtkNIFTIImageWriter.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkShortArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "volume/file_format.h"
+#include "volume/voxel_reader.h"
+
+namespace trephine::file_format {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const Mat4 kFlipXy{{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
+// The numbers of a header of either version, by where they lie in version 1 and in version 2.
+class Header {
+ public:
+  // Nothing where `bytes` are no header of a NIfTI image in one file.
+  static std::optional<Header> from(const std::string& bytes) {
+    for (const bool big : {false, true}) {
+      Header h(bytes, big);
+      if (bytes.size() >= 348 && h.at<std::int32_t>(0) == 348 &&
+          bytes.compare(344, 3, "n+1") == 0) {
+        return h;
+      }
+      h.second_ = true;
+      if (bytes.size() >= 540 && h.at<std::int32_t>(0) == 540 && bytes.compare(4, 3, "n+2") == 0) {
+        return h;
+      }
+    }
+    return std::nullopt;
+  }
+
+  bool bigEndian() const { return big_; }
+  std::uint64_t length() const { return second_ ? 540 : 348; }
+  double dim(std::size_t i) const {
+    return second_ ? double(at<std::int64_t>(16 + 8 * i)) : at<std::int16_t>(40 + 2 * i);
+  }
+  int type() const { return at<std::int16_t>(second_ ? 12 : 70); }
+  double pixdim(std::size_t i) const { return real(76 + 4 * i, 104 + 8 * i); }
+  double voxelOffset() const {
+    return second_ ? double(at<std::int64_t>(168)) : double(at<float>(108));
+  }
+  double slope() const { return real(112, 176); }
+  double intercept() const { return real(116, 184); }
+  int units() const { return second_ ? at<std::int32_t>(500) : std::uint8_t(bytes_[123]); }
+  int qform() const { return second_ ? at<std::int32_t>(344) : at<std::int16_t>(252); }
+  int sform() const { return second_ ? at<std::int32_t>(348) : at<std::int16_t>(254); }
+  double quaternion(std::size_t i) const { return real(256 + 4 * i, 352 + 8 * i); }  // b, c, d
+  double qoffset(std::size_t i) const { return real(268 + 4 * i, 376 + 8 * i); }
+  double srow(std::size_t row, std::size_t i) const {
+    return real(280 + 16 * row + 4 * i, 400 + 32 * row + 8 * i);
+  }
+
+ private:
+  Header(const std::string& bytes, bool big) : bytes_(bytes), big_(big) {}
+  template <class T>
+  T at(std::size_t offset) const {
+    char raw[sizeof(T)];
+    std::memcpy(raw, bytes_.data() + offset, sizeof raw);
+    if (big_) std::reverse(raw, raw + sizeof raw);
+    T value;
+    std::memcpy(&value, raw, sizeof value);
+    return value;
+  }
+  double real(std::size_t first, std::size_t second) const {
+    return second_ ? at<double>(second) : double(at<float>(first));
+  }
+
+  std::string bytes_;
+  bool big_ = false;
+  bool second_ = false;
+};
+
+Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
+  double unit_mm = 1.0;
+  switch (h.units() & 7) {
+    case 0:  // unknown: by custom mm
+    case 2:
+      break;
+    case 1:
+      unit_mm = 1000.0;
+      break;
+    case 3:
+      unit_mm = 0.001;
+      break;
+    default:
+      return badGeometry("The unit of length is unknown", file);
+  }
+  Mat4 affine(1.0);
+  if (h.sform() > 0) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        affine[column][row] = h.srow(std::size_t(row), std::size_t(column)) * unit_mm;
+      }
+    }
+    return affine;
+  }
+  if (h.qform() > 0) {
+    const double b = h.quaternion(0), c = h.quaternion(1), d = h.quaternion(2);
+    const Quat q(std::sqrt(std::max(0.0, 1.0 - b * b - c * c - d * d)), b, c, d);
+    const Mat3 rotation = glm::mat3_cast(glm::normalize(q));
+    for (int axis = 0; axis < 3; ++axis) {
+      const double sign = axis == 2 && h.pixdim(0) < 0.0 ? -1.0 : 1.0;
+      affine[axis] =
+          glm::dvec4(rotation[axis] * (sign * h.pixdim(std::size_t(axis) + 1) * unit_mm), 0.0);
+    }
+    affine[3] = glm::dvec4(Vec3(h.qoffset(0), h.qoffset(1), h.qoffset(2)) * unit_mm, 1.0);
+    return affine;
+  }
+  return badGeometry("The file does not say how the image lies in the patient (no sform, no qform)",
+                     file);
+}
+
+std::optional<VoxelType> typeFrom(int code) {
+  static const std::map<int, VoxelType> types{{256, VoxelType::int8},   {2, VoxelType::uint8},
+                                              {4, VoxelType::int16},    {512, VoxelType::uint16},
+                                              {8, VoxelType::int32},    {768, VoxelType::uint32},
+                                              {1024, VoxelType::int64}, {1280, VoxelType::uint64},
+                                              {16, VoxelType::float32}, {64, VoxelType::float64}};
+  const auto found = types.find(code);
+  return found == types.end() ? std::nullopt : std::optional(found->second);
+}
+
+Result<Index3> sizeOf(const Header& h, const fs::path& file) {
+  if (!(h.dim(0) >= 3 && h.dim(0) <= 7)) {
+    return unreadable("The image is not three-dimensional", file);
+  }
+  for (std::size_t d = 4; d <= std::size_t(h.dim(0)); ++d) {
+    if (h.dim(d) > 1) return notHu("The image has several values a voxel or a time axis", file);
+  }
+  return sizeFrom({h.dim(1), h.dim(2), h.dim(3)}, file);
+}
+
+// Keeps what VTK would print.
+class VtkErrors : public vtkCommand {
+ public:
+  static VtkErrors* New() { return new VtkErrors; }
+  void Execute(vtkObject*, unsigned long event, void*) override {
+    seen = seen || event == vtkCommand::ErrorEvent;
+  }
+  bool seen = false;
+};
+
+// VTK 9.1 does not notice when the disk is full while gzip writes its last buffers, so the length
+// is checked: the file's own, or the one that ends a gzip file (modulo 2^32).
+bool isComplete(const fs::path& nifti, const Volume& volume) {
+  const std::uint64_t expected = 352 + volume.hu.size() * sizeof(std::int16_t);
+  std::error_code ec;
+  if (!endsWith(nifti, ".gz")) return fs::file_size(nifti, ec) == expected;
+  std::ifstream in(nifti, std::ios::binary);
+  std::uint32_t length = 0;
+  in.seekg(-4, std::ios::end);
+  in.read(reinterpret_cast<char*>(&length), sizeof length);
+  return in && length == std::uint32_t(expected);
+}
+
+}  // namespace
+
+Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
+  VolumeFileHeader header;
+  header.format = "NIfTI";
+  header.data.file = file;
+  const auto first = readStart(file, 2);
+  if (!first) return first.error();
+  header.data.packed = *first == "\x1f\x8b";  // gzip, whatever the name says
+  const auto h = Header::from(unpackedStart(file, header.data.packed, 540));
+  if (!h) return unreadable("The file is not a NIfTI image", file);
+
+  const auto size = sizeOf(*h, file);
+  if (!size) return size.error();
+  const auto type = typeFrom(h->type());
+  if (!type) return notHu("The voxels are not one number each", file);
+  header.type = *type;
+  header.big_endian = h->bigEndian();
+  const auto affine = voxelToRas(*h, file);
+  if (!affine) return affine.error();
+  header.geometry = geometryFrom(kFlipXy * *affine, *size);
+  if (auto status = settle(header, file); !status) return status.error();
+  if (h->slope() != 0.0) {  // 0: values are as they are
+    header.slope = h->slope();
+    header.intercept = h->intercept();
+  }
+  if (!std::isfinite(header.slope) || !std::isfinite(header.intercept)) {
+    return notHu("The rescale slope or intercept is no number", file);
+  }
+  // 0: right behind the header and the four bytes that follow it.
+  const double start =
+      h->voxelOffset() == 0.0 ? double(h->length()) + 4.0 : std::floor(h->voxelOffset());
+  if (!(start >= double(h->length()) && start <= 1e15)) {
+    return unreadable("The header's voxels start inside of it or nowhere", file);
+  }
+  if (header.data.packed) header.data.skip = std::uint64_t(start);
+  const std::uint64_t offset = header.data.packed ? 0 : std::uint64_t(start);
+  if (auto status = placeVoxels(header, offset, file); !status) return status.error();
+  return header;
+}
+
+Status writeNifti(const Volume& volume, const fs::path& temporary, const fs::path& target) {
+  const GridGeometry& g = volume.geometry;
+  vtkNew<vtkShortArray> voxels;
+  // VTK only reads them; the 1 leaves them ours.
+  voxels->SetArray(const_cast<short*>(volume.hu.data()), vtkIdType(volume.hu.size()), 1);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(g.size[0], g.size[1], g.size[2]);
+  image->SetSpacing(g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z);
+  image->GetPointData()->SetScalars(voxels);
+
+  Mat4 directions(g.direction);
+  directions[3] = glm::dvec4(g.origin_mm, 1.0);
+  const Mat4 ras = kFlipXy * directions;
+  vtkNew<vtkMatrix4x4> form;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) form->SetElement(row, column, ras[column][row]);
+  }
+  vtkNew<VtkErrors> errors;
+  vtkNew<vtkNIFTIImageWriter> writer;
+  for (unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
+    writer->AddObserver(event, errors);
+    writer->GetExecutive()->AddObserver(event, errors);
+  }
+  writer->SetInputData(image);
+  writer->SetFileName(temporary.c_str());
+  writer->SetDescription("Trephine");
+  vtkNew<vtkNIFTIImageHeader> header;
+  header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
+  writer->SetNIFTIHeader(header);
+  writer->SetQFormMatrix(form);
+  writer->SetSFormMatrix(form);
+  writer->Write();
+  if (errors->seen || writer->GetErrorCode() != 0 || !isComplete(temporary, volume)) {
+    return cannotWrite(target);
+  }
+  return {};
+}
+
+}  // namespace trephine::file_format

@@ -1,0 +1,200 @@
+#include "volume/voxel_reader.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "volume/file_format.h"
+
+namespace trephine::file_format {
+
+namespace {
+
+constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 18;
+
+// The bytes of the voxels, one after another. Packed ones in zlib's or gzip's format, of gzip also
+// several streams one after another, as compressors with threads write them.
+class VoxelBytes {
+ public:
+  VoxelBytes(const std::filesystem::path& file, std::uint64_t offset, std::uint64_t bytes,
+             bool packed)
+      : in_(file, std::ios::binary), left_(bytes), packed_(packed) {
+    in_.seekg(std::streamoff(offset));
+    // 15: the largest window; 32: either format, by its first bytes.
+    if (packed_ && inflateInit2(&zlib_, 15 + 32) != Z_OK) throw std::bad_alloc();
+  }
+  ~VoxelBytes() {
+    if (packed_) inflateEnd(&zlib_);
+  }
+  VoxelBytes(const VoxelBytes&) = delete;
+  VoxelBytes& operator=(const VoxelBytes&) = delete;
+
+  // As many as there are before the file ends or what is packed is damaged.
+  std::size_t readSome(std::uint8_t* to, std::size_t count) {
+    if (!packed_) {
+      in_.read(reinterpret_cast<char*>(to), std::streamsize(count));
+      return std::size_t(in_.gcount());
+    }
+    zlib_.next_out = to;
+    zlib_.avail_out = uInt(count);
+    while (zlib_.avail_out > 0) {
+      if (ended_ && inflateReset(&zlib_) != Z_OK) break;
+      if (!step()) break;
+    }
+    return count - zlib_.avail_out;
+  }
+  bool read(std::uint8_t* to, std::size_t count) { return readSome(to, count) == count; }
+
+  bool skip(std::uint64_t count) {
+    std::uint8_t unused[4096];
+    for (; count > 0; count -= std::min<std::uint64_t>(count, sizeof unused)) {
+      if (!read(unused, std::size_t(std::min<std::uint64_t>(count, sizeof unused)))) return false;
+    }
+    return true;
+  }
+
+  // After the last voxel: whether zlib's checksum is right. It is not reached, and not asked for,
+  // where more follows than was wanted.
+  bool finish() {
+    std::uint8_t unused[4096];
+    zlib_.next_out = unused;
+    zlib_.avail_out = sizeof unused;
+    while (packed_ && !ended_ && zlib_.avail_out > 0) {
+      if (!step()) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool step() {
+    if (zlib_.avail_in == 0) {
+      in_.read(reinterpret_cast<char*>(buffer_),
+               std::streamsize(std::min<std::uint64_t>(left_, sizeof buffer_)));
+      zlib_.next_in = buffer_;
+      zlib_.avail_in = uInt(in_.gcount());
+      left_ -= zlib_.avail_in;
+      if (zlib_.avail_in == 0) return false;
+    }
+    const int result = inflate(&zlib_, Z_NO_FLUSH);
+    ended_ = result == Z_STREAM_END;
+    return ended_ || result == Z_OK;
+  }
+
+  std::ifstream in_;
+  std::uint64_t left_;
+  bool packed_;
+  bool ended_ = false;
+  z_stream zlib_{};
+  std::uint8_t buffer_[1 << 16];
+};
+
+void swapBytes(std::vector<std::uint8_t>& bytes, std::size_t size) {
+  for (std::size_t at = 0; at < bytes.size(); at += size) {
+    std::reverse(bytes.data() + at, bytes.data() + at + size);
+  }
+}
+
+template <class Stored>
+void convert(const std::vector<std::uint8_t>& from, std::int16_t* to, VolumeFileReading& reading) {
+  const double slope = reading.header.slope, intercept = reading.header.intercept;
+  for (std::size_t at = 0; at < from.size(); at += sizeof(Stored), ++to) {
+    Stored stored;
+    std::memcpy(&stored, from.data() + at, sizeof stored);
+    const double value = double(stored) * slope + intercept;
+    if (!std::isfinite(value)) {
+      *to = kAirHu;
+      ++reading.not_numbers;
+      continue;
+    }
+    reading.hu_min = std::min(reading.hu_min, value);
+    reading.hu_max = std::max(reading.hu_max, value);
+    const double whole = std::floor(value + 0.5);
+    const double hu = std::clamp(whole, -32768.0, 32767.0);
+    reading.clamped += hu != whole;
+    reading.rounded += hu == whole && hu != value;
+    *to = std::int16_t(hu);
+  }
+}
+
+using Convert = void (*)(const std::vector<std::uint8_t>&, std::int16_t*, VolumeFileReading&);
+struct TypeRow {
+  const char* name;
+  int bytes;
+  Convert convert;
+};
+// In the order of VoxelType.
+constexpr TypeRow kTypes[] = {
+    {"int8", 1, convert<std::int8_t>},   {"uint8", 1, convert<std::uint8_t>},
+    {"int16", 2, convert<std::int16_t>}, {"uint16", 2, convert<std::uint16_t>},
+    {"int32", 4, convert<std::int32_t>}, {"uint32", 4, convert<std::uint32_t>},
+    {"int64", 8, convert<std::int64_t>}, {"uint64", 8, convert<std::uint64_t>},
+    {"float32", 4, convert<float>},      {"float64", 8, convert<double>}};
+
+const TypeRow& rowOf(VoxelType type) {
+  return kTypes[std::size_t(type)];
+}
+
+}  // namespace
+
+std::string unpackedStart(const std::filesystem::path& file, bool packed, std::size_t most) {
+  std::string start(most, '\0');
+  VoxelBytes source(file, 0, std::numeric_limits<std::uint64_t>::max(), packed);
+  start.resize(source.readSome(reinterpret_cast<std::uint8_t*>(start.data()), most));
+  return start;
+}
+
+Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesystem::path& file,
+                                     const Progress& progress) {
+  const std::size_t count = header.geometry.voxelCount();
+  const auto& [name, voxel_bytes, convertVoxels] = rowOf(header.type);
+  VolumeFileReading reading{std::move(header), {}};
+  reading.hu_min = std::numeric_limits<double>::infinity();
+  reading.hu_max = -reading.hu_min;
+  const VolumeFileHeader& h = reading.header;
+  VoxelBytes source(h.data.file, h.data.offset, h.data.bytes, h.data.packed);
+  std::vector<std::int16_t>& hu = reading.volume.hu;
+  // Memory is reserved here but only filled, and so taken, as voxels come.
+  hu.reserve(count);
+  bool whole = source.skip(h.data.skip);
+  for (std::vector<std::uint8_t> bytes; whole && hu.size() < count;) {
+    if (progress.cancelled()) {
+      return Error{"CANCELLED", "Reading the volume was cancelled", file.string(), ""};
+    }
+    progress.at(double(hu.size()) / double(count), "Reading voxels");
+    const std::size_t done = hu.size(), now = std::min(kVoxelsAtOnce, count - done);
+    bytes.resize(now * std::size_t(voxel_bytes));
+    whole = source.read(bytes.data(), bytes.size());
+    if (h.big_endian) swapBytes(bytes, std::size_t(voxel_bytes));
+    hu.resize(done + now);
+    if (whole) convertVoxels(bytes, hu.data() + done, reading);
+  }
+  if (!whole || !source.finish()) {
+    return unreadable("The file's voxels are damaged or cut short", file);
+  }
+  if (reading.not_numbers == count) return notHu("No voxel of the image is a number", file);
+  if (reading.clamped > count / 2) {
+    return notHu("The image holds values that are not HU: most of them need over 16 bits", file);
+  }
+  reading.volume.geometry = h.geometry;
+  if (h.reversed_slices) reverseSlices(reading.volume);
+  progress.at(1.0, "Reading voxels");
+  return reading;
+}
+
+}  // namespace trephine::file_format
+
+namespace trephine {
+
+const char* voxelTypeName(VoxelType type) {
+  return file_format::rowOf(type).name;
+}
+
+int bytesOf(VoxelType type) {
+  return file_format::rowOf(type).bytes;
+}
+
+}  // namespace trephine
