@@ -82,7 +82,8 @@ struct Shape {
   std::uint32_t thick = 0, bony = 0, at_rim = 0, enclosed = 0;
   std::uint32_t bulk = 0;  // cells with their own kind all around: a lung's, dry bone's, an ear's
   int wide_slices = 0, last_wide_slice = -1;
-  double width_mm = 0.0;
+  double width_mm = 0.0;       // of the widest piece
+  double all_widths_mm = 0.0;  // of all pieces together
 };
 
 class CouchSearch {
@@ -173,6 +174,7 @@ class CouchSearch {
       const double down = (piece.last_b - piece.first_b + 1) * grid_.cell_mm[1];
       const double width = std::sqrt(across * across + down * down);
       shape.width_mm = std::max(shape.width_mm, width);
+      shape.all_widths_mm += width;
       if (width < leastWidth_mm(found_.parts[piece.part])) continue;
       if (shape.last_wide_slice != piece.s) ++shape.wide_slices;
       shape.last_wide_slice = piece.s;
@@ -195,8 +197,11 @@ class CouchSearch {
   }
 
   bool isUnlikeCouch(const CoarsePart& part, const Shape& shape) const {
-    return part.kind == matter || shape.bony * 10 > part.cells || shape.at_rim * 3 > part.cells ||
-           shape.enclosed * 10 > part.cells || shape.bulk * 12 > part.cells;
+    // Two plates and their sides are about four rows of cells; noise in a lung fills an area.
+    const bool fills = part.cells * grid_.cell_mm[0] > 7.0 * shape.all_widths_mm;
+    return fills || part.kind == matter || shape.bony * 10 > part.cells ||
+           shape.at_rim * 3 > part.cells || shape.enclosed * 10 > part.cells ||
+           shape.bulk * 12 > part.cells;
   }
   bool isCouch(const CoarsePart& part, const Shape& shape) const {
     if (isUnlikeCouch(part, shape)) return false;

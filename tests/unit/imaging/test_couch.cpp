@@ -53,7 +53,7 @@ void expectRemoved(const Painted& painted, double left_percent, const char* what
   EXPECT_EQ(outcome.patient_lost, 0u) << what;
   EXPECT_EQ(outcome.preview_patient, 0u) << what;
   EXPECT_LE(outcome.couch_left_percent, left_percent) << what;
-  EXPECT_NEAR(outcome.said_percent, 100.0, 25.0) << what;
+  EXPECT_NEAR(outcome.said_percent, 100.0, 40.0) << what;
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ TEST(Couch, AChildsFingerThatLiesOnItStays) {
     if (couch.owner == Owner::couch) return couch;
     const bool body = ellipse(p.x, p.y, 60, 55) < 0.0;
     const bool wrist = rod(p, {95, 30, 90}, {95, 66, 0}, 12.0) < 0.0;
-    const bool finger = rod(p, {95, 70, 0}, {95, 76.8, -35}, 2.6) < 0.0;
+    const bool finger = rod(p, {95, 76.9, 5}, {95, 76.9, -35}, 2.6) < 0.0;
     return body || wrist || finger ? Matter{40, Owner::patient} : Matter{};
   };
   expectRemoved(paint(centredGrid({200, 140, 90}, {1.5, 1.5, 2.0}), truth), 4.0, "finger");
@@ -182,7 +182,7 @@ TEST(Couch, SliversOfABodyThatTheFieldOfViewCutsAreNotTakenForOne) {
   const auto round = [](const Vec3& p) -> Matter {
     if (std::sqrt(p.x * p.x + p.y * p.y) > 150.0) return {kPadding, Owner::air};
     if (ellipse(p.x, p.y, 60, 60) < 0.0) return {45, Owner::patient};
-    return std::abs(p.x) > 144.5 ? Matter{-95, Owner::patient} : Matter{};
+    return p.x + p.y > 205.5 ? Matter{-95, Owner::patient} : Matter{};
   };
   const GridGeometry grid = centredGrid({120, 120, 80}, {2.5, 2.5, 3.0});
   EXPECT_FALSE(findCouch(paint(grid, round).volume).found);
@@ -205,11 +205,12 @@ TEST(Couch, AThinWallWithinTheBodyIsNotTakenForOne) {
 }
 
 TEST(Couch, ANoisyLungThatTheFieldOfViewCutsOpenIsNotTakenForOne) {
-  Painted chest = paint(centredGrid({120, 120, 120}, {1.5, 1.5, 2.0}), [](const Vec3& p) -> Matter {
-    if (p.y > 50.0) return {45, Owner::patient};  // the wall of the chest, on one side only
-    return {-760, Owner::patient};
-  });
-  // 130 HU of noise: in most cells, one voxel of several looks like a plate's.
+  Painted chest =
+      paint(centredGrid({240, 240, 60}, {0.75, 0.75, 2.5}), [](const Vec3& p) -> Matter {
+        if (p.y > 50.0) return {45, Owner::patient};  // the wall of the chest, on one side only
+        return {-760, Owner::patient};
+      });
+  // 160 HU of noise: most cells have one voxel that could be a plate's.
   std::uint32_t state = 1;
   for (auto& hu : chest.volume.hu) {
     int sum = 0;
@@ -217,7 +218,7 @@ TEST(Couch, ANoisyLungThatTheFieldOfViewCutsOpenIsNotTakenForOne) {
       state = state * 1664525u + 1013904223u;
       sum += int(state >> 24);
     }
-    hu = std::int16_t(hu + (sum - 510) * 130 / 148);
+    hu = std::int16_t(hu + (sum - 510) * 160 / 148);
   }
   EXPECT_FALSE(findCouch(chest.volume).found);
 }

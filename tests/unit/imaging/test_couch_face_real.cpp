@@ -17,7 +17,7 @@ namespace {
 
 Volume importedCt(const std::filesystem::path& folder) {
   auto ct = CtFolder::scan(folder, Progress());
-  return std::move(ct->read(*ct->bestSeries(), {}, Progress())).value();
+  return std::move(ct->read(*ct->bestSeries(), ImportRequest(), Progress())).value();
 }
 
 template <class Work>
