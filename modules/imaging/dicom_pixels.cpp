@@ -192,6 +192,7 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
 Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   if (!syntax || !header.pixels) return failed("its transfer syntax cannot be read");
+  if (!header.holdsGreyWords()) return failed("its pixels are not one grey value each");
   const std::uint64_t bytes = header.frameBytes();
   const std::uint64_t skipped = bytes * std::uint64_t(header.frame);
   const bool narrow = header.bits_allocated == 8;

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 
+#include "base/sha256.h"
 #include "imaging/dicom_pixels.h"
 #include "imaging/series_geometry.h"
 #include "imaging/text.h"
+#include "imaging/workers.h"
 
 namespace trephine {
 
@@ -81,11 +85,13 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
   std::vector<int> result(slices.size(), 0);
   const auto rankBy = [&](auto key) {
     for (const Place& place : places) {
+      std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t n = place.first; n < place.last; ++n) {
-        for (std::size_t m = place.first; m < place.last; ++m) {
-          const double a = key(*slices[m]).value_or(0.0), b = key(*slices[n]).value_or(0.0);
-          result[n] += a < b || (a == b && m < n);
-        }
+        order.emplace_back(key(*slices[n]).value_or(0.0), n);
+      }
+      std::ranges::sort(order);
+      for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        result[order[rank].second] = int(rank);
       }
     }
   };
@@ -99,14 +105,17 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
   return result;
 }
 
-bool samePixels(PixelReader& reader, const DicomHeader& a, const DicomHeader& b) {
-  if (a.rows != b.rows || a.columns != b.columns || a.format != b.format ||
-      a.defect != Defect::none || b.defect != Defect::none || !a.has_pixels || !b.has_pixels ||
-      a.samples != 1 || a.pixelCount() > kLargestSlice) {
-    return false;
+// What slices with equal HU share; nothing where the pixels cannot be read.
+using Pixels = std::tuple<int, int, StoredFormat, std::string>;
+
+std::optional<Pixels> pixelsOf(PixelReader& reader, const DicomHeader& slice) {
+  if (!slice.has_pixels || slice.defect != Defect::none || !slice.holdsGreyWords()) {
+    return std::nullopt;
   }
-  std::vector<std::int16_t> words_a(a.pixelCount()), words_b(b.pixelCount());
-  return reader.read(a, words_a.data()) && reader.read(b, words_b.data()) && words_a == words_b;
+  std::vector<std::int16_t> words(slice.pixelCount());
+  if (!reader.read(slice, words.data())) return std::nullopt;
+  return Pixels{slice.rows, slice.columns, slice.format,
+                sha256Hex(words.data(), words.size() * sizeof(std::int16_t))};
 }
 
 }  // namespace
@@ -136,18 +145,21 @@ void dropEqualRepeats(Series& series) {
   std::vector<bool> dropped(series.slices.size(), false);
   Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
   for (const Place& place : places) {
+    if (place.count() < 2) continue;
+    std::vector<std::optional<Pixels>> pixels(place.count());
+    // On workers, for the reader's sake.
+    const Status read = forEachFile(place.count(), Progress(), {}, [&](std::size_t n) {
+      pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
+    });
+    if (!read) return;
+    std::set<Pixels> seen;
     std::size_t equal = 0;
-    for (std::size_t n = place.first + 1; n < place.last; ++n) {
-      const std::size_t slice = placed[n].slice;
-      for (std::size_t m = place.first; m < n && !dropped[slice]; ++m) {
-        const std::size_t other = placed[m].slice;
-        if (dropped[other] || !samePixels(reader, series.slices[other], series.slices[slice])) {
-          continue;
-        }
-        dropped[slice] = true;
-        finding.slices.push_back(sliceName(series.slices[slice]));
-        ++equal;
-      }
+    for (std::size_t n = 0; n < pixels.size(); ++n) {
+      if (!pixels[n] || seen.insert(*std::move(pixels[n])).second) continue;
+      const std::size_t slice = placed[place.first + n].slice;
+      dropped[slice] = true;
+      finding.slices.push_back(sliceName(series.slices[slice]));
+      ++equal;
     }
     if (complete && equal + 1 < place.count()) break;  // phases: no need to look at all of them
   }

@@ -1,5 +1,6 @@
 #include <zlib.h>
 
+#include <chrono>
 #include <fstream>
 #include <random>
 
@@ -201,6 +202,56 @@ TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
   writeBytes(slice(1), bytes);
   const double before_mb = peakResidentMb();
   EXPECT_LT(scan().report().peak_rss_mb, before_mb + 200.0);
+}
+
+TEST_F(BadFiles, SlicesOf32BitsAtOnePlaceAreRefusedAndNotCompared) {
+  write(rampVolume({64, 64, 6}));
+  editAll([](DcmDataset& data) {
+    put(data, DCM_ImagePositionPatient, "0\\0\\0");
+    data.putAndInsertUint16(DCM_BitsAllocated, 32);
+    const std::vector<Uint16> words(64 * 64 * 2, 7);
+    data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+  });
+  expectRefused("PIXEL_FORMAT");
+}
+
+TEST_F(BadFiles, ThousandsOfFramesAtOnePlaceAreComparedInSeconds) {
+  constexpr int kFrames = 20000;
+  write(rampVolume({1, 1, 1}));
+  edit(slice(1), [](DcmDataset& data) {
+    put(data, DCM_SOPClassUID, UID_EnhancedCTImageStorage);
+    put(data, DCM_NumberOfFrames, std::to_string(kFrames));
+    DcmItem *groups = nullptr, *place = nullptr;
+    ASSERT_TRUE(data.findOrCreateSequenceItem(DCM_SharedFunctionalGroupsSequence, groups).good());
+    ASSERT_TRUE(groups->findOrCreateSequenceItem(DCM_PlanePositionSequence, place).good());
+    ASSERT_TRUE(place->putAndInsertString(DCM_ImagePositionPatient, "0\\0\\0").good());
+    std::vector<Uint16> words(kFrames);
+    for (int n = 0; n < kFrames; ++n) words[std::size_t(n)] = Uint16(n);
+    data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+  });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(expectRefused("ONE_LOCATION").severity, "refusal");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST_F(BadFiles, DeepSequencesOfDeflatedSlicesAtOnePlaceDoNotExhaustTheStack) {
+  constexpr int kLevels = 40000;
+  write(rampVolume({4, 4, 2}));
+  // The slices as they are, at one place, in a data set that nests.
+  editAll([](DcmDataset& data) { put(data, DCM_ImagePositionPatient, "0\\0\\0"); });
+  const std::string ends("\xFE\xFF\x0D\xE0\0\0\0\0\xFE\xFF\xDD\xE0\0\0\0\0", 16);
+  for (const int n : {1, 2}) {
+    const std::string whole = readBytes(slice(n));
+    const std::string tag("\x08\x00\x05\x00", 4);  // the data set's first
+    const std::string data = whole.substr(whole.find(tag));
+    const std::size_t behind = data.find(std::string("\x10\x00\x10\x00", 4));
+    ASSERT_NE(behind, data.npos);
+    writeBytes(slice(n), metaHeader(kDeflated) +
+                             deflated(data.substr(0, behind), repeated(kExplicitLevel, kLevels), 1,
+                                      repeated(ends, kLevels) + data.substr(behind)));
+  }
+  const ImportReport report = scan().report();
+  EXPECT_EQ(report.files_read, 2);
 }
 
 TEST_F(BadFiles, NoSpoiltByteCrashesTheImport) {
