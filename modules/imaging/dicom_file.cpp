@@ -1,7 +1,5 @@
 #include "imaging/dicom_file.h"
 
-#include <dcmtk/dcmdata/dcistrmf.h>
-
 #include <cctype>
 #include <cstring>
 #include <fstream>
@@ -9,6 +7,7 @@
 
 #include "imaging/codecs.h"
 #include "imaging/dicom_pixels.h"
+#include "imaging/dicom_stream.h"
 #include "imaging/dicom_values.h"
 #include "imaging/transfer_syntax.h"
 
@@ -16,16 +15,9 @@ namespace trephine {
 
 namespace {
 
-constexpr Uint32 kLazyBytes = 1024;  // longer values stay on disk until asked for
-constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr std::string_view kDicomDir = "1.2.840.10008.1.3.10";
 constexpr const char* kUnnamedSeries = "unnamed";
 constexpr int kMostFrames = 100000;
-
-// A level of nesting takes at least 16 bytes of file and up to 2.1 KB of stack (measured), so that
-// a file of this size cannot exhaust a worker's stack; the items of larger ones are counted first.
-constexpr std::uint64_t kSafeFileBytes = std::uint64_t(2) << 20;
-constexpr std::size_t kMostItems = 100000;
 
 Error skip(std::string reason) {
   return Error{"SKIPPED", std::move(reason), "", ""};
@@ -44,44 +36,6 @@ bool looksLikeDicom(std::string_view head) {
   if (!little && !big) return false;
   if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
-}
-
-// `read` fills the given room and says how much of it, 0 at the end.
-bool tooManyItems(const std::function<std::size_t(char*, std::size_t)>& read) {
-  constexpr std::string_view kLittle("\xFE\xFF\x00\xE0", 4), kBig("\xFF\xFE\xE0\x00", 4);
-  std::string block(std::size_t(1) << 20, '\0');
-  std::size_t items = 0, kept = 0;
-  while (const std::size_t count = read(block.data() + kept, block.size() - kept)) {
-    const std::string_view view(block.data(), kept + count);
-    for (const std::string_view tag : {kLittle, kBig}) {
-      for (std::size_t at = view.find(tag); at != view.npos; at = view.find(tag, at + 4)) ++items;
-    }
-    if (items > kMostItems) return true;
-    kept = std::min<std::size_t>(3, view.size());  // a tag across two blocks
-    std::memmove(block.data(), view.data() + view.size() - kept, kept);
-  }
-  return false;
-}
-
-bool tooManyItems(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return tooManyItems([&](char* to, std::size_t bytes) {
-    in.read(to, std::streamsize(bytes));
-    return std::size_t(in.gcount());
-  });
-}
-
-// The same of a deflated data set, of which a small file can hold any number.
-bool tooManyDeflatedItems(const std::filesystem::path& file) {
-  DcmInputFileStream stream{OFFilename(file.c_str())};
-  DcmMetaInfo meta;
-  meta.transferInit();
-  if (meta.read(stream, EXS_Unknown, EGL_noChange, kLazyBytes).bad()) return false;
-  meta.transferEnd();
-  if (stream.installCompressionFilter(ESC_zlib).bad()) return false;
-  return tooManyItems([&](char* to, std::size_t bytes) {
-    return std::size_t(std::max<offile_off_t>(stream.read(to, offile_off_t(bytes)), 0));
-  });
 }
 
 // Slope and intercept stand in the data set, or in a functional group of an enhanced image.
@@ -312,17 +266,13 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
-  const bool deflated = head.find(kDeflated) != head.npos;
-  if ((file_bytes > kSafeFileBytes && tooManyItems(file)) ||
-      (deflated && tooManyDeflatedItems(file))) {
-    return skip("nested too deeply");
-  }
+  if (nestsTooDeeply(file, file_bytes)) return skip("nested too deeply");
 
-  DcmInputFileStream stream{OFFilename(file.c_str())};
+  DicomStream stream(file);
   DcmFileFormat dicom;
   dicom.transferInit();
   const bool cut =
-      dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLazyBytes, DCM_PixelData).bad();
+      dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
   dicom.transferEnd();
   const std::uint64_t value_offset = std::uint64_t(stream.tell());
   const bool at_end = stream.eos();

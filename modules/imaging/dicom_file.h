@@ -15,6 +15,10 @@
 
 namespace trephine {
 
+// Pixels of the largest slice. More are refused before anything is allocated for them: a compressed
+// slice can claim any size.
+constexpr std::uint64_t kLargestSlice = std::uint64_t(8192) * 8192;
+
 // Why a slice's pixels cannot be had, though its header names its series.
 enum class Defect {
   none,
@@ -82,6 +86,13 @@ struct DicomHeader {
   std::string defect_text;
 
   std::uint64_t pixelCount() const { return std::uint64_t(rows) * std::uint64_t(columns); }
+  // Whether a frame is one grey sample a pixel, of a size and in bits that PixelReader can read.
+  bool holdsGreyWords() const {
+    return samples == 1 && (bits_allocated == 8 || bits_allocated == 16) &&
+           format.bits_stored >= 1 && format.bits_stored <= bits_allocated &&
+           format.high_bit >= format.bits_stored - 1 && format.high_bit < bits_allocated &&
+           rows > 0 && columns > 0 && pixelCount() <= kLargestSlice;
+  }
   // Bytes of one frame's stored words.
   std::uint64_t frameBytes() const {
     return pixelCount() * std::uint64_t(samples) * std::uint64_t(bits_allocated / 8);

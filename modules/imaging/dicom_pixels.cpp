@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "imaging/codecs.h"
+#include "imaging/dicom_stream.h"
 #include "imaging/transfer_syntax.h"
 
 namespace trephine {
@@ -18,7 +19,8 @@ namespace trephine {
 namespace {
 
 constexpr std::size_t kMostFragments = 1000000;
-constexpr std::uint32_t kItem = 0xFFFEE000U, kSequenceEnd = 0xFFFEE0DDU, kUndefined = 0xFFFFFFFFU;
+constexpr std::uint32_t kPixelData = 0x7FE00010U, kUndefined = 0xFFFFFFFFU;
+constexpr std::uint32_t kItem = 0xFFFEE000U, kSequenceEnd = 0xFFFEE0DDU;
 
 Error failed(std::string what) {
   return Error{"UNREADABLE", std::move(what), "", ""};
@@ -148,7 +150,6 @@ std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& path,
                                              std::uint64_t file_bytes, std::uint64_t value_offset,
                                              bool explicit_vr, bool big_endian, int frames,
                                              std::string& vr, bool& cut) {
-  constexpr std::uint32_t kPixelData = 0x7FE00010U;
   const File file(path);
   auto place = std::make_shared<PixelPlace>();
   place->offset = value_offset;
@@ -186,19 +187,29 @@ std::optional<std::vector<std::uint8_t>> readBytes(const std::filesystem::path& 
 Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const DicomHeader& header) {
   const std::lock_guard lock(mutex_);  // a second reader of the file waits for the first
   if (const auto it = inflated_.find(header.file); it != inflated_.end()) return it->second;
+  DicomStream stream(header.file);
   DcmFileFormat dicom;
-  const Uint8* bytes = nullptr;
-  const Uint16* words = nullptr;
-  unsigned long count = 0;
-  if (dicom.loadFile(header.file.c_str()).bad()) return failed("its file is cut short or damaged");
-  DcmDataset& data = *dicom.getDataset();
-  if (data.findAndGetUint16Array(DCM_PixelData, words, &count).good() && words) {
-    bytes = reinterpret_cast<const Uint8*>(words);
-    count *= 2;
-  } else if (data.findAndGetUint8Array(DCM_PixelData, bytes, &count).bad() || !bytes) {
-    return failed("its pixels are cut short");
+  dicom.transferInit();
+  if (dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad()) {
+    return failed("its file is cut short or damaged");
   }
-  auto all = std::make_shared<const Bytes>(bytes, bytes + count);
+  const std::uint8_t* head = stream.newest().data();
+  const std::uint64_t needed = header.frameBytes() * std::uint64_t(header.frames);
+  if (tagOf(head, false) != kPixelData || number32(head + 8, false) == kUndefined) {
+    return failed("its pixels are not stored as its transfer syntax says");
+  }
+  if (number32(head + 8, false) < needed) return failed("its pixels are cut short");
+  // Memory is taken as bytes come, not as the header promises.
+  constexpr std::uint64_t kBlock = std::uint64_t(1) << 20;
+  auto all = std::make_shared<Bytes>();
+  while (all->size() < needed) {
+    const std::size_t before = all->size();
+    all->resize(before + std::min(kBlock, needed - before));
+    const offile_off_t count =
+        stream.read(all->data() + before, offile_off_t(all->size() - before));
+    if (count <= 0) return failed("its pixels are cut short");
+    all->resize(before + std::size_t(count));
+  }
   if (header.frames > 1) inflated_[header.file] = all;
   return std::shared_ptr<const Bytes>(all);
 }
@@ -206,6 +217,7 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
 Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   if (!syntax || !header.pixels) return failed("its transfer syntax cannot be read");
+  if (!header.holdsGreyWords()) return failed("its pixels are not one grey value each");
   const std::uint64_t bytes = header.frameBytes();
   const std::uint64_t skipped = bytes * std::uint64_t(header.frame);
   const bool narrow = header.bits_allocated == 8;

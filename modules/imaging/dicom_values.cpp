@@ -8,13 +8,9 @@
 
 #include <mutex>
 
+#include "imaging/dicom_stream.h"
+
 namespace trephine {
-
-namespace {
-
-constexpr Uint32 kLongestValue = 16384;  // no attribute that we read is longer
-
-}  // namespace
 
 void setUpDcmtk() {
   static std::once_flag once;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "imaging/dicom_stream.h"
 #include "imaging/dicom_values.h"
 #include "imaging/workers.h"
 
@@ -72,13 +73,17 @@ bool isDicomDir(const fs::path& file) {
 
 std::vector<fs::path> filesOfDicomDir(const fs::path& file) {
   std::error_code error;
-  if (!isDicomDir(file) || fs::file_size(file, error) > kLargest || error) return {};
+  if (!isDicomDir(file)) return {};
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error || bytes > kLargest || nestsTooDeeply(file, bytes)) return {};
   setUpDcmtk();
   std::vector<fs::path> files;
   // On a worker: a crafted file nests thousands deep.
   const Status done = forEachFile(1, Progress(), {}, [&](std::size_t) {
     DcmFileFormat dicom;
-    if (dicom.loadFile(file.c_str()).bad()) return;
+    DicomStream stream(file);
+    dicom.transferInit();
+    if (dicom.read(stream, EXS_Unknown, EGL_noChange, kLongestValue).bad()) return;
     DcmSequenceOfItems* records = nullptr;
     if (dicom.getDataset()->findAndGetSequence(DCM_DirectoryRecordSequence, records).bad()) return;
     Folders folders;

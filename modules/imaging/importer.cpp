@@ -244,11 +244,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
   if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
   const DicomHeader& header = slices[std::size_t(index)];
   const StoredFormat& format = header.format;
-  if (!header.has_pixels || header.samples != 1 || header.pixelCount() == 0 ||
-      header.pixelCount() > kLargestSlice || format.bits_stored < 1 ||
-      (header.bits_allocated != 8 && header.bits_allocated != 16) ||
-      format.bits_stored > header.bits_allocated || format.high_bit >= header.bits_allocated ||
-      format.high_bit < format.bits_stored - 1 || header.rescale_bad ||
+  if (!header.has_pixels || !header.holdsGreyWords() || header.rescale_bad ||
       !findTransferSyntax(header.transfer_syntax)) {
     return Error{"NO_PICTURE", "The slice holds no grey pixels that can be shown", "", ""};
   }

@@ -183,10 +183,7 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
              "Slices of one study, series number, date and time were taken together"});
       }
       dropDuplicates(series);
-      // On a worker, since it may load a whole file (deep recursion). Where that fails for want of
-      // memory, the repeats stay and are asked about.
-      static_cast<void>(
-          forEachFile(1, Progress(), {}, [&](std::size_t) { dropEqualRepeats(series); }));
+      dropEqualRepeats(series);
       series.findings_kept = series.report.findings.size();
       assessSeries(series);
       all.push_back(std::move(series));

@@ -10,10 +10,6 @@
 
 namespace trephine {
 
-// Larger slices are refused before anything is allocated for them: a compressed one can claim any
-// size.
-constexpr std::uint64_t kLargestSlice = std::uint64_t(8192) * 8192;
-
 struct Series {
   SeriesReport report;              // of the last assessment; grouping's own findings come first
   std::size_t findings_kept = 0;    // how many those are

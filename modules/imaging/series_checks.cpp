@@ -130,12 +130,8 @@ void checkValues(const Series& series, Findings& findings) {
                     "Export the original CT slices");
   }
   const auto odd_format = findings.slicesWhere([](const DicomHeader& h) {
-    const StoredFormat& f = h.format;
-    return h.has_pixels &&
-           ((h.bits_allocated != 8 && h.bits_allocated != 16) || f.bits_stored < 1 ||
-            f.bits_stored > h.bits_allocated || f.high_bit < f.bits_stored - 1 ||
-            f.high_bit >= h.bits_allocated || h.ambiguous_order || h.photometric.empty() ||
-            h.rows == 0 || h.columns == 0 || h.pixelCount() > kLargestSlice);
+    return h.has_pixels && h.samples == 1 &&
+           (!h.holdsGreyWords() || h.ambiguous_order || h.photometric.empty());
   });
   if (!odd_format.empty()) {
     findings.refuse("PIXEL_FORMAT",

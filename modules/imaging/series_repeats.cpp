@@ -5,11 +5,14 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 
 #include "base/sha256.h"
 #include "imaging/dicom_pixels.h"
 #include "imaging/series_geometry.h"
 #include "imaging/text.h"
+#include "imaging/workers.h"
 
 namespace trephine {
 
@@ -125,11 +128,13 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
   std::vector<int> result(slices.size(), 0);
   const auto rankBy = [&](auto key) {
     for (const Place& place : places) {
+      std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t n = place.first; n < place.last; ++n) {
-        for (std::size_t m = place.first; m < place.last; ++m) {
-          const double a = key(*slices[m]).value_or(0.0), b = key(*slices[n]).value_or(0.0);
-          result[n] += a < b || (a == b && m < n);
-        }
+        order.emplace_back(key(*slices[n]).value_or(0.0), n);
+      }
+      std::ranges::sort(order);
+      for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        result[order[rank].second] = int(rank);
       }
     }
   };
@@ -143,16 +148,17 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
   return result;
 }
 
-// What tells the pixels of two slices apart; nothing where they cannot be read.
-std::optional<std::string> pixelKey(PixelReader& reader, const DicomHeader& slice) {
-  if (slice.defect != Defect::none || !slice.has_pixels || slice.samples != 1 ||
-      (slice.bits_allocated != 8 && slice.bits_allocated != 16) ||
-      slice.pixelCount() > kLargestSlice) {
+// What slices with equal HU share; nothing where the pixels cannot be read.
+using Pixels = std::tuple<int, int, StoredFormat, std::string>;
+
+std::optional<Pixels> pixelsOf(PixelReader& reader, const DicomHeader& slice) {
+  if (!slice.has_pixels || slice.defect != Defect::none || !slice.holdsGreyWords()) {
     return std::nullopt;
   }
   std::vector<std::int16_t> words(slice.pixelCount());
   if (!reader.read(slice, words.data())) return std::nullopt;
-  return sha256Hex(words.data(), words.size() * sizeof(std::int16_t));
+  return Pixels{slice.rows, slice.columns, slice.format,
+                sha256Hex(words.data(), words.size() * sizeof(std::int16_t))};
 }
 
 }  // namespace
@@ -183,23 +189,23 @@ void dropEqualRepeats(Series& series) {
   std::vector<bool> dropped(series.slices.size(), false);
   Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
   for (const Place& place : places) {
-    if (place.count() == 1) continue;
-    std::vector<std::pair<std::string, const DicomHeader*>> seen;
-    bool different = false;
-    for (std::size_t n = place.first; n < place.last; ++n) {
-      const DicomHeader& slice = series.slices[placed[n].slice];
-      const auto key = pixelKey(reader, slice);
-      const bool repeated = key && std::ranges::any_of(seen, [&](const auto& other) {
-                              return other.first == *key && other.second->format == slice.format;
-                            });
-      if (repeated) {
-        dropped[placed[n].slice] = true;
-        finding.slices.push_back(sliceName(slice));
-      } else {
-        different |= !seen.empty();
-        if (key) seen.emplace_back(*key, &slice);
-      }
+    if (place.count() < 2) continue;
+    std::vector<std::optional<Pixels>> pixels(place.count());
+    // On workers, for the reader's sake.
+    const Status read = forEachFile(place.count(), Progress(), {}, [&](std::size_t n) {
+      pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
+    });
+    if (!read) return;
+    std::set<Pixels> seen;
+    std::size_t equal = 0;
+    for (std::size_t n = 0; n < pixels.size(); ++n) {
+      if (!pixels[n] || seen.insert(*std::move(pixels[n])).second) continue;
+      const std::size_t slice = placed[place.first + n].slice;
+      dropped[slice] = true;
+      finding.slices.push_back(sliceName(series.slices[slice]));
+      ++equal;
     }
+    const bool different = equal + 1 < place.count();
     // Phases: where two of them are all air, a slice is still one of each.
     if (different && scanned_again) return;
     if (different && repeats > kMostCompared) break;  // too many to read them all

@@ -4,6 +4,7 @@
 // range), C.11.1 (HU = slope * stored + intercept).
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -28,11 +29,11 @@ struct StoredFormat {
   struct Padding {
     std::uint16_t value = 0;
     std::uint16_t limit = 0;
-    friend bool operator==(const Padding&, const Padding&) = default;
+    friend auto operator<=>(const Padding&, const Padding&) = default;
   };
   std::optional<Padding> padding = std::nullopt;
 
-  friend bool operator==(const StoredFormat&, const StoredFormat&) = default;
+  friend auto operator<=>(const StoredFormat&, const StoredFormat&) = default;
 };
 
 struct HuCounts {

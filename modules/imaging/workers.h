@@ -22,7 +22,7 @@ struct ProgressPart {
 // OUT_OF_MEMORY (a call threw, or no thread could start).
 //
 // The workers' stacks are far larger than usual: DCMTK descends into nested sequences by recursion,
-// and a crafted file nests thousands deep (see kSafeFileBytes in dicom_file.cpp).
+// and a crafted file nests thousands deep (see dicom_stream.h).
 Status forEachFile(std::size_t count, const Progress& progress, const ProgressPart& part,
                    const std::function<void(std::size_t)>& work);
 

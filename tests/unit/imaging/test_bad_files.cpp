@@ -1,3 +1,7 @@
+#include <zlib.h>
+
+#include <chrono>
+#include <fstream>
 #include <random>
 
 #include "base/system.h"
@@ -23,6 +27,71 @@ std::string randomBytes(std::size_t count, unsigned seed) {
   std::string bytes(count, '\0');
   for (char& byte : bytes) byte = char(random() & 0xFF);
   return bytes;
+}
+
+// The resident memory that `work` adds at its peak. Linux can reset what it remembers as the peak.
+double peakDuring_mb(const std::function<void()>& work) {
+  const auto value_mb = [](const std::string& name) {
+    std::ifstream in("/proc/self/status");
+    for (std::string word; in >> word;) {
+      double kilobytes = 0.0;
+      if (word == name && in >> kilobytes) return kilobytes / 1024.0;
+    }
+    ADD_FAILURE() << "no " << name;
+    return 0.0;
+  };
+  std::ofstream("/proc/self/clear_refs") << 5;
+  const double before = value_mb("VmRSS:");
+  work();
+  return value_mb("VmHWM:") - before;
+}
+
+// The file meta header of a data set in this transfer syntax.
+std::string metaHeader(std::string syntax, std::string sop_class = "") {
+  const auto element = [](const char* tag, std::string uid) {
+    if (uid.size() % 2) uid += '\0';
+    return std::string(tag, 4) + "UI" + char(uid.size()) + '\0' + uid;
+  };
+  std::string meta = std::string(128, '\0') + "DICM";
+  if (!sop_class.empty()) meta += element("\x02\x00\x02\x00", std::move(sop_class));
+  return meta + element("\x02\x00\x10\x00", std::move(syntax));
+}
+
+constexpr const char* kDeflated = "1.2.840.10008.1.2.1.99";
+
+// A deflated data set: `start`, then `times` times `block`, then `end`.
+std::string deflated(const std::string& start, const std::string& block, int times,
+                     const std::string& end) {
+  z_stream zlib{};
+  EXPECT_EQ(deflateInit2(&zlib, 9, Z_DEFLATED, -15, 9, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed;
+  const auto put = [&](const std::string& bytes, int flush) {
+    std::string out(bytes.size() + 4096, '\0');
+    zlib.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    zlib.avail_in = uInt(bytes.size());
+    zlib.next_out = reinterpret_cast<Bytef*>(out.data());
+    zlib.avail_out = uInt(out.size());
+    deflate(&zlib, flush);
+    EXPECT_EQ(zlib.avail_in, 0U);
+    packed.append(out, 0, out.size() - zlib.avail_out);
+  };
+  put(start, Z_NO_FLUSH);
+  for (int n = 0; n < times; ++n) put(block, Z_NO_FLUSH);
+  put(end, Z_FINISH);
+  deflateEnd(&zlib);
+  return packed;
+}
+
+// One more level of sequence and item; it never ends. Explicit and implicit VR, little endian.
+const std::string kExplicitLevel(
+    "\x08\x00\x40\x11SQ\0\0\xFF\xFF\xFF\xFF\xFE\xFF\x00\xE0\xFF\xFF\xFF\xFF", 20);
+const std::string kImplicitLevel("\x08\x00\x40\x11\xFF\xFF\xFF\xFF\xFE\xFF\x00\xE0\xFF\xFF\xFF\xFF",
+                                 16);
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int n = 0; n < times; ++n) all += text;
+  return all;
 }
 
 }  // namespace
@@ -78,20 +147,48 @@ TEST_F(BadFiles, OneFileIsAnAnswerToo) {
 }
 
 TEST_F(BadFiles, SequencesNestedAHundredThousandDeepDoNotExhaustTheStack) {
-  std::string bytes = std::string(128, '\0') + "DICM";
-  bytes += std::string(
-      "\x02\x00\x10\x00UI\x12\x00"
-      "1.2.840.10008.1.2\0",
-      26);
-  const std::string level("\x08\x00\x40\x11\xFF\xFF\xFF\xFF\xFE\xFF\x00\xE0\xFF\xFF\xFF\xFF", 16);
-  std::string nested;
-  for (int n = 0; n < 100000; ++n) nested += level;
-  writeBytes(folder() / "deep", bytes + nested);
-  writeBytes(folder() / "deeper", bytes + nested + nested);
+  const std::string meta = metaHeader("1.2.840.10008.1.2");
+  writeBytes(folder() / "deep", meta + repeated(kImplicitLevel, 100000));
+  writeBytes(folder() / "deeper", meta + repeated(kImplicitLevel, 200000));
   const ImportReport report = scan().report();
   EXPECT_EQ(report.files_read, 0);
   EXPECT_EQ(skippedFor(report, "cut short or damaged"), 1);
   EXPECT_EQ(skippedFor(report, "nested too deeply"), 1);
+}
+
+TEST_F(BadFiles, NorDoThoseThatAreHiddenByDeflation) {
+  writeBytes(folder() / "deep",
+             metaHeader(kDeflated) + deflated("", repeated(kExplicitLevel, 10000), 100, ""));
+  EXPECT_EQ(skippedFor(scan().report(), "cut short or damaged"), 1);
+}
+
+TEST_F(BadFiles, NorDoThoseOfADicomDir) {
+  const fs::path file = folder() / "DICOMDIR";
+  writeBytes(file, metaHeader("1.2.840.10008.1.2", "1.2.840.10008.1.3.10") +
+                       repeated(kImplicitLevel, 1000000));
+  EXPECT_EQ(scan(file).report().files_read, 0);
+}
+
+TEST_F(BadFiles, AValueThatUnpacksToHalfAGigabyteIsNotKept) {
+  const std::string head("\x09\x00\x10\x10OB\0\0\x00\x00\x00\x20", 12);  // 512 MB, private
+  const std::string file =
+      metaHeader(kDeflated) + deflated(head, std::string(std::size_t(1) << 20, '\0'), 512, "");
+  ASSERT_LT(file.size(), 1000000U);
+  writeBytes(folder() / "bomb", file);
+  EXPECT_LT(peakDuring_mb([&] { EXPECT_EQ(scan().report().files_read, 0); }), 100.0);
+}
+
+TEST_F(BadFiles, DeflatedPixelsThatAreCutShortAreAMissingSlice) {
+  write(rampVolume());
+  editAll([](DcmDataset&) {}, EXS_DeflatedLittleEndianExplicit);
+  const std::string whole = readBytes(slice(3));
+  writeBytes(slice(3), whole.substr(0, whole.size() - 20));
+  CtFolder ct = scan();
+  const auto best = ct.bestSeries();
+  ASSERT_TRUE(best.has_value());
+  const auto result = ct.read(*best, {}, Progress());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "MISSING_SLICES");
 }
 
 TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
@@ -105,6 +202,56 @@ TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
   writeBytes(slice(1), bytes);
   const double before_mb = peakResidentMb();
   EXPECT_LT(scan().report().peak_rss_mb, before_mb + 200.0);
+}
+
+TEST_F(BadFiles, SlicesOf32BitsAtOnePlaceAreRefusedAndNotCompared) {
+  write(rampVolume({64, 64, 6}));
+  editAll([](DcmDataset& data) {
+    put(data, DCM_ImagePositionPatient, "0\\0\\0");
+    data.putAndInsertUint16(DCM_BitsAllocated, 32);
+    const std::vector<Uint16> words(64 * 64 * 2, 7);
+    data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+  });
+  expectRefused("PIXEL_FORMAT");
+}
+
+TEST_F(BadFiles, ThousandsOfFramesAtOnePlaceAreComparedInSeconds) {
+  constexpr int kFrames = 20000;
+  write(rampVolume({1, 1, 1}));
+  edit(slice(1), [](DcmDataset& data) {
+    put(data, DCM_SOPClassUID, UID_EnhancedCTImageStorage);
+    put(data, DCM_NumberOfFrames, std::to_string(kFrames));
+    DcmItem *groups = nullptr, *place = nullptr;
+    ASSERT_TRUE(data.findOrCreateSequenceItem(DCM_SharedFunctionalGroupsSequence, groups).good());
+    ASSERT_TRUE(groups->findOrCreateSequenceItem(DCM_PlanePositionSequence, place).good());
+    ASSERT_TRUE(place->putAndInsertString(DCM_ImagePositionPatient, "0\\0\\0").good());
+    std::vector<Uint16> words(kFrames);
+    for (int n = 0; n < kFrames; ++n) words[std::size_t(n)] = Uint16(n);
+    data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+  });
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(expectRefused("ONE_LOCATION").severity, "refusal");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST_F(BadFiles, DeepSequencesOfDeflatedSlicesAtOnePlaceDoNotExhaustTheStack) {
+  constexpr int kLevels = 40000;
+  write(rampVolume({4, 4, 2}));
+  // The slices as they are, at one place, in a data set that nests.
+  editAll([](DcmDataset& data) { put(data, DCM_ImagePositionPatient, "0\\0\\0"); });
+  const std::string ends("\xFE\xFF\x0D\xE0\0\0\0\0\xFE\xFF\xDD\xE0\0\0\0\0", 16);
+  for (const int n : {1, 2}) {
+    const std::string whole = readBytes(slice(n));
+    const std::string tag("\x08\x00\x05\x00", 4);  // the data set's first
+    const std::string data = whole.substr(whole.find(tag));
+    const std::size_t behind = data.find(std::string("\x10\x00\x10\x00", 4));
+    ASSERT_NE(behind, data.npos);
+    writeBytes(slice(n), metaHeader(kDeflated) +
+                             deflated(data.substr(0, behind), repeated(kExplicitLevel, kLevels), 1,
+                                      repeated(ends, kLevels) + data.substr(behind)));
+  }
+  const ImportReport report = scan().report();
+  EXPECT_EQ(report.files_read, 2);
 }
 
 TEST_F(BadFiles, NoSpoiltByteCrashesTheImport) {

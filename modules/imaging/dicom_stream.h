@@ -1,0 +1,43 @@
+// A DICOM file for DCMTK's parser, which believes whatever a file says of its lengths and follows
+// any nesting by recursion. For the files of this room that know DCMTK.
+#pragma once
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcistrmf.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+namespace trephine {
+
+// No value that we read is longer: longer ones stay in the file.
+constexpr Uint32 kLongestValue = 16384;
+
+// DCMTK leaves long values in a file, but takes those of a deflated one into memory, gigabytes if
+// it says so. This stream has them skipped, and ends a deflated header after what a worker's stack
+// can bear (16 bytes make a level of nesting).
+class DicomStream : public DcmInputFileStream {
+ public:
+  explicit DicomStream(const std::filesystem::path& file);
+
+  // The last bytes that were read, the newest at the end: after readUntilTag an element's head.
+  const std::array<std::uint8_t, 12>& newest() const { return newest_; }
+
+  offile_off_t avail() override;
+  offile_off_t read(void* to, offile_off_t bytes) override;
+  offile_off_t skip(offile_off_t bytes) override;
+  OFCondition installCompressionFilter(E_StreamCompression filter) override;
+  DcmInputStreamFactory* newFactory() const override;
+
+ private:
+  bool deflated_ = false;
+  offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
+  std::array<std::uint8_t, 12> newest_{};
+};
+
+// Whether sequences in the file might nest so deep that no worker's stack holds them. Deflated ones
+// are bounded by DicomStream.
+bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes);
+
+}  // namespace trephine
