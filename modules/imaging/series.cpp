@@ -10,7 +10,6 @@
 
 #include "imaging/series_repeats.h"
 #include "imaging/text.h"
-#include "imaging/workers.h"
 
 namespace trephine {
 

@@ -158,7 +158,7 @@ TEST(GridKnob, AveragesInPlace) {
   EXPECT_EQ(coarse.geometry.spacing_mm, Vec3(2.0, 4.0, 6.0));
   EXPECT_EQ(coarse.geometry.origin_mm, Vec3(10.5, 21.0, 31.5));  // the middle of 8 voxels
   // 2 3 6 7 10 11 14 15, times 10.
-  EXPECT_EQ(coarse.hu, (std::vector<std::int16_t>{100, 85}));
+  EXPECT_EQ(coarse.hu, (Voxels{100, 85}));
   EXPECT_EQ(averaged(fine, 1).hu, fine.hu);
 }
 
