@@ -39,6 +39,13 @@ SeriesReport* ImportDialog::before() {
   return found == before_.end() ? nullptr : &*found;
 }
 
+// The list says what the series is, not how much of it was read last.
+void ImportDialog::listSelected() {
+  SeriesReport listed = *selected();
+  listed.geometry = before()->geometry;
+  list_->updateSeries(listed, answers());
+}
+
 // --- The folder ---
 
 void ImportDialog::open() {
@@ -160,7 +167,7 @@ void ImportDialog::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
   card_->showSeries(*series, answers(), availableMemory_mb());
-  list_->updateSeries(*series, answers());
+  listSelected();
   showImportButton();
 }
 
@@ -173,10 +180,17 @@ void ImportDialog::showImportButton() {
 
 void ImportDialog::sliceWanted(int index) {
   if (step_ == Step::asking) {
-    if (task_.volume()) preview_->showSlice(index, sliceOf(*task_.volume(), index));
+    if (!task_.volume()) return;
+    preview_->showSlice(index, sliceOf(*task_.volume(), index));
+    showCouch(index);
   } else {
     task_.wantSlice(list_->selectedUid(), index);
   }
+}
+
+// What would be taken out of slice `k` of the volume that was read.
+void ImportDialog::showCouch(int k) {
+  preview_->canvas().setMarked(couchMask(task_.couch(), *task_.volume(), k));
 }
 
 void ImportDialog::showSlice(const QString& uid, int index, const Result<SlicePicture>& picture) {
@@ -229,7 +243,7 @@ void ImportDialog::import() {
 void ImportDialog::readDone() {
   const SeriesReport* after = selected();
   if (!after) return;
-  list_->updateSeries(*after, answers());
+  listSelected();
   if (!request_.crop && request_.reduction == 1) {  // now the whole grid is known
     before()->geometry = after->geometry;
     before()->verdict = after->verdict;
@@ -246,6 +260,7 @@ void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& que
   loss_->setText(provenance && provenance->loss ? lossWords(*provenance->loss) : QString());
   loss_->setVisible(!loss_->text().isEmpty());
   loss_told_ = true;
+  couch_->setVisible(task_.couch().found);
   face_->setVisible(std::ranges::find(questions, "FACE", &Choice::code) != questions.end());
   late_choices_->ask(questions, {});
   showStep(Step::asking);

@@ -223,8 +223,8 @@ QString memoryWords(double needed_mb, double free_mb) {
 }
 
 QString lossWords(const MeasuredLoss& loss) {
-  return tr("Against the full resolution, HU are off by %1 on average (RMS), one voxel in a hundred "
-            "by more than %2, and the volume of bone by %3 %.")
+  return tr("Against the full resolution, HU are off by %1 (root mean square), by more than %2 in one "
+            "voxel of a hundred; the volume of bone changes by %3 %.")
       .arg(loss.rms_hu, 0, 'f', 1)
       .arg(loss.p99_hu, 0, 'f', 0)
       .arg(QString::asprintf("%+.1f", loss.bone_volume_change_percent));

@@ -11,7 +11,8 @@ namespace trephine {
 class ReportCard : public QWidget {
   Q_OBJECT
  public:
-  explicit ReportCard(QWidget* parent = nullptr);
+  // `questions` stand between the verdict and its reasons.
+  explicit ReportCard(QWidget* questions = nullptr, QWidget* parent = nullptr);
 
   void showSeries(const SeriesReport& series, const Answers& answers, double free_memory_mb);
 

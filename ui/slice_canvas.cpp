@@ -95,7 +95,7 @@ void SliceCanvas::paintEvent(QPaintEvent*) {
     mask.setCompositionMode(QPainter::CompositionMode_DestinationIn);
     mask.drawImage(0, 0, marked_);
     mask.end();
-    painter.setOpacity(0.45);
+    painter.setOpacity(0.7);
     painter.drawImage(target(), tint);
     painter.setOpacity(1.0);
   }

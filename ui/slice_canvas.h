@@ -27,6 +27,7 @@ class SliceCanvas : public QWidget {
   void setDrawable(bool drawable);
 
   const QImage& image() const { return image_; }
+  const QImage& marked() const { return marked_; }
   // Where the slice is drawn in the widget; empty without one.
   QRectF target() const;
 

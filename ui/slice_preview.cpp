@@ -13,6 +13,7 @@ namespace trephine {
 
 namespace {
 constexpr int kPageOfSlices = 10;
+constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
 }
 
 SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
@@ -112,6 +113,19 @@ SlicePicture sliceOf(const Volume& volume, int k) {
   const auto begin = volume.hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, k));
   return {g.size[0], g.size[1], g.spacing_mm,
           {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+}
+
+QImage couchMask(const CouchFinding& couch, const Volume& volume, int k) {
+  const GridGeometry& g = volume.geometry;
+  if (!couch.found || !g.contains(0, 0, k)) return {};
+  QImage mask(g.size[0], g.size[1], QImage::Format_Alpha8);
+  for (int j = 0; j < g.size[1]; ++j) {
+    uchar* line = mask.scanLine(j);
+    for (int i = 0; i < g.size[0]; ++i) {
+      line[i] = volume.at(i, j, k) > kNoAirHu && couch.isCouch(i, j, k) ? 255 : 0;
+    }
+  }
+  return mask;
 }
 
 void SlicePreview::wheelEvent(QWheelEvent* event) {

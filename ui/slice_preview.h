@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QSlider>
 
+#include "imaging/couch.h"
 #include "ui/slice_canvas.h"
 
 namespace trephine {
@@ -45,5 +46,8 @@ class SlicePreview : public QWidget {
 
 // Slice `k` of a volume that was read; empty outside.
 SlicePicture sliceOf(const Volume& volume, int k);
+// Where in that slice something would go with the couch, for SliceCanvas::setMarked; null where
+// nothing would. `couch` is of this volume.
+QImage couchMask(const CouchFinding& couch, const Volume& volume, int k);
 
 }  // namespace trephine
