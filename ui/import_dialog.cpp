@@ -159,7 +159,9 @@ void ImportDialog::seriesSelected() {
   size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
   choices_->ask(before()->choices, answers());
   showSelected();
-  preview_->showStack(series->slices);
+  const GridGeometry& grid = before()->geometry;
+  preview_->showStack(series->slices, grid.spacing_mm.z > 0.0 ? std::optional(grid.direction)
+                                                              : std::nullopt);
 }
 
 // What answers change of what is shown.
@@ -267,7 +269,7 @@ void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& que
   open_case_->setEnabled(late_choices_->allAnswered());
   preview_->canvas().setKept({});
   preview_->canvas().setDrawable(false);
-  preview_->showStack(after.geometry.size[2]);
+  preview_->showStack(after.geometry.size[2], after.geometry.direction);
   if (auto* first = late_choices_->findChild<QAbstractButton*>()) {
     first->setFocus();
   } else {

@@ -10,14 +10,39 @@
 
 namespace trephine {
 
+namespace {
+
+int mainAxis(const Vec3& v) {
+  const Vec3 size = glm::abs(v);
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+// Where in the patient the direction mostly points.
+QChar letterOf(const Vec3& v) {
+  const int axis = mainAxis(v);
+  return QLatin1Char((v[axis] > 0.0 ? "LPS" : "RAI")[axis]);
+}
+
+}  // namespace
+
 SliceCanvas::SliceCanvas(QWidget* parent) : QWidget(parent) {
   setMinimumSize(200, 200);
   setAutoFillBackground(false);
 }
 
 void SliceCanvas::draw() {
-  image_ = windowed(slice_, window_);
+  image_ = windowed(slice_, window_).mirrored(mirror_x_, mirror_y_);
   update();
+}
+
+void SliceCanvas::setDirection(const std::optional<Mat3>& direction) {
+  direction_ = direction;
+  mirror_x_ = mirror_y_ = false;
+  if (!direction_) return;
+  const Vec3 &across = (*direction_)[0], &down = (*direction_)[1];
+  mirror_x_ = across[mainAxis(across)] < 0.0;  // to the patient's left or back, or up
+  const double onwards = down[mainAxis(down)];
+  mirror_y_ = mainAxis(down) == 2 ? onwards > 0.0 : onwards < 0.0;
 }
 
 void SliceCanvas::setSlice(SlicePicture slice) {
@@ -45,7 +70,7 @@ void SliceCanvas::setKept(std::optional<QRect> pixels) {
 }
 
 void SliceCanvas::setMarked(const QImage& mask) {
-  marked_ = mask;
+  marked_ = mask.mirrored(mirror_x_, mirror_y_);
   update();
 }
 
@@ -63,8 +88,10 @@ QRectF SliceCanvas::target() const {
 
 QPoint SliceCanvas::pixelAt(const QPointF& position) const {
   const QRectF box = target();
-  const double x = (position.x() - box.left()) / box.width() * slice_.columns;
-  const double y = (position.y() - box.top()) / box.height() * slice_.rows;
+  double x = (position.x() - box.left()) / box.width() * slice_.columns;
+  double y = (position.y() - box.top()) / box.height() * slice_.rows;
+  if (mirror_x_) x = slice_.columns - x;
+  if (mirror_y_) y = slice_.rows - y;
   return {std::clamp(int(std::floor(x)), 0, slice_.columns - 1),
           std::clamp(int(std::floor(y)), 0, slice_.rows - 1)};
 }
@@ -72,8 +99,9 @@ QPoint SliceCanvas::pixelAt(const QPointF& position) const {
 QRectF SliceCanvas::inWidget(const QRect& pixels) const {
   const QRectF box = target();
   const double sx = box.width() / slice_.columns, sy = box.height() / slice_.rows;
-  return {box.left() + pixels.left() * sx, box.top() + pixels.top() * sy, pixels.width() * sx,
-          pixels.height() * sy};
+  const int x = mirror_x_ ? slice_.columns - pixels.left() - pixels.width() : pixels.left();
+  const int y = mirror_y_ ? slice_.rows - pixels.top() - pixels.height() : pixels.top();
+  return {box.left() + x * sx, box.top() + y * sy, pixels.width() * sx, pixels.height() * sy};
 }
 
 void SliceCanvas::paintEvent(QPaintEvent*) {
@@ -100,6 +128,18 @@ void SliceCanvas::paintEvent(QPaintEvent*) {
     painter.setOpacity(1.0);
   }
   if (kept_) paintKept(painter);
+  if (direction_) paintLetters(painter);
+}
+
+void SliceCanvas::paintLetters(QPainter& painter) const {
+  const Vec3 right = (mirror_x_ ? -1.0 : 1.0) * (*direction_)[0];
+  const Vec3 down = (mirror_y_ ? -1.0 : 1.0) * (*direction_)[1];
+  const QRect inside = rect().adjusted(6, 4, -6, -4);
+  painter.setPen(colours::kQuiet);
+  painter.drawText(inside, Qt::AlignRight | Qt::AlignVCenter, letterOf(right));
+  painter.drawText(inside, Qt::AlignLeft | Qt::AlignVCenter, letterOf(-right));
+  painter.drawText(inside, Qt::AlignBottom | Qt::AlignHCenter, letterOf(down));
+  painter.drawText(inside, Qt::AlignTop | Qt::AlignHCenter, letterOf(-down));
 }
 
 void SliceCanvas::paintKept(QPainter& painter) const {

@@ -72,8 +72,9 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   showNothing({});
 }
 
-void SlicePreview::showStack(int count) {
+void SlicePreview::showStack(int count, const std::optional<Mat3>& direction) {
   if (count <= 0) return showNothing(tr("There is nothing to show."));
+  canvas_->setDirection(direction);
   {
     const QSignalBlocker quiet(slider_);
     slider_->setRange(0, count - 1);

@@ -17,8 +17,9 @@ class SlicePreview : public QWidget {
  public:
   explicit SlicePreview(QWidget* parent = nullptr);
 
-  // Another stack of `count` slices, looked at in its middle; wants that slice.
-  void showStack(int count);
+  // Another stack of `count` slices, looked at in its middle; wants that slice. `direction` as in
+  // SliceCanvas.
+  void showStack(int count, const std::optional<Mat3>& direction = {});
   void showNothing(const QString& why);
   // `picture` of slice `index`, or why there is none. Shown only while it is the one wanted, or on
   // the way there, so that a quick hand sees the slices go by.

@@ -120,6 +120,7 @@ class ImportGuiTest : public QObject {
     if (auto* error = window_->findChild<QMessageBox*>("errorDialog")) error->close();
   }
   void keepGrab(const char* name) {
+    QTest::qWait(300);  // until the parts have found their places
     QVERIFY(dialog()->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
   }
 
