@@ -92,7 +92,7 @@ void ImportDialog::stopped() {
   showStep(Step::choosing);
   if (!isVisible()) return;
   if (was_scanning) return showFolder();  // the one before
-  before_ = task_.report().series;  // what could not be read may ask more now
+  before_ = task_.report().series;        // what could not be read may ask more now
   seriesSelected();
 }
 
@@ -160,8 +160,8 @@ void ImportDialog::seriesSelected() {
   choices_->ask(before()->choices, answers());
   showSelected();
   const GridGeometry& grid = before()->geometry;
-  preview_->showStack(series->slices, grid.spacing_mm.z > 0.0 ? std::optional(grid.direction)
-                                                              : std::nullopt);
+  preview_->showStack(series->slices,
+                      grid.spacing_mm.z > 0.0 ? std::optional(grid.direction) : std::nullopt);
 }
 
 // What answers change of what is shown.
@@ -212,8 +212,8 @@ void ImportDialog::showKept() {
       grid_known ? tr("The volume is straightened when it is read, so its box cannot be drawn on "
                       "the slices as they are stored.")
                  : tr("What your answers make of it can be cropped once it has been read."));
-  size_note_->setVisible(series && (!grid_known || (size_->crop() && !as_stored &&
-                                                    !canvas.image().isNull())));
+  size_note_->setVisible(
+      series && (!grid_known || (size_->crop() && !as_stored && !canvas.image().isNull())));
   if (!choosing || !as_stored || !size_->crop()) return canvas.setKept({});
   const VoxelBox box = size_->box();
   const bool slices_too = series->slices == series->geometry.size[2];

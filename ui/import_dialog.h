@@ -98,7 +98,8 @@ class ImportDialog : public QDialog {
   QLabel *size_note_, *loss_, *couch_, *face_;
   QLabel *status_, *purpose_;
   QProgressBar* progress_;
-  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_, *open_case_;
+  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_,
+      *open_case_;
 };
 
 }  // namespace trephine

@@ -125,9 +125,10 @@ QWidget* ImportDialog::buildAskingPage() {
   couch_ = wrapped("couchNote", true);
   couch_->setText(tr("In the slices, what would be taken out is tinted."));
   face_ = wrapped("faceWarning", false);
-  face_->setText(tr("From this CT the face can be made visible, and the patient recognised. Keep it "
-                    "only where the exercise needs it and everyone who sees the case may know who "
-                    "it is."));
+  face_->setText(
+      tr("From this CT the face can be made visible, and the patient recognised. Keep it "
+         "only where the exercise needs it and everyone who sees the case may know who "
+         "it is."));
   late_choices_ = new ChoicePanel;
   late_choices_->setObjectName("lateChoices");
   auto* page = new QWidget;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 #include "ui/words.h"
 
 namespace trephine {
@@ -136,8 +136,8 @@ void ImportTask::step() {
 }
 
 void ImportTask::readSlice(const Wanted& wanted) {
-  task_.run([folder = folder_, wanted](
-                const Progress&) { return folder->slice(wanted.uid, wanted.index); },
+  task_.run([folder = folder_,
+             wanted](const Progress&) { return folder->slice(wanted.uid, wanted.index); },
             [this, wanted](const Result<SlicePicture>& picture) {
               emit sliceReady(toQt(wanted.uid), wanted.index, picture);
               step();
@@ -148,8 +148,8 @@ void ImportTask::makeThumbnail(const std::string& uid) {
   const auto series = std::ranges::find(report_.series, uid, &SeriesReport::uid);
   if (series == report_.series.end()) return step();
   task_.run(
-      [folder = folder_, uid, middle = series->slices / 2,
-       is_ct = series->modality == "CT"](const Progress&) -> Result<QImage> {
+      [folder = folder_, uid, middle = series->slices / 2, is_ct = series->modality == "CT",
+       turned = mirroringOf(series->geometry.direction)](const Progress&) -> Result<QImage> {
         const Result<SlicePicture> slice = folder->slice(uid, middle);
         if (!slice) return slice.error();
         const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);
@@ -157,6 +157,7 @@ void ImportTask::makeThumbnail(const std::string& uid) {
         const double wide = double(slice->columns) * slice->spacing_mm.x;
         const double scale = kThumbnailPixels / std::max(tall, wide);
         return windowed(*slice, window)
+            .mirrored(turned.across, turned.down)
             .scaled(std::max(1, int(wide * scale)), std::max(1, int(tall * scale)),
                     Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
       },

@@ -1,5 +1,5 @@
-// What the import found out about one series: the verdict in a sentence, every finding with what was
-// done and what it means, and the memory that reading it needs.
+// What the import found out about one series: the verdict in a sentence, every finding with what
+// was done and what it means, and the memory that reading it needs.
 #pragma once
 
 #include <QLabel>

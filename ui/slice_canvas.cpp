@@ -12,11 +12,6 @@ namespace trephine {
 
 namespace {
 
-int mainAxis(const Vec3& v) {
-  const Vec3 size = glm::abs(v);
-  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-}
-
 // Where in the patient the direction mostly points.
 QChar letterOf(const Vec3& v) {
   const int axis = mainAxis(v);
@@ -31,18 +26,13 @@ SliceCanvas::SliceCanvas(QWidget* parent) : QWidget(parent) {
 }
 
 void SliceCanvas::draw() {
-  image_ = windowed(slice_, window_).mirrored(mirror_x_, mirror_y_);
+  image_ = windowed(slice_, window_).mirrored(mirroring_.across, mirroring_.down);
   update();
 }
 
 void SliceCanvas::setDirection(const std::optional<Mat3>& direction) {
   direction_ = direction;
-  mirror_x_ = mirror_y_ = false;
-  if (!direction_) return;
-  const Vec3 &across = (*direction_)[0], &down = (*direction_)[1];
-  mirror_x_ = across[mainAxis(across)] < 0.0;  // to the patient's left or back, or up
-  const double onwards = down[mainAxis(down)];
-  mirror_y_ = mainAxis(down) == 2 ? onwards > 0.0 : onwards < 0.0;
+  mirroring_ = direction ? mirroringOf(*direction) : Mirroring{};
 }
 
 void SliceCanvas::setSlice(SlicePicture slice) {
@@ -70,7 +60,7 @@ void SliceCanvas::setKept(std::optional<QRect> pixels) {
 }
 
 void SliceCanvas::setMarked(const QImage& mask) {
-  marked_ = mask.mirrored(mirror_x_, mirror_y_);
+  marked_ = mask.mirrored(mirroring_.across, mirroring_.down);
   update();
 }
 
@@ -90,8 +80,8 @@ QPoint SliceCanvas::pixelAt(const QPointF& position) const {
   const QRectF box = target();
   double x = (position.x() - box.left()) / box.width() * slice_.columns;
   double y = (position.y() - box.top()) / box.height() * slice_.rows;
-  if (mirror_x_) x = slice_.columns - x;
-  if (mirror_y_) y = slice_.rows - y;
+  if (mirroring_.across) x = slice_.columns - x;
+  if (mirroring_.down) y = slice_.rows - y;
   return {std::clamp(int(std::floor(x)), 0, slice_.columns - 1),
           std::clamp(int(std::floor(y)), 0, slice_.rows - 1)};
 }
@@ -99,8 +89,8 @@ QPoint SliceCanvas::pixelAt(const QPointF& position) const {
 QRectF SliceCanvas::inWidget(const QRect& pixels) const {
   const QRectF box = target();
   const double sx = box.width() / slice_.columns, sy = box.height() / slice_.rows;
-  const int x = mirror_x_ ? slice_.columns - pixels.left() - pixels.width() : pixels.left();
-  const int y = mirror_y_ ? slice_.rows - pixels.top() - pixels.height() : pixels.top();
+  const int x = mirroring_.across ? slice_.columns - pixels.left() - pixels.width() : pixels.left();
+  const int y = mirroring_.down ? slice_.rows - pixels.top() - pixels.height() : pixels.top();
   return {box.left() + x * sx, box.top() + y * sy, pixels.width() * sx, pixels.height() * sy};
 }
 
@@ -132,8 +122,8 @@ void SliceCanvas::paintEvent(QPaintEvent*) {
 }
 
 void SliceCanvas::paintLetters(QPainter& painter) const {
-  const Vec3 right = (mirror_x_ ? -1.0 : 1.0) * (*direction_)[0];
-  const Vec3 down = (mirror_y_ ? -1.0 : 1.0) * (*direction_)[1];
+  const Vec3 right = (mirroring_.across ? -1.0 : 1.0) * (*direction_)[0];
+  const Vec3 down = (mirroring_.down ? -1.0 : 1.0) * (*direction_)[1];
   const QRect inside = rect().adjusted(6, 4, -6, -4);
   painter.setPen(colours::kQuiet);
   painter.drawText(inside, Qt::AlignRight | Qt::AlignVCenter, letterOf(right));

@@ -1,13 +1,13 @@
-// Draws one slice in its true proportions and as it is customary to look at one: in front or head up,
-// the patient's right at the left; and what is marked in it. Positions are the slice's own pixels,
-// column and row as stored.
+// Draws one slice in its true proportions and as it is customary to look at one: in front or head
+// up, the patient's right at the left; and what is marked in it. Positions are the slice's own
+// pixels, column and row as stored.
 #pragma once
 
 #include <QImage>
 #include <QWidget>
 #include <optional>
 
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 
 namespace trephine {
 
@@ -55,7 +55,7 @@ class SliceCanvas : public QWidget {
   QString message_;
   std::optional<QRect> kept_;
   std::optional<Mat3> direction_;
-  bool mirror_x_ = false, mirror_y_ = false;
+  Mirroring mirroring_;
   bool drawable_ = false;
   std::optional<QPoint> pressed_;
 };

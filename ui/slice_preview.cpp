@@ -14,7 +14,7 @@ namespace trephine {
 namespace {
 constexpr int kPageOfSlices = 10;
 constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
-}
+}  // namespace
 
 SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   canvas_ = new SliceCanvas(this);
@@ -62,9 +62,8 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   layout->addWidget(canvas_, 1);
   layout->addLayout(slider_row);
 
-  connect(windows_, &QButtonGroup::idClicked, this, [this](int i) {
-    canvas_->setWindow(kWindowPresets[std::size_t(i)].window);
-  });
+  connect(windows_, &QButtonGroup::idClicked, this,
+          [this](int i) { canvas_->setWindow(kWindowPresets[std::size_t(i)].window); });
   connect(slider_, &QSlider::valueChanged, this, [this](int index) {
     showPosition();
     emit sliceWanted(index);
@@ -112,8 +111,8 @@ SlicePicture sliceOf(const Volume& volume, int k) {
   const GridGeometry& g = volume.geometry;
   if (!g.contains(0, 0, k)) return {};
   const auto begin = volume.hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, k));
-  return {g.size[0], g.size[1], g.spacing_mm,
-          {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+  return {
+      g.size[0], g.size[1], g.spacing_mm, {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
 }
 
 QImage couchMask(const CouchFinding& couch, const Volume& volume, int k) {

@@ -2,9 +2,12 @@
 // and by keys alone. Real DICOM files, the real window.
 #include <QApplication>
 #include <QDir>
+#include <QDropEvent>
+#include <QFileDialog>
 #include <QLabel>
 #include <QListWidget>
 #include <QMessageBox>
+#include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRadioButton>
@@ -301,6 +304,31 @@ class ImportGuiTest : public QObject {
     QVERIFY(opened.wait(kLong_ms));
     QVERIFY((workstation().volume()->geometry.size == Index3{32, 24, 20}));
     closeError();
+  }
+
+  void anotherFolderCanBeDroppedOnTheDialogOrAFileChosenInIt() {
+    open(temporary_.filePath("two"));
+    QMimeData data;
+    data.setUrls({QUrl::fromLocalFile(temporary_.filePath("gap"))});
+    const QPoint at(100, 100);
+    QDragEnterEvent enter(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(dialog(), &enter);
+    QVERIFY(enter.isAccepted());
+    QDropEvent drop(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(dialog(), &drop);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QCOMPARE(list()->count(), 1);
+    QCOMPARE(list()->item(0)->text(), QString("With a gap"));
+
+    find<QPushButton>("importFile")->click();
+    auto* files = find<QFileDialog>("fileDialog");
+    files->setDirectory(temporary_.filePath("head"));
+    files->selectFile(temporary_.filePath("head/IM0001.dcm"));
+    static_cast<QDialog*>(files)->accept();
+    QTRY_COMPARE_WITH_TIMEOUT(list()->count() == 1 ? list()->item(0)->text() : QString(),
+                              QString("Head"), kLong_ms);
+    QVERIFY(!find<QPushButton>("import")->isEnabled());  // one slice is no volume
+    QVERIFY(find<QLabel>("reportCard")->text().contains("not a volume"));
   }
 
   void aReadIsCancelledAndTheCaseBeforeStaysOpen() {

@@ -39,10 +39,9 @@ class ImportWidgetsTest : public ::testing::Test {
 TEST_F(ImportWidgetsTest, UsableCtComesFirstThenWhatAsksThenTheRest) {
   SeriesReport mr = fakeSeries("mr", Verdict::refused, 900);
   mr.modality = "MR";
-  const std::vector<SeriesReport> series = {mr, fakeSeries("refused", Verdict::refused, 800),
-                                            askingSeries("asks"),
-                                            fakeSeries("small", Verdict::pass, 20),
-                                            fakeSeries("large", Verdict::repaired, 300)};
+  const std::vector<SeriesReport> series = {
+      mr, fakeSeries("refused", Verdict::refused, 800), askingSeries("asks"),
+      fakeSeries("small", Verdict::pass, 20), fakeSeries("large", Verdict::repaired, 300)};
   SeriesList list;
   list.showSeries(series, {});
   QStringList shown;
@@ -62,8 +61,10 @@ TEST_F(ImportWidgetsTest, AStateIsSaidInAWordForThoseWhoDoNotSeeTheMark) {
 
 TEST_F(ImportWidgetsTest, MarksDifferInShapeAndNotInColourAlone) {
   const auto shape = [](SeriesState state) {
-    return stateIcon(state).pixmap(QSize(48, 48), 1.0).toImage().convertToFormat(
-        QImage::Format_Alpha8);
+    return stateIcon(state)
+        .pixmap(QSize(48, 48), 1.0)
+        .toImage()
+        .convertToFormat(QImage::Format_Alpha8);
   };
   EXPECT_NE(shape(SeriesState::pass), shape(SeriesState::repaired));
   EXPECT_NE(shape(SeriesState::pass), shape(SeriesState::refused));
@@ -167,7 +168,8 @@ TEST_F(SizePanelTest, SaysWhatComesOutAndWhatItWeighs) {
   const QString text = find<QLabel>(panel_, "sizeOutcome").text();
   EXPECT_TRUE(text.contains("32 \u00d7 24 \u00d7 50")) << text.toStdString();
   EXPECT_TRUE(text.contains("1.00 \u00d7 1.50 \u00d7 4.00 mm"));
-  const GridGeometry odd = outcomeOf({{7, 8, 9}, Vec3(1.0), {}, Mat3(1.0)}, {{0, 0, 0}, {7, 8, 9}}, 4);
+  const GridGeometry odd =
+      outcomeOf({{7, 8, 9}, Vec3(1.0), {}, Mat3(1.0)}, {{0, 0, 0}, {7, 8, 9}}, 4);
   EXPECT_EQ(odd.size, (Index3{2, 2, 3}));
 }
 
@@ -261,7 +263,8 @@ TEST_F(SlicePreviewTest, ADragDrawsABoxInTheSlicesPixels) {
   SliceCanvas& canvas = preview_.canvas();
   preview_.showSlice(50, slice(100, 50, Vec3(1.0, 4.0, 1.0)));
   QRect drawn;
-  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas, [&](const QRect& box) { drawn = box; });
+  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas,
+                   [&](const QRect& box) { drawn = box; });
   const QRectF target = canvas.target();
   const auto drag = [&](QPointF from, QPointF to) {
     const auto at = [&](QPointF share) {
@@ -315,7 +318,8 @@ TEST_F(SlicePreviewTest, ABoxIsThatOfTheStoredPixelsHoweverTheyAreDrawn) {
   preview_.showSlice(50, slice(100, 100, Vec3(1.0)));
   canvas.setDrawable(true);
   QRect drawn;
-  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas, [&](const QRect& box) { drawn = box; });
+  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas,
+                   [&](const QRect& box) { drawn = box; });
   const QRectF target = canvas.target();
   const auto at = [&](double x, double y) {
     return QPointF(target.left() + x * target.width(), target.top() + y * target.height());
