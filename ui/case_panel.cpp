@@ -36,7 +36,8 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
 
   auto* card = new QFrame(this);
   card->setProperty("card", true);
-  case_ = new QLabel(tr("No case is open.\nOpen a folder of CT, or drop one on this window."), card);
+  case_ =
+      new QLabel(tr("No case is open.\nOpen a folder of CT, or drop one on this window."), card);
   case_->setObjectName("caseLabel");
   case_->setTextFormat(Qt::PlainText);
   case_->setWordWrap(true);

@@ -1,5 +1,5 @@
-// Where the case comes from: a folder or file of CT, another series of it, or a built-in case; which
-// one is open; how far opening is.
+// Where the case comes from: a folder or file of CT, another series of it, or a built-in case;
+// which one is open; how far opening is.
 #pragma once
 
 #include <QLabel>

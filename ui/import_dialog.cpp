@@ -39,6 +39,13 @@ SeriesReport* ImportDialog::before() {
   return found == before_.end() ? nullptr : &*found;
 }
 
+// The list says what the series is, not how much of it was read last.
+void ImportDialog::listSelected() {
+  SeriesReport listed = *selected();
+  listed.geometry = before()->geometry;
+  list_->updateSeries(listed, answers());
+}
+
 // --- The folder ---
 
 void ImportDialog::open() {
@@ -85,7 +92,7 @@ void ImportDialog::stopped() {
   showStep(Step::choosing);
   if (!isVisible()) return;
   if (was_scanning) return showFolder();  // the one before
-  before_ = task_.report().series;  // what could not be read may ask more now
+  before_ = task_.report().series;        // what could not be read may ask more now
   seriesSelected();
 }
 
@@ -152,7 +159,9 @@ void ImportDialog::seriesSelected() {
   size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
   choices_->ask(before()->choices, answers());
   showSelected();
-  preview_->showStack(series->slices);
+  const GridGeometry& grid = before()->geometry;
+  preview_->showStack(series->slices,
+                      grid.spacing_mm.z > 0.0 ? std::optional(grid.direction) : std::nullopt);
 }
 
 // What answers change of what is shown.
@@ -160,7 +169,7 @@ void ImportDialog::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
   card_->showSeries(*series, answers(), availableMemory_mb());
-  list_->updateSeries(*series, answers());
+  listSelected();
   showImportButton();
 }
 
@@ -173,10 +182,17 @@ void ImportDialog::showImportButton() {
 
 void ImportDialog::sliceWanted(int index) {
   if (step_ == Step::asking) {
-    if (task_.volume()) preview_->showSlice(index, sliceOf(*task_.volume(), index));
+    if (!task_.volume()) return;
+    preview_->showSlice(index, sliceOf(*task_.volume(), index));
+    showCouch(index);
   } else {
     task_.wantSlice(list_->selectedUid(), index);
   }
+}
+
+// What would be taken out of slice `k` of the volume that was read.
+void ImportDialog::showCouch(int k) {
+  preview_->canvas().setMarked(couchMask(task_.couch(), *task_.volume(), k));
 }
 
 void ImportDialog::showSlice(const QString& uid, int index, const Result<SlicePicture>& picture) {
@@ -196,8 +212,8 @@ void ImportDialog::showKept() {
       grid_known ? tr("The volume is straightened when it is read, so its box cannot be drawn on "
                       "the slices as they are stored.")
                  : tr("What your answers make of it can be cropped once it has been read."));
-  size_note_->setVisible(series && (!grid_known || (size_->crop() && !as_stored &&
-                                                    !canvas.image().isNull())));
+  size_note_->setVisible(
+      series && (!grid_known || (size_->crop() && !as_stored && !canvas.image().isNull())));
   if (!choosing || !as_stored || !size_->crop()) return canvas.setKept({});
   const VoxelBox box = size_->box();
   const bool slices_too = series->slices == series->geometry.size[2];
@@ -229,7 +245,7 @@ void ImportDialog::import() {
 void ImportDialog::readDone() {
   const SeriesReport* after = selected();
   if (!after) return;
-  list_->updateSeries(*after, answers());
+  listSelected();
   if (!request_.crop && request_.reduction == 1) {  // now the whole grid is known
     before()->geometry = after->geometry;
     before()->verdict = after->verdict;
@@ -246,13 +262,14 @@ void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& que
   loss_->setText(provenance && provenance->loss ? lossWords(*provenance->loss) : QString());
   loss_->setVisible(!loss_->text().isEmpty());
   loss_told_ = true;
+  couch_->setVisible(task_.couch().found);
   face_->setVisible(std::ranges::find(questions, "FACE", &Choice::code) != questions.end());
   late_choices_->ask(questions, {});
   showStep(Step::asking);
   open_case_->setEnabled(late_choices_->allAnswered());
   preview_->canvas().setKept({});
   preview_->canvas().setDrawable(false);
-  preview_->showStack(after.geometry.size[2]);
+  preview_->showStack(after.geometry.size[2], after.geometry.direction);
   if (auto* first = late_choices_->findChild<QAbstractButton*>()) {
     first->setFocus();
   } else {

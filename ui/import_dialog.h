@@ -66,6 +66,7 @@ class ImportDialog : public QDialog {
   void showSlice(const QString& uid, int index, const Result<SlicePicture>& picture);
   void showKept();
   void sliceWanted(int index);
+  void showCouch(int k);
   void boxDrawn(const QRect& pixels);
   void import();
   void ask(const SeriesReport& after, const std::vector<Choice>& questions);
@@ -74,6 +75,7 @@ class ImportDialog : public QDialog {
   void back();
   const SeriesReport* selected() const;  // as the last read left it
   SeriesReport* before();                // the same before it was read
+  void listSelected();
   Answers& answers() { return answers_[list_->selectedUid()]; }
 
   ImportTask& task_;
@@ -93,10 +95,11 @@ class ImportDialog : public QDialog {
   ChoicePanel *choices_, *late_choices_;
   SizePanel* size_;
   QWidget* size_box_;
-  QLabel *size_note_, *loss_, *face_;
+  QLabel *size_note_, *loss_, *couch_, *face_;
   QLabel *status_, *purpose_;
   QProgressBar* progress_;
-  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_, *open_case_;
+  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_,
+      *open_case_;
 };
 
 }  // namespace trephine

@@ -99,9 +99,9 @@ QWidget* ImportDialog::buildFolderColumn() {
 }
 
 QWidget* ImportDialog::buildSeriesPage() {
-  card_ = new ReportCard;
   choices_ = new ChoicePanel;
   choices_->setObjectName("choices");
+  card_ = new ReportCard(choices_);
   size_ = new SizePanel;
   size_note_ = wrapped("sizeNote", true);
   size_box_ = new QWidget;
@@ -114,7 +114,6 @@ QWidget* ImportDialog::buildSeriesPage() {
   auto* layout = new QVBoxLayout(page);
   layout->setContentsMargins(8, 0, 8, 0);
   layout->setSpacing(10);
-  layout->addWidget(choices_);
   layout->addWidget(card_);
   layout->addStretch(1);
   layout->addWidget(size_box_);
@@ -123,10 +122,13 @@ QWidget* ImportDialog::buildSeriesPage() {
 
 QWidget* ImportDialog::buildAskingPage() {
   loss_ = wrapped("lossWords", false);
+  couch_ = wrapped("couchNote", true);
+  couch_->setText(tr("In the slices, what would be taken out is tinted."));
   face_ = wrapped("faceWarning", false);
-  face_->setText(tr("From this CT the face can be made visible, and the patient recognised. Keep it "
-                    "only where the exercise needs it and everyone who sees the case may know who "
-                    "it is."));
+  face_->setText(
+      tr("From this CT the face can be made visible, and the patient recognised. Keep it "
+         "only where the exercise needs it and everyone who sees the case may know who "
+         "it is."));
   late_choices_ = new ChoicePanel;
   late_choices_->setObjectName("lateChoices");
   auto* page = new QWidget;
@@ -136,6 +138,7 @@ QWidget* ImportDialog::buildAskingPage() {
   layout->addWidget(heading(tr("Before the case opens")));
   layout->addWidget(loss_);
   layout->addWidget(face_);
+  layout->addWidget(couch_);
   layout->addWidget(late_choices_);
   layout->addStretch(1);
   return page;

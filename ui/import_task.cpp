@@ -2,14 +2,27 @@
 
 #include <algorithm>
 
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 #include "ui/words.h"
 
 namespace trephine {
 
 namespace {
+
 constexpr int kThumbnailPixels = 160;  // sharp at twice the size it is shown at
+
+struct ReadSeries {
+  std::shared_ptr<const Volume> volume;
+  CouchFinding couch;
+};
+
+bool asks(const ImportReport& report, const std::string& uid, const char* code) {
+  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
+  return series != report.series.end() &&
+         std::ranges::find(series->choices, code, &Choice::code) != series->choices.end();
 }
+
+}  // namespace
 
 ImportTask::ImportTask(QObject* parent) : QObject(parent) {
   connect(&task_, &BackgroundTask::progressed, this, &ImportTask::progressed);
@@ -20,7 +33,26 @@ ImportTask::~ImportTask() = default;
 void ImportTask::begin(std::function<void()> work) {
   if (task_.busy()) task_.cancel();
   working_ = true;
+  cancelled_ = false;
   next_ = std::move(work);
+  step();
+}
+
+void ImportTask::end(void (ImportTask::*done)()) {
+  if (!next_) {  // else something else is wanted by now
+    working_ = false;
+    emit(this->*done)();
+  }
+  step();
+}
+
+template <class Outcome>
+void ImportTask::endWithout(const Outcome& outcome) {
+  if (!next_) {
+    working_ = false;
+    emit stopped();
+    if (!outcome && outcome.error().code != "CANCELLED") emit failed(outcome.error());
+  }
   step();
 }
 
@@ -30,12 +62,12 @@ void ImportTask::scan(const std::filesystem::path& path) {
   begin([this, path] {
     task_.run([path](const Progress& progress) { return CtFolder::scan(path, progress); },
               [this](Result<CtFolder> scanned) {
-                if (!scanned) return end(scanned.error(), nullptr);
+                if (!scanned || cancelled_) return endWithout(scanned);
                 folder_ = std::make_shared<CtFolder>(*std::move(scanned));
                 report_ = folder_->report();
                 best_ = folder_->bestSeries();
                 volume_.reset();
-                end({}, &ImportTask::scanned);
+                end(&ImportTask::scanned);
               });
   });
 }
@@ -44,32 +76,31 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request) {
   if (!folder_) return;
   wanted_.reset();
   volume_.reset();  // there is room for one
+  couch_ = {};
   begin([this, uid, request] {
-    task_.run([folder = folder_, uid, request](
-                  const Progress& progress) { return folder->read(uid, request, progress); },
-              [this](Result<Volume> read) {
-                report_ = folder_->report();  // a refusal is told there too
-                if (!read) return end(read.error(), nullptr);
-                volume_ = std::make_shared<const Volume>(*std::move(read));
-                end({}, &ImportTask::readDone);
-              });
+    task_.run(
+        [folder = folder_, uid, request](const Progress& progress) -> Result<ReadSeries> {
+          Result<Volume> volume = folder->read(uid, request, progress);
+          if (!volume) return volume.error();
+          ReadSeries read{std::make_shared<const Volume>(*std::move(volume)), {}};
+          if (asks(folder->report(), uid, "COUCH") && !request.answers.contains("COUCH")) {
+            read.couch = findCouch(*read.volume);
+          }
+          return read;
+        },
+        [this](Result<ReadSeries> read) {
+          report_ = folder_->report();  // a refusal is told there too
+          if (!read || cancelled_) return endWithout(read);
+          volume_ = std::move(read->volume);
+          couch_ = std::move(read->couch);
+          end(&ImportTask::readDone);
+        });
   });
-}
-
-void ImportTask::end(const std::optional<Error>& error, void (ImportTask::*done)()) {
-  if (next_) return step();  // something else is wanted by now
-  working_ = false;
-  if (!error) {
-    emit(this->*done)();
-  } else {
-    emit stopped();
-    if (error->code != "CANCELLED") emit failed(*error);
-  }
-  step();
 }
 
 void ImportTask::cancel() {
   if (!working_) return;
+  cancelled_ = true;
   if (!next_) return task_.cancel();
   next_ = {};
   working_ = false;
@@ -105,8 +136,8 @@ void ImportTask::step() {
 }
 
 void ImportTask::readSlice(const Wanted& wanted) {
-  task_.run([folder = folder_, wanted](
-                const Progress&) { return folder->slice(wanted.uid, wanted.index); },
+  task_.run([folder = folder_,
+             wanted](const Progress&) { return folder->slice(wanted.uid, wanted.index); },
             [this, wanted](const Result<SlicePicture>& picture) {
               emit sliceReady(toQt(wanted.uid), wanted.index, picture);
               step();
@@ -117,8 +148,8 @@ void ImportTask::makeThumbnail(const std::string& uid) {
   const auto series = std::ranges::find(report_.series, uid, &SeriesReport::uid);
   if (series == report_.series.end()) return step();
   task_.run(
-      [folder = folder_, uid, middle = series->slices / 2,
-       is_ct = series->modality == "CT"](const Progress&) -> Result<QImage> {
+      [folder = folder_, uid, middle = series->slices / 2, is_ct = series->modality == "CT",
+       turned = mirroringOf(series->geometry.direction)](const Progress&) -> Result<QImage> {
         const Result<SlicePicture> slice = folder->slice(uid, middle);
         if (!slice) return slice.error();
         const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);
@@ -126,6 +157,7 @@ void ImportTask::makeThumbnail(const std::string& uid) {
         const double wide = double(slice->columns) * slice->spacing_mm.x;
         const double scale = kThumbnailPixels / std::max(tall, wide);
         return windowed(*slice, window)
+            .mirrored(turned.across, turned.down)
             .scaled(std::max(1, int(wide * scale)), std::max(1, int(tall * scale)),
                     Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
       },

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "imaging/couch.h"
 #include "imaging/importer.h"
 #include "ui/background_task.h"
 
@@ -34,6 +35,8 @@ class ImportTask : public QObject {
   const ImportReport& report() const { return report_; }  // as scan or the last read left it
   const std::optional<std::string>& bestSeries() const { return best_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  // The couch in volume(), where the series asks about it and that is not answered yet.
+  const CouchFinding& couch() const { return couch_; }
   std::shared_ptr<const Volume> takeVolume() { return std::exchange(volume_, {}); }
 
   // The slice to look at. Only the last one wanted is read; what was wanted before is dropped.
@@ -62,7 +65,9 @@ class ImportTask : public QObject {
   };
   void begin(std::function<void()> work);
   void step();
-  void end(const std::optional<Error>& error, void (ImportTask::*done)());
+  void end(void (ImportTask::*done)());
+  template <class Outcome>
+  void endWithout(const Outcome& outcome);
   void readSlice(const Wanted& wanted);
   void makeThumbnail(const std::string& uid);
 
@@ -70,6 +75,8 @@ class ImportTask : public QObject {
   ImportReport report_;
   std::optional<std::string> best_;
   std::shared_ptr<const Volume> volume_;
+  CouchFinding couch_;
+  bool cancelled_ = false;      // even where the work came to its end first
   bool working_ = false;        // a scan or read is under way or waits for a slice to end
   std::function<void()> next_;  // starts it
   std::optional<Wanted> wanted_;

@@ -73,8 +73,7 @@ QString factsHtml(const SeriesReport& series) {
                 .arg(colours::kQuiet.name(), name.toHtmlEscaped(), value.toHtmlEscaped());
   };
   if (g.voxelCount() > 0 && g.spacing_mm.z > 0.0) {
-    add(tr("Voxels"),
-        tr("%1 \u00d7 %2 \u00d7 %3").arg(g.size[0]).arg(g.size[1]).arg(g.size[2]));
+    add(tr("Voxels"), tr("%1 \u00d7 %2 \u00d7 %3").arg(g.size[0]).arg(g.size[1]).arg(g.size[2]));
     add(tr("Voxel size"), tr("%1 \u00d7 %2 \u00d7 %3 mm")
                               .arg(g.spacing_mm.x, 0, 'f', 2)
                               .arg(g.spacing_mm.y, 0, 'f', 2)
@@ -223,8 +222,9 @@ QString memoryWords(double needed_mb, double free_mb) {
 }
 
 QString lossWords(const MeasuredLoss& loss) {
-  return tr("Against the full resolution, HU are off by %1 on average (RMS), one voxel in a hundred "
-            "by more than %2, and the volume of bone by %3 %.")
+  return tr("Against the full resolution, HU are off by %1 (root mean square), by more than %2 in "
+            "one "
+            "voxel of a hundred; the volume of bone changes by %3 %.")
       .arg(loss.rms_hu, 0, 'f', 1)
       .arg(loss.p99_hu, 0, 'f', 0)
       .arg(QString::asprintf("%+.1f", loss.bone_volume_change_percent));
@@ -238,8 +238,9 @@ QString reportHtml(const SeriesReport& series) {
   QString html = factsHtml(series);
   for (const SeverityWords& words : kSeverities) {
     if (countOf(series, words.severity) == 0) continue;
-    html += QString("<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"
-                    "<b style='color:%1'>%2</b><br><span style='color:%3'>%4</span></p>")
+    html += QString(
+                "<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"
+                "<b style='color:%1'>%2</b><br><span style='color:%3'>%4</span></p>")
                 .arg(words.colour.name(), tr(words.title).toHtmlEscaped(), colours::kQuiet.name(),
                      tr(words.meaning).toHtmlEscaped());
     for (const Finding& finding : series.findings) {
@@ -251,8 +252,7 @@ QString reportHtml(const SeriesReport& series) {
 
 QString folderWords(const ImportReport& report) {
   QStringList lines;
-  lines << (report.files_seen == 1 ? tr("1 file") : tr("%1 files").arg(report.files_seen)) +
-               ", " +
+  lines << (report.files_seen == 1 ? tr("1 file") : tr("%1 files").arg(report.files_seen)) + ", " +
                (report.series.size() == 1 ? tr("1 series")
                                           : tr("%1 series").arg(report.series.size()));
   for (const SkippedFiles& files : report.skipped) {

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMark = 28;
 }
 
-ReportCard::ReportCard(QWidget* parent) : QWidget(parent) {
+ReportCard::ReportCard(QWidget* questions, QWidget* parent) : QWidget(parent) {
   mark_ = new QLabel(this);
   word_ = new QLabel(this);
   word_->setObjectName("verdictWord");
@@ -39,8 +39,9 @@ ReportCard::ReportCard(QWidget* parent) : QWidget(parent) {
   layout->addWidget(mark_, 0, 0);
   layout->addWidget(word_, 0, 1);
   layout->addWidget(sentence_, 1, 0, 1, 2);
-  layout->addWidget(report_, 2, 0, 1, 2);
-  layout->addWidget(memory_, 3, 0, 1, 2);
+  if (questions) layout->addWidget(questions, 2, 0, 1, 2);
+  layout->addWidget(report_, 3, 0, 1, 2);
+  layout->addWidget(memory_, 4, 0, 1, 2);
 }
 
 void ReportCard::showSeries(const SeriesReport& series, const Answers& answers,

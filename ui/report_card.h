@@ -1,5 +1,5 @@
-// What the import found out about one series: the verdict in a sentence, every finding with what was
-// done and what it means, and the memory that reading it needs.
+// What the import found out about one series: the verdict in a sentence, every finding with what
+// was done and what it means, and the memory that reading it needs.
 #pragma once
 
 #include <QLabel>
@@ -11,7 +11,8 @@ namespace trephine {
 class ReportCard : public QWidget {
   Q_OBJECT
  public:
-  explicit ReportCard(QWidget* parent = nullptr);
+  // `questions` stand between the verdict and its reasons.
+  explicit ReportCard(QWidget* questions = nullptr, QWidget* parent = nullptr);
 
   void showSeries(const SeriesReport& series, const Answers& answers, double free_memory_mb);
 

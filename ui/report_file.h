@@ -1,4 +1,5 @@
-// The import report as a file to hand on: the page of imaging/report_page.h, which names no patient.
+// The import report as a file to hand on: the page of imaging/report_page.h, which names no
+// patient.
 #pragma once
 
 #include <filesystem>

@@ -136,9 +136,8 @@ void SizePanel::showOutcome() {
   reset_->setEnabled(crop().has_value());
   if (grid_.voxelCount() == 0) return outcome_->clear();
   const GridGeometry out = outcomeOf(grid_, box(), reduction());
-  outcome_->setText(
-      tr("%1: %2")
-          .arg(gridWords(out), megabytes(double(out.voxelCount()) * sizeof(std::int16_t) / 1048576.0)));
+  outcome_->setText(tr("%1: %2").arg(
+      gridWords(out), megabytes(double(out.voxelCount()) * sizeof(std::int16_t) / 1048576.0)));
 }
 
 }  // namespace trephine

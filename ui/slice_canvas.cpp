@@ -10,14 +10,29 @@
 
 namespace trephine {
 
+namespace {
+
+// Where in the patient the direction mostly points.
+QChar letterOf(const Vec3& v) {
+  const int axis = mainAxis(v);
+  return QLatin1Char((v[axis] > 0.0 ? "LPS" : "RAI")[axis]);
+}
+
+}  // namespace
+
 SliceCanvas::SliceCanvas(QWidget* parent) : QWidget(parent) {
   setMinimumSize(200, 200);
   setAutoFillBackground(false);
 }
 
 void SliceCanvas::draw() {
-  image_ = windowed(slice_, window_);
+  image_ = windowed(slice_, window_).mirrored(mirroring_.across, mirroring_.down);
   update();
+}
+
+void SliceCanvas::setDirection(const std::optional<Mat3>& direction) {
+  direction_ = direction;
+  mirroring_ = direction ? mirroringOf(*direction) : Mirroring{};
 }
 
 void SliceCanvas::setSlice(SlicePicture slice) {
@@ -45,7 +60,7 @@ void SliceCanvas::setKept(std::optional<QRect> pixels) {
 }
 
 void SliceCanvas::setMarked(const QImage& mask) {
-  marked_ = mask;
+  marked_ = mask.mirrored(mirroring_.across, mirroring_.down);
   update();
 }
 
@@ -63,8 +78,10 @@ QRectF SliceCanvas::target() const {
 
 QPoint SliceCanvas::pixelAt(const QPointF& position) const {
   const QRectF box = target();
-  const double x = (position.x() - box.left()) / box.width() * slice_.columns;
-  const double y = (position.y() - box.top()) / box.height() * slice_.rows;
+  double x = (position.x() - box.left()) / box.width() * slice_.columns;
+  double y = (position.y() - box.top()) / box.height() * slice_.rows;
+  if (mirroring_.across) x = slice_.columns - x;
+  if (mirroring_.down) y = slice_.rows - y;
   return {std::clamp(int(std::floor(x)), 0, slice_.columns - 1),
           std::clamp(int(std::floor(y)), 0, slice_.rows - 1)};
 }
@@ -72,8 +89,9 @@ QPoint SliceCanvas::pixelAt(const QPointF& position) const {
 QRectF SliceCanvas::inWidget(const QRect& pixels) const {
   const QRectF box = target();
   const double sx = box.width() / slice_.columns, sy = box.height() / slice_.rows;
-  return {box.left() + pixels.left() * sx, box.top() + pixels.top() * sy, pixels.width() * sx,
-          pixels.height() * sy};
+  const int x = mirroring_.across ? slice_.columns - pixels.left() - pixels.width() : pixels.left();
+  const int y = mirroring_.down ? slice_.rows - pixels.top() - pixels.height() : pixels.top();
+  return {box.left() + x * sx, box.top() + y * sy, pixels.width() * sx, pixels.height() * sy};
 }
 
 void SliceCanvas::paintEvent(QPaintEvent*) {
@@ -95,11 +113,23 @@ void SliceCanvas::paintEvent(QPaintEvent*) {
     mask.setCompositionMode(QPainter::CompositionMode_DestinationIn);
     mask.drawImage(0, 0, marked_);
     mask.end();
-    painter.setOpacity(0.45);
+    painter.setOpacity(0.7);
     painter.drawImage(target(), tint);
     painter.setOpacity(1.0);
   }
   if (kept_) paintKept(painter);
+  if (direction_) paintLetters(painter);
+}
+
+void SliceCanvas::paintLetters(QPainter& painter) const {
+  const Vec3 right = (mirroring_.across ? -1.0 : 1.0) * (*direction_)[0];
+  const Vec3 down = (mirroring_.down ? -1.0 : 1.0) * (*direction_)[1];
+  const QRect inside = rect().adjusted(6, 4, -6, -4);
+  painter.setPen(colours::kQuiet);
+  painter.drawText(inside, Qt::AlignRight | Qt::AlignVCenter, letterOf(right));
+  painter.drawText(inside, Qt::AlignLeft | Qt::AlignVCenter, letterOf(-right));
+  painter.drawText(inside, Qt::AlignBottom | Qt::AlignHCenter, letterOf(down));
+  painter.drawText(inside, Qt::AlignTop | Qt::AlignHCenter, letterOf(-down));
 }
 
 void SliceCanvas::paintKept(QPainter& painter) const {

@@ -1,12 +1,13 @@
-// Draws one slice in its true proportions, with what is marked in it. Positions are the slice's
-// pixels: column to the right, row downwards.
+// Draws one slice in its true proportions and as it is customary to look at one: in front or head
+// up, the patient's right at the left; and what is marked in it. Positions are the slice's own
+// pixels, column and row as stored.
 #pragma once
 
 #include <QImage>
 #include <QWidget>
 #include <optional>
 
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 
 namespace trephine {
 
@@ -16,6 +17,8 @@ class SliceCanvas : public QWidget {
   explicit SliceCanvas(QWidget* parent = nullptr);
 
   void setSlice(SlicePicture slice);
+  // Unit directions, LPS, of columns, rows and slices; without one slices are drawn as stored.
+  void setDirection(const std::optional<Mat3>& direction);
   void setWindow(const HuWindow& window);
   // In place of a slice.
   void setMessage(const QString& text);
@@ -26,7 +29,8 @@ class SliceCanvas : public QWidget {
   // Whether dragging with the left button draws a box.
   void setDrawable(bool drawable);
 
-  const QImage& image() const { return image_; }
+  const QImage& image() const { return image_; }  // as it is drawn
+  const QImage& marked() const { return marked_; }
   // Where the slice is drawn in the widget; empty without one.
   QRectF target() const;
 
@@ -43,12 +47,15 @@ class SliceCanvas : public QWidget {
   QPoint pixelAt(const QPointF& position) const;
   QRectF inWidget(const QRect& pixels) const;
   void paintKept(QPainter& painter) const;
+  void paintLetters(QPainter& painter) const;
 
   SlicePicture slice_;
   HuWindow window_ = kWindowPresets[0].window;
   QImage image_, marked_;
   QString message_;
   std::optional<QRect> kept_;
+  std::optional<Mat3> direction_;
+  Mirroring mirroring_;
   bool drawable_ = false;
   std::optional<QPoint> pressed_;
 };

@@ -13,7 +13,8 @@ namespace trephine {
 
 namespace {
 constexpr int kPageOfSlices = 10;
-}
+constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
+}  // namespace
 
 SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   canvas_ = new SliceCanvas(this);
@@ -61,9 +62,8 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   layout->addWidget(canvas_, 1);
   layout->addLayout(slider_row);
 
-  connect(windows_, &QButtonGroup::idClicked, this, [this](int i) {
-    canvas_->setWindow(kWindowPresets[std::size_t(i)].window);
-  });
+  connect(windows_, &QButtonGroup::idClicked, this,
+          [this](int i) { canvas_->setWindow(kWindowPresets[std::size_t(i)].window); });
   connect(slider_, &QSlider::valueChanged, this, [this](int index) {
     showPosition();
     emit sliceWanted(index);
@@ -71,8 +71,9 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
   showNothing({});
 }
 
-void SlicePreview::showStack(int count) {
+void SlicePreview::showStack(int count, const std::optional<Mat3>& direction) {
   if (count <= 0) return showNothing(tr("There is nothing to show."));
+  canvas_->setDirection(direction);
   {
     const QSignalBlocker quiet(slider_);
     slider_->setRange(0, count - 1);
@@ -110,8 +111,21 @@ SlicePicture sliceOf(const Volume& volume, int k) {
   const GridGeometry& g = volume.geometry;
   if (!g.contains(0, 0, k)) return {};
   const auto begin = volume.hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, k));
-  return {g.size[0], g.size[1], g.spacing_mm,
-          {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+  return {
+      g.size[0], g.size[1], g.spacing_mm, {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+}
+
+QImage couchMask(const CouchFinding& couch, const Volume& volume, int k) {
+  const GridGeometry& g = volume.geometry;
+  if (!couch.found || !g.contains(0, 0, k)) return {};
+  QImage mask(g.size[0], g.size[1], QImage::Format_Alpha8);
+  for (int j = 0; j < g.size[1]; ++j) {
+    uchar* line = mask.scanLine(j);
+    for (int i = 0; i < g.size[0]; ++i) {
+      line[i] = volume.at(i, j, k) > kNoAirHu && couch.isCouch(i, j, k) ? 255 : 0;
+    }
+  }
+  return mask;
 }
 
 void SlicePreview::wheelEvent(QWheelEvent* event) {

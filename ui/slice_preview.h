@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QSlider>
 
+#include "imaging/couch.h"
 #include "ui/slice_canvas.h"
 
 namespace trephine {
@@ -16,8 +17,9 @@ class SlicePreview : public QWidget {
  public:
   explicit SlicePreview(QWidget* parent = nullptr);
 
-  // Another stack of `count` slices, looked at in its middle; wants that slice.
-  void showStack(int count);
+  // Another stack of `count` slices, looked at in its middle; wants that slice. `direction` as in
+  // SliceCanvas.
+  void showStack(int count, const std::optional<Mat3>& direction = {});
   void showNothing(const QString& why);
   // `picture` of slice `index`, or why there is none. Shown only while it is the one wanted, or on
   // the way there, so that a quick hand sees the slices go by.
@@ -45,5 +47,8 @@ class SlicePreview : public QWidget {
 
 // Slice `k` of a volume that was read; empty outside.
 SlicePicture sliceOf(const Volume& volume, int k);
+// Where in that slice something would go with the couch, for SliceCanvas::setMarked; null where
+// nothing would. `couch` is of this volume.
+QImage couchMask(const CouchFinding& couch, const Volume& volume, int k);
 
 }  // namespace trephine

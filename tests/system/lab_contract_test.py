@@ -10,10 +10,11 @@ from pathlib import Path
 from lab_support import LAB, SCENES, SOURCE, LabTest, lab
 
 IMPORT_KEYS = {
-    "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen", "seconds",
-    "start_rss_mb", "peak_rss_mb"}
+    "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen",
+    "provenance", "seconds", "start_rss_mb", "peak_rss_mb"}
 SERIES_KEYS = {
-    "uid", "description", "modality", "verdict", "size", "spacing_mm", "origin_mm", "direction",
+    "uid", "description", "modality", "source", "slices", "phases", "memory_mb", "choices",
+    "verdict", "size", "spacing_mm", "origin_mm", "direction",
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
     "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",

@@ -8,6 +8,7 @@
 #include <QMessageBox>
 #include <QMimeData>
 #include <QProgressBar>
+#include <QRadioButton>
 #include <QSignalSpy>
 #include <QStandardPaths>
 #include <QStatusBar>
@@ -237,6 +238,10 @@ class GuiTest : public QObject {
     auto* import = find<QPushButton>("import");
     QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
     QTest::mouseClick(import, Qt::LeftButton);
+    auto* open_case = find<QPushButton>("openCase");
+    QTRY_VERIFY_WITH_TIMEOUT(open_case->isVisible(), kLong_ms);
+    QTest::mouseClick(find<QRadioButton>("choice_FACE_keep"), Qt::LeftButton);
+    QTest::mouseClick(open_case, Qt::LeftButton);
     QVERIFY(opened.wait(kLong_ms));
     QVERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
     painted.clear();

@@ -39,10 +39,9 @@ class ImportWidgetsTest : public ::testing::Test {
 TEST_F(ImportWidgetsTest, UsableCtComesFirstThenWhatAsksThenTheRest) {
   SeriesReport mr = fakeSeries("mr", Verdict::refused, 900);
   mr.modality = "MR";
-  const std::vector<SeriesReport> series = {mr, fakeSeries("refused", Verdict::refused, 800),
-                                            askingSeries("asks"),
-                                            fakeSeries("small", Verdict::pass, 20),
-                                            fakeSeries("large", Verdict::repaired, 300)};
+  const std::vector<SeriesReport> series = {
+      mr, fakeSeries("refused", Verdict::refused, 800), askingSeries("asks"),
+      fakeSeries("small", Verdict::pass, 20), fakeSeries("large", Verdict::repaired, 300)};
   SeriesList list;
   list.showSeries(series, {});
   QStringList shown;
@@ -62,8 +61,10 @@ TEST_F(ImportWidgetsTest, AStateIsSaidInAWordForThoseWhoDoNotSeeTheMark) {
 
 TEST_F(ImportWidgetsTest, MarksDifferInShapeAndNotInColourAlone) {
   const auto shape = [](SeriesState state) {
-    return stateIcon(state).pixmap(QSize(48, 48), 1.0).toImage().convertToFormat(
-        QImage::Format_Alpha8);
+    return stateIcon(state)
+        .pixmap(QSize(48, 48), 1.0)
+        .toImage()
+        .convertToFormat(QImage::Format_Alpha8);
   };
   EXPECT_NE(shape(SeriesState::pass), shape(SeriesState::repaired));
   EXPECT_NE(shape(SeriesState::pass), shape(SeriesState::refused));
@@ -167,7 +168,8 @@ TEST_F(SizePanelTest, SaysWhatComesOutAndWhatItWeighs) {
   const QString text = find<QLabel>(panel_, "sizeOutcome").text();
   EXPECT_TRUE(text.contains("32 \u00d7 24 \u00d7 50")) << text.toStdString();
   EXPECT_TRUE(text.contains("1.00 \u00d7 1.50 \u00d7 4.00 mm"));
-  const GridGeometry odd = outcomeOf({{7, 8, 9}, Vec3(1.0), {}, Mat3(1.0)}, {{0, 0, 0}, {7, 8, 9}}, 4);
+  const GridGeometry odd =
+      outcomeOf({{7, 8, 9}, Vec3(1.0), {}, Mat3(1.0)}, {{0, 0, 0}, {7, 8, 9}}, 4);
   EXPECT_EQ(odd.size, (Index3{2, 2, 3}));
 }
 
@@ -261,7 +263,8 @@ TEST_F(SlicePreviewTest, ADragDrawsABoxInTheSlicesPixels) {
   SliceCanvas& canvas = preview_.canvas();
   preview_.showSlice(50, slice(100, 50, Vec3(1.0, 4.0, 1.0)));
   QRect drawn;
-  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas, [&](const QRect& box) { drawn = box; });
+  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas,
+                   [&](const QRect& box) { drawn = box; });
   const QRectF target = canvas.target();
   const auto drag = [&](QPointF from, QPointF to) {
     const auto at = [&](QPointF share) {
@@ -282,6 +285,56 @@ TEST_F(SlicePreviewTest, ADragDrawsABoxInTheSlicesPixels) {
   EXPECT_EQ(drawn, QRect(QPoint(10, 10), QPoint(50, 40)));
   drag({0.505, 0.51}, {2.0, 2.0});
   EXPECT_EQ(drawn.bottomRight(), QPoint(99, 49)) << "cut to the slice";
+}
+
+TEST_F(SlicePreviewTest, TheFrontIsUpAndThePatientsRightIsAtTheLeftHoweverItIsStored) {
+  // One white pixel: the patient's right front.
+  const auto stored = [](int column, int row) {
+    SlicePicture picture = slice(4, 4, Vec3(1.0), -2000);
+    picture.hu[std::size_t(row * 4 + column)] = 3000;
+    return picture;
+  };
+  const auto drawnAt = [&](const Mat3& direction, const SlicePicture& picture) {
+    preview_.showStack(101, direction);
+    preview_.showSlice(50, picture);
+    const QImage& image = preview_.canvas().image();
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        if (image.constScanLine(y)[x] == 255) return QPoint(x, y);
+      }
+    }
+    return QPoint(-1, -1);
+  };
+  EXPECT_EQ(drawnAt(Mat3(1.0), stored(0, 0)), QPoint(0, 0)) << "head first, supine";
+  const Mat3 from_ras(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+  EXPECT_EQ(drawnAt(from_ras, stored(3, 3)), QPoint(0, 0));
+  const Mat3 coronal(1, 0, 0, 0, 0, 1, 0, -1, 0);  // rows go up
+  EXPECT_EQ(drawnAt(coronal, stored(0, 3)), QPoint(0, 0)) << "the head is up";
+}
+
+TEST_F(SlicePreviewTest, ABoxIsThatOfTheStoredPixelsHoweverTheyAreDrawn) {
+  SliceCanvas& canvas = preview_.canvas();
+  preview_.showStack(101, Mat3(-1, 0, 0, 0, -1, 0, 0, 0, 1));
+  preview_.showSlice(50, slice(100, 100, Vec3(1.0)));
+  canvas.setDrawable(true);
+  QRect drawn;
+  QObject::connect(&canvas, &SliceCanvas::boxDrawn, &canvas,
+                   [&](const QRect& box) { drawn = box; });
+  const QRectF target = canvas.target();
+  const auto at = [&](double x, double y) {
+    return QPointF(target.left() + x * target.width(), target.top() + y * target.height());
+  };
+  QMouseEvent down(QEvent::MouseButtonPress, at(0.005, 0.005), {}, Qt::LeftButton, Qt::LeftButton,
+                   Qt::NoModifier);
+  QMouseEvent move(QEvent::MouseMove, at(0.105, 0.205), {}, Qt::NoButton, Qt::LeftButton,
+                   Qt::NoModifier);
+  QCoreApplication::sendEvent(&canvas, &down);
+  QCoreApplication::sendEvent(&canvas, &move);
+  EXPECT_EQ(drawn, QRect(QPoint(89, 79), QPoint(99, 99)));
+  canvas.setKept(drawn);
+  const QImage picture = canvas.grab().toImage();
+  EXPECT_GT(picture.pixelColor(at(0.05, 0.1).toPoint()).lightness(), 100) << "kept";
+  EXPECT_LT(picture.pixelColor(at(0.5, 0.5).toPoint()).lightness(), 100) << "left out";
 }
 
 TEST_F(SlicePreviewTest, ASliceOfAVolumeIsItsVoxelsInOrder) {

@@ -4,7 +4,7 @@
 
 #include "import_support.h"
 #include "qt_support.h"
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 
 namespace trephine {
 namespace {
@@ -46,8 +46,9 @@ TEST_F(ImportWordsTest, NoTwoStatesShareAWord) {
 
 TEST_F(ImportWordsTest, TheReportTellsEachFindingWithItsActionAndWhatItMeans) {
   SeriesReport series = fakeSeries("1", Verdict::repaired);
-  series.findings = {{"PADDING_TO_AIR", "notice", "12 voxels are padding", {}, "They became air"},
-                     {"UNEVEN_SPACING", "repair", "Slices are uneven", {"3.0"}, "They were evened"}};
+  series.findings = {
+      {"PADDING_TO_AIR", "notice", "12 voxels are padding", {}, "They became air"},
+      {"UNEVEN_SPACING", "repair", "Slices are uneven", {"3.0"}, "They were evened"}};
   const QString html = reportHtml(series);
   for (const char* text : {"12 voxels are padding.", "They became air.", "Slices are uneven.",
                            "They were evened.", "Slices: 3.0.", "differs from the files"}) {

@@ -1,4 +1,5 @@
-// HU windows for looking: which HU are black and which are white. They never change a volume.
+// A slice as a picture: which HU are black and which are white, and which side is up. Looking never
+// changes a volume.
 #pragma once
 
 #include <QImage>
@@ -34,5 +35,15 @@ HuWindow wholeRange(const SlicePicture& slice);
 // Greys of one pixel a value, black at centre - width/2 and below, white at centre + width/2 and
 // above; null for an empty slice.
 QImage windowed(const SlicePicture& slice, const HuWindow& window);
+
+// How a slice is turned to be looked at as is customary: front or head up, the patient's right or
+// front at the left. Columns of `direction` are the unit directions, LPS, of columns, rows and
+// slices.
+struct Mirroring {
+  bool across = false, down = false;
+};
+Mirroring mirroringOf(const Mat3& direction);
+// The axis (0 to 2, of LPS) along which it mostly points.
+int mainAxis(const Vec3& direction);
 
 }  // namespace trephine

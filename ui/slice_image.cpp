@@ -1,4 +1,4 @@
-#include "ui/hu_window.h"
+#include "ui/slice_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +27,17 @@ QImage windowed(const SlicePicture& slice, const HuWindow& window) {
     }
   }
   return image;
+}
+
+int mainAxis(const Vec3& direction) {
+  const Vec3 size = glm::abs(direction);
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+Mirroring mirroringOf(const Mat3& direction) {
+  const Vec3 &across = direction[0], &down = direction[1];
+  const double onwards = down[mainAxis(down)];
+  return {across[mainAxis(across)] < 0.0, mainAxis(down) == 2 ? onwards > 0.0 : onwards < 0.0};
 }
 
 }  // namespace trephine
