@@ -216,23 +216,24 @@ std::string lostText(const std::vector<const DicomHeader*>& lost) {
 }
 
 // Slices that are cut before they say where they lie: their gap may not show.
-void checkUnplaced(const std::vector<const DicomHeader*>& lost, const Answers& answers,
-                   SeriesReport& report, Findings& findings) {
+void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_placed,
+                   const Answers& answers, SeriesReport& report, Findings& findings) {
   if (lost.empty()) return;
   std::vector<std::string> names;
   for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
+  const std::string& why = lost.back()->defect_text;
+  const std::string text = countOfSlices(names) + " cannot be read, nor where they belong (" +
+                           (why.empty() ? "it has no pixels" : why) + ")";
   const auto given = answers.find("MISSING_SLICES");
-  const bool agreed = given != answers.end() && given->second != "refuse";
+  const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
   const bool asked = std::ranges::find(report.choices, "MISSING_SLICES", &Choice::code) !=
                      report.choices.end();
-  if (!asked) {
+  if (!asked && others_are_placed) {
     report.choices.push_back({"MISSING_SLICES",
                               "Slices are damaged before they say where they belong. Use the rest?",
                               {"refuse", "part"},
                               {"Do not use the series", "Use it without them"}});
   }
-  const std::string text = countOfSlices(names) + " cannot be read, nor where they belong (" +
-                           lost.back()->defect_text + ")";
   if (agreed) {
     findings.repaired("MISSING_SLICES", text, "They were left out", names);
   } else {
@@ -285,7 +286,7 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
       plan.sources.push_back(std::size_t(placed[used[n]] - series.slices.data()));
     }
   }
-  checkUnplaced(unplaced, answers, report, findings);
+  checkUnplaced(unplaced, !placed.empty(), answers, report, findings);
   return plan;
 }
 

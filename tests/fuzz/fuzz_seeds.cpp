@@ -100,12 +100,19 @@ class Seeds {
     demand(uid && ct->read(*uid, request, Progress()).ok(), "import the seed " + name);
   }
   void add(const std::string& name, const Series& series, int mode = 0) const {
-    Parts parts;
-    for (const Bytes& bytes : series) parts.emplace_back(kSlice, bytes);
-    add(name, parts, mode);
+    add(name, partsOf(series), mode);
+  }
+  void addAnything(const std::string& name, const Series& series) const {
+    addAnything(name, partsOf(series));
   }
 
  private:
+  static Parts partsOf(const Series& series) {
+    Parts parts;
+    for (const Bytes& bytes : series) parts.emplace_back(kSlice, bytes);
+    return parts;
+  }
+
   fs::path folder_;
 };
 
@@ -340,6 +347,28 @@ void addShapes(const Seeds& seeds, const Series& plain) {
   }
 }
 
+// Files that end too early: a slice in its pixels, one in its header, all in their headers.
+void addCuts(const Seeds& seeds, const Series& plain) {
+  const Bytes position("\x20\x00\x32\x00", 4);
+  Series cut = plain;
+  cut[1].resize(cut[1].size() - 10);
+  seeds.add("cut_pixels", cut);
+  cut[1].resize(cut[1].find(position) + 10);
+  seeds.add("cut_header", cut);
+  for (Bytes& bytes : cut) bytes.resize(bytes.find(position) + 10);
+  seeds.addAnything("cut_headers", cut);
+}
+
+// Words that the importer refuses, at one place, where it compares.
+void addWide(const Seeds& seeds, const Series& plain) {
+  seeds.addAnything("bits_32", changed(plain, [](DcmDataset& data, int) {
+                      putPlace(data, 0, 0);
+                      const std::vector<Uint16> words(2 * 64, 7);
+                      data.putAndInsertUint16(DCM_BitsAllocated, 32);
+                      data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+                    }));
+}
+
 // An enhanced CT of one file, and the same compressed.
 void addEnhanced(const Seeds& seeds) {
   const Volume volume = ramp({8, 8, 3});
@@ -488,6 +517,8 @@ int main(int count, char** arguments) {
   const Series plain = seriesOf(ramp({8, 8, 3}));
   addSyntaxes(seeds, plain, arguments[2]);
   addShapes(seeds, seriesOf(ramp({7, 5, 5})));
+  addCuts(seeds, seriesOf(ramp({7, 5, 6})));
+  addWide(seeds, plain);
   addEnhanced(seeds);
   addDicomDir(seeds, plain);
   addVolumeFiles(seeds);

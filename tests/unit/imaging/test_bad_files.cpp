@@ -204,6 +204,24 @@ TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
   EXPECT_LT(scan().report().peak_rss_mb, before_mb + 200.0);
 }
 
+TEST_F(BadFiles, NoAnswerMakesAVolumeOfSlicesThatAllLostTheirPlace) {
+  write(rampVolume());
+  const std::string position("\x20\x00\x32\x00", 4);
+  for (int n = 1; n <= 6; ++n) {
+    const std::string bytes = readBytes(slice(n));
+    writeBytes(slice(n), bytes.substr(0, bytes.find(position) + 10));
+  }
+  const Finding refusal = expectRefused("MISSING_SLICES");
+  EXPECT_EQ(refusal.slices.size(), 6u);
+  EXPECT_TRUE(report_.series.front().choices.empty());
+  CtFolder ct = scan();
+  ImportRequest request;
+  request.answers["MISSING_SLICES"] = "part";
+  const auto result = ct.read(report_.series.front().uid, request, Progress());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "MISSING_SLICES");
+}
+
 TEST_F(BadFiles, SlicesOf32BitsAtOnePlaceAreRefusedAndNotCompared) {
   write(rampVolume({64, 64, 6}));
   editAll([](DcmDataset& data) {
