@@ -223,6 +223,24 @@ TEST(Labels, ABorderBetweenLabelsPushesByStiffnessTimesDepth) {
   EXPECT_EQ(pushAt({10, 0, 0}, 4.0, liver()).force_N, Vec3(0.0));
 }
 
+// Half of a liver whose range holds -1000 HU was cut away above z = 0, between two voxels.
+TEST(Labels, ACutSurfacePushesFromWhereItIsAlsoWhenTheRangeHoldsAir) {
+  Volume volume = block();
+  std::fill(volume.hu.begin() + std::ptrdiff_t(volume.hu.size() / 2), volume.hu.end(), kAirHu);
+  const LabelMap all{volume.geometry, std::vector(volume.hu.size(), std::uint8_t(5))};
+  const Grid grid(volume, std::make_shared<const LabelMap>(all));
+  TissueLookup lookup;
+  lookup.set(liver());
+  StiffnessByLabel stiffness;
+  stiffness.set(liver());
+  const StiffnessBall ball(grid.geometry(), 4.0, kBluntDirections);
+  for (double depth_mm : {1.0, 2.0}) {
+    const Vec3 centre(0.2, 0.1, 4.0 - depth_mm);
+    const ElasticPush push = ball.push(grid, TissueBricks(grid, lookup), stiffness, centre);
+    EXPECT_NEAR(push.force_N.z, 1e-3 * 400.0 * depth_mm, 0.06);
+  }
+}
+
 TEST(Labels, ABorderBetweenLabelsHasNoSteps) {
   double last_N = pushAt({4.5, 0.0, 0.0}, 4.0, liver()).force_N.x;
   for (int n = 1; n <= 350; ++n) {

@@ -196,6 +196,20 @@ TEST(Recording, KeepsTheLabelsOfTissuesAlsoOfAChange) {
   EXPECT_EQ(result->ticks, 4000u);
 }
 
+TEST(Recording, NamesTheLabelAmongATissuesNumbers) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 10);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t events = H5Dopen2(file, "events", H5P_DEFAULT), event = H5Dget_type(events);
+  const int at = H5Tget_member_index(event, "tissues");
+  ASSERT_GE(at, 0);
+  const hid_t tissues = H5Tget_member_type(event, unsigned(at)), tissue = H5Tget_super(tissues);
+  EXPECT_GE(H5Tget_member_index(tissue, "label"), 0);
+  for (hid_t type : {tissue, tissues, event}) H5Tclose(type);
+  H5Dclose(events);
+  H5Fclose(file);
+}
+
 TEST(Recording, RefusesAnotherLabelMapAndOneTooMany) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100);

@@ -140,21 +140,24 @@ TEST(LabelMap, TakesTheNearestLabelWhereTheGridIsAnother) {
   }
 }
 
-// Every second centre lies just between two of the label map's voxels, on an oblique grid where
+// Every second centre lies just between two of the label map's voxels, on oblique grids where
 // rounding differs from voxel to voxel.
 TEST(LabelMap, SendsAllCentresBetweenTwoVoxelsToTheSameSide) {
-  GridGeometry fine = obliqueVolume({21, 9, 7}).geometry;
-  GridGeometry coarse = fine;
-  coarse.size = {11, 9, 7};
-  coarse.spacing_mm.x *= 2.0;
-  LabelMap map{coarse, std::vector<std::uint8_t>(coarse.voxelCount())};
-  for (std::size_t i = 0; i < map.labels.size(); ++i) {
-    map.labels[i] = std::uint8_t(coarse.indicesOf(i)[0]);
-  }
-  const Result<LabelMap> fitted = fitTo(map, fine);
-  ASSERT_TRUE(fitted.ok());
-  for (std::size_t i = 0; i < fitted->labels.size(); ++i) {
-    ASSERT_EQ(fitted->labels[i], (fine.indicesOf(i)[0] + 1) / 2) << i;
+  for (double angle : {0.1, 0.7, 1.3, 2.9}) {
+    GridGeometry fine = obliqueVolume({21, 19, 17}).geometry;
+    fine.direction = glm::mat3_cast(glm::angleAxis(angle, glm::normalize(Vec3(1, 2, -3))));
+    GridGeometry coarse = fine;
+    coarse.size[0] = 11;
+    coarse.spacing_mm.x *= 2.0;
+    LabelMap map{coarse, std::vector<std::uint8_t>(coarse.voxelCount())};
+    for (std::size_t i = 0; i < map.labels.size(); ++i) {
+      map.labels[i] = std::uint8_t(coarse.indicesOf(i)[0]);
+    }
+    const Result<LabelMap> fitted = fitTo(map, fine);
+    ASSERT_TRUE(fitted.ok());
+    for (std::size_t i = 0; i < fitted->labels.size(); ++i) {
+      ASSERT_EQ(fitted->labels[i], (fine.indicesOf(i)[0] + 1) / 2) << angle << " " << i;
+    }
   }
 }
 
