@@ -60,7 +60,7 @@ TEST(LabelMap, ReadsTheLabelsOfEveryVolumeFile) {
     ASSERT_TRUE(writeVolume(volume, folder / name));
     const Result<LabelMap> map = readLabelMap(folder / name);
     ASSERT_TRUE(map.ok()) << map.error().sentence();
-    EXPECT_EQ(std::vector<std::int16_t>(map->labels.begin(), map->labels.end()), volume.hu);
+    EXPECT_EQ(Voxels(map->labels.begin(), map->labels.end()), volume.hu);
     EXPECT_NEAR(glm::length(map->geometry.origin_mm - volume.geometry.origin_mm), 0.0, 1e-4);
   }
 }

@@ -262,7 +262,7 @@ TEST(VolumeFiles, AMetaImagesVoxelsMayStandBehindAForeignHeader) {
     writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
     const auto read = readVolume(folder / "a.mhd");
     ASSERT_TRUE(read) << read.error().sentence();
-    EXPECT_EQ(read->hu, (std::vector<std::int16_t>{5, -6})) << size;
+    EXPECT_EQ(read->hu, (Voxels{5, -6})) << size;
   }
   for (const char* size : {"8", "-2", "1e20", "many"}) {
     writeBytes(folder / "a.mhd", head + "HeaderSize = " + size + "\nElementDataFile = a.raw\n");
