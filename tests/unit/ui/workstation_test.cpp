@@ -59,8 +59,8 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   EXPECT_EQ(failed_->code, "NO_CASE");
   failed_.reset();
 
-  const std::filesystem::path ct = written("ct.mha", ball());
-  workstation_.openPath(ct);
+  const auto ct = std::make_shared<const Volume>(ball());
+  workstation_.openVolume(ct, "");
   ASSERT_TRUE(wait());
   ASSERT_TRUE(workstation_.volume());
   EXPECT_EQ(workstation_.labels(), nullptr);
@@ -78,13 +78,13 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   workstation_.useScene(workstation_.sceneFile());
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.labels()) << "another exercise on the same case";
-  workstation_.openPath(ct);
+  workstation_.openVolume(ct, "");
   ASSERT_TRUE(wait());
   EXPECT_EQ(workstation_.labels(), nullptr);
 }
 
 TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
-  workstation_.openPath(written("ct.mha", ball()));
+  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
   ASSERT_TRUE(wait());
   TissueSet tissues = workstation_.scene()->tissues;
   tissues.tissues.back().label = 7;
