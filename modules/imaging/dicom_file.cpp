@@ -38,6 +38,13 @@ bool looksLikeDicom(std::string_view head) {
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
 }
 
+// An element that the file's end cut holds what was in memory before, be it another patient's name.
+void dropHalfRead(DcmItem& item) {
+  for (unsigned long n = item.card(); n-- > 0;) {
+    if (item.getElement(n)->transferState() != ERW_ready) delete item.remove(n);
+  }
+}
+
 // Slope and intercept stand in the data set, or in a functional group of an enhanced image.
 void readRescale(DcmItem& item, DicomHeader& header) {
   StoredFormat& format = header.format;
@@ -273,11 +280,15 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   dicom.transferInit();
   const bool cut =
       dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
-  dicom.transferEnd();
   const std::uint64_t value_offset = std::uint64_t(stream.tell());
   const bool at_end = stream.eos();
   DcmDataset& data = *dicom.getDataset();
   DcmMetaInfo& meta = *dicom.getMetaInfo();
+  if (cut) {
+    dropHalfRead(data);
+    dropHalfRead(meta);
+  }
+  dicom.transferEnd();
 
   DicomHeader header;
   header.file = file;

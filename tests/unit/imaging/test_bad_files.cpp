@@ -222,6 +222,16 @@ TEST_F(BadFiles, NoAnswerMakesAVolumeOfSlicesThatAllLostTheirPlace) {
   EXPECT_EQ(result.error().code, "MISSING_SLICES");
 }
 
+TEST_F(BadFiles, WhatIsLeftOfACutValueIsNotTakenForTheValue) {
+  write(rampVolume());
+  edit(slice(3), [](DcmDataset& data) { put(data, DCM_InstanceNumber, "12345678"); });
+  const std::string bytes = readBytes(slice(3));
+  writeBytes(slice(3), bytes.substr(0, bytes.find("12345678") + 4));
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(report_.series.front().findings.back().slices,
+            std::vector<std::string>{"a slice without number"});
+}
+
 TEST_F(BadFiles, SlicesOf32BitsAtOnePlaceAreRefusedAndNotCompared) {
   write(rampVolume({64, 64, 6}));
   editAll([](DcmDataset& data) {
