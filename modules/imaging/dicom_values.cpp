@@ -26,7 +26,8 @@ void setUpDcmtk() {
 std::string valueText(DcmItem& item, const DcmTagKey& tag) {
   DcmElement* element = nullptr;
   if (item.findAndGetElement(tag, element).bad() || !element) return "";
-  if (element->getLength() > kLongestValue) return "";
+  // getLength() would load it.
+  if (element->getLengthField() > kLongestValue) return "";
   OFString text;
   if (element->getOFStringArray(text).bad()) return "";
   return std::string(text.c_str(), text.length());

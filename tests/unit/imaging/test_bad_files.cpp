@@ -204,6 +204,17 @@ TEST_F(BadFiles, AValueThatClaimsFourGigabytesIsNotAllocated) {
   EXPECT_LT(scan().report().peak_rss_mb, before_mb + 200.0);
 }
 
+TEST_F(BadFiles, ALongValueStaysInItsFile) {
+  write(rampVolume());
+  const std::string bytes = readBytes(slice(1));
+  const std::size_t at = bytes.find("MONOCHROME2");
+  ASSERT_NE(at, std::string::npos);
+  // CS with a length of two bytes becomes UT with four: half a gigabyte, which the file holds.
+  writeBytes(slice(1), bytes.substr(0, at - 4) + std::string("UT\0\0\0\0\0\x20", 8));
+  fs::resize_file(slice(1), at + 4 + (std::uintmax_t(512) << 20));
+  EXPECT_LT(peakDuring_mb([&] { scan(); }), 100.0);
+}
+
 TEST_F(BadFiles, NoAnswerMakesAVolumeOfSlicesThatAllLostTheirPlace) {
   write(rampVolume());
   const std::string position("\x20\x00\x32\x00", 4);
