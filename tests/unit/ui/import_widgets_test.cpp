@@ -160,6 +160,8 @@ TEST_F(SizePanelTest, TheEndsDoNotPassEachOther) {
   set("cropFrom1", 40);
   EXPECT_EQ(find<QSpinBox>(panel_, "cropFrom1").value(), 10);
   EXPECT_EQ(panel_.crop(), (VoxelBox{{0, 9, 0}, {64, 10, 100}}));
+  set("cropTo1", 3);
+  EXPECT_EQ(find<QSpinBox>(panel_, "cropTo1").value(), 10);
 }
 
 TEST_F(SizePanelTest, SaysWhatComesOutAndWhatItWeighs) {
