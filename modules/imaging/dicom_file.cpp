@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <cstring>
-#include <fstream>
 #include <functional>
 
 #include "imaging/codecs.h"
@@ -46,7 +45,7 @@ void dropHalfRead(DcmItem& item) {
 }
 
 // Slope and intercept stand in the data set, or in a functional group of an enhanced image.
-void readRescale(DcmItem& item, DicomHeader& header) {
+void readRescale(const DicomItem& item, DicomHeader& header) {
   StoredFormat& format = header.format;
   const std::string slope = trimmedText(item, DCM_RescaleSlope);
   const std::string intercept = trimmedText(item, DCM_RescaleIntercept);
@@ -60,7 +59,7 @@ void readRescale(DcmItem& item, DicomHeader& header) {
   header.rescale_type = trimmedText(item, DCM_RescaleType);
 }
 
-void readFormat(DcmItem& data, DicomHeader& header) {
+void readFormat(const DicomItem& data, DicomHeader& header) {
   StoredFormat& format = header.format;
   header.bits_allocated = countOr(data, DCM_BitsAllocated, 0, 64);
   format.bits_stored = countOr(data, DCM_BitsStored, header.bits_allocated, 64);
@@ -75,25 +74,25 @@ void readFormat(DcmItem& data, DicomHeader& header) {
   }
 }
 
-void readSpacing(DcmItem& item, DicomHeader& header) {
+void readSpacing(const DicomItem& item, DicomHeader& header) {
   header.pixel_spacing_mm = decimals<2>(item, DCM_PixelSpacing);
   if (header.pixel_spacing_mm && std::ranges::min(*header.pixel_spacing_mm) <= 0.0) {
     header.pixel_spacing_mm.reset();
   }
 }
 
-void readPosition(DcmItem& item, DicomHeader& header) {
+void readPosition(const DicomItem& item, DicomHeader& header) {
   header.position_mm.reset();
   if (const auto p = decimals<3>(item, DCM_ImagePositionPatient)) {
     header.position_mm = Vec3((*p)[0], (*p)[1], (*p)[2]);
   }
 }
 
-std::optional<double> number(DcmItem& item, const DcmTagKey& tag) {
+std::optional<double> number(const DicomItem& item, const DcmTagKey& tag) {
   return parseDecimal(trimmedText(item, tag));
 }
 
-void readPhase(DcmItem& data, DicomHeader& header) {
+void readPhase(const DicomItem& data, DicomHeader& header) {
   header.phase[kTemporalPosition] = number(data, DCM_TemporalPositionIdentifier);
   header.phase[kCardiacPercent] = number(data, DCM_NominalPercentageOfCardiacPhase);
   header.phase[kAcquisitionNumber] = number(data, DCM_AcquisitionNumber);
@@ -103,36 +102,39 @@ void readPhase(DcmItem& data, DicomHeader& header) {
   header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
 }
 
-// The first item of a sequence, or null.
-DcmItem* firstItem(DcmItem* item, const DcmTagKey& sequence) {
-  DcmItem* found = nullptr;
-  if (!item || item->findAndGetSequenceItem(sequence, found, 0).bad()) return nullptr;
-  return found;
+// The first item of a sequence.
+DicomItem firstItem(const DicomItem& item, const DcmTagKey& sequence) {
+  const std::vector<DcmItem*> items = item.items(sequence);
+  return DicomItem(items.empty() ? nullptr : items.front());
 }
 
 // Enhanced CT: what a frame says of itself overrides what all share (PS3.3 C.7.6.16).
-void readFunctionalGroups(DcmItem* shared, DcmItem* own, DicomHeader& header) {
+void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHeader& header) {
   const auto group = [&](const DcmTagKey& macro) {
-    DcmItem* item = firstItem(own, macro);
-    return item ? item : firstItem(shared, macro);
+    DicomItem item = firstItem(own, macro);
+    return item.empty() ? firstItem(shared, macro) : item;
   };
-  if (DcmItem* item = group(DCM_PixelMeasuresSequence)) readSpacing(*item, header);
-  if (DcmItem* item = group(DCM_PlanePositionSequence)) readPosition(*item, header);
-  if (DcmItem* item = group(DCM_PlaneOrientationSequence)) {
-    header.orientation = decimals<6>(*item, DCM_ImageOrientationPatient);
-  }
-  if (DcmItem* item = group(DCM_PixelValueTransformationSequence)) readRescale(*item, header);
-  if (DcmItem* item = group(DCM_CTImageFrameTypeSequence)) {
-    header.image_type = splitValues(trimmedText(*item, DCM_FrameType));
-  }
-  if (DcmItem* item = group(DCM_CardiacSynchronizationSequence)) {
-    header.phase[kCardiacPercent] = number(*item, DCM_NominalPercentageOfCardiacPhase);
-  }
-  if (DcmItem* item = group(DCM_FrameContentSequence)) {
-    header.phase[kTemporalPosition] = number(*item, DCM_TemporalPositionIndex);
-    header.phase[kAcquisitionNumber] = number(*item, DCM_FrameAcquisitionNumber);
-    header.phase[kAcquisitionTime] = timeNumber(*item, DCM_FrameAcquisitionDateTime);
-  }
+  const auto read = [&](const DcmTagKey& macro, const auto& values) {
+    if (const DicomItem item = group(macro); !item.empty()) values(item);
+  };
+  read(DCM_PixelMeasuresSequence, [&](const DicomItem& item) { readSpacing(item, header); });
+  read(DCM_PlanePositionSequence, [&](const DicomItem& item) { readPosition(item, header); });
+  read(DCM_PlaneOrientationSequence, [&](const DicomItem& item) {
+    header.orientation = decimals<6>(item, DCM_ImageOrientationPatient);
+  });
+  read(DCM_PixelValueTransformationSequence,
+       [&](const DicomItem& item) { readRescale(item, header); });
+  read(DCM_CTImageFrameTypeSequence, [&](const DicomItem& item) {
+    header.image_type = splitValues(trimmedText(item, DCM_FrameType));
+  });
+  read(DCM_CardiacSynchronizationSequence, [&](const DicomItem& item) {
+    header.phase[kCardiacPercent] = number(item, DCM_NominalPercentageOfCardiacPhase);
+  });
+  read(DCM_FrameContentSequence, [&](const DicomItem& item) {
+    header.phase[kTemporalPosition] = number(item, DCM_TemporalPositionIndex);
+    header.phase[kAcquisitionNumber] = number(item, DCM_FrameAcquisitionNumber);
+    header.phase[kAcquisitionTime] = timeNumber(item, DCM_FrameAcquisitionDateTime);
+  });
 }
 
 // Whether a frame's pixels lie before the end of a file that is cut.
@@ -148,15 +150,19 @@ bool isThere(const DicomHeader& frame) {
              frame.file_bytes;
 }
 
-std::vector<DicomHeader> splitFrames(DcmItem& data, DicomHeader whole) {
-  DcmItem* shared = firstItem(&data, DCM_SharedFunctionalGroupsSequence);
-  DcmSequenceOfItems* per_frame = nullptr;
-  data.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, per_frame);
-  if (whole.frames == 1 && !shared && !per_frame) return {std::move(whole)};
+std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
+  const bool grouped = data.find(DCM_SharedFunctionalGroupsSequence) ||
+                       data.find(DCM_PerFrameFunctionalGroupsSequence);
   // A claim of frames that are not there is refused once, not a hundred thousand times.
-  if (whole.defect == Defect::size_mismatch) return {std::move(whole)};
+  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch) {
+    std::vector<DicomHeader> one;
+    one.push_back(std::move(whole));
+    return one;
+  }
   // Without functional groups nothing says where a frame lies.
-  if (!shared && !per_frame) whole.position_mm.reset();
+  if (!grouped) whole.position_mm.reset();
+  const DicomItem shared = firstItem(data, DCM_SharedFunctionalGroupsSequence);
+  const std::vector<DcmItem*> per_frame = data.items(DCM_PerFrameFunctionalGroupsSequence);
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
   for (int n = 0; n < whole.frames; ++n) {
     DicomHeader& frame = frames[std::size_t(n)];
@@ -166,8 +172,8 @@ std::vector<DicomHeader> splitFrames(DcmItem& data, DicomHeader whole) {
       frame.defect_text.clear();
     }
     if (whole.frames > 1) frame.instance_number = std::to_string(n + 1);
-    const bool there = per_frame && std::size_t(n) < per_frame->card();
-    readFunctionalGroups(shared, there ? per_frame->getItem(std::size_t(n)) : nullptr, frame);
+    const bool there = std::size_t(n) < per_frame.size();
+    readFunctionalGroups(shared, DicomItem(there ? per_frame[std::size_t(n)] : nullptr), frame);
   }
   return frames;
 }
@@ -223,7 +229,7 @@ std::vector<std::uint8_t> firstBytes(const DicomHeader& header) {
 }
 
 // Whether HU can differ from what the scanner made. The codestream may tell what its name does not.
-bool isLossy(DcmItem& data, const DicomHeader& header) {
+bool isLossy(const DicomItem& data, const DicomHeader& header) {
   if (trimmedText(data, DCM_LossyImageCompression) == "01") return true;
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   if (!syntax || syntax->loss == Loss::never) return false;
@@ -232,11 +238,11 @@ bool isLossy(DcmItem& data, const DicomHeader& header) {
   return isLossyCodestream(*syntax, firstBytes(header)).value_or(syntax->loss == Loss::may_be);
 }
 
-void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, bool at_end, DicomHeader& header) {
+void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header) {
   const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
   bool cut = false;
   std::string vr;
-  if (syntax && syntax->codec == Codec::deflated && at_end) {
+  if (syntax && syntax->codec == Codec::deflated && stream.eos()) {
     // No pixels follow.
   } else if (syntax && syntax->codec == Codec::deflated) {
     // Its offset lies in the inflated data set; its length is compared when it is inflated.
@@ -245,10 +251,10 @@ void findPixelsOf(DcmDataset& data, std::uint64_t value_offset, bool at_end, Dic
     header.pixels = std::move(place);
     vr = "OW";
   } else {
-    const DcmXfer xfer(data.getOriginalXfer());
     header.big_endian = xfer.getByteOrder() == EBO_BigEndian;
-    header.pixels = findPixels(header.file, header.file_bytes, value_offset, xfer.isExplicitVR(),
-                               header.big_endian, header.frames, vr, cut);
+    header.pixels = findPixels(header.file, header.file_bytes, std::uint64_t(stream.tell()),
+                               stream.newest(), xfer.isExplicitVR(), header.big_endian,
+                               header.frames, vr, cut);
   }
   header.has_pixels = header.pixels != nullptr;
   header.swapped_pairs = header.big_endian && header.bits_allocated == 8 && vr == "OW";
@@ -262,33 +268,28 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
                                                   std::uint64_t file_bytes) {
   setUpDcmtk();
   if (file_bytes == 0) return skip("the file is empty");
-  std::string head(1024, '\0');
-  {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return skip("the file could not be opened");
-    in.read(head.data(), std::streamsize(head.size()));
-    head.resize(std::size_t(in.gcount()));
+  DicomStream stream(file);
+  if (!stream.good()) {
+    return Error{kUnreadableFile, "the file may not be read", "", ""};
   }
+  const std::string_view head = stream.beginning(1024);
   if (!looksLikeDicom(head)) return skip("not a DICOM file");
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
   if (nestsTooDeeply(file, file_bytes)) return skip("nested too deeply");
 
-  DicomStream stream(file);
   DcmFileFormat dicom;
   dicom.transferInit();
   const bool cut =
       dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
-  const std::uint64_t value_offset = std::uint64_t(stream.tell());
-  const bool at_end = stream.eos();
-  DcmDataset& data = *dicom.getDataset();
-  DcmMetaInfo& meta = *dicom.getMetaInfo();
   if (cut) {
-    dropHalfRead(data);
-    dropHalfRead(meta);
+    dropHalfRead(*dicom.getDataset());
+    dropHalfRead(*dicom.getMetaInfo());
   }
   dicom.transferEnd();
+  const DicomItem data(dicom.getDataset()), meta(dicom.getMetaInfo());
+  const DcmXfer xfer(dicom.getDataset()->getOriginalXfer());
 
   DicomHeader header;
   header.file = file;
@@ -301,7 +302,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.sop_instance = uidText(meta, DCM_MediaStorageSOPInstanceUID);
   }
   // Anonymising software empties UIDs; that the attribute is there tells such files from debris.
-  if (header.series_uid.empty() && data.tagExists(DCM_SeriesInstanceUID) &&
+  if (header.series_uid.empty() && data.find(DCM_SeriesInstanceUID) &&
       valueText(data, DCM_SeriesInstanceUID).empty()) {
     header.series_uid = kUnnamedSeries;
     header.series_key = trimmedText(data, DCM_SeriesNumber) + "\\" +
@@ -325,7 +326,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   header.photometric = trimmedText(data, DCM_PhotometricInterpretation);
   header.transfer_syntax = uidText(meta, DCM_TransferSyntaxUID);
   if (header.transfer_syntax.empty()) {
-    header.transfer_syntax = DcmXfer(data.getOriginalXfer()).getXferID();
+    header.transfer_syntax = xfer.getXferID();
   }
   header.rows = countOr(data, DCM_Rows, 0, 65535);
   header.columns = countOr(data, DCM_Columns, 0, 65535);
@@ -342,7 +343,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
     header.defect = Defect::cut;
     header.defect_text = "its header is cut short";
   } else {
-    findPixelsOf(data, value_offset, at_end, header);
+    findPixelsOf(xfer, stream, header);
   }
   header.lossy = isLossy(data, header);
   return splitFrames(data, std::move(header));

@@ -99,8 +99,12 @@ struct DicomHeader {
   }
 };
 
+// The code of the Error of a file that may not be read, or not any more.
+inline constexpr const char* kUnreadableFile = "UNREADABLE_FILE";
+
 // Reads everything but the pixels, once; one header a frame. The Error's `what` is the reason for
-// skipping the file, without its name: it is empty, no DICOM, cut short, a DICOMDIR, or lacks a UID.
+// skipping the file, without its name: it may not be read, is empty, no DICOM, cut short, a
+// DICOMDIR, or lacks a UID.
 // Called on the threads of forEachFile only (deep recursion).
 Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& file,
                                                   std::uint64_t file_bytes);

@@ -148,17 +148,14 @@ std::vector<std::vector<PixelPlace::Fragment>> wholeFrames(
 
 std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& path,
                                              std::uint64_t file_bytes, std::uint64_t value_offset,
+                                             const std::array<std::uint8_t, 12>& newest,
                                              bool explicit_vr, bool big_endian, int frames,
                                              std::string& vr, bool& cut) {
-  const File file(path);
+  const std::uint64_t head_bytes = explicit_vr ? 12 : 8;
+  const std::uint8_t* head = newest.data() + (newest.size() - head_bytes);
+  if (value_offset < head_bytes || tagOf(head, big_endian) != kPixelData) return nullptr;
   auto place = std::make_shared<PixelPlace>();
   place->offset = value_offset;
-  std::uint8_t head[12] = {};
-  const std::uint64_t head_bytes = explicit_vr ? 12 : 8;
-  if (value_offset < head_bytes || !file.read(value_offset - head_bytes, head, head_bytes) ||
-      tagOf(head, big_endian) != kPixelData) {
-    return nullptr;
-  }
   vr = explicit_vr ? std::string(head + 4, head + 6) : "OW";
   const std::uint32_t bytes = number32(head + head_bytes - 4, big_endian);
   place->encapsulated = bytes == kUndefined;
@@ -169,7 +166,7 @@ std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& path,
   }
   std::vector<std::uint32_t> frame_offsets;
   std::vector<PixelPlace::Fragment> fragments;
-  cut = !walkItems(file, value_offset, file_bytes, frame_offsets, fragments);
+  cut = !walkItems(File(path), value_offset, file_bytes, frame_offsets, fragments);
   const auto count = std::size_t(frames);
   place->frames = cut ? wholeFrames(fragments, frame_offsets, count)
                       : groupFragments(fragments, frame_offsets, count);

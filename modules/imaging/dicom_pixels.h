@@ -1,6 +1,7 @@
 // Where a DICOM file keeps its pixels, and its frames' stored words.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,13 +14,14 @@
 
 namespace trephine {
 
-// Looks at what stands before `value_offset`, where the value of Pixel Data begins, and, for an
-// encapsulated one, walks its items. Null where it is no Pixel Data element. Frames of an
+// Of what was read before `value_offset`, where the value of Pixel Data begins, `newest` are the
+// last bytes; an encapsulated value's items are walked. Null where it is no Pixel Data element. Frames of an
 // encapsulated value are told apart by their number of fragments or the basic offset table; none
 // are given where that fails. `cut` is set where the file ends before the value does; frames that are
 // not whole then have no fragments.
 std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& file,
                                              std::uint64_t file_bytes, std::uint64_t value_offset,
+                                             const std::array<std::uint8_t, 12>& newest,
                                              bool explicit_vr, bool big_endian, int frames,
                                              std::string& vr, bool& cut);
 

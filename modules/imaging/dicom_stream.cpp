@@ -1,5 +1,10 @@
 #include "imaging/dicom_stream.h"
 
+#include <dcmtk/dcmdata/dcistrmf.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -26,16 +31,81 @@ class NoValue : public DcmInputStreamFactory {
 
 }  // namespace
 
+FileBlocks::FileBlocks(const std::filesystem::path& file)
+    : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+  struct stat status {};
+  good_ = file_ >= 0 && ::fstat(file_, &status) == 0;
+  end_ = good_ ? offile_off_t(status.st_size) : 0;
+}
+
+FileBlocks::~FileBlocks() {
+  if (file_ >= 0) ::close(file_);
+}
+
+OFBool FileBlocks::good() const {
+  return good_;
+}
+
+OFCondition FileBlocks::status() const {
+  return good_ ? EC_Normal : EC_InvalidFilename;
+}
+
+OFBool FileBlocks::eos() {
+  return at_ >= end_;
+}
+
+offile_off_t FileBlocks::avail() {
+  return std::max<offile_off_t>(end_ - at_, 0);
+}
+
+void FileBlocks::fill(offile_off_t from) {
+  held_ = std::max<offile_off_t>(::pread(file_, block_.data(), block_.size(), off_t(from)), 0);
+  block_at_ = from;
+}
+
+offile_off_t FileBlocks::read(void* to, offile_off_t bytes) {
+  offile_off_t done = 0;
+  while (good_ && done < bytes && at_ < end_) {
+    if (at_ < block_at_ || at_ >= block_at_ + held_) fill(at_);
+    if (held_ == 0) {
+      end_ = at_;  // it has become shorter, or cannot be read
+      break;
+    }
+    const offile_off_t part = std::min({block_at_ + held_ - at_, bytes - done, end_ - at_});
+    std::memcpy(static_cast<char*>(to) + done, block_.data() + (at_ - block_at_),
+                std::size_t(part));
+    done += part;
+    at_ += part;
+  }
+  return done;
+}
+
+offile_off_t FileBlocks::skip(offile_off_t bytes) {
+  const offile_off_t part = std::clamp<offile_off_t>(bytes, 0, avail());
+  at_ += part;
+  return part;
+}
+
+void FileBlocks::putback(offile_off_t bytes) {
+  good_ = good_ && bytes <= at_;
+  if (good_) at_ -= bytes;
+}
+
+std::string_view FileBlocks::beginning(std::size_t most) {
+  if (good_ && (held_ == 0 || block_at_ != 0)) fill(0);
+  return {block_.data(), std::min(most, std::size_t(held_))};
+}
+
 DicomStream::DicomStream(const std::filesystem::path& file)
-    : DcmInputFileStream(OFFilename(file.c_str())) {}
+    : DcmInputStream(&blocks_), blocks_(file), path_(file) {}
 
 offile_off_t DicomStream::avail() {
   if (std::uint64_t(read_) > kSafeBytes || skipped_ > kMostSkipped) return 0;
-  return DcmInputFileStream::avail();
+  return DcmInputStream::avail();
 }
 
 offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
-  const offile_off_t count = DcmInputFileStream::read(to, bytes);
+  const offile_off_t count = DcmInputStream::read(to, bytes);
   if (deflated_) read_ += count;
   const std::size_t fresh = std::min(std::size_t(std::max<offile_off_t>(count, 0)), newest_.size());
   if (fresh == 0) return count;
@@ -48,16 +118,17 @@ offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
 
 offile_off_t DicomStream::skip(offile_off_t bytes) {
   if (deflated_) skipped_ += bytes;
-  return skipped_ > kMostSkipped ? 0 : DcmInputFileStream::skip(bytes);
+  return skipped_ > kMostSkipped ? 0 : DcmInputStream::skip(bytes);
 }
 
 OFCondition DicomStream::installCompressionFilter(E_StreamCompression filter) {
   deflated_ = true;
-  return DcmInputFileStream::installCompressionFilter(filter);
+  return DcmInputStream::installCompressionFilter(filter);
 }
 
 DcmInputStreamFactory* DicomStream::newFactory() const {
-  return deflated_ ? new NoValue : DcmInputFileStream::newFactory();
+  if (deflated_) return new NoValue;
+  return new DcmInputFileStreamFactory(OFFilename(path_.c_str()), tell());
 }
 
 bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes) {

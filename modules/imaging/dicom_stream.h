@@ -3,24 +3,56 @@
 #pragma once
 
 #include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dcistrmf.h>
+#include <dcmtk/dcmdata/dcistrma.h>
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 namespace trephine {
 
 // No value that we read is longer: longer ones stay in the file.
 constexpr Uint32 kLongestValue = 16384;
 
+// The bytes of a file, a block at a time: DCMTK asks for a few at once, and often where it stands.
+class FileBlocks : public DcmProducer {
+ public:
+  explicit FileBlocks(const std::filesystem::path& file);
+  ~FileBlocks() override;
+  FileBlocks(const FileBlocks&) = delete;
+  FileBlocks& operator=(const FileBlocks&) = delete;
+
+  OFBool good() const override;
+  OFCondition status() const override;
+  OFBool eos() override;
+  offile_off_t avail() override;
+  offile_off_t read(void* to, offile_off_t bytes) override;
+  offile_off_t skip(offile_off_t bytes) override;
+  void putback(offile_off_t bytes) override;
+
+  // What the file begins with, `most` bytes or less. Until the next call of any other member.
+  std::string_view beginning(std::size_t most);
+
+ private:
+  void fill(offile_off_t from);
+
+  int file_ = -1;
+  bool good_ = false;
+  offile_off_t at_ = 0, end_ = 0;
+  offile_off_t block_at_ = 0, held_ = 0;
+  std::array<char, 8192> block_;  // most headers
+};
+
 // DCMTK leaves long values in a file, but takes those of a deflated one into memory, gigabytes if
 // it says so. This stream has them skipped, and ends a deflated header after what a worker's stack
 // can bear (16 bytes make a level of nesting).
-class DicomStream : public DcmInputFileStream {
+class DicomStream : public DcmInputStream {
  public:
   explicit DicomStream(const std::filesystem::path& file);
 
+  // What the file begins with, `most` bytes or less. Until the next call of any other member.
+  std::string_view beginning(std::size_t most) { return blocks_.beginning(most); }
   // The last bytes that were read, the newest at the end: after readUntilTag an element's head.
   const std::array<std::uint8_t, 12>& newest() const { return newest_; }
 
@@ -31,6 +63,8 @@ class DicomStream : public DcmInputFileStream {
   DcmInputStreamFactory* newFactory() const override;
 
  private:
+  FileBlocks blocks_;
+  std::filesystem::path path_;
   bool deflated_ = false;
   offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
   std::array<std::uint8_t, 12> newest_{};

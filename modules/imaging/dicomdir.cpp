@@ -84,12 +84,10 @@ std::vector<fs::path> filesOfDicomDir(const fs::path& file) {
     DicomStream stream(file);
     dicom.transferInit();
     if (dicom.read(stream, EXS_Unknown, EGL_noChange, kLongestValue).bad()) return;
-    DcmSequenceOfItems* records = nullptr;
-    if (dicom.getDataset()->findAndGetSequence(DCM_DirectoryRecordSequence, records).bad()) return;
     Folders folders;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    for (unsigned long n = 0; records && n < records->card(); ++n) {
-      const std::string name = valueText(*records->getItem(n), DCM_ReferencedFileID);
+    for (DcmItem* record : DicomItem(dicom.getDataset()).items(DCM_DirectoryRecordSequence)) {
+      const std::string name = valueText(DicomItem(record), DCM_ReferencedFileID);
       if (name.empty()) continue;
       const auto found = resolve(folder, splitValues(name), folders);
       if (!found) {

@@ -1,14 +1,15 @@
 #include "imaging/scan.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <future>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 
+#include "imaging/dicom_values.h"
 #include "imaging/dicomdir.h"
 #include "imaging/text.h"
 #include "imaging/workers.h"
@@ -50,8 +51,6 @@ class Walk {
       skip("not a regular file");
     } else if (!first_visit) {
       skip("the same file under another name");
-    } else if (::access(path.c_str(), R_OK) != 0) {
-      skip("the file may not be read");
     } else {
       files_.push_back({path, std::uint64_t(status.st_size)});
     }
@@ -71,7 +70,7 @@ class Walk {
       entries.push_back(it->path());
     }
     if (error) skip("a folder that could not be opened");
-    std::ranges::sort(entries);
+    std::ranges::sort(entries, {}, &fs::path::native);
     for (const fs::path& entry : entries) visit(entry, depth + 1);
   }
 
@@ -91,6 +90,8 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
     return Error{"MISSING_FOLDER", "The folder does not exist or may not be opened",
                  cleanUtf8(path.string()), "Check the name and that you may read it"};
   }
+  // Its dictionary takes as long to load as the folders to walk. Workers wait for it.
+  const auto set_up = std::async(setUpDcmtk);
   ScannedFiles result;
   progress.at(0.0, "Looking for files");
   Walk walk(result, progress);
@@ -115,7 +116,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
     if (frames) {
       ++result.dicom_files;
       std::ranges::move(frames.value(), std::back_inserter(result.headers));
-    } else if (isVolumeFile(files[i].path) && files[i].bytes > 0) {
+    } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) && files[i].bytes > 0) {
       result.volume_files.push_back(files[i].path);
     } else {
       ++result.skipped[frames.error().what];
