@@ -295,11 +295,11 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
           ? contents_->readDicom(source->series, request, progress, slices_used)
           : readFileSeries(source->file, progress, series);
   if (!volume) return fail(volume.error());
-  report.seconds.read = secondsSince(start);
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
   if (!stepped) return fail(stepped.error());
+  report.seconds.read = secondsSince(start);
   if (const Status valid = checkAnswers(series, request.answers); !valid) {
     return fail(valid.error());
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "imaging/coarse_grid.h"
 #include "imaging/couch.h"
 #include "imaging/face.h"
 #include "imaging/series_geometry.h"
@@ -13,8 +14,9 @@ namespace trephine {
 namespace {
 
 // Consent is asked only where there is something to consent to.
-bool stepCouch(const Answers& answers, SeriesReport& series, Volume& volume) {
-  const CouchFinding couch = findCouch(volume);
+bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& series,
+               Volume& volume) {
+  const CouchFinding couch = findCouch(grid);
   if (!couch.found) return false;
   const std::string answer =
       ask({"COUCH",
@@ -36,8 +38,9 @@ bool stepCouch(const Answers& answers, SeriesReport& series, Volume& volume) {
   return true;
 }
 
-bool stepFace(const Answers& answers, SeriesReport& series, Volume& volume) {
-  const FaceFinding face = findFace(volume, series.body_part);
+bool stepFace(const CoarseGrid& grid, const Answers& answers, SeriesReport& series,
+              Volume& volume) {
+  const FaceFinding face = findFace(grid, series.body_part);
   if (!face.found) return false;
   const std::string answer =
       ask({"FACE",
@@ -66,9 +69,11 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress,
                        SeriesReport& series, Volume& volume, std::optional<MeasuredLoss>& loss) {
   const auto cancelled = [&] { return Error{"CANCELLED", "The import was cancelled", "", ""}; };
   progress.at(0.9, "Looking for couch and face");
-  bool changed = stepCouch(request.answers, series, volume);
+  CoarseGrid grid = coarseGrid(volume);
+  bool changed = stepCouch(grid, request.answers, series, volume);
   if (progress.cancelled()) return cancelled();
-  changed |= stepFace(request.answers, series, volume);
+  if (changed) grid = coarseGrid(volume);
+  changed |= stepFace(grid, request.answers, series, volume);
   if (progress.cancelled()) return cancelled();
 
   if (request.crop) {
