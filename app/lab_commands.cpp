@@ -223,6 +223,18 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
   return 0;
 }
 
+// A face that nobody was asked about must not leave the computer unnoticed.
+void warnOfFace(const ImportReport& report, const ImportArguments& arguments,
+                const ImportRequest& request) {
+  const auto series = std::ranges::find(report.series, *report.chosen, &SeriesReport::uid);
+  const bool asked = std::ranges::find(series->choices, "FACE", &Choice::code) !=
+                     series->choices.end();
+  if (!asked || request.answers.contains("FACE")) return;
+  spdlog::warn("The patient's face can be reconstructed from {}: before it leaves this computer, "
+               "write it again with --choice FACE=deface",
+               arguments.write);
+}
+
 int importCommand(const ImportArguments& arguments, bool json, const Progress& progress) {
   const auto fail = [&](const Error& error, const ImportReport* report) {
     ImportReport nothing;
@@ -260,6 +272,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     Status written = writeVolume(*volume, arguments.write);
     if (written) written = writeProvenance(*folder->report().provenance, arguments.write);
     if (!written) return fail(written.error(), &folder->report());
+    warnOfFace(folder->report(), arguments, *request);
   }
   if (json) {
     printAnswer("import", toJson(folder->report()));

@@ -6,6 +6,7 @@
 #include "base/system.h"
 #include "session/case_source.h"
 #include "ui/words.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -92,7 +93,8 @@ std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& f
 
 void Workstation::openPath(const std::filesystem::path& path) {
   if (!mayOpen()) return;
-  if (path.extension() == ".json") {
+  const bool sidecar = isVolumeFile(path) && !readScene(path);
+  if (path.extension() == ".json" && !sidecar) {
     std::optional<Scene> scene = readSceneOrFail(path);
     if (!scene) return;
     const std::string source = scene->case_source;

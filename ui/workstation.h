@@ -21,7 +21,8 @@ class Workstation : public QObject {
   explicit Workstation(QObject* parent = nullptr);
   ~Workstation() override;
 
-  // A scene (.json) brings its own case; any other folder or file is scanned for import().
+  // A scene (.json, unless it is the sidecar of a .raw) brings its own case; any other folder or
+  // file is scanned for import().
   void openPath(const std::filesystem::path& path);
   // One of the built-in cases, with the scene that fits it.
   void openPhantom(const std::string& name);

@@ -82,7 +82,6 @@ struct Shape {
   std::uint32_t thick = 0, bony = 0, at_rim = 0, enclosed = 0;
   std::uint32_t bulk = 0;  // cells with their own kind all around: a lung's, dry bone's, an ear's
   int wide_slices = 0, last_wide_slice = -1;
-  double width_mm = 0.0;       // of the widest piece
   double all_widths_mm = 0.0;  // of all pieces together
 };
 
@@ -108,8 +107,6 @@ class CouchSearch {
       is_couch_[n] = isCouch(found_.parts[n], shapes_[n]);
       if (!is_couch_[n]) continue;
       finding.found = true;
-      finding.width_mm = std::max(finding.width_mm, shapes_[n].width_mm);
-      finding.length_mm = std::max(finding.length_mm, length_mm(found_.parts[n]));
     }
     if (finding.found) markCells();
   }
@@ -173,7 +170,6 @@ class CouchSearch {
       const double across = (piece.last_a - piece.first_a + 1) * grid_.cell_mm[0];
       const double down = (piece.last_b - piece.first_b + 1) * grid_.cell_mm[1];
       const double width = std::sqrt(across * across + down * down);
-      shape.width_mm = std::max(shape.width_mm, width);
       shape.all_widths_mm += width;
       if (width < leastWidth_mm(found_.parts[piece.part])) continue;
       if (shape.last_wide_slice != piece.s) ++shape.wide_slices;
@@ -323,6 +319,31 @@ CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
   return near;
 }
 
+// How far the couch reaches along the grid's axes. The patient or the edge of the field may have cut
+// it into parts.
+std::array<double, 3> boxOf(const CoarseGrid& grid, const CoarseCells& kind) {
+  Index3 low = grid.size, high{-1, -1, -1};
+  for (int s = 0; s < grid.size[2]; ++s) {
+    for (int b = 0; b < grid.size[1]; ++b) {
+      for (int a = 0; a < grid.size[0]; ++a) {
+        if (kind[grid.indexOf(a, b, s)] != couch) continue;
+        const Index3 cell{a, b, s};
+        for (std::size_t n = 0; n < 3; ++n) {
+          low[n] = std::min(low[n], cell[n]);
+          high[n] = std::max(high[n], cell[n]);
+        }
+      }
+    }
+  }
+  std::array<double, 3> box_mm;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto axis = std::size_t(grid.axis[n]);
+    const double field_mm = grid.voxels.size[axis] * grid.voxels.spacing_mm[int(axis)];
+    box_mm[n] = std::min((high[n] - low[n] + 1) * grid.cell_mm[n], field_mm);
+  }
+  return box_mm;
+}
+
 }  // namespace
 
 CouchFinding findCouch(const Volume& volume) {
@@ -345,6 +366,9 @@ CouchFinding findCouch(const CoarseGrid& grid) {
   finding.step = grid.step;
   finding.size = grid.size;
   finding.cells = actions(grid, kind);
+  const auto box = boxOf(grid, kind);
+  finding.width_mm = std::max(box[0], box[1]);
+  finding.length_mm = box[2];
   // A cell that is partly air holds as many voxels of couch as its mean says.
   const double per_cell = double(grid.step[0]) * grid.step[1] * grid.step[2];
   double voxels = 0.0;

@@ -24,7 +24,7 @@ struct CouchFinding {
   bool found = false;
   std::uint64_t voxels = 0;  // about how many voxels that are not air would go
   double length_mm = 0.0;    // of couch or holder along the head-foot axis
-  double width_mm = 0.0;     // of its widest cross-section, corner to corner
+  double width_mm = 0.0;     // across that, of all its parts together
 
   // A cell of the coarse grid (coarse_grid.h) each: what removeCouch does there.
   enum Cell : std::uint8_t {

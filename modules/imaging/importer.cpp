@@ -207,7 +207,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   for (const Source& source : contents.sources) report.series.push_back(source.series.report);
   report.error = folderError(report);
   report.seconds.scan = secondsSince(start);
-  report.peak_rss_mb = peakResidentMb();
+  report.peak_rss_mb = std::max(peakResidentMb(), report.start_rss_mb);  // read at other moments
   return folder;
 }
 
@@ -319,7 +319,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   report.provenance = std::move(provenance);
   report.chosen = uid;
   report.error.reset();
-  report.peak_rss_mb = peakResidentMb();
+  report.peak_rss_mb = std::max(peakResidentMb(), report.start_rss_mb);  // read at other moments
   progress.at(1.0, "Done");
   return volume;
 }

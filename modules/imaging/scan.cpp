@@ -116,8 +116,13 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
     if (frames) {
       ++result.dicom_files;
       std::ranges::move(frames.value(), std::back_inserter(result.headers));
-    } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) && files[i].bytes > 0) {
-      result.volume_files.push_back(files[i].path);
+    } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) &&
+               files[i].bytes > 0) {
+      if (files.size() > 1 && isPartOfVolume(files[i].path)) {
+        ++result.skipped["a part of a volume that another file stands for"];
+      } else {
+        result.volume_files.push_back(files[i].path);
+      }
     } else {
       ++result.skipped[frames.error().what];
     }

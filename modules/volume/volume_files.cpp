@@ -53,6 +53,12 @@ bool isVolumeFile(const fs::path& file) {
   return readerOf(file) != nullptr;
 }
 
+bool isPartOfVolume(const fs::path& file) {
+  const auto stands = [&](const char* ending) { return sibling(file, ending).has_value(); };
+  if (endsWith(file, ".json")) return stands(".raw");
+  return endsWith(file, ".raw") && !stands(".json") && (stands(".mhd") || stands(".nhdr"));
+}
+
 Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);

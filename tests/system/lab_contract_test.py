@@ -50,6 +50,19 @@ class Phantom(LabTest):
                   "--out", self.folder / "out", environment=without_display())
         self.assertEqual(run["volume_sha256_before"], made["volume_sha256"])
 
+    def test_a_face_that_nobody_was_asked_about_is_warned_of_when_it_is_written(self):
+        lab("phantom", "cranium", "--out", self.folder / "ct")
+
+        def warnings(*choice):
+            done = subprocess.run(
+                [LAB, "import", self.folder / "ct", "--write", self.folder / "v.nii", *choice],
+                capture_output=True, text=True, timeout=240, check=True)
+            return done.stderr
+
+        self.assertIn("--choice FACE=deface", warnings())
+        for answer in ("keep", "deface"):
+            self.assertNotIn("face", warnings("--choice", f"FACE={answer}"))
+
     def test_an_unknown_phantom_is_named(self):
         answer = lab("phantom", "foot", "--out", self.folder, expect=1)
         self.assert_error(answer, "UNKNOWN_PHANTOM", "foot")

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "qt_support.h"
 #include "support.h"
 #include "volume/volume_files.h"
@@ -81,6 +83,17 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   workstation_.openVolume(ct, "");
   ASSERT_TRUE(wait());
   EXPECT_EQ(workstation_.labels(), nullptr);
+}
+
+TEST_F(WorkstationTest, ARawFilesSidecarIsImportedLikeTheRawFile) {
+  std::ofstream(folder_ / "ct.raw") << std::string(16, 'x');
+  std::ofstream(folder_ / "ct.json")
+      << R"({"size": [2, 2, 2], "spacing_mm": [1, 1, 1], "type": "int16", "byte_order": "little"})";
+  workstation_.openPath(folder_ / "ct.json");
+  ASSERT_TRUE(waitFor([&] { return workstation_.import().hasFolder() || failed_; }));
+  EXPECT_FALSE(failed_);
+  ASSERT_EQ(workstation_.import().report().series.size(), 1u);
+  EXPECT_EQ(workstation_.import().report().series.front().source, "raw");
 }
 
 TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
