@@ -83,12 +83,16 @@ void dropDuplicates(Series& series) {
   }
   series.slices = std::move(kept);
   if (!dropped.slices.empty()) {
-    dropped.text = std::to_string(dropped.slices.size()) + " files are copies of others";
+    const std::size_t count = dropped.slices.size();
+    dropped.text = count == 1 ? "1 file is a copy of another"
+                              : std::to_string(count) + " files are copies of others";
     series.report.findings.push_back(std::move(dropped));
   }
   if (!different.slices.empty()) {
-    different.text = std::to_string(different.slices.size()) +
-                     " files claim to be another file's image but differ from it";
+    const std::size_t count = different.slices.size();
+    different.text = std::to_string(count) + (count == 1 ? " file claims" : " files claim") +
+                     " to be another file's image but " + (count == 1 ? "differs" : "differ") +
+                     " from it";
     series.report.findings.push_back(std::move(different));
   }
 }

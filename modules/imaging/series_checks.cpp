@@ -65,8 +65,9 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
   if (!first.has_pixels && first.defect == Defect::none) {
     findings.refuse("NOT_AN_IMAGE_SERIES",
-                    "The series holds " + (first.modality.empty() ? "objects" : first.modality) +
-                        " without CT pixels",
+                    (first.modality.empty() ? "The files" : "The files of this " + first.modality +
+                                                                " series") +
+                        std::string(" hold no pixels"),
                     kChooseCt);
   } else if (secondary) {
     findings.refuse("SECONDARY_CAPTURE", "The series holds captured pictures, not slices",

@@ -175,11 +175,14 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const Slices part =
       longestPart(slices, steps.median_mm,
                   steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
-  Choice choice{"MISSING_SLICES",
-                "What shall become of the gap?",
-                {"refuse", "fill"},
-                {"Do not use the series",
-                 "Fill it by interpolation between the slices beside it, marked as such"}};
+  Choice choice{
+      "MISSING_SLICES", "What shall become of the gap?", {"refuse"}, {"Do not use the series"}};
+  // A volume that is mostly made up is none.
+  const bool fillable = missing <= std::ranges::count(slices, true, &Slice::usable);
+  if (fillable) {
+    choice.options.push_back("fill");
+    choice.words.push_back("Fill it by interpolation between the slices beside it, marked as such");
+  }
   if (part.size() > 1) {
     choice.options.push_back("part");
     choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
@@ -202,7 +205,8 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   }
   planAsTheyAre(slices, stack);
   stack.findings.push_back({"MISSING_SLICES", "refusal", text, places,
-                            "Copy or export the series again, or choose to fill the gap"});
+                            fillable ? "Copy or export the series again, or choose to fill the gap"
+                                     : "Copy or export the series again"});
 }
 
 void planUneven(const Slices& slices, const Steps& steps, const Answers& answers, Stack& stack) {

@@ -97,6 +97,21 @@ TEST_F(TrapGaps, OneMissingSliceIsNamedFilledAndMarked) {
   EXPECT_EQ(report_.provenance->slices_used, 7);
 }
 
+TEST_F(TrapGaps, AGapOfMoreSlicesThanWereScannedIsNotFilled) {
+  addPatterns({100, 101, 102, 107, 108});  // 4 missing, 5 there
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(report_.series.front().choices.front().options,
+            (std::vector<std::string>{"refuse", "fill", "part"}));
+  addPatterns({112, 113});  // 7 and 7
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(report_.series.front().choices.front().options.size(), 3u);
+  addPatterns({116});  // 9 and 8
+  EXPECT_EQ(expectRefused("MISSING_SLICES").action, "Copy or export the series again");
+  EXPECT_EQ(report_.series.front().choices.front().options,
+            (std::vector<std::string>{"refuse", "part"}));
+  EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "BAD_CHOICE");
+}
+
 TEST_F(TrapGaps, ThePartWithoutAGapIsTheLongest) {
   addPatterns({100, 101.25, 102.5, 105, 106.25, 107.5, 108.75});
   const Volume volume = import({{"MISSING_SLICES", "part"}});
