@@ -93,8 +93,8 @@ std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& f
 
 void Workstation::openPath(const std::filesystem::path& path) {
   if (!mayOpen()) return;
-  const bool sidecar = isVolumeFile(path) && !readScene(path);
-  if (path.extension() == ".json" && !sidecar) {
+  const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
+  if (path.extension() == ".json" && !isSidecar()) {
     std::optional<Scene> scene = readSceneOrFail(path);
     if (!scene) return;
     const std::string source = scene->case_source;

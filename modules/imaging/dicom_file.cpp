@@ -37,11 +37,21 @@ bool looksLikeDicom(std::string_view head) {
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
 }
 
+// Whether DCMTK came to the element's end. Its transfer state does not tell: values of odd length
+// never become ready.
+struct ElementState : DcmObject {
+  static bool isWhole(const DcmObject& element) {
+    return (element.*&ElementState::errorFlag).good();
+  }
+};
+
 // An element that the file's end cut holds what was in memory before, be it another patient's name.
 void dropHalfRead(DcmItem& item) {
-  for (unsigned long n = item.card(); n-- > 0;) {
-    if (item.getElement(n)->transferState() != ERW_ready) delete item.remove(n);
+  std::vector<DcmObject*> half_read;
+  for (DcmObject* at = item.nextInContainer(nullptr); at; at = item.nextInContainer(at)) {
+    if (!ElementState::isWhole(*at)) half_read.push_back(at);
   }
+  for (DcmObject* element : half_read) delete item.remove(element);
 }
 
 // Slope and intercept stand in the data set, or in a functional group of an enhanced image.
@@ -153,8 +163,11 @@ bool isThere(const DicomHeader& frame) {
 std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   const bool grouped = data.find(DCM_SharedFunctionalGroupsSequence) ||
                        data.find(DCM_PerFrameFunctionalGroupsSequence);
+  const std::vector<DcmItem*> per_frame = data.items(DCM_PerFrameFunctionalGroupsSequence);
+  const bool lost = !whole.pixels || (whole.pixels->encapsulated && whole.pixels->frames.empty());
   // A claim of frames that are not there is refused once, not a hundred thousand times.
-  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch) {
+  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch ||
+      (lost && per_frame.size() < std::size_t(whole.frames))) {
     std::vector<DicomHeader> one;
     one.push_back(std::move(whole));
     return one;
@@ -162,7 +175,6 @@ std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
   // Without functional groups nothing says where a frame lies.
   if (!grouped) whole.position_mm.reset();
   const DicomItem shared = firstItem(data, DCM_SharedFunctionalGroupsSequence);
-  const std::vector<DcmItem*> per_frame = data.items(DCM_PerFrameFunctionalGroupsSequence);
   std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
   for (int n = 0; n < whole.frames; ++n) {
     DicomHeader& frame = frames[std::size_t(n)];
@@ -269,10 +281,8 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   setUpDcmtk();
   if (file_bytes == 0) return skip("the file is empty");
   DicomStream stream(file);
-  if (!stream.good()) {
-    return Error{kUnreadableFile, "the file may not be read", "", ""};
-  }
   const std::string_view head = stream.beginning(1024);
+  if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
   if (!looksLikeDicom(head)) return skip("not a DICOM file");
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");

@@ -117,6 +117,7 @@ offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
 }
 
 offile_off_t DicomStream::skip(offile_off_t bytes) {
+  if (bytes > 0) newest_.fill(0);
   if (deflated_) skipped_ += bytes;
   return skipped_ > kMostSkipped ? 0 : DcmInputStream::skip(bytes);
 }

@@ -54,6 +54,7 @@ class DicomStream : public DcmInputStream {
   // What the file begins with, `most` bytes or less. Until the next call of any other member.
   std::string_view beginning(std::size_t most) { return blocks_.beginning(most); }
   // The last bytes that were read, the newest at the end: after readUntilTag an element's head.
+  // Zeros after bytes that were skipped.
   const std::array<std::uint8_t, 12>& newest() const { return newest_; }
 
   offile_off_t avail() override;

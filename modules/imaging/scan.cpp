@@ -118,11 +118,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
       std::ranges::move(frames.value(), std::back_inserter(result.headers));
     } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) &&
                files[i].bytes > 0) {
-      if (files.size() > 1 && isPartOfVolume(files[i].path)) {
-        ++result.skipped["a part of a volume that another file stands for"];
-      } else {
-        result.volume_files.push_back(files[i].path);
-      }
+      result.volume_files.push_back(files[i].path);
     } else {
       ++result.skipped[frames.error().what];
     }
@@ -132,6 +128,12 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
     return std::tie(h.sop_instance, h.frame, h.file);
   });
   std::ranges::sort(result.volume_files);
+  const std::vector<fs::path> listed = result.volume_files;
+  const auto parts = std::erase_if(result.volume_files, [&](const fs::path& file) {
+    const auto other = fileItBelongsTo(file);
+    return other && std::ranges::binary_search(listed, *other);
+  });
+  if (parts > 0) result.skipped["a part of a volume that another file stands for"] = int(parts);
   return result;
 }
 

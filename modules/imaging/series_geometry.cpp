@@ -177,8 +177,14 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
                   steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
   Choice choice{
       "MISSING_SLICES", "What shall become of the gap?", {"refuse"}, {"Do not use the series"}};
+  // From the first usable slice to the last.
+  std::int64_t filled = steps.total + 1;
+  for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) filled -= steps.multiples[i];
+  for (std::size_t i = slices.size(); i-- > 0 && !slices[i].usable;) {
+    filled -= steps.multiples[i - 1];
+  }
   // A volume that is mostly made up is none.
-  const bool fillable = missing <= std::ranges::count(slices, true, &Slice::usable);
+  const bool fillable = filled <= 2 * std::ranges::count(slices, true, &Slice::usable);
   if (fillable) {
     choice.options.push_back("fill");
     choice.words.push_back("Fill it by interpolation between the slices beside it, marked as such");
@@ -191,13 +197,8 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
   if (answer == "fill") {
-    std::int64_t total = steps.total;
-    for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) total -= steps.multiples[i];
-    for (std::size_t i = slices.size(); i-- > 0 && !slices[i].usable;) {
-      total -= steps.multiples[i - 1];
-    }
     trimUnusableEnds(slices);
-    planSlices(slices, total + 1, stack);
+    planSlices(slices, filled, stack);
     stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
                               "The gap was filled by interpolation: what lies there was not "
                               "scanned, and a lesion in it cannot be seen. Ends were cut off"});

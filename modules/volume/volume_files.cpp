@@ -53,10 +53,11 @@ bool isVolumeFile(const fs::path& file) {
   return readerOf(file) != nullptr;
 }
 
-bool isPartOfVolume(const fs::path& file) {
-  const auto stands = [&](const char* ending) { return sibling(file, ending).has_value(); };
-  if (endsWith(file, ".json")) return stands(".raw");
-  return endsWith(file, ".raw") && !stands(".json") && (stands(".mhd") || stands(".nhdr"));
+std::optional<fs::path> fileItBelongsTo(const fs::path& file) {
+  if (endsWith(file, ".json")) return sibling(file, ".raw");
+  if (!endsWith(file, ".raw") || sibling(file, ".json")) return std::nullopt;
+  const auto meta_image = sibling(file, ".mhd");
+  return meta_image ? meta_image : sibling(file, ".nhdr");
 }
 
 Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,9 +63,9 @@ struct VolumeFileReading {
 // By name, in either case: .mha, .mhd, .nii, .nii.gz, .nrrd, .nhdr, .raw; and a .json beside which
 // a .raw of the same name lies.
 bool isVolumeFile(const std::filesystem::path& file);
-// Whether a file beside it stands for the same volume: for a raw file's sidecar the raw file, for
+// The file beside it that stands for the same volume: for a raw file's sidecar the raw file, for
 // voxels without a sidecar the .mhd or .nhdr of the same name.
-bool isPartOfVolume(const std::filesystem::path& file);
+std::optional<std::filesystem::path> fileItBelongsTo(const std::filesystem::path& file);
 
 // Chooses the format by name. Reads headers only. Sizes are held against the file's length, so a
 // header that promises too much is refused here. Errors: MISSING_FILE, UNKNOWN_FORMAT (also a

@@ -243,6 +243,64 @@ TEST_F(BadFiles, WhatIsLeftOfACutValueIsNotTakenForTheValue) {
             std::vector<std::string>{"a slice without number"});
 }
 
+TEST_F(BadFiles, ValuesThatAreWholeAreKeptOfACutFileWhateverTheirLength) {
+  write(rampVolume());
+  // A writer that does not pad: three bytes where an even number is due.
+  edit(slice(1), [](DcmDataset& data) { put(data, DCM_InstanceNumber, "1234"); });
+  std::string bytes = readBytes(slice(1));
+  const std::size_t at = bytes.find("1234");
+  bytes[at - 2] = 3;
+  bytes.erase(at + 3, 1);
+  writeBytes(slice(1), bytes.substr(0, bytes.find("MONOCHROME2")));
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(report_.series.front().findings.back().slices, std::vector<std::string>{"slice 123"});
+}
+
+TEST_F(BadFiles, ACutHeaderOfManyShortElementsTakesNoTime) {
+  write(rampVolume());
+  std::string elements;
+  for (int n = 0; n < 200000; ++n) {  // group 0x2011 on, implicit, empty
+    const int group = 0x2011 + 2 * (n / 32768), element = n % 32768 + 0x1000;
+    for (const int byte : {group & 255, group >> 8, element & 255, element >> 8, 0, 0, 0, 0}) {
+      elements.push_back(char(byte));
+    }
+  }
+  edit(slice(1), [](DcmDataset&) {}, EXS_LittleEndianImplicit);
+  const std::string bytes = readBytes(slice(1));
+  const std::string pixels("\xE0\x7F\x10\x00", 4);
+  writeBytes(slice(1), bytes.substr(0, bytes.rfind(pixels)) + elements + "\x21\x20\x10");
+  const auto start = std::chrono::steady_clock::now();
+  expectRefused("MISSING_SLICES");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST_F(BadFiles, AClaimOfManyFramesWithoutPixelsIsOneHeader) {
+  write(rampVolume());
+  editAll([](DcmDataset& data) {
+    put(data, DCM_NumberOfFrames, "100000");
+    delete data.remove(DCM_PixelData);
+  });
+  EXPECT_LT(peakDuring_mb([&] { expectRefused("NOT_AN_IMAGE_SERIES"); }), 50.0);
+}
+
+TEST_F(BadFiles, AnIconsPixelsThatWereSkippedAreNotTheImages) {
+  write(rampVolume());
+  editAll([](DcmDataset& data) {
+    delete data.remove(DCM_PixelData);
+    DcmItem* icon = nullptr;
+    data.findOrCreateSequenceItem(DCM_IconImageSequence, icon);
+    const std::vector<Uint8> pixels(20000);
+    icon->putAndInsertUint8Array(DCM_PixelData, pixels.data(), pixels.size());
+  });
+  for (int n = 1; n <= 6; ++n) {  // lengths instead of end marks, so that the file ends there
+    DcmFileFormat file;
+    ASSERT_TRUE(file.loadFile(slice(n).c_str()).good());
+    ASSERT_TRUE(file.loadAllDataIntoMemory().good());
+    ASSERT_TRUE(file.saveFile(slice(n).c_str(), EXS_LittleEndianExplicit, EET_ExplicitLength).good());
+  }
+  expectRefused("NOT_AN_IMAGE_SERIES");
+}
+
 TEST_F(BadFiles, SlicesOf32BitsAtOnePlaceAreRefusedAndNotCompared) {
   write(rampVolume({64, 64, 6}));
   editAll([](DcmDataset& data) {

@@ -58,6 +58,16 @@ TEST_F(FileSeries, ARawFileWithItsSidecarIsOneSeriesWithAReportCard) {
   EXPECT_EQ(ct.report().provenance->source, "raw");
 }
 
+TEST_F(FileSeries, ASidecarWhoseRawFileIsNotListedIsListedItself) {
+  writeRaw("a", kCt);
+  writeRaw("b", kCt);
+  fs::remove(folder() / "b.raw");
+  fs::create_symlink(folder() / "a.raw", folder() / "b.raw");  // the same file under another name
+  const CtFolder ct = scan();
+  ASSERT_EQ(ct.report().series.size(), 2u);
+  EXPECT_EQ(ct.report().series.back().description, "b.json");
+}
+
 TEST_F(FileSeries, TheSidecarItselfMayBeChosen) {
   writeRaw("case", kCt);
   CtFolder ct = scan(folder() / "case.json");

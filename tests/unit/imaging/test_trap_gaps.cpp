@@ -112,6 +112,17 @@ TEST_F(TrapGaps, AGapOfMoreSlicesThanWereScannedIsNotFilled) {
   EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "BAD_CHOICE");
 }
 
+TEST_F(TrapGaps, SlicesLostAtTheEndAreCutOffAndDoNotCountAsFilled) {
+  addPatterns({104, 105, 106, 107, 108, 109, 110});
+  for (const auto& entry : fs::directory_iterator(folder())) {
+    fs::resize_file(entry.path(), fs::file_size(entry.path()) - 6);
+  }
+  addPatterns({100, 101, 103});  // as if the copying of the others had been broken off
+  expectRefused("MISSING_SLICES");
+  const Volume volume = import({{"MISSING_SLICES", "fill"}});
+  EXPECT_EQ(volume.geometry.size[2], 4);
+}
+
 TEST_F(TrapGaps, ThePartWithoutAGapIsTheLongest) {
   addPatterns({100, 101.25, 102.5, 105, 106.25, 107.5, 108.75});
   const Volume volume = import({{"MISSING_SLICES", "part"}});
