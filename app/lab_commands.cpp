@@ -41,10 +41,19 @@ const char* words(Verdict verdict) { return verdictName(verdict); }
 
 void printReport(const ImportReport& report) {
   for (const SeriesReport& s : report.series) {
-    std::printf("%-8s  %dx%dx%d  %.3f x %.3f x %.3f mm  %s  %s\n", words(s.verdict),
-                s.geometry.size[0], s.geometry.size[1], s.geometry.size[2], s.geometry.spacing_mm.x,
-                s.geometry.spacing_mm.y, s.geometry.spacing_mm.z, s.modality.c_str(),
-                s.description.c_str());
+    const GridGeometry& g = s.geometry;
+    std::printf("%-8s  ", words(s.verdict));
+    if (s.verdict != Verdict::refused || g.spacing_mm.z > 0.0) {
+      std::printf("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2],
+                  g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z);
+    }
+    std::printf("%s  %s\n", s.modality.c_str(), s.description.c_str());
+    if (report.series.size() > 1) {
+      std::printf("          --series %s%s\n", s.uid.c_str(),
+                  report.chosen == s.uid                      ? "  (this one was read)"
+                  : report.chosen && s.verdict != Verdict::refused ? "  (not read)"
+                                                              : "");
+    }
     for (const Finding& f : s.findings) {
       std::printf("          %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
     }
@@ -235,6 +244,36 @@ void warnOfFace(const ImportReport& report, const ImportArguments& arguments,
                arguments.write);
 }
 
+// What is written can be written, as far as that can be said before a long run.
+Status checkTargets(const ImportArguments& arguments) {
+  if (!arguments.write.empty()) {
+    if (Status can = checkVolumeFileName(arguments.write); !can) return can;
+  }
+  if (!arguments.report.empty() && !std::string_view(arguments.report).ends_with(".html")) {
+    return Error{"UNKNOWN_FORMAT", "A report is written as .html", arguments.report,
+                 "Give the file this ending; the window also saves PDF"};
+  }
+  for (const std::string& target : {arguments.write, arguments.report}) {
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+      return Error{"CANNOT_WRITE", "There is no such folder", folder.string(),
+                   "Make the folder first, or choose another"};
+    }
+  }
+  return {};
+}
+
+// The patient's own scan is never written over.
+Status checkSourcesAreSpared(const CtFolder& folder, const ImportArguments& arguments) {
+  for (const std::string& target : {arguments.write, arguments.report}) {
+    if (target.empty() || !folder.cameUpon(target)) continue;
+    return Error{"CANNOT_WRITE", "This file lies in the folder that is read, and would be lost",
+                 target, "Choose another name, or remove the file first"};
+  }
+  return {};
+}
+
 int importCommand(const ImportArguments& arguments, bool json, const Progress& progress) {
   const auto fail = [&](const Error& error, const ImportReport* report) {
     ImportReport nothing;
@@ -247,11 +286,12 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
   };
   Result<ImportRequest> request = importRequest(arguments);
   if (!request) return fail(request.error(), nullptr);
-  if (!arguments.write.empty()) {
-    if (Status can = checkVolumeFileName(arguments.write); !can) return fail(can.error(), nullptr);
-  }
+  if (Status can = checkTargets(arguments); !can) return fail(can.error(), nullptr);
   Result<CtFolder> folder = CtFolder::scan(arguments.path, progress);
   if (!folder) return fail(folder.error(), nullptr);
+  if (Status can = checkSourcesAreSpared(*folder, arguments); !can) {
+    return fail(can.error(), nullptr);
+  }
   const auto saveReport = [&]() -> Status {
     if (arguments.report.empty()) return {};
     return writeTextFile(arguments.report, reportPage(folder->report()));
@@ -268,6 +308,9 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
   Result<Volume> volume = folder->read(*uid, *request, progress);
   if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
   if (!volume) return fail(volume.error(), &folder->report());
+  for (const std::string& code : folder->report().provenance->unused_answers) {
+    spdlog::warn("The series did not ask {}: that answer changed nothing", code);
+  }
   if (!arguments.write.empty()) {
     Status written = writeVolume(*volume, arguments.write);
     if (written) written = writeProvenance(*folder->report().provenance, arguments.write);

@@ -46,7 +46,7 @@ int run(int argc, char** argv) {
   import_command->add_option("--choice", wanted.choices,
                              "CODE=OPTION: the answer to a question of the report; may be repeated");
   import_command->add_option("--phase", wanted.phase, "Which phase, from 1: as --choice PHASES=N")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 100000));
   auto* half = import_command->add_flag("--half", wanted.half, "Half the resolution along each axis");
   import_command->add_flag("--quarter", wanted.quarter, "A quarter of the resolution")->excludes(half);
   import_command->add_option("--crop", wanted.crop,

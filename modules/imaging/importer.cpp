@@ -107,8 +107,12 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
   provenance.lossy = series.lossy;
   for (const Choice& choice : series.choices) {
     const auto given = request.answers.find(choice.code);
-    provenance.answers[choice.code] =
-        given == request.answers.end() ? choice.options.front() : given->second;
+    const bool answered = given != request.answers.end();
+    provenance.answers[choice.code] = answered ? given->second : choice.options.front();
+    if (!answered) provenance.unanswered.push_back(choice.code);
+  }
+  for (const auto& [code, option] : request.answers) {
+    if (!provenance.answers.contains(code)) provenance.unused_answers.push_back(code);
   }
   std::ranges::copy_if(series.findings, std::back_inserter(provenance.changes),
                        [](const Finding& f) { return f.severity == "repair"; });
@@ -128,6 +132,7 @@ struct Source {
 
 struct CtFolder::Contents {
   ImportReport report;
+  FileIds came_upon;
   std::vector<Source> sources;  // of report.series
 
   Source* find(const std::string& uid) {
@@ -188,6 +193,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   if (!files) return files.error();
 
   report.path = cleanUtf8(path.string());
+  contents.came_upon = std::move(files->came_upon);
   report.files_seen = files->files_seen;
   report.files_read = files->dicom_files + int(files->volume_files.size());
   for (const auto& [reason, count] : files->skipped) report.skipped.push_back({reason, count});
@@ -233,6 +239,11 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   }
   if (!best) return std::nullopt;
   return best->uid;
+}
+
+bool CtFolder::cameUpon(const std::filesystem::path& file) const {
+  const std::optional<FileId> id = fileId(file);
+  return id && contents_->came_upon.contains(*id);
 }
 
 Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {

@@ -64,7 +64,9 @@ struct Provenance {
   std::string transfer_syntax;  // its name; empty where there is none
   bool lossy = false;
   int slices_used = 0;
-  Answers answers;               // those that the series asked for
+  Answers answers;               // what was done about each question of the series
+  std::vector<std::string> unanswered;      // codes of those that nobody answered
+  std::vector<std::string> unused_answers;  // codes of answers to questions that it did not ask
   std::vector<Finding> changes;  // findings of severity repair
   std::optional<VoxelBox> crop;
   int reduction = 1;
@@ -139,6 +141,9 @@ class CtFolder {
   // The CT series with most slices that is not refused once `answers` are given; nothing where none
   // can be read.
   std::optional<std::string> bestSeries(const Answers& answers = {}) const;
+  // Whether the file, under any name, is one of those that the scan came upon: nothing may be
+  // written there.
+  bool cameUpon(const std::filesystem::path& file) const;
   // Reads one series into a volume and completes its entry in report(). Errors: NO_SUCH_SERIES,
   // BAD_CHOICE, BAD_CROP, the refusal's own code, CANCELLED, or OUT_OF_MEMORY. The report then
   // tells what else could be chosen (COUCH, FACE); reading again with the answers does it.

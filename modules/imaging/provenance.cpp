@@ -26,6 +26,8 @@ Json toJson(const Provenance& provenance) {
           {"lossy", provenance.lossy},
           {"slices_used", provenance.slices_used},
           {"choices", std::move(answers)},
+          {"unanswered", provenance.unanswered},
+          {"unused_answers", provenance.unused_answers},
           {"changes", std::move(changes)},
           {"crop", std::move(crop)},
           {"reduction", provenance.reduction},
@@ -35,13 +37,7 @@ Json toJson(const Provenance& provenance) {
 }
 
 std::filesystem::path provenanceFile(const std::filesystem::path& volume_file) {
-  std::string name = volume_file.filename().string();
-  for (const char* ending : {".gz", ".nii", ".mha"}) {
-    if (name.size() > std::string_view(ending).size() && name.ends_with(ending)) {
-      name.resize(name.size() - std::string_view(ending).size());
-    }
-  }
-  return volume_file.parent_path() / (name + ".provenance.json");
+  return volume_file.parent_path() / (volume_file.filename().string() + ".provenance.json");
 }
 
 Status writeProvenance(const Provenance& provenance, const std::filesystem::path& volume_file) {

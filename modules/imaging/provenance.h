@@ -12,7 +12,7 @@ namespace trephine {
 
 Json toJson(const Provenance& provenance);
 
-// "head.provenance.json" for "head.nii.gz".
+// "head.nii.gz.provenance.json" for "head.nii.gz".
 std::filesystem::path provenanceFile(const std::filesystem::path& volume_file);
 // Error: CANNOT_WRITE; what was there stays.
 Status writeProvenance(const Provenance& provenance, const std::filesystem::path& volume_file);

@@ -124,10 +124,11 @@ std::string provenanceSection(const Provenance& provenance) {
   if (const auto& box = provenance.crop) {
     std::string text;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      text += (axis == 0 ? "" : ", ") + std::to_string(box->low[axis]) + " to " +
-              std::to_string(box->high[axis] - 1);
+      constexpr const char* kNames[] = {"columns ", ", rows ", ", slices "};
+      text += kNames[axis] + std::to_string(box->low[axis] + 1) + " to " +
+              std::to_string(box->high[axis]);
     }
-    html += row("Crop (voxels)", text);
+    html += row("Crop (counted from 1)", text);
   }
   if (provenance.reduction > 1) {
     html += row("Resolution", provenance.reduction == 2 ? "half" : "a quarter");

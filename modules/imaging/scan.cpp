@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <future>
 #include <optional>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -41,7 +40,7 @@ class Walk {
       skip("the file could not be opened");
       return;
     }
-    const bool first_visit = seen_.emplace(status.st_dev, status.st_ino).second;
+    const bool first_visit = result_.came_upon.emplace(status.st_dev, status.st_ino).second;
     if (S_ISDIR(status.st_mode)) {
       if (first_visit) visitFolder(path, depth);
       return;
@@ -78,11 +77,16 @@ class Walk {
 
   ScannedFiles& result_;
   const Progress& progress_;
-  std::set<std::pair<dev_t, ino_t>> seen_;
   std::vector<FoundFile> files_;
 };
 
 }  // namespace
+
+std::optional<FileId> fileId(const fs::path& file) {
+  struct stat status;
+  if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+  return FileId{status.st_dev, status.st_ino};
+}
 
 Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
   std::error_code error;

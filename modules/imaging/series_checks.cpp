@@ -351,6 +351,12 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
     }
     report.memory_mb = memoryMb(plan, report);
   }
+  // Answers that cannot save the series are not asked for.
+  const auto asked = [&](const Finding& finding) {
+    return finding.severity != "refusal" ||
+           std::ranges::find(report.choices, finding.code, &Choice::code) != report.choices.end();
+  };
+  if (!std::ranges::all_of(report.findings, asked)) report.choices.clear();
   report.verdict = verdictOf(report.findings);
   return plan;
 }

@@ -434,7 +434,9 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
          count == 1 ? "A single slice is not a volume"
                     : "All " + std::to_string(count) + " slices lie at one place: not a volume",
          {placeText(places.front().place_mm)},
-         "Choose a series that covers the anatomy"});
+         count == 1 ? "Choose a series that covers the anatomy; if other slices lie beside this "
+                      "file, open their folder"
+                    : "Choose a series that covers the anatomy"});
     return stack;
   }
   planAlongNormal(places, answers, input.lost_text, stack);

@@ -53,7 +53,7 @@ bool stepFace(const CoarseGrid& grid, const Answers& answers, SeriesReport& seri
   if (answer != "deface") {
     series.findings.push_back(
         {"FACE", "notice", text, {},
-         "It was kept: nothing of this case may leave the room before the face is cut away"});
+         "It was kept: the case must stay on this computer until the face is cut away"});
     return false;
   }
   const std::uint64_t voxels = deface(volume, face);

@@ -63,6 +63,33 @@ class Phantom(LabTest):
         for answer in ("keep", "deface"):
             self.assertNotIn("face", warnings("--choice", f"FACE={answer}"))
 
+    def test_an_import_never_writes_over_what_it_reads(self):
+        lab("phantom", "cranium", "--out", self.folder / "ct")
+        slice_ = min((self.folder / "ct").iterdir())
+        before = slice_.read_bytes()
+        (self.folder / "own.mha").symlink_to(slice_)
+        page = self.folder / "ct" / "own.html"
+        page.write_text("precious")
+        for arguments in (("--write", self.folder / "own.mha"), ("--report", page)):
+            answer = lab("import", self.folder / "ct", *arguments, expect=2)
+            self.assert_error(answer, "CANNOT_WRITE", "would be lost")
+        self.assertEqual(slice_.read_bytes(), before)
+        self.assertEqual(page.read_text(), "precious")
+
+    def test_what_cannot_be_written_is_said_before_the_reading(self):
+        missing = self.folder / "missing" / "v.mha"
+        self.assert_error(lab("import", self.folder, "--write", missing, expect=2), "CANNOT_WRITE",
+                          "no such folder")
+        self.assert_error(lab("import", self.folder, "--report", self.folder / "x.pdf", expect=2),
+                          "UNKNOWN_FORMAT", ".html")
+
+    def test_a_question_that_nobody_answered_is_recorded_as_such(self):
+        lab("phantom", "cranium", "--out", self.folder / "ct")
+        made = lab("import", self.folder / "ct", "--phase", 2)["provenance"]
+        self.assertEqual(made["choices"], {"FACE": "keep"})
+        self.assertEqual(made["unanswered"], ["FACE"])
+        self.assertEqual(made["unused_answers"], ["PHASES"])
+
     def test_an_unknown_phantom_is_named(self):
         answer = lab("phantom", "foot", "--out", self.folder, expect=1)
         self.assert_error(answer, "UNKNOWN_PHANTOM", "foot")

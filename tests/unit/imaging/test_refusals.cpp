@@ -214,4 +214,15 @@ TEST_F(Refusal, ACompressedTransferSyntaxIsNamed) {
   EXPECT_NE(finding.text.find("1.2.840.10008.1.2.9"), std::string::npos) << finding.text;
 }
 
+TEST_F(Refusal, WhatNoAnswerCanSaveIsNotAskedAbout) {
+  write(rampVolume());
+  editAll([](DcmDataset& data) { put(data, DCM_LossyImageCompression, "01"); });
+  expectRefused("LOSSY_SOURCE");
+  EXPECT_EQ(report_.series.front().choices.size(), 1u);
+  editAll([](DcmDataset& data) { put(data, DCM_PixelSpacing, "0\\0"); });
+  EXPECT_EQ(scan().report().series.front().verdict, Verdict::refused);
+  EXPECT_TRUE(scan().report().series.front().choices.empty());
+  EXPECT_FALSE(scan().bestSeries({{"LOSSY_SOURCE", "accept"}}));
+}
+
 }  // namespace trephine::test

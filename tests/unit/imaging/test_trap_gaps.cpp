@@ -95,6 +95,10 @@ TEST_F(TrapGaps, OneMissingSliceIsNamedFilledAndMarked) {
   EXPECT_EQ(report_.provenance->answers, (Answers{{"MISSING_SLICES", "fill"}}));
   EXPECT_EQ(report_.provenance->changes.front().code, "MISSING_SLICES");
   EXPECT_EQ(report_.provenance->slices_used, 7);
+  EXPECT_TRUE(report_.provenance->unanswered.empty());
+  EXPECT_TRUE(report_.provenance->unused_answers.empty());
+  import({{"MISSING_SLICES", "fill"}, {"PHASES", "2"}});
+  EXPECT_EQ(report_.provenance->unused_answers, std::vector<std::string>{"PHASES"});
 }
 
 TEST_F(TrapGaps, AGapOfMoreSlicesThanWereScannedIsNotFilled) {

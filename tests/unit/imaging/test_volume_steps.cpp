@@ -107,7 +107,7 @@ TEST_F(VolumeSteps, ProvenanceAndPageTellWhatWasDoneAndNotWhoseItIs) {
   ASSERT_TRUE(volume.ok()) << volume.error().sentence();
   const fs::path target = temporary_ / "out.nii.gz";
   ASSERT_TRUE(writeProvenance(*ct.report().provenance, target).ok());
-  const std::string file = readBytes(temporary_ / "out.provenance.json");
+  const std::string file = readBytes(temporary_ / "out.nii.gz.provenance.json");
   const std::string page = reportPage(ct.report());
   EXPECT_NE(file.find("\"MISSING_SLICES\": \"fill\""), std::string::npos) << file;
   EXPECT_NE(file.find("102.50 mm"), std::string::npos) << file;
