@@ -1,6 +1,7 @@
 #include "ui/import_dialog.h"
 
 #include <QDragEnterEvent>
+#include <QKeyEvent>
 #include <QMimeData>
 #include <algorithm>
 
@@ -106,6 +107,12 @@ void ImportDialog::dropEvent(QDropEvent* event) {
   emit pathDropped(event->mimeData()->urls().front().toLocalFile());
 }
 
+// From the questions Esc goes back, as Back does; the rest is the dialog's.
+void ImportDialog::keyPressEvent(QKeyEvent* event) {
+  if (event->key() == Qt::Key_Escape && step_ == Step::asking) return back();
+  QDialog::keyPressEvent(event);
+}
+
 void ImportDialog::say(const QString& text) {
   if (task_.isWorking()) return;
   status_->setText(text);
@@ -132,6 +139,7 @@ void ImportDialog::showStep(Step step) {
   report_->setVisible(choosing && task_.hasFolder());
   back_->setVisible(step == Step::asking);
   open_case_->setVisible(step == Step::asking);
+  (step == Step::asking ? open_case_ : import_)->setDefault(true);
   if (step == Step::scanning) {
     status_->setText(tr("Looking through the files"));
     progress_->setValue(0);

@@ -6,6 +6,7 @@
 #include <QFileDialog>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QSettings>
 #include <QStandardPaths>
 #include <QStatusBar>
 
@@ -52,10 +53,23 @@ QWidget* MainWindow::front() {
   return import_->isVisible() ? static_cast<QWidget*>(import_) : this;
 }
 
-void MainWindow::askForFolder() {
-  auto* dialog = new QFileDialog(front(), tr("Open a folder of CT"));
-  dialog->setObjectName("folderDialog");
+QFileDialog* MainWindow::fileDialog(const char* name, const QString& title,
+                                    const QString& filter) {
+  auto* dialog = new QFileDialog(front(), title, {}, filter);
+  dialog->setObjectName(name);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  // Qt keeps where its dialogs have been, for the next user to read: folders named for patients.
+  connect(dialog, &QObject::destroyed, [] {
+    QSettings settings(QSettings::UserScope, "QtProject");
+    settings.remove("FileDialog/history");
+    settings.remove("FileDialog/lastVisited");
+  });
+  return dialog;
+}
+
+void MainWindow::askForFolder() {
+  QFileDialog* dialog = fileDialog("folderDialog", tr("Open a folder of CT"));
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
@@ -64,32 +78,23 @@ void MainWindow::askForFolder() {
 }
 
 void MainWindow::askForFile() {
-  auto* dialog = new QFileDialog(
-      front(), tr("Open a file of CT"), {},
-      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
-  dialog->setObjectName("fileDialog");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setFileMode(QFileDialog::ExistingFile);
+  QFileDialog* dialog =
+      fileDialog("fileDialog", tr("Open a file of CT"),
+                 tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { workstation_.openPath(toPath(file)); });
   dialog->open();
 }
 
 void MainWindow::askForScene() {
-  auto* dialog = new QFileDialog(this, tr("Open a scene"), {}, tr("Scene (*.json)"));
-  dialog->setObjectName("sceneDialog");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setFileMode(QFileDialog::ExistingFile);
+  QFileDialog* dialog = fileDialog("sceneDialog", tr("Open a scene"), tr("Scene (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { workstation_.openPath(toPath(file)); });
   dialog->open();
 }
 
 void MainWindow::askForLabels() {
-  auto* dialog = new QFileDialog(this, tr("Open the case's label map"));
-  dialog->setObjectName("labelsDialog");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setFileMode(QFileDialog::ExistingFile);
+  QFileDialog* dialog = fileDialog("labelsDialog", tr("Open the case's label map"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { workstation_.useLabels(toPath(file)); });
   dialog->open();
@@ -331,9 +336,8 @@ void MainWindow::placeHandPoints() {
 
 void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
                                 const QString& filter, void (MainWindow::*save)(const QString&)) {
-  auto* dialog = new QFileDialog(front(), title, {}, filter);
-  dialog->setObjectName("saveDialog");
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  QFileDialog* dialog = fileDialog("saveDialog", title, filter);
+  dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
   dialog->selectFile(suggestion);
   dialog->setDefaultSuffix(QFileInfo(suggestion).suffix());

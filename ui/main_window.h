@@ -20,6 +20,8 @@
 #include "ui/view_widget.h"
 #include "ui/workstation.h"
 
+class QFileDialog;
+
 namespace trephine {
 
 class MainWindow : public QMainWindow {
@@ -58,6 +60,8 @@ class MainWindow : public QMainWindow {
   void fillScenes();
 
   QWidget* front();  // the window or dialog that a further dialog belongs to
+  // A dialog over the front window that goes away by itself and leaves no names on disk.
+  QFileDialog* fileDialog(const char* name, const QString& title, const QString& filter = {});
   void askForFolder();
   void askForFile();
   void askForScene();

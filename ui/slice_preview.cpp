@@ -2,7 +2,7 @@
 
 #include <QCoreApplication>
 #include <QHBoxLayout>
-#include <QKeyEvent>
+#include <QShortcut>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <QWheelEvent>
@@ -38,6 +38,8 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
     button->setCheckable(true);
     button->setProperty("segment", true);
     button->setFocusPolicy(Qt::StrongFocus);
+    connect(new QShortcut(QKeySequence(Qt::Key_1 + i), this), &QShortcut::activated, button,
+            &QAbstractButton::click);
     windows_->addButton(button, i);
     window_row->addWidget(button);
   }
@@ -68,6 +70,12 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
     showPosition();
     emit sliceWanted(index);
   });
+  const auto pages = [this](Qt::Key key, QAbstractSlider::SliderAction action) {
+    connect(new QShortcut(QKeySequence(key), this), &QShortcut::activated, this,
+            [this, action] { slider_->triggerAction(action); });
+  };
+  pages(Qt::Key_PageUp, QAbstractSlider::SliderPageStepAdd);
+  pages(Qt::Key_PageDown, QAbstractSlider::SliderPageStepSub);
   showNothing({});
 }
 
@@ -138,15 +146,6 @@ void SlicePreview::wheelEvent(QWheelEvent* event) {
 
 void SlicePreview::mousePressEvent(QMouseEvent*) {
   slider_->setFocus();
-}
-
-void SlicePreview::keyPressEvent(QKeyEvent* event) {
-  const int window = event->key() - Qt::Key_1;
-  if (QAbstractButton* button = windows_->button(window)) {
-    button->click();
-  } else {
-    QWidget::keyPressEvent(event);
-  }
 }
 
 }  // namespace trephine

@@ -11,11 +11,13 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRadioButton>
+#include <QSettings>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QSpinBox>
 #include <QStandardPaths>
 #include <QTemporaryDir>
+#include <QToolButton>
 #include <QtTest>
 #include <cstdio>
 #include <filesystem>
@@ -172,6 +174,21 @@ class ImportGuiTest : public QObject {
     QTest::keyClick(slider, Qt::Key_PageUp);
     QTest::keyClick(slider, Qt::Key_Right);
     QCOMPARE(slider->value(), 11);
+
+    // From elsewhere too, but not from a field that takes numbers.
+    list()->setFocus();
+    QTest::keyClick(list(), Qt::Key_PageUp);
+    QCOMPARE(slider->value(), 21);
+    QTest::keyClick(list(), Qt::Key_2);
+    QVERIFY(find<QToolButton>("window2")->isChecked());
+    auto* field = find<QSpinBox>("cropTo2");
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClick(field, Qt::Key_1);
+    QVERIFY(find<QToolButton>("window2")->isChecked());
+    QCOMPARE(field->text(), QString("1"));
+    field->setValue(field->maximum());
+    find<QToolButton>("window1")->click();
   }
 
   // Every control is reached by Tab, and none twice.
@@ -265,6 +282,11 @@ class ImportGuiTest : public QObject {
     keepGrab("import-asking.png");
 
     // Back changes nothing, and it is asked again.
+    QTest::keyClick(dialog(), Qt::Key_Escape);
+    QVERIFY(dialog()->isVisible());
+    QVERIFY(find<QPushButton>("import")->isVisible());
+    find<QPushButton>("import")->click();
+    QVERIFY(read.wait(kLong_ms));
     find<QPushButton>("importBack")->click();
     QVERIFY(find<QPushButton>("import")->isVisible());
     find<QPushButton>("import")->click();
@@ -273,7 +295,7 @@ class ImportGuiTest : public QObject {
     QVERIFY(!open_case->isEnabled());
     find<QRadioButton>("choice_FACE_deface")->click();
     QVERIFY(open_case->isEnabled());
-    open_case->click();
+    QTest::keyClick(dialog(), Qt::Key_Return);
     QVERIFY(opened.wait(kLong_ms));
     closeError();
 
@@ -321,12 +343,16 @@ class ImportGuiTest : public QObject {
     QCOMPARE(list()->item(0)->text(), QString("With a gap"));
 
     find<QPushButton>("importFile")->click();
-    auto* files = find<QFileDialog>("fileDialog");
+    const QPointer<QFileDialog> files = find<QFileDialog>("fileDialog");
     files->setDirectory(temporary_.filePath("head"));
     files->selectFile(temporary_.filePath("head/IM0001.dcm"));
-    static_cast<QDialog*>(files)->accept();
+    static_cast<QDialog*>(files.data())->accept();
     QTRY_COMPARE_WITH_TIMEOUT(list()->count() == 1 ? list()->item(0)->text() : QString(),
                               QString("Head"), kLong_ms);
+    // Qt would keep where the dialog has been.
+    QTRY_VERIFY(!files);
+    const QSettings kept(QSettings::UserScope, "QtProject");
+    QVERIFY(!kept.contains("FileDialog/history") && !kept.contains("FileDialog/lastVisited"));
     QVERIFY(!find<QPushButton>("import")->isEnabled());  // one slice is no volume
     QVERIFY(find<QLabel>("reportCard")->text().contains("not a volume"));
   }

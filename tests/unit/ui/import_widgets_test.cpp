@@ -6,6 +6,7 @@
 #include <QRadioButton>
 #include <QSlider>
 #include <QSpinBox>
+#include <QToolButton>
 #include <QWheelEvent>
 
 #include "import_support.h"
@@ -240,9 +241,9 @@ TEST_F(SlicePreviewTest, StartsInTheMiddleAndFollowsWheelAndKeys) {
 TEST_F(SlicePreviewTest, AWindowChangesThePictureAndNothingElse) {
   preview_.showSlice(50, slice(4, 4, Vec3(1.0)));
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 128);
-  press(Qt::Key_2);
+  find<QToolButton>(preview_, "window2").click();
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 255);
-  press(Qt::Key_1);
+  find<QToolButton>(preview_, "window1").click();
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 128);
   EXPECT_EQ(preview_.index(), 50);
 }
