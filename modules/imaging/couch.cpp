@@ -101,14 +101,15 @@ class CouchSearch {
     measure();
   }
 
-  // Marks the couch's cells; all other cells stay of their kind.
-  void mark(CouchFinding& finding) {
+  // Marks the couch's cells; all other cells stay of their kind. False where there is none.
+  bool mark() {
+    bool found = false;
     for (std::size_t n = 0; n < is_couch_.size(); ++n) {
       is_couch_[n] = isCouch(found_.parts[n], shapes_[n]);
-      if (!is_couch_[n]) continue;
-      finding.found = true;
+      found |= is_couch_[n];
     }
-    if (finding.found) markCells();
+    if (found) markCells();
+    return found;
   }
 
   // Once there is a couch with its pads: what else is straight, long parts that touch it, and
@@ -358,7 +359,7 @@ CouchFinding findCouch(const CoarseGrid& grid) {
   const CoarseCells thick = thickCells(grid);
   CoarseCells kind = couchKinds(grid, thick);
   CouchSearch search(grid, thick, kind);
-  search.mark(finding);
+  finding.found = search.mark();
   if (!finding.found) return finding;
   markPads(grid, kind);
   for (int round = 0; round < 3 && search.markRest(); ++round) markPads(grid, kind);

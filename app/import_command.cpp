@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "app/answer.h"
+#include "app/lab_commands.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "imaging/importer.h"
+#include "imaging/provenance.h"
+#include "imaging/report_page.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+void printReport(const ImportReport& report) {
+  for (const SeriesReport& s : report.series) {
+    const GridGeometry& g = s.geometry;
+    std::printf("%-8s  ", verdictName(s.verdict));
+    if (s.verdict != Verdict::refused || g.spacing_mm.z > 0.0) {
+      std::printf("%dx%dx%d  %.3f x %.3f x %.3f mm  ", g.size[0], g.size[1], g.size[2],
+                  g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z);
+    }
+    std::printf("%s  %s\n", s.modality.c_str(), s.description.c_str());
+    if (report.series.size() > 1) {
+      const char* mark = "";
+      if (report.chosen && s.verdict != Verdict::refused) mark = "  (not read)";
+      if (report.chosen == s.uid) mark = "  (this one was read)";
+      std::printf("          --series %s%s\n", s.uid.c_str(), mark);
+    }
+    for (const Finding& f : s.findings) {
+      std::printf("          %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+    }
+    for (const Choice& c : s.choices) {
+      std::printf("          %s\n", c.question.c_str());
+      for (std::size_t n = 0; n < c.options.size(); ++n) {
+        std::printf("            --choice %s=%s  %s\n", c.code.c_str(), c.options[n].c_str(),
+                    c.words[n].c_str());
+      }
+    }
+  }
+  for (const SkippedFiles& s : report.skipped) {
+    std::printf("skipped   %d: %s\n", s.count, s.reason.c_str());
+  }
+}
+
+// Three ranges "A:B", each of voxels A to B - 1.
+std::optional<VoxelBox> parseBox(const std::string& text) {
+  VoxelBox box;
+  int end = 0;
+  const int read = std::sscanf(text.c_str(), "%d:%d,%d:%d,%d:%d%n", &box.low[0], &box.high[0],
+                               &box.low[1], &box.high[1], &box.low[2], &box.high[2], &end);
+  if (read != 6 || std::size_t(end) != text.size()) return std::nullopt;
+  return box;
+}
+
+Result<ImportRequest> importRequest(const ImportArguments& arguments) {
+  ImportRequest request;
+  for (const std::string& choice : arguments.choices) {
+    const std::size_t equals = choice.find('=');
+    if (equals == std::string::npos) {
+      return Error{"BAD_ARGUMENT", "A choice is written CODE=OPTION, not '" + choice + "'",
+                   "--choice", "The report lists codes and options"};
+    }
+    request.answers[choice.substr(0, equals)] = choice.substr(equals + 1);
+  }
+  if (arguments.phase) request.answers["PHASES"] = std::to_string(*arguments.phase);
+  if (!arguments.crop.empty()) {
+    request.crop = parseBox(arguments.crop);
+    if (!request.crop) {
+      return Error{"BAD_ARGUMENT", "'" + arguments.crop + "' is no box of voxels", "--crop",
+                   "Write I0:I1,J0:J1,K0:K1"};
+    }
+  }
+  if (arguments.half) request.reduction = 2;
+  if (arguments.quarter) request.reduction = 4;
+  return request;
+}
+
+// A face that nobody was asked about must not leave the computer unnoticed.
+void warnOfFace(const Provenance& provenance, const std::string& file) {
+  if (std::ranges::find(provenance.unanswered, "FACE") == provenance.unanswered.end()) return;
+  spdlog::warn("The patient's face can be reconstructed from {}: before it leaves this computer, "
+               "write it again with --choice FACE=deface",
+               file);
+}
+
+// What is written can be written, as far as that can be said before a long run.
+Status checkTargets(const ImportArguments& arguments) {
+  if (!arguments.write.empty()) {
+    if (Status can = checkVolumeFileName(arguments.write); !can) return can;
+  }
+  if (!arguments.report.empty() && !std::string_view(arguments.report).ends_with(".html")) {
+    return Error{"UNKNOWN_FORMAT", "A report is written as .html", arguments.report,
+                 "Give the file this ending; the window also saves PDF"};
+  }
+  for (const std::string& target : {arguments.write, arguments.report}) {
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
+      return Error{"CANNOT_WRITE", "There is no such folder", folder.string(),
+                   "Make the folder first, or choose another"};
+    }
+  }
+  return {};
+}
+
+// The patient's own scan is never written over.
+Status checkSourcesAreSpared(const CtFolder& folder, const ImportArguments& arguments) {
+  for (const std::string& target : {arguments.write, arguments.report}) {
+    if (target.empty() || !folder.cameUpon(target)) continue;
+    return Error{"CANNOT_WRITE", "This file lies in the folder that is read, and would be lost",
+                 target, "Choose another name, or remove the file first"};
+  }
+  return {};
+}
+
+}  // namespace
+
+int importCommand(const ImportArguments& arguments, bool json, const Progress& progress) {
+  const auto fail = [&](const Error& error, const ImportReport* report) {
+    ImportReport nothing;
+    nothing.path = arguments.path;
+    Json extra = toJson(report ? *report : nothing);
+    extra["chosen"] = nullptr;
+    if (!json && report) printReport(*report);
+    printError("import", error, json, extra);
+    return 2;
+  };
+  Result<ImportRequest> request = importRequest(arguments);
+  if (!request) return fail(request.error(), nullptr);
+  if (Status can = checkTargets(arguments); !can) return fail(can.error(), nullptr);
+  Result<CtFolder> folder = CtFolder::scan(arguments.path, progress);
+  if (!folder) return fail(folder.error(), nullptr);
+  if (Status can = checkSourcesAreSpared(*folder, arguments); !can) {
+    return fail(can.error(), nullptr);
+  }
+  const auto saveReport = [&]() -> Status {
+    if (arguments.report.empty()) return {};
+    return writeTextFile(arguments.report, reportPage(folder->report()));
+  };
+  const std::optional<std::string> uid = arguments.series.empty()
+                                             ? folder->bestSeries(request->answers)
+                                             : std::optional<std::string>(arguments.series);
+  if (!uid) {
+    if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
+    const Error none{"ALL_REFUSED", "No series in the folder can be used", arguments.path,
+                     "The findings say why for each"};
+    return fail(folder->report().error.value_or(none), &folder->report());
+  }
+  Result<Volume> volume = folder->read(*uid, *request, progress);
+  if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
+  if (!volume) return fail(volume.error(), &folder->report());
+  for (const std::string& code : folder->report().provenance->unused_answers) {
+    spdlog::warn("The series did not ask {}: that answer changed nothing", code);
+  }
+  if (!arguments.write.empty()) {
+    Status written = writeVolume(*volume, arguments.write);
+    if (written) written = writeProvenance(*folder->report().provenance, arguments.write);
+    if (!written) return fail(written.error(), &folder->report());
+    warnOfFace(*folder->report().provenance, arguments.write);
+  }
+  if (json) {
+    printAnswer("import", toJson(folder->report()));
+  } else {
+    printReport(folder->report());
+  }
+  return 0;
+}
+
+}  // namespace trephine
