@@ -56,7 +56,9 @@ Status applyChoices(const RunArguments& arguments, Scene& scene) {
 
 Status runRealTime(Session& session, double seconds, const Progress& progress) {
   if (Status started = session.start(seconds); !started) return started;
-  while (!session.finished() && !progress.cancelled()) {
+  constexpr double kGivenUp_s = 2.0;  // a device that has not returned by then does not
+  while (!session.finished() && !progress.cancelled() &&
+         session.standsStillFor_s() < kGivenUp_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return session.stop();
@@ -171,7 +173,8 @@ int runCommand(const RunArguments& arguments, bool json, const Progress& progres
   } else {
     std::printf("%s", toText(*report).c_str());
   }
-  return 0;
+  constexpr int kFaulted = 4;
+  return report->faults.empty() ? 0 : kFaulted;
 }
 
 int replayCommand(const std::string& file, const std::string& case_source,

@@ -241,9 +241,11 @@ void Workstation::stop() {
   running_.run([session = session_.get()](const Progress&) { return session->stop(); },
                [this](Status stopped) {
                  emit sessionEnded(*session_);
+                 const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
                  setPhase(Phase::ready);
                  if (!stopped) fail(stopped.error());
+                 if (stuck) fail(*stuck);
                });
 }
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
+#include <set>
+#include <utility>
 
 namespace trephine {
 
@@ -90,6 +93,16 @@ T sized() {
   return value;
 }
 
+// The arms whose calls did not return: a fact of the process, like the libraries that it has loaded.
+struct LeftBehind {
+  std::mutex mutex;
+  std::set<std::pair<std::string, std::uint32_t>> arms;  // plugin's name, place
+};
+LeftBehind& leftBehind() {
+  static LeftBehind arms;
+  return arms;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
@@ -167,8 +180,17 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
     return badPlugin("The plugin brings its own clock, and this program paces its devices itself",
                      where);
   }
+  {
+    std::lock_guard lock(leftBehind().mutex);
+    for (std::uint32_t arm : arms) {
+      if (!leftBehind().arms.contains({api.name, arm})) continue;
+      return Error{"DEVICE_STUCK", "This arm stopped answering before and was left behind", where,
+                   "Switch it off and on, then start Trephine again"};
+    }
+  }
   std::unique_ptr<Device> device(new Device);
   device->plugin_ = plugin;
+  device->places_ = arms;
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
       !device->handle_) {
     return Error{"NO_DEVICE", lastSentence(api, nullptr), where,
@@ -224,6 +246,11 @@ void Device::stop() {
   running_ = false;
   plugin_->api().safe_stop(handle_);
   plugin_->api().stop(handle_);
+}
+
+void Device::leaveBehind() const {
+  std::lock_guard lock(leftBehind().mutex);
+  for (std::uint32_t arm : places_) leftBehind().arms.insert({plugin_->api().name, arm});
 }
 
 void Device::safeStop() {

@@ -39,7 +39,7 @@ class DevicePlugin {
 class Device {
  public:
   // `config` is JSON text for the plugin. Errors: NO_DEVICE and BAD_DEVICE_CONFIG with the plugin's
-  // own sentence, BAD_PLUGIN for capabilities that no arm has and for a plugin that brings its own
+  // own sentence, DEVICE_STUCK after leaveBehind(), BAD_PLUGIN for capabilities that no arm has and for a plugin that brings its own
   // clock: the host's loop paces every device.
   static Result<std::unique_ptr<Device>> open(std::shared_ptr<const DevicePlugin> plugin,
                                               const std::vector<std::uint32_t>& arms,
@@ -55,8 +55,12 @@ class Device {
   // Calibrates and starts every arm. Error: DEVICE_NOT_STARTED with the plugin's own sentence.
   Status start();
   void stop();
-  // Zero force until the next start. Any thread.
+  // Zero force until an exchange has commanded zero on all arms, or the next start. Any thread,
+  // also while another call does not return.
   void safeStop();
+  // A call to this device did not return: it is not offered again while this program runs, since a
+  // second opening would meet the same call. open() then answers DEVICE_STUCK. Any thread.
+  void leaveBehind() const;
 
   // Haptic thread. `states` and `commands` have armCount() elements; sizes and versions in them are
   // set here. False when the device failed: the states are then the last good ones, marked
@@ -69,6 +73,7 @@ class Device {
   Device() = default;
   std::shared_ptr<const DevicePlugin> plugin_;
   TrephineDevice* handle_ = nullptr;
+  std::vector<std::uint32_t> places_;  // in the plugin's enumeration
   std::vector<TrephineCapabilities> capabilities_;
   std::vector<TrephineArmState> last_states_;  // good ones
   std::vector<TrephineArmCommand> commands_;   // scratch: the caller's, with size and version

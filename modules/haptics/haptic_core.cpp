@@ -1,6 +1,9 @@
 #include "haptics/haptic_core.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
 
 #include "device/trephine_device.h"
 
@@ -55,29 +58,40 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
   for (const ArmParameters& arm : parameters_.arms) {
     arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
-  useTissues();
+  useTissues(TissueTable{});
   carves_.reserve(arms_.size() * Removal::kMostBites);
   events_.reserve(kMaxEventsPerTick);
+  put_back_.reserve(kVoxelsPerSlice);
 }
 
-void HapticCore::useTissues() {
-  lookup_.set(parameters_.tissues);
-  if (bricks_) {
-    bricks_->markAll();
-  } else {
-    bricks_.emplace(writer_.grid(), lookup_);
+// What the tick keeps of the tissues; of what it knows about the voxels, only what they change goes.
+void HapticCore::useTissues(const TissueTable& before) {
+  const TissueTable& now = parameters_.tissues;
+  bool same_voxels = bricks_ && before.count == now.count, same_cuts = same_voxels;
+  for (std::size_t c = 0; c < std::size_t(now.count) && same_voxels; ++c) {
+    const TissueClass &a = before.classes[c], &b = now.classes[c];
+    same_voxels = a.hu_min == b.hu_min && a.hu_max == b.hu_max && a.label == b.label;
+    same_cuts = same_cuts && same_voxels && a.cuttable == b.cuttable;
+  }
+  if (!same_voxels) {
+    lookup_.set(now);
+    if (bricks_) {
+      bricks_->markAll();
+    } else {
+      bricks_.emplace(writer_.grid(), lookup_);
+    }
   }
   tissues_finite_ = true;
   any_cuttable_ = false;
-  for (int c = 0; c < parameters_.tissues.count; ++c) {
-    const TissueClass& t = parameters_.tissues.classes[std::size_t(c)];
+  for (int c = 0; c < now.count; ++c) {
+    const TissueClass& t = now.classes[std::size_t(c)];
     tissues_finite_ = tissues_finite_ && isFinite(t.damping_Ns_per_m) &&
                       isFinite(t.stiffness_N_per_m) && isFinite(t.friction_N) &&
                       isFinite(t.rupture_N) && isFinite(t.cutting_J_per_mm3);
     any_cuttable_ = any_cuttable_ || t.cuttable;
   }
   if (elastic_) {
-    TissueTable pushing = parameters_.tissues;
+    TissueTable pushing = now;
     // A capsule pushes by the law of its own, where the scene has it.
     const bool ruptures = names(parameters_.laws, LawKind::rupture);
     for (int c = 0; ruptures && c < pushing.count; ++c) {
@@ -87,7 +101,7 @@ void HapticCore::useTissues() {
     stiffness_.set(pushing);
   }
   for (Arm& arm : arms_) {
-    arm.removal.forget();
+    if (!same_cuts) arm.removal.forget();
     arm.gate.change();
   }
 }
@@ -110,14 +124,18 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   carves_.clear();
   events_.clear();
   if (journal_.busy() && (input.journal & kJournalReady)) {
-    journal_.step(writer_, kVoxelsPerSlice);
-    bricks_->markAll();
+    put_back_.clear();
+    journal_.step(writer_, kVoxelsPerSlice, &put_back_);
+    for (std::uint32_t voxel : put_back_) bricks_->mark(writer_.grid().brickOf(voxel));
     if (!journal_.busy()) finishRestore();
   }
+  if (!journal_.busy()) bricks_->recount(writer_.grid(), lookup_);
   if (++ticks_ % second_ticks_ == 0) journal_.mark(credits());
   // The journal grants what it was asked for.
   may_remove_ = (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostBites);
   for (std::size_t i = 0; i < command_count; ++i) apply(commands[i], input.tick);
+
+  followLateness(input);
 
   record.tick = input.tick;
   record.late_ns = input.late_ns;
@@ -158,6 +176,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       break;
     case CommandKind::clear_faults:
       for (Arm& arm : arms_) arm.faults = 0;
+      lateness_.clear();
       forgetForces(false);
       break;
     case CommandKind::controller:
@@ -169,8 +188,8 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       }
       break;
     case CommandKind::tissues:
-      parameters_.tissues = command.tissues;
-      useTissues();
+      if (command.tissues == parameters_.tissues) break;
+      useTissues(std::exchange(parameters_.tissues, command.tissues));
       break;
   }
 }
@@ -197,6 +216,21 @@ void HapticCore::finishRestore() {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     arms_[i].removal.setCredit(journal_.credits()[i]);
     arms_[i].removal.forget();
+  }
+}
+
+void HapticCore::followLateness(const TickInput& input) {
+  if (input.silenced) events_.push_back({input.tick, EventKind::silenced, -1, 0, {}});
+  const bool was_away = lateness_.away();
+  lateness_.tick(input.late_ns, input.silenced, parameters_.period_s);
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    if (lateness_.kept()) latch(i, kFaultStalled, input.tick);
+    if (lateness_.away()) {
+      latch(i, kFaultLate, input.tick);
+    } else if (was_away) {
+      arms_[i].faults &= ~std::uint32_t(kFaultLate);
+      arms_[i].gate.rampIn();
+    }
   }
 }
 
@@ -278,7 +312,6 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   arm.cuts = false;
 
   if (sample.flags & TREPHINE_ARM_LOST) latch(index, kFaultDeviceLost, input.tick);
-  if (input.late_ns >= kFaultLate_ns) latch(index, kFaultLate, input.tick);
   const bool known = isFinite(sample.position_m) && isFinite(sample.orientation);
   if (!known) {
     ++nonfinite_;
@@ -378,8 +411,9 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   out.faults = arm.faults;
 }
 
-// All tools bite into the tissue as it was, then it goes. Who comes second to a voxel that another
-// took in the same tick shares its cost, so that the order of the arms changes no credit.
+// All tools bite into the tissue as it was, then it goes. Arms that take the same voxel in a tick
+// share its cost, so that the order of the arms changes no credit. Its entry goes to the newest of
+// their strokes: undo takes that first, so that what any of them took is back once it is undone.
 void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
   const CarveJournal::Credits before = credits();
   for (std::size_t i = 0; i < arms_.size(); ++i) {
@@ -389,34 +423,41 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
     const ArmRecord& moved = record.arms[i];
     arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues,
                       {moved.patient_position_mm, moved.patient_orientation}, arm.bites);
-  }
-  const GridGeometry& geometry = writer_.grid().geometry();
-  for (std::size_t i = 0; i < arms_.size(); ++i) {
-    Arm& arm = arms_[i];
+    arm.bites_low.fill(std::numeric_limits<std::int32_t>::max());
+    arm.bites_high.fill(-1);
     for (const Bite& bite : arm.bites) {
-      const Index3& v = bite.voxel;
-      const std::size_t voxel = geometry.indexOf(v[0], v[1], v[2]);
-      if (writer_.grid().hu(voxel) == kAirHu) {
-        // Those before paid 1/n each, now all pay 1/(n + 1).
-        std::array<bool, kMaxArms> took{};
-        int takers = 0;
-        for (std::size_t other = 0; other < i; ++other) {
-          const auto same = [&v](const Bite& b) { return b.voxel == v; };
-          const std::vector<Bite>& bites = arms_[other].bites;
-          took[other] = std::find_if(bites.begin(), bites.end(), same) != bites.end();
-          takers += took[other];
-        }
-        const double share_J = bite.cost_J / (takers + 1);
-        arm.removal.refund(bite.cost_J - share_J);
-        for (std::size_t other = 0; other < i; ++other) {
-          if (took[other]) arms_[other].removal.refund(bite.cost_J / takers - share_J);
-        }
-      } else if (erase(i, bite, voxel, before, tick)) {
-        ++record.arms[i].removed_voxels;
-      } else {
-        arm.removal.refund(bite.cost_J);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        arm.bites_low[axis] = std::min(arm.bites_low[axis], bite.voxel[axis]);
+        arm.bites_high[axis] = std::max(arm.bites_high[axis], bite.voxel[axis]);
       }
     }
+  }
+  const std::array<std::size_t, kMaxArms> order = newestStrokeFirst(before, tick);
+  const GridGeometry& geometry = writer_.grid().geometry();
+  for (std::size_t n = 0; n < arms_.size(); ++n) {
+    const std::size_t owner = order[n];
+    for (const Bite& bite : arms_[owner].bites) {
+      const std::size_t voxel = geometry.indexOf(bite.voxel[0], bite.voxel[1], bite.voxel[2]);
+      if (writer_.grid().hu(voxel) == kAirHu) continue;  // shared, and gone with its owner's
+      std::uint32_t sharers = 0;
+      for (std::size_t later = n + 1; later < arms_.size(); ++later) {
+        if (takes(arms_[order[later]], bite.voxel)) sharers |= 1u << order[later];
+      }
+      const bool paid = parameters_.removal == RemovalKind::work;
+      if (!erase(owner, bite, voxel, paid ? sharers : 0, tick)) {
+        arms_[owner].removal.refund(bite.cost_J);  // those after it may still take it
+        continue;
+      }
+      ++record.arms[owner].removed_voxels;
+      if (sharers == 0) continue;
+      const double share_J = bite.cost_J / (1 + std::popcount(sharers));
+      for (std::size_t i = 0; i < arms_.size(); ++i) {
+        if (i == owner || (sharers >> i & 1u)) arms_[i].removal.refund(bite.cost_J - share_J);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    Arm& arm = arms_[i];
     if (!arm.cuts) continue;
     const int arm_number = int(i);
     arm.air_ticks = arm.contact.contact().touching() ? 0 : arm.air_ticks + 1;
@@ -426,15 +467,51 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
   }
 }
 
-bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
-                       const CarveJournal::Credits& before, std::uint64_t tick) {
-  const int arm = int(index);
-  if (!journal_.inStroke(arm)) {
-    if (!journal_.beginStroke(arm, before)) return false;
-    events_.push_back({tick, EventKind::stroke_began, arm, 0, {}});
+bool HapticCore::takes(const Arm& arm, const Index3& voxel) const {
+  if (arm.bites.empty()) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {  // tools are mostly apart
+    if (voxel[axis] < arm.bites_low[axis] || voxel[axis] > arm.bites_high[axis]) return false;
   }
+  const auto same = [&voxel](const Bite& b) { return b.voxel == voxel; };
+  return std::find_if(arm.bites.begin(), arm.bites.end(), same) != arm.bites.end();
+}
+
+// Begins the strokes of the arms that bite and have none; then the arms, the newest stroke first.
+std::array<std::size_t, kMaxArms> HapticCore::newestStrokeFirst(
+    const CarveJournal::Credits& before, std::uint64_t tick) {
+  std::array<std::size_t, kMaxArms> order{};
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    order[i] = i;
+    // One that only shares with an arm after it would be left with an empty stroke, which an undo
+    // would seem not to undo.
+    const auto alone = [&](const Bite& bite) {
+      for (std::size_t other = i + 1; other < arms_.size(); ++other) {
+        if (takes(arms_[other], bite.voxel)) return false;
+      }
+      return true;
+    };
+    const std::vector<Bite>& bites = arms_[i].bites;
+    if (journal_.inStroke(int(i)) || std::none_of(bites.begin(), bites.end(), alone)) continue;
+    if (!journal_.beginStroke(int(i), before)) continue;
+    events_.push_back({tick, EventKind::stroke_began, std::int32_t(i), 0, {}});
+  }
+  const auto before_it = [this](std::size_t a, std::size_t b) {
+    const bool x = journal_.inStroke(int(a)), y = journal_.inStroke(int(b));
+    return x && (!y || journal_.openStroke(int(a)) > journal_.openStroke(int(b)));
+  };
+  for (std::size_t i = 1; i < arms_.size(); ++i) {
+    for (std::size_t n = i; n > 0 && before_it(order[n], order[n - 1]); --n) {
+      std::swap(order[n], order[n - 1]);
+    }
+  }
+  return order;
+}
+
+bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
+                       std::uint32_t sharers, std::uint64_t tick) {
+  const int arm = int(index);
   const std::int16_t old_hu = writer_.grid().hu(voxel);
-  if (!journal_.erase(writer_, arm, voxel, bite.tissue_class)) return false;
+  if (!journal_.erase(writer_, arm, voxel, bite.tissue_class, sharers)) return false;
   bricks_->remove(bite.voxel);
   carves_.push_back({tick, std::uint32_t(voxel), old_hu, std::int8_t(index),
                      std::int8_t(bite.tissue_class)});

@@ -75,6 +75,7 @@ class HapticCore {
   bool paused() const { return paused_; }
   ControllerKind controller() const { return parameters_.controller; }
   std::uint64_t nonFinite() const { return nonfinite_; }
+  std::size_t unknownBricks() const { return bricks_->unknown(); }  // of which air is not known
   bool journalFull() const { return journal_.full(); }
 
  private:
@@ -91,6 +92,7 @@ class HapticCore {
     Removal removal;
     std::vector<TouchPoint> points;
     std::vector<Bite> bites;  // of this tick
+    Index3 bites_low{0, 0, 0}, bites_high{0, 0, 0};  // their bounds
     std::optional<Pose> last_pose;  // device
     Vec3 last_demanded_N{0.0}, last_torque_Nm{0.0};  // patient axes
     bool cuts = false;  // may remove in this tick
@@ -106,15 +108,19 @@ class HapticCore {
   };
 
   void apply(const Command& command, std::uint64_t tick);
+  void followLateness(const TickInput& input);
   void forgetForces(bool restored);
   void finishRestore();
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
   LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
   void earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model);
   void removeBites(std::uint64_t tick, TickRecord& record);
-  bool erase(std::size_t index, const Bite& bite, std::size_t voxel,
-             const CarveJournal::Credits& before, std::uint64_t tick);
-  void useTissues();
+  bool takes(const Arm& arm, const Index3& voxel) const;
+  std::array<std::size_t, kMaxArms> newestStrokeFirst(const CarveJournal::Credits& before,
+                                                      std::uint64_t tick);
+  bool erase(std::size_t index, const Bite& bite, std::size_t voxel, std::uint32_t sharers,
+             std::uint64_t tick);
+  void useTissues(const TissueTable& before);
   CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);
 
@@ -127,8 +133,10 @@ class HapticCore {
   bool elastic_ = false;
   bool tissues_finite_ = true;
   bool any_cuttable_ = false;
+  LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
+  std::vector<std::uint32_t> put_back_;  // voxels of this tick's slice of an undo, redo or rewind
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;
   std::uint64_t second_ticks_;

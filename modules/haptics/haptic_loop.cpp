@@ -30,29 +30,59 @@ Status HapticLoop::startDevices() {
   return {};
 }
 
-void HapticLoop::stopDevices() {
-  for (LoopDevice& d : devices_) {
-    d.device->safeStop();
-    d.device->stop();
+bool HapticLoop::stopDevices() {
+  silence();
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    in_call_ = int(i);
+    devices_[i].device->stop();
+    if (!leaveCall(i)) return false;
+  }
+  return true;
+}
+
+void HapticLoop::silence() {
+  for (LoopDevice& d : devices_) d.device->safeStop();
+}
+
+// Ends a time, begun by setting in_call_, in which this thread may be left behind; false if it was.
+bool HapticLoop::leaveCall(std::size_t device) {
+  int expected = int(device);
+  return in_call_.compare_exchange_strong(expected, kNoCall);
+}
+
+std::optional<std::size_t> HapticLoop::leaveBehind() {
+  int device = in_call_;
+  if (device < 0 || !in_call_.compare_exchange_strong(device, kLeftBehind)) return {};
+  return std::size_t(device);
+}
+
+void HapticLoop::closeOthers(std::size_t left_behind) {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (i != left_behind) devices_[i].device.reset();
   }
 }
 
-void HapticLoop::step(std::int64_t late_ns) {
+bool HapticLoop::step(std::int64_t late_ns) {
   HostClock clock;
   const std::int64_t begin_ns = clock.now_ns();
   {
     rt::NoAllocation guard;
+    const std::uint64_t tick = tick_.load(std::memory_order_relaxed);
     TickInput input;
-    input.tick = tick_;
+    input.tick = tick;
     input.late_ns = late_ns;
     input.journal = core_.journalState();
+    // A standstill before a tick that came late for it is that tick's lateness, already counted.
+    const std::uint64_t silenced_at = silenced_at_.exchange(0);
+    input.silenced = silenced_at != 0 && !(silenced_at <= tick && last_late_ns_ > kStallLate_ns);
+    last_late_ns_ = late_ns;
 
     // One a tick: a second undo would find the first one still at work.
     Command command;
     const bool commanded = core_.acceptsCommands() &&
                            (commands_.pop(command) ||
-                            (operator_ && operator_->command(tick_, command)));
-    exchange(input);
+                            (operator_ && operator_->command(tick, command)));
+    if (!exchange(input)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
     for (std::size_t i = 0; i < forces_N_.size(); ++i) forces_N_[i] = record.arms[i].sent_N;
@@ -61,17 +91,21 @@ void HapticLoop::step(std::int64_t late_ns) {
     for (const CarveRecord& carve : core_.carves()) carves_.push(carve);
     for (const Event& event : core_.events()) events_.push(event);
     records_.push(record);
-    ++tick_;
+    tick_.store(tick + 1, std::memory_order_release);
     publish(record);
   }
   durations_.add(clock.now_ns() - begin_ns);
+  return true;
 }
 
-void HapticLoop::exchange(TickInput& input) {
+bool HapticLoop::exchange(TickInput& input) {
   const std::size_t arm_count = core_.parameters().arms.size();
+  const double period_s = core_.parameters().period_s;
   std::array<HandTarget, kMaxArms> hands{};
-  if (operator_) operator_->targets(tick_, hands.data(), arm_count);
-  for (LoopDevice& d : devices_) {
+  if (operator_) operator_->targets(input.tick, hands.data(), arm_count);
+  for (std::size_t place = 0; place < devices_.size(); ++place) {
+    LoopDevice& d = devices_[place];
+    in_call_ = int(place);
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       const std::size_t arm = d.arms[i];
       if (operator_) {
@@ -82,7 +116,8 @@ void HapticLoop::exchange(TickInput& input) {
       command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};
       for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = forces_N_[arm][axis];
     }
-    d.device->exchange(core_.parameters().period_s, arm_states_.data(), arm_commands_.data());
+    d.device->exchange(period_s, arm_states_.data(), arm_commands_.data());
+    if (!leaveCall(place)) return false;
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       const TrephineArmState& state = arm_states_[i];
       ArmSample& sample = last_samples_[d.arms[i]];
@@ -96,6 +131,7 @@ void HapticLoop::exchange(TickInput& input) {
     }
   }
   input.arms = last_samples_;
+  return true;
 }
 
 void HapticLoop::publish(const TickRecord& record) {
@@ -119,14 +155,18 @@ void HapticLoop::publish(const TickRecord& record) {
   state_.publish();
 }
 
-void HapticLoop::run(LoopClock& clock, const std::atomic<bool>& stop, std::uint64_t last_tick) {
+bool HapticLoop::run(LoopClock& clock, const std::atomic<bool>& stop, std::uint64_t last_tick) {
   const auto period_ns = std::int64_t(core_.parameters().period_s * 1e9 + 0.5);
   TickSchedule schedule(period_ns);
-  while (tick_ < last_tick && !stop.load(std::memory_order_relaxed)) {
+  running_ = true;
+  bool here = true;
+  while (here && tick_ < last_tick && !stop.load(std::memory_order_relaxed)) {
     const std::int64_t late_ns = schedule.waitForTick(clock);
     missed_ = schedule.missed();
-    step(late_ns);
+    here = step(late_ns);
   }
+  running_ = false;
+  return here;
 }
 
 }  // namespace trephine

@@ -1,9 +1,14 @@
 // The haptic loop: operator -> devices -> core -> rings, one tick at a time. Run in real time on its
 // own thread against a clock, or freewheeled as fast as it goes; both take the same steps.
+//
+// A call of a device may never return. The loop's thread can then be left behind: it ends by itself
+// when the call returns, and touches nothing but the loop and its devices, which it must own with
+// the one who leaves it.
 #pragma once
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/rt/event_ring.h"
@@ -57,19 +62,38 @@ struct LoopState {
 
 class HapticLoop {
  public:
-  // `oper` may be null: then the hands hold where they are. It and `core` outlive the loop.
-  // Ticks count from `first_tick`.
+  // `oper` may be null: then the hands hold where they are. It outlives the loop, and so does
+  // `core` unless the loop's thread is left behind. Ticks count from `first_tick`.
   HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
              std::uint64_t first_tick = 0);
 
   Status startDevices();
-  void stopDevices();
+  // False when this thread was left behind in it.
+  bool stopDevices();
 
-  // One tick, `late_ns` after its deadline.
-  void step(std::int64_t late_ns);
-  // Steps at every deadline until `stop`, or until `last_tick` ticks are done.
-  void run(LoopClock& clock, const std::atomic<bool>& stop,
+  // One tick, `late_ns` after its deadline. False when this thread was left behind in it: nothing
+  // more may be done.
+  bool step(std::int64_t late_ns);
+  // Steps at every deadline until `stop`, until `last_tick` ticks are done, or until this thread is
+  // left behind, which is a false.
+  bool run(LoopClock& clock, const std::atomic<bool>& stop,
            std::uint64_t last_tick = std::uint64_t(-1));
+
+  // ---- Any thread, beside the one that runs the loop.
+  // Zero force on all arms until the loop itself has sent zero, or the next start.
+  void silence();
+  // The ticks stood still at `tick`, so the force was taken away: an input of the next one.
+  void noteSilenced(std::uint64_t tick) { silenced_at_ = tick + 1; }
+  // True while no tick has taken that in.
+  bool silenceIsPending() const { return silenced_at_ != 0; }
+  bool running() const { return running_; }  // run() is at work
+  std::uint64_t ticks() const { return tick_; }
+  // Leaves the loop's thread behind if it is in a call of a device: which one. Nothing where it is
+  // elsewhere, and will come to its end.
+  std::optional<std::size_t> leaveBehind();
+  // After that: stops and closes the other devices.
+  void closeOthers(std::size_t left_behind);
+  const std::vector<LoopDevice>& devices() const { return devices_; }
 
   // The other side of each exchange.
   rt::EventRing<Command>& commands() { return commands_; }
@@ -78,7 +102,6 @@ class HapticLoop {
   rt::EventRing<Event>& events() { return events_; }
   rt::LatestValue<LoopState>& state() { return state_; }
 
-  std::uint64_t ticks() const { return tick_; }
   std::uint64_t missed() const { return missed_; }
   std::uint64_t dropped() const {
     return records_.dropped() + carves_.dropped() + events_.dropped();
@@ -86,7 +109,8 @@ class HapticLoop {
   const DurationHistogram& tickDurations() const { return durations_; }
 
  private:
-  void exchange(TickInput& input);
+  bool leaveCall(std::size_t device);
+  bool exchange(TickInput& input);
   void publish(const TickRecord& record);
 
   HapticCore& core_;
@@ -102,8 +126,14 @@ class HapticLoop {
   std::vector<TrephineArmCommand> arm_commands_;  // scratch for one device
   std::array<Vec3, kMaxArms> forces_N_{};         // sent in the next exchange
   std::array<ArmSample, kMaxArms> last_samples_{};
-  std::uint64_t tick_ = 0;
+  std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
+  std::int64_t last_late_ns_ = 0;
+  std::atomic<bool> running_{false};
+  std::atomic<std::uint64_t> silenced_at_{0};  // tick + 1; 0: not
+  // The device that the loop's thread is calling, or one of these.
+  static constexpr int kNoCall = -1, kLeftBehind = -2;
+  std::atomic<int> in_call_{kNoCall};
 };
 
 }  // namespace trephine

@@ -29,6 +29,7 @@ struct TickInput {
   std::uint64_t tick = 0;
   std::int64_t late_ns = 0;
   std::uint32_t journal = kJournalRoom | kJournalReady;
+  bool silenced = false;  // the watchdog took the force away since the last tick
   std::array<ArmSample, kMaxArms> arms{};
 };
 
@@ -43,11 +44,13 @@ struct Command {
   TissueTable tissues{};   // tissues: the new table
 };
 
-// Latched per arm until clear_faults: zero force and no removal while any stands.
+// Zero force and no removal while any stands. Each but kFaultLate stays until clear_faults.
 enum Fault : std::uint32_t {
   kFaultNonFinite = 1u << 0,   // pose, velocity or force was not a number
-  kFaultLate = 1u << 1,        // a tick was 20 ms late
+  kFaultLate = 1u << 1,        // a tick came more than 20 ms late; goes by itself (LatenessRule)
   kFaultDeviceLost = 1u << 2,  // the plugin reports the arm gone
+  kFaultStalled = 1u << 3,     // that happened too often or for too long
+  kFaultStuck = 1u << 4,       // a call of the device did not return: its arms were left behind
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.
@@ -91,7 +94,8 @@ struct CarveRecord {
 };
 
 // Everything else that happened, stamped with its tick.
-enum class EventKind : std::int32_t { command, fault, journal_full, stroke_began };
+// silenced: the watchdog took the force away before this tick.
+enum class EventKind : std::int32_t { command, fault, journal_full, stroke_began, silenced };
 
 struct Event {
   std::uint64_t tick = 0;

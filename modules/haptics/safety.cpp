@@ -6,6 +6,9 @@ namespace trephine {
 
 namespace {
 constexpr double kRampIn_s = 0.2;
+constexpr double kCalm_s = 1.0;
+constexpr double kStallsWithin_s = 30.0;
+constexpr std::int64_t kLongStall_ns = 2'000'000'000;
 }
 
 Vec3 clampForce(const Vec3& force_N, double max_N) {
@@ -31,8 +34,26 @@ Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N)
 
 double lateGain(std::int64_t late_ns) {
   if (late_ns <= kHoldLate_ns) return 1.0;
-  if (late_ns >= kFaultLate_ns) return 0.0;
-  return double(kFaultLate_ns - late_ns) / double(kFaultLate_ns - kHoldLate_ns);
+  if (late_ns >= kStallLate_ns) return 0.0;
+  return double(kStallLate_ns - late_ns) / double(kStallLate_ns - kHoldLate_ns);
+}
+
+void LatenessRule::tick(std::int64_t late_ns, bool silenced, double period_s) {
+  // A tick that is late by a period or more moves all that follow (TickSchedule).
+  const double late_s = 1e-9 * double(std::max<std::int64_t>(late_ns, 0));
+  const double passed_s = period_s + (late_s >= period_s ? late_s : 0.0);
+  last_stall_s_ += passed_s;
+  stall_before_s_ += passed_s;
+  since_late_s_ = late_ns > kHoldLate_ns ? 0.0 : since_late_s_ + passed_s;
+  if (silenced || late_ns > kStallLate_ns) {
+    kept_ = kept_ || stall_before_s_ <= kStallsWithin_s || late_ns > kLongStall_ns;
+    stall_before_s_ = last_stall_s_;
+    last_stall_s_ = 0.0;
+    since_late_s_ = 0.0;
+    away_ = true;
+  } else if (since_late_s_ >= kCalm_s) {
+    away_ = false;
+  }
 }
 
 Vec3 ForceGate::pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,

@@ -21,8 +21,30 @@ Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N)
 
 // How much of the last force a late tick still sends: held to 5 ms, then ramped to zero at 20 ms.
 constexpr std::int64_t kHoldLate_ns = 5'000'000;
-constexpr std::int64_t kFaultLate_ns = 20'000'000;
+constexpr std::int64_t kStallLate_ns = 20'000'000;
 double lateGain(std::int64_t late_ns);
+
+// What lateness does to the force of all arms. A tick more than 20 ms late is a stall: it takes the
+// force away, which comes back once 1 s has passed without a tick more than 5 ms late. The third
+// stall within 30 s, or one of over 2 s, keeps it away until clear(). A function of the lateness
+// and of nothing else, so that a replay does the same.
+class LatenessRule {
+ public:
+  // Before the forces of a tick. `silenced`: the watchdog took the force away since the last tick,
+  // which is a stall however late this tick came.
+  void tick(std::int64_t late_ns, bool silenced, double period_s);
+  // A person asks for the force: it need not wait.
+  void clear() { *this = LatenessRule(); }
+
+  bool away() const { return away_ || kept_; }
+  bool kept() const { return kept_; }
+
+ private:
+  bool away_ = false, kept_ = false;
+  double since_late_s_ = 0.0;   // since a tick was more than 5 ms late
+  double last_stall_s_ = 1e9;   // ago
+  double stall_before_s_ = 1e9; // ago
+};
 
 // Stands between the law and the arm of one hand.
 class ForceGate {
@@ -32,13 +54,17 @@ class ForceGate {
   void change() { catch_up_s_ = kCatchUp_s; }
   // Voxels were put back: no force until the tool is out of tissue, then ramp in over 0.2 s.
   void restored() {
-    change();
+    rampIn();
     waiting_for_air_ = true;
-    gain_ = 0.0;
   }
   void zero() {
     sent_N_ = Vec3(0.0);
     change();
+  }
+  // The force comes back over 0.2 s from the next tick that is open.
+  void rampIn() {
+    change();
+    gain_ = 0.0;
   }
 
   // The force to send this tick. `open` is false in a pause or a fault.

@@ -1,6 +1,12 @@
 #include "haptics/tissue_bricks.h"
 
+#include <algorithm>
+
 namespace trephine {
+
+namespace {
+constexpr std::size_t kBricksSearched = 4096;  // for one to recount, a tick
+}
 
 TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
     : size_(grid.geometry().size) {
@@ -14,6 +20,38 @@ TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
         if (lookup.classAt(grid, voxel) >= 0) ++count_[row + std::size_t(i >> kBrickShift)];
       }
     }
+  }
+}
+
+std::uint16_t TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
+                                     const TissueLookup& lookup) const {
+  const GridGeometry& g = grid.geometry();
+  const std::size_t row = brick / std::size_t(bricks_[0]);
+  const int from[3] = {int(brick % std::size_t(bricks_[0])) << kBrickShift,
+                       int(row % std::size_t(bricks_[1])) << kBrickShift,
+                       int(row / std::size_t(bricks_[1])) << kBrickShift};
+  int to[3];
+  for (int axis = 0; axis < 3; ++axis) to[axis] = std::min(from[axis] + kBrickEdge, size_[axis]);
+  std::uint16_t count = 0;
+  for (int k = from[2]; k < to[2]; ++k) {
+    for (int j = from[1]; j < to[1]; ++j) {
+      const std::size_t first = g.indexOf(from[0], j, k);
+      const std::size_t end = first + std::size_t(to[0] - from[0]);
+      for (std::size_t v = first; v < end; ++v) count += lookup.classAt(grid, v) >= 0;
+    }
+  }
+  return count;
+}
+
+void TissueBricks::recount(const Grid& grid, const TissueLookup& lookup) {
+  const std::size_t searched = unknown_ == 0 ? 0 : std::min(kBricksSearched, count_.size());
+  for (std::size_t n = 0; n < searched; ++n) {
+    const std::size_t brick = next_;
+    next_ = next_ + 1 == count_.size() ? 0 : next_ + 1;
+    if (count_[brick] != kUnknown) continue;
+    count_[brick] = tissueIn(brick, grid, lookup);
+    --unknown_;
+    return;
   }
 }
 

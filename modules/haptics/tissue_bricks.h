@@ -1,5 +1,6 @@
 // How much tissue each 16^3 brick of the grid may hold: where that is nothing, a tool needs no look
-// at its voxels. Counted once, before the first tick, and down with every voxel that is removed.
+// at its voxels. Counted before the first tick, and down with every voxel that is removed. What is
+// not known any more is counted anew, a brick a tick.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +15,20 @@ namespace trephine {
 class TissueBricks {
  public:
   TissueBricks(const Grid& grid, const TissueLookup& lookup);
-  // Other HU mean tissue from now on, or tissue came back: every brick may hold some, and what is
-  // removed later is not counted. No allocation.
-  void markAll() { std::fill(count_.begin(), count_.end(), kUnknown); }
+  // Other HU mean tissue from now on: every brick may hold some. No allocation.
+  void markAll() {
+    std::fill(count_.begin(), count_.end(), kUnknown);
+    unknown_ = count_.size();
+  }
+  // Tissue came back, or went again, in this brick of the grid.
+  void mark(std::size_t brick) {
+    if (count_[brick] != kUnknown) ++unknown_;
+    count_[brick] = kUnknown;
+  }
+  // Counts the next brick of which nothing is known, if one is near. No allocation.
+  void recount(const Grid& grid, const TissueLookup& lookup);
+  std::size_t unknown() const { return unknown_; }  // bricks
+
   void remove(const Index3& voxel) {
     std::uint16_t& count =
         count_[at(voxel[0] >> kBrickShift, voxel[1] >> kBrickShift, voxel[2] >> kBrickShift)];
@@ -45,6 +57,7 @@ class TissueBricks {
 
  private:
   static constexpr std::uint16_t kUnknown = 65535;
+  std::uint16_t tissueIn(std::size_t brick, const Grid& grid, const TissueLookup& lookup) const;
   std::size_t at(int i, int j, int k) const {
     return (std::size_t(k) * std::size_t(bricks_[1]) + std::size_t(j)) * std::size_t(bricks_[0]) +
            std::size_t(i);
@@ -53,6 +66,8 @@ class TissueBricks {
   Index3 size_;
   Index3 bricks_;
   std::vector<std::uint16_t> count_;
+  std::size_t unknown_ = 0;
+  std::size_t next_ = 0;  // to be recounted, if it is unknown
 };
 
 }  // namespace trephine

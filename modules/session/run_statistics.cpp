@@ -12,6 +12,31 @@ void ArmStatistics::add(const ArmRecord& record) {
   energy_out_J = std::max(energy_out_J, e.x + e.y + e.z);
 }
 
+namespace {
+
+struct FaultName {
+  std::uint32_t fault;
+  const char* name;   // in answers
+  const char* words;  // what it did to the arm
+};
+constexpr FaultName kFaultNames[] = {
+    {kFaultNonFinite, "non_finite", "a pose or a force was not a number: no force from then on"},
+    {kFaultLate, "late", "a step came more than 20 ms late: no force for a second or more"},
+    {kFaultDeviceLost, "lost", "the arm did not answer: no force from then on"},
+    {kFaultStalled, "stalled",
+     "the third such stall within 30 s, or one of over 2 s: no force from then on"},
+    {kFaultStuck, "stuck", "the arm stopped answering for good and was left behind"},
+};
+
+const FaultName& nameOf(std::uint32_t fault) {
+  for (const FaultName& name : kFaultNames) {
+    if (name.fault == fault) return name;
+  }
+  return kFaultNames[0];
+}
+
+}  // namespace
+
 Json toJson(const RunReport& report) {
   Json arms = Json::array();
   for (const RunReport::Arm& arm : report.arms) {
@@ -23,6 +48,12 @@ Json toJson(const RunReport& report) {
   }
   Json removed = Json::object();
   for (const auto& [tissue, mm3] : report.removed_mm3) removed[tissue] = mm3;
+  Json faults = Json::array();
+  for (const ArmFault& f : report.faults) {
+    faults.push_back({{"tick", f.tick},
+                      {"arm", report.arms[std::size_t(f.arm)].name},
+                      {"fault", nameOf(f.fault).name}});
+  }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
   return {{"controller", report.controller},
           {"ticks", report.ticks},
@@ -31,6 +62,8 @@ Json toJson(const RunReport& report) {
           {"removed_mm3", removed},
           {"removed_voxels", report.removed_voxels},
           {"missed_deadlines", report.missed_deadlines},
+          {"faults", faults},
+          {"memory_locked", !report.memory_not_locked},
           {"nonfinite", report.nonfinite},
           {"events_dropped", report.events_dropped},
           {"tick_ns",
@@ -64,6 +97,19 @@ std::string toText(const RunReport& report) {
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
       report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
       static_cast<unsigned long long>(report.missed_deadlines));
+  constexpr std::size_t kShown = 10;
+  for (std::size_t i = 0; i < report.faults.size(); ++i) {
+    if (i == kShown) {
+      add("  and %zu more faults\n", report.faults.size() - kShown);
+      break;
+    }
+    const ArmFault& f = report.faults[i];
+    add("  FAULT at %.3f s, %s: %s\n", double(f.tick) / report.rate_hz,
+        report.arms[std::size_t(f.arm)].name.c_str(), nameOf(f.fault).words);
+  }
+  if (const auto& why = report.memory_not_locked) {
+    text += "  " + why->what + ". " + why->next + ".\n";
+  }
   if (!report.recording.empty()) text += "  session: " + report.recording + "\n";
   if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
   return text;

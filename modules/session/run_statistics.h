@@ -1,10 +1,12 @@
 // What a run comes to: sums over its ticks, and the answer of `run --json`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/json.h"
+#include "base/result.h"
 #include "haptics/duration_histogram.h"
 #include "haptics/haptic_types.h"
 
@@ -17,6 +19,13 @@ struct ArmStatistics {
   void add(const ArmRecord& record);
 };
 
+// A fault of an arm (haptic_types.h), or the arm's share in one of all.
+struct ArmFault {
+  std::uint64_t tick = 0;
+  std::int32_t arm = 0;
+  std::uint32_t fault = 0;  // a bit of Fault
+};
+
 struct RunReport {
   std::string controller;
   std::uint64_t ticks = 0;
@@ -24,10 +33,12 @@ struct RunReport {
   struct Arm {
     std::string name;
     ArmStatistics statistics;
-    double removed_mm3 = 0.0;
+    double removed_mm3 = 0.0;  // of a voxel that it paid with another arm, its share
   };
   std::vector<Arm> arms;
   std::vector<std::pair<std::string, double>> removed_mm3;  // by tissue
+  std::vector<ArmFault> faults;  // in the order in which they came
+  std::optional<Error> memory_not_locked;  // in real time, where that is so
   std::uint64_t removed_voxels = 0;
   std::uint64_t missed_deadlines = 0;
   std::uint64_t nonfinite = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 #include "base/log.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
+#include "haptics/watchdog.h"
 
 namespace trephine {
 
@@ -19,7 +21,12 @@ using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
 constexpr auto kFlushEvery = 500ms;
+constexpr std::size_t kMostFaults = 1000;  // in a report
 constexpr int kHapticPriority = 80;
+constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread does not
+// stop() answers within 0.5 s: so long it waits for the force to go, and then for the thread.
+constexpr auto kSilencePatience = 100ms;
+constexpr auto kStopPatience = 250ms;
 // How the mouse holds a simulated arm: a firm but not a rigid hand.
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;
@@ -84,6 +91,26 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 
 }  // namespace
 
+// What the haptic thread and the watchdog work on, each of which owns it too: a thread that a device
+// holds goes on with it after the session.
+struct Session::Engine {
+  Engine(HapticCore& core, std::vector<LoopDevice> devices, std::unique_ptr<Operator> script)
+      : oper(std::move(script), live_hands), loop(core, std::move(devices), &oper), watchdog(loop) {}
+
+  rt::ParameterSet<LiveHands> live_hands;
+  LiveOperator oper;
+  HapticLoop loop;
+  Watchdog watchdog;
+  std::atomic<bool> stop{false}, finished{false};
+  std::optional<rt::LockedMemory> locked;  // from before the first tick to the end of stop()
+  std::atomic<bool> memory_known{false};
+
+  // Until the loop's thread has ended, or nothing more is to be waited for.
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ended = false;
+};
+
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension) {
   std::filesystem::path file = folder / (stem + extension);
@@ -145,10 +172,10 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   for (LiveHands::Hand& hand : session->hands_.hands) {
     hand = {false, Vec3(0.0), kMouseStiffness_N_per_m, kMouseDamping_Ns_per_m};
   }
-  session->live_hands_.write(session->hands_);
-  session->operator_ = std::make_unique<LiveOperator>(std::move(script), session->live_hands_);
-  session->loop_ = std::make_unique<HapticLoop>(*session->core_, std::move(devices),
-                                                session->operator_.get());
+  session->engine_ =
+      std::make_shared<Engine>(*session->core_, std::move(devices), std::move(script));
+  session->engine_->live_hands.write(session->hands_);
+  session->loop_ = &session->engine_->loop;
   session->statistics_.resize(session->scene_.arms.size());
 
   if (!options.recording.empty()) {
@@ -179,28 +206,100 @@ Status Session::start(double seconds) {
   running_ = true;
   const auto last_tick = std::uint64_t(std::llround(seconds * scene_.rate_hz));
   recorder_thread_ = std::thread([this] { record(); });
-  haptic_thread_ = std::thread([this, last_tick] {
+  watchdog_thread_ = std::thread([engine = engine_] {
+    rt::nameThread("watchdog");
+    rt::requestRealTime(kWatchdogPriority);
+    engine->watchdog.run();
+  });
+  haptic_thread_ = std::thread([engine = engine_, last_tick] {
     rt::nameThread("haptic");
     rt::sharpenTimers();
     if (!rt::requestRealTime(kHapticPriority)) {
       spdlog::info("The haptic thread runs without real-time priority");
     }
+    rt::touchStack();
+    engine->locked.emplace();
+    engine->memory_known.store(true, std::memory_order_release);
     HostClock clock;
-    loop_->run(clock, stop_haptics_, last_tick);
-    finished_.store(true, std::memory_order_release);
+    const bool here = engine->loop.run(clock, engine->stop, last_tick);
+    engine->finished.store(true, std::memory_order_release);
+    if (here) engine->loop.stopDevices();
+    std::lock_guard lock(engine->mutex);
+    engine->ended = true;
+    engine->changed.notify_all();
   });
   return {};
 }
 
+bool Session::finished() const { return engine_->finished.load(std::memory_order_acquire); }
+
+double Session::standsStillFor_s() const { return engine_->watchdog.stillFor_s(); }
+
+std::optional<Error> Session::memoryNotLocked() const {
+  if (!engine_->memory_known.load(std::memory_order_acquire) || engine_->locked->whole()) return {};
+  return Error{"MEMORY_NOT_LOCKED",
+               "The memory of the haptic thread is not held in place (" +
+                   engine_->locked->reason() + "), so the system may move it to disk and ticks may "
+                   "come late",
+               "this account's limit of locked memory",
+               "Set 'memlock' to 'unlimited' for the users of Trephine in "
+               "/etc/security/limits.d and log in again"};
+}
+
 Status Session::stop() {
   if (!running_) return recordingStatus();
-  stop_haptics_ = true;
-  haptic_thread_.join();
-  loop_->stopDevices();
+  engine_->stop = true;
+  const bool silenced = engine_->watchdog.silence(kSilencePatience);
+  bool ended = false;
+  {
+    std::unique_lock lock(engine_->mutex);
+    ended = engine_->changed.wait_for(lock, kStopPatience, [this] { return engine_->ended; });
+  }
+  // A thread that is in no device's call comes to its end: a tick is short.
+  std::optional<std::size_t> held;
+  while (!ended && !(held = loop_->leaveBehind())) {
+    std::unique_lock lock(engine_->mutex);
+    ended = engine_->changed.wait_for(lock, 5ms, [this] { return engine_->ended; });
+  }
+  engine_->watchdog.end();
+  if (silenced) {
+    watchdog_thread_.join();
+  } else {
+    watchdog_thread_.detach();
+  }
+  if (held) {
+    haptic_thread_.detach();
+  } else {
+    haptic_thread_.join();
+  }
   stop_recorder_ = true;
   recorder_thread_.join();
+  if (held) leaveBehind(*held);
+  engine_->locked->release();
   running_ = false;
   return finishRecording();
+}
+
+// The device `held` keeps the haptic thread: says so in the recording, and closes the others.
+void Session::leaveBehind(std::size_t held) {
+  const LoopDevice& stuck = loop_->devices()[held];
+  stuck.device->leaveBehind();
+  std::string names;
+  const std::uint64_t tick = loop_->ticks();
+  const auto add = [&](const Event& event) {
+    if (recorder_) recorder_->add(event);
+    note(event);
+  };
+  if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
+  for (std::size_t arm : stuck.arms) {
+    add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
+    names += (names.empty() ? "'" : ", '") + scene_.arms[arm].name + "'";
+  }
+  left_behind_ = Error{"DEVICE_STUCK", "The arm " + names + " stopped answering and was left behind",
+                       "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
+                       "What was done until then is recorded. Switch the arm off and on, then "
+                       "start Trephine again"};
+  loop_->closeOthers(held);
 }
 
 Status Session::freewheel(double seconds, const Progress& progress) {
@@ -224,7 +323,7 @@ Status Session::freewheel(double seconds, const Progress& progress) {
       last_flush = i;
     }
   }
-  loop_->stopDevices();
+  loop_->stopDevices();  // on this thread, so nobody can leave it behind
   drain();
   Status finished = finishRecording();
   if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
@@ -262,6 +361,7 @@ void Session::drain() {
     Event event;
     while (loop_->events().pop(event)) {
       if (recorder_) recorder_->add(event);
+      note(event);
     }
   } catch (const std::exception&) {
     const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
@@ -269,6 +369,12 @@ void Session::drain() {
     if (recorder_) recorder_->abandon(error);
     noteFailure(error);
   }
+}
+
+// For the report. Recorder thread, and the owner once that has ended.
+void Session::note(const Event& event) {
+  if (event.kind != EventKind::fault || event.arm < 0) return;
+  if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});
 }
 
 void Session::flush() {
@@ -317,7 +423,10 @@ Status Session::setTissues(const TissueSet& tissues) {
     return Error{"OTHER_TISSUES", "A running exercise keeps its list of tissues", "tissues",
                  "Stop it before tissues are added or removed"};
   }
-  if (!loop_->commands().push({CommandKind::tissues, 0, tissueTable(tissues)})) {
+  // Colours, opacities and names are the window's alone: the tick hears of what it uses.
+  const TissueTable table = tissueTable(tissues);
+  if (table != tissueTable(scene_.tissues) &&
+      !loop_->commands().push({CommandKind::tissues, 0, table})) {
     return Error{"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"};
   }
   scene_.tissues = tissues;
@@ -336,7 +445,7 @@ void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
     const double half_m = capabilities_[arm].workspace_m[axis] / 2.0;
     hand.position_m[axis] = std::clamp(hand.position_m[axis], -half_m, half_m);
   }
-  live_hands_.write(hands_);
+  engine_->live_hands.write(hands_);
 }
 
 Vec3 Session::handTarget_mm(std::size_t arm) const {
@@ -362,12 +471,14 @@ RunReport Session::report() const {
     RunReport::Arm arm{scene_.arms[i].name, statistics_[i], 0.0};
     for (std::size_t t = 0; t < report.removed_mm3.size(); ++t) {
       const std::uint64_t voxels = core_->journal().removed(int(i), int(t));
-      arm.removed_mm3 += double(voxels) * voxel_mm3;
       report.removed_mm3[t].second += double(voxels) * voxel_mm3;
       report.removed_voxels += voxels;
     }
+    arm.removed_mm3 = double(core_->journal().paid(int(i))) * voxel_mm3 / kVoxelShares;
     report.arms.push_back(arm);
   }
+  report.faults = faults_;
+  report.memory_not_locked = memoryNotLocked();
   report.missed_deadlines = loop_->missed();
   report.nonfinite = core_->nonFinite();
   report.events_dropped = loop_->dropped();

@@ -2,6 +2,10 @@
 //
 // One owner thread (the window's, or a program's main). A session runs once: either start() ..
 // stop() in real time on its own threads, or freewheel().
+//
+// Force goes first: stop() takes it away before it waits for anything, and a watchdog takes it away
+// when the ticks stand still for 20 ms. A haptic thread that a call of a device holds is left
+// behind with the loop and the device, which it then owns; the voxels stay here.
 #pragma once
 
 #include <atomic>
@@ -54,9 +58,17 @@ class Session {
   Status start(double seconds = 1e9);
   bool running() const { return running_; }
   // True once the ticks asked for are done.
-  bool finished() const { return finished_.load(std::memory_order_acquire); }
-  // Ends the threads, zeroes the forces, ends the recording. The Status is the recording's.
+  bool finished() const;
+  // Zeroes the forces, ends the threads, ends the recording; the threads within 0.5 s, whatever a
+  // device does. The Status is the recording's.
   Status stop();
+  // After stop(), where a device did not answer and was left behind: DEVICE_STUCK.
+  const std::optional<Error>& leftBehind() const { return left_behind_; }
+  // How long the ticks have stood still, from 20 ms on; else 0.
+  double standsStillFor_s() const;
+  // Whether the voxels, the loop's state and its stack are held in memory, and if not how that is
+  // allowed. Known once a tick was made in real time.
+  std::optional<Error> memoryNotLocked() const;
 
   // As fast as it goes, on the calling thread; the recorder keeps up. Errors: CANCELLED, and the
   // recording's.
@@ -82,7 +94,11 @@ class Session {
   RunReport report() const;
 
  private:
+  struct Engine;
+
   Session() = default;
+  void leaveBehind(std::size_t held);
+  void note(const Event& event);
   void record();  // the recorder thread
   void drain();
   void flush();
@@ -96,17 +112,18 @@ class Session {
   std::filesystem::path recording_file_;
   std::unique_ptr<Grid> grid_;
   std::unique_ptr<HapticCore> core_;
-  rt::ParameterSet<LiveHands> live_hands_;
-  LiveHands hands_;  // the owner's side of live_hands_
-  std::unique_ptr<Operator> operator_;
-  std::unique_ptr<HapticLoop> loop_;
+  LiveHands hands_;  // the owner's side of the engine's
+  std::shared_ptr<Engine> engine_;
+  HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;
   std::unique_ptr<JournalSpill> spill_;
   std::vector<ArmStatistics> statistics_;
+  std::vector<ArmFault> faults_;
 
   bool running_ = false;
-  std::atomic<bool> stop_haptics_{false}, stop_recorder_{false}, finished_{false};
-  std::thread haptic_thread_, recorder_thread_;
+  std::atomic<bool> stop_recorder_{false};
+  std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
+  std::optional<Error> left_behind_;
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
   std::optional<Error> failure_;
 };

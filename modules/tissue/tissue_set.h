@@ -68,12 +68,14 @@ struct TissueClass {
   double cutting_J_per_mm3 = 0.0;
   std::int32_t cuttable = 0;
   std::int32_t label = 0;  // 0: of any voxel
+  friend bool operator==(const TissueClass&, const TissueClass&) = default;
 };
 
 struct TissueTable {
   std::int32_t count = 0;
   std::int32_t reserved = 0;
   std::array<TissueClass, kMaxTissues> classes{};
+  friend bool operator==(const TissueTable&, const TissueTable&) = default;
 };
 
 // Classes keep the order of the set's tissues, which must be valid.

@@ -154,7 +154,7 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
                      "The recorder fell behind: tick " + std::to_string(result.ticks) + " is missing",
                      "the recording", "Record again on a machine with less load"};
       }
-      TickInput input{recorded.tick, recorded.late_ns, recorded.journal, {}};
+      TickInput input{recorded.tick, recorded.late_ns, recorded.journal, false, {}};
       for (std::size_t i = 0; i < recording.armCount(); ++i) {
         const ArmRecord& arm = recorded.arms[i];
         input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
@@ -163,6 +163,7 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
       for (; next_event < events->size() && (*events)[next_event].tick <= recorded.tick; ++next_event) {
         const Event& event = (*events)[next_event];
         if (event.kind == EventKind::command) commands.push_back(event.command);
+        if (event.kind == EventKind::silenced) input.silenced = true;
       }
       if (Status served = serveJournal(core, **spill, recorded.journal); !served) {
         return served.error();

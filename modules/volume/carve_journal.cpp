@@ -1,6 +1,7 @@
 #include "volume/carve_journal.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace trephine {
 
@@ -51,17 +52,30 @@ bool CarveJournal::hasRoom(std::size_t entries) {
   return room;
 }
 
-bool CarveJournal::erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class) {
+void CarveJournal::count(const CarveEntry& entry, bool taken) {
+  std::uint64_t& voxels = removed_[entry.arm()][entry.tissueClass()];
+  voxels = taken ? voxels + 1 : voxels - 1;
+  const std::uint32_t payers = entry.payers();
+  const auto share = std::uint64_t(kVoxelShares / std::popcount(payers));
+  for (int arm = 0; arm < kMaxArms; ++arm) {
+    if (!(payers >> arm & 1u)) continue;
+    paid_[arm] = taken ? paid_[arm] + share : paid_[arm] - share;
+  }
+}
+
+bool CarveJournal::erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class,
+                         std::uint32_t sharers) {
   if (busy_ || open_[arm] == kNone || log_.size() >= granted_) return false;
   // A second entry for a voxel would put back air.
   if (writer.grid().hu(voxel) == kAirHu) return true;
   const std::int16_t hu = writer.store(voxel, kAirHu);
-  log_.append({std::uint32_t(voxel), hu, CarveEntry::makeTag(arm, tissue_class)});
+  const CarveEntry entry{std::uint32_t(voxel), hu, CarveEntry::makeTag(arm, tissue_class, sharers)};
+  log_.append(entry);
   here_.entry = log_.size();
   Stroke& stroke = strokes_[open_[arm]];
   stroke.end = log_.size();
   ++stroke.voxels;
-  ++removed_[arm][tissue_class];
+  count(entry, true);
   return true;
 }
 
@@ -226,7 +240,8 @@ bool CarveJournal::canStep(std::size_t max_voxels) {
   return false;
 }
 
-bool CarveJournal::step(Grid::Writer& writer, std::size_t max_voxels) {
+bool CarveJournal::step(Grid::Writer& writer, std::size_t max_voxels,
+                        std::vector<std::uint32_t>* changed) {
   if (!busy_) return false;
   const Slice slice = nextSlice(max_voxels);
   if (!log_.isReady(slice.first, slice.end)) return true;
@@ -236,8 +251,8 @@ bool CarveJournal::step(Grid::Writer& writer, std::size_t max_voxels) {
     const int arm = entry.arm();
     if (stretch_arm_ >= 0 && arm != stretch_arm_) continue;
     writer.store(entry.voxel, put_back ? entry.hu : kAirHu);
-    std::uint64_t& count = removed_[arm][entry.tissueClass()];
-    count = put_back ? count - 1 : count + 1;
+    if (changed) changed->push_back(entry.voxel);
+    count(entry, !put_back);
     --max_voxels;
   }
   skipEmptyStretches();

@@ -28,6 +28,8 @@ namespace trephine {
 
 constexpr int kMaxClasses = 16;  // tissue classes that a journal, a table and a recording count
 constexpr int kMaxArms = 4;
+// A voxel that n arms paid together counts 1/n for each: in twelfths, whole for up to four.
+constexpr int kVoxelShares = 12;
 
 class CarveJournal {
  public:
@@ -44,12 +46,16 @@ class CarveJournal {
   bool beginStroke(int arm, const Credits& now);
   void endStroke(int arm) { open_[arm] = kNone; }
   bool inStroke(int arm) const { return open_[arm] != kNone; }
+  // Of two strokes that are open, the greater number is that of the newer: undo takes it first.
+  std::uint32_t openStroke(int arm) const { return open_[arm]; }
   // Asked at the start of a tick, before what it may erase: grants that many entries until it is
   // asked again. After a no, nothing can be erased.
   bool hasRoom(std::size_t entries);
   // Sets the voxel to air in the arm's open stroke; one that is air already is left and not
   // counted. False, and nothing done, outside a stroke, during a job or beyond what was granted.
-  bool erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class);
+  // It is the arm's alone to undo; `sharers` are other arms, a bit each, that paid for it too.
+  bool erase(Grid::Writer& writer, int arm, std::size_t voxel, int tissue_class,
+             std::uint32_t sharers = 0);
   // For display: not even one voxel can be removed now, or no stroke can begin.
   bool full() const {
     return !log_.hasRoom(1) || stroke_count_ == strokes_.size() ||
@@ -80,14 +86,18 @@ class CarveJournal {
   // caller tries again in a later tick. Always so while the log fits into the ring.
   bool canStep(std::size_t max_voxels);
   // Changes up to `max_voxels` voxels and visits at most 8 times as many entries; true while there
-  // is more to do. Does nothing where canStep() would say no.
-  bool step(Grid::Writer& writer, std::size_t max_voxels);
+  // is more to do. Does nothing where canStep() would say no. The voxels that it wrote are appended
+  // to `changed`, if given.
+  bool step(Grid::Writer& writer, std::size_t max_voxels,
+            std::vector<std::uint32_t>* changed = nullptr);
   bool busy() const { return busy_; }
   // The credits to go on with after a job.
   const Credits& credits() const { return job_credits_; }
 
   // Voxels of `arm` and `tissue_class` that are removed now.
   std::uint64_t removed(int arm, int tissue_class) const { return removed_[arm][tissue_class]; }
+  // What `arm` paid of all that is removed now, in 1 / kVoxelShares of a voxel.
+  std::uint64_t paid(int arm) const { return paid_[arm]; }
   // Voxels ever removed: the log's length. Jobs do not change it.
   std::uint64_t entryCount() const { return log_.size(); }
   std::size_t ramBytes() const;
@@ -146,6 +156,7 @@ class CarveJournal {
   void skipEmptyStretches();
   Slice nextSlice(std::size_t max_voxels) const;
   void finishJob();
+  void count(const CarveEntry& entry, bool taken);
 
   CarveLog log_;
   std::vector<Branch> branches_;  // a parent has the smaller number; 0 is the root
@@ -163,6 +174,7 @@ class CarveJournal {
   std::uint32_t redo_top_ = kNone;
   std::uint32_t open_[kMaxArms] = {kNone, kNone, kNone, kNone};
   std::uint64_t removed_[kMaxArms][kMaxClasses] = {};
+  std::uint64_t paid_[kMaxArms] = {};
 
   // The job: its end, its way over `meet_branch_`, and the stretch of the log that it is on.
   bool busy_ = false;

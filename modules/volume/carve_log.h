@@ -19,12 +19,14 @@ namespace trephine {
 struct CarveEntry {
   std::uint32_t voxel = 0;
   std::int16_t hu = 0;    // of the tissue that was taken
-  std::uint16_t tag = 0;  // bits 0 to 3 its class, bits 4 and 5 the arm
+  // Bits 0 to 3 its class, 4 and 5 the arm that took it, 6 to 9 other arms that paid for it too.
+  std::uint16_t tag = 0;
 
   int tissueClass() const { return tag & 15; }
   int arm() const { return (tag >> 4) & 3; }
-  static std::uint16_t makeTag(int arm, int tissue_class) {
-    return std::uint16_t(arm << 4 | tissue_class);
+  std::uint32_t payers() const { return ((tag >> 6) & 15u) | 1u << arm(); }
+  static std::uint16_t makeTag(int arm, int tissue_class, std::uint32_t sharers = 0) {
+    return std::uint16_t(sharers << 6 | std::uint32_t(arm << 4 | tissue_class));
   }
 };
 static_assert(sizeof(CarveEntry) == 8);

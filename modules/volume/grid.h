@@ -51,6 +51,14 @@ class Grid {
     return geometry().contains(i, j, k) ? hu(geometry().indexOf(i, j, k)) : kAirHu;
   }
 
+  // The number of the brick that holds a voxel, i fastest. Any thread.
+  std::size_t brickOf(std::size_t index) const {
+    const std::size_t row = by_width_.divide(index);
+    const std::size_t k = by_height_.divide(row);
+    return brickAt(index - row * std::size_t(geometry().size[0]),
+                   row - k * std::size_t(geometry().size[1]), k);
+  }
+
   // The right to write voxels. Moves between threads; given back when destroyed. Holding it is the
   // caller's promise to write from one thread at a time. Wait-free, no allocation.
   class Writer {
@@ -107,11 +115,13 @@ class Grid {
     std::atomic_ref<std::int16_t> voxel(voxels_[index]);
     const std::int16_t before = voxel.load(std::memory_order_relaxed);
     voxel.store(hu, std::memory_order_relaxed);
-    const std::size_t brick = ((k >> kBrickShift) * std::size_t(bricks_[1]) + (j >> kBrickShift)) *
-                                  std::size_t(bricks_[0]) +
-                              (i >> kBrickShift);
-    dirty_[brick].store(1, std::memory_order_release);
+    dirty_[brickAt(i, j, k)].store(1, std::memory_order_release);
     return before;
+  }
+  std::size_t brickAt(std::size_t i, std::size_t j, std::size_t k) const {
+    return ((k >> kBrickShift) * std::size_t(bricks_[1]) + (j >> kBrickShift)) *
+               std::size_t(bricks_[0]) +
+           (i >> kBrickShift);
   }
 
   Volume volume_;

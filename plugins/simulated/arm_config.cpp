@@ -159,7 +159,8 @@ void checkFormat(const Json& root) {
 }
 
 DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
-  checkObject(root, "", {"format", "version", "model", "arm", "arms", "vanish_after_s"});
+  checkObject(root, "", {"format", "version", "model", "arm", "arms", "vanish_after_s",
+                         "block_after_s", "block_for_s"});
   checkFormat(root);
   checkText(root, "model", "");
   if (root.contains("arm") == root.contains("arms")) {
@@ -181,6 +182,13 @@ DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
   }
   if (root.contains("vanish_after_s")) {
     config.vanish_after_s = checkNumber(root["vanish_after_s"], "vanish_after_s", {0.0, 1e6, true});
+  }
+  if (root.contains("block_after_s") != root.contains("block_for_s")) {
+    refuse("block_after_s", "'block_after_s' and 'block_for_s' go together.");
+  }
+  if (root.contains("block_after_s")) {
+    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6, true});
+    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6, true});
   }
   return config;
 }

@@ -1,6 +1,9 @@
 // The simulated arms behind the C ABI: arguments, states and flags; the motion is simulated_arm.h.
+#include <time.h>
+
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -44,10 +47,13 @@ struct TrephineDevice {
   bool configured = false;
   bool running = false;
   bool vanished = false;
-  std::atomic<bool> silenced{false};  // by safe_stop, from any thread
+  // Calls of safe_stop, from any thread, and how many of them the host has answered with zero force.
+  std::atomic<std::uint32_t> silences{0};
+  std::uint32_t answered = 0;
   std::uint64_t sequence = 0;
   std::int64_t time_ns = 0;
   double vanish_after_s = -1.0;
+  double block_after_s = -1.0, block_for_s = 0.0;
   std::string config_error;
   const char* error = "";  // a literal or config_error: set without allocation
 };
@@ -132,6 +138,8 @@ int configure(TrephineDevice* device, const char* json) {
     }
     for (std::size_t i = 0; i < device->arms.size(); ++i) device->arms[i].config = config.arms[i];
     device->vanish_after_s = config.vanish_after_s;
+    device->block_after_s = config.block_after_s;
+    device->block_for_s = config.block_for_s;
     device->configured = true;
     return TREPHINE_OK;
   } catch (const std::bad_alloc&) {
@@ -175,7 +183,7 @@ int start(TrephineDevice* device, TrephineServo servo, void*) {
   if (device->vanished) {
     return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away, as configured.");
   }
-  device->silenced.store(false);
+  device->answered = device->silences.load();
   device->running = true;
   return TREPHINE_OK;
 }
@@ -202,6 +210,29 @@ int lose(TrephineDevice* device, TrephineArmState* states, int code, const char*
   return fail(device, code, sentence);
 }
 
+void block(double seconds) {
+  timespec until{};
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  until.tv_sec += time_t(seconds);
+  until.tv_nsec += long((seconds - double(time_t(seconds))) * 1e9);
+  if (until.tv_nsec >= 1'000'000'000) {
+    until.tv_nsec -= 1'000'000'000;
+    ++until.tv_sec;
+  }
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+bool commandsNothing(const TrephineDevice& device, const TrephineArmCommand* commands) {
+  for (std::size_t i = 0; i < device.arms.size(); ++i) {
+    const TrephineArmCommand& command = *element(commands, i);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (command.force_N[axis] != 0.0 || command.torque_Nm[axis] != 0.0) return false;
+    }
+  }
+  return true;
+}
+
 int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
              const TrephineArmCommand* commands) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
@@ -224,8 +255,17 @@ int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
     device->vanished = true;
     return lose(device, states, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
   }
+  if (device->block_after_s >= 0.0 && double(device->time_ns) > device->block_after_s * 1e9) {
+    device->block_after_s = -1.0;  // once
+    block(device->block_for_s);
+  }
   ++device->sequence;
-  const bool silenced = device->silenced.load(std::memory_order_relaxed);
+  const std::uint32_t silences = device->silences.load();
+  bool silenced = silences != device->answered;
+  if (silenced && commandsNothing(*device, commands)) {
+    device->answered = silences;
+    silenced = false;
+  }
   bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = device->arms[i];
@@ -285,7 +325,7 @@ int stop(TrephineDevice* device) {
 }
 
 void safeStop(TrephineDevice* device) {
-  if (device) device->silenced.store(true);
+  if (device) device->silences.fetch_add(1);
 }
 
 const char* lastError(TrephineDevice* device) {

@@ -138,6 +138,20 @@ TEST(Device, ASafeStopFromAnotherThreadSilencesTheArmUntilTheNextStart) {
   EXPECT_GT(bench.position().x, 0.001);
 }
 
+TEST(Device, AnExchangeOfZeroForceAnswersASafeStopAndLaterForcesMoveTheArmAgain) {
+  Bench bench(exactOmni());
+  ASSERT_TRUE(bench.device && bench.start());
+  bench.push({1.0, 0.0, 0.0});
+  bench.device->safeStop();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_NEAR(bench.position().x, 0.0, 1e-9);
+  bench.push({0.0, 0.0, 0.0});
+  ASSERT_TRUE(bench.tick());
+  bench.push({1.0, 0.0, 0.0});
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_GT(bench.position().x, 0.001);
+}
+
 TEST(Device, CommandsNeedNoSizeFromTheCaller) {
   Bench bench(exactOmni());
   ASSERT_TRUE(bench.device && bench.start());

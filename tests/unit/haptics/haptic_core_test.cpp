@@ -61,7 +61,8 @@ TEST(HapticCore, TheBoundedControllerLearnsNothingWhileItsForceIsNotSent) {
   for (CommandKind stop : {CommandKind::pause, CommandKind::none}) {
     Bench bench(p);
     bench.push({0, 0, 2}, {0, 0, -3}, 500);
-    bench.at({0, 0, -3}, {{stop, 0, {}}}, stop == CommandKind::none ? 30'000'000 : 0);
+    constexpr std::int64_t kTooLong_ns = 2'500'000'000;  // takes the force away for good
+    bench.at({0, 0, -3}, {{stop, 0, {}}}, stop == CommandKind::none ? kTooLong_ns : 0);
     wiggle(bench);
     EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
     EXPECT_EQ(bench.record.arms[0].alpha, 1.0);
@@ -282,12 +283,85 @@ TEST(HapticCore, ADeviceThatIsLostGetsNoForce) {
   EXPECT_TRUE(bench.record.arms[0].faults & kFaultDeviceLost);
 }
 
-TEST(HapticCore, TwentyMillisecondsLateIsAFault) {
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(HapticCore, ATickMoreThanTwentyMillisecondsLateTakesTheForceAwayForASecond) {
   Bench bench;
   bench.push({0, 0, 2}, {0, 0, -4}, 500);
-  EXPECT_GT(glm::length(bench.at({0, 0, -4.01}, {}, 4'000'000).sent_N), 0.0);
-  EXPECT_EQ(bench.at({0, 0, -4.02}, {}, 20'000'000).sent_N, Vec3(0.0));
+  EXPECT_GT(glm::length(bench.at({0, 0, -4.01}, {}, 4 * kMs).sent_N), 0.0);
+  EXPECT_EQ(bench.at({0, 0, -4.02}, {}, 20 * kMs).faults, 0u);
+  EXPECT_EQ(bench.at({0, 0, -4.03}, {}, 20 * kMs + 1).sent_N, Vec3(0.0));
+  EXPECT_EQ(bench.record.arms[0].faults, std::uint32_t(kFaultLate));
+  const auto removed = bench.core.journal().removed(0, 0);
+  double depth_mm = 4.0, back_s = 0.0, full_s = 0.0;
+  for (int i = 1; i < 1500; ++i) {
+    depth_mm += 0.001;
+    const double sent_N = glm::length(bench.at({0, 0, -depth_mm}).sent_N);
+    if (sent_N > 0.0 && back_s == 0.0) back_s = 1e-3 * i;
+    if (sent_N == glm::length(bench.record.arms[0].clamped_N) && full_s == 0.0) full_s = 1e-3 * i;
+    if (i == 900) {
+      EXPECT_EQ(bench.core.journal().removed(0, 0), removed) << "no cutting";
+    }
+  }
+  EXPECT_NEAR(back_s, 1.0, 0.01);
+  EXPECT_NEAR(full_s, 1.2, 0.02);
+  EXPECT_EQ(bench.record.arms[0].faults, 0u);
+  EXPECT_GT(bench.core.journal().removed(0, 0), removed) << "and cuts again";
+}
+
+TEST(HapticCore, TheThirdStallKeepsTheForceAwayUntilItIsAskedFor) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -4}, 500);
+  std::uint64_t events = 0;
+  for (int stall = 0; stall < 3; ++stall) {
+    bench.at({0, 0, -4}, {}, 25 * kMs);
+    for (const Event& event : bench.core.events()) events += event.kind == EventKind::fault;
+    for (int i = 0; i < 1500; ++i) bench.at({0, 0, -4 - 0.001 * i});
+  }
+  EXPECT_EQ(events, 4u) << "three times late, and kept";
+  EXPECT_EQ(bench.record.arms[0].faults, std::uint32_t(kFaultLate | kFaultStalled));
+  EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
+  bench.at({0, 0, -5.5}, {{CommandKind::clear_faults, 0, {}}});
+  for (int i = 0; i < 300; ++i) bench.at({0, 0, -5.5 - 0.001 * i});
+  EXPECT_EQ(bench.record.arms[0].faults, 0u);
+  EXPECT_GT(glm::length(bench.record.arms[0].sent_N), 0.0);
+}
+
+TEST(HapticCore, WhatTheWatchdogDidIsAnInputOfTheTickAndIsSaid) {
+  Bench bench;
+  bench.push({0, 0, 2}, {0, 0, -4}, 500);
+  TickInput input;
+  input.tick = bench.tick++;
+  input.silenced = true;
+  input.arms[0].position_m = {0, 0, -0.00401};
+  bench.core.tick(input, nullptr, 0, bench.record);
+  EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
   EXPECT_TRUE(bench.record.arms[0].faults & kFaultLate);
+  ASSERT_FALSE(bench.core.events().empty());
+  EXPECT_EQ(bench.core.events()[0].kind, EventKind::silenced);
+}
+
+// Removal's pass, the slew limit's state and the counts of empty bricks belong to voxels and force.
+TEST(HapticCore, ATissueEditThatMovesNoVoxelChangesNothingThatIsCut) {
+  std::array<std::uint64_t, 2> removed{};
+  for (int edited = 0; edited < 2; ++edited) {
+    HapticParameters p = oneArm();
+    p.arms[0].tool = *makeTool({ToolKind::burr, 30.0, 64, 3.0, 8, BurrShape::sphere, 0.0, 3.0});
+    p.removal = RemovalKind::work;
+    Bench bench(p);
+    for (int i = 0; i < 3000; ++i) {
+      std::vector<Command> commands;
+      if (edited && i % 20 == 0) {
+        TissueTable same_voxels = p.tissues;
+        same_voxels.classes[0].rupture_N = i;  // no law of this scene reads it
+        commands.push_back({CommandKind::tissues, 0, same_voxels});
+      }
+      bench.at({0.001 * i, 0, 1 - 0.002 * i}, commands);
+    }
+    removed[std::size_t(edited)] = bench.core.journal().removed(0, 0);
+  }
+  EXPECT_GT(removed[0], 20u);
+  EXPECT_EQ(removed[0], removed[1]);
 }
 
 TEST(HapticCore, AFullJournalStopsRemovalAndSaysSo) {

@@ -62,6 +62,17 @@ TEST(TickSchedule, DelaysTicksAfterAGapInsteadOfHurryingThroughThem) {
   EXPECT_EQ(clock.time_ns, after_gap + kT) << "a full period later, no burst";
 }
 
+TEST(TickSchedule, SaysHowLateATickIsHoweverLate) {
+  FakeClock clock;
+  TickSchedule schedule(kT);
+  schedule.waitForTick(clock);
+  clock.delay_ns = 2'500'000'000;
+  EXPECT_EQ(schedule.waitForTick(clock), 2'500'000'000);
+  const std::int64_t after_gap = clock.time_ns;
+  EXPECT_EQ(schedule.waitForTick(clock), 0);
+  EXPECT_EQ(clock.time_ns, after_gap + kT);
+}
+
 TEST(TickSchedule, IsNeverEarlyWhenTheClockGoesBack) {
   FakeClock clock;
   TickSchedule schedule(kT);

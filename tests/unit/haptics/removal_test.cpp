@@ -162,6 +162,7 @@ TEST(Removal, ABurrLeavesNoIslandsInsideTheSolidItSwept) {
 struct Crossing {
   std::string hash;
   std::uint64_t by_arm[2] = {};
+  double paid[2] = {};  // voxels
   double credit_J[2] = {};
 };
 Crossing cross(bool swapped, RemovalKind kind) {
@@ -190,6 +191,7 @@ Crossing cross(bool swapped, RemovalKind kind) {
   for (int i = 0; i < 2; ++i) {
     const int arm = int(i == 0 ? big : small);
     out.by_arm[i] = core.journal().removed(arm, 0);
+    out.paid[i] = double(core.journal().paid(arm)) / kVoxelShares;
     out.credit_J[i] = record.arms[std::size_t(arm)].cutting_credit_J;
   }
   return out;
@@ -204,7 +206,60 @@ TEST(Removal, TheOrderOfTwoArmsInOneVolumeChangesNothing) {
     EXPECT_GT(one.by_arm[1], 10u);
     EXPECT_EQ(one.credit_J[0], other.credit_J[0]);
     EXPECT_EQ(one.credit_J[1], other.credit_J[1]);
+    EXPECT_EQ(one.paid[0] + one.paid[1], double(one.by_arm[0] + one.by_arm[1]));
+    if (kind == RemovalKind::instant) {
+      EXPECT_EQ(one.paid[0], double(one.by_arm[0])) << "nobody pays for what goes at once";
+      continue;
+    }
+    EXPECT_EQ(one.paid[0], other.paid[0]);
+    EXPECT_EQ(one.paid[1], other.paid[1]);
   }
+}
+
+// Two equal tools in one place take every voxel together.
+TEST(Removal, AVoxelThatTwoArmsPaidCountsHalfForEachAndComesBackOnce) {
+  HapticParameters p = test::oneArm();
+  p.arms[0].tool = burrStroke(3.0, 1.0).tool;
+  p.arms.push_back(p.arms[0]);
+  p.removal = RemovalKind::work;
+  Grid grid(slope(96, 24.6));
+  const std::string before = volumeSha256(grid.snapshot());
+  HapticCore core(p, *grid.takeWriter());
+  TickInput input;
+  TickRecord record;
+  const auto tick = [&](double first_mm, double second_mm, Command command) {
+    input.arms[0].position_m = 0.001 * Vec3(0, 0, first_mm);
+    input.arms[1].position_m = 0.001 * Vec3(0, 0, second_mm);
+    input.journal = core.journalState();
+    core.tick(input, &command, command.kind == CommandKind::none ? 0 : 1, record);
+    ++input.tick;
+  };
+  const auto undo = [&] {
+    tick(8, 8, {CommandKind::undo, 0, {}});
+    while (!core.acceptsCommands()) tick(8, 8, {});
+  };
+  // The first cuts alone for a while, then the second comes to it.
+  for (int i = 0; i < 500; ++i) tick(-0.5, 8, {});
+  const std::uint64_t alone = core.journal().removed(0, 0);
+  ASSERT_GT(alone, 20u);
+  for (int i = 0; i < 1500; ++i) tick(-0.5 - 0.0015 * i, -0.5 - 0.0015 * i, {});
+  const std::uint64_t all = core.journal().removed(0, 0) + core.journal().removed(1, 0);
+  ASSERT_GT(all, alone + 50u);
+  EXPECT_EQ(core.journal().paid(0) + core.journal().paid(1), kVoxelShares * all);
+  EXPECT_GT(core.journal().paid(1), kVoxelShares / 3 * (all - alone));
+  const std::uint64_t entries = core.journal().entryCount();
+  EXPECT_EQ(entries, all) << "one entry a voxel";
+
+  for (int i = 0; i < 400; ++i) tick(8, 8, {});
+  undo();  // the second arm's stroke is the newer one
+  const std::uint64_t left = core.journal().removed(0, 0);
+  EXPECT_EQ(core.journal().removed(1, 0), 0u);
+  EXPECT_EQ(core.journal().paid(1), 0u) << "whatever it took is back";
+  EXPECT_EQ(core.journal().paid(0), kVoxelShares * left);
+  undo();
+  EXPECT_EQ(core.journal().removed(0, 0), 0u);
+  EXPECT_EQ(core.journal().paid(0), 0u);
+  EXPECT_EQ(volumeSha256(grid.snapshot()), before);
 }
 
 // What is removed costs no more than the work of hand and motor.

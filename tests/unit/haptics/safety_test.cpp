@@ -109,5 +109,84 @@ TEST(ForceGate, RampsDownWhenATickIsVeryLate) {
   EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, 1.0 + kStep, 1e-12);
 }
 
+constexpr std::int64_t kMs = 1'000'000;
+
+// On time for so long.
+void calm(LatenessRule& rule, double seconds) {
+  for (int i = 0; i < int(seconds / kT); ++i) rule.tick(0, false, kT);
+}
+
+TEST(LatenessRule, TakesTheForceAwayOnlyBeyondTwentyMilliseconds) {
+  LatenessRule rule;
+  rule.tick(20 * kMs, false, kT);
+  EXPECT_FALSE(rule.away());
+  rule.tick(20 * kMs + 1, false, kT);
+  EXPECT_TRUE(rule.away());
+  EXPECT_FALSE(rule.kept());
+}
+
+TEST(LatenessRule, GivesItBackAfterASecondWithoutATickMoreThanFiveMillisecondsLate) {
+  LatenessRule rule;
+  rule.tick(25 * kMs, false, kT);
+  calm(rule, 0.9);
+  rule.tick(6 * kMs, false, kT);
+  calm(rule, 0.9);
+  EXPECT_TRUE(rule.away()) << "the second began anew";
+  rule.tick(5 * kMs, false, kT);
+  calm(rule, 0.2);
+  EXPECT_FALSE(rule.away());
+}
+
+TEST(LatenessRule, KeepsItAwayAfterTheThirdStallWithinThirtySeconds) {
+  for (double apart_s : {14.0, 16.0}) {
+    LatenessRule rule;
+    for (int stall = 0; stall < 3; ++stall) {
+      EXPECT_FALSE(rule.kept());
+      rule.tick(25 * kMs, false, kT);
+      calm(rule, apart_s);
+    }
+    EXPECT_EQ(rule.kept(), apart_s < 15.0);
+    EXPECT_EQ(rule.away(), rule.kept());
+    rule.clear();
+    EXPECT_FALSE(rule.away());
+    rule.tick(25 * kMs, false, kT);
+    EXPECT_FALSE(rule.kept()) << "counted from the button on";
+  }
+}
+
+TEST(LatenessRule, KeepsItAwayAfterOneStallOfOverTwoSeconds) {
+  LatenessRule rule;
+  rule.tick(2000 * kMs, false, kT);
+  EXPECT_FALSE(rule.kept());
+  rule.clear();
+  rule.tick(2000 * kMs + 1, false, kT);
+  EXPECT_TRUE(rule.kept());
+  calm(rule, 40.0);
+  EXPECT_TRUE(rule.away());
+}
+
+TEST(LatenessRule, TakesTheWatchdogsWordForAStallAndCountsItOnce) {
+  LatenessRule rule;
+  rule.tick(0, true, kT);
+  EXPECT_TRUE(rule.away());
+  calm(rule, 1.1);
+  EXPECT_FALSE(rule.away());
+  rule.tick(25 * kMs, true, kT);
+  EXPECT_FALSE(rule.kept()) << "the second, though late as well";
+  rule.tick(0, true, kT);
+  EXPECT_TRUE(rule.kept());
+}
+
+TEST(ForceGate, ComesBackOverTwoTenthsOfASecond) {
+  ForceGate gate;
+  for (int i = 0; i < 200; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  gate.pass({2, 0, 0}, true, false, 0, kT);
+  gate.rampIn();
+  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  EXPECT_NEAR(gate.sent_N().x, 1.0, 0.02);
+  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(gate.sent_N().x, 2.0);
+}
+
 }  // namespace
 }  // namespace trephine

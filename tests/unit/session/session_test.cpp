@@ -1,6 +1,8 @@
 #include "session/session.h"
 
+#include <algorithm>
 #include <chrono>
+#include <fstream>
 
 #include "base/file.h"
 #include "base/system.h"
@@ -148,6 +150,99 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
   EXPECT_EQ(result->ticks, 6000u);
+}
+
+// Every event of a recording of a kind, as the tick had it.
+std::size_t commandsIn(const std::filesystem::path& recording) {
+  const auto events = (*SessionReader::open(recording))->events();
+  return std::size_t(std::count_if(events->begin(), events->end(), [](const Event& e) {
+    return e.kind == EventKind::command;
+  }));
+}
+
+TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
+  test::TemporaryFolder folder;
+  auto session = *Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  TissueSet tissues = session->scene().tissues;
+  for (int step = 0; step < 200; ++step) {  // more than the ring of commands holds
+    tissues.tissues[3].opacity = 0.001 * step;
+    tissues.tissues[3].colour = Vec3(0.001 * step);
+    tissues.tissues[3].name = "Bone " + std::to_string(step);
+    ASSERT_TRUE(session->setTissues(tissues).ok()) << step;
+  }
+  EXPECT_EQ(session->scene().tissues.tissues[3].opacity, 0.199) << "kept for the window";
+  tissues.tissues[3].friction_N.value += 0.5;
+  ASSERT_TRUE(session->setTissues(tissues).ok());
+  ASSERT_TRUE(session->freewheel(0.2).ok());
+  EXPECT_EQ(commandsIn(folder / "s.h5"), 1u) << "the friction alone";
+}
+
+// Simulated arms as the shipped ones, with something more to them.
+std::string arms(const std::filesystem::path& folder, const Json& more) {
+  Json json = *readJsonFile(resourceFolder() / "devices" / "omni.json");
+  json.update(more);
+  const std::filesystem::path file = folder / "arms.json";
+  std::ofstream(file) << json.dump();
+  return file.string();
+}
+
+TEST(Session, NamesTheArmsThatWereLostInItsReport) {
+  test::TemporaryFolder folder;
+  Scene scene = cranium();
+  for (SceneArm& arm : scene.arms) {
+    arm.device_config = arms(folder.path(), {{"vanish_after_s", 0.3}});
+  }
+  auto session = *Session::create(scene, smallHead(), scripted(folder / "s.h5"));
+  ASSERT_TRUE(session->freewheel(0.5).ok());
+  const RunReport report = session->report();
+  ASSERT_EQ(report.faults.size(), 2u);
+  EXPECT_EQ(report.faults[0].tick, 300u);
+  const Json json = toJson(report);
+  EXPECT_EQ(json["faults"][0], (Json{{"tick", 300}, {"arm", "left"}, {"fault", "lost"}}));
+  EXPECT_EQ(json["faults"][1]["arm"], "right");
+  EXPECT_NE(toText(report).find("FAULT at 0.300 s, left: the arm did not answer"),
+            std::string::npos);
+
+  scene = cranium();
+  auto sound = *Session::create(scene, smallHead(), scripted());
+  ASSERT_TRUE(sound->freewheel(0.5).ok());
+  EXPECT_TRUE(sound->report().faults.empty());
+  EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
+}
+
+// A device that returns late: force away, back, and the same in the replay.
+TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
+  test::TemporaryFolder folder;
+  Scene scene = cranium();
+  for (SceneArm& arm : scene.arms) {
+    arm.device_config =
+        arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
+  }
+  auto session = *Session::create(scene, smallHead(), scripted(folder / "s.h5"));
+  ASSERT_TRUE(session->start(0.6).ok());
+  while (!session->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(session->stop().ok());
+  EXPECT_FALSE(session->leftBehind());
+  const RunReport report = session->report();
+  ASSERT_GE(report.faults.size(), 2u);
+  EXPECT_EQ(toJson(report)["faults"][0]["fault"], "late");
+  const auto events = (*SessionReader::open(folder / "s.h5"))->events();
+  EXPECT_TRUE(std::any_of(events->begin(), events->end(), [](const Event& e) {
+    return e.kind == EventKind::silenced;
+  })) << "the watchdog's";
+  const auto result = replay(**SessionReader::open(folder / "s.h5"), smallHead());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+}
+
+TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
+  auto session = *Session::create(cranium(), smallHead(), scripted());
+  ASSERT_TRUE(session->freewheel(10.0).ok());
+  const RunReport report = session->report();
+  double of_arms = 0.0, of_tissues = 0.0;
+  for (const auto& arm : report.arms) of_arms += arm.removed_mm3;
+  for (const auto& [tissue, mm3] : report.removed_mm3) of_tissues += mm3;
+  EXPECT_NEAR(of_arms, of_tissues, 1e-6 * of_tissues);
 }
 
 // Bone is label 7, and a strip of it in every 8 voxels has another label.

@@ -1,0 +1,178 @@
+#include "haptics/watchdog.h"
+
+#include <thread>
+
+#include "haptics_support.h"
+
+namespace trephine {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(Standstill, BeginsOnceWhenACountIsTheSameForTwentyMilliseconds) {
+  Standstill still;
+  EXPECT_FALSE(still.begins(7, true, 100 * kMs));
+  EXPECT_FALSE(still.begins(7, true, 119 * kMs));
+  EXPECT_TRUE(still.begins(7, true, 120 * kMs));
+  EXPECT_EQ(still.since_ns(), 100 * kMs);
+  EXPECT_FALSE(still.begins(7, true, 150 * kMs)) << "said already";
+  EXPECT_FALSE(still.begins(8, true, 151 * kMs)) << "goes on";
+  EXPECT_EQ(still.since_ns(), 0);
+  EXPECT_TRUE(still.begins(8, true, 171 * kMs)) << "again";
+}
+
+TEST(Standstill, DoesNotBeginWhileTicksComeOrNothingIsDue) {
+  Standstill still;
+  for (int ms = 0; ms < 1000; ++ms) EXPECT_FALSE(still.begins(std::uint64_t(ms), true, ms * kMs));
+  for (int ms = 1000; ms < 2000; ++ms) EXPECT_FALSE(still.begins(1000, false, ms * kMs));
+  EXPECT_FALSE(still.begins(1000, true, 2000 * kMs)) << "counts from here";
+}
+
+// A device of one arm whose exchange waits while `held`.
+struct Held {
+  static inline std::atomic<bool> held{false};
+  static inline std::atomic<int> silences{0}, exchanges{0}, waiting{0};
+  static inline std::atomic<double> commanded_N{0.0};
+
+  static int exchange(TrephineDevice*, double, TrephineArmState* states,
+                      const TrephineArmCommand* commands) {
+    ++exchanges;
+    waiting = 1;
+    while (held) std::this_thread::sleep_for(1ms);
+    waiting = 0;
+    commanded_N = commands->force_N[2];
+    states->position_m[2] = -0.004 - 1e-5 * (exchanges % 2);  // in bone, moving
+    return TREPHINE_OK;
+  }
+  static int capabilities(TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
+    for (double& extent : c->workspace_m) extent = 0.1;
+    c->peak_force_N = c->continuous_force_N = 3.3;
+    c->max_stiffness_N_per_m = 1000.0;
+    c->apparent_mass_kg = 0.045;
+    c->rate_hz = 1000.0;
+    return TREPHINE_OK;
+  }
+  static const TrephineDeviceApi& api() {
+    static const TrephineDeviceApi api = {
+        sizeof(TrephineDeviceApi), TREPHINE_DEVICE_ABI, "held", TREPHINE_CLOCK_HOST,
+        [](TrephineArmInfo*, std::uint32_t) { return 1u; },
+        [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
+          static int any;
+          *device = reinterpret_cast<TrephineDevice*>(&any);
+          return int(TREPHINE_OK);
+        },
+        [](TrephineDevice*, const char*) { return int(TREPHINE_OK); },
+        capabilities,
+        [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); },
+        [](TrephineDevice*, TrephineServo, void*) { return int(TREPHINE_OK); },
+        exchange,
+        nullptr,
+        [](TrephineDevice*) { return int(TREPHINE_OK); },
+        [](TrephineDevice*) { ++silences; },
+        [](TrephineDevice*) { return ""; },
+        [](TrephineDevice*) {},
+    };
+    return api;
+  }
+};
+
+// The loop and its watchdog, each on a thread.
+struct Running {
+  Running() : grid(test::boneSlab()), core(parameters(), *grid.takeWriter()) {
+    Held::held = false;
+    Held::silences = Held::exchanges = 0;
+    std::vector<LoopDevice> devices;
+    devices.push_back({*Device::open(*DevicePlugin::builtIn(Held::api()), {0}, "{}"), {0}});
+    loop = std::make_unique<HapticLoop>(core, std::move(devices), nullptr);
+    watchdog = std::make_unique<Watchdog>(*loop);
+    EXPECT_TRUE(loop->startDevices().ok());
+    watching = std::thread([this] { watchdog->run(); });
+    ticking = std::thread([this] {
+      HostClock clock;
+      here = loop->run(clock, stop);
+    });
+    until([this] { return loop->ticks() > 50; });
+  }
+  ~Running() {
+    Held::held = false;
+    stop = true;
+    ticking.join();
+    watchdog->end();
+    watching.join();
+  }
+  static HapticParameters parameters() {
+    HapticParameters p = test::oneArm();
+    p.removal = RemovalKind::work;
+    p.tissues.classes[0].cuttable = 0;
+    return p;
+  }
+  template <class Condition>
+  static bool until(Condition condition) {
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    while (!condition() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(1ms);
+    }
+    return condition();
+  }
+
+  Grid grid;
+  HapticCore core;
+  std::unique_ptr<HapticLoop> loop;
+  std::unique_ptr<Watchdog> watchdog;
+  std::atomic<bool> stop{false};
+  bool here = true;
+  std::thread ticking, watching;
+};
+
+TEST(Watchdog, TakesTheForceAwayWhileADeviceBlocksAndTheNextTickKnows) {
+  Running running;
+  Held::silences = 0;  // a busy machine may have stood still before
+  Held::held = true;
+  ASSERT_TRUE(Running::until([] { return Held::silences > 0; }));
+  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.02; }));
+  const std::uint64_t tick = running.loop->ticks();
+  Held::held = false;
+  ASSERT_TRUE(Running::until([&] { return running.loop->ticks() > tick + 20; }));
+  Event event;
+  bool silenced = false, late = false;
+  while (running.loop->events().pop(event)) {
+    silenced |= event.kind == EventKind::silenced && event.tick >= tick;
+    late |= event.kind == EventKind::fault && event.value == kFaultLate && event.tick >= tick;
+  }
+  EXPECT_TRUE(silenced);
+  EXPECT_TRUE(late);
+  EXPECT_EQ(Held::commanded_N, 0.0) << "by the rule of lateness";
+  EXPECT_EQ(running.watchdog->stillFor_s(), 0.0);
+}
+
+TEST(Watchdog, SilencesAtOnceWhenAskedEvenWhileADeviceBlocks) {
+  Running running;
+  Held::held = true;
+  ASSERT_TRUE(Running::until([] { return Held::waiting == 1; }));
+  const int before = Held::silences;
+  EXPECT_TRUE(running.watchdog->silence(20s));
+  EXPECT_GT(Held::silences, before);
+}
+
+TEST(HapticLoop, AThreadThatADeviceHoldsIsLeftBehindAndTouchesNoVoxelsLater) {
+  Running running;
+  Held::held = true;
+  ASSERT_TRUE(Running::until([] { return Held::waiting == 1; }));
+  const std::uint64_t ticks = running.loop->ticks();
+  ASSERT_EQ(running.loop->leaveBehind(), std::size_t(0));
+  Held::held = false;
+  EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
+  EXPECT_EQ(running.loop->ticks(), ticks) << "without the tick that it was in";
+  EXPECT_FALSE(running.here);
+}
+
+TEST(HapticLoop, AThreadThatIsInNoCallIsNotLeftBehind) {
+  test::Bench unused;
+  HapticLoop loop(unused.core, {}, nullptr);
+  EXPECT_FALSE(loop.leaveBehind());
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,96 @@
+// In a program of its own: a device that was left behind is not offered again while it runs.
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "session/session.h"
+#include "support.h"
+#include "training/replay.h"
+
+namespace trephine {
+namespace {
+
+using namespace std::chrono_literals;
+
+Volume block() {
+  Volume v;
+  v.geometry.size = {64, 64, 64};
+  v.geometry.spacing_mm = Vec3(1.5);
+  v.geometry.origin_mm = Vec3(-47.25);
+  v.hu.assign(v.geometry.voxelCount(), 1200);
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 ijk = v.geometry.indicesOf(i);
+    const Vec3 at = v.geometry.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2]));
+    if (glm::length(at) > 40.0) v.hu[i] = kAirHu;
+  }
+  return v;
+}
+
+// Arms whose exchange blocks at 0.3 s for `block_s`.
+Scene scene(const std::filesystem::path& folder, double block_s) {
+  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
+  Json json = *readJsonFile(resourceFolder() / "devices" / "omni.json");
+  json.update({{"block_after_s", 0.3}, {"block_for_s", block_s}});
+  std::ofstream(folder / "arms.json") << json.dump();
+  for (SceneArm& arm : scene.arms) arm.device_config = (folder / "arms.json").string();
+  return scene;
+}
+
+TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
+  test::TemporaryFolder folder;
+  constexpr double kBlock_s = 4.0;
+  const auto begin = std::chrono::steady_clock::now();
+  const Scene blocking = scene(folder.path(), kBlock_s);
+  const OperatorScript script = *readOperatorScript(blocking.operator_file, blocking);
+  auto made = Session::create(blocking, block(), {folder / "s.h5", script});
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  auto session = *std::move(made);
+  ASSERT_TRUE(session->start(60.0).ok());
+  while (session->standsStillFor_s() < 0.05 && std::chrono::steady_clock::now() - begin < 60s) {
+    std::this_thread::sleep_for(1ms);
+  }
+  ASSERT_GE(session->standsStillFor_s(), 0.05);
+
+  const auto stopping = std::chrono::steady_clock::now();
+  EXPECT_TRUE(session->stop().ok()) << "the recording is whole";
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - stopping;
+  EXPECT_LT(took.count(), 2.0) << "stop answers while the call still blocks";
+  std::printf("stop took %.3f s while a device blocked\n", took.count());
+  ASSERT_TRUE(session->leftBehind());
+  EXPECT_EQ(session->leftBehind()->code, "DEVICE_STUCK");
+  EXPECT_NE(session->leftBehind()->what.find("'left'"), std::string::npos);
+
+  const RunReport report = session->report();
+  EXPECT_EQ(report.ticks, 300u);
+  ASSERT_GE(report.faults.size(), 2u);
+  EXPECT_EQ(toJson(report)["faults"].back()["fault"], "stuck");
+  const std::string voxels = volumeSha256(session->grid().snapshot());
+
+  const auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  ASSERT_TRUE((*reader)->end()) << "ended, not cut short";
+  EXPECT_EQ((*reader)->tickCount(), 300u);
+  const auto events = *(*reader)->events();
+  ASSERT_GE(events.size(), 3u);
+  EXPECT_EQ(events[events.size() - 3].kind, EventKind::silenced) << "the watchdog's";
+  EXPECT_EQ(events.back().value, std::uint32_t(kFaultStuck));
+  const auto result = replay(**reader, block());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+
+  const auto again = Session::create(scene(folder.path(), 0.0), block(), {});
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().code, "DEVICE_STUCK");
+
+  // It wakes, and ends without a trace: the session's voxels stay, then it goes before the thread.
+  const std::chrono::duration<double> blocks_until(kBlock_s + 2.0);
+  std::this_thread::sleep_for(blocks_until / 2);
+  EXPECT_EQ(volumeSha256(session->grid().snapshot()), voxels);
+  session.reset();
+  std::this_thread::sleep_for(blocks_until / 2);
+}
+
+}  // namespace
+}  // namespace trephine
