@@ -37,6 +37,15 @@ const FaultName& nameOf(std::uint32_t fault) {
 
 }  // namespace
 
+Error memoryNotLocked(const std::string& reason) {
+  return {"MEMORY_NOT_LOCKED",
+          "The haptic thread's memory is not held in place (" + reason +
+              "), so ticks may come late when the system is short of memory",
+          "the limit on locked memory",
+          "Set 'memlock' to 'unlimited' for the users of Trephine in /etc/security/limits.d and log "
+          "in again"};
+}
+
 Json toJson(const RunReport& report) {
   Json arms = Json::array();
   for (const RunReport::Arm& arm : report.arms) {
@@ -63,7 +72,7 @@ Json toJson(const RunReport& report) {
           {"removed_voxels", report.removed_voxels},
           {"missed_deadlines", report.missed_deadlines},
           {"faults", faults},
-          {"memory_locked", !report.memory_not_locked},
+          {"memory_locked", report.memory_locked ? Json(*report.memory_locked) : Json(nullptr)},
           {"nonfinite", report.nonfinite},
           {"events_dropped", report.events_dropped},
           {"tick_ns",
@@ -107,8 +116,8 @@ std::string toText(const RunReport& report) {
     add("  FAULT at %.3f s, %s: %s\n", double(f.tick) / report.rate_hz,
         report.arms[std::size_t(f.arm)].name.c_str(), nameOf(f.fault).words);
   }
-  if (const auto& why = report.memory_not_locked) {
-    text += "  " + why->what + ". " + why->next + ".\n";
+  if (report.memory_locked == false) {
+    text += "  " + memoryNotLocked(report.memory_not_locked).sentence() + "\n";
   }
   if (!report.recording.empty()) text += "  session: " + report.recording + "\n";
   if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";

@@ -38,7 +38,8 @@ struct RunReport {
   std::vector<Arm> arms;
   std::vector<std::pair<std::string, double>> removed_mm3;  // by tissue
   std::vector<ArmFault> faults;  // in the order in which they came
-  std::optional<Error> memory_not_locked;  // in real time, where that is so
+  std::optional<bool> memory_locked;  // in real time
+  std::string memory_not_locked;      // why not
   std::uint64_t removed_voxels = 0;
   std::uint64_t missed_deadlines = 0;
   std::uint64_t nonfinite = 0;
@@ -47,6 +48,9 @@ struct RunReport {
   std::string volume_sha256_before, volume_sha256;
   std::string recording, picture;  // files; empty: none
 };
+
+// What it means that memory could not be locked, and how it is allowed.
+Error memoryNotLocked(const std::string& reason);
 
 Json toJson(const RunReport& report);
 // The same for a person, a few lines.

@@ -219,6 +219,9 @@ Status Session::start(double seconds) {
     }
     rt::touchStack();
     engine->locked.emplace();
+    if (!engine->locked->whole()) {
+      spdlog::warn("{}", memoryNotLocked(engine->locked->reason()).sentence());
+    }
     engine->memory_known.store(true, std::memory_order_release);
     HostClock clock;
     const bool here = engine->loop.run(clock, engine->stop, last_tick);
@@ -235,15 +238,9 @@ bool Session::finished() const { return engine_->finished.load(std::memory_order
 
 double Session::standsStillFor_s() const { return engine_->watchdog.stillFor_s(); }
 
-std::optional<Error> Session::memoryNotLocked() const {
-  if (!engine_->memory_known.load(std::memory_order_acquire) || engine_->locked->whole()) return {};
-  return Error{"MEMORY_NOT_LOCKED",
-               "The memory of the haptic thread is not held in place (" +
-                   engine_->locked->reason() + "), so the system may move it to disk and ticks may "
-                   "come late",
-               "this account's limit of locked memory",
-               "Set 'memlock' to 'unlimited' for the users of Trephine in "
-               "/etc/security/limits.d and log in again"};
+std::optional<bool> Session::memoryLocked() const {
+  if (!engine_->memory_known.load(std::memory_order_acquire)) return {};
+  return engine_->locked->whole();
 }
 
 Status Session::stop() {
@@ -478,7 +475,8 @@ RunReport Session::report() const {
     report.arms.push_back(arm);
   }
   report.faults = faults_;
-  report.memory_not_locked = memoryNotLocked();
+  report.memory_locked = memoryLocked();
+  if (report.memory_locked == false) report.memory_not_locked = engine_->locked->reason();
   report.missed_deadlines = loop_->missed();
   report.nonfinite = core_->nonFinite();
   report.events_dropped = loop_->dropped();

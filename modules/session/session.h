@@ -66,9 +66,9 @@ class Session {
   const std::optional<Error>& leftBehind() const { return left_behind_; }
   // How long the ticks have stood still, from 20 ms on; else 0.
   double standsStillFor_s() const;
-  // Whether the voxels, the loop's state and its stack are held in memory, and if not how that is
-  // allowed. Known once a tick was made in real time.
-  std::optional<Error> memoryNotLocked() const;
+  // Whether voxels, the loop's state and its stack are held in memory. Known from the first tick in
+  // real time on.
+  std::optional<bool> memoryLocked() const;
 
   // As fast as it goes, on the calling thread; the recorder keeps up. Errors: CANCELLED, and the
   // recording's.

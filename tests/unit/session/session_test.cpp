@@ -235,6 +235,31 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   EXPECT_TRUE(result->identical) << result->first_difference->field;
 }
 
+long lockedKiB() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word && word != "VmLck:") {
+  }
+  long kib = -1;
+  status >> kib;
+  return kib;
+}
+
+TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
+  const long before = lockedKiB();
+  auto session = *Session::create(cranium(), smallHead(), scripted());
+  EXPECT_FALSE(session->memoryLocked()) << "not known yet";
+  ASSERT_TRUE(session->start(60.0).ok());
+  while (session->state().ticks == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(session->memoryLocked());
+  const bool locked = *session->memoryLocked();
+  EXPECT_EQ(lockedKiB() > before, locked);
+  ASSERT_TRUE(session->stop().ok());
+  EXPECT_EQ(lockedKiB(), before) << "given back";
+  EXPECT_EQ(toJson(session->report())["memory_locked"], locked);
+  EXPECT_EQ(toText(session->report()).find("memlock") == std::string::npos, locked);
+}
+
 TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
   auto session = *Session::create(cranium(), smallHead(), scripted());
   ASSERT_TRUE(session->freewheel(10.0).ok());
