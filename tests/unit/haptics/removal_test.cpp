@@ -247,6 +247,8 @@ TEST(Removal, AVoxelThatTwoArmsPaidCountsHalfForEachAndComesBackOnce) {
   ASSERT_GT(all, alone + 50u);
   EXPECT_EQ(core.journal().paid(0) + core.journal().paid(1), kVoxelShares * all);
   EXPECT_GT(core.journal().paid(1), kVoxelShares / 3 * (all - alone));
+  EXPECT_LT(core.journal().paid(1), 2 * kVoxelShares / 3 * (all - alone)) << "not all its own";
+  EXPECT_GT(core.journal().removed(1, 0), 9 * (all - alone) / 10) << "but its stroke's to undo";
   const std::uint64_t entries = core.journal().entryCount();
   EXPECT_EQ(entries, all) << "one entry a voxel";
 
