@@ -79,11 +79,10 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
 }
 
 // A face that nobody was asked about must not leave the computer unnoticed.
-void warnOfFace(const Provenance& provenance, const std::string& file) {
+void warnOfFace(const Provenance& provenance) {
   if (std::ranges::find(provenance.unanswered, "FACE") == provenance.unanswered.end()) return;
-  spdlog::warn("The patient's face can be reconstructed from {}: before it leaves this computer, "
-               "write it again with --choice FACE=deface",
-               file);
+  spdlog::warn("The patient's face can be reconstructed from the volume that was written: before it "
+               "leaves this computer, write it again with --choice FACE=deface");
 }
 
 // What is written can be written, as far as that can be said before a long run.
@@ -159,7 +158,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     Status written = writeVolume(*volume, arguments.write);
     if (written) written = writeProvenance(*folder->report().provenance, arguments.write);
     if (!written) return fail(written.error(), &folder->report());
-    warnOfFace(*folder->report().provenance, arguments.write);
+    warnOfFace(*folder->report().provenance);
   }
   if (json) {
     printAnswer("import", toJson(folder->report()));

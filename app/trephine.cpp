@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/answer.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "ui/colours.h"
 #include "ui/exercise.h"
@@ -63,7 +64,11 @@ int run(int argc, char** argv) {
   if (!scene.empty()) {
     ExerciseOptions options{scene, {}, out};
     if (seconds > 0.0) options.seconds = seconds;
-    if (out.empty()) options.out = std::filesystem::temp_directory_path() / "trephine-exercise";
+    if (out.empty()) {
+      const Result<std::filesystem::path> temporary = temporaryFolder();
+      if (!temporary) return printError("exercise", temporary.error(), json);
+      options.out = *temporary / "trephine-exercise";
+    }
     return exercise(options, json);
   }
   MainWindow window;

@@ -232,8 +232,9 @@ void MainWindow::connectParts() {
 void MainWindow::fillScenes() {
   std::vector<std::filesystem::path> files;
   std::error_code ec;
-  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes", ec)) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  for (std::filesystem::directory_iterator it(resourceFolder() / "scenes", ec), end;
+       !ec && it != end; it.increment(ec)) {
+    if (it->path().extension() == ".json") files.push_back(it->path());
   }
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path& file : files) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -76,6 +77,17 @@ Status makeFolder(const fs::path& folder) {
                  "Choose another folder"};
   }
   return {};
+}
+
+Result<fs::path> temporaryFolder() {
+  const char* named = std::getenv("TMPDIR");
+  const bool given = named && *named;
+  const fs::path folder = given ? named : "/tmp";
+  std::error_code ec;
+  if (fs::is_directory(folder, ec)) return folder;
+  return Error{"NO_TEMPORARY_FOLDER", "There is no folder for temporary files",
+               (given ? "TMPDIR=" : "") + folder.string(),
+               "Set TMPDIR to a folder that you may write to"};
 }
 
 }  // namespace trephine

@@ -20,4 +20,8 @@ Status writeTextFile(const std::filesystem::path& target, std::string_view text)
 // Makes the folder and its parents.
 Status makeFolder(const std::filesystem::path& folder);
 
+// Where files go that nobody keeps: the environment's TMPDIR, or /tmp without one. Errors:
+// NO_TEMPORARY_FOLDER.
+Result<std::filesystem::path> temporaryFolder();
+
 }  // namespace trephine

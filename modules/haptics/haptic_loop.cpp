@@ -146,7 +146,7 @@ void HapticLoop::publish(const TickRecord& record) {
   state.can_redo = journal.canRedo();
   state.seconds = std::uint32_t(journal.seconds());
   for (int arm = 0; arm < kMaxArms; ++arm) {
-    for (int c = 0; c < kMaxClasses; ++c) state.removed[arm][c] = journal.removed(arm, c);
+    for (int c = 0; c < kMaxTissues; ++c) state.removed[arm][c] = journal.removed(arm, c);
   }
   state.controller = core_.controller();
   state.paused = core_.paused();

@@ -50,7 +50,7 @@ struct LoopState {
   std::uint64_t missed = 0;
   std::uint64_t nonfinite = 0;
   std::uint64_t dropped = 0;  // records, carves or events that found a full ring
-  std::uint64_t removed[kMaxArms][kMaxClasses] = {};  // voxels, undone strokes not counted
+  std::uint64_t removed[kMaxArms][kMaxTissues] = {};  // voxels, undone strokes not counted
   ControllerKind controller = ControllerKind::off;
   bool paused = false;
   bool busy = false;  // an undo, redo or reset is going on

@@ -77,7 +77,8 @@ void keep(const Vec3& value) {
 // recommendation.
 Result<Json> settingsOf(const Scene& scene) {
   const std::filesystem::path file = resourceFolder() / "recommended.json";
-  if (!std::filesystem::exists(file)) return Json(nullptr);
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) return Json(nullptr);
   Result<std::vector<RecommendedSetting>> recommended = readRecommended(file);
   if (!recommended) return recommended.error();
   Json settings = Json::array();

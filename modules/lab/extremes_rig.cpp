@@ -266,7 +266,7 @@ Run run(const Setup& setup) {
   std::vector<Event> events;
   for (Event event; loop.events().pop(event);) events.push_back(event);
   run.missed = loop.missed();
-  for (int c = 0; c < kMaxClasses; ++c) run.removed += core.journal().removed(0, c);
+  for (int c = 0; c < kMaxTissues; ++c) run.removed += core.journal().removed(0, c);
 
   const std::uint64_t gone = voxelsOfAir(grid.snapshot()) - voxelsOfAir(setup.volume);
   run.broken = brokenBy(run.trace, events, capabilities.peak_force_N);

@@ -317,11 +317,11 @@ Result<HapticsMeasurement> measureHaptics(const HapticsOptions& options,
   if (!out.empty()) {
     if (Status made = makeFolder(out); !made) return made.error();
   }
-  const std::filesystem::path spill_folder =
-      out.empty() ? std::filesystem::temp_directory_path() : out;
+  const Result<std::filesystem::path> spill_folder = out.empty() ? temporaryFolder() : out;
+  if (!spill_folder) return spill_folder.error();
   HapticsMeasurement result;
   for (double box_mm : options.boxes_mm) {
-    const Status measured = measureBox(options, box_mm, spill_folder, progress, result);
+    const Status measured = measureBox(options, box_mm, *spill_folder, progress, result);
     if (!measured) return measured.error();
   }
   Result<SlidingMeasurement> sliding =

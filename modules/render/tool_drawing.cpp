@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <numbers>
 
 #include "base/log.h"
@@ -295,10 +294,13 @@ struct ToolDrawing::Tool {
 ToolDrawing::ToolDrawing() = default;
 ToolDrawing::~ToolDrawing() = default;
 
-void ToolDrawing::warn(const std::string& file, const Error& why) {
-  if (!warned_.insert(file).second) return;
-  // The mesh's own name alone: a log names no folder.
-  const Error said{why.code, why.what, std::filesystem::path(file).filename().string(), why.next};
+void ToolDrawing::warn(const ToolView& view, const Error& why) {
+  if (!warned_.insert(view.mesh_file).second) return;
+  // A log names neither folder nor file: a scene may lie beside a patient's scan.
+  const char* tool = view.shape == ToolShape::needle  ? "the mesh of a needle"
+                     : view.shape == ToolShape::blade ? "the mesh of a blade"
+                                                      : "the mesh of a burr";
+  const Error said{why.code, why.what, tool, why.next};
   spdlog::warn("{} The built-in shape is drawn instead.", said.sentence());
 }
 
@@ -310,13 +312,13 @@ std::optional<ToolMesh> ToolDrawing::meshOf(const ToolView& view) {
     if (mesh) {
       at->second = std::move(*mesh);
     } else {
-      warn(view.mesh_file, mesh.error());
+      warn(view, mesh.error());
     }
   }
   if (!at->second) return std::nullopt;
   Result<ToolMesh> placed = inToolFrame(*at->second, view.mesh_tip_mm, view.mesh_axis);
   if (placed) return std::move(*placed);
-  warn(view.mesh_file, placed.error());
+  warn(view, placed.error());
   return std::nullopt;
 }
 

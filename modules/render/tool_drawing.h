@@ -29,7 +29,7 @@ class ToolDrawing {
  private:
   struct Tool;
   std::optional<ToolMesh> meshOf(const ToolView& view);  // in the tool's frame
-  void warn(const std::string& file, const Error& why);
+  void warn(const ToolView& view, const Error& why);
 
   std::vector<std::unique_ptr<Tool>> tools_;
   std::map<std::string, std::optional<ToolMesh>> meshes_;  // by file; none: it cannot be read

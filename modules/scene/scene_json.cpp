@@ -72,7 +72,8 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   const std::string config = device.text("config", "");
   if (!config.empty()) {
     arm.device_config = (folder / config).lexically_normal().string();
-    if (!fs::is_regular_file(arm.device_config)) {
+    std::error_code ec;
+    if (!fs::is_regular_file(arm.device_config, ec)) {
       device.fail("config", "The file '" + config + "' is not there", "Check the name");
     }
   }
@@ -198,7 +199,8 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   const std::string script = reader.text("operator", "");
   if (!script.empty()) {
     scene.operator_file = (folder / script).lexically_normal().string();
-    if (!fs::is_regular_file(scene.operator_file)) {
+    std::error_code ec;
+    if (!fs::is_regular_file(scene.operator_file, ec)) {
       reader.fail("operator", "The file '" + script + "' is not there", "Check the name");
     }
   }

@@ -54,7 +54,8 @@ ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
   look.mesh = (folder / file).lexically_normal();
   look.tip_mm = item.vec3("tip_mm", Vec3(0.0));
   look.axis = item.vec3("axis", Vec3(0.0, 0.0, 1.0));
-  if (!std::filesystem::is_regular_file(look.mesh)) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(look.mesh, ec)) {
     item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
   }
   if (!(glm::length(look.axis) > 0.0)) item.fail("axis", "The direction has no length");

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/file.h"
 #include "base/log.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
@@ -114,7 +115,8 @@ struct Session::Engine {
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension) {
   std::filesystem::path file = folder / (stem + extension);
-  for (int number = 2; std::filesystem::exists(file); ++number) {
+  std::error_code ec;
+  for (int number = 2; std::filesystem::exists(file, ec); ++number) {
     file = folder / (stem + "-" + std::to_string(number) + extension);
   }
   return file;
@@ -155,8 +157,9 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
                                                 *session->grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
-  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(
-      beside.empty() ? std::filesystem::temp_directory_path() : beside);
+  const Result<std::filesystem::path> spill_folder = beside.empty() ? temporaryFolder() : beside;
+  if (!spill_folder) return spill_folder.error();
+  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*spill_folder);
   if (!spill) return spill.error();
   session->spill_ = *std::move(spill);
   std::unique_ptr<Operator> script;

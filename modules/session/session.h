@@ -128,7 +128,8 @@ class Session {
   std::optional<Error> failure_;
 };
 
-// "session.h5" in `folder`, or "session-2.h5" and so on where that is taken.
+// "session.h5" in `folder`, or "session-2.h5" and so on where that is taken. Asks the disk, but never
+// fails: a folder that cannot be looked into is for who then writes there to report.
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension);
 

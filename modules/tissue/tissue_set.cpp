@@ -77,7 +77,8 @@ const Tissue* TissueSet::find(const std::string& id) const {
 Status validate(const TissueSet& set, const std::string& file) {
   if (set.tissues.empty() || set.tissues.size() > std::size_t(kMaxTissues)) {
     return bad(file, "tissues",
-               "A set has 1 to 16 tissues, this one has " + std::to_string(set.tissues.size()));
+               "A set has 1 to " + std::to_string(kMaxTissues) + " tissues, this one has " +
+                   std::to_string(set.tissues.size()));
   }
   for (std::size_t i = 0; i < set.tissues.size(); ++i) {
     const Tissue& t = set.tissues[i];

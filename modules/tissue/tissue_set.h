@@ -10,12 +10,11 @@
 #include <vector>
 
 #include "base/json.h"
+#include "base/limits.h"
 #include "base/math.h"
 #include "base/result.h"
 
 namespace trephine {
-
-constexpr int kMaxTissues = 16;
 
 // A number that a person set, and where it comes from: a citation, or "tuned here, uncited".
 struct SourcedNumber {
@@ -47,10 +46,10 @@ struct TissueSet {
   const Tissue* find(const std::string& id) const;
 };
 
-// Every rule that a set must keep, whether read from a file or typed in a panel: 1 to 16 tissues,
-// unique ids, hu_min <= hu_max within int16, labels from 1 to 255, no two ranges that overlap under
-// the same label or both without one, finite numbers, none of the mechanics negative, opacity and
-// colour in [0, 1], a source for each number. The Error names `file`, field and value.
+// Every rule that a set must keep, whether read from a file or typed in a panel: 1 to kMaxTissues
+// tissues, unique ids, hu_min <= hu_max within int16, labels from 1 to 255, no two ranges that
+// overlap under the same label or both without one, finite numbers, none of the mechanics negative,
+// opacity and colour in [0, 1], a source for each number. The Error names `file`, field and value.
 Status validate(const TissueSet& set, const std::string& file);
 
 Result<TissueSet> readTissueSet(const std::filesystem::path& file);

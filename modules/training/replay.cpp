@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/file.h"
 #include "haptics/haptic_core.h"
 #include "scene/scene.h"
 #include "training/recording_layout.h"
@@ -134,8 +135,9 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
   volume.geometry = header.geometry;
   Grid grid(std::move(volume), *std::move(fitted));
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
-  Result<std::unique_ptr<JournalSpill>> spill =
-      JournalSpill::create(std::filesystem::temp_directory_path());
+  const Result<std::filesystem::path> temporary = temporaryFolder();
+  if (!temporary) return temporary.error();
+  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*temporary);
   if (!spill) return spill.error();
   ReplayResult result;
   result.cut_short = !recording.end();

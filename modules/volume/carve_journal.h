@@ -21,15 +21,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/limits.h"
 #include "volume/carve_log.h"
 #include "volume/grid.h"
 
 namespace trephine {
 
-constexpr int kMaxClasses = 16;  // tissue classes that a journal, a table and a recording count
-constexpr int kMaxArms = 4;
 // A voxel that n arms paid together counts 1/n for each: in twelfths, whole for up to four.
 constexpr int kVoxelShares = 12;
+static_assert(kMaxArms <= 4);
 
 class CarveJournal {
  public:
@@ -173,7 +173,7 @@ class CarveJournal {
   std::uint32_t top_ = kNone;     // the last stroke that stands
   std::uint32_t redo_top_ = kNone;
   std::uint32_t open_[kMaxArms] = {kNone, kNone, kNone, kNone};
-  std::uint64_t removed_[kMaxArms][kMaxClasses] = {};
+  std::uint64_t removed_[kMaxArms][kMaxTissues] = {};
   std::uint64_t paid_[kMaxArms] = {};
 
   // The job: its end, its way over `meet_branch_`, and the stretch of the log that it is on.

@@ -9,24 +9,34 @@
 #pragma once
 
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/limits.h"
+
 namespace trephine {
 
 struct CarveEntry {
+  static constexpr int kClassBits = std::bit_width(unsigned(kMaxTissues - 1));
+  static constexpr int kArmBits = std::bit_width(unsigned(kMaxArms - 1));
+  static constexpr int kPayerBit = kClassBits + kArmBits;
+  static_assert(kPayerBit + kMaxArms <= 16);
+
   std::uint32_t voxel = 0;
   std::int16_t hu = 0;    // of the tissue that was taken
-  // Bits 0 to 3 its class, 4 and 5 the arm that took it, 6 to 9 other arms that paid for it too.
+  // From the lowest bit: its class, the arm that took it, a bit for every other arm that paid too.
   std::uint16_t tag = 0;
 
-  int tissueClass() const { return tag & 15; }
-  int arm() const { return (tag >> 4) & 3; }
-  std::uint32_t payers() const { return ((tag >> 6) & 15u) | 1u << arm(); }
+  int tissueClass() const { return tag & ((1 << kClassBits) - 1); }
+  int arm() const { return (tag >> kClassBits) & ((1 << kArmBits) - 1); }
+  std::uint32_t payers() const {
+    return ((tag >> kPayerBit) & ((1u << kMaxArms) - 1)) | 1u << arm();
+  }
   static std::uint16_t makeTag(int arm, int tissue_class, std::uint32_t sharers = 0) {
-    return std::uint16_t(sharers << 6 | std::uint32_t(arm << 4 | tissue_class));
+    return std::uint16_t(sharers << kPayerBit | std::uint32_t(arm << kClassBits | tissue_class));
   }
 };
 static_assert(sizeof(CarveEntry) == 8);

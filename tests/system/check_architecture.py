@@ -1,4 +1,5 @@
-"""Holds every #include against the rooms' arrows, and every text file against machine paths.
+"""Holds every #include against the rooms' arrows, every call of std::filesystem against exceptions,
+and every text file against machine paths.
 
 usage: check_architecture.py SOURCE_DIR ROOMS_JSON [--self-test]
 
@@ -96,6 +97,15 @@ VTK_HEADER = "modules/render/carve_volume_mapper.h"
 VOLUME_VTK_FILE = "modules/volume/nifti_file.cpp"
 # By its bare name, since a plugin also builds alone, with that folder given.
 DEVICE_ABI = "trephine_device.h"
+
+# Everything of std::filesystem that asks the disk, and what its calls need so that they do not throw.
+FILESYSTEM_CALL = re.compile(
+    r"\b(?:std::filesystem|fs)::((?:recursive_)?directory_iterator(?: \w+)?|absolute|canonical|"
+    r"copy\w*|create_\w+|current_path|equivalent|exists|file_size|hard_link_count|"
+    r"is_(?:block_file|character_file|directory|empty|fifo|other|regular_file|socket|symlink)|"
+    r"last_write_time|permissions|proximate|read_symlink|relative|remove|remove_all|rename|"
+    r"resize_file|space|status|symlink_status|temp_directory_path|weakly_canonical)\(")
+ERROR_CODE = re.compile(r"\b(?:std::error_code|(?:std::filesystem|fs)::file_status)&? (\w+)")
 
 SOURCES = {".h", ".hpp", ".c", ".cpp", ".in"}
 TEXTS = SOURCES | {".cmake", ".json", ".md", ".py", ".sh", ".txt", ".yml", ".yaml", ".glsl", ".qss",
@@ -204,6 +214,35 @@ def check_stray_sources(report, rooms):
             report.add(path, 0, "this source belongs to no declared room")
 
 
+def arguments_from(text, start):
+    """The arguments of a call whose opening bracket ends at `start`."""
+    depth, begin, found = 1, start, []
+    for at in range(start, len(text)):
+        depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(text[at], 0)
+        if depth == 0 or (depth == 1 and text[at] == ","):
+            found.append(text[begin:at].strip())
+            begin = at + 1
+        if depth == 0:
+            break
+    return found
+
+
+def check_filesystem_calls(report):
+    """What returns Result throws nothing, so the disk is asked with an error_code (or about a
+    file_status, which asks nothing)."""
+    for folder in ("modules", "ui", "app", "plugins"):
+        for path in sources_below(report.root, folder):
+            text = path.read_text(encoding="utf-8", errors="replace")
+            safe = set(ERROR_CODE.findall(text))
+            for match in FILESYSTEM_CALL.finditer(text):
+                # A range-for goes on to the next entry without one.
+                in_range_for = "directory_iterator" in match.group(1) and re.search(
+                    r"[^:]:\s*$", text[:match.start()])
+                if in_range_for or arguments_from(text, match.end())[-1] not in safe:
+                    report.add(path, text.count("\n", 0, match.start()) + 1,
+                               f"{match.group(1)} throws without an error_code")
+
+
 def check_machine_paths(report):
     """No text that is handed on names a folder of one machine."""
     for path in sorted(report.root.rglob("*")):
@@ -237,6 +276,7 @@ def check(root, declared):
         check_room(report, rooms, room)
     check_plugins(report)
     check_stray_sources(report, rooms)
+    check_filesystem_calls(report)
     check_machine_paths(report)
     if not report.files or not report.includes:
         report.add(pathlib.Path("modules"), 0, "no source was found, so nothing was checked")
@@ -266,6 +306,13 @@ VIOLATIONS = [
     ("a plugin with Qt", "plugins/planted/planted.cpp", "#include <QString>\n",
      "a plugin may not include"),
     ("a source of no room", "modules/planted/planted.cpp", "\n", "belongs to no declared room"),
+    ("a call that throws", "modules/base/file.cpp", "bool there = fs::exists(fs::path(name));\n",
+     "exists throws"),
+    ("a listing that throws", "ui/planted.cpp",
+     "std::error_code ec;\nfor (auto& e : std::filesystem::directory_iterator(folder, ec)) {}\n",
+     "directory_iterator throws"),
+    ("a folder that may be missing", "ui/planted.cpp", "std::filesystem::temp_directory_path();\n",
+     "temp_directory_path throws"),
     ("a machine's path", "modules/base/README.md", "see /ho" "me/someone/notes\n", "one machine"),
 ]
 

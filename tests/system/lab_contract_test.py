@@ -7,7 +7,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, SOURCE, LabTest, lab
+from lab_support import LAB, SCENES, SOURCE, WINDOW, LabTest, lab, without_display
 
 IMPORT_KEYS = {
     "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen",
@@ -20,14 +20,6 @@ RUN_KEYS = {
     "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
     "missed_deadlines", "nonfinite", "events_dropped", "tick_ns", "volume_sha256_before",
     "volume_sha256", "recording", "picture"}
-
-
-def without_display():
-    environment = dict(os.environ)
-    environment.pop("DISPLAY", None)
-    return environment
-
-
 ONE_ARM = ("cranium-one-arm", "burr-hole", "liver-one-arm")
 
 
@@ -95,9 +87,9 @@ class Phantom(LabTest):
         self.assert_error(answer, "UNKNOWN_PHANTOM", "foot")
 
 
-class Run(LabTest):
-    def test_every_shipped_scene_removes_tissue_and_replays_identically(self):
-        for name in ("cranium", "cranium-one-arm", "burr-hole", "liver", "liver-one-arm"):
+class ShippedScenes:
+    def check(self, *names):
+        for name in names:
             with self.subTest(scene=name):
                 run = lab("run", SCENES / f"{name}.json", "--out", self.folder / name,
                           environment=without_display())
@@ -119,6 +111,22 @@ class Run(LabTest):
                 self.assertIsNone(again["first_difference"])
                 self.assertEqual(again["ticks"], run["ticks"])
                 self.assertEqual(again["volume_sha256"], run["volume_sha256"])
+
+
+class CraniumScenes(ShippedScenes, LabTest):
+    def test_they_remove_tissue_and_replay_identically(self):
+        self.check("cranium", "cranium-one-arm", "burr-hole")
+
+
+class LiverScenes(ShippedScenes, LabTest):
+    def test_they_remove_tissue_and_replay_identically(self):
+        self.check("liver", "liver-one-arm")
+
+
+class Run(LabTest):
+    def test_no_shipped_scene_is_forgotten(self):
+        self.assertEqual({file.stem for file in SCENES.glob("*.json")},
+                         {"cranium", "cranium-one-arm", "burr-hole", "liver", "liver-one-arm"})
 
     def test_options_reach_the_run(self):
         run = lab("run", SCENES / "cranium.json", "--seconds", 0.5, "--rate", 2000, "--controller",
@@ -154,6 +162,8 @@ class Run(LabTest):
         self.assertEqual(run["volume_sha256"], run["volume_sha256_before"])
         self.assertTrue(lab("replay", run["recording"])["identical"])
 
+
+class Explain(LabTest):
     def test_explain_lists_what_is_instantiated_and_its_cost(self):
         answer = lab("explain", SCENES / "liver.json")
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
@@ -183,165 +193,6 @@ class Run(LabTest):
         (self.folder / "recommended.json").write_text('{"format": "trephine.recommended"}')
         answer = lab("explain", SCENES / "cranium.json", environment=bare, expect=1)
         self.assert_error(answer, "BAD_FIELD", "recommended.json")
-
-
-class Measurements(LabTest):
-    CELL = {"mass_kg": 0.045, "period_s": 0.001, "delay_samples": 0, "encoder_mm": 0.055,
-            "plant_damping": 0.05, "hand": {"k": 300, "b": 2}, "tissue": {"b": 100, "k": 0}}
-
-    def grid(self, *changes):
-        file = self.folder / "grid.json"
-        file.write_text(json.dumps({"cells": [{**self.CELL, **change} for change in changes]}))
-        return file
-
-    def test_a_grid_of_ones_own_is_judged_under_every_controller(self):
-        grid = self.grid({}, {"hand": None}, {"tissue": {"b": 1, "k": 0}})
-        answer = lab("measure", "stability", "--grid", grid, "--out", self.folder / "out")
-        self.assertEqual(set(answer["controllers"]), {"off", "seed", "bounded"})
-        self.assertEqual(answer["controllers"]["bounded"]["unstable"], 0)
-        self.assertGreater(answer["controllers"]["off"]["unstable"], 0)
-        self.assertFalse(answer["zero_force"]["accepted"])
-        self.assertEqual(len(answer["per_cell"]), 9)
-        self.assertEqual(set(answer["per_cell"][0]),
-                         {"cell", "controller", "oscillation_mm", "step_N", "energy_out_mJ",
-                          "fidelity_error", "authority", "stable", "margin"})
-        self.assertEqual(len((self.folder / "out" / "stability.csv").read_text().splitlines()), 10)
-
-    def test_a_grid_that_cannot_be_is_named(self):
-        out = self.folder / "out"
-        answer = lab("measure", "stability", "--grid", self.folder / "none.json", "--out", out,
-                     expect=1)
-        self.assert_error(answer, "MISSING_FILE", "none.json")
-        answer = lab("measure", "stability", "--grid", self.grid({"mass_kg": -1}), "--out", out,
-                     expect=1)
-        self.assert_error(answer, "BAD_FIELD", "mass_kg", "-1")
-
-    def test_the_extremes_all_end_as_they_should(self):
-        answer = lab("measure", "extremes", "--out", self.folder)
-        self.assertGreater(len(answer["rows"]), 30)
-        self.assertEqual([row for row in answer["rows"] if not row["pass"]], [])
-
-    def test_a_tick_is_timed_for_every_tool_grid_and_phase(self):
-        answer = lab("measure", "haptics", "--out", self.folder / "out")
-        self.assertEqual(set(answer), {"schema", "build", "rows", "direction_error_deg",
-                                       "sliding_force_step_percent_p99", "depth_error_percent",
-                                       "bars"})
-        rows = answer["rows"]
-        self.assertEqual({(row["tool"], row["arms"], row["grid"], row["box_mm"], row["phase"])
-                          for row in rows},
-                         {(tool, arms, grid, box, phase)
-                          for tool in ("needle", "blade64", "burr6") for arms in (1, 2)
-                          for grid in (256, 512) for box in (200, 49.2)
-                          for phase in ("free", "contact", "removal")})
-        self.assertEqual(len(rows), 72)
-        for row in rows:
-            self.assertEqual(set(row["ns"]), {"median", "p99", "p999", "max"})
-            self.assertEqual(row["removed_mm3_per_s"] > 0, row["phase"] == "removal", row)
-        strays = [bar for bar in answer["bars"] if bar["name"].startswith("rows that")]
-        self.assertEqual([bar["value"] for bar in strays], [0])
-        # Not of this machine's speed, so they hold anywhere.
-        self.assertLess(answer["direction_error_deg"]["median"], 3)
-        self.assertLess(answer["direction_error_deg"]["p99"], 8)
-        self.assertLess(answer["sliding_force_step_percent_p99"], 3)
-        self.assertEqual(len((self.folder / "out" / "haptics.csv").read_text().splitlines()), 73)
-
-    def test_every_knob_has_its_trade_and_one_recommended_setting(self):
-        answer = lab("measure", "trades", "--out", self.folder / "out",
-                     environment=without_display())
-        self.assertEqual(set(answer), {"schema", "build", "rows", "table", "charts"})
-        self.assertIsNone(answer["charts"], "without a display there are none")
-        settings = {}
-        for row in answer["rows"]:
-            self.assertEqual(set(row), {"knob", "setting", "error", "error_unit", "cost",
-                                        "cost_unit", "reference", "recommended", "extra"})
-            settings.setdefault(row["knob"], []).append(row["setting"])
-        self.assertEqual(settings, {
-            "points_blade": ["2", "4", "8", "16", "32", "64", "128", "256"],
-            "points_burr": ["8", "16", "32", "64", "128", "256", "512"],
-            "hu_lookup": ["nearest", "trilinear"],
-            "force_at": ["tip", "distributed"],
-            "rate_hz": ["250", "500", "1000", "2000", "4000", "10000", "20000"],
-            "velocity_estimate": ["backward difference", "low-pass 100 Hz", "low-pass 20 Hz",
-                                  "adaptive window", "kalman"],
-            "grid": ["full", "half", "quarter"]})
-        chosen = [(row["knob"], row["setting"]) for row in answer["rows"] if row["recommended"]]
-        self.assertEqual([knob for knob, _ in chosen], list(settings))
-        written = json.loads((self.folder / "out" / "recommended.json").read_text())
-        self.assertEqual(written["format"], "trephine.recommended")
-        self.assertEqual([(k["knob"], k["setting"]) for k in written["knobs"]], chosen)
-        self.assertEqual(len(Path(answer["table"]).read_text().splitlines()),
-                         1 + len(answer["rows"]))
-
-    def test_a_table_that_cannot_be_written_is_an_error(self):
-        (self.folder / "file").write_text("in the way")
-        for what in ("haptics", "trades"):
-            answer = lab("measure", what, "--out", self.folder / "file", expect=1)
-            self.assert_error(answer, "CANNOT_WRITE", "file")
-
-    def test_the_import_is_measured_beside_a_plain_read_and_absent_peers(self):
-        # A PATH without programs: what is installed here does not matter.
-        answer = lab("measure", "import", "--peers", "--size", 64, "--slices", 4, "--repetitions",
-                     1, "--scan-series", 2, "--scan-slices", 3, "--out", self.folder / "out",
-                     environment={**os.environ, "PATH": str(self.folder)})
-        self.assertEqual(set(answer), {"schema", "build", "volume_mb", "rows", "scan", "ratios"})
-        rows = {(row["series"], row["loader"]): row for row in answer["rows"]}
-        self.assertEqual(set(rows), {
-            (series, loader)
-            for series in ("int16", "u12", "big-endian", "deflated", "rle", "jpegls", "jpegll", "j2k")
-            for loader in ("trephine", "trephine command", "floor", "floor kept", "dcm2niix",
-                           "dicomtonifti")})
-        for (series, loader), row in rows.items():
-            with self.subTest(series=series, loader=loader):
-                self.assertEqual(set(row), {"series", "loader", "threads", "seconds_median",
-                                            "peak_rss_mb", "above_start_mb", "correct",
-                                            "skipped_reason"})
-                if loader.startswith("floor"):
-                    self.assertGreater(row["seconds_median"], 0)
-                    self.assertIsNone(row["correct"])
-                elif loader.startswith("trephine"):
-                    self.assertIsNone(row["skipped_reason"])
-                    self.assertEqual(row["correct"], True)
-                    self.assertGreater(row["seconds_median"], 0)
-                else:
-                    self.assertEqual(row["skipped_reason"], "not installed")
-                    self.assertIsNone(row["seconds_median"])
-        ours = rows["int16", "trephine"]
-        self.assertGreater(ours["above_start_mb"], 0)
-        self.assertLess(ours["above_start_mb"], ours["peak_rss_mb"])
-        self.assertLess(ours["seconds_median"], rows["int16", "trephine command"]["seconds_median"])
-        self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
-                         [("trephine", 6), ("gdcmscanner", 6)])
-        self.assertGreater(answer["scan"][0]["seconds_median"], 0)
-        self.assertGreater(answer["ratios"]["int16_to_floor"], 1)
-        self.assertIsNone(answer["ratios"]["command_to_dcm2niix"])
-        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()), ["import.csv"])
-
-    def test_an_import_measurement_of_what_is_not_there_is_refused(self):
-        out = self.folder / "out"
-        answer = lab("measure", "import", "--series", "mp3", "--out", out, expect=1)
-        self.assert_error(answer, "BAD_ARGUMENT", "mp3", "jpegls")
-        answer = lab("measure", "import", "--size", 1, "--out", out, expect=1)
-        self.assert_error(answer, "BAD_ARGUMENT", "2048")
-        self.assertFalse(out.exists())
-
-    def test_every_byte_of_a_folder_is_read(self):
-        (self.folder / "a").write_bytes(b"x" * 1000)
-        (self.folder / "b").write_bytes(b"y" * 24)
-        answer = lab("measure", "read", self.folder)
-        self.assertEqual(set(answer), {"schema", "build", "files", "bytes", "seconds",
-                                       "kept_seconds"})
-        self.assertEqual((answer["files"], answer["bytes"]), (2, 1024))
-        answer = lab("measure", "read", self.folder / "none", expect=1)
-        self.assert_error(answer, "MISSING_FOLDER", "none")
-
-    def test_jitter_is_measured_at_three_rates(self):
-        answer = lab("measure", "jitter", "--seconds", 0.2, "--out", self.folder)
-        self.assertEqual({row["rate_hz"] for row in answer["rows"]}, {1000, 2000, 4000})
-        for row in answer["rows"]:
-            self.assertEqual(row["ticks"], round(0.2 * row["rate_hz"]))
-            self.assertLessEqual(row["late_us"]["median"], row["late_us"]["max"])
-        answer = lab("measure", "jitter", "--seconds", "-1", "--out", self.folder, expect=1)
-        self.assert_error(answer, "BAD_ARGUMENT")
 
 
 class BadInput(LabTest):
@@ -406,6 +257,23 @@ class BadInput(LabTest):
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assert_error(json.loads(done.stdout), "CANNOT_WRITE")
         self.assertEqual((self.folder / "precious.mha").read_text(), "precious")
+
+    def test_a_missing_temporary_folder_is_named_where_one_is_needed(self):
+        missing = {**os.environ, "TMPDIR": str(self.folder / "none")}
+        run = lab("run", SCENES / "cranium.json", "--seconds", 0.1, "--out", self.folder,
+                  environment=missing)
+        answer = lab("replay", run["recording"], environment=missing, expect=1)
+        self.assert_error(answer, "NO_TEMPORARY_FOLDER", f"TMPDIR={self.folder}/none")
+
+    @unittest.skipUnless(os.environ.get("DISPLAY"), "the window needs a display")
+    def test_so_does_the_window_where_no_folder_was_given(self):
+        done = subprocess.run(
+            [WINDOW, "--exercise", SCENES / "cranium.json", "--seconds", "0.1", "--json"],
+            env={**os.environ, "TMPDIR": str(self.folder / "none")}, capture_output=True, text=True,
+            timeout=120)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assert_error(json.loads(done.stdout), "NO_TEMPORARY_FOLDER", "TMPDIR")
+        self.assertFalse((self.folder / "none").exists())
 
     def test_wrong_use_says_so(self):
         for arguments in (["dance"], ["run"], ["run", SCENES / "cranium.json", "--out"],

@@ -1,4 +1,4 @@
-"""Running trephine-lab from tests: what it prints, and what it must look like."""
+"""Running the programs from tests: what they print, and what it must look like."""
 
 import json
 import os
@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 LAB = os.environ["TREPHINE_LAB"]
+WINDOW = os.environ["TREPHINE"]
 SOURCE = Path(os.environ["TREPHINE_SOURCE"])
 SCENES = SOURCE / "resources" / "scenes"
 
@@ -24,6 +25,12 @@ def lab(*arguments, expect=0, environment=None, timeout=240):
     return answer
 
 
+def without_display():
+    environment = dict(os.environ)
+    environment.pop("DISPLAY", None)
+    return environment
+
+
 class LabTest(unittest.TestCase):
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="trephine-")
@@ -38,6 +45,29 @@ class LabTest(unittest.TestCase):
         self.assertTrue(error["what"])
         for word in words:
             self.assertIn(word, " ".join(error.values()))
+
+
+class PatientsScanTest(LabTest):
+    """A scan whose folder and files are named after a patient."""
+    FOLDER, FILE = "MUELLER^ANNA", "ANNAMUELLER"
+
+    def setUp(self):
+        super().setUp()
+        self.scan = self.folder / self.FOLDER
+        lab("phantom", "cranium", "--out", self.scan)
+        for file in self.scan.iterdir():
+            file.rename(self.scan / f"{self.FILE}-{file.name}")
+        self.slices = sorted(self.scan.iterdir())
+
+    def log(self, *arguments, before=""):
+        """Runs trephine-lab, after shell words, and returns what it logged, which names nobody."""
+        words = " ".join(f'"{word}"' for word in map(str, arguments))
+        done = subprocess.run(["bash", "-c", f'{before} exec "{LAB}" {words} --json'],
+                              capture_output=True, text=True, timeout=240)
+        self.assertTrue(json.loads(done.stdout)["schema"])
+        for name in (self.FOLDER, self.FILE):
+            self.assertNotIn(name, done.stderr, arguments)
+        return done.stderr
 
 
 def data_folder():

@@ -169,5 +169,28 @@ TEST(MakeFolder, RefusesWhereAFileIs) {
   EXPECT_EQ(contentOf(folder / "file"), "text");
 }
 
+TEST(TemporaryFolder, IsTheOneThatTheEnvironmentNames) {
+  const test::TemporaryFolder folder;
+  const test::Environment named("TMPDIR", folder.path().string());
+  const Result<fs::path> temporary = temporaryFolder();
+  ASSERT_TRUE(temporary);
+  EXPECT_EQ(*temporary, folder.path());
+  const test::Environment empty("TMPDIR", "");
+  EXPECT_EQ(*temporaryFolder(), "/tmp");
+}
+
+TEST(TemporaryFolder, ThatIsMissingOrAFileIsAnErrorThatNamesIt) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "file", "text"));
+  for (const fs::path& path : {folder / "none", folder / "file"}) {
+    const test::Environment named("TMPDIR", path.string());
+    const Result<fs::path> temporary = temporaryFolder();
+    ASSERT_FALSE(temporary);
+    EXPECT_EQ(temporary.error().code, "NO_TEMPORARY_FOLDER");
+    EXPECT_EQ(temporary.error().where, "TMPDIR=" + path.string());
+    EXPECT_NE(temporary.error().next.find("TMPDIR"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace trephine

@@ -182,6 +182,13 @@ TEST(HapticsMeasurement, SaysBeforeItMeasuresThatTheFolderCannotBeMade) {
   EXPECT_FALSE(began);
 }
 
+TEST(HapticsMeasurement, WithoutAFolderOfItsOwnNeedsTheTemporaryOne) {
+  const test::Environment missing("TMPDIR", "/no/such/folder");
+  const Result<HapticsMeasurement> m = measureHaptics(small(), {});
+  ASSERT_FALSE(m);
+  EXPECT_EQ(m.error().code, "NO_TEMPORARY_FOLDER");
+}
+
 TEST(HapticsMeasurement, IsAnsweredWithExactlyItsKeys) {
   HapticsMeasurement m;
   m.rows = {row("blade64", 256, 49.2, TouchPhase::removal, 1500.0, 3500.0)};

@@ -122,6 +122,29 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
   }
 }
 
+// Longer than the system lets names be: asking about it is an error of its own.
+TEST(Scene, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
+  const std::string name = std::string(300, 'x') + ".json";
+  const Bad cases[] = {
+      {"operator", [](Json&) {}, "operator", ""},
+      {"device", [](Json& s) { s["arms"][0]["device"]["config"] = s["operator"]; }, "config", ""},
+      {"mesh", [](Json& s) {
+         s["tools"][0] = {{"id", "blade"}, {"kind", "blade"}, {"length_mm", 16}, {"points", 16}};
+         s["tools"][0]["mesh"] = s["operator"];
+       }, "mesh", ""},
+  };
+  for (const Bad& bad : cases) {
+    Json json = shipped();
+    json["operator"] = name;
+    bad.change(json);
+    if (bad.field != std::string("operator")) json.erase("operator");
+    const Result<Scene> scene = parseScene(json, shippedFile());
+    ASSERT_FALSE(scene.ok()) << bad.name;
+    EXPECT_NE(scene.error().where.find(bad.field), std::string::npos) << scene.error().sentence();
+    EXPECT_NE(scene.error().what.find(name), std::string::npos) << scene.error().sentence();
+  }
+}
+
 TEST(Scene, AMissingTissueFileIsNamed) {
   Json json = shipped();
   json["tissues"] = "../tissues/gone.json";

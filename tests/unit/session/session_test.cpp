@@ -399,5 +399,31 @@ TEST(FreshFile, NeverNamesAFileThatIsThere) {
   EXPECT_EQ(freshFile(folder.path(), "a", ".h5"), folder / "a-2.h5");
 }
 
+TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
+  const std::filesystem::path folder(std::string(300, 'x'));  // longer than names may be
+  EXPECT_EQ(freshFile(folder, "a", ".h5"), folder / "a.h5");
+  const auto made = Session::create(cranium(), smallHead(), scripted(folder / "a.h5"));
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, "CANNOT_WRITE");
+}
+
+TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
+  test::TemporaryFolder folder;
+  const test::Environment missing("TMPDIR", (folder / "none").string());
+  const auto unrecorded = Session::create(cranium(), smallHead(), scripted());
+  ASSERT_FALSE(unrecorded.ok());
+  EXPECT_EQ(unrecorded.error().code, "NO_TEMPORARY_FOLDER");
+
+  // Beside a recording there is room for what does not fit into memory; a replay has no such place.
+  auto recorded = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  ASSERT_TRUE(recorded.ok()) << recorded.error().sentence();
+  ASSERT_TRUE((*recorded)->freewheel(0.1).ok());
+  const auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto replayed = replay(**reader, smallHead());
+  ASSERT_FALSE(replayed.ok());
+  EXPECT_EQ(replayed.error().code, "NO_TEMPORARY_FOLDER");
+}
+
 }  // namespace
 }  // namespace trephine

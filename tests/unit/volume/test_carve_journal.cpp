@@ -38,6 +38,22 @@ TEST_F(CarveJournalTest, ErasesNoMoreThanWasGranted) {
   EXPECT_FALSE(journal.erase(writer, 0, 3, 0)) << "a no takes back the yes before it";
 }
 
+TEST(CarveEntry, KeepsEveryTissueThatASetMayHoldApartForEveryArm) {
+  for (int arm = 0; arm < kMaxArms; ++arm) {
+    for (int tissue_class = 0; tissue_class < kMaxTissues; ++tissue_class) {
+      const std::uint32_t all = (1u << kMaxArms) - 1, others = all & ~(1u << arm);
+      const CarveEntry alone{7, 400, CarveEntry::makeTag(arm, tissue_class)};
+      const CarveEntry shared{7, 400, CarveEntry::makeTag(arm, tissue_class, others)};
+      EXPECT_EQ(alone.payers(), 1u << arm);
+      EXPECT_EQ(shared.payers(), all);
+      for (const CarveEntry& entry : {alone, shared}) {
+        EXPECT_EQ(entry.tissueClass(), tissue_class);
+        EXPECT_EQ(entry.arm(), arm);
+      }
+    }
+  }
+}
+
 TEST_F(CarveJournalTest, UndoPutsTheLastStrokeBackAndRedoTakesItAgain) {
   stroke(0, {1, 2, 3});
   const std::string after_first = hash();
@@ -155,7 +171,7 @@ TEST_F(CarveJournalTest, ResetRestoresTheExactVolumeAndTheCounts) {
   EXPECT_FALSE(undo());
   EXPECT_FALSE(redo());
   for (int arm = 0; arm < kMaxArms; ++arm) {
-    for (int c = 0; c < kMaxClasses; ++c) EXPECT_EQ(journal.removed(arm, c), 0u);
+    for (int c = 0; c < kMaxTissues; ++c) EXPECT_EQ(journal.removed(arm, c), 0u);
   }
   EXPECT_FALSE(reset());
 }

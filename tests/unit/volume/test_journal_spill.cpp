@@ -209,7 +209,7 @@ class RandomHistory : public JournalSpillTest, public ::testing::WithParamInterf
     ASSERT_EQ(bench.journal.canUndo(), !model.now.standing.empty());
     ASSERT_EQ(bench.journal.canRedo(), !model.undone.empty());
     for (int arm = 0; arm < kMaxArms; ++arm) {
-      for (int c = 0; c < kMaxClasses; ++c) {
+      for (int c = 0; c < kMaxTissues; ++c) {
         const auto found = model.now.removed.find({arm, c});
         ASSERT_EQ(bench.journal.removed(arm, c),
                   found == model.now.removed.end() ? 0 : found->second);
@@ -226,7 +226,7 @@ class RandomHistory : public JournalSpillTest, public ::testing::WithParamInterf
     const int count = below(4) == 0 ? below(200) : below(12);
     for (int n = 0; n < count; ++n) {
       const std::size_t voxel = random() % bench.start.hu.size();
-      const int tissue_class = below(kMaxClasses);
+      const int tissue_class = below(kMaxTissues);
       ASSERT_TRUE(bench.erase(arm, voxel, tissue_class));
       model.erase(arm, voxel, tissue_class);
     }
