@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 
+#include "app/signals.h"
 #include "base/system.h"
 
 namespace trephine {
@@ -31,6 +32,14 @@ int printError(const std::string& name, const Error& error, bool json, const Jso
   return 1;
 }
 
+int printOutcome(const std::string& name, const Json& answer, const std::string& text,
+                 const std::optional<Error>& failure, bool json) {
+  if (!json) std::fputs(text.c_str(), stdout);
+  if (failure) return printError(name, *failure, json, answer);
+  if (json) printAnswer(name, answer);
+  return 0;
+}
+
 bool wantsJson(int argc, char** argv) {
   return std::any_of(argv, argv + argc, [](const char* a) { return !std::strcmp(a, "--json"); });
 }
@@ -38,7 +47,8 @@ bool wantsJson(int argc, char** argv) {
 int guarded(const std::string& name, bool json, const std::function<int()>& work) {
   std::signal(SIGXFSZ, SIG_IGN);  // then the write fails and says so
   try {
-    return work();
+    const int code = work();
+    return signalReceived() != 0 ? 128 + signalReceived() : code;
   } catch (const std::bad_alloc&) {
     return printError(name, {"OUT_OF_MEMORY", "There is not enough memory", "",
                              "Close other programs or choose a smaller case"}, json);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "base/json.h"
@@ -16,13 +17,19 @@ void printAnswer(const std::string& name, const Json& answer);
 // stderr. Returns the exit code: 1.
 int printError(const std::string& name, const Error& error, bool json, const Json& extra = {});
 
+// What work came to: `answer` under --json, else `text` on stdout. With a `failure` that is printed
+// as well, and the exit code is 1.
+int printOutcome(const std::string& name, const Json& answer, const std::string& text,
+                 const std::optional<Error>& failure, bool json);
+
 Json errorJson(const Error& error);
 
 // Whether --json stands anywhere on the command line.
 bool wantsJson(int argc, char** argv);
 
 // Runs a program's work: what would end it otherwise (no memory, a library's exception, a file
-// over the user's limit) becomes an answer and an exit code.
+// over the user's limit) becomes an answer and an exit code; that of work which a signal ended is
+// 128 and the signal's number.
 int guarded(const std::string& name, bool json, const std::function<int()>& work);
 
 }  // namespace trephine

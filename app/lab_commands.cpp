@@ -61,11 +61,19 @@ Status runRealTime(Session& session, double seconds, const Progress& progress) {
          session.standsStillFor_s() < kGivenUp_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  return session.stop();
+  const bool cancelled = progress.cancelled() && !session.finished();
+  if (Status stopped = session.stop(); !stopped) return stopped;
+  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
+  return {};
 }
 
-// Runs the exercise and leaves its files in `out`.
-Result<RunReport> runExercise(const RunArguments& arguments, const Progress& progress) {
+struct RunOutcome {
+  RunReport report;
+  std::optional<Error> failure;  // the recording's, or the person ended the run
+};
+
+// Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
+Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& progress) {
   Result<Scene> scene = readScene(arguments.scene);
   if (!scene) return scene.error();
   if (Status chosen = applyChoices(arguments, *scene); !chosen) return chosen.error();
@@ -101,21 +109,24 @@ Result<RunReport> runExercise(const RunArguments& arguments, const Progress& pro
 
   const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)
                                         : (*session)->freewheel(seconds, progress);
-  if (!ran) return ran.error();
-  RunReport report = (*session)->report();
+  RunOutcome outcome{(*session)->report(), {}};
+  if (!ran) outcome.failure = ran.error();
+  if (!ran && outcome.report.ticks == 0) return ran.error();
+  // First of all: what was cut is kept, whatever became of the recording.
   if (!arguments.save_volume.empty()) {
     const Status saved = writeVolume((*session)->grid().snapshot(), arguments.save_volume);
-    if (!saved) return saved.error();
+    if (!saved) outcome.failure = saved.error();
   }
+  if (outcome.failure) return outcome;
   const std::filesystem::path picture = freshFile(out, "picture", ".png");
   const Status drawn = writeExercisePicture(**session, picture);
   if (!drawn && drawn.error().code != "NO_DISPLAY") return drawn.error();
   if (drawn) {
-    report.picture = picture.string();
+    outcome.report.picture = picture.string();
   } else {
     spdlog::info("No display: no picture is drawn");
   }
-  return report;
+  return outcome;
 }
 
 // What a measurement came to, for a program or for a person.
@@ -166,15 +177,12 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
 }
 
 int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
-  Result<RunReport> report = runExercise(arguments, progress);
-  if (!report) return printError("run", report.error(), json);
-  if (json) {
-    printAnswer("run", toJson(*report));
-  } else {
-    std::printf("%s", toText(*report).c_str());
-  }
+  Result<RunOutcome> outcome = runExercise(arguments, progress);
+  if (!outcome) return printError("run", outcome.error(), json);
+  const int code = printOutcome("run", toJson(outcome->report), toText(outcome->report),
+                                outcome->failure, json);
   constexpr int kFaulted = 4;
-  return report->faults.empty() ? 0 : kFaulted;
+  return code == 0 && !outcome->report.faults.empty() ? kFaulted : code;
 }
 
 int replayCommand(const std::string& file, const std::string& case_source,
@@ -224,10 +232,10 @@ int replayCommand(const std::string& file, const std::string& case_source,
   return result->identical ? 0 : 3;
 }
 
-int explainCommand(const std::string& scene_file, bool json) {
+int explainCommand(const std::string& scene_file, bool json, const Progress& progress) {
   Result<Scene> scene = readScene(scene_file);
   if (!scene) return printError("explain", scene.error(), json);
-  Result<Json> answer = explainScene(*scene);
+  Result<Json> answer = explainScene(*scene, progress);
   if (!answer) return printError("explain", answer.error(), json);
   if (json) {
     printAnswer("explain", *answer);
@@ -338,8 +346,8 @@ int measureImportCommand(ImportOptions options, const std::vector<std::string>& 
   return 0;
 }
 
-int measureReadCommand(const std::string& path, bool json) {
-  const Result<ReadFloor> floor = readEveryByte(path);
+int measureReadCommand(const std::string& path, bool json, const Progress& progress) {
+  const Result<ReadFloor> floor = readEveryByte(path, progress);
   if (!floor) return printError("measure.read", floor.error(), json);
   if (json) {
     printAnswer("measure.read", toJson(*floor));

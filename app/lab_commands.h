@@ -39,7 +39,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 int runCommand(const RunArguments& arguments, bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
-int explainCommand(const std::string& scene, bool json);
+int explainCommand(const std::string& scene, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
 // `grid` is empty for the full grid.
 int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
@@ -50,7 +50,7 @@ int measureTradesCommand(const std::string& out, bool json, const Progress&);
 // `series` are names; none for all. The program in `options` is filled in.
 int measureImportCommand(ImportOptions options, const std::vector<std::string>& series,
                          const std::string& out, bool json, const Progress&);
-int measureReadCommand(const std::string& path, bool json);
+int measureReadCommand(const std::string& path, bool json, const Progress&);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

@@ -1,9 +1,10 @@
 // The workstation: `trephine [FOLDER|SCENE]`, and `trephine --exercise SCENE` for a scripted run.
 #include <CLI/CLI.hpp>
 #include <QApplication>
-#include <cstdio>
+#include <QTimer>
 
 #include "app/answer.h"
+#include "app/signals.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "ui/colours.h"
@@ -17,16 +18,14 @@ namespace {
 using namespace trephine;
 
 constexpr double kLongest_s = 24.0 * 3600.0;
+constexpr int kSignalPoll_ms = 50;
+
+Progress progress;  // cancelled by a signal
 
 int exercise(const ExerciseOptions& options, bool json) {
-  Result<ExerciseOutcome> outcome = runExercise(options);
+  Result<ExerciseOutcome> outcome = runExercise(options, progress);
   if (!outcome) return printError("exercise", outcome.error(), json);
-  if (json) {
-    printAnswer("exercise", toJson(*outcome));
-  } else {
-    std::fputs(toText(*outcome).c_str(), stdout);
-  }
-  return 0;
+  return printOutcome("exercise", toJson(*outcome), toText(*outcome), outcome->failure, json);
 }
 
 int run(int argc, char** argv) {
@@ -74,11 +73,17 @@ int run(int argc, char** argv) {
   MainWindow window;
   window.show();
   if (!path.empty()) window.workstation().openPath(path);
+  QTimer poll;
+  QObject::connect(&poll, &QTimer::timeout, [] {
+    if (progress.cancelled()) QApplication::exit();  // asks nobody; the session ends in order
+  });
+  poll.start(kSignalPoll_ms);
   return QApplication::exec();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  cancelOnSignals(progress);
   return guarded("exercise", wantsJson(argc, argv), [&] { return run(argc, argv); });
 }

@@ -2,24 +2,22 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "app/signals.h"
 #include "base/log.h"
 #include "base/system.h"
 
 namespace {
 
-// Reports to a terminal only, and is cancelled by Ctrl-C: the work then ends in order.
+// Reports to a terminal only.
 trephine::Progress progress([](double fraction, const std::string& step) {
   static const bool terminal = ::isatty(STDERR_FILENO) != 0;
   if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
   if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
 });
-
-void onInterrupt(int) { progress.cancel(); }
 
 int run(int argc, char** argv) {
   using namespace trephine;
@@ -135,7 +133,7 @@ int run(int argc, char** argv) {
   if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, json, progress);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
-  if (*explain_command) return explainCommand(file, json);
+  if (*explain_command) return explainCommand(file, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(grid, out, json, progress);
   if (*extremes_command) return measureExtremesCommand(out, json, progress);
@@ -145,7 +143,7 @@ int run(int argc, char** argv) {
     import_options.size[0] = import_options.size[1] = edge;
     return measureImportCommand(import_options, import_series, out, json, progress);
   }
-  if (*read_command) return measureReadCommand(file, json);
+  if (*read_command) return measureReadCommand(file, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }
@@ -153,8 +151,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, onInterrupt);
-  std::signal(SIGTERM, onInterrupt);
+  trephine::cancelOnSignals(progress);
   return trephine::guarded("trephine-lab", trephine::wantsJson(argc, argv),
                            [&] { return run(argc, argv); });
 }

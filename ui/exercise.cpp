@@ -16,6 +16,7 @@ namespace trephine {
 namespace {
 
 constexpr int kHeartbeat_ms = 5;
+constexpr int kCancelPoll_ms = 50;
 
 // Measures the longest time for which the event loop did not come round.
 class Heartbeat {
@@ -55,7 +56,7 @@ double percentile(std::vector<double> values, double share) {
   return values[std::size_t(std::clamp(rank - 1.0, 0.0, double(values.size() - 1)))];
 }
 
-Result<ExerciseOutcome> runExercise(const ExerciseOptions& options) {
+Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progress& progress) {
   Result<Scene> scene = readScene(options.scene);
   if (!scene) return scene.error();
   if (scene->operator_file.empty()) {
@@ -98,13 +99,29 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options) {
     outcome.report = session.report();
     QTimer::singleShot(0, &loop, &QEventLoop::quit);
   });
+  QObject::connect(&workstation, &Workstation::recordingFailed, &loop,
+                   [&](const Error& error) { outcome.failure = error; });
+  QTimer cancelling;
+  QObject::connect(&cancelling, &QTimer::timeout, &loop, [&] {
+    if (!progress.cancelled()) return;
+    if (step == Step::opening) loop.quit();
+    workstation.stop();  // does nothing before it runs
+  });
+  cancelling.start(kCancelPoll_ms);
   window.show();
   workstation.openPath(options.scene);
   if (!failure) loop.exec();
-  if (failure) return *failure;
+  const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};
+  if (step != Step::ending && progress.cancelled()) return cancelled;
+  if (step != Step::ending && failure) return *failure;
   if (step != Step::ending) {
     return Error{"STOPPED", "The window was closed before the exercise ended", "",
                  "Start it again"};
+  }
+  if (failure) outcome.failure = failure;
+  if (progress.cancelled()) {
+    outcome.failure = cancelled;
+    return outcome;
   }
 
   Result<Picture> picture = window.view().picture();

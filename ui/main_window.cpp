@@ -6,6 +6,7 @@
 #include <QFileDialog>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPushButton>
 #include <QSettings>
 #include <QStandardPaths>
 #include <QStatusBar>
@@ -25,6 +26,7 @@ namespace {
 constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kMessage_ms = 15000;
+constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
 constexpr std::uint64_t kAnswerTicks = 20;  // by then a command has been taken up, with room
 
 std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
@@ -208,7 +210,6 @@ void MainWindow::sessionStarted() {
   const Session& session = *workstation_.session();
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
-  recording_failed_ = false;
   going_back_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
@@ -227,8 +228,10 @@ void MainWindow::sessionEnded(Session& session) {
   view_->setTools({});
   rates_->clear();
   const RunReport report = session.report();
-  say(tr("%1 s, %2 voxels removed. Recorded in %3")
-          .arg(double(report.ticks) / report.rate_hz, 0, 'f', 1)
+  const QString words = session.recordingStatus()
+                            ? tr("%1 s, %2 voxels removed. Recorded in %3")
+                            : tr("%1 s, %2 voxels removed. Recorded in part in %3");
+  say(words.arg(double(report.ticks) / report.rate_hz, 0, 'f', 1)
           .arg(report.removed_voxels)
           .arg(toQt(std::filesystem::path(report.recording))));
 }
@@ -244,6 +247,7 @@ void MainWindow::tick() {
     showState(*session, state);
   }
   if (rate_clock_.elapsed() >= kRatesEvery_ms) showRates();
+  workstation_.checkRecording();
   if (session->finished()) workstation_.stop();
 }
 
@@ -256,10 +260,6 @@ void MainWindow::showState(Session& session, const LoopState& state) {
     redo_->setEnabled(state.can_redo);
     showRewind(state);
   }
-  if (Status recording = session.recordingStatus(); !recording && !recording_failed_) {
-    recording_failed_ = true;
-    report(recording.error());
-  }
 }
 
 void MainWindow::showRates() {
@@ -269,10 +269,14 @@ void MainWindow::showRates() {
   const LoopState& state = session->state();
   const double haptic_hz = double(state.ticks - ticks_shown_) / seconds;
   ticks_shown_ = state.ticks;
-  rates_->setText(tr("%1 pictures/s \u00b7 touch %2 Hz, %3 missed")
+  QString rates = tr("%1 pictures/s \u00b7 touch %2 Hz, %3 missed")
                       .arg(double(frames_) / seconds, 0, 'f', 0)
                       .arg(haptic_hz, 0, 'f', 0)
-                      .arg(state.missed));
+                      .arg(state.missed);
+  if (const double behind_s = session->recorderBehind_s(); behind_s >= kBehind_s) {
+    rates += tr(" \u00b7 recording %1 s behind").arg(behind_s, 0, 'f', 1);
+  }
+  rates_->setText(rates);
   frames_ = 0;
 }
 
@@ -377,6 +381,19 @@ void MainWindow::say(const QString& text) {
 void MainWindow::report(const Error& error) {
   showError(front(), error);
   emit failed(error);
+}
+
+// The exercise goes on behind the question.
+void MainWindow::askToGoOn(const Error& error) {
+  QMessageBox* dialog = showError(front(), error);
+  dialog->setObjectName("recordingFailed");
+  dialog->setStandardButtons(QMessageBox::NoButton);
+  QPushButton* go_on = dialog->addButton(tr("Go on unrecorded"), QMessageBox::AcceptRole);
+  QPushButton* stop = dialog->addButton(tr("Stop"), QMessageBox::RejectRole);
+  dialog->setDefaultButton(go_on);
+  dialog->setEscapeButton(go_on);
+  connect(stop, &QPushButton::clicked, &workstation_, &Workstation::stop);
+  connect(&workstation_, &Workstation::sessionEnded, dialog, &QMessageBox::close);
 }
 
 void MainWindow::showAbout() {

@@ -87,6 +87,7 @@ class MainWindow : public QMainWindow {
   void showRates();
   void say(const QString& text);
   void report(const Error& error);
+  void askToGoOn(const Error& error);
 
   Workstation workstation_;
   std::filesystem::path recordings_;
@@ -112,7 +113,6 @@ class MainWindow : public QMainWindow {
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left
-  bool recording_failed_ = false;  // said once an exercise
 };
 
 }  // namespace trephine

@@ -226,6 +226,7 @@ void MainWindow::connectParts() {
   connect(&workstation_, &Workstation::sessionEnded, this, &MainWindow::sessionEnded);
   connect(&workstation_, &Workstation::saved, this, &MainWindow::say);
   connect(&workstation_, &Workstation::failed, this, &MainWindow::report);
+  connect(&workstation_, &Workstation::recordingFailed, this, &MainWindow::askToGoOn);
   connect(&frame_timer_, &QTimer::timeout, this, &MainWindow::tick);
 }
 

@@ -225,6 +225,7 @@ void Workstation::start(const std::filesystem::path& recordings,
           return fail(created.error());
         }
         session_ = *std::move(created);
+        recording_failure_.reset();
         if (Status started = session_->start(seconds); !started) {
           session_.reset();
           setPhase(Phase::ready);
@@ -233,6 +234,14 @@ void Workstation::start(const std::filesystem::path& recordings,
         setPhase(Phase::running);
         emit sessionStarted();
       });
+}
+
+void Workstation::checkRecording() {
+  if (!session() || recording_failure_) return;
+  const Status recording = session_->recordingStatus();
+  if (recording) return;
+  recording_failure_ = recording.error();
+  emit recordingFailed(*recording_failure_);
 }
 
 void Workstation::stop() {
@@ -244,7 +253,9 @@ void Workstation::stop() {
                  const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
                  setPhase(Phase::ready);
-                 if (!stopped) fail(stopped.error());
+                 const bool said = !stopped && recording_failure_ &&
+                                   recording_failure_->what == stopped.error().what;
+                 if (!stopped && !said) fail(stopped.error());
                  if (stuck) fail(*stuck);
                });
 }

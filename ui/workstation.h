@@ -51,6 +51,9 @@ class Workstation : public QObject {
   void start(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
              double seconds);
   void stop();
+  // Emits recordingFailed() when the running exercise can no longer be recorded. The window asks
+  // with every picture.
+  void checkRecording();
   // Only while the phase is running.
   Session* session() const { return phase_ == Phase::running ? session_.get() : nullptr; }
   // Felt at once, and kept for the next exercise.
@@ -68,6 +71,8 @@ class Workstation : public QObject {
   void caseOpened();
   void phaseChanged();
   void sessionStarted();
+  // Once an exercise, which goes on; stop() does not say it again.
+  void recordingFailed(const trephine::Error& error);
   // The exercise's last state; `session` goes away after it.
   void sessionEnded(trephine::Session& session);
   void saved(const QString& what);
@@ -92,6 +97,7 @@ class Workstation : public QObject {
   std::vector<PlacedLandmark> landmarks_;
   bool own_case_ = false;  // the user's, not a built-in one
   std::unique_ptr<Session> session_;
+  std::optional<Error> recording_failure_;  // said of this exercise
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
   BackgroundTask opening_, running_, saving_;

@@ -116,7 +116,7 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
   return settings;
 }
 
-Result<Json> explainScene(Scene scene) {
+Result<Json> explainScene(Scene scene, const Progress& progress) {
   if (Status asked = readArmDynamics(scene); !asked) return asked.error();
   HapticParameters parameters = hapticParameters(scene);
   for (int i = 0; i < parameters.tissues.count; ++i) {
@@ -127,6 +127,7 @@ Result<Json> explainScene(Scene scene) {
 
   Json cost = Json::array(), arms = Json::array();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    if (progress.cancelled()) return Error{"CANCELLED", "The explanation was cancelled", "", ""};
     const SceneArm& arm = scene.arms[i];
     const Tool& tool = parameters.arms[i].tool;
     const Renderable most = renderableOn(arm, scene.rate_hz);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "base/progress.h"
 #include "base/result.h"
 #include "scene/scene.h"
 
@@ -16,8 +17,9 @@ namespace trephine {
 //     settings:[{knob, setting, recommended}] where `recommended.json` is among the resources,
 //     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
 // Each part is timed alone (median of many batches) on a small block of the scene's firmest tissue;
-// tick_ns is a whole tick of all arms there, without the devices.
-Result<Json> explainScene(Scene scene);
+// tick_ns is a whole tick of all arms there, without the devices. Errors: those of the devices,
+// CANCELLED.
+Result<Json> explainScene(Scene scene, const Progress& progress = Progress());
 
 // The knobs of `measure trades` that a scene sets, each once: knob and setting.
 std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene);

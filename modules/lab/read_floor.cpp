@@ -35,7 +35,7 @@ std::optional<std::size_t> readWhole(const fs::path& file, char* to, std::size_t
 
 }  // namespace
 
-Result<ReadFloor> readEveryByte(const fs::path& folder) {
+Result<ReadFloor> readEveryByte(const fs::path& folder, const Progress& progress) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
@@ -59,6 +59,7 @@ Result<ReadFloor> readEveryByte(const fs::path& folder) {
     const std::unique_ptr<char[]> buffer(new char[std::max<std::size_t>(room, 1)]);
     std::size_t at = 0;
     for (const fs::path& file : files) {
+      if (progress.cancelled()) return Error{"CANCELLED", "The reading was cancelled", "", ""};
       const auto got = readWhole(file, &buffer[at], room - at);
       if (!got) return Error{"UNREADABLE", "A file cannot be read", folder.string(), ""};
       if (keep) at += *got;

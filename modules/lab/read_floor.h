@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/json.h"
+#include "base/progress.h"
 #include "base/result.h"
 
 namespace trephine {
@@ -18,8 +19,9 @@ struct ReadFloor {
   double kept_seconds = 0.0;
 };
 
-// Files directly in `folder`, by name. Errors: MISSING_FOLDER, UNREADABLE.
-Result<ReadFloor> readEveryByte(const std::filesystem::path& folder);
+// Files directly in `folder`, by name. Errors: MISSING_FOLDER, UNREADABLE, CANCELLED.
+Result<ReadFloor> readEveryByte(const std::filesystem::path& folder,
+                                const Progress& progress = Progress());
 Json toJson(const ReadFloor& floor);  // {files, bytes, seconds, kept_seconds}
 
 }  // namespace trephine

@@ -75,6 +75,7 @@ Json toJson(const RunReport& report) {
           {"memory_locked", report.memory_locked ? Json(*report.memory_locked) : Json(nullptr)},
           {"nonfinite", report.nonfinite},
           {"events_dropped", report.events_dropped},
+          {"recorder_behind_ms", report.recorder_behind_ms},
           {"tick_ns",
            {{"median", report.tick_ns.median_ns},
             {"p99", report.tick_ns.p99_ns},
@@ -119,7 +120,10 @@ std::string toText(const RunReport& report) {
   if (report.memory_locked == false) {
     text += "  " + memoryNotLocked(report.memory_not_locked).sentence() + "\n";
   }
-  if (!report.recording.empty()) text += "  session: " + report.recording + "\n";
+  if (!report.recording.empty()) {
+    text += "  session: " + report.recording + "\n";
+    add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
+  }
   if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
   return text;
 }

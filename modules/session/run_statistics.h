@@ -44,6 +44,7 @@ struct RunReport {
   std::uint64_t missed_deadlines = 0;
   std::uint64_t nonfinite = 0;
   std::uint64_t events_dropped = 0;
+  double recorder_behind_ms = 0.0;  // the most of the session that was not on disk yet
   DurationSummary tick_ns;
   std::string volume_sha256_before, volume_sha256;
   std::string recording, picture;  // files; empty: none

@@ -21,7 +21,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-constexpr auto kFlushEvery = 500ms;
+// Counted in ticks, not on the recorder's clock: a recorder that gets to run seldom must not put off
+// what it then finds waiting.
+constexpr double kFlushEvery_s = 0.25;
 constexpr std::size_t kMostFaults = 1000;  // in a report
 constexpr int kHapticPriority = 80;
 constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread does not
@@ -307,8 +309,6 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
   // Drained often enough that no ring can fill: they hold thousands of ticks.
   constexpr std::uint64_t kDrainTicks = 256;
-  std::uint64_t last_flush = 0;
-  const auto flush_ticks = std::uint64_t(scene_.rate_hz / 2);
   bool cancelled = false;
   for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
     loop_->step(0);
@@ -317,10 +317,6 @@ Status Session::freewheel(double seconds, const Progress& progress) {
       drain();
       progress.at(double(i) / double(ticks), "Running");
       cancelled = progress.cancelled();
-    }
-    if (i - last_flush >= flush_ticks) {
-      flush();
-      last_flush = i;
     }
   }
   loop_->stopDevices();  // on this thread, so nobody can leave it behind
@@ -332,42 +328,43 @@ Status Session::freewheel(double seconds, const Progress& progress) {
 
 void Session::record() {
   rt::nameThread("recorder");
-  auto last_flush = std::chrono::steady_clock::now();
   while (!stop_recorder_) {
     std::this_thread::sleep_for(kDrainEvery);
     drain();
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_flush < kFlushEvery) continue;
-    flush();
-    last_flush = now;
   }
   drain();
 }
 
-// Records first: the loop pushes what belongs to a tick before the tick's record, so that all of it
-// is found after the record was.
+// In slices, each written before the next is taken: who comes late and finds seconds waiting does
+// not gather them all first. Records first: the loop pushes what belongs to a tick before the tick's
+// record, so that all of it is found after the record was.
 void Session::drain() {
-  if (Status spilled = spill_->service(core_->journal()); !spilled) noteFailure(spilled.error());
-  try {
-    TickRecord record;
-    while (loop_->records().pop(record)) {
-      for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
-      if (recorder_) recorder_->add(record);
+  const auto slice = std::uint64_t(kFlushEvery_s * scene_.rate_hz);
+  for (bool more = true; more;) {
+    if (Status spilled = spill_->service(core_->journal()); !spilled) noteFailure(spilled.error());
+    try {
+      TickRecord record;
+      while (unflushed_ticks_ < slice && (more = loop_->records().pop(record))) {
+        for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
+        if (recorder_) recorder_->add(record);
+        ++unflushed_ticks_;
+      }
+      CarveRecord carve;
+      while (loop_->carves().pop(carve)) {
+        if (recorder_) recorder_->add(carve);
+      }
+      Event event;
+      while (loop_->events().pop(event)) {
+        if (recorder_) recorder_->add(event);
+        note(event);
+      }
+    } catch (const std::exception&) {
+      const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
+                        "Close other programs; what was recorded until now is kept"};
+      if (recorder_) recorder_->abandon(error);
+      noteFailure(error);
     }
-    CarveRecord carve;
-    while (loop_->carves().pop(carve)) {
-      if (recorder_) recorder_->add(carve);
-    }
-    Event event;
-    while (loop_->events().pop(event)) {
-      if (recorder_) recorder_->add(event);
-      note(event);
-    }
-  } catch (const std::exception&) {
-    const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
-                      "Close other programs; what was recorded until now is kept"};
-    if (recorder_) recorder_->abandon(error);
-    noteFailure(error);
+    if (unflushed_ticks_ >= slice) flush();
   }
 }
 
@@ -378,19 +375,35 @@ void Session::note(const Event& event) {
 }
 
 void Session::flush() {
-  if (!recorder_) return;
-  if (Status status = recorder_->flush(); !status) noteFailure(status.error());
+  if (recorder_) {
+    const Status status = recorder_->flush();
+    // Until here a kill would have lost these.
+    most_behind_ticks_ =
+        std::max<std::uint64_t>(most_behind_ticks_, unflushed_ticks_ + loop_->records().size());
+    if (!status) noteFailure(status.error());
+  }
+  flushed_ticks_ += unflushed_ticks_;
+  unflushed_ticks_ = 0;
 }
 
+// Said at once, since the run may last for long and then ends in another error.
 void Session::noteFailure(const Error& error) {
   std::lock_guard lock(failure_mutex_);
-  if (!failure_) failure_ = error;
+  if (failure_) return;
+  failure_ = error;
+  spdlog::error("{}. {}.", error.what, error.next);  // `where` may name a folder
 }
 
 Status Session::recordingStatus() const {
   std::lock_guard lock(failure_mutex_);
   if (failure_) return *failure_;
   return {};
+}
+
+double Session::recorderBehind_s() {
+  if (!recorder_ || !recordingStatus()) return 0.0;
+  const std::uint64_t flushed = flushed_ticks_;  // before the ticks, which go on
+  return double(state().ticks - std::min(flushed, state().ticks)) / scene_.rate_hz;
 }
 
 Status Session::finishRecording() {
@@ -483,6 +496,7 @@ RunReport Session::report() const {
   report.missed_deadlines = loop_->missed();
   report.nonfinite = core_->nonFinite();
   report.events_dropped = loop_->dropped();
+  report.recorder_behind_ms = 1e3 * double(most_behind_ticks_) / scene_.rate_hz;
   report.tick_ns = loop_->tickDurations().summary();
   report.volume_sha256_before = sha256_before_;
   report.volume_sha256 = sha256_after_;

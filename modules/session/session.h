@@ -89,6 +89,8 @@ class Session {
   const LoopState& state();
   // What became of the recording so far.
   Status recordingStatus() const;
+  // How much of the session is not on disk yet; 0 where nothing is recorded any more. Owner thread.
+  double recorderBehind_s();
 
   // After stop() or freewheel().
   RunReport report() const;
@@ -119,6 +121,8 @@ class Session {
   std::unique_ptr<JournalSpill> spill_;
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
+  std::uint64_t unflushed_ticks_ = 0, most_behind_ticks_ = 0;  // the recorder's
+  std::atomic<std::uint64_t> flushed_ticks_{0};
 
   bool running_ = false;
   std::atomic<bool> stop_recorder_{false};

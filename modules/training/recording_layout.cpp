@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "base/sha256.h"
+
 namespace trephine {
 
 namespace {
@@ -144,5 +146,11 @@ hid_t endType() {
 }
 
 std::string armDatasetName(std::size_t arm) { return "arm" + std::to_string(arm); }
+
+std::string headSha256(const std::string& build, const std::string& scene,
+                       const std::string& volume) {
+  const std::string head = build + '\n' + scene + '\n' + volume;
+  return sha256Hex(head.data(), head.size());
+}
 
 }  // namespace trephine

@@ -190,11 +190,13 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
 
   writeVersion(f.file);
   writeText(f.file, "format", "trephine.session");
-  writeText(f.file, "build", header.build);
-  writeText(f.file, "scene", header.scene.dump(1));
   Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
   if (!header.labels_sha256.empty()) volume["labels_sha256"] = header.labels_sha256;
-  writeText(f.file, "volume", volume.dump(1));
+  const std::string scene_text = header.scene.dump(1), volume_text = volume.dump(1);
+  writeText(f.file, "build", header.build);
+  writeText(f.file, "scene", scene_text);
+  writeText(f.file, "volume", volume_text);
+  writeText(f.file, "head_sha256", headSha256(header.build, scene_text, volume_text));
 
   bool ok = f.ticks.create(f.file, "ticks", compoundType(tickFields(), sizeof(TickRow)), 4096);
   f.arms.resize(arm_count);

@@ -18,8 +18,9 @@ SERIES_KEYS = {
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
     "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
-    "missed_deadlines", "nonfinite", "events_dropped", "tick_ns", "volume_sha256_before",
-    "volume_sha256", "recording", "picture"}
+    "missed_deadlines", "faults", "memory_locked", "nonfinite", "events_dropped",
+    "recorder_behind_ms", "tick_ns", "volume_sha256_before", "volume_sha256", "recording",
+    "picture"}
 ONE_ARM = ("cranium-one-arm", "burr-hole", "liver-one-arm")
 
 

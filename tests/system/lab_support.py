@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -11,6 +12,7 @@ LAB = os.environ["TREPHINE_LAB"]
 WINDOW = os.environ["TREPHINE"]
 SOURCE = Path(os.environ["TREPHINE_SOURCE"])
 SCENES = SOURCE / "resources" / "scenes"
+PATIENCE_S = 120  # with a busy machine; alone nothing that waits for it takes more than seconds
 
 
 def lab(*arguments, expect=0, environment=None, timeout=240):
@@ -45,6 +47,41 @@ class LabTest(unittest.TestCase):
         self.assertTrue(error["what"])
         for word in words:
             self.assertIn(word, " ".join(error.values()))
+
+
+class EndingTest(LabTest):
+    """Programs that are started, waited for and ended."""
+
+    def start(self, *command, shell=None):
+        words = [str(word) for word in command]
+        if shell:  # sets a limit, then becomes the program
+            words = ["bash", "-c", f'{shell}; exec "$@"', "bash", *words]
+        with open(self.folder / "stderr", "w") as error:
+            process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=error, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for(self, process, condition):
+        deadline = time.monotonic() + PATIENCE_S
+        while not condition():
+            self.assertIsNone(process.poll(), (self.folder / "stderr").read_text())
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
+    def end(self, process, by=None):
+        """Sends the signal; the exit code and the answer."""
+        if by:
+            process.send_signal(by)
+        out, _ = process.communicate(timeout=PATIENCE_S)
+        return process.returncode, json.loads(out)
+
+    def assert_whole(self, recording, case):
+        """It has its end, and replays to it."""
+        again = subprocess.run([LAB, "replay", recording, "--case", case, "--json"],
+                               capture_output=True, text=True, timeout=PATIENCE_S)
+        self.assertEqual(again.returncode, 0, again.stdout + again.stderr)
+        self.assertNotIn("cut short", again.stderr)
+        return json.loads(again.stdout)
 
 
 class PatientsScanTest(LabTest):

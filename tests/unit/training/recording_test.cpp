@@ -1,8 +1,12 @@
 #include <hdf5.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
+#include <iterator>
+#include <random>
 
 #include "scene/scene.h"
 #include "support.h"
@@ -276,6 +280,77 @@ TEST(Recording, AFileThatIsMissingForeignOrCutShortIsNamed) {
     const auto result = replay(**reader, slab());
     EXPECT_TRUE(!result.ok() || result->identical) << "what is left must still be true";
   }
+}
+
+std::string bytesOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// How a replay ends: "identical", "differs", an error's code, or "never" when a signal had to end
+// it. In a process of its own, which is given 5 s.
+std::string endOfReplay(const std::filesystem::path& file) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "no pipe";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(5);
+    const auto reader = SessionReader::open(file);
+    std::string end = reader ? "" : reader.error().code;
+    if (reader) {
+      const auto result = replay(**reader, slab());
+      end = !result ? result.error().code : result->identical ? "identical" : "differs";
+    }
+    static_cast<void>(!::write(ends[1], end.data(), end.size()));
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  char text[64] = "never";
+  if (WIFEXITED(status)) text[::read(ends[0], text, sizeof(text) - 1)] = '\0';
+  for (int end : ends) ::close(end);
+  return text;
+}
+
+TEST(Recording, AnyByteThatChangedIsFoundWithinSecondsOrDoesNotMatter) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 600);
+  const std::string whole = bytesOf(folder / "a.h5");
+  std::mt19937 random(17);
+  int damaged = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::string changed = whole;
+    const std::size_t at = random() % whole.size();
+    changed[at] = char(changed[at] ^ char(1 + random() % 255));
+    std::ofstream(folder / "b.h5", std::ios::binary) << changed;
+    const std::string end = endOfReplay(folder / "b.h5");
+    EXPECT_TRUE(end == "BAD_RECORDING" || end == "differs" || end == "identical")
+        << "byte " << at << ": " << end;
+    damaged += end != "identical";
+  }
+  EXPECT_GT(damaged, 20);
+}
+
+TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherScene) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 100);
+  std::string bytes = bytesOf(folder / "a.h5");
+  const std::size_t at = bytes.find("226");  // HU at which bone begins
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at, 3, "227");
+  std::ofstream(folder / "b.h5", std::ios::binary) << bytes;
+  const auto reader = SessionReader::open(folder / "b.h5");
+  ASSERT_FALSE(reader.ok());
+  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+}
+
+TEST(Recording, OfBeforeTheHeadWasGuardedReplays) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 100);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "head_sha256", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  EXPECT_EQ(endOfReplay(folder / "a.h5"), "identical");
 }
 
 TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {

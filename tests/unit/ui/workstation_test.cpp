@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <fstream>
 
 #include "qt_support.h"
@@ -118,6 +121,38 @@ TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
   EXPECT_EQ(workstation_.session()->grid().labels(), workstation_.labels());
   workstation_.stop();
   EXPECT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+}
+
+TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn) {
+  std::vector<Error> said;
+  QObject::connect(&workstation_, &Workstation::recordingFailed, &workstation_,
+                   [&](const Error& error) { said.push_back(error); });
+  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  ASSERT_TRUE(wait());
+  workstation_.start(folder_.path(), {}, 1e9);
+  ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
+
+  // As a disk that is full from here on: no file grows.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old{}, small{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  small = {4096, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const bool heard = waitFor([&] {
+    workstation_.checkRecording();
+    return !said.empty();
+  });
+  setrlimit(RLIMIT_FSIZE, &old);
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(said.front().code, "CANNOT_WRITE");
+  ASSERT_TRUE(workstation_.session());
+  const std::uint64_t then = workstation_.session()->state().ticks;
+  EXPECT_TRUE(waitFor([&] { return workstation_.session()->state().ticks > then + 100; }));
+  workstation_.checkRecording();
+  workstation_.stop();
+  EXPECT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+  EXPECT_EQ(said.size(), 1u);
+  EXPECT_FALSE(failed_) << "said a second time: " << failed_->sentence();
 }
 
 }  // namespace

@@ -1,0 +1,193 @@
+"""How the programs end when they are told to, or when the disk is full: in order, with one answer,
+and with everything that was written in a state that can be used."""
+
+import gzip
+import json
+import os
+import signal
+import struct
+import subprocess
+import time
+import unittest
+from pathlib import Path
+
+from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, EndingTest, lab
+
+SIGNALS = (signal.SIGTERM, signal.SIGINT)
+
+
+def small_head(file):
+    """A ball of bone in scalp, 80 voxels of 1.2 mm along each axis."""
+    n, spacing = 80, 1.2
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<4f", header, 76, 1, spacing, spacing, spacing)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<f", header, 112, 1)
+    struct.pack_into("<h", header, 254, 1)
+    start = -spacing * (n - 1) / 2
+    for row in range(3):
+        line = [0.0, 0.0, 0.0, start]
+        line[row] = spacing
+        struct.pack_into("<4f", header, 280 + 16 * row, *line)
+    header[344:348] = b"n+1\0"
+    square = [(start + spacing * i) ** 2 for i in range(n)]
+    voxels = []
+    for k in range(n):
+        for j in range(n):
+            for i in range(n):
+                rr = square[i] + square[j] + square[k]
+                voxels.append(35 if rr < 32**2 else 1200 if rr < 39**2 else -20 if rr < 44**2 else -1024)
+    file.write_bytes(gzip.compress(bytes(header) + struct.pack(f"<{len(voxels)}h", *voxels), 1))
+    return file
+
+
+def listens(process):
+    """Whether the program has come to where it answers signals; before that it loads libraries."""
+    status = Path(f"/proc/{process.pid}/status").read_text()
+    caught = int(next(line for line in status.splitlines() if line.startswith("SigCgt")).split()[1], 16)
+    return all(caught >> (number - 1) & 1 for number in SIGNALS)
+
+
+class Signals(EndingTest):
+    def test_every_command_ends_on_a_signal_with_an_answer_and_128_more(self):
+        out = self.folder / "out"
+        commands = {
+            "phantom": ("phantom", "cranium", "--out", out / "ct"),
+            "run": ("run", SCENES / "cranium.json", "--seconds", 3000, "--out", out / "run"),
+            "measure stability": ("measure", "stability", "--out", out / "stability"),
+            "measure extremes": ("measure", "extremes", "--out", out / "extremes"),
+            "measure haptics": ("measure", "haptics", "--out", out / "haptics"),
+            "measure trades": ("measure", "trades", "--out", out / "trades"),
+            "measure import": ("measure", "import", "--size", 64, "--repetitions", 100, "--out",
+                               out / "import"),
+            "measure jitter": ("measure", "jitter", "--seconds", 600, "--out", out / "jitter"),
+        }
+        for number, (name, command) in enumerate(commands.items()):
+            by = SIGNALS[number % 2]
+            with self.subTest(command=name, signal=by.name):
+                process = self.start(LAB, *command, "--json")
+                self.wait_for(process, lambda: listens(process))
+                time.sleep(0.3)
+                self.assertIsNone(process.poll())
+                code, answer = self.end(process, by)
+                self.assertEqual(code, 128 + by)
+                self.assert_error(answer, "CANCELLED")
+        self.assertEqual([f for f in out.rglob("*.part*")], [])
+
+    def test_an_import_and_a_replay_end_on_a_signal(self):
+        lab("phantom", "cranium", "--out", self.folder / "ct")
+        run = lab("run", SCENES / "cranium.json", "--seconds", 3, "--out", self.folder)
+        for by, *command in ((signal.SIGTERM, "replay", run["recording"]),
+                             (signal.SIGINT, "import", self.folder / "ct")):
+            with self.subTest(command=command[0]):
+                process = self.start(LAB, *command, "--json")
+                self.wait_for(process, lambda: listens(process))
+                code, answer = self.end(process, by)
+                self.assertEqual(code, 128 + by)
+                self.assert_error(answer, "CANCELLED")
+
+    def test_a_run_that_is_ended_keeps_recording_and_volume(self):
+        case = small_head(self.folder / "head.nii.gz")
+        for by, pace in zip(SIGNALS, (("--realtime",), ())):
+            with self.subTest(signal=by.name):
+                out = self.folder / by.name
+                process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, *pace,
+                                     "--seconds", 3000, "--save-volume", out / "carved.nii.gz",
+                                     "--out", out, "--json")
+                self.wait_for(process, (out / "session.h5").exists)
+                time.sleep(1)
+                code, answer = self.end(process, by)
+                self.assertEqual(code, 128 + by)
+                self.assert_error(answer, "CANCELLED")
+                again = self.assert_whole(out / "session.h5", case)
+                self.assertEqual(again["ticks"], answer["ticks"])
+                self.assertGreater(answer["ticks"], 100)
+                saved = lab("import", out / "carved.nii.gz")["series"][0]
+                self.assertEqual(saved["volume_sha256"], answer["volume_sha256"])
+
+    @unittest.skipUnless(WINDOW and os.environ.get("DISPLAY"), "needs the window and a display")
+    def test_an_exercise_in_the_window_that_is_ended_keeps_its_recording(self):
+        process = self.start(WINDOW, "--exercise", SCENES / "cranium.json", "--out", self.folder,
+                             "--json")
+        self.wait_for(process, lambda: any(self.folder.glob("session-*.h5")))
+        time.sleep(1)
+        code, answer = self.end(process, signal.SIGTERM)
+        self.assertEqual(code, 128 + signal.SIGTERM)
+        self.assert_error(answer, "CANCELLED")
+        self.assertGreater(answer["ticks"], 100)
+        self.assert_whole(answer["recording"], "phantom:cranium")
+
+
+class FullDisk(EndingTest):
+    """A disk that is full once a file has 4 MB; the carved volume is smaller."""
+
+    LIMIT = "ulimit -f 4096"
+
+    def test_a_run_says_it_at_once_and_still_saves_what_was_cut(self):
+        case = small_head(self.folder / "head.nii.gz")
+        out = self.folder / "out"
+        process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, "--realtime",
+                             "--seconds", 3000, "--save-volume", out / "carved.nii.gz", "--out",
+                             out, "--json", shell=self.LIMIT)
+        said = lambda: "can no longer be written" in (self.folder / "stderr").read_text()
+        self.wait_for(process, said)
+        self.assertIsNone(process.poll(), "the exercise goes on")
+        code, answer = self.end(process, signal.SIGINT)
+        self.assertEqual(code, 128 + signal.SIGINT)
+        self.assert_error(answer, "CANNOT_WRITE", "session.h5")
+        saved = lab("import", out / "carved.nii.gz")["series"][0]
+        self.assertEqual(saved["volume_sha256"], answer["volume_sha256"])
+        self.assertNotEqual(answer["volume_sha256"], answer["volume_sha256_before"])
+        again = lab("replay", out / "session.h5", "--case", case)
+        self.assertTrue(again["identical"])
+        self.assertGreater(again["ticks"], 0)
+
+    def test_a_run_to_its_end_saves_what_was_cut_and_fails(self):
+        case = small_head(self.folder / "head.nii.gz")
+        process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, "--seconds", 60,
+                             "--save-volume", self.folder / "carved.nii.gz", "--out", self.folder,
+                             "--json", shell=self.LIMIT)
+        code, answer = self.end(process)
+        self.assertEqual(code, 1)
+        self.assert_error(answer, "CANNOT_WRITE", "session.h5")
+        self.assertGreater(answer["removed_voxels"], 100)
+        saved = lab("import", self.folder / "carved.nii.gz")["series"][0]
+        self.assertEqual(saved["volume_sha256"], answer["volume_sha256"])
+
+    @unittest.skipUnless(WINDOW and os.environ.get("DISPLAY"), "needs the window and a display")
+    def test_an_exercise_in_the_window_goes_on_and_fails_at_its_end(self):
+        process = self.start(WINDOW, "--exercise", SCENES / "cranium.json", "--seconds", 12, "--out",
+                             self.folder, "--json", shell=self.LIMIT)
+        code, answer = self.end(process)
+        self.assertEqual(code, 1)
+        self.assert_error(answer, "CANNOT_WRITE", "session-")
+        self.assertEqual(answer["ticks"], 12000)
+        self.assertTrue(lab("replay", answer["recording"])["identical"])
+
+
+class Damage(EndingTest):
+    def test_a_replay_of_a_recording_with_a_changed_byte_ends_within_seconds(self):
+        case = small_head(self.folder / "head.nii.gz")
+        run = lab("run", SCENES / "cranium.json", "--case", case, "--seconds", 1, "--out", self.folder)
+        whole = Path(run["recording"]).read_bytes()
+        damaged = self.folder / "damaged.h5"
+        places = [whole.index(mark) + 8 for mark in (b"OHDR", b"EAHD", b"EAIB", b"FRHP", b"EADB")
+                  if mark in whole]
+        self.assertGreater(len(places), 2)
+        for place in places:
+            with self.subTest(byte=place):
+                changed = bytearray(whole)
+                changed[place] ^= 0x55
+                damaged.write_bytes(changed)
+                done = subprocess.run([LAB, "replay", damaged, "--case", case, "--json"],
+                                      capture_output=True, text=True, timeout=PATIENCE_S)
+                self.assertIn(done.returncode, (1, 3))
+                if done.returncode == 1:
+                    self.assert_error(json.loads(done.stdout), "BAD_RECORDING", "damaged.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()
