@@ -5,6 +5,7 @@
 #include <QFrame>
 #include <QScrollArea>
 
+#include "haptics/unseen_energy.h"
 #include "ui/colours.h"
 #include "ui/words.h"
 
@@ -25,13 +26,6 @@ QLabel* quiet(const QString& text, QWidget* parent) {
   auto* label = new QLabel(text, parent);
   label->setProperty("quiet", true);
   return label;
-}
-
-void colourText(QLabel* label, const QColor& colour) {
-  QPalette palette = label->palette();
-  if (palette.color(QPalette::WindowText) == colour) return;
-  palette.setColor(QPalette::WindowText, colour);
-  label->setPalette(palette);
 }
 
 QString newtons(double force_N) {
@@ -71,7 +65,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
                     "and rewind still work. Free some space, then start the exercise anew."),
                  inside);
   journal_->setWordWrap(true);
-  colourText(journal_, colours::kBad);
+  colours::setText(*journal_, colours::kBad);
   journal_->hide();
 
   auto* common = new QFormLayout;
@@ -112,7 +106,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
                                                  : prefix,
                            frame);
   title->setProperty("title", true);
-  colourText(title, armColour(arm, index));
+  colours::setText(*title, armColour(arm, index));
 
   Card card{value(frame, prefix + "Contact"),
             value(frame, prefix + "Position"),
@@ -121,16 +115,18 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
             value(frame, prefix + "Energy"),
             value(frame, prefix + "Parts"),
             value(frame, prefix + "Faults"),
-            new ForceBar(frame)};
+            new ForceBar(frame),
+            unseenEnergy_J(arm.dynamics ? arm.dynamics->encoder_step_m : 0.0)};
   card.bar->setObjectName(prefix + "ForceBar");
   card.bar->setToolTip(
       tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
-  card.energy->setToolTip(tr("Net work that the sent force did on the hand."));
+  card.energy->setToolTip(tr("Net work that the sent force did on the hand. Tissue gives none out: "
+                             "where an arm does, it pushes by itself or shakes."));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
   card.parts->setWordWrap(true);
   card.parts->setToolTip(tr("What the controller changes in the force that the tissue demands."));
   card.faults->setWordWrap(true);
-  colourText(card.faults, colours::kBad);
+  colours::setText(*card.faults, colours::kBad);
 
   auto* force_row = new QHBoxLayout;
   force_row->addWidget(card.force, 1);
@@ -167,8 +163,11 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     const Vec3& p = arm.patient_position_mm;
     card.position->setText(
         tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
-    const Vec3& energy = arm.energy_out_J;
-    card.energy->setText(tr("%1 mJ").arg(kMilli * (energy.x + energy.y + energy.z), 0, 'f', 1));
+    const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
+    const bool gives_out = energy_J > card.unseen_J;
+    card.energy->setText(
+        (gives_out ? tr("%1 mJ given out") : tr("%1 mJ")).arg(kMilli * energy_J, 0, 'f', 1));
+    colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
     card.parts->setText(state.controller == ControllerKind::bounded
                             ? controllerPartWords(arm.controller_parts)
                             : QStringLiteral("\u2013"));
@@ -176,18 +175,22 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
         arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
     card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
                                    : tr("nothing"));
-    colourText(card.contact, touching ? colours::kText : colours::kQuiet);
+    colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
     card.faults->setText(faultWords(arm.faults));
     card.faults->setVisible(arm.faults != 0);
     faulty = faulty || arm.faults != 0;
   }
   missed_->setText(QString::number(state.missed));
   dropped_->setText(QString::number(state.dropped));
-  colourText(dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
+  colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
   journal_->setVisible(state.journal_full);
   clear_->setVisible(faulty);
-  if (!controller_->view()->isVisible()) {
-    controller_->setCurrentIndex(controller_->findData(int(state.controller)));
+  showController(state.controller);
+}
+
+void ArmsPanel::showController(ControllerKind kind) {
+  if (!controller_->view()->isVisible()) {  // a person may be choosing
+    controller_->setCurrentIndex(controller_->findData(int(kind)));
   }
 }
 
@@ -197,6 +200,7 @@ void ArmsPanel::showIdle() {
     for (QLabel* label : {card.contact, card.position, card.energy, card.parts, card.force}) {
       label->setText(QStringLiteral("\u2013"));
     }
+    colours::setText(*card.energy, colours::kText);
     card.demanded->clear();
     card.faults->hide();
   }

@@ -26,6 +26,7 @@ class ArmsPanel : public QWidget {
   void showState(const LoopState& state, const TissueSet& tissues,
                  const std::vector<double>& limits_N);
   void showIdle();
+  void showController(ControllerKind kind);
 
  signals:
   void controllerWanted(trephine::ControllerKind kind);
@@ -35,6 +36,7 @@ class ArmsPanel : public QWidget {
   struct Card {
     QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
     ForceBar* bar;
+    double unseen_J;  // energy out up to which nothing is wrong
   };
   Card addCard(const SceneArm& arm, std::size_t index);
 

@@ -62,4 +62,11 @@ void applyTheme(QApplication& application) {
                kAccent.darker(125).name(), kAccent.name()));
 }
 
+void setText(QLabel& label, const QColor& colour) {
+  QPalette palette = label.palette();
+  if (palette.color(QPalette::WindowText) == colour) return;
+  palette.setColor(QPalette::WindowText, colour);
+  label.setPalette(palette);
+}
+
 }  // namespace trephine::colours

@@ -3,6 +3,7 @@
 
 #include <QApplication>
 #include <QColor>
+#include <QLabel>
 
 namespace trephine::colours {
 
@@ -21,5 +22,7 @@ inline const QColor kRightArm(0xee, 0xa2, 0x4b);
 
 // Fusion style, palette and a few style rules.
 void applyTheme(QApplication& application);
+
+void setText(QLabel& label, const QColor& colour);
 
 }  // namespace trephine::colours

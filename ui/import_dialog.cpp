@@ -184,8 +184,12 @@ void ImportDialog::showSelected() {
 void ImportDialog::showImportButton() {
   const SeriesReport* series = selected();
   const bool usable = series && mayBeRead(seriesState(*series, answers()));
-  import_->setEnabled(step_ == Step::choosing && usable);
-  import_->setToolTip(!series || usable ? QString() : verdictSentence(*series, answers()));
+  const bool refused = size_->isRefused();
+  import_->setEnabled(step_ == Step::choosing && usable && !refused);
+  import_->setToolTip(!series  ? QString()
+                      : !usable ? verdictSentence(*series, answers())
+                      : refused ? tr("Mend the number of the box that is refused")
+                                : QString());
 }
 
 void ImportDialog::sliceWanted(int index) {

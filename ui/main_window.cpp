@@ -91,7 +91,7 @@ void MainWindow::askForFile() {
 void MainWindow::askForScene() {
   QFileDialog* dialog = fileDialog("sceneDialog", tr("Open a scene"), tr("Scene (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { workstation_.openPath(toPath(file)); });
+          [this](const QString& file) { open(toPath(file)); });
   dialog->open();
 }
 
@@ -111,7 +111,13 @@ void MainWindow::dropEvent(QDropEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() != 1 || !urls.front().isLocalFile()) return;
   event->acceptProposedAction();
-  workstation_.openPath(toPath(urls.front().toLocalFile()));
+  open(toPath(urls.front().toLocalFile()));
+}
+
+void MainWindow::open(const std::filesystem::path& path) {
+  const auto go_on = [this, path] { workstation_.openPath(path); };
+  if (Workstation::isScene(path)) return unlessTissuesStay(go_on);
+  go_on();
 }
 
 void MainWindow::showScene() {
@@ -126,17 +132,8 @@ void MainWindow::showScene() {
   }
   scenes_->setCurrentIndex(index);
   setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
-  tissues_->setTissues(scene->tissues);
-  // The weaker of the arms: the panel speaks of both.
-  std::optional<Renderable> most;
-  for (const SceneArm& arm : scene->arms) {
-    if (!arm.dynamics || scene->controller != ControllerKind::bounded) continue;
-    const Renderable on_arm = renderableOn(arm, scene->rate_hz);
-    most = most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
-                : on_arm;
-  }
-  tissues_->setRenderable(
-      most, [scene = *scene](const Tissue& tissue) { return demandedOf(scene, tissue); });
+  tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
+  showRenderable(scene->controller);
   view_->setTissues(scene->tissues);
   arms_->setScene(*scene);
 }
@@ -225,6 +222,8 @@ void MainWindow::sessionEnded(Session& session) {
   frame_timer_.stop();
   showState(session, session.state());
   arms_->showIdle();
+  showRenderable(workstation_.scene()->controller);
+  arms_->showController(workstation_.scene()->controller);
   view_->setTools({});
   rates_->clear();
   const RunReport report = session.report();
@@ -254,6 +253,7 @@ void MainWindow::tick() {
 void MainWindow::showState(Session& session, const LoopState& state) {
   view_->pullChanges(session.grid());
   arms_->showState(state, session.scene().tissues, limits_N_);
+  if (controller_shown_ != state.controller) showRenderable(state.controller);
   pause_->setChecked(state.paused);
   if (workstation_.session()) {
     undo_->setEnabled(state.can_undo);
@@ -338,13 +338,19 @@ void MainWindow::placeHandPoints() {
 
 // --- Saving and saying ---
 
-void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
-                                const QString& filter, void (MainWindow::*save)(const QString&)) {
+QFileDialog* MainWindow::saveDialog(const QString& title, const QString& suggestion,
+                                    const QString& filter) {
   QFileDialog* dialog = fileDialog("saveDialog", title, filter);
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
   dialog->selectFile(suggestion);
   dialog->setDefaultSuffix(QFileInfo(suggestion).suffix());
+  return dialog;
+}
+
+void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
+                                const QString& filter, void (MainWindow::*save)(const QString&)) {
+  QFileDialog* dialog = saveDialog(title, suggestion, filter);
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, save](const QString& file) { (this->*save)(file); });
   dialog->open();

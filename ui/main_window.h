@@ -1,6 +1,6 @@
 // The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
 // connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
-// builds it, main_window.cpp is what it does.)
+// builds it, main_window_tissues.cpp is what it does with tissues, main_window.cpp the rest.)
 #pragma once
 
 #include <QComboBox>
@@ -16,6 +16,7 @@
 #include "ui/icons.h"
 #include "ui/import_dialog.h"
 #include "ui/rewind_bar.h"
+#include "ui/slip_guard.h"
 #include "ui/tissue_panel.h"
 #include "ui/view_widget.h"
 #include "ui/workstation.h"
@@ -47,6 +48,8 @@ class MainWindow : public QMainWindow {
  protected:
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
 
  private:
   static constexpr double kNoEnd_s = 1e9;
@@ -66,10 +69,15 @@ class MainWindow : public QMainWindow {
   void askForFile();
   void askForScene();
   void askForLabels();
+  QFileDialog* saveDialog(const QString& title, const QString& suggestion, const QString& filter);
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();
+  void open(const std::filesystem::path& path);
+  // Goes on with what takes the place of the tissues; where they have been edited it asks first.
+  void unlessTissuesStay(std::function<void()> go_on);
   void showScene();
+  void showRenderable(ControllerKind in_force);
   void showCase();
   void showPhase();
   void lookAtCase();
@@ -89,6 +97,7 @@ class MainWindow : public QMainWindow {
   void report(const Error& error);
   void askToGoOn(const Error& error);
 
+  SlipGuard slip_guard_;
   Workstation workstation_;
   std::filesystem::path recordings_;
   QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_, *picture_,
@@ -113,6 +122,8 @@ class MainWindow : public QMainWindow {
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left
+  bool may_close_ = false;         // nothing unsaved is left to ask about
+  std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
 };
 
 }  // namespace trephine

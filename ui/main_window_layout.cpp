@@ -182,7 +182,11 @@ void MainWindow::connectParts() {
   connect(case_, &CasePanel::folderWanted, this, &MainWindow::askForFolder);
   connect(open_file_, &QAction::triggered, this, &MainWindow::askForFile);
   connect(case_, &CasePanel::phantomWanted, this,
-          [this](const QString& name) { workstation_.openPhantom(name.toStdString()); });
+          [this](const QString& name) {
+            const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
+            if (workstation_.sceneFits(name.toStdString())) return go_on();
+            unlessTissuesStay(go_on);
+          });
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
   connect(import_, &ImportDialog::fileWanted, this, &MainWindow::askForFile);
@@ -201,12 +205,19 @@ void MainWindow::connectParts() {
     workstation_.setTissues(set);
     view_->setTissues(set);
   });
-  connect(arms_, &ArmsPanel::controllerWanted, &workstation_, &Workstation::setController);
+  connect(arms_, &ArmsPanel::controllerWanted, this, [this](ControllerKind kind) {
+    workstation_.setController(kind);
+    if (!workstation_.session() && workstation_.scene()) showRenderable(kind);
+    view_->setFocus();
+  });
   connect(arms_, &ArmsPanel::clearFaultsWanted, this,
           [this] { command(CommandKind::clear_faults); });
   connect(scenes_, &QComboBox::activated, this, [this](int index) {
-    workstation_.useScene(toPath(scenes_->itemData(index).toString()));
+    unlessTissuesStay([this, file = toPath(scenes_->itemData(index).toString())] {
+      workstation_.useScene(file);
+    });
     showScene();  // back to the one in use where the other cannot be had
+    view_->setFocus();
   });
 
   connect(view_, &ViewWidget::handMoved, this, &MainWindow::moveHand);
@@ -217,8 +228,10 @@ void MainWindow::connectParts() {
           [this](double fraction, const QString& step) {
             case_->showProgress(fraction, step);
             left_->setCurrentWidget(case_);
+            tissues_->setEnabled(false);  // they may be about to go
           });
   connect(&workstation_, &Workstation::openingEnded, case_, &CasePanel::endProgress);
+  connect(&workstation_, &Workstation::openingEnded, this, [this] { tissues_->setEnabled(true); });
   connect(&workstation_, &Workstation::sceneChanged, this, &MainWindow::showScene);
   connect(&workstation_, &Workstation::caseOpened, this, &MainWindow::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &MainWindow::showPhase);

@@ -40,21 +40,22 @@ SizePanel::SizePanel(QWidget* parent) : QWidget(parent) {
   const QString axes[] = {tr("Columns"), tr("Rows"), tr("Slices")};
   for (int axis = 0; axis < 3; ++axis) {
     const auto makeBox = [&](const char* name, const QString& what) {
-      auto* box = new QSpinBox(this);
-      box->setObjectName(QString("%1%2").arg(name).arg(axis));
+      auto* box = new WholeNumberField(QString("%1%2").arg(name).arg(axis), this);
       box->setAccessibleName(what.arg(axes[axis]));
-      box->setAccelerated(true);
-      box->setKeyboardTracking(false);
-      connect(box, &QSpinBox::valueChanged, this, &SizePanel::edited);
+      box->entered = [this] { edited(); };
+      connect(box, &QSpinBox::valueChanged, this, [this] {  // or refused
+        showOutcome();
+        emit changed();
+      });
       return box;
     };
     const auto i = std::size_t(axis);
     from_[i] = makeBox("cropFrom", tr("%1 from"));
     to_[i] = makeBox("cropTo", tr("%1 to"));
     rows->addWidget(new QLabel(axes[axis], this), axis, 0);
-    rows->addWidget(from_[i], axis, 1);
+    rows->addLayout(from_[i]->withReason(), axis, 1);
     rows->addWidget(new QLabel(tr("to"), this), axis, 2);
-    rows->addWidget(to_[i], axis, 3);
+    rows->addLayout(to_[i]->withReason(), axis, 3);
   }
   reset_ = new QPushButton(tr("&Take all of it"), this);
   reset_->setObjectName("cropReset");
@@ -94,30 +95,36 @@ void SizePanel::reset() {
 void SizePanel::setBox(const VoxelBox& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int size = std::max(1, grid_.size[axis]);
-    const QSignalBlocker quiet_from(from_[axis]), quiet_to(to_[axis]);
-    from_[axis]->setRange(1, size);
-    to_[axis]->setRange(1, size);
-    from_[axis]->setValue(box.low[axis] + 1);
-    to_[axis]->setValue(box.high[axis]);
+    const int low = std::clamp(box.low[axis] + 1, 1, size);
+    from_[axis]->show(low);
+    to_[axis]->show(std::clamp(box.high[axis], low, size));
   }
   edited();
 }
 
+// Neither end can pass the other.
 void SizePanel::edited() {
-  for (std::size_t axis = 0; axis < 3; ++axis) {  // neither end can pass the other
-    const QSignalBlocker quiet_from(from_[axis]), quiet_to(to_[axis]);
-    to_[axis]->setMinimum(from_[axis]->value());
-    from_[axis]->setMaximum(to_[axis]->value());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    from_[axis]->setLimits(1, to_[axis]->wanted());
+    to_[axis]->setLimits(from_[axis]->wanted(), std::max(1, grid_.size[axis]));
+    for (WholeNumberField* box : {from_[axis], to_[axis]}) box->take();
   }
   showOutcome();
   emit changed();
 }
 
+bool SizePanel::isRefused() const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (from_[axis]->isRefused() || to_[axis]->isRefused()) return true;
+  }
+  return false;
+}
+
 VoxelBox SizePanel::box() const {
   VoxelBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = from_[axis]->value() - 1;
-    box.high[axis] = to_[axis]->value();
+    box.low[axis] = from_[axis]->wanted() - 1;
+    box.high[axis] = to_[axis]->wanted();
   }
   return box;
 }
@@ -133,7 +140,7 @@ int SizePanel::reduction() const {
 }
 
 void SizePanel::showOutcome() {
-  reset_->setEnabled(crop().has_value());
+  reset_->setEnabled(crop() || isRefused());
   if (grid_.voxelCount() == 0) return outcome_->clear();
   const GridGeometry out = outcomeOf(grid_, box(), reduction());
   outcome_->setText(tr("%1: %2").arg(

@@ -5,10 +5,10 @@
 #include <QButtonGroup>
 #include <QLabel>
 #include <QPushButton>
-#include <QSpinBox>
 #include <array>
 
 #include "imaging/importer.h"
+#include "ui/number_field.h"
 
 namespace trephine {
 
@@ -25,6 +25,8 @@ class SizePanel : public QWidget {
   VoxelBox box() const;
   std::optional<VoxelBox> crop() const;  // nothing where the whole grid is taken
   int reduction() const;
+  // A number was typed that cannot be had; the box is as it was.
+  bool isRefused() const;
 
  signals:
   void changed();
@@ -35,7 +37,7 @@ class SizePanel : public QWidget {
   void showOutcome();
 
   GridGeometry grid_;
-  std::array<QSpinBox*, 3> from_, to_;  // counted from 1, both ends included
+  std::array<WholeNumberField*, 3> from_, to_;  // counted from 1, both ends included
   QButtonGroup* reductions_;
   QWidget* box_rows_;
   QPushButton* reset_;

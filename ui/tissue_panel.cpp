@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tissue/tissue_edits.h"
 #include "ui/colours.h"
 #include "ui/words.h"
 
@@ -33,6 +34,16 @@ QIcon swatch(const QColor& colour, bool hidden) {
   QIcon icon(pixmap);
   icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
   return icon;
+}
+
+// Stands beside what it speaks of, where there is something to say.
+QLabel* notice(const char* name, QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  colours::setText(*label, colours::kCaution);
+  label->hide();
+  return label;
 }
 
 }  // namespace
@@ -72,27 +83,23 @@ void TissuePanel::build() {
   opacity_text_ = new QLabel(editor_);
   opacity_text_->setMinimumWidth(fontMetrics().horizontalAdvance("0.000 /mm "));
 
-  low_ = new QSpinBox(editor_);
-  low_->setObjectName("huLow");
-  high_ = new QSpinBox(editor_);
-  high_->setObjectName("huHigh");
-  for (QSpinBox* box : {low_, high_}) {
-    box->setRange(std::numeric_limits<std::int16_t>::min(),
-                  std::numeric_limits<std::int16_t>::max());
+  low_ = new WholeNumberField("huLow", editor_);
+  high_ = new WholeNumberField("huHigh", editor_);
+  for (WholeNumberField* box : {low_, high_}) {
+    box->setLimits(std::numeric_limits<std::int16_t>::min(),
+                   std::numeric_limits<std::int16_t>::max());
     box->setSingleStep(5);
-    box->setAccelerated(true);
     box->setSuffix(tr(" HU"));
-    box->setKeyboardTracking(false);
-    connect(box, &QSpinBox::valueChanged, this, &TissuePanel::edited);
   }
-
-  label_ = new QSpinBox(editor_);
-  label_->setObjectName("label");
-  label_->setRange(0, 255);
-  label_->setSpecialValueText(tr("any"));
-  label_->setAccelerated(true);
-  label_->setKeyboardTracking(false);
-  connect(label_, &QSpinBox::valueChanged, this, &TissuePanel::edited);
+  label_ = new WholeNumberField("label", editor_);
+  label_->setLimits(0, 255);
+  label_->setWord(0, tr("any"));
+  for (WholeNumberField* box : {low_, high_, label_}) box->entered = [this] { rangeEntered(); };
+  problem_ = notice("tissueProblem", editor_);
+  gaps_ = notice("tissueGaps", editor_);
+  auto* high_row = high_->withReason();
+  high_row->addWidget(problem_);
+  high_row->addWidget(gaps_);
 
   auto* head = new QHBoxLayout;
   head->addWidget(title_, 1);
@@ -104,9 +111,9 @@ void TissuePanel::build() {
   auto* form = new QFormLayout;
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
-  form->addRow(tr("From"), low_);
-  form->addRow(tr("To"), high_);
-  form->addRow(tr("Label"), label_);
+  form->addRow(tr("From"), low_->withReason());
+  form->addRow(tr("To"), high_row);
+  form->addRow(tr("Label"), label_->withReason());
   form->addRow(tr("Opacity"), opacity_row);
   form->addRow(tr("Damping"),
                addNumber("damping", tr(" N\u00b7s/m"), 1e5, 0.1, &Tissue::damping_Ns_per_m));
@@ -120,18 +127,7 @@ void TissuePanel::build() {
   editor_layout->addLayout(head);
   editor_layout->addLayout(form);
 
-  felt_ = new QLabel(this);
-  felt_->setObjectName("tissueFelt");
-  felt_->setWordWrap(true);
-  felt_->setProperty("quiet", true);
-  felt_->hide();
-  problem_ = new QLabel(this);
-  problem_->setObjectName("tissueProblem");
-  problem_->setWordWrap(true);
-  QPalette warning = problem_->palette();
-  warning.setColor(QPalette::WindowText, colours::kCaution);
-  problem_->setPalette(warning);
-  problem_->hide();
+  felt_ = notice("tissueFelt", this);
 
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
@@ -139,65 +135,93 @@ void TissuePanel::build() {
   layout->addWidget(list_);
   layout->addWidget(editor_);
   layout->addWidget(felt_);
-  layout->addWidget(problem_);
   layout->addStretch(1);
 
   connect(list_, &QListWidget::currentRowChanged, this, &TissuePanel::showSelected);
   connect(colour_, &QToolButton::clicked, this, &TissuePanel::chooseColour);
-  connect(opacity_, &QSlider::valueChanged, this, &TissuePanel::edited);
+  connect(opacity_, &QSlider::valueChanged, this, [this](int step) {
+    if (!current()) return;
+    Tissue wanted = *current();
+    wanted.opacity = opacityAtSlider(double(step) / kOpacitySteps);
+    (void)apply(wanted);
+  });
 }
 
-QDoubleSpinBox* TissuePanel::addNumber(const char* name, const QString& unit, double most,
-                                       double step, SourcedNumber Tissue::*field) {
-  auto* box = new QDoubleSpinBox(editor_);
-  box->setObjectName(name);
-  box->setRange(0.0, most);
+QLayout* TissuePanel::addNumber(const char* name, const QString& unit, double most, double step,
+                                SourcedNumber Tissue::*field) {
+  auto* box = new DecimalField(name, editor_);
   box->setDecimals(2);
+  box->setLimits(0.0, most);
   box->setSingleStep(step);
   box->setSuffix(unit);
-  box->setKeyboardTracking(false);
-  connect(box, &QDoubleSpinBox::valueChanged, this, &TissuePanel::edited);
-  numbers_.push_back({box, field});
-  return box;
+  const Number number{box, field};
+  box->entered = [this, number] { numberEntered(number); };
+  numbers_.push_back(number);
+  return box->withReason();
 }
 
-void TissuePanel::setTissues(const TissueSet& tissues) {
-  edited_ = applied_ = tissues;
-  problem_->hide();
+void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared) {
+  tissues_ = tissues;
+  declared_ = declared;
   showList();
+  showSelected();
 }
 
 void TissuePanel::setRenderable(const std::optional<Renderable>& most,
-                                std::function<Impedance(const Tissue&)> demanded) {
+                                std::function<Impedance(const Tissue&)> demanded,
+                                ControllerKind in_force) {
   renderable_ = most;
   demanded_ = std::move(demanded);
+  in_force_ = in_force;
   showFelt();
 }
 
 void TissuePanel::showFelt() {
   const Tissue* tissue = current();
+  const bool bounded = in_force_ == ControllerKind::bounded;
   QStringList lines;
   if (tissue && renderable_) {
     const auto line = [&](const QString& what, const QString& unit, double demanded, double most) {
       if (demanded <= most) return;
-      lines << tr("%1: the exercise's laws together demand %2 %4, these arms show at most %3 %4, "
-                  "and that is felt.")
-                   .arg(what)
-                   .arg(demanded, 0, 'f', 0)
-                   .arg(most, 0, 'f', 0)
-                   .arg(unit);
+      const QString words =
+          bounded ? tr("%1: the exercise's laws together demand %2 %4, these arms show at most "
+                       "%3 %4, and that is felt.")
+                  : tr("%1: the exercise's laws together demand %2 %4, and nothing bounds it under "
+                       "this controller: above %3 %4 these arms may shake.");
+      lines << words.arg(what).arg(demanded, 0, 'f', 0).arg(most, 0, 'f', 0).arg(unit);
     };
     const Impedance demanded = demanded_(*tissue);
     line(tr("Damping"), tr("N\u00b7s/m"), demanded.damping, renderable_->b_max);
     line(tr("Stiffness"), tr("N/m"), demanded.stiffness, renderable_->k_max);
   }
+  colours::setText(*felt_, bounded ? colours::kQuiet : colours::kCaution);
   felt_->setText(lines.join('\n'));
   felt_->setVisible(!lines.isEmpty());
 }
 
+// Between the lowest and the highest HU that a tissue has here or had in the file.
+void TissuePanel::showGaps() {
+  HuRange span{std::numeric_limits<int>::max(), std::numeric_limits<int>::lowest()};
+  for (const TissueSet* set : {&tissues_, &declared_}) {
+    for (const Tissue& tissue : set->tissues) {
+      if (tissue.label) continue;
+      span = {std::min(span.low, tissue.hu_min), std::max(span.high, tissue.hu_max)};
+    }
+  }
+  QStringList ranges;
+  if (span.low <= span.high) {
+    for (const HuRange& range : freeHu(tissues_, span)) {
+      ranges << tr("%1 to %2 HU").arg(range.low).arg(range.high);
+    }
+  }
+  gaps_->setText(tr("Without a tissue: %1. Nothing is drawn, felt or cut there.")
+                     .arg(ranges.join(tr(", ", "between ranges of HU"))));
+  gaps_->setVisible(!ranges.isEmpty());
+}
+
 void TissuePanel::select(const std::string& id) {
-  for (std::size_t i = 0; i < edited_.tissues.size(); ++i) {
-    if (edited_.tissues[i].id == id) list_->setCurrentRow(int(i));
+  for (std::size_t i = 0; i < tissues_.tissues.size(); ++i) {
+    if (tissues_.tissues[i].id == id) list_->setCurrentRow(int(i));
   }
 }
 
@@ -208,11 +232,11 @@ void TissuePanel::setLabelsOpen(bool open) {
 
 void TissuePanel::showList() {
   const int row = std::max(0, list_->currentRow());
-  showing_ = true;
-  while (list_->count() > int(edited_.tissues.size())) delete list_->takeItem(list_->count() - 1);
-  while (list_->count() < int(edited_.tissues.size())) list_->addItem(QString());
+  listing_ = true;
+  while (list_->count() > int(tissues_.tissues.size())) delete list_->takeItem(list_->count() - 1);
+  while (list_->count() < int(tissues_.tissues.size())) list_->addItem(QString());
   for (int i = 0; i < list_->count(); ++i) {
-    const Tissue& tissue = edited_.tissues[std::size_t(i)];
+    const Tissue& tissue = tissues_.tissues[std::size_t(i)];
     QListWidgetItem& item = *list_->item(i);
     item.setText(toQt(tissue.name));
     item.setIcon(swatch(toColour(tissue.colour), tissue.opacity == 0.0));
@@ -222,89 +246,119 @@ void TissuePanel::showList() {
                         .arg(tissue.label ? tr(", label %1").arg(*tissue.label) : QString())
                         .arg(tissue.opacity == 0.0 ? tr(", not drawn") : QString()));
   }
-  showing_ = false;
   list_->setCurrentRow(std::min(row, list_->count() - 1));
-  showSelected();
+  listing_ = false;
 }
 
-Tissue* TissuePanel::current() {
+const Tissue* TissuePanel::current() const {
   const int row = list_->currentRow();
-  if (row < 0 || std::size_t(row) >= edited_.tissues.size()) return nullptr;
-  return &edited_.tissues[std::size_t(row)];
+  if (row < 0 || std::size_t(row) >= tissues_.tissues.size()) return nullptr;
+  return &tissues_.tissues[std::size_t(row)];
+}
+
+const Tissue& TissuePanel::declared(const Tissue& tissue) const {
+  const Tissue* found = declared_.find(tissue.id);
+  return found ? *found : tissue;
 }
 
 void TissuePanel::showSelected() {
-  if (showing_) return;
+  if (listing_) return;
   const Tissue* tissue = current();
   editor_->setEnabled(tissue);
   if (!tissue) return;
-  showing_ = true;
   title_->setText(toQt(tissue->name));
+  low_->show(tissue->hu_min);
+  high_->show(tissue->hu_max);
+  label_->show(tissue->label.value_or(0));
+  problem_->hide();
+  {
+    const QSignalBlocker quiet(opacity_);
+    opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
+  }
+  for (const Number& number : numbers_) number.box->show((tissue->*number.field).value);
+  showOutcome();
+}
+
+void TissuePanel::showOutcome() {
+  const Tissue* tissue = current();
+  if (!tissue) return;
   colour_->setIcon(swatch(toColour(tissue->colour), false));
-  low_->setValue(tissue->hu_min);
-  high_->setValue(tissue->hu_max);
-  for (QSpinBox* box : {low_, high_})
+  for (QSpinBox* box : {low_, high_}) {
     box->setToolTip(tr("Source: %1").arg(toQt(tissue->hu_source)));
-  label_->setValue(tissue->label.value_or(0));
+  }
   label_->setEnabled(labels_open_ || tissue->label);
   label_->setToolTip(labels_open_ ? tr("Only where the label map has this label")
                                   : tr("Open the case's label map first, on the Case tab"));
-  opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
   opacity_text_->setText(tr("%1 /mm").arg(tissue->opacity, 0, 'f', 3));
   for (const Number& number : numbers_) {
-    const SourcedNumber& value = tissue->*number.field;
-    number.box->setValue(value.value);
-    number.box->setToolTip(tr("Source: %1").arg(toQt(value.source)));
+    number.box->setToolTip(tr("Source: %1").arg(toQt((tissue->*number.field).source)));
   }
-  showing_ = false;
+  showGaps();
   showFelt();
 }
 
 void TissuePanel::chooseColour() {
-  Tissue* tissue = current();
+  const Tissue* tissue = current();
   if (!tissue) return;
   auto* dialog = new QColorDialog(toColour(tissue->colour), this);
   dialog->setObjectName("colourDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Colour of %1").arg(toQt(tissue->name)));
   connect(dialog, &QColorDialog::colorSelected, this, [this](const QColor& colour) {
-    if (Tissue* chosen = current()) {
-      chosen->colour = {colour.redF(), colour.greenF(), colour.blueF()};
-      edited();
-    }
+    if (!current()) return;
+    Tissue wanted = *current();
+    wanted.colour = {colour.redF(), colour.greenF(), colour.blueF()};
+    (void)apply(wanted);
   });
   dialog->open();
 }
 
-void TissuePanel::edited() {
-  Tissue* tissue = current();
-  if (showing_ || !tissue) return;
-  if (low_->value() != tissue->hu_min || high_->value() != tissue->hu_max) {
-    tissue->hu_min = low_->value();
-    tissue->hu_max = high_->value();
-    tissue->hu_source = kOwnSource;
+// HU and label together decide whether two tissues claim the same voxels.
+void TissuePanel::rangeEntered() {
+  if (!current()) return;
+  Tissue wanted = *current();
+  wanted.hu_min = low_->wanted();
+  wanted.hu_max = high_->wanted();
+  const Tissue& cited = declared(wanted);
+  if (wanted.hu_min == cited.hu_min && wanted.hu_max == cited.hu_max) {
+    wanted.hu_source = cited.hu_source;
+  } else if (wanted.hu_min != current()->hu_min || wanted.hu_max != current()->hu_max) {
+    wanted.hu_source = kOwnSource;
   }
-  tissue->label.reset();
-  if (label_->value() > 0) tissue->label = label_->value();
-  // Only what was moved: a slider's step must not round a number that a file gave.
-  if (opacity_->value() != int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps))) {
-    tissue->opacity = opacityAtSlider(double(opacity_->value()) / kOpacitySteps);
-  }
-  for (const Number& number : numbers_) {
-    SourcedNumber& value = tissue->*number.field;
-    if (std::abs(number.box->value() - value.value) < 0.005) continue;
-    value = {number.box->value(), kOwnSource};
-  }
-  showList();
-  const Status valid = validate(edited_, "");
-  problem_->setVisible(!valid.ok());
+  wanted.label.reset();
+  if (label_->wanted() > 0) wanted.label = label_->wanted();
+  const Status valid = apply(wanted);
   if (!valid) {
     problem_->setText(
         tr("Not applied. %1. %2.").arg(toQt(valid.error().what), toQt(valid.error().next)));
-    return;
+    return problem_->show();
   }
-  applied_ = edited_;
-  emit tissuesChanged(applied_);
+  problem_->hide();
+  for (WholeNumberField* box : {low_, high_, label_}) box->take();
+}
+
+void TissuePanel::numberEntered(const Number& number) {
+  if (!current()) return;
+  Tissue wanted = *current();
+  const SourcedNumber& cited = declared(wanted).*number.field;
+  SourcedNumber& value = wanted.*number.field;
+  const auto shown = [&](double other) { return std::abs(number.box->wanted() - other) < 0.005; };
+  if (!shown(value.value)) {
+    value = shown(cited.value) ? cited : SourcedNumber{number.box->wanted(), kOwnSource};
+  }
+  if (apply(wanted)) number.box->take();
+}
+
+Status TissuePanel::apply(const Tissue& wanted) {
+  TissueSet set = tissues_;
+  set.tissues[std::size_t(list_->currentRow())] = wanted;
+  if (sameSet(set, tissues_)) return {};
+  if (Status valid = validate(set, ""); !valid) return valid;
+  tissues_ = std::move(set);
+  showList();
+  showOutcome();
+  emit tissuesChanged(tissues_);
+  return {};
 }
 
 }  // namespace trephine

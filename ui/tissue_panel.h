@@ -1,19 +1,20 @@
 // The scene's tissues: a list with colour and opacity, and the numbers of the one that is selected.
-// What is not a possible set is said in words and not applied.
+// What is not a possible number or set is refused in words beside the field and not applied; HU
+// that have lost their tissue are mentioned.
 #pragma once
 
 #include <QLabel>
 #include <QListWidget>
 #include <QSlider>
-#include <QSpinBox>
 #include <QToolButton>
 #include <QWidget>
 
 #include <functional>
 #include <optional>
 
-#include "haptics/arm_dynamics.h"
+#include "haptics/controllers.h"
 #include "tissue/tissue_set.h"
+#include "ui/number_field.h"
 
 namespace trephine {
 
@@ -22,15 +23,18 @@ class TissuePanel : public QWidget {
  public:
   explicit TissuePanel(QWidget* parent = nullptr);
 
-  void setTissues(const TissueSet& tissues);
-  const TissueSet& tissues() const { return applied_; }
+  // `declared` is the set as its file has it: which HU had a tissue, and where numbers come from.
+  void setTissues(const TissueSet& tissues, const TissueSet& declared);
+  void setTissues(const TissueSet& tissues) { setTissues(tissues, tissues); }
+  const TissueSet& tissues() const { return tissues_; }
   void select(const std::string& id);
   // Without a label map a tissue can be freed from a label, but not restricted to one.
   void setLabelsOpen(bool open);
   // The firmest tissue that the arms show, and what the scene's laws together demand of one: what
-  // lies above the first is said to be felt as that.
+  // lies above the first is said to be felt as that under `bounded`, and to be bounded by nothing
+  // under the others. `in_force` is the controller now.
   void setRenderable(const std::optional<Renderable>& most,
-                     std::function<Impedance(const Tissue&)> demanded);
+                     std::function<Impedance(const Tissue&)> demanded, ControllerKind in_force);
 
  signals:
   // A possible set, changed by a person.
@@ -38,32 +42,39 @@ class TissuePanel : public QWidget {
 
  private:
   struct Number {
-    QDoubleSpinBox* box;
+    DecimalField* box;
     SourcedNumber Tissue::*field;
   };
   void build();
-  QDoubleSpinBox* addNumber(const char* name, const QString& unit, double most, double step,
-                            SourcedNumber Tissue::*field);
+  QLayout* addNumber(const char* name, const QString& unit, double most, double step,
+                     SourcedNumber Tissue::*field);
   void showList();
+  // Every field as the selected tissue is; what was typed and refused goes.
   void showSelected();
+  // What follows from the numbers: texts beside fields, sources, HU without a tissue, what is felt.
+  void showOutcome();
+  void showGaps();
   void showFelt();
   void chooseColour();
-  // Takes what the controls say into the set that is being edited, and applies it when possible.
-  void edited();
-  Tissue* current();
+  void rangeEntered();
+  void numberEntered(const Number& number);
+  // Puts it in the place of the selected one, where that makes a possible set.
+  Status apply(const Tissue& wanted);
+  const Tissue* current() const;
+  const Tissue& declared(const Tissue& tissue) const;
 
-  TissueSet edited_;   // what the controls say
-  TissueSet applied_;  // the last possible one
+  TissueSet tissues_, declared_;
   std::optional<Renderable> renderable_;
   std::function<Impedance(const Tissue&)> demanded_;
-  bool showing_ = false;
+  ControllerKind in_force_ = ControllerKind::bounded;
+  bool listing_ = false;
   bool labels_open_ = false;
   QListWidget* list_;
   QWidget* editor_;
-  QLabel *title_, *opacity_text_, *felt_, *problem_;
+  QLabel *title_, *opacity_text_, *gaps_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
-  QSpinBox *low_, *high_, *label_;
+  WholeNumberField *low_, *high_, *label_;
   std::vector<Number> numbers_;
 };
 

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/system.h"
 #include "session/case_source.h"
+#include "tissue/tissue_edits.h"
 #include "ui/words.h"
 #include "volume/volume_files.h"
 
@@ -19,6 +20,7 @@ struct Workstation::Opened {
   bool own_case = false;
   QString case_name;
   std::shared_ptr<const LabelMap> labels{};
+  bool same_scene = false;  // its tissues stay as they are edited
 };
 
 namespace {
@@ -91,10 +93,14 @@ std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& f
   return *std::move(scene);
 }
 
+bool Workstation::isScene(const std::filesystem::path& path) {
+  const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
+  return path.extension() == ".json" && !isSidecar();
+}
+
 void Workstation::openPath(const std::filesystem::path& path) {
   if (!mayOpen()) return;
-  const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
-  if (path.extension() == ".json" && !isSidecar()) {
+  if (isScene(path)) {
     std::optional<Scene> scene = readSceneOrFail(path);
     if (!scene) return;
     const std::string source = scene->case_source;
@@ -106,10 +112,11 @@ void Workstation::openPath(const std::filesystem::path& path) {
 
 void Workstation::openPhantom(const std::string& name) {
   if (!mayOpen()) return;
-  const bool fits = scene_ && scene_->anatomy == name;
+  const bool fits = sceneFits(name);
   const std::filesystem::path file = fits ? scene_file_ : defaultScene(name);
   std::optional<Scene> scene = readSceneOrFail(file);
-  if (scene) openSource(*std::move(scene), file, "phantom:" + name);
+  if (scene && fits) scene->tissues = scene_->tissues;
+  if (scene) openSource(*std::move(scene), file, "phantom:" + name, fits);
 }
 
 void Workstation::useScene(const std::filesystem::path& file) {
@@ -136,7 +143,7 @@ void Workstation::useLabels(const std::filesystem::path& file) {
        name = case_name_, file](const Progress& progress) -> Result<Opened> {
         auto labels = openLabels(file.string(), volume->geometry);
         if (!labels) return labels.error();
-        Opened out{scene, scene_file, volume, {}, {}, own, name, *std::move(labels)};
+        Opened out{scene, scene_file, volume, {}, {}, own, name, *std::move(labels), true};
         place(out, progress);
         return out;
       },
@@ -144,20 +151,22 @@ void Workstation::useLabels(const std::filesystem::path& file) {
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
-                             const std::string& source) {
+                             const std::string& source, bool same_scene) {
   if (source.empty()) {  // the scene waits for a case of the user's
     scene_ = std::move(scene);
     scene_file_ = scene_file;
+    declared_tissues_ = scene_->tissues;
     emit sceneChanged();
     return;
   }
   if (!scene.case_source.empty() && source != scene.case_source) scene.labels_file.clear();
   opening_.run(
-      [scene = std::move(scene), scene_file, source](const Progress& progress) -> Result<Opened> {
+      [scene = std::move(scene), scene_file, source,
+       same_scene](const Progress& progress) -> Result<Opened> {
         Result<Volume> volume = openCase(source, progress);
         if (!volume) return volume.error();
         Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
-                   {},    {},         !isPhantom(source), {}, {}};
+                   {},    {},         !isPhantom(source), {}, {}, same_scene};
         place(out, progress);
         return out;
       },
@@ -171,7 +180,7 @@ void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const 
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
   if (!scene->case_source.empty()) scene->labels_file.clear();  // of another case
-  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name, {}});
+  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name, {}, scene_.has_value()});
 }
 
 void Workstation::placeAndOpen(Opened opening) {
@@ -185,6 +194,11 @@ void Workstation::placeAndOpen(Opened opening) {
 
 void Workstation::opened(Result<Opened> outcome) {
   if (!outcome) return fail(outcome.error());
+  if (outcome->same_scene) {
+    outcome->scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
+  } else {
+    declared_tissues_ = outcome->scene.tissues;
+  }
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
   volume_ = std::move(outcome->volume);
@@ -224,16 +238,27 @@ void Workstation::start(const std::filesystem::path& recordings,
           setPhase(Phase::ready);
           return fail(created.error());
         }
-        session_ = *std::move(created);
-        recording_failure_.reset();
-        if (Status started = session_->start(seconds); !started) {
-          session_.reset();
-          setPhase(Phase::ready);
-          return fail(started.error());
-        }
-        setPhase(Phase::running);
-        emit sessionStarted();
+        started(*std::move(created), seconds);
       });
+}
+
+void Workstation::started(std::unique_ptr<Session> session, double seconds) {
+  // What was changed while the session was made is the first thing that it is told.
+  const Scene& made_of = session->scene();
+  Status told;
+  if (!sameSet(made_of.tissues, scene_->tissues)) told = session->setTissues(scene_->tissues);
+  if (told && made_of.controller != scene_->controller) {
+    (void)session->setController(scene_->controller);  // nothing else waits yet
+  }
+  Status started = told ? session->start(seconds) : told;
+  if (!started) {
+    setPhase(Phase::ready);
+    return fail(started.error());
+  }
+  session_ = std::move(session);
+  recording_failure_.reset();
+  setPhase(Phase::running);
+  emit sessionStarted();
 }
 
 void Workstation::checkRecording() {
@@ -275,14 +300,27 @@ void Workstation::setController(ControllerKind kind) {
   }
 }
 
-void Workstation::save(const QString& what, std::function<Status()> write) {
+bool Workstation::tissuesEdited() const {
+  return scene_ && !sameSet(scene_->tissues, declared_tissues_);
+}
+
+void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {
+  save(
+      tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
+      [text = toJson(scene_->tissues).dump(1) + '\n', file] { return writeTextFile(file, text); },
+      [this, tissues = scene_->tissues, then = std::move(then)] {
+        declared_tissues_ = tissues;
+        then();
+      });
+}
+
+void Workstation::save(const QString& what, std::function<Status()> write,
+                       std::function<void()> then) {
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
-                                 [this, what](Status status) {
-                                   if (status) {
-                                     emit saved(what);
-                                   } else {
-                                     fail(status.error());
-                                   }
+                                 [this, what, then = std::move(then)](Status status) {
+                                   if (!status) return fail(status.error());
+                                   emit saved(what);
+                                   if (then) then();
                                  });
   if (!begun) fail({"BUSY", "Another file is being saved", "", "Try again in a moment"});
 }

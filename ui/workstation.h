@@ -24,8 +24,11 @@ class Workstation : public QObject {
   // A scene (.json, unless it is the sidecar of a .raw) brings its own case; any other folder or
   // file is scanned for import().
   void openPath(const std::filesystem::path& path);
-  // One of the built-in cases, with the scene that fits it.
+  // Whether openPath() takes it for a scene.
+  static bool isScene(const std::filesystem::path& path);
+  // One of the built-in cases, with the scene in use where that fits the anatomy.
   void openPhantom(const std::string& name);
+  bool sceneFits(const std::string& anatomy) const { return scene_ && scene_->anatomy == anatomy; }
   // What an import has read; `name` is for the screen only.
   void openVolume(const std::shared_ptr<const Volume>& volume, const QString& name);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
@@ -56,12 +59,19 @@ class Workstation : public QObject {
   void checkRecording();
   // Only while the phase is running.
   Session* session() const { return phase_ == Phase::running ? session_.get() : nullptr; }
-  // Felt at once, and kept for the next exercise.
+  // Felt at once, in an exercise that is being started too, and kept for the next one. The tissues
+  // are kept as long as the scene is, whatever the case.
   void setTissues(const TissueSet& tissues);
   void setController(ControllerKind kind);
+  // The tissues as the scene's file has them, or as they were saved last; and whether they have
+  // been edited since.
+  const TissueSet& declaredTissues() const { return declared_tissues_; }
+  bool tissuesEdited() const;
+  // As a file that scenes can name; `then` follows once it is written.
+  void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 
   // Runs `write` in the background; `what` names the outcome in saved().
-  void save(const QString& what, std::function<Status()> write);
+  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
   bool isSaving() const { return saving_.busy(); }
 
  signals:
@@ -82,15 +92,18 @@ class Workstation : public QObject {
   struct Opened;
   bool mayOpen();
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
-  void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source);
+  void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
+                  bool same_scene = false);
   void placeAndOpen(Opened opening);
   void opened(Result<Opened> outcome);
+  void started(std::unique_ptr<Session> session, double seconds);
   void setPhase(Phase phase);
   void fail(const Error& error);
 
   Phase phase_ = Phase::empty;
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
+  TissueSet declared_tissues_;
   std::shared_ptr<const Volume> volume_;
   QString case_name_;  // empty where it has none
   std::shared_ptr<const LabelMap> labels_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "haptics/unseen_energy.h"
+
 namespace trephine {
 
 namespace {
@@ -176,7 +178,7 @@ CellResult runIdeal(const StabilityCell& cell) {
 }  // namespace
 
 double unseenEnergy_J(const StabilityCell& cell) {
-  return std::max(5e-5, 1.0 * cell.encoder_m);
+  return unseenEnergy_J(cell.encoder_m);
 }
 
 bool isStable(const StabilityCell& cell, const CellResult& r) {

@@ -158,11 +158,26 @@ TEST_F(SizePanelTest, CountsFromOneAndIncludesBothEnds) {
 
 TEST_F(SizePanelTest, TheEndsDoNotPassEachOther) {
   set("cropTo1", 10);
+  set("cropFrom1", 10);
   set("cropFrom1", 40);
-  EXPECT_EQ(find<QSpinBox>(panel_, "cropFrom1").value(), 10);
   EXPECT_EQ(panel_.crop(), (VoxelBox{{0, 9, 0}, {64, 10, 100}}));
-  set("cropTo1", 3);
-  EXPECT_EQ(find<QSpinBox>(panel_, "cropTo1").value(), 10);
+  EXPECT_TRUE(panel_.isRefused());
+  QLabel& reason = find<QLabel>(panel_, "cropFrom1Refused");
+  EXPECT_FALSE(reason.isHidden());
+  EXPECT_TRUE(reason.text().contains("between 1 and 10")) << reason.text().toStdString();
+  set("cropTo1", 45);
+  EXPECT_TRUE(reason.isHidden()) << "now it can be had";
+  EXPECT_EQ(panel_.crop(), (VoxelBox{{0, 39, 0}, {64, 45, 100}}));
+}
+
+TEST_F(SizePanelTest, AnEndBeyondTheGridIsRefusedAndNotCut) {
+  set("cropTo2", 900);
+  EXPECT_FALSE(panel_.crop().has_value());
+  EXPECT_TRUE(panel_.isRefused());
+  EXPECT_FALSE(find<QLabel>(panel_, "cropTo2Refused").isHidden());
+  find<QPushButton>(panel_, "cropReset").click();
+  EXPECT_FALSE(panel_.isRefused());
+  EXPECT_EQ(find<QSpinBox>(panel_, "cropTo2").value(), 100);
 }
 
 TEST_F(SizePanelTest, SaysWhatComesOutAndWhatItWeighs) {

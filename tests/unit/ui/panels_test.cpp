@@ -7,8 +7,10 @@
 #include <QSpinBox>
 
 #include "qt_support.h"
+#include "tissue/tissue_edits.h"
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
+#include "ui/colours.h"
 #include "ui/tissue_panel.h"
 
 namespace trephine {
@@ -138,13 +140,86 @@ TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
   find<QDoubleSpinBox>(panel_, "stiffness").setValue(600.0);
   panel_.setRenderable(Renderable{10.0, 1000.0}, [](const Tissue& tissue) {
     return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
-  });
+  }, ControllerKind::bounded);
   EXPECT_TRUE(felt.text().contains("demand 1200 N/m")) << felt.text().toStdString();
   EXPECT_TRUE(felt.text().contains("at most 1000 N/m")) << felt.text().toStdString();
   find<QDoubleSpinBox>(panel_, "damping").setValue(50.0);
   EXPECT_FALSE(felt.text().contains("Damping")) << "no law of the exercise uses it";
   find<QDoubleSpinBox>(panel_, "stiffness").setValue(500.0);
   EXPECT_TRUE(felt.isHidden());
+}
+
+TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMostIsFelt) {
+  QLabel& felt = find<QLabel>(panel_, "tissueFelt");
+  find<QDoubleSpinBox>(panel_, "stiffness").setValue(1200.0);
+  for (ControllerKind kind : {ControllerKind::off, ControllerKind::seed}) {
+    panel_.setRenderable(
+        Renderable{10.0, 1000.0},
+        [](const Tissue& tissue) { return Impedance{0.0, tissue.stiffness_N_per_m.value}; }, kind);
+    EXPECT_FALSE(felt.isHidden());
+    EXPECT_FALSE(felt.text().contains("is felt")) << felt.text().toStdString();
+    EXPECT_FALSE(felt.text().contains("at most")) << felt.text().toStdString();
+    EXPECT_TRUE(felt.text().contains("above 1000 N/m these arms may shake"))
+        << felt.text().toStdString();
+  }
+}
+
+TEST_F(TissuePanelTest, HuThatHaveLostTheirTissueAreMentioned) {
+  QLabel& gaps = find<QLabel>(panel_, "tissueGaps");
+  EXPECT_TRUE(gaps.isHidden());
+  find<QSpinBox>(panel_, "huLow").setValue(3000);
+  EXPECT_EQ(changes_, 1) << "air is possible";
+  EXPECT_FALSE(gaps.isHidden());
+  EXPECT_TRUE(gaps.text().contains("201 to 2999 HU")) << gaps.text().toStdString();
+  panel_.select("soft");
+  EXPECT_FALSE(gaps.isHidden()) << "whichever tissue is looked at";
+  find<QSpinBox>(panel_, "huLow").setValue(50);
+  EXPECT_TRUE(gaps.text().contains("0 to 49 HU, 201 to 2999 HU")) << gaps.text().toStdString();
+  panel_.setTissues(twoTissues());
+  EXPECT_TRUE(gaps.isHidden());
+}
+
+TEST_F(TissuePanelTest, ANumberBeyondItsLimitsIsRefusedBesideItsFieldAndOthersGoOn) {
+  QLabel& reason = find<QLabel>(panel_, "dampingRefused");
+  find<QDoubleSpinBox>(panel_, "damping").setValue(1000000.0);
+  EXPECT_EQ(changes_, 0);
+  EXPECT_FALSE(reason.isHidden());
+  EXPECT_EQ(panel_.tissues().tissues[1].damping_Ns_per_m.value, 1.0);
+  find<QDoubleSpinBox>(panel_, "friction").setValue(2.0);
+  EXPECT_EQ(changes_, 1);
+  EXPECT_EQ(changed_.tissues[1].damping_Ns_per_m.value, 1.0);
+  EXPECT_FALSE(reason.isHidden());
+  find<QDoubleSpinBox>(panel_, "damping").setValue(3.0);
+  EXPECT_TRUE(reason.isHidden());
+  EXPECT_EQ(changed_.tissues[1].damping_Ns_per_m.value, 3.0);
+
+  find<QSpinBox>(panel_, "huHigh").setValue(40000);
+  EXPECT_EQ(panel_.tissues().tissues[1].hu_max, 3000);
+  EXPECT_FALSE(find<QLabel>(panel_, "huHighRefused").isHidden());
+  panel_.setLabelsOpen(true);
+  find<QSpinBox>(panel_, "label").setValue(300);
+  EXPECT_FALSE(panel_.tissues().tissues[1].label);
+  EXPECT_FALSE(find<QLabel>(panel_, "labelRefused").isHidden());
+}
+
+TEST_F(TissuePanelTest, AnotherTissueIsShownWithoutTheRefusalsOfTheFirst) {
+  find<QDoubleSpinBox>(panel_, "damping").setValue(1000000.0);
+  find<QSpinBox>(panel_, "huLow").setValue(150);
+  panel_.select("soft");
+  EXPECT_TRUE(find<QLabel>(panel_, "dampingRefused").isHidden());
+  EXPECT_TRUE(find<QLabel>(panel_, "tissueProblem").isHidden());
+  panel_.select("bone");
+  EXPECT_EQ(find<QDoubleSpinBox>(panel_, "damping").value(), 1.0);
+  EXPECT_EQ(find<QSpinBox>(panel_, "huLow").value(), 201);
+  EXPECT_EQ(changes_, 0);
+}
+
+TEST_F(TissuePanelTest, ANumberPutBackCitesItsSourceAgain) {
+  find<QSpinBox>(panel_, "huLow").setValue(300);
+  find<QSpinBox>(panel_, "huLow").setValue(201);
+  find<QDoubleSpinBox>(panel_, "damping").setValue(7.0);
+  find<QDoubleSpinBox>(panel_, "damping").setValue(1.0);
+  EXPECT_TRUE(sameSet(panel_.tissues(), twoTissues()));
 }
 
 TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
@@ -192,7 +267,6 @@ TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
   EXPECT_EQ(find<QLabel>(panel, "rightForce").text(), "3.00 N of 3.30 N");
   EXPECT_TRUE(find<QLabel>(panel, "rightDemanded").text().contains("5.00 N"));
   EXPECT_EQ(find<QLabel>(panel, "rightContact").text(), "Bone");
-  EXPECT_EQ(find<QLabel>(panel, "rightEnergy").text(), "3.0 mJ");
   EXPECT_TRUE(find<QPushButton>(panel, "clearFaults").isHidden());
 
   arm.faults = kFaultLate;
@@ -203,6 +277,27 @@ TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
   ASSERT_FALSE(find<QPushButton>(panel, "clearFaults").isHidden());
   find<QPushButton>(panel, "clearFaults").click();
   EXPECT_TRUE(cleared);
+}
+
+TEST_F(PanelTest, EnergyGivenOutIsSaidAndColouredAsWrongFromWhatTheEncoderSees) {
+  ArmsPanel panel;
+  Scene scene;
+  scene.arms.resize(1);
+  scene.arms[0].name = "right";
+  scene.arms[0].dynamics = ArmDynamics{};
+  scene.arms[0].dynamics->encoder_step_m = 0.2e-3;  // at 1 N, 0.2 mJ
+  panel.setScene(scene);
+  QLabel& energy = find<QLabel>(panel, "rightEnergy");
+  const auto shown = [&](double energy_J) {
+    LoopState state;
+    state.record.arms[0].energy_out_J = {energy_J, 0.0, 0.0};
+    panel.showState(state, {}, {3.3});
+    return std::pair(energy.text(), energy.palette().color(QPalette::WindowText));
+  };
+  EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ given out"), colours::kBad));
+  EXPECT_EQ(shown(0.12e-3), std::pair(QString("0.1 mJ"), colours::kText));
+  EXPECT_EQ(shown(0.25e-3).second, colours::kBad);
+  EXPECT_EQ(shown(-0.2), std::pair(QString("-200.0 mJ"), colours::kText));
 }
 
 }  // namespace

@@ -5,11 +5,15 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 
 #include "qt_support.h"
 #include "support.h"
+#include "tissue/tissue_edits.h"
+#include "training/session_reader.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -153,6 +157,90 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
   EXPECT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
   EXPECT_EQ(said.size(), 1u);
   EXPECT_FALSE(failed_) << "said a second time: " << failed_->sentence();
+}
+
+TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
+  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  ASSERT_TRUE(wait());
+  workstation_.start(folder_.path(), {}, 1e9);
+  ASSERT_EQ(workstation_.phase(), Workstation::Phase::starting);
+  TissueSet tissues = workstation_.scene()->tissues;
+  tissues.tissues.back().damping_Ns_per_m.value = 20.0;
+  workstation_.setTissues(tissues);
+  workstation_.setController(ControllerKind::off);
+  ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  EXPECT_EQ(workstation_.session()->scene().tissues.tissues.back().damping_Ns_per_m.value, 20.0);
+  EXPECT_TRUE(waitFor([&] {
+    const LoopState& state = workstation_.session()->state();
+    return state.ticks > 0 && state.controller == ControllerKind::off;
+  }));
+  workstation_.stop();
+  ASSERT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+
+  // The tick was told before it felt anything.
+  const auto recording = SessionReader::open(*std::filesystem::directory_iterator(folder_.path()));
+  ASSERT_TRUE(recording) << recording.error().sentence();
+  const Result<std::vector<Event>> events = (*recording)->events();
+  ASSERT_TRUE(events);
+  const auto told = std::ranges::find(*events, CommandKind::tissues,
+                                      [](const Event& event) { return event.command.kind; });
+  ASSERT_NE(told, events->end());
+  EXPECT_EQ(told->tick, 0u);
+  EXPECT_EQ(told->command.tissues.classes[tissues.tissues.size() - 1].damping_Ns_per_m, 20.0);
+}
+
+class EditedTissuesTest : public WorkstationTest {
+ protected:
+  EditedTissuesTest() {
+    workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+    EXPECT_TRUE(wait());
+    TissueSet tissues = workstation_.scene()->tissues;
+    tissues.tissues.back().hu_min = 900;
+    workstation_.setTissues(tissues);
+  }
+  int boneFrom() { return workstation_.scene()->tissues.tissues.back().hu_min; }
+};
+
+TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited) {
+  EXPECT_TRUE(workstation_.tissuesEdited());
+  EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);
+  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(boneFrom(), 900);
+  workstation_.useLabels(labels(7));
+  TissueSet tissues = workstation_.scene()->tissues;
+  tissues.tissues.back().hu_min = 950;  // while the label map is read
+  workstation_.setTissues(tissues);
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(workstation_.labels());
+  EXPECT_EQ(boneFrom(), 950);
+  EXPECT_TRUE(workstation_.tissuesEdited());
+  EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);
+
+  workstation_.useScene(workstation_.sceneFile());
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(boneFrom(), 226) << "an exercise that is chosen brings its own";
+  EXPECT_FALSE(workstation_.tissuesEdited());
+}
+
+TEST_F(EditedTissuesTest, AreSavedAsASetThatScenesCanName) {
+  bool then = false;
+  workstation_.saveTissues(folder_ / "mine.json", [&] { then = true; });
+  ASSERT_TRUE(waitFor([&] { return then; }));
+  EXPECT_FALSE(failed_);
+  const Result<TissueSet> saved = readTissueSet(folder_ / "mine.json");
+  ASSERT_TRUE(saved) << saved.error().sentence();
+  EXPECT_TRUE(sameSet(*saved, workstation_.scene()->tissues));
+  EXPECT_FALSE(workstation_.tissuesEdited());
+}
+
+TEST_F(EditedTissuesTest, ThatCannotBeSavedAreStillEdited) {
+  bool then = false;
+  workstation_.saveTissues(folder_ / "no folder" / "mine.json", [&] { then = true; });
+  ASSERT_TRUE(waitFor([&] { return failed_.has_value(); }));
+  EXPECT_FALSE(then);
+  EXPECT_TRUE(workstation_.tissuesEdited());
 }
 
 }  // namespace

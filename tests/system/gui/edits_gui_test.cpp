@@ -1,0 +1,325 @@
+// Tissues, controller and exercise as a person changes them in the window, and as a slip does not.
+// The steps build on each other, in order.
+#include <QAbstractItemView>
+#include <QApplication>
+#include <QDialogButtonBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QSignalSpy>
+#include <QStandardPaths>
+#include <QTabBar>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <QtTest/qtestspontaneevent.h>
+
+#include "tissue/tissue_edits.h"
+#include "ui/colours.h"
+#include "ui/main_window.h"
+#include "ui/start_up.h"
+#include "ui/words.h"
+#include "volume/phantom.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 120000;
+
+// The cranium on a grid a quarter as fine: the test is about the window.
+Volume testCase() {
+  GridGeometry geometry = *phantomGeometry("cranium");
+  for (int axis = 0; axis < 3; ++axis) {
+    geometry.size[std::size_t(axis)] /= 4;
+    geometry.spacing_mm[axis] *= 4.0;
+  }
+  return makePhantomOn(*phantomTruth("cranium"), geometry, kPhantomNoiseHu);
+}
+
+}  // namespace
+
+class EditsGuiTest : public QObject {
+  Q_OBJECT
+
+ private:
+  QTemporaryDir temporary_;
+  std::unique_ptr<MainWindow> window_;
+
+  ViewWidget& view() { return window_->view(); }
+  Workstation& workstation() { return window_->workstation(); }
+  const Tissue& bone() { return *workstation().scene()->tissues.find("bone"); }
+  template <class Widget>
+  Widget* find(const QString& name) {
+    auto* widget = window_->findChild<Widget*>(name);
+    if (!widget) qFatal("the window has no %s", qPrintable(name));
+    return widget;
+  }
+
+  void activate() {
+    QApplication::setActiveWindow(window_.get());
+    view().setFocus();
+    QVERIFY(view().hasFocus());
+  }
+  void enter(const char* box, const QString& value) {
+    auto* spin = find<QAbstractSpinBox>(box);
+    spin->setFocus();
+    auto* line = spin->findChild<QLineEdit*>();
+    line->selectAll();
+    QTest::keyClicks(line, value);
+    QTest::keyClick(line, Qt::Key_Return);
+  }
+  void wheelOver(QWidget* widget, int notches) {
+    const QPointF at = QRectF(widget->rect()).center();
+    for (int i = 0; i < std::abs(notches); ++i) {
+      QWheelEvent event(at, widget->mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120},
+                        Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
+      QSpontaneKeyEvent::setSpontaneous(&event);  // as from a mouse
+      qApp->notify(widget, &event);
+    }
+  }
+  // As a click in the opened list does.
+  void choose(QComboBox* choices, int index) {
+    choices->setCurrentIndex(index);
+    QVERIFY(QMetaObject::invokeMethod(choices, "activated", Q_ARG(int, index)));
+  }
+  void chooseScene(const char* file) {
+    auto* scenes = find<QComboBox>("scenes");
+    for (int i = 0; i < scenes->count(); ++i) {
+      if (scenes->itemData(i).toString().endsWith(file)) return choose(scenes, i);
+    }
+    QFAIL(file);
+  }
+  QMessageBox* question() {
+    auto* box = window_->findChild<QMessageBox*>("unsavedTissues");
+    return box && box->isVisible() ? box : nullptr;
+  }
+  void answer(QMessageBox::StandardButton button) {
+    QTRY_VERIFY(question());
+    QTest::mouseClick(question()->button(button), Qt::LeftButton);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("unsavedTissues"));
+    QApplication::setActiveWindow(window_.get());
+  }
+  void keepGrab(const char* name) {
+    QTest::qWait(500);
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
+  }
+  void wheelOverEverythingChangesNothing() {
+    activate();
+    const TissueSet tissues = workstation().scene()->tissues;
+    const auto file = workstation().sceneFile();
+    const auto volume = workstation().volume();
+    auto* controller = find<QComboBox>("controller");
+    auto* scenes = find<QComboBox>("scenes");
+    const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
+    QWidget* tabs = find<QTabWidget>("leftTabs")->tabBar();
+    for (QWidget* widget :
+         {find<QWidget>("huLow"), find<QWidget>("huHigh"), find<QWidget>("damping"),
+          find<QWidget>("stiffness"), find<QWidget>("friction"), find<QWidget>("opacity"),
+          find<QWidget>("controller"), find<QWidget>("scenes"), tabs}) {
+      QVERIFY2(widget->isVisible(), qPrintable(widget->objectName()));
+      wheelOver(widget, -3);
+      wheelOver(widget, 1);
+      QVERIFY2(view().hasFocus(), qPrintable(widget->objectName()));
+    }
+    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QCOMPARE(controller->currentIndex(), controller_was);
+    QCOMPARE(scenes->currentIndex(), scene_was);
+    QCOMPARE(find<QTabWidget>("leftTabs")->currentIndex(), 1);
+    QVERIFY(workstation().sceneFile() == file);
+    QVERIFY(workstation().volume() == volume);
+    QVERIFY(!workstation().isOpening());
+  }
+
+ private slots:
+  void initTestCase() {
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("sessions")));
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openVolume(std::make_shared<const Volume>(testCase()), "");
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    window_->findChild<TissuePanel*>()->select("bone");
+    QCOMPARE(find<QSpinBox>("huLow")->value(), 226);
+  }
+
+  void theWheelChangesNoFieldAndThrowsNoCaseAway() { wheelOverEverythingChangesNothing(); }
+
+  void aNumberBeyondItsRangeIsRefusedBesideItsFieldAndTheKeysGoBack() {
+    const double before = bone().damping_Ns_per_m.value;
+    enter("damping", "1000000");
+    QVERIFY(view().hasFocus());
+    QCOMPARE(bone().damping_Ns_per_m.value, before);
+    auto* reason = find<QLabel>("dampingRefused");
+    QVERIFY(reason->isVisible());
+    QVERIFY2(reason->text().contains("1000000") && reason->text().contains("100000 "),
+             qPrintable(reason->text()));
+    const auto below = [&](const char* name) {
+      return reason->mapToGlobal(QPoint()).y() > find<QWidget>(name)->mapToGlobal(QPoint()).y();
+    };
+    QVERIFY(below("damping") && !below("stiffness"));
+    keepGrab("refused-1280x800.png");
+    QVERIFY2(reason->height() >= reason->heightForWidth(reason->width()), "the reason is cut off");
+    enter("damping", "-50");
+    QCOMPARE(bone().damping_Ns_per_m.value, before);
+    QVERIFY2(reason->text().contains("-50"), qPrintable(reason->text()));
+    auto* box = find<QDoubleSpinBox>("damping");
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_Escape);
+    QVERIFY(!reason->isVisible());
+    QCOMPARE(box->value(), before);
+    QVERIFY(view().hasFocus());
+  }
+
+  void escapeGivesTheKeysBackFromEveryControl() {
+    for (const char* name : {"huLow", "opacity", "tissueList", "controller", "scenes"}) {
+      auto* widget = find<QWidget>(name);
+      widget->setFocus();
+      QVERIFY2(widget->hasFocus(), name);
+      QTest::keyClick(widget, Qt::Key_Escape);
+      QVERIFY2(view().hasFocus(), name);
+    }
+  }
+
+  void huWithoutATissueAreMentioned() {
+    auto* gaps = find<QLabel>("tissueGaps");
+    QVERIFY(!gaps->isVisible());
+    enter("huLow", "3000");
+    QVERIFY(gaps->isVisible());
+    QVERIFY2(gaps->text().contains("226 to 2999 HU"), qPrintable(gaps->text()));
+    keepGrab("gap-1280x800.png");
+    enter("huLow", "226");
+    QVERIFY(!gaps->isVisible());
+    QVERIFY(!workstation().tissuesEdited());
+  }
+
+  void theSameExerciseOnAnotherCaseAsksNothingAndAnotherExerciseAsksOnce() {
+    enter("huLow", "300");
+    QVERIFY(workstation().tissuesEdited());
+    QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
+    QVERIFY(!question());
+    QVERIFY(workstation().isOpening());
+    workstation().cancelOpening();
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+
+    const auto file = workstation().sceneFile();
+    chooseScene("burr-hole.json");
+    answer(QMessageBox::Cancel);
+    QVERIFY(!workstation().isOpening());
+    QVERIFY(workstation().sceneFile() == file);
+    QCOMPARE(bone().hu_min, 300);
+    QCOMPARE(find<QComboBox>("scenes")->currentData().toString(), toQt(file));
+
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    chooseScene("burr-hole.json");
+    answer(QMessageBox::Discard);
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QVERIFY(!question());
+    QVERIFY(workstation().sceneFile() != file);
+    QCOMPARE(bone().hu_min, 226);
+    chooseScene("cranium.json");
+    QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
+    QVERIFY(!question());
+  }
+
+  void editsAreSavedBeforeTheOtherExerciseComes() {
+    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    window_->findChild<TissuePanel*>()->select("bone");
+    enter("huLow", "310");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    chooseScene("burr-hole.json");
+    answer(QMessageBox::Save);
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+    auto* dialog = find<QFileDialog>("saveDialog");
+    const QString file = temporary_.filePath("mine.json");
+    find<QLineEdit>("fileNameEdit")->setText(file);
+    dialog->findChild<QDialogButtonBox*>()->button(QDialogButtonBox::Save)->click();
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    const Result<TissueSet> saved = readTissueSet(toPath(file));
+    QVERIFY(saved.ok());
+    QCOMPARE(saved->find("bone")->hu_min, 310);
+    QCOMPARE(bone().hu_min, 226);
+    QApplication::setActiveWindow(window_.get());
+    chooseScene("cranium.json");
+    QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
+    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    window_->findChild<TissuePanel*>()->select("bone");
+  }
+
+  void inAnExerciseNeitherWheelNorArrowKeysChangeTheController() {
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    find<QAction>("start")->trigger();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    wheelOverEverythingChangesNothing();
+    auto* controller = find<QComboBox>("controller");
+    controller->setFocus();
+    QTest::keyClick(controller, Qt::Key_PageDown);
+    QTest::keyClick(controller, Qt::Key_End);
+    QTest::keyClick(controller, Qt::Key_O);
+    QTest::keyClick(controller, Qt::Key_Down);
+    QVERIFY(controller->view()->isVisible());
+    controller->hidePopup();
+    QCOMPARE(controller->currentData().toInt(), int(ControllerKind::bounded));
+    QVERIFY(workstation().session()->state().controller == ControllerKind::bounded);
+  }
+
+  void afterTypingPageUpMovesTheHandAndNotTheThreshold() {
+    enter("huLow", "230");
+    QCOMPARE(bone().hu_min, 230);
+    QVERIFY(view().hasFocus());
+    QSignalSpy moved(&view(), &ViewWidget::handMoved);
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_PageUp);
+    QCOMPARE(moved.count(), 1);
+    QCOMPARE(bone().hu_min, 230);
+    enter("huLow", "226");
+  }
+
+  void thePanelFollowsTheControllerInForce() {
+    auto* felt = find<QLabel>("tissueFelt");
+    enter("stiffness", "1000000");
+    QVERIFY(felt->isVisible());
+    QVERIFY2(felt->text().contains("at most"), qPrintable(felt->text()));
+    auto* controller = find<QComboBox>("controller");
+    choose(controller, controller->findData(int(ControllerKind::off)));
+    QVERIFY(view().hasFocus());
+    QTRY_VERIFY(!felt->text().contains("at most"));
+    QVERIFY2(felt->text().contains("may shake"), qPrintable(felt->text()));
+    keepGrab("felt-off-1280x800.png");
+    // From elsewhere too: a script's controller is one that nobody chose here.
+    QVERIFY(workstation().session()->setController(ControllerKind::bounded));
+    QTRY_VERIFY(felt->text().contains("at most"));
+    workstation().stop();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    QVERIFY2(felt->text().contains("may shake"), "the next exercise runs as was chosen");
+    QCOMPARE(controller->currentData().toInt(), int(ControllerKind::off));
+  }
+
+  void closingAsksForEditsOnce() {
+    QVERIFY(workstation().tissuesEdited());
+    window_->close();
+    answer(QMessageBox::Cancel);
+    QVERIFY(window_->isVisible());
+    window_->close();
+    answer(QMessageBox::Discard);
+    QVERIFY(!window_->isVisible());
+  }
+
+  void cleanupTestCase() { window_.reset(); }
+};
+
+int main(int argc, char** argv) {
+  if (Status display = prepareDisplay(); !display) {
+    std::printf("SKIP: %s\n", display.error().sentence().c_str());
+    return 77;
+  }
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("trephine-test");
+  QStandardPaths::setTestModeEnabled(true);
+  colours::applyTheme(application);
+  EditsGuiTest test;
+  return QTest::qExec(&test, argc, argv);
+}
+
+#include "edits_gui_test.moc"

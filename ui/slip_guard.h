@@ -1,0 +1,24 @@
+// Keeps values from changing by a slip: a wheel that turns over a field, a slider or a list of
+// choices on its way down a panel, a key that was meant for a hand. For the whole program, its
+// dialogs included, for as long as it lives.
+//
+// - The wheel turns a number, a slider or a row of tabs only where that has the focus, which the
+//   wheel does not give.
+// - A list of choices changes by opening it and choosing: the wheel does nothing to it, Up and Down
+//   open it, other keys pass it by.
+#pragma once
+
+#include <QObject>
+
+namespace trephine {
+
+class SlipGuard : public QObject {
+  Q_OBJECT
+ public:
+  explicit SlipGuard(QObject* parent = nullptr);
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+};
+
+}  // namespace trephine
