@@ -25,9 +25,10 @@ struct ToolView {
   Pose pose_mm;            // patient frame
   double length_mm = 0.0;  // of the working part (blade, burr) or shaft (needle)
   ToolShape shape = ToolShape::needle;
-  bool contact = false;    // shown by a mark at the tip
+  bool contact = false;    // shown by a mark at the tip; the colour stays the arm's
   Vec3 colour{0.8};        // of the whole tool; with a mesh, of what lies behind length_mm
-  double radius_mm = 0.0;  // of the needle, the burr's ball, half the blade's thickness; 0: usual
+  double radius_mm = 0.0;  // of the needle, the burr's head, half the blade's thickness; 0: usual
+  double head_mm = 0.0;    // of a burr's head that is a rod with round ends; 0: a ball
   // An STL file that is drawn instead of `shape`; where it cannot be, a warning says why, once.
   std::string mesh_file;
   Vec3 mesh_tip_mm{0.0};          // in the mesh's frame

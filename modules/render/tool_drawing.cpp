@@ -97,18 +97,21 @@ void addBlade(double length, double half_thickness, vtkPoints* points, vtkCellAr
   faces->InsertNextCell(5, front);
 }
 
-// A ball whose far end is the tip, on a shaft.
-std::vector<Ring> burr(double length, double radius) {
+// A ball, or a rod with round ends, whose far end is the tip, on a shaft.
+std::vector<Ring> burr(double length, double radius, double head) {
   const double shaft = std::min(kShaftRadius_mm, 0.6 * radius);
+  const double straight = isFinite(head) ? std::max(0.0, head - 2.0 * radius) : 0.0;
   std::vector<Ring> rings;
   for (int band = 0; band < kSides; ++band) {
     const double polar = std::numbers::pi * band / kSides;
     const double across = radius * std::sin(polar);
-    if (2 * band > kSides && across < shaft) break;
-    rings.push_back({radius * (1.0 - std::cos(polar)), across});
+    const bool behind = 2 * band > kSides;
+    if (behind && across < shaft) break;
+    rings.push_back({radius * (1.0 - std::cos(polar)) + (behind ? straight : 0.0), across});
+    if (straight > 0.0 && 2 * band == kSides) rings.push_back({radius + straight, radius});
   }
   rings.push_back({rings.back().z, shaft});
-  rings.push_back({std::max(length, 2.0 * radius), shaft});
+  rings.push_back({std::max(length, 2.0 * radius + straight), shaft});
   return rings;
 }
 
@@ -121,7 +124,7 @@ vtkNew<vtkPolyData> builtIn(const ToolView& view) {
   if (view.shape == ToolShape::blade) {
     addBlade(view.length_mm, radius(kBladeHalfThickness_mm), points, faces);
   } else if (view.shape == ToolShape::burr) {
-    const std::vector<Ring> rings = burr(view.length_mm, radius(kBurrRadius_mm));
+    const std::vector<Ring> rings = burr(view.length_mm, radius(kBurrRadius_mm), view.head_mm);
     handle = rings.back().z;
     addRevolved(rings, points, faces);
   } else {
@@ -214,13 +217,13 @@ bool alike(const T& a, const T& b) {
 
 bool sameSolid(const ToolView& a, const ToolView& b) {
   return a.length_mm == b.length_mm && a.shape == b.shape && alike(a.radius_mm, b.radius_mm) &&
-         a.mesh_file == b.mesh_file && alike(a.mesh_tip_mm, b.mesh_tip_mm) &&
-         alike(a.mesh_axis, b.mesh_axis);
+         alike(a.head_mm, b.head_mm) && a.mesh_file == b.mesh_file &&
+         alike(a.mesh_tip_mm, b.mesh_tip_mm) && alike(a.mesh_axis, b.mesh_axis);
 }
 
-void setColour(vtkActor* actor, const Vec3& colour, bool contact) {
-  const Vec3 seen = contact ? glm::mix(colour, kMarkColour, 0.45) : colour;
-  actor->GetProperty()->SetColor(seen.x, seen.y, seen.z);
+// The same in contact, or the hands could not be told apart when it matters most.
+void setColour(vtkActor* actor, const Vec3& colour) {
+  actor->GetProperty()->SetColor(colour.x, colour.y, colour.z);
 }
 
 void setSolid(vtkActor* actor, vtkPolyData* solid) {
@@ -280,8 +283,8 @@ struct ToolDrawing::Tool {
       place->SetElement(row, 3, view.pose_mm.position[row]);
     }
     place->Modified();
-    setColour(body, meshed ? glm::mix(kSteel, view.colour, 0.15) : view.colour, view.contact);
-    setColour(handle, view.colour, view.contact);
+    setColour(body, meshed ? glm::mix(kSteel, view.colour, 0.15) : view.colour);
+    setColour(handle, view.colour);
   }
 
   void setVisible(bool shown, bool contact) {

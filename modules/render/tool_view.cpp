@@ -24,6 +24,7 @@ ToolView toolView(const SceneTool& tool, const Pose& pose_mm, bool contact, cons
   view.contact = contact;
   view.colour = colour;
   view.radius_mm = d.radius_mm;
+  if (d.shape == BurrShape::cylinder) view.head_mm = d.head_mm;
   view.mesh_file = tool.look.mesh.string();
   view.mesh_tip_mm = tool.look.tip_mm;
   view.mesh_axis = tool.look.axis;

@@ -5,6 +5,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkProperty.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
@@ -12,6 +13,7 @@
 
 #include "base/system.h"
 #include "render/tool_drawing.h"
+#include "render/tool_view.h"
 #include "scenes.h"
 #include "stl_files.h"
 #include "support.h"
@@ -130,6 +132,32 @@ TEST(ToolDrawing, ContactIsMarkedAtTheTip) {
   EXPECT_GT(int(touching.rgb[middle]), int(free.rgb[middle]) + 40);  // the mark is orange
 }
 
+TEST(ToolDrawing, AToolInContactKeepsItsArmsColour) {
+  const TemporaryFolder folder;
+  ToolView built_in;
+  built_in.length_mm = 30.0;
+  const ToolView meshed = barTool(put(folder / "bar.stl", binaryStl(kBar)));
+  for (ToolView tool : {built_in, meshed}) {
+    tool.colour = Vec3(0.33, 0.73, 0.84);
+    const auto colours = [&](bool contact) {
+      vtkNew<vtkRenderer> renderer;
+      ToolDrawing drawing;
+      tool.contact = contact;
+      drawing.show({tool}, *renderer);
+      std::vector<Vec3> seen;
+      vtkActorCollection* actors = renderer->GetActors();
+      actors->InitTraversal();
+      while (vtkActor* actor = actors->GetNextActor()) {
+        Vec3 colour;
+        actor->GetProperty()->GetColor(&colour.x);
+        seen.push_back(colour);
+      }
+      return seen;
+    };
+    EXPECT_EQ(colours(true), colours(false));
+  }
+}
+
 TEST(ToolDrawing, AToolWithAPoseThatIsNotANumberIsLeftOut) {
   RENDERER_OR_SKIP(renderer);
   renderer.lookAt(Vec3(0.0), Vec3(0, 1, 0), Vec3(0, 0, 1), 120.0);
@@ -163,6 +191,31 @@ TEST(ToolDrawing, ABuiltInToolHasTheRadiusThatIsAskedFor) {
     EXPECT_NEAR(seen[0].z, 0.0, 1e-3);
     EXPECT_NEAR(seen[1].z, 100.0, 1e-3);
   }
+}
+
+TEST(ToolDrawing, ABurrIsDrawnAsTheRodWithRoundEndsThatItsDescriptionSays) {
+  SceneTool tool;
+  const ToolDescription cylinder{ToolKind::burr, 40.0, 100, 2.0, 0, BurrShape::cylinder, 12.0, 0.0};
+  tool.tool = *makeTool(cylinder);
+  // How far back from the tip the head is as thick as it cuts; the handle begins at 40 mm.
+  const auto thickUpTo_mm = [](const SceneTool& drawn) {
+    vtkNew<vtkRenderer> renderer;
+    ToolDrawing drawing;
+    drawing.show({toolView(drawn, {}, false, Vec3(0.8))}, *renderer);
+    vtkActorCollection* actors = renderer->GetActors();
+    actors->InitTraversal();
+    auto* solid = vtkPolyData::SafeDownCast(actors->GetNextActor()->GetMapper()->GetInput());
+    double last = 0.0;
+    for (vtkIdType i = 0; i < solid->GetNumberOfPoints(); ++i) {
+      double p[3];
+      solid->GetPoint(i, p);
+      if (p[2] < 40.0 && std::abs(std::hypot(p[0], p[1]) - 2.0) < 1e-4) last = std::max(last, p[2]);
+    }
+    return last;
+  };
+  EXPECT_NEAR(thickUpTo_mm(tool), 10.0, 1e-3) << "12 mm, the last 2 of them round";
+  tool.tool.made_from.shape = BurrShape::sphere;
+  EXPECT_NEAR(thickUpTo_mm(tool), 2.0, 1e-3) << "a ball is thickest at its middle";
 }
 
 TEST(ToolDrawing, AMeshLiesWithItsTipAtThePoseAndItsAxisAlongTheTool) {
