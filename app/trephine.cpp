@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "ui/colours.h"
+#include "ui/error_dialog.h"
 #include "ui/exercise.h"
 #include "ui/main_window.h"
 #include "ui/start_up.h"
@@ -52,14 +53,14 @@ int run(int argc, char** argv) {
   }
 
   setUpLog(!scene.empty());
-  if (Status display = prepareDisplay(); !display) {
-    return printError("exercise", display.error(), json);
-  }
+  const Status display = prepareDisplay();
+  const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
+  if (!display) printError("exercise", display.error(), json);
+  if (!display && !can_say) return 1;
   QApplication application(argc, argv);
   QApplication::setApplicationName("trephine");
   QApplication::setApplicationDisplayName("Trephine");
   colours::applyTheme(application);
-
   if (!scene.empty()) {
     ExerciseOptions options{scene, {}, out};
     if (seconds > 0.0) options.seconds = seconds;
@@ -70,14 +71,19 @@ int run(int argc, char** argv) {
     }
     return exercise(options, json);
   }
-  MainWindow window;
-  window.show();
-  if (!path.empty()) window.workstation().openPath(path);
   QTimer poll;
   QObject::connect(&poll, &QTimer::timeout, [] {
     if (progress.cancelled()) QApplication::exit();  // asks nobody; the session ends in order
   });
   poll.start(kSignalPoll_ms);
+  if (!display) {
+    showError(nullptr, display.error());
+    QApplication::exec();
+    return 1;
+  }
+  MainWindow window;
+  if (!path.empty()) window.openOnceShown(path);
+  window.show();
   return QApplication::exec();
 }
 

@@ -13,9 +13,11 @@
 namespace trephine {
 
 Status prepareDisplay() {
-  if (Status display = probeDisplay(); !display) return display;
-  // The OpenGL that VTK was built for is X's; a Wayland desktop has an X server beside it.
-  if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM")) qputenv("QT_QPA_PLATFORM", QByteArray("xcb"));
+  // The OpenGL that VTK was built for is X's, by GLX; a Wayland desktop has an X server beside it.
+  // Whatever else the environment asks Qt for would end in a view that stays black, or in no
+  // window.
+  qputenv("QT_QPA_PLATFORM", QByteArray("xcb"));
+  qputenv("QT_XCB_GL_INTEGRATION", QByteArray("xcb_glx"));
   QSurfaceFormat format;
   format.setRenderableType(QSurfaceFormat::OpenGL);
   format.setVersion(3, 2);
@@ -24,7 +26,7 @@ Status prepareDisplay() {
   format.setStencilBufferSize(8);
   format.setSamples(0);
   QSurfaceFormat::setDefaultFormat(format);
-  return {};
+  return probeDisplay();
 }
 
 double msSinceProcessStart() {

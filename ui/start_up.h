@@ -5,8 +5,9 @@
 
 namespace trephine {
 
-// Asks display and OpenGL, which Qt and VTK would end the process over, and sets the surface format
-// of every view. Before QApplication. Errors: NO_DISPLAY, NO_OPENGL.
+// Chooses how Qt draws, sets the surface format of every view, and asks display and OpenGL, which
+// Qt and VTK would end the process over. Before QApplication. Errors: NO_DISPLAY, NO_OPENGL (then a
+// window may be shown all the same, but no view).
 Status prepareDisplay();
 
 // Milliseconds since the system started this process.

@@ -30,8 +30,9 @@ Hand handFor(Qt::KeyboardModifiers modifiers) {
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
   return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
-         a.colour == b.colour && a.radius_mm == b.radius_mm && a.mesh_file == b.mesh_file &&
-         a.mesh_tip_mm == b.mesh_tip_mm && a.mesh_axis == b.mesh_axis &&
+         a.colour == b.colour && a.radius_mm == b.radius_mm && a.head_mm == b.head_mm &&
+         a.mesh_file == b.mesh_file && a.mesh_tip_mm == b.mesh_tip_mm &&
+         a.mesh_axis == b.mesh_axis &&
          glm::distance(a.pose_mm.position, b.pose_mm.position) < kToolMoved_mm &&
          std::abs(glm::dot(a.pose_mm.orientation, b.pose_mm.orientation)) > 1.0 - 1e-7;
 }
@@ -74,14 +75,13 @@ void ViewWidget::releaseGraphics() {
 void ViewWidget::initializeGL() {
   connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &ViewWidget::releaseGraphics,
           Qt::UniqueConnection);
-  const Status attached =
-      renderer_.attach({[this] { return QOpenGLContext::currentContext() == context(); },
-                        [this] { makeCurrent(); }});
+  drawing_ = renderer_.attach({[this] { return QOpenGLContext::currentContext() == context(); },
+                               [this] { makeCurrent(); }});
   fitRenderer();
-  if (attached) {
+  if (drawing_) {
     gl_description_ = renderer_.openGlDescription();
   } else {
-    emit failed(attached.error());
+    emit failed(drawing_.error());
   }
 }
 

@@ -43,6 +43,8 @@ class ViewWidget : public QOpenGLWidget {
   void setTraining(bool training);
   void setHandPoint(Hand hand, const Vec3& point_mm);
 
+  // NO_OPENGL until the view could start to draw, and where it could not.
+  const Status& canDraw() const { return drawing_; }
   // What is on the screen: the voxels, and the picture at full quality.
   const Volume& shownVolume() const { return renderer_.copy(); }
   Result<Picture> picture();
@@ -73,6 +75,8 @@ class ViewWidget : public QOpenGLWidget {
   void fitRenderer();
 
   SceneRenderer renderer_;
+  Status drawing_{Error{"NO_OPENGL", "The view has no OpenGL to draw with", "3-D view",
+                        "Install the graphics driver and start again"}};
   std::string gl_description_;
   QLabel* hint_;
   QTimer still_;

@@ -1,80 +1,160 @@
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vtkAutoInit.h>
+#include <vtkOpenGLRenderWindow.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
 #include "render/display_probe.h"
 
-#include <dlfcn.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <thread>
+VTK_MODULE_INIT(vtkRenderingOpenGL2);
 
 namespace trephine {
 
 namespace {
 
-// From the GLX 1.4 specification; its header's macros clash with ours (Status, None).
-constexpr int kGlxDoubleBuffer = 5;
-constexpr int kGlxDepthSize = 12;
-constexpr int kGlxDrawableType = 0x8010, kGlxWindowBit = 0x1;
-constexpr int kGlxRenderType = 0x8011, kGlxRgbaBit = 0x1;
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kLimit(15);  // a busy machine needs a second or two
 
-// Opened by name, as VTK has them loaded anyway: no dependency of our own on X.
-class Library {
- public:
-  explicit Library(const char* name) : handle_(::dlopen(name, RTLD_NOW | RTLD_LOCAL)) {}
-  template <class Function>
-  Function* find(const char* name) const {
-    return handle_ ? reinterpret_cast<Function*>(::dlsym(handle_, name)) : nullptr;
-  }
-
- private:
-  void* handle_;  // never closed: X libraries do not survive it
+// What the child says. Smaller than what a pipe takes whole.
+struct Answer {
+  bool display = false;
+  bool done = false;
+  int version = 0;
+  char driver[160] = {};  // empty: no context could be made
 };
 
 // An X server under xvfb-run starts afresh when its last client leaves, and refuses newcomers while
-// it does. So a refusal is tried again for a moment.
-void* openDisplay(void* (*open)(const char*)) {
-  for (int attempt = 0; attempt < 10; ++attempt) {
-    if (void* display = open(nullptr)) return display;
+// it does. So a refusal is tried again for a moment, and what was opened stays open until the
+// process ends. Found by name: VTK has the library loaded anyway.
+bool holdDisplay() {
+  void* x11 = ::dlopen("libX11.so.6", RTLD_NOW | RTLD_LOCAL);
+  if (!x11) return false;
+  auto* open = reinterpret_cast<void* (*)(const char*)>(::dlsym(x11, "XOpenDisplay"));
+  for (int attempt = 0; open && attempt < 10; ++attempt) {
+    if (open(nullptr)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
   }
-  return nullptr;
+  return false;
+}
+
+// As SceneRenderer::offscreen does it.
+void tryOpenGl(Answer& answer) {
+  // Never deleted: the child ends with it.
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(vtkRenderWindow::New());
+  if (!window) return;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetSize(16, 16);
+  window->Initialize();
+  window->MakeCurrent();
+  answer.version = openGlVersion();
+  const auto* driver = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  std::snprintf(answer.driver, sizeof answer.driver, "%s", driver ? driver : "");
+}
+
+[[noreturn]] void becomeProbe(int answers) noexcept {
+  // Xlib and drivers call exit(): what this copy has inherited, open files above all, is not its to
+  // close.
+  std::atexit([] { ::_exit(1); });
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int number : {SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  ::dup2(nothing, STDOUT_FILENO);
+  ::dup2(nothing, STDERR_FILENO);
+  const auto say = [&](const Answer& answer) {
+    if (::write(answers, &answer, sizeof answer) != sizeof answer) ::_exit(1);
+  };
+  Answer answer;
+  answer.display = holdDisplay();
+  say(answer);
+  if (answer.display) tryOpenGl(answer);
+  answer.done = true;
+  say(answer);
+  while (true) ::pause();  // keeps the display's server until the parent has opened it
+}
+
+// What the child said until it was done, died or hung.
+Result<Answer> askChild() {
+  int ends[2] = {-1, -1};
+  const bool piped = ::pipe2(ends, O_CLOEXEC) == 0;
+  const pid_t child = piped ? ::fork() : -1;
+  if (child < 0) {
+    const Error refused{"NO_OPENGL", std::string("OpenGL cannot be tried: ") + std::strerror(errno),
+                        "graphics driver", "Close other programs and start again"};
+    for (const int descriptor : ends) ::close(descriptor);
+    return refused;
+  }
+  if (child == 0) becomeProbe(ends[1]);
+  ::close(ends[1]);
+  Answer answer;
+  const Clock::time_point end = Clock::now() + kLimit;
+  while (!answer.done && Clock::now() < end) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+    pollfd said{ends[0], POLLIN, 0};
+    if (::poll(&said, 1, int(left.count()) + 1) <= 0) continue;  // a signal, or the time is up
+    Answer next;
+    if (::read(ends[0], &next, sizeof next) != sizeof next) break;
+    answer = next;
+  }
+  ::close(ends[0]);
+  if (answer.display) holdDisplay();
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  return answer;
 }
 
 }  // namespace
 
+int openGlVersion() {
+  GLint major = 0, minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  return major * 10 + minor;
+}
+
+Error openGlTooOld(const std::string& driver) {
+  return {"NO_OPENGL", "OpenGL 3.2 is needed, the driver offers " + driver, "graphics driver",
+          "Update the driver, or start with LIBGL_ALWAYS_SOFTWARE=1"};
+}
+
 Status probeDisplay() {
   const Error no_display{"NO_DISPLAY", "There is no display to draw on", "DISPLAY",
                          "Start inside a desktop session, or under xvfb-run"};
-  const Error no_opengl{"NO_OPENGL", "The display offers no OpenGL", "GLX",
-                        "Install the graphics driver, or libgl1-mesa-dri for drawing in software"};
   const char* name = std::getenv("DISPLAY");
   if (!name || !*name) return no_display;
-  const Library x11("libX11.so.6"), gl("libGL.so.1");
-  auto* open = x11.find<void*(const char*)>("XOpenDisplay");
-  auto* default_screen = x11.find<int(void*)>("XDefaultScreen");
-  auto* free_list = x11.find<int(void*)>("XFree");
-  auto* query = gl.find<int(void*, int*, int*)>("glXQueryExtension");
-  auto* choose = gl.find<void*(void*, int, const int*, int*)>("glXChooseFBConfig");
-  if (!open || !default_screen || !free_list) return no_display;
-  if (!query || !choose) return no_opengl;
-
-  // Stays open until the process ends, or closing it could be that last leave, just before VTK
-  // comes.
-  static void* const display = openDisplay(open);
-  if (!display) return no_display;
-  int error_base = 0, event_base = 0, count = 0;
-  if (!query(display, &error_base, &event_base)) return no_opengl;
-  const int wanted[] = {kGlxDrawableType,
-                        kGlxWindowBit,
-                        kGlxRenderType,
-                        kGlxRgbaBit,
-                        kGlxDepthSize,
-                        1,
-                        kGlxDoubleBuffer,
-                        1,
-                        0};
-  void* configs = choose(display, default_screen(display), wanted, &count);
-  if (configs) free_list(configs);
-  if (count < 1) return no_opengl;
+  static bool usable = false;
+  if (usable) return {};
+  const Result<Answer> answer = askChild();
+  if (!answer) return answer.error();
+  if (!answer->display) return no_display;
+  if (!answer->done || !*answer->driver) {
+    return Error{"NO_OPENGL", "The display offers no OpenGL that works", "graphics driver",
+                 "Install the graphics driver, or libgl1-mesa-dri for drawing in software"};
+  }
+  if (answer->version < kOpenGlNeeded) return openGlTooOld(answer->driver);
+  usable = true;
   return {};
 }
 

@@ -46,14 +46,6 @@ double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Of the context that is current; 0 where there is none.
-int openGlVersion() {
-  GLint major = 0, minor = 0;
-  glGetIntegerv(GL_MAJOR_VERSION, &major);
-  glGetIntegerv(GL_MINOR_VERSION, &minor);
-  return major * 10 + minor;
-}
-
 }  // namespace
 
 struct SceneRenderer::Parts {
@@ -199,7 +191,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   p.window->AddRenderer(p.renderer);
   p.window->Initialize();
   p.window->MakeCurrent();
-  if (openGlVersion() < 32) return no_opengl;
+  if (openGlVersion() < kOpenGlNeeded) return no_opengl;
   return renderer;
 }
 
@@ -219,11 +211,10 @@ Status SceneRenderer::attach(RenderHost host) {
   window->SetSize(p.width, p.height);
   window->OpenGLInit();
   p.window = window;
-  if (openGlVersion() < 32) {
+  if (openGlVersion() < kOpenGlNeeded) {
     const std::string description = openGlDescription();
     p.window = nullptr;
-    return Error{"NO_OPENGL", "OpenGL 3.2 is needed, the driver offers " + description,
-                 "graphics driver", "Update the driver, or start with LIBGL_ALWAYS_SOFTWARE=1"};
+    return openGlTooOld(description);
   }
   p.window->AddRenderer(p.renderer);
   return {};

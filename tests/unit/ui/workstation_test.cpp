@@ -14,6 +14,7 @@
 #include "support.h"
 #include "tissue/tissue_edits.h"
 #include "training/session_reader.h"
+#include "ui/main_window.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -241,6 +242,19 @@ TEST_F(EditedTissuesTest, ThatCannotBeSavedAreStillEdited) {
   ASSERT_TRUE(waitFor([&] { return failed_.has_value(); }));
   EXPECT_FALSE(then);
   EXPECT_TRUE(workstation_.tissuesEdited());
+}
+
+TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
+  MainWindow window(folder_.path());
+  std::optional<Error> said;
+  QObject::connect(&window, &MainWindow::failed, &window, [&](const Error& error) { said = error; });
+  Workstation& shown = window.workstation();
+  shown.openVolume(std::make_shared<const Volume>(ball()), "");
+  ASSERT_TRUE(waitFor([&] { return shown.phase() == Workstation::Phase::ready; }));
+  window.startExercise();
+  EXPECT_EQ(shown.phase(), Workstation::Phase::ready);
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->code, "NO_OPENGL");
 }
 
 }  // namespace
