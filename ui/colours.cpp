@@ -41,6 +41,7 @@ void applyTheme(QApplication& application) {
               "QToolBar QToolButton { padding: 4px 8px; border-radius: 4px; }"
               "QToolBar QToolButton:hover { background: %2; }"
               "QToolBar QToolButton:pressed { background: %4; }"
+              "QToolButton#qt_toolbar_ext_button { padding: 0; font-weight: bold; }"
               "QStatusBar { border-top: 1px solid %4; }"
               "QStatusBar::item { border: none; }"
               "QLabel[quiet=\"true\"] { color: %5; }"

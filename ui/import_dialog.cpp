@@ -3,9 +3,11 @@
 #include <QDragEnterEvent>
 #include <QKeyEvent>
 #include <QMimeData>
+#include <QShowEvent>
 #include <algorithm>
 
 #include "ui/import_words.h"
+#include "ui/placing.h"
 #include "ui/words.h"
 
 namespace trephine {
@@ -56,6 +58,12 @@ void ImportDialog::open() {
     seriesSelected();
   }
   QDialog::open();
+}
+
+// Qt's own guess of the place is off by the frame that it expects.
+void ImportDialog::showEvent(QShowEvent* event) {
+  QDialog::showEvent(event);
+  if (!event->spontaneous() && parentWidget()) centreOver(*this, *parentWidget()->window());
 }
 
 void ImportDialog::reject() {

@@ -43,6 +43,7 @@ class ImportDialog : public QDialog {
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
+  void showEvent(QShowEvent* event) override;
 
  private:
   // Empty: nothing scanned. Asking: read, and something is to be said or asked before it opens.

@@ -4,6 +4,7 @@
 
 #include "ui/icons.h"
 #include "ui/import_dialog.h"
+#include "ui/placing.h"
 #include "ui/words.h"
 
 namespace trephine {
@@ -12,17 +13,6 @@ namespace {
 
 constexpr int kProgressSteps = 1000;
 constexpr int kListWidth = 300, kReportWidth = 360;
-
-// A column that scrolls where the window is low.
-QScrollArea* scrolled(QWidget* page, const char* name) {
-  auto* area = new QScrollArea;
-  area->setObjectName(name);
-  area->setWidget(page);
-  area->setWidgetResizable(true);
-  area->setFrameShape(QFrame::NoFrame);
-  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  return area;
-}
 
 QLabel* wrapped(const char* name, bool quiet) {
   auto* label = new QLabel;
@@ -73,7 +63,7 @@ void ImportDialog::build() {
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(columns, 1);
   layout->addLayout(buildBottomRow());
-  resize(1200, 740);
+  resize(sizeOnScreen({1200, 740}, *this));
 }
 
 QWidget* ImportDialog::buildFolderColumn() {
@@ -145,7 +135,7 @@ QWidget* ImportDialog::buildAskingPage() {
 }
 
 QLayout* ImportDialog::buildBottomRow() {
-  status_ = new QLabel;
+  status_ = new ElidedLabel;
   status_->setObjectName("importStatus");
   status_->setProperty("quiet", true);
   progress_ = new QProgressBar;
@@ -160,7 +150,7 @@ QLayout* ImportDialog::buildBottomRow() {
   import_ = button("import", tr("&Import"));
   import_->setDefault(true);
   open_case_ = button("openCase", tr("&Open the case"));
-  purpose_ = new QLabel(purposeText());
+  purpose_ = new ElidedLabel(purposeText());
   purpose_->setProperty("quiet", true);
   auto* row = new QHBoxLayout;
   row->addWidget(purpose_);

@@ -70,6 +70,12 @@ QFileDialog* MainWindow::fileDialog(const char* name, const QString& title,
   return dialog;
 }
 
+void MainWindow::openOnceShown(const std::filesystem::path& path) {
+  connect(
+      view_, &ViewWidget::framePainted, this, [this, path] { workstation_.openPath(path); },
+      Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
+}
+
 void MainWindow::askForFolder() {
   QFileDialog* dialog = fileDialog("folderDialog", tr("Open a folder of CT"));
   dialog->setFileMode(QFileDialog::Directory);
@@ -164,6 +170,8 @@ void MainWindow::lookAtCase() {
 // --- The exercise ---
 
 void MainWindow::startExercise(std::optional<OperatorScript> script, double seconds) {
+  // What nobody sees moves no arm.
+  if (const Status& drawing = view_->canDraw(); !drawing) return report(drawing.error());
   workstation_.start(recordings_.empty() ? ownRecordings() : recordings_, std::move(script),
                      seconds);
 }

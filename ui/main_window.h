@@ -34,6 +34,9 @@ class MainWindow : public QMainWindow {
   Workstation& workstation() { return workstation_; }
   ViewWidget& view() { return *view_; }
 
+  // As Workstation::openPath, once the window has its place on the screen: what opens over it then
+  // knows where that is.
+  void openOnceShown(const std::filesystem::path& path);
   // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
   void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
   // The 3-D view as a PNG, and the voxels as they are now; errors become dialogs.

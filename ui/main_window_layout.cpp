@@ -4,11 +4,13 @@
 #include <QSplitter>
 #include <QStatusBar>
 #include <QToolBar>
+#include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 
 #include "base/system.h"
 #include "ui/main_window.h"
+#include "ui/placing.h"
 #include "ui/words.h"
 
 namespace trephine {
@@ -16,6 +18,7 @@ namespace trephine {
 namespace {
 constexpr int kLeftWidth = 300, kRightWidth = 270;
 constexpr int kFrame_ms = 16;
+constexpr int kCaseTab = 0;
 }  // namespace
 
 MainWindow::MainWindow(std::filesystem::path recordings, QWidget* parent)
@@ -30,7 +33,7 @@ MainWindow::MainWindow(std::filesystem::path recordings, QWidget* parent)
   frame_timer_.setInterval(kFrame_ms);
   rate_clock_.start();
   panel_clock_.start();
-  resize(1280, 800);
+  resize(sizeOnScreen({1280, 800}, *this));
   showPhase();
   view_->setFocus();
 }
@@ -81,8 +84,8 @@ void MainWindow::buildPanels() {
   left_ = new QTabWidget;
   left_->setObjectName("leftTabs");
   left_->setDocumentMode(true);
-  left_->addTab(case_, tr("Case"));
-  left_->addTab(tissues_, tr("Tissues"));
+  left_->insertTab(kCaseTab, scrolled(case_, "casePage"), tr("Case"));
+  left_->addTab(scrolled(tissues_, "tissuePage"), tr("Tissues"));
   left_->setMinimumWidth(260);
   view_ = new ViewWidget;
   rewind_ = new RewindBar;
@@ -126,6 +129,12 @@ void MainWindow::buildBars() {
   tools->addActions({undo_, redo_, reset_});
   tools->addSeparator();
   tools->addActions({look_, picture_, volume_});
+  // Where a bar is short this opens the rest of it. Qt's own arrow is black on black.
+  if (auto* rest = tools->findChild<QToolButton*>("qt_toolbar_ext_button")) {
+    rest->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    rest->setText(QStringLiteral("\u00bb"));
+    rest->setToolTip(tr("More"));
+  }
 
   QMenu* file = menuBar()->addMenu(tr("&File"));
   file->addActions({open_, open_file_, open_scene_});
@@ -140,7 +149,8 @@ void MainWindow::buildBars() {
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 
-  hint_ = new QLabel;
+  hint_ = new ElidedLabel;
+  hint_->setObjectName("hint");
   hint_->setContentsMargins(6, 0, 0, 0);
   hint_->setProperty("quiet", true);
   rates_ = new QLabel;
@@ -227,7 +237,7 @@ void MainWindow::connectParts() {
   connect(&workstation_, &Workstation::openingProgressed, this,
           [this](double fraction, const QString& step) {
             case_->showProgress(fraction, step);
-            left_->setCurrentWidget(case_);
+            left_->setCurrentIndex(kCaseTab);
             tissues_->setEnabled(false);  // they may be about to go
           });
   connect(&workstation_, &Workstation::openingEnded, case_, &CasePanel::endProgress);
