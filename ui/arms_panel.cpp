@@ -185,7 +185,7 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
   journal_->setVisible(state.journal_full);
   clear_->setVisible(faulty);
-  showController(state.controller);
+  if (state.ticks > 0) showController(state.controller);  // before, it is not known
 }
 
 void ArmsPanel::showController(ControllerKind kind) {

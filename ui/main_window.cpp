@@ -261,7 +261,7 @@ void MainWindow::tick() {
 void MainWindow::showState(Session& session, const LoopState& state) {
   view_->pullChanges(session.grid());
   arms_->showState(state, session.scene().tissues, limits_N_);
-  if (controller_shown_ != state.controller) showRenderable(state.controller);
+  if (state.ticks > 0 && controller_shown_ != state.controller) showRenderable(state.controller);
   pause_->setChecked(state.paused);
   if (workstation_.session()) {
     undo_->setEnabled(state.can_undo);

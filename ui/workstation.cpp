@@ -244,10 +244,8 @@ void Workstation::start(const std::filesystem::path& recordings,
 
 void Workstation::started(std::unique_ptr<Session> session, double seconds) {
   // What was changed while the session was made is the first thing that it is told.
-  const Scene& made_of = session->scene();
-  Status told;
-  if (!sameSet(made_of.tissues, scene_->tissues)) told = session->setTissues(scene_->tissues);
-  if (told && made_of.controller != scene_->controller) {
+  Status told = session->setTissues(scene_->tissues);
+  if (session->scene().controller != scene_->controller) {
     (void)session->setController(scene_->controller);  // nothing else waits yet
   }
   Status started = told ? session->start(seconds) : told;

@@ -262,6 +262,7 @@ class EditsGuiTest : public QObject {
     QVERIFY(controller->view()->isVisible());
     controller->hidePopup();
     QCOMPARE(controller->currentData().toInt(), int(ControllerKind::bounded));
+    QTRY_VERIFY(workstation().session()->state().ticks > 0);
     QVERIFY(workstation().session()->state().controller == ControllerKind::bounded);
   }
 
