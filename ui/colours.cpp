@@ -41,6 +41,7 @@ void applyTheme(QApplication& application) {
               "QToolBar QToolButton { padding: 4px 8px; border-radius: 4px; }"
               "QToolBar QToolButton:hover { background: %2; }"
               "QToolBar QToolButton:pressed { background: %4; }"
+              "QToolBar QToolButton:checked { background: %6; color: white; }"
               "QStatusBar { border-top: 1px solid %4; }"
               "QStatusBar::item { border: none; }"
               "QLabel[quiet=\"true\"] { color: %5; }"
@@ -57,9 +58,12 @@ void applyTheme(QApplication& application) {
               " stop: 0.58 %6); }"
               "QRadioButton::indicator:focus { border: 1px solid white; }"
               "QRadioButton::indicator:disabled { border-color: %3; }"
-              "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }")
+              "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }"
+              // Over a picture of bone and of black alike.
+              "QFrame[notice=\"true\"] { background: %4; border: 2px solid %8; border-radius: 8px; }"
+              "QLabel[noticeTitle=\"true\"] { font-size: 28px; font-weight: bold; color: %8; }")
           .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
-               kAccent.darker(125).name(), kAccent.name()));
+               kAccent.darker(125).name(), kAccent.name(), kCaution.name()));
 }
 
 }  // namespace trephine::colours

@@ -1,6 +1,6 @@
 // The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
 // connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
-// builds it, main_window.cpp is what it does.)
+// builds it, main_window.cpp is what it does, main_window_losses.cpp what it asks before.)
 #pragma once
 
 #include <QComboBox>
@@ -10,12 +10,14 @@
 #include <QTabWidget>
 #include <QTimer>
 #include <filesystem>
+#include <functional>
 
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
 #include "ui/icons.h"
 #include "ui/import_dialog.h"
 #include "ui/rewind_bar.h"
+#include "ui/state_notice.h"
 #include "ui/tissue_panel.h"
 #include "ui/view_widget.h"
 #include "ui/workstation.h"
@@ -47,6 +49,7 @@ class MainWindow : public QMainWindow {
  protected:
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
 
  private:
   static constexpr double kNoEnd_s = 1e9;
@@ -73,7 +76,12 @@ class MainWindow : public QMainWindow {
   void showCase();
   void showPhase();
   void lookAtCase();
+  // Runs `go_on` at once, or after asking where it would lose what was cut.
+  void unlessCutsAreLost(std::function<void()> go_on);
+  void openPath(const QString& path);
+  void start();
   void reset();
+  void showWholeCase();
   void command(CommandKind kind);
   void rewind(std::uint32_t second);
   void showRewind(const LoopState& state);
@@ -99,6 +107,7 @@ class MainWindow : public QMainWindow {
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   ViewWidget* view_;
+  StateNotice* notice_;  // over the view
   RewindBar* rewind_;
   QLabel *hint_, *rates_;
   QTimer frame_timer_;
@@ -112,6 +121,9 @@ class MainWindow : public QMainWindow {
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left
+  bool unsaved_cuts_ = false;      // and some of it is in no file
+  std::function<void()> after_saving_;  // what waited for the cuts to be saved
+  bool closing_ = false;           // was asked about, and is meant
   bool recording_failed_ = false;  // said once an exercise
 };
 

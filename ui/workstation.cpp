@@ -54,6 +54,8 @@ std::filesystem::path defaultScene(const std::string& anatomy) {
 Workstation::Workstation(QObject* parent) : QObject(parent) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
+  connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
+  connect(&opening_, &BackgroundTask::ended, this, &Workstation::phaseChanged);
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
 }
 
@@ -91,10 +93,14 @@ std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& f
   return *std::move(scene);
 }
 
+bool Workstation::isSceneFile(const std::filesystem::path& path) {
+  const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
+  return path.extension() == ".json" && !isSidecar();
+}
+
 void Workstation::openPath(const std::filesystem::path& path) {
   if (!mayOpen()) return;
-  const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
-  if (path.extension() == ".json" && !isSidecar()) {
+  if (isSceneFile(path)) {
     std::optional<Scene> scene = readSceneOrFail(path);
     if (!scene) return;
     const std::string source = scene->case_source;
@@ -264,14 +270,13 @@ void Workstation::setController(ControllerKind kind) {
   }
 }
 
-void Workstation::save(const QString& what, std::function<Status()> write) {
+void Workstation::save(const QString& what, std::function<Status()> write,
+                       std::function<void()> then) {
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
-                                 [this, what](Status status) {
-                                   if (status) {
-                                     emit saved(what);
-                                   } else {
-                                     fail(status.error());
-                                   }
+                                 [this, what, then = std::move(then)](Status status) {
+                                   if (!status) return fail(status.error());
+                                   if (then) then();
+                                   emit saved(what);
                                  });
   if (!begun) fail({"BUSY", "Another file is being saved", "", "Try again in a moment"});
 }

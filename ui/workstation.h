@@ -23,6 +23,7 @@ class Workstation : public QObject {
 
   // A scene (.json, unless it is the sidecar of a .raw) brings its own case; any other folder or
   // file is scanned for import().
+  static bool isSceneFile(const std::filesystem::path& path);
   void openPath(const std::filesystem::path& path);
   // One of the built-in cases, with the scene that fits it.
   void openPhantom(const std::string& name);
@@ -57,8 +58,8 @@ class Workstation : public QObject {
   void setTissues(const TissueSet& tissues);
   void setController(ControllerKind kind);
 
-  // Runs `write` in the background; `what` names the outcome in saved().
-  void save(const QString& what, std::function<Status()> write);
+  // Runs `write` in the background; `what` names the outcome in saved(), before which `then` runs.
+  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
   bool isSaving() const { return saving_.busy(); }
 
  signals:
@@ -66,7 +67,7 @@ class Workstation : public QObject {
   void openingEnded();
   void sceneChanged();
   void caseOpened();
-  void phaseChanged();
+  void phaseChanged();  // or isOpening()
   void sessionStarted();
   // The exercise's last state; `session` goes away after it.
   void sessionEnded(trephine::Session& session);

@@ -116,6 +116,61 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   EXPECT_EQ(result->ticks, report.ticks);
 }
 
+TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
+  Scene scene = cranium();
+  for (Tissue& tissue : scene.tissues.tissues) tissue.cuttable = false;
+  auto made = Session::create(scene, smallHead(), {});
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  ASSERT_TRUE(session.start().ok());
+  const auto tip_mm = [&] { return session.state().record.arms[1].patient_position_mm; };
+  const auto wait = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+  const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  const auto lag_mm = [&] { return glm::dot(session.handTarget_mm(1) - tip_mm(), down_mm); };
+  do {
+    session.moveHand(1, 0.2 * down_mm);
+    wait(5);
+  } while (std::chrono::steady_clock::now() < deadline &&
+           !(session.state().record.arms[1].tissue_class >= 0 && lag_mm() > 3.0));
+  ASSERT_GT(lag_mm(), 3.0) << "the tissue holds the arm back from where the hand wants it";
+
+  const Vec3 before_mm = tip_mm();
+  ASSERT_TRUE(session.send(CommandKind::pause));
+  wait(300);
+  EXPECT_TRUE(session.state().paused);
+  EXPECT_LT(glm::dot(tip_mm() - before_mm, down_mm), 1.0);
+  session.moveHand(1, 20.0 * down_mm);
+  wait(300);
+  EXPECT_LT(glm::dot(tip_mm() - before_mm, down_mm), 1.0);
+
+  ASSERT_TRUE(session.send(CommandKind::resume));
+  while (session.state().paused && std::chrono::steady_clock::now() < deadline) wait(1);
+  session.moveHand(1, -20.0 * down_mm);
+  wait(500);
+  EXPECT_LT(glm::dot(tip_mm() - before_mm, down_mm), -10.0) << "and after it the hand moves again";
+  EXPECT_TRUE(session.stop().ok());
+}
+
+TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
+  auto made = Session::create(cranium(), smallHead(), scripted());
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  ASSERT_TRUE(session.start().ok());
+  const auto at_mm = [&] { return session.state().record.arms[0].patient_position_mm; };
+  const auto wait = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+  wait(500);
+  ASSERT_TRUE(session.send(CommandKind::pause));
+  wait(300);
+  const Vec3 held_mm = at_mm();
+  wait(500);
+  EXPECT_LT(glm::distance(at_mm(), held_mm), 0.2);
+  ASSERT_TRUE(session.send(CommandKind::resume));
+  wait(1000);
+  EXPECT_GT(glm::distance(at_mm(), held_mm), 1.0);
+  EXPECT_TRUE(session.stop().ok());
+}
+
 // Both arms cut while everything is changed under them, from another thread than theirs.
 TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdentically) {
   test::TemporaryFolder folder;
