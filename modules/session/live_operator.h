@@ -13,10 +13,10 @@ namespace trephine {
 struct LiveHands {
   struct Hand {
     bool live = false;  // false: the script, or rest, moves this hand
-    bool held = false;  // in a pause: rests at the position, whoever moves it otherwise
     Vec3 position_m{0.0};
     double stiffness_N_per_m = 0.0;
     double damping_Ns_per_m = 0.0;
+    bool held = false;  // in a pause: rests at the position, whoever moves it otherwise
   };
   std::array<Hand, kMaxArms> hands{};
 };

@@ -414,7 +414,7 @@ void Session::holdHands(bool hold) {
     if (hold && !hand.held) hand.position_m = now.record.arms[i].device_position_m;
     hand.held = hold;
   }
-  live_hands_.write(hands_);
+  engine_->live_hands.write(hands_);
 }
 
 bool Session::rewind(std::uint32_t second) {
