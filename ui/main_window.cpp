@@ -203,7 +203,7 @@ void MainWindow::showPhase() {
       break;
     case Phase::running:
       hint_->setText(
-          tr("Drag, arrows: right hand. Wheel, Page Up/Down: depth. Shift: left. Space: pause."));
+          tr("Drag, arrow keys: right hand. Wheel: depth. Shift: left hand. Space: pause."));
       break;
     default:
       hint_->setText(opening ? tr("Opening a case\u2026")
