@@ -262,7 +262,7 @@ void MainWindow::showState(Session& session, const LoopState& state) {
   arms_->showState(state, session.scene().tissues, limits_N_);
   if (workstation_.session()) {
     pause_->setChecked(state.paused);
-    notice_->showState(state, session.scene());
+    notice_->showState(state, session.scene(), session.standsStillFor_s());
     undo_->setEnabled(state.can_undo);
     redo_->setEnabled(state.can_redo);
     showRewind(state);

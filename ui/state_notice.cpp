@@ -4,6 +4,7 @@
 #include <QStringList>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 
 #include "ui/arms_panel.h"
 #include "ui/words.h"
@@ -27,7 +28,14 @@ QString whoWords(const std::vector<std::size_t>& arms, const Scene& scene) {
 
 }  // namespace
 
-ForceNotice ForceWatch::look(const LoopState& state, const Scene& scene) {
+ForceNotice ForceWatch::look(const LoopState& state, const Scene& scene, double still_s) {
+  if (still_s > 0.0) {
+    return {StateNotice::tr("NO FORCE"),
+            StateNotice::tr("An arm or the computer does not answer: touch has stood still for %1 s. "
+                            "Wait, or stop the exercise (Ctrl+.).")
+                .arg(std::ceil(still_s)),
+            {}};
+  }
   ForceNotice out;
   QStringList reasons;                           // each once, in the order of the arms
   std::vector<std::vector<std::size_t>> with_it;  // the arms that have it
@@ -120,8 +128,8 @@ StateNotice::Card StateNotice::makeCard(const char* name, const char* button_nam
   return {frame, title, why, button};
 }
 
-void StateNotice::showState(const LoopState& state, const Scene& scene) {
-  show(state.paused, watch_.look(state, scene));
+void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s) {
+  show(state.paused, watch_.look(state, scene, still_s));
 }
 
 void StateNotice::showIdle() {

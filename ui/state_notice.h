@@ -24,7 +24,8 @@ struct ForceNotice {
 // Tells it from one state after the other of the same exercise.
 class ForceWatch {
  public:
-  ForceNotice look(const LoopState& state, const Scene& scene);
+  // `still_s`: how long the ticks have stood still, and the state with them.
+  ForceNotice look(const LoopState& state, const Scene& scene, double still_s);
   void forget() { waiting_.fill(false); }
 
  private:
@@ -38,7 +39,7 @@ class StateNotice : public QWidget {
   // Lies over `view`, at its top, as wide as there is room.
   explicit StateNotice(QWidget* view);
 
-  void showState(const LoopState& state, const Scene& scene);
+  void showState(const LoopState& state, const Scene& scene, double still_s);
   void showIdle();
   // "Force on" with its key, for a menu; enabled while it can be used.
   QAction* forceOnAction() { return force_on_; }

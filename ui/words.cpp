@@ -66,6 +66,7 @@ QString controllerPartWords(std::uint32_t parts) {
 QString faultWords(std::uint32_t faults) {
   QStringList words;
   if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  if (faults & kFaultStuck) words << tr("The arm's driver does not return: it was left behind.");
   if (faults & kFaultNonFinite) {
     words << tr("A pose or a force was not a number. The force stays off until you ask for it.");
   }

@@ -43,7 +43,7 @@ class StateNoticeTest : public ::testing::Test {
     EXPECT_NE(found, nullptr) << name;
     return *found;
   }
-  void show() { notice_.showState(state_, scene_); }
+  void show(double still_s = 0.0) { notice_.showState(state_, scene_, still_s); }
   std::string title() { return find<QLabel>("forceNoticeTitle").text().toStdString(); }
   std::string why() { return find<QLabel>("forceNoticeWhy").text().toStdString(); }
   bool shown(const char* name) { return find<QWidget>(name).isVisible(); }
@@ -101,6 +101,15 @@ TEST_F(StateNoticeTest, StallsThatKeepTheForceOffSaySoWithAButton) {
   find<QPushButton>("forceOn").click();
   notice_.forceOnAction()->trigger();
   EXPECT_EQ(asked, 2);
+}
+
+TEST_F(StateNoticeTest, WhileTouchStandsStillItIsSaidForHowLong) {
+  show(2.4);
+  EXPECT_EQ(title(), "NO FORCE");
+  EXPECT_NE(why().find("for 3 s"), std::string::npos) << why();
+  EXPECT_FALSE(shown("forceOn")) << "nothing would answer";
+  show();
+  EXPECT_TRUE(notice_.isHidden());
 }
 
 TEST_F(StateNoticeTest, TheArmThatWasLostIsNamed) {
