@@ -39,6 +39,12 @@ QColor armColour(const SceneArm& arm, std::size_t index) {
   return left ? colours::kLeftArm : colours::kRightArm;
 }
 
+QString armName(const SceneArm& arm) {
+  if (arm.name == "left") return ArmsPanel::tr("Left arm");
+  if (arm.name == "right") return ArmsPanel::tr("Right arm");
+  return toQt(arm.name);
+}
+
 ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   auto* inside = new QWidget(this);
   cards_layout_ = new QVBoxLayout(inside);
@@ -56,8 +62,6 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   for (const auto& [name, kind] : kControllerNames) {
     controller_->addItem(controllerWord(kind), int(kind));
   }
-  clear_ = new QPushButton(tr("Clear faults"), inside);
-  clear_->setObjectName("clearFaults");
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
   journal_ =
@@ -75,7 +79,6 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   common->addRow(quiet(tr("Dropped records"), inside), dropped_);
   cards_layout_->addLayout(common);
   cards_layout_->addWidget(journal_);
-  cards_layout_->addWidget(clear_);
   cards_layout_->addStretch(1);
 
   auto* layout = new QVBoxLayout(this);
@@ -84,7 +87,6 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
 
   connect(controller_, &QComboBox::activated, this,
           [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
-  connect(clear_, &QPushButton::clicked, this, &ArmsPanel::clearFaultsWanted);
   showIdle();
 }
 
@@ -101,10 +103,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   auto* frame = new QFrame(this);
   frame->setProperty("card", true);
   const QString prefix = toQt(arm.name);
-  auto* title = new QLabel(arm.name == "left"    ? tr("Left arm")
-                           : arm.name == "right" ? tr("Right arm")
-                                                 : prefix,
-                           frame);
+  auto* title = new QLabel(armName(arm), frame);
   title->setProperty("title", true);
   colours::setText(*title, armColour(arm, index));
 
@@ -152,7 +151,6 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
 
 void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
                           const std::vector<double>& limits_N) {
-  bool faulty = false;
   for (std::size_t i = 0; i < cards_.size() && i < limits_N.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
     const Card& card = cards_[i];
@@ -178,13 +176,11 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
     card.faults->setText(faultWords(arm.faults));
     card.faults->setVisible(arm.faults != 0);
-    faulty = faulty || arm.faults != 0;
   }
   missed_->setText(QString::number(state.missed));
   dropped_->setText(QString::number(state.dropped));
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
   journal_->setVisible(state.journal_full);
-  clear_->setVisible(faulty);
   if (state.ticks > 0) showController(state.controller);  // before, it is not known
 }
 
@@ -207,7 +203,6 @@ void ArmsPanel::showIdle() {
   missed_->setText(QStringLiteral("\u2013"));
   dropped_->setText(QStringLiteral("\u2013"));
   journal_->hide();
-  clear_->hide();
 }
 
 }  // namespace trephine

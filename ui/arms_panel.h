@@ -4,7 +4,6 @@
 
 #include <QComboBox>
 #include <QLabel>
-#include <QPushButton>
 #include <QVBoxLayout>
 #include <QWidget>
 #include <vector>
@@ -30,7 +29,6 @@ class ArmsPanel : public QWidget {
 
  signals:
   void controllerWanted(trephine::ControllerKind kind);
-  void clearFaultsWanted();
 
  private:
   struct Card {
@@ -45,10 +43,11 @@ class ArmsPanel : public QWidget {
   std::vector<Card> cards_;
   QComboBox* controller_;
   QLabel *missed_, *dropped_, *journal_;
-  QPushButton* clear_;
 };
 
 // The colour in which an arm's tool and card are drawn.
 QColor armColour(const SceneArm& arm, std::size_t index);
+// "Left arm".
+QString armName(const SceneArm& arm);
 
 }  // namespace trephine

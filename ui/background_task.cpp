@@ -20,7 +20,7 @@ void BackgroundTask::cancel() {
   if (progress_) progress_->cancel();
 }
 
-void BackgroundTask::begin() {
+void BackgroundTask::prepare() {
   // Several threads of the work may report at once, so the time of the last report is atomic.
   auto last = std::make_shared<std::atomic<std::chrono::steady_clock::rep>>(0);
   progress_ = std::make_shared<Progress>([this, last](double fraction, const std::string& step) {

@@ -32,7 +32,7 @@ class BackgroundTask : public QObject {
   bool run(Work work, Done done) {
     using Outcome = std::invoke_result_t<Work&, const Progress&>;
     if (busy()) return false;
-    begin();
+    prepare();
     thread_ = std::thread(
         [this, work = std::move(work), done = std::move(done), progress = progress_]() mutable {
           auto outcome = std::make_shared<Outcome>(guarded<Outcome>(work, *progress));
@@ -44,10 +44,12 @@ class BackgroundTask : public QObject {
               },
               Qt::QueuedConnection);
         });
+    emit began();
     return true;
   }
 
  signals:
+  void began();  // busy() from here to ended()
   void progressed(double fraction, const QString& step);
   void ended();
 
@@ -63,7 +65,7 @@ class BackgroundTask : public QObject {
       return Error{"UNEXPECTED", problem.what(), "", "Try again, and report it if it stays"};
     }
   }
-  void begin();
+  void prepare();
   void end();
 
   std::shared_ptr<Progress> progress_;

@@ -42,6 +42,7 @@ void applyTheme(QApplication& application) {
               "QToolBar QToolButton:hover { background: %2; }"
               "QToolBar QToolButton:pressed { background: %4; }"
               "QToolButton#qt_toolbar_ext_button { padding: 0; font-weight: bold; }"
+              "QToolBar QToolButton:checked { background: %6; color: white; }"
               "QStatusBar { border-top: 1px solid %4; }"
               "QStatusBar::item { border: none; }"
               "QLabel[quiet=\"true\"] { color: %5; }"
@@ -58,9 +59,12 @@ void applyTheme(QApplication& application) {
               " stop: 0.58 %6); }"
               "QRadioButton::indicator:focus { border: 1px solid white; }"
               "QRadioButton::indicator:disabled { border-color: %3; }"
-              "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }")
+              "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }"
+              // Over a picture of bone and of black alike.
+              "QFrame[notice=\"true\"] { background: %4; border: 2px solid %8; border-radius: 8px; }"
+              "QLabel[noticeTitle=\"true\"] { font-size: 28px; font-weight: bold; color: %8; }")
           .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
-               kAccent.darker(125).name(), kAccent.name()));
+               kAccent.darker(125).name(), kAccent.name(), kCaution.name()));
 }
 
 void setText(QLabel& label, const QColor& colour) {

@@ -1,6 +1,7 @@
 #include "ui/main_window.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <QDragEnterEvent>
 #include <QFileDialog>
@@ -81,7 +82,7 @@ void MainWindow::askForFolder() {
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& folder) { workstation_.openPath(toPath(folder)); });
+          [this](const QString& folder) { openPath(folder); });
   dialog->open();
 }
 
@@ -90,40 +91,38 @@ void MainWindow::askForFile() {
       fileDialog("fileDialog", tr("Open a file of CT"),
                  tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { workstation_.openPath(toPath(file)); });
+          [this](const QString& file) { openPath(file); });
   dialog->open();
 }
 
 void MainWindow::askForScene() {
   QFileDialog* dialog = fileDialog("sceneDialog", tr("Open a scene"), tr("Scene (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { open(toPath(file)); });
+          [this](const QString& file) { openPath(file); });
   dialog->open();
 }
 
 void MainWindow::askForLabels() {
   QFileDialog* dialog = fileDialog("labelsDialog", tr("Open the case's label map"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { workstation_.useLabels(toPath(file)); });
+          [this](const QString& file) {
+            unlessCutsAreLost([this, file] { workstation_.useLabels(toPath(file)); });
+          });
   dialog->open();
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
-  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+  if (urls.size() == 1 && urls.front().isLocalFile() && open_->isEnabled()) {
+    event->acceptProposedAction();
+  }
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() != 1 || !urls.front().isLocalFile()) return;
   event->acceptProposedAction();
-  open(toPath(urls.front().toLocalFile()));
-}
-
-void MainWindow::open(const std::filesystem::path& path) {
-  const auto go_on = [this, path] { workstation_.openPath(path); };
-  if (Workstation::isScene(path)) return unlessTissuesStay(go_on);
-  go_on();
+  openPath(urls.front().toLocalFile());
 }
 
 void MainWindow::showScene() {
@@ -147,7 +146,7 @@ void MainWindow::showScene() {
 void MainWindow::showCase() {
   const std::shared_ptr<const Volume>& volume = workstation_.volume();
   if (!volume) return;
-  carved_ = false;
+  carved_ = unsaved_cuts_ = false;
   view_->setTools({});
   view_->showVolume(Grid(*volume, workstation_.labels()));
   QString about = sizeWords(volume->geometry);
@@ -179,8 +178,9 @@ void MainWindow::startExercise(std::optional<OperatorScript> script, double seco
 void MainWindow::showPhase() {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
-  const bool running = phase == Phase::running, ready = phase == Phase::ready;
-  const bool may_open = ready || phase == Phase::empty;
+  const bool opening = workstation_.isOpening();
+  const bool running = phase == Phase::running, ready = phase == Phase::ready && !opening;
+  const bool may_open = ready || (phase == Phase::empty && !opening);
   for (QAction* action : {open_, open_file_, open_scene_}) action->setEnabled(may_open);
   scenes_->setEnabled(may_open);
   case_->setOpeningAllowed(may_open);
@@ -190,6 +190,7 @@ void MainWindow::showPhase() {
     pause_->setChecked(false);
     for (QAction* action : {undo_, redo_}) action->setEnabled(false);
     rewind_->showIdle();
+    notice_->showIdle();
   }
   reset_->setEnabled(running || (ready && carved_));
   for (QAction* action : {picture_, volume_, look_}) action->setEnabled(phase != Phase::empty);
@@ -203,11 +204,12 @@ void MainWindow::showPhase() {
       break;
     case Phase::running:
       hint_->setText(
-          tr("Drag or arrow keys: right hand. Wheel, Page Up/Down: depth. Shift: left hand."));
+          tr("Drag, arrow keys: right hand. Wheel: depth. Shift: left hand. Space: pause."));
       break;
     default:
-      hint_->setText(ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. Space: start.")
-                           : QString());
+      hint_->setText(opening ? tr("Opening a case\u2026")
+                     : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
+                             : QString());
   }
 }
 
@@ -221,6 +223,7 @@ void MainWindow::sessionStarted() {
   // The view has the case already, unless an earlier exercise left its cuts there.
   if (carved_) view_->showVolume(workstation_.session()->grid());
   carved_ = true;
+  unsaved_cuts_ = false;
   placeHandPoints();
   frame_timer_.start();
   view_->setFocus();
@@ -235,6 +238,7 @@ void MainWindow::sessionEnded(Session& session) {
   view_->setTools({});
   rates_->clear();
   const RunReport report = session.report();
+  unsaved_cuts_ = report.removed_voxels > 0;
   const QString words = session.recordingStatus()
                             ? tr("%1 s, %2 voxels removed. Recorded in %3")
                             : tr("%1 s, %2 voxels removed. Recorded in part in %3");
@@ -262,8 +266,9 @@ void MainWindow::showState(Session& session, const LoopState& state) {
   view_->pullChanges(session.grid());
   arms_->showState(state, session.scene().tissues, limits_N_);
   if (state.ticks > 0 && controller_shown_ != state.controller) showRenderable(state.controller);
-  pause_->setChecked(state.paused);
   if (workstation_.session()) {
+    pause_->setChecked(state.paused);
+    notice_->showState(state, session.scene(), session.standsStillFor_s());
     undo_->setEnabled(state.can_undo);
     redo_->setEnabled(state.can_redo);
     showRewind(state);
@@ -309,16 +314,6 @@ void MainWindow::showRewind(const LoopState& state) {
     going_back_.reset();
   }
   rewind_->showTime(state.seconds, state.busy || going_back_);
-}
-
-void MainWindow::reset() {
-  if (workstation_.session()) {
-    command(CommandKind::reset);
-  } else if (workstation_.phase() == Workstation::Phase::ready) {
-    carved_ = false;
-    view_->showVolume(Grid(*workstation_.volume(), workstation_.labels()));
-    showPhase();
-  }
 }
 
 std::size_t MainWindow::armOf(Hand hand) const {
@@ -375,9 +370,16 @@ void MainWindow::savePicture(const QString& file) {
 void MainWindow::saveVolume(const QString& file) {
   if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
   const auto copy = std::make_shared<const Volume>(view_->shownVolume());
+  // What a running exercise shows may be cut further.
+  const bool all = workstation_.phase() == Workstation::Phase::ready;
   say(tr("Saving the volume\u2026"));
-  workstation_.save(tr("The volume is saved."),
-                    [copy, path = toPath(file)] { return writeVolume(*copy, path); });
+  workstation_.save(
+      tr("The volume is saved."), [copy, path = toPath(file)] { return writeVolume(*copy, path); },
+      [this, all] {
+        if (!all) return;
+        unsaved_cuts_ = false;
+        if (const auto go_on = std::exchange(after_saving_, {})) go_on();
+      });
 }
 
 void MainWindow::saveReport(const QString& file) {

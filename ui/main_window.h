@@ -1,6 +1,7 @@
 // The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
 // connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
-// builds it, main_window_tissues.cpp is what it does with tissues, main_window.cpp the rest.)
+// builds it, main_window_tissues.cpp is what it does with tissues, main_window_losses.cpp what it
+// asks before work is lost, main_window.cpp the rest.)
 #pragma once
 
 #include <QComboBox>
@@ -10,6 +11,7 @@
 #include <QTabWidget>
 #include <QTimer>
 #include <filesystem>
+#include <functional>
 
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
@@ -17,6 +19,7 @@
 #include "ui/import_dialog.h"
 #include "ui/rewind_bar.h"
 #include "ui/slip_guard.h"
+#include "ui/state_notice.h"
 #include "ui/tissue_panel.h"
 #include "ui/view_widget.h"
 #include "ui/workstation.h"
@@ -76,7 +79,6 @@ class MainWindow : public QMainWindow {
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();
-  void open(const std::filesystem::path& path);
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
   void unlessTissuesStay(std::function<void()> go_on);
   void showScene();
@@ -84,7 +86,12 @@ class MainWindow : public QMainWindow {
   void showCase();
   void showPhase();
   void lookAtCase();
+  // Runs `go_on` at once, or after asking where it would lose what was cut.
+  void unlessCutsAreLost(std::function<void()> go_on);
+  void openPath(const QString& path);
+  void start();
   void reset();
+  void showWholeCase();
   void command(CommandKind kind);
   void rewind(std::uint32_t second);
   void showRewind(const LoopState& state);
@@ -112,6 +119,7 @@ class MainWindow : public QMainWindow {
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   ViewWidget* view_;
+  StateNotice* notice_;  // over the view
   RewindBar* rewind_;
   QLabel *hint_, *rates_;
   QTimer frame_timer_;
@@ -125,8 +133,10 @@ class MainWindow : public QMainWindow {
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left
-  bool may_close_ = false;         // nothing unsaved is left to ask about
   std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
+  bool unsaved_cuts_ = false;      // and some of it is in no file
+  std::function<void()> after_saving_;  // what waited for the cuts to be saved
+  bool closing_ = false;           // was asked about, and is meant
 };
 
 }  // namespace trephine

@@ -57,12 +57,13 @@ void MainWindow::buildActions() {
   open_scene_ = makeAction(Symbol::open, "openScene", tr("Open scene\u2026"),
                            QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O), tr("Open a scene file"));
   start_ = makeAction(Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
-                      tr("Start the exercise; in the view also Space"));
-  stop_ = makeAction(Symbol::stop, "stop", tr("Stop"), QKeySequence(Qt::SHIFT | Qt::Key_F5),
-                     tr("Stop the exercise; in the view also Space"));
+                      tr("Start the exercise"));
+  stop_ = makeAction(Symbol::stop, "stop", tr("Stop"), QKeySequence(Qt::CTRL | Qt::Key_Period),
+                     tr("End the exercise and its recording"));
   pause_ = makeAction(Symbol::pause, "pause", tr("Pause"), QKeySequence(Qt::CTRL | Qt::Key_P),
-                      tr("Hold: no force and no cutting until it is released"));
+                      tr("Hold: no force and no cutting until it is released; in the view Space"));
   pause_->setCheckable(true);
+  pause_->setAutoRepeat(false);
   undo_ = makeAction(Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),
                      tr("Put the last stroke's tissue back"));
   redo_ = makeAction(Symbol::redo, "redo", tr("Redo"),
@@ -88,6 +89,7 @@ void MainWindow::buildPanels() {
   left_->addTab(scrolled(tissues_, "tissuePage"), tr("Tissues"));
   left_->setMinimumWidth(260);
   view_ = new ViewWidget;
+  notice_ = new StateNotice(view_);
   rewind_ = new RewindBar;
   auto* middle = new QWidget;
   auto* middle_layout = new QVBoxLayout(middle);
@@ -144,7 +146,8 @@ void MainWindow::buildBars() {
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
   menuBar()->addMenu(tr("&Exercise"))
-      ->addActions({start_, stop_, pause_, undo_, redo_, rewind_->backAction(), reset_});
+      ->addActions({start_, stop_, pause_, notice_->forceOnAction(), undo_, redo_,
+                    rewind_->backAction(), reset_});
   menuBar()->addMenu(tr("&View"))->addAction(look_);
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
@@ -167,10 +170,13 @@ void MainWindow::buildBars() {
 void MainWindow::connectParts() {
   connect(open_, &QAction::triggered, this, &MainWindow::askForFolder);
   connect(open_scene_, &QAction::triggered, this, &MainWindow::askForScene);
-  connect(start_, &QAction::triggered, this, [this] { startExercise(); });
+  connect(start_, &QAction::triggered, this, &MainWindow::start);
   connect(stop_, &QAction::triggered, &workstation_, &Workstation::stop);
   connect(pause_, &QAction::triggered, this,
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
+  connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
+  connect(notice_, &StateNotice::forceWanted, this,
+          [this] { command(CommandKind::clear_faults); });
   connect(undo_, &QAction::triggered, this, [this] { command(CommandKind::undo); });
   connect(redo_, &QAction::triggered, this, [this] { command(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &MainWindow::reset);
@@ -181,21 +187,22 @@ void MainWindow::connectParts() {
                    &MainWindow::savePicture);
   });
   connect(volume_, &QAction::triggered, this, [this] {
+    after_saving_ = {};
     askWhereToSave(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"),
                    &MainWindow::saveVolume);
   });
   // Space belongs to buttons and lists where they have the focus.
   auto* space = new QShortcut(Qt::Key_Space, view_, nullptr, nullptr, Qt::WidgetShortcut);
-  connect(space, &QShortcut::activated, this,
-          [this] { (stop_->isEnabled() ? stop_ : start_)->trigger(); });
+  space->setAutoRepeat(false);
+  connect(space, &QShortcut::activated, pause_, &QAction::trigger);
 
   connect(case_, &CasePanel::folderWanted, this, &MainWindow::askForFolder);
   connect(open_file_, &QAction::triggered, this, &MainWindow::askForFile);
   connect(case_, &CasePanel::phantomWanted, this,
           [this](const QString& name) {
             const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
-            if (workstation_.sceneFits(name.toStdString())) return go_on();
-            unlessTissuesStay(go_on);
+            if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
+            unlessCutsAreLost([this, go_on] { unlessTissuesStay(go_on); });
           });
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
@@ -204,9 +211,11 @@ void MainWindow::connectParts() {
     askWhereToSave(tr("Save report"), "import-report.pdf",
                    tr("PDF (*.pdf);;Web page (*.html *.htm)"), &MainWindow::saveReport);
   });
-  connect(import_, &ImportDialog::pathDropped, this,
-          [this](const QString& path) { workstation_.openPath(toPath(path)); });
-  connect(import_, &ImportDialog::caseRead, &workstation_, &Workstation::openVolume);
+  connect(import_, &ImportDialog::pathDropped, this, &MainWindow::openPath);
+  connect(import_, &ImportDialog::caseRead, this,
+          [this](const std::shared_ptr<const Volume>& volume, const QString& name) {
+            unlessCutsAreLost([this, volume, name] { workstation_.openVolume(volume, name); });
+          });
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { case_->setSeriesAtHand(true); });
   connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);
@@ -220,12 +229,10 @@ void MainWindow::connectParts() {
     if (!workstation_.session() && workstation_.scene()) showRenderable(kind);
     view_->setFocus();
   });
-  connect(arms_, &ArmsPanel::clearFaultsWanted, this,
-          [this] { command(CommandKind::clear_faults); });
   connect(scenes_, &QComboBox::activated, this, [this](int index) {
-    unlessTissuesStay([this, file = toPath(scenes_->itemData(index).toString())] {
-      workstation_.useScene(file);
-    });
+    const std::filesystem::path file = toPath(scenes_->itemData(index).toString());
+    const auto go_on = [this, file] { workstation_.useScene(file); };
+    unlessCutsAreLost([this, go_on] { unlessTissuesStay(go_on); });
     showScene();  // back to the one in use where the other cannot be had
     view_->setFocus();
   });

@@ -1,5 +1,4 @@
 // The tissue panel in the window: what it says of the arms, and edits that would be lost.
-#include <QCloseEvent>
 #include <QFileDialog>
 #include <QKeyEvent>
 #include <QMessageBox>
@@ -55,15 +54,6 @@ void MainWindow::unlessTissuesStay(std::function<void()> go_on) {
     dialog->open();
   });
   box->open();
-}
-
-void MainWindow::closeEvent(QCloseEvent* event) {
-  if (may_close_ || !workstation_.tissuesEdited()) return QMainWindow::closeEvent(event);
-  event->ignore();
-  unlessTissuesStay([this] {
-    may_close_ = true;
-    close();
-  });
 }
 
 }  // namespace trephine

@@ -65,9 +65,19 @@ QString controllerPartWords(std::uint32_t parts) {
 
 QString faultWords(std::uint32_t faults) {
   QStringList words;
-  if (faults & kFaultNonFinite) words << tr("A pose or a force was not a number.");
-  if (faults & kFaultLate) words << tr("The haptic step came 20 ms late.");
   if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  if (faults & kFaultStuck) words << tr("The arm's driver does not return: it was left behind.");
+  if (faults & kFaultNonFinite) {
+    words << tr("A pose or a force was not a number. The force stays off until you ask for it.");
+  }
+  if (faults & kFaultStalled) {
+    words << tr("The computer was too busy three times within 30 s, or once for over 2 s. The force "
+                "stays off until you ask for it.");
+  }
+  if (faults == kFaultLate) {
+    words << tr("The computer was too busy: a step came more than 20 ms late. The force comes back "
+                "by itself.");
+  }
   return words.join('\n');
 }
 

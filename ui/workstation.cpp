@@ -56,6 +56,8 @@ std::filesystem::path defaultScene(const std::string& anatomy) {
 Workstation::Workstation(QObject* parent) : QObject(parent) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
+  connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
+  connect(&opening_, &BackgroundTask::ended, this, &Workstation::phaseChanged);
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
 }
 
@@ -317,8 +319,8 @@ void Workstation::save(const QString& what, std::function<Status()> write,
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
                                  [this, what, then = std::move(then)](Status status) {
                                    if (!status) return fail(status.error());
-                                   emit saved(what);
                                    if (then) then();
+                                   emit saved(what);
                                  });
   if (!begun) fail({"BUSY", "Another file is being saved", "", "Try again in a moment"});
 }

@@ -70,7 +70,7 @@ class Workstation : public QObject {
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 
-  // Runs `write` in the background; `what` names the outcome in saved().
+  // Runs `write` in the background; `what` names the outcome in saved(), before which `then` runs.
   void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
   bool isSaving() const { return saving_.busy(); }
 
@@ -79,7 +79,7 @@ class Workstation : public QObject {
   void openingEnded();
   void sceneChanged();
   void caseOpened();
-  void phaseChanged();
+  void phaseChanged();  // or isOpening()
   void sessionStarted();
   // Once an exercise, which goes on; stop() does not say it again.
   void recordingFailed(const trephine::Error& error);

@@ -130,7 +130,7 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
     if (!journal_.busy()) finishRestore();
   }
   if (!journal_.busy()) bricks_->recount(writer_.grid(), lookup_);
-  if (++ticks_ % second_ticks_ == 0) journal_.mark(credits());
+  if (!paused_ && ++ticks_ % second_ticks_ == 0) journal_.mark(credits());
   // The journal grants what it was asked for.
   may_remove_ = (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostBites);
   for (std::size_t i = 0; i < command_count; ++i) apply(commands[i], input.tick);

@@ -140,7 +140,7 @@ class HapticCore {
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;
   std::uint64_t second_ticks_;
-  std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_ = 0;  // outside pauses: the seconds of the exercise stand still in one
   bool may_remove_ = false;  // in this tick
   bool paused_ = false;
   bool reported_full_ = false;

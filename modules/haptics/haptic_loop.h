@@ -57,7 +57,7 @@ struct LoopState {
   bool journal_full = false;
   bool can_undo = false;
   bool can_redo = false;
-  std::uint32_t seconds = 0;  // back to any of which one can rewind
+  std::uint32_t seconds = 0;  // without pauses; back to any of which one can rewind
 };
 
 class HapticLoop {

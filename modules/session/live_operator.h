@@ -16,6 +16,7 @@ struct LiveHands {
     Vec3 position_m{0.0};
     double stiffness_N_per_m = 0.0;
     double damping_Ns_per_m = 0.0;
+    bool held = false;  // in a pause: rests at the position, whoever moves it otherwise
   };
   std::array<Hand, kMaxArms> hands{};
 };

@@ -415,7 +415,23 @@ Status Session::finishRecording() {
   return recordingStatus();
 }
 
-bool Session::send(CommandKind kind) { return loop_->commands().push({kind, 0, {}}); }
+bool Session::send(CommandKind kind) {
+  const bool held = hands_.hands[0].held;
+  if (kind == CommandKind::pause) holdHands(true);  // before the force goes
+  const bool sent = loop_->commands().push({kind, 0, {}});
+  if (sent ? kind == CommandKind::resume : !held) holdHands(false);
+  return sent;
+}
+
+void Session::holdHands(bool hold) {
+  const LoopState& now = state();
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    LiveHands::Hand& hand = hands_.hands[i];
+    if (hold && !hand.held) hand.position_m = now.record.arms[i].device_position_m;
+    hand.held = hold;
+  }
+  engine_->live_hands.write(hands_);
+}
 
 bool Session::rewind(std::uint32_t second) {
   return loop_->commands().push({CommandKind::rewind, std::int32_t(second), {}});
@@ -447,6 +463,7 @@ Status Session::setTissues(const TissueSet& tissues) {
 }
 
 void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
+  if (hands_.hands[arm].held || state().paused) return;
   const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
   LiveHands::Hand& hand = hands_.hands[arm];
   if (!hand.live) {

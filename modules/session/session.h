@@ -75,6 +75,8 @@ class Session {
   Status freewheel(double seconds, const Progress& progress = Progress());
 
   // Live input. Commands are answered within a tick or two; false when 64 of them are waiting.
+  // From a pause to a resume the hands of simulated arms rest where their arms are: a hand that
+  // was pressing would sink into tissue that no longer pushes back.
   bool send(CommandKind kind);
   // Tissue, counts and law states as they were in that second of the session.
   bool rewind(std::uint32_t second);
@@ -82,6 +84,7 @@ class Session {
   // Errors: those of validate() and checkLabels().
   Status setTissues(const TissueSet& tissues);
   // Moves the rest position of a simulated arm's hand, in patient mm, within the arm's workspace.
+  // Nothing in a pause.
   void moveHand(std::size_t arm, const Vec3& by_mm);
   Vec3 handTarget_mm(std::size_t arm) const;
 
@@ -101,6 +104,7 @@ class Session {
   Session() = default;
   void leaveBehind(std::size_t held);
   void note(const Event& event);
+  void holdHands(bool hold);
   void record();  // the recorder thread
   void drain();
   void flush();

@@ -13,7 +13,8 @@ namespace trephine {
 
 constexpr int kRecordingVersion = 4;
 // 2 knew no label maps. Up to 3 a tick 20 ms late latched a fault, and of two arms in one voxel the
-// first always took it: there a replay by today's rules differs.
+// first always took it, and seconds to rewind to were counted in pauses too: there a replay by
+// today's rules differs.
 constexpr int kOldestRecordingVersion = 2;
 
 struct RecordingHeader {

@@ -4,6 +4,7 @@
 #include <QCoreApplication>
 #include <QDir>
 #include <QDropEvent>
+#include <QFileDialog>
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QMimeData>
@@ -13,6 +14,7 @@
 #include <QStandardPaths>
 #include <QStatusBar>
 #include <QTemporaryDir>
+#include <QToolBar>
 #include <QtTest>
 #include <cmath>
 #include <cstdio>
@@ -131,9 +133,9 @@ class GuiTest : public QObject {
   }
 
   // Down into the bone, sideways, and well out until the stroke has ended; then as high above the
-  // bone as before, so that the next cut is as deep. Where the machine was
-  // so busy that a step came 20 ms late the arms are without force and cut nothing: then, as a
-  // person would, the faults are cleared and the cut is made again.
+  // bone as before, so that the next cut is as deep. Where the machine was so busy that a step came
+  // 20 ms late the arms are without force and cut nothing: then, as a person would, one waits for
+  // the force or asks for it, and makes the cut again.
   void cut(QPoint across, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
     for (int attempt = 0; attempt < 5; ++attempt) {
       const std::uint64_t standing = removedVoxels(*workstation().session());
@@ -143,9 +145,9 @@ class GuiTest : public QObject {
       QTest::qWait(500);
       wheel(4, modifiers);
       if (removedVoxels(*workstation().session()) != standing) return;
-      qInfo("nothing was cut: the faults are cleared, once more");
-      auto* clear = find<QPushButton>("clearFaults");
-      if (clear->isEnabled()) QTest::mouseClick(clear, Qt::LeftButton);
+      qInfo("nothing was cut: once more");
+      QTest::qWait(1500);
+      find<QAction>("forceBack")->trigger();
     }
   }
 
@@ -159,8 +161,33 @@ class GuiTest : public QObject {
   void start() {
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     focusView();
-    QTest::keyClick(&view(), Qt::Key_Space);
+    QTest::keyClick(&view(), Qt::Key_F5);
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+  }
+
+  QMessageBox* question(const char* name) {
+    return QTest::qWaitFor([&] { return window_->findChild<QMessageBox*>(name); })
+               ? find<QMessageBox>(name)
+               : nullptr;
+  }
+  void answer(const char* name, const char* button) {
+    QVERIFY2(question(name), name);
+    auto* chosen = question(name)->findChild<QPushButton*>(button);
+    QVERIFY2(chosen, button);
+    QTest::mouseClick(chosen, Qt::LeftButton);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>(name));
+  }
+  void keepAll(const char* name) {
+    QVERIFY2(question(name), name);
+    QTest::keyClick(question(name), Qt::Key_Escape);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>(name));
+    QApplication::setActiveWindow(window_.get());
+  }
+
+  Vec3 tip_mm() { return workstation().session()->state().record.arms[1].patient_position_mm; }
+  QImage pauseButton() {
+    QWidget* button = window_->findChild<QToolBar*>()->widgetForAction(find<QAction>("pause"));
+    return button->grab().toImage();
   }
 
   void enter(const char* box, const QString& value) {
@@ -263,6 +290,32 @@ class GuiTest : public QObject {
     QVERIFY(!window_->windowTitle().contains("Doe"));
   }
 
+  void whileACaseOpensNothingElseCanBeStartedOrOpened() {
+    for (const char* name : {"start", "open", "openFile", "openScene"}) {
+      QVERIFY2(find<QAction>(name)->isEnabled(), name);
+    }
+    QSignalSpy ended(&workstation(), &Workstation::openingEnded);
+    QTest::mouseClick(find<QPushButton>("abdomenPhantom"), Qt::LeftButton);
+    for (const char* name : {"start", "open", "openFile", "openScene"}) {
+      QVERIFY2(!find<QAction>(name)->isEnabled(), name);
+    }
+    QVERIFY(!find<QComboBox>("scenes")->isEnabled());
+    QTest::keyClick(window_.get(), Qt::Key_O, Qt::ControlModifier);
+    QVERIFY(!window_->findChild<QFileDialog*>());
+    workstation().cancelOpening();
+    QVERIFY(ended.count() == 1 || ended.wait(kLong_ms));
+    QTRY_VERIFY(find<QAction>("start")->isEnabled());
+    QVERIFY(find<QAction>("open")->isEnabled());
+    QVERIFY(view().shownVolume().hu == written_.hu);
+  }
+
+  void spaceStartsNothing() {
+    focusView();
+    QTest::keyClick(&view(), Qt::Key_Space);
+    QTest::qWait(300);
+    QVERIFY(workstation().phase() == Workstation::Phase::ready);
+  }
+
   void aThresholdIsSeenAtOnce() {
     find<QTabWidget>("leftTabs")->setCurrentIndex(1);
     window_->findChild<TissuePanel*>()->select("bone");
@@ -340,6 +393,49 @@ class GuiTest : public QObject {
     QTRY_COMPARE_WITH_TIMEOUT(removedVoxels(*workstation().session()), removed, 10000);
   }
 
+  void aPauseIsSaidLargeAndNothingMovesInIt() {
+    auto* notice = find<QFrame>("pauseNotice");
+    QVERIFY(!notice->isVisible());
+    const QImage released = pauseButton();
+    wheel(24);  // on the bone, pressing
+    QTest::qWait(300);
+    focusView();
+    const Vec3 before_mm = tip_mm();
+    const std::uint64_t removed = removedVoxels(*workstation().session());
+    QTest::keyClick(&view(), Qt::Key_Space);
+    QTRY_VERIFY(workstation().session()->state().paused);
+    QVERIFY2(workstation().phase() == Workstation::Phase::running, "Space ends nothing");
+    QTRY_VERIFY(notice->isVisible());
+    QCOMPARE(find<QLabel>("pauseNoticeTitle")->text(), "PAUSED");
+    QVERIFY(find<QAction>("pause")->isChecked());
+    const QImage pressed = pauseButton();
+    const QPoint corner(pressed.width() / 2, 4);  // beside its icon and text
+    const QColor on = pressed.pixelColor(corner), off = released.pixelColor(corner);
+    QVERIFY2(std::abs(on.red() - off.red()) + std::abs(on.green() - off.green()) +
+                     std::abs(on.blue() - off.blue()) > 90,
+             "the button looks as if it were not pressed");
+    QTest::qWait(300);
+    const std::uint32_t second = workstation().session()->state().seconds;
+    const QString clock = find<QLabel>("rewindTime")->text();
+    wheel(10);
+    drag({0, 60});
+    QTest::keyClick(&view(), Qt::Key_PageDown);
+    keepGrab("paused-1280x800.png");
+    QVERIFY2(glm::distance(tip_mm(), before_mm) < 1.0, "the tool moved in a pause");
+    QCOMPARE(removedVoxels(*workstation().session()), removed);
+    QCOMPARE(workstation().session()->state().seconds, second);
+    QCOMPARE(find<QLabel>("rewindTime")->text(), clock);
+
+    QTest::mouseClick(find<QPushButton>("goOn"), Qt::LeftButton);
+    QTRY_VERIFY(!workstation().session()->state().paused);
+    QTRY_VERIFY(!notice->isVisible());
+    QVERIFY(view().hasFocus());
+    wheel(-24);
+    QTRY_VERIFY(glm::distance(tip_mm(), before_mm) > 5.0);
+    QTRY_VERIFY(workstation().session()->state().seconds > second);
+    QTest::qWait(500);  // the stroke ends
+  }
+
   void resetPutsBackWhatBothHandsCut() {
     cut({-60, 0}, Qt::ShiftModifier);
     const LoopState state = workstation().session()->state();
@@ -349,7 +445,13 @@ class GuiTest : public QObject {
       QVERIFY2(removed > 0, qPrintable(QString("arm %1 removed nothing").arg(arm)));
     }
     QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    keepAll("resetQuestion");
+    QTest::qWait(300);
+    QVERIFY2(shownSha() != sha_before_, "put back without a yes");
+    QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    answer("resetQuestion", "goOnAnyway");
     QTRY_COMPARE_WITH_TIMEOUT(shownSha(), sha_before_, 10000);
+    QApplication::setActiveWindow(window_.get());
     QCOMPARE(removedVoxels(*workstation().session()), std::uint64_t(0));
   }
 
@@ -382,7 +484,11 @@ class GuiTest : public QObject {
     const ArmRecord in_tissue = workstation().session()->state().record.arms[1];
     QVERIFY(in_tissue.tissue_class >= 0);
     QCOMPARE(glm::length(in_tissue.sent_N), 0.0);
+    auto* no_force = find<QFrame>("forceNotice");
+    QVERIFY2(no_force->isVisible(), "nobody says why nothing is felt");
+    QVERIFY(find<QLabel>("forceNoticeWhy")->text().contains("Draw it out"));
     wheel(-30);
+    QTRY_VERIFY(!no_force->isVisible());
     QCOMPARE(shownSha(), sha_before_);
 
     cut({-60, -10});
@@ -417,7 +523,7 @@ class GuiTest : public QObject {
     window_->resize(1920, 1080);
     keepGrab("cut-1920x1080.png");
     focusView();
-    QTest::keyClick(&view(), Qt::Key_Space);
+    QTest::keyClick(&view(), Qt::Key_Period, Qt::ControlModifier);
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     const QStringList files = QDir(temporary_.filePath("sessions")).entryList(QDir::Files);
     QCOMPARE(files.size(), 1);
@@ -430,12 +536,55 @@ class GuiTest : public QObject {
     QVERIFY(!bytes.contains(temporary_.path().toUtf8()));
   }
 
-  void theNextExerciseStartsFromTheWholeCase() {
+  void whatWasCutIsNotLostWithoutAQuestion() {
     QVERIFY(shownSha() != sha_before_);  // what was cut stays on the screen
-    start();
+    const std::string cut_sha = shownSha();
+    focusView();
+    QTest::keyClick(&view(), Qt::Key_F5);
+    keepAll("cutsQuestion");
+    QTest::keyClick(window_.get(), Qt::Key_R, Qt::ControlModifier);
+    keepAll("cutsQuestion");
+    find<QTabWidget>("leftTabs")->setCurrentIndex(0);
+    QTest::mouseClick(find<QPushButton>("abdomenPhantom"), Qt::LeftButton);
+    keepAll("cutsQuestion");
+    auto* scenes = find<QComboBox>("scenes");
+    emit scenes->activated((scenes->currentIndex() + 1) % scenes->count());
+    keepAll("cutsQuestion");
+    window_->close();
+    keepAll("cutsQuestion");
+    QVERIFY(window_->isVisible());
+    QTest::qWait(300);
+    QVERIFY(workstation().phase() == Workstation::Phase::ready && !workstation().isOpening());
+    QCOMPARE(shownSha(), cut_sha);
+  }
+
+  void onceTheCutsAreSavedTheNextExerciseStartsFromTheWholeCase() {
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    const std::string cut_sha = shownSha();
+    const QString file = temporary_.filePath("kept.nii.gz");
+    focusView();
+    QTest::keyClick(&view(), Qt::Key_F5);
+    answer("cutsQuestion", "saveFirst");
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+    auto* dialog = find<QFileDialog>("saveDialog");
+    dialog->findChild<QLineEdit*>("fileNameEdit")->setText(file);
+    static_cast<QDialog*>(dialog)->accept();
+    QVERIFY2(started.count() == 1 || started.wait(kLong_ms), "it goes on once they are saved");
+    const Result<Volume> kept = readVolume(toPath(file));
+    QVERIFY2(kept.ok(), kept.ok() ? "" : kept.error().sentence().c_str());
+    QCOMPARE(volumeSha256(*kept), cut_sha);
     QVERIFY(workstation().session());
     QCOMPARE(shownSha(), sha_before_);
+  }
+
+  void closingARunningExerciseIsAskedOnce() {
     window_->close();
+    keepAll("closeQuestion");
+    QVERIFY(window_->isVisible());
+    QVERIFY(workstation().session());
+    window_->close();
+    answer("closeQuestion", "goOnAnyway");
+    QTRY_VERIFY(!window_->isVisible());
   }
 
   void cleanupTestCase() { window_.reset(); }

@@ -219,6 +219,20 @@ TEST(HapticCore, PauseStopsForceAndRemoval) {
   EXPECT_EQ(bench.core.journal().removed(0, 0), removed);
 }
 
+TEST(HapticCore, TheSecondsOfAnExerciseStandStillInAPause) {
+  Bench bench;
+  bench.push({0, 0, 8}, {0, 0, 7}, 2499);
+  EXPECT_EQ(bench.core.journal().seconds(), 2u);
+  bench.at({0, 0, 7}, {{CommandKind::pause, 0, {}}});
+  bench.push({0, 0, 7}, {0, 0, 8}, 5000);
+  EXPECT_EQ(bench.core.journal().seconds(), 2u);
+  bench.at({0, 0, 8}, {{CommandKind::resume, 0, {}}});
+  bench.push({0, 0, 8}, {0, 0, 7}, 450);
+  EXPECT_EQ(bench.core.journal().seconds(), 2u);
+  bench.push({0, 0, 7}, {0, 0, 8}, 100);
+  EXPECT_EQ(bench.core.journal().seconds(), 3u) << "half a second before the pause, half after it";
+}
+
 TEST(HapticCore, LatchesAFaultOnAnythingThatIsNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();

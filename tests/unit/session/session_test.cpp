@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <functional>
 
 #include "base/file.h"
 #include "base/system.h"
@@ -114,6 +115,73 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
   EXPECT_EQ(result->ticks, report.ticks);
+}
+
+// A freewheeling session of two arms that is spoken to every 256 ticks, as a window would.
+void freewheelTalking(Session& session, double seconds, const std::function<void()>& talk) {
+  const Progress progress([&](double, const std::string&) { talk(); });
+  ASSERT_TRUE(session.freewheel(seconds, progress).ok());
+}
+
+TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
+  Scene scene = cranium();
+  for (Tissue& tissue : scene.tissues.tissues) {
+    tissue.cuttable = false;
+    tissue.friction_N.value = 3.0;
+  }
+  auto made = Session::create(scene, smallHead(), {});
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
+  const auto deep_mm = [&] {
+    return glm::dot(session.state().record.arms[1].patient_position_mm, down_mm);
+  };
+  double pressed_mm = 0.0, pause_mm = 0.0, deepest_mm = -1e9, after_mm = 0.0;
+  int talks = 0;
+  enum class Step { pressing, pausing, going_on, done } step = Step::pressing;
+  freewheelTalking(session, 40.0, [&] {
+    const LoopState& state = session.state();
+    if (step == Step::pressing) {
+      pressed_mm = glm::dot(session.handTarget_mm(1), down_mm) - deep_mm();
+      if (state.record.arms[1].tissue_class < 0 || pressed_mm < 1.5) {
+        return session.moveHand(1, 0.5 * down_mm);
+      }
+      pause_mm = deep_mm();
+      EXPECT_TRUE(session.send(CommandKind::pause));
+      step = Step::pausing;
+    } else if (step == Step::pausing) {
+      EXPECT_TRUE(state.paused);
+      deepest_mm = std::max(deepest_mm, deep_mm());
+      session.moveHand(1, 20.0 * down_mm);
+      if (++talks < 8) return;
+      EXPECT_TRUE(session.send(CommandKind::resume));
+      step = Step::going_on;
+    } else if (step == Step::going_on) {
+      EXPECT_FALSE(state.paused);
+      session.moveHand(1, -20.0 * down_mm);
+      step = Step::done;
+    }
+    after_mm = deep_mm();
+  });
+  ASSERT_TRUE(step == Step::done) << "the tissue held the arm back by " << pressed_mm << " mm";
+  EXPECT_LT(deepest_mm, pause_mm + 0.5);
+  EXPECT_LT(after_mm, pause_mm - 10.0) << "the hand moves again";
+}
+
+TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
+  auto made = Session::create(cranium(), smallHead(), scripted());
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  std::vector<Vec3> tips_mm;
+  freewheelTalking(session, 4.0, [&] {
+    tips_mm.push_back(session.state().record.arms[0].patient_position_mm);
+    if (tips_mm.size() == 4) session.send(CommandKind::pause);
+    if (tips_mm.size() == 10) session.send(CommandKind::resume);
+  });
+  ASSERT_GT(tips_mm.size(), 14u);
+  EXPECT_GT(glm::distance(tips_mm[3], tips_mm[1]), 1.0) << "the script moves it";
+  EXPECT_LT(glm::distance(tips_mm[9], tips_mm[4]), 0.2);
+  EXPECT_GT(glm::distance(tips_mm[13], tips_mm[9]), 1.0);
 }
 
 // Both arms cut while everything is changed under them, from another thread than theirs.

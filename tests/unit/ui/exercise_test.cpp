@@ -48,10 +48,13 @@ TEST(ExerciseAnswer, HoldsWhatRunPrintsAndTheWindowsFigures) {
 
 TEST(Words, EveryFaultIsSaidInASentence) {
   EXPECT_TRUE(faultWords(0).isEmpty());
-  for (std::uint32_t fault : {kFaultNonFinite, kFaultLate, kFaultDeviceLost}) {
+  for (std::uint32_t fault : {kFaultNonFinite, kFaultLate, kFaultDeviceLost, kFaultStalled,
+                              kFaultStuck}) {
     EXPECT_TRUE(faultWords(fault).endsWith('.')) << fault;
   }
-  EXPECT_EQ(faultWords(kFaultLate | kFaultDeviceLost).split('\n').size(), 2);
+  EXPECT_EQ(faultWords(kFaultNonFinite | kFaultDeviceLost).split('\n').size(), 2);
+  EXPECT_EQ(faultWords(kFaultLate | kFaultStalled), faultWords(kFaultStalled))
+      << "no promise that the force comes back by itself";
 }
 
 TEST(Words, AFindingSaysWhatWasSeenAndWhatWasDone) {

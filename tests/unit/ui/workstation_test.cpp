@@ -93,6 +93,21 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   EXPECT_EQ(workstation_.labels(), nullptr);
 }
 
+TEST_F(WorkstationTest, ThatACaseIsBeingOpenedIsToldFromItsBeginningToItsEnd) {
+  std::vector<bool> opening;
+  QObject::connect(&workstation_, &Workstation::phaseChanged, &workstation_,
+                   [&] { opening.push_back(workstation_.isOpening()); });
+  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  EXPECT_EQ(opening, std::vector<bool>{true});
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(opening.back());
+  workstation_.openPhantom("cranium");
+  EXPECT_TRUE(opening.back()) << "a case is open, and another is being opened";
+  workstation_.cancelOpening();
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(opening.back()) << "cancelled";
+}
+
 TEST_F(WorkstationTest, ARawFilesSidecarIsImportedLikeTheRawFile) {
   std::ofstream(folder_ / "ct.raw") << std::string(16, 'x');
   std::ofstream(folder_ / "ct.json")

@@ -1,0 +1,201 @@
+// What is said over the view of a pause and of arms without force, from states as the loop gives
+// them.
+#include "ui/state_notice.h"
+
+#include <gtest/gtest.h>
+
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include "qt_support.h"
+
+namespace trephine {
+namespace {
+
+Scene twoArms() {
+  Scene scene;
+  scene.arms.resize(2);
+  scene.arms[0].name = "left";
+  scene.arms[1].name = "right";
+  return scene;
+}
+
+// A view that counts what reaches it.
+class View : public QWidget {
+ public:
+  QPointF pressed, moved;
+
+ protected:
+  void mousePressEvent(QMouseEvent* event) override { pressed = event->position(); }
+  void mouseMoveEvent(QMouseEvent* event) override { moved = event->position(); }
+};
+
+class StateNoticeTest : public ::testing::Test {
+ protected:
+  StateNoticeTest() {
+    view_.setFocusPolicy(Qt::StrongFocus);
+    view_.resize(700, 500);
+    view_.show();
+  }
+  template <class T>
+  T& find(const char* name) {
+    auto* found = notice_.findChild<T*>(name);
+    EXPECT_NE(found, nullptr) << name;
+    return *found;
+  }
+  void show(double still_s = 0.0) { notice_.showState(state_, scene_, still_s); }
+  std::string title() { return find<QLabel>("forceNoticeTitle").text().toStdString(); }
+  std::string why() { return find<QLabel>("forceNoticeWhy").text().toStdString(); }
+  bool shown(const char* name) { return find<QWidget>(name).isVisible(); }
+
+  QApplication& application_ = test::application();
+  Scene scene_ = twoArms();
+  LoopState state_;
+  View view_;
+  StateNotice notice_{&view_};
+};
+
+TEST_F(StateNoticeTest, NothingIsSaidWhileTheArmsHaveTheirForce) {
+  show();
+  EXPECT_TRUE(notice_.isHidden());
+  EXPECT_FALSE(notice_.forceOnAction()->isEnabled());
+}
+
+TEST_F(StateNoticeTest, APauseIsSaidInLargeWordsWithTheWayOut) {
+  state_.paused = true;
+  show();
+  ASSERT_TRUE(shown("pauseNotice"));
+  EXPECT_FALSE(shown("forceNotice"));
+  QLabel& title = find<QLabel>("pauseNoticeTitle");
+  EXPECT_EQ(title.text(), "PAUSED");
+  int asked = 0;
+  QObject::connect(&notice_, &StateNotice::goOnWanted, &notice_, [&] { ++asked; });
+  EXPECT_TRUE(find<QPushButton>("goOn").text().contains("Space"));
+  find<QPushButton>("goOn").click();
+  EXPECT_EQ(asked, 1);
+  state_.paused = false;
+  show();
+  EXPECT_TRUE(notice_.isHidden());
+}
+
+TEST_F(StateNoticeTest, AStallThatPassesIsSaidWithoutAButton) {
+  for (ArmRecord& arm : state_.record.arms) arm.faults = kFaultLate;
+  show();
+  EXPECT_EQ(title(), "NO FORCE: Both arms");
+  EXPECT_NE(why().find("20 ms late"), std::string::npos) << why();
+  EXPECT_NE(why().find("comes back by itself"), std::string::npos) << why();
+  EXPECT_FALSE(shown("forceOn"));
+  EXPECT_FALSE(notice_.forceOnAction()->isEnabled());
+}
+
+TEST_F(StateNoticeTest, StallsThatKeepTheForceOffSaySoWithAButton) {
+  for (ArmRecord& arm : state_.record.arms) arm.faults = kFaultLate | kFaultStalled;
+  show();
+  EXPECT_EQ(title(), "NO FORCE: Both arms");
+  EXPECT_NE(why().find("until you ask for it"), std::string::npos) << why();
+  EXPECT_EQ(why().find("by itself"), std::string::npos) << "it would not";
+  ASSERT_TRUE(shown("forceOn"));
+  EXPECT_TRUE(find<QPushButton>("forceOn").text().startsWith("Force on"));
+  int asked = 0;
+  QObject::connect(&notice_, &StateNotice::forceWanted, &notice_, [&] { ++asked; });
+  find<QPushButton>("forceOn").click();
+  notice_.forceOnAction()->trigger();
+  EXPECT_EQ(asked, 2);
+}
+
+TEST_F(StateNoticeTest, WhileTouchStandsStillItIsSaidForHowLong) {
+  show(2.4);
+  EXPECT_EQ(title(), "NO FORCE");
+  EXPECT_NE(why().find("for 3 s"), std::string::npos) << why();
+  EXPECT_FALSE(shown("forceOn")) << "nothing would answer";
+  show();
+  EXPECT_TRUE(notice_.isHidden());
+}
+
+TEST_F(StateNoticeTest, TheArmThatWasLostIsNamed) {
+  state_.record.arms[0].faults = kFaultDeviceLost;
+  show();
+  EXPECT_EQ(title(), "NO FORCE: Left arm");
+  EXPECT_NE(why().find("does not answer"), std::string::npos) << why();
+  EXPECT_TRUE(find<QPushButton>("forceOn").text().startsWith("Try again"));
+}
+
+TEST_F(StateNoticeTest, EachReasonStandsByItsArmAndBothStatesAreSaidAtOnce) {
+  state_.paused = true;
+  state_.record.arms[0].faults = kFaultDeviceLost;
+  state_.record.arms[1].faults = kFaultNonFinite;
+  show();
+  EXPECT_TRUE(shown("pauseNotice"));
+  EXPECT_TRUE(shown("forceNotice"));
+  EXPECT_NE(why().find("Left arm: The arm does not answer"), std::string::npos) << why();
+  EXPECT_NE(why().find("Right arm: A pose"), std::string::npos) << why();
+}
+
+TEST_F(StateNoticeTest, AfterAnUndoAroundTheToolItIsSaidToDrawItOut) {
+  ArmRecord& arm = state_.record.arms[1];
+  arm.tissue_class = 0;
+  arm.points_in_tissue = 3;
+  arm.clamped_N = Vec3(0, 0, 2);
+  show();
+  EXPECT_EQ(title(), "NO FORCE: Right arm");
+  EXPECT_NE(why().find("Draw it out"), std::string::npos) << why();
+  EXPECT_FALSE(shown("forceOn"));
+  arm.clamped_N = Vec3(0);
+  show();
+  EXPECT_FALSE(notice_.isHidden()) << "a tool at rest waits all the same";
+  arm.tissue_class = -1;
+  arm.points_in_tissue = 0;
+  show();
+  EXPECT_TRUE(notice_.isHidden());
+  arm.tissue_class = 0;
+  arm.clamped_N = arm.sent_N = Vec3(0, 0, 1);
+  show();
+  EXPECT_TRUE(notice_.isHidden());
+}
+
+TEST_F(StateNoticeTest, MouseAndWheelOverTheWordsReachTheView) {
+  state_.paused = true;
+  show();
+  QLabel& title = find<QLabel>("pauseNoticeTitle");
+  const QPointF at = QRectF(title.rect()).center();
+  const QPointF in_view = title.mapTo(&view_, at);
+  ASSERT_EQ(view_.childAt(in_view.toPoint()), &title);
+  QMouseEvent press(QEvent::MouseButtonPress, at, title.mapToGlobal(at), Qt::LeftButton,
+                    Qt::LeftButton, Qt::NoModifier);
+  QCoreApplication::sendEvent(&title, &press);
+  EXPECT_EQ(view_.pressed, in_view);
+  QMouseEvent move(QEvent::MouseMove, at + QPointF(5, 0), title.mapToGlobal(at + QPointF(5, 0)),
+                   Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+  QCoreApplication::sendEvent(&title, &move);
+  EXPECT_EQ(view_.moved, in_view + QPointF(5, 0));
+  QWheelEvent wheel(at, title.mapToGlobal(at), {}, {0, 120}, Qt::NoButton, Qt::NoModifier,
+                    Qt::NoScrollPhase, false);
+  QCoreApplication::sendEvent(&title, &wheel);
+  EXPECT_FALSE(wheel.isAccepted()) << "left to what lies below";
+}
+
+TEST_F(StateNoticeTest, LiesWithinTheViewAtAnySize) {
+  state_.paused = true;
+  for (ArmRecord& arm : state_.record.arms) arm.faults = kFaultStalled;
+  for (const QSize size : {QSize(320, 300), QSize(700, 500), QSize(1600, 1000)}) {
+    view_.resize(size);
+    show();
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(view_.rect().contains(notice_.geometry())) << size.width();
+    EXPECT_LT(notice_.height(), size.height()) << size.width();
+    EXPECT_NEAR(notice_.geometry().center().x(), view_.rect().center().x(), 1) << size.width();
+  }
+}
+
+TEST_F(StateNoticeTest, AButtonThatGoesGivesTheKeysToTheView) {
+  QApplication::setActiveWindow(&view_);
+  state_.paused = true;
+  show();
+  find<QPushButton>("goOn").setFocus();
+  state_.paused = false;
+  show();
+  EXPECT_EQ(view_.focusWidget(), &view_);
+}
+
+}  // namespace
+}  // namespace trephine

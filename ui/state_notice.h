@@ -1,0 +1,69 @@
+// What stands between the hand and the tissue in a running exercise, said large over the view: the
+// pause, and arms that are without force. Words, and one button that mends it. Mouse and wheel
+// beside the buttons go on to the view below.
+#pragma once
+
+#include <QAction>
+#include <QFrame>
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+#include <array>
+
+#include "haptics/haptic_loop.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+// Which arms are without force, and why, in words.
+struct ForceNotice {
+  QString title, why;  // empty: every arm has its force
+  QString mend;        // what the button says; empty: the force comes back without it
+};
+
+// Tells it from one state after the other of the same exercise.
+class ForceWatch {
+ public:
+  // `still_s`: how long the ticks have stood still, and the state with them.
+  ForceNotice look(const LoopState& state, const Scene& scene, double still_s);
+  void forget() { waiting_.fill(false); }
+
+ private:
+  // Tissue was put back around the tool (an undo, a rewind): no force until it has been drawn out.
+  std::array<bool, kMaxArms> waiting_{};
+};
+
+class StateNotice : public QWidget {
+  Q_OBJECT
+ public:
+  // Lies over `view`, at its top, as wide as there is room.
+  explicit StateNotice(QWidget* view);
+
+  void showState(const LoopState& state, const Scene& scene, double still_s);
+  void showIdle();
+  // "Force on" with its key, for a menu; enabled while it can be used.
+  QAction* forceOnAction() { return force_on_; }
+
+ signals:
+  void goOnWanted();
+  void forceWanted();
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  struct Card {
+    QFrame* frame;
+    QLabel *title, *why;
+    QPushButton* button;
+  };
+  Card makeCard(const char* name, const char* button_name);
+  void show(bool paused, const ForceNotice& force);
+  void place();
+
+  Card pause_, force_;
+  QAction* force_on_;
+  ForceWatch watch_;
+};
+
+}  // namespace trephine
