@@ -184,8 +184,8 @@ DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
     refuse("block_after_s", "'block_after_s' and 'block_for_s' go together.");
   }
   if (root.contains("block_after_s")) {
-    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6, true});
-    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6, true});
+    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6});
+    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6});
   }
   return config;
 }
