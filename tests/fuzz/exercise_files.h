@@ -28,9 +28,9 @@ inline Volume smallHead() {
   for (std::size_t i = 0; i < v.hu.size(); ++i) {
     const Index3 at = g.indicesOf(i);
     const double r = glm::length(g.toPatient_mm(Vec3(at[0], at[1], at[2])));
-    if (r < 44) v.hu[i] = -80;
-    if (r < 39) v.hu[i] = 1200;
-    if (r < 32) v.hu[i] = 45;
+    if (r < 46) v.hu[i] = -80;
+    if (r < 44) v.hu[i] = 1200;
+    if (r < 40) v.hu[i] = 45;
   }
   return v;
 }

@@ -68,8 +68,7 @@ class Files {
 };
 
 void expectSaid(const Error& error) {
-  require(!error.what.empty() && !error.sentence().empty(), "an error says nothing");
-  Json(error.sentence()).dump();  // throws where it is no UTF-8
+  require(!error.what.empty() && !error.code.empty(), "an error says nothing");
 }
 
 // What was accepted must be fit to be felt.

@@ -24,7 +24,7 @@ class Mutator {
       case 0:
       case 1:
       case 2:
-        place = place.is_string() ? text() : number(place);
+        place = place.is_string() ? Json(text()) : number(place);
         break;
       case 3:  // another's value
         place = Json(*places_[std::size_t(below(places_.size()))]);
