@@ -104,7 +104,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   options.labels = *std::move(labels);
   options.recording = freshFile(out, "session", ".h5");
   Result<std::unique_ptr<Session>> session =
-      Session::create(*scene, *std::move(volume), options);
+      Session::create(*scene, *std::move(volume), options, progress);
   if (!session) return session.error();
 
   const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)

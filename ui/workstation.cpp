@@ -28,23 +28,28 @@ namespace {
 constexpr double kVolumeShare = 0.9;  // of the work of opening; the rest is finding landmarks
 
 // Reads the label map that `scene` names, unless there is one, and places the landmarks; a case
-// without them can be looked at all the same.
+// without them can be looked at all the same. Error: CANCELLED.
 template <class Opened>
-void place(Opened& opened, const Progress& progress) {
+Status place(Opened& opened, const Progress& progress) {
   progress.at(kVolumeShare, "Finding landmarks");
   if (!opened.labels) {
     auto labels = openLabels(opened.scene.labels_file, opened.volume->geometry);
     if (!labels) {
       opened.misfit = labels.error();
-      return;
+      return {};
     }
     opened.labels = *std::move(labels);
   }
-  if (auto placed = placeLandmarks(opened.scene, *opened.volume, opened.labels.get())) {
+  const Progress finding(progress, kVolumeShare, 1.0);
+  auto placed = placeLandmarks(opened.scene, *opened.volume, opened.labels.get(), finding);
+  if (placed) {
     opened.landmarks = *std::move(placed);
+  } else if (placed.error().code == "CANCELLED") {
+    return placed.error();
   } else {
     opened.misfit = placed.error();
   }
+  return {};
 }
 
 }  // namespace
@@ -146,7 +151,7 @@ void Workstation::useLabels(const std::filesystem::path& file) {
         auto labels = openLabels(file.string(), volume->geometry);
         if (!labels) return labels.error();
         Opened out{scene, scene_file, volume, {}, {}, own, name, *std::move(labels), true};
-        place(out, progress);
+        if (Status status = place(out, progress); !status) return status.error();
         return out;
       },
       [this](Result<Opened> outcome) { opened(std::move(outcome)); });
@@ -169,7 +174,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
         if (!volume) return volume.error();
         Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
                    {},    {},         !isPhantom(source), {}, {}, same_scene};
-        place(out, progress);
+        if (Status status = place(out, progress); !status) return status.error();
         return out;
       },
       [this](Result<Opened> outcome) { opened(std::move(outcome)); });
@@ -188,7 +193,7 @@ void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const 
 void Workstation::placeAndOpen(Opened opening) {
   opening_.run(
       [opening = std::move(opening)](const Progress& progress) mutable -> Result<Opened> {
-        place(opening, progress);
+        if (Status status = place(opening, progress); !status) return status.error();
         return std::move(opening);
       },
       [this](Result<Opened> outcome) { opened(std::move(outcome)); });
@@ -230,10 +235,10 @@ void Workstation::start(const std::filesystem::path& recordings,
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   running_.run(
       [scene = *scene_, volume = volume_, labels = labels_, recordings, stem,
-       script = std::move(script)](const Progress&) -> Result<std::unique_ptr<Session>> {
+       script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
         SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels};
-        return Session::create(scene, Volume(*volume), options);
+        return Session::create(scene, Volume(*volume), options, progress);
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {
         if (!created) {

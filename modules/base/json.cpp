@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
 constexpr std::size_t kMaxDepth = 64;  // printing a value recurses, so nesting has to end
+constexpr std::size_t kMaxText = 4096;  // bytes; the longest path
+constexpr Range kDirectionLength{1e-3, 1e3};
 
 const Json kNull = nullptr;
 const Json kEmptyObject = Json::object();
@@ -105,21 +107,25 @@ Result<Json> parseJson(std::string_view text, const std::string& file) {
 }
 
 Result<Json> readJsonFile(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
   std::error_code ec;
-  if (!in || std::filesystem::is_directory(file, ec)) {
-    return Error{"MISSING_FILE", "The file cannot be read", file.string(),
-                 "Check the name and that you may read it"};
+  const auto missing = [&](const char* what) {
+    return Error{"MISSING_FILE", what, file.string(), "Check the name and that you may read it"};
+  };
+  // Asked before it is opened: opening a pipe waits for its writer.
+  const auto status = std::filesystem::status(file, ec);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return missing("This is no file but a folder, a pipe or a device");
   }
-  std::string text;
-  std::vector<char> piece(std::size_t{1} << 16);
-  while (in.read(piece.data(), std::streamsize(piece.size())) || in.gcount() > 0) {
-    text.append(piece.data(), std::size_t(in.gcount()));
-    if (text.size() > kMaxFileBytes) {
-      return Error{"BAD_JSON", "The file is larger than 64 MB, which none of our JSON files is",
-                   file.string(), "Choose another file"};
-    }
+  const std::uintmax_t size = std::filesystem::file_size(file, ec);
+  std::ifstream in(file, std::ios::binary);
+  if (ec || !in) return missing("The file cannot be read");
+  if (size > kMaxFileBytes) {
+    return Error{"BAD_JSON", "The file is larger than 64 MB, which none of our JSON files is",
+                 file.string(), "Choose another file"};
   }
+  std::string text(std::size_t(size), '\0');
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(in.gcount()));
   return parseJson(text, file.string());
 }
 
@@ -162,30 +168,36 @@ const Json* JsonReader::find(const char* key, bool required) {
   return nullptr;
 }
 
-double JsonReader::asNumber(const Json& value, const char* key) {
+void JsonReader::outOfRange(const Json& value, const char* key, const Range& range) {
+  fail(key, "The value " + shorten(value) + " must lie " + range.words());
+}
+
+double JsonReader::asNumber(const Json& value, const char* key, const Range& range) {
   if (!value.is_number()) {
     fail(key, "Expected a number, found " + shorten(value));
     return 0.0;
   }
-  double number = value.get<double>();
-  if (!std::isfinite(number)) {
-    fail(key, "The number " + std::to_string(number) + " is not finite");
-    return 0.0;
+  const double number = value.get<double>();
+  if (range.holds(number)) return number;
+  if (std::isfinite(number)) {
+    outOfRange(value, key, range);
+  } else {
+    fail(key, "The number " + std::to_string(number) + " is not finite");  // JSON has no nan
   }
-  return number;
+  return 0.0;
 }
 
-double JsonReader::number(const char* key) {
+double JsonReader::number(const char* key, const Range& range) {
   const Json* value = find(key, true);
-  return value ? asNumber(*value, key) : 0.0;
+  return value ? asNumber(*value, key, range) : 0.0;
 }
 
-double JsonReader::number(const char* key, double fallback) {
+double JsonReader::number(const char* key, const Range& range, double fallback) {
   const Json* value = find(key, false);
-  return value ? asNumber(*value, key) : fallback;
+  return value ? asNumber(*value, key, range) : fallback;
 }
 
-std::int64_t JsonReader::asInteger(const Json& value, const char* key) {
+std::int64_t JsonReader::asInteger(const Json& value, const char* key, const Range& range) {
   // A literal beyond int64 is kept as unsigned and would wrap round.
   constexpr auto kMax = std::uint64_t(std::numeric_limits<std::int64_t>::max());
   if (!value.is_number_integer() ||
@@ -193,16 +205,19 @@ std::int64_t JsonReader::asInteger(const Json& value, const char* key) {
     fail(key, "Expected a whole number, found " + shorten(value));
     return 0;
   }
-  return value.get<std::int64_t>();
+  const auto number = value.get<std::int64_t>();
+  if (range.holds(double(number))) return number;
+  outOfRange(value, key, range);
+  return 0;
 }
 
-std::int64_t JsonReader::integer(const char* key) {
+std::int64_t JsonReader::integer(const char* key, const Range& range) {
   const Json* value = find(key, true);
-  return value ? asInteger(*value, key) : 0;
+  return value ? asInteger(*value, key, range) : 0;
 }
 
-std::int64_t JsonReader::integer(const char* key, std::int64_t fallback) {
-  return has(key) ? integer(key) : (find(key, false), fallback);
+std::int64_t JsonReader::integer(const char* key, const Range& range, std::int64_t fallback) {
+  return has(key) ? integer(key, range) : (find(key, false), fallback);
 }
 
 bool JsonReader::boolean(const char* key, bool fallback) {
@@ -222,6 +237,11 @@ std::string JsonReader::text(const char* key) {
     fail(key, "Expected text, found " + shorten(*value));
     return {};
   }
+  if (value->get_ref<const std::string&>().size() > kMaxText) {
+    fail(key,
+         "The text " + shorten(*value) + " is longer than " + std::to_string(kMaxText) + " bytes");
+    return {};
+  }
   return value->get<std::string>();
 }
 
@@ -229,30 +249,46 @@ std::string JsonReader::text(const char* key, std::string fallback) {
   return has(key) ? text(key) : (find(key, false), fallback);
 }
 
-Vec3 JsonReader::vec3(const char* key) {
+const Json* JsonReader::list(const char* key, std::size_t least, std::size_t most, const char* of) {
   const Json* value = find(key, true);
-  Vec3 out{0.0};
-  if (!value) return out;
-  if (!value->is_array() || value->size() != 3) {
-    fail(key, "Expected three numbers, found " + shorten(*value));
-    return out;
-  }
-  for (int axis = 0; axis < 3; ++axis) out[axis] = asNumber((*value)[axis], key);
-  return out;
-}
-
-Vec3 JsonReader::vec3(const char* key, Vec3 fallback) {
-  return has(key) ? vec3(key) : (find(key, false), fallback);
-}
-
-std::vector<std::string> JsonReader::texts(const char* key) {
-  const Json* value = find(key, true);
-  std::vector<std::string> out;
-  if (!value) return out;
+  if (!value) return nullptr;
   if (!value->is_array()) {
-    fail(key, "Expected a list, found " + shorten(*value));
-    return out;
+    fail(key, std::string("Expected a list of ") + of + ", found " + shorten(*value));
+    return nullptr;
   }
+  if (value->size() >= least && value->size() <= most) return value;
+  fail(key, std::string("Expected a list of ") + (least == most ? "" : "at most ") +
+                std::to_string(most) + " " + of + ", found " + std::to_string(value->size()) +
+                ": " + shorten(*value));
+  return nullptr;
+}
+
+Vec3 JsonReader::vec3(const char* key, const Range& range) {
+  const std::vector<double> three = numbers(key, 3, range);
+  return {three[0], three[1], three[2]};
+}
+
+Vec3 JsonReader::vec3(const char* key, const Range& range, Vec3 fallback) {
+  return has(key) ? vec3(key, range) : (find(key, false), fallback);
+}
+
+Vec3 JsonReader::direction(const char* key) {
+  const Vec3 along = vec3(key, {-kDirectionLength.high, kDirectionLength.high});
+  const double length = glm::length(along);
+  if (kDirectionLength.holds(length)) return along / length;
+  fail(key, "The direction has a length of " + plainNumber(length) + ", which must lie " +
+                kDirectionLength.words());
+  return {0.0, 0.0, 1.0};
+}
+
+Vec3 JsonReader::direction(const char* key, Vec3 fallback) {
+  return has(key) ? direction(key) : (find(key, false), fallback);
+}
+
+std::vector<std::string> JsonReader::texts(const char* key, std::size_t most) {
+  std::vector<std::string> out;
+  const Json* value = list(key, 0, most, "texts");
+  if (!value) return out;
   for (const Json& item : *value) {
     if (item.is_string()) {
       out.push_back(item.get<std::string>());
@@ -263,16 +299,18 @@ std::vector<std::string> JsonReader::texts(const char* key) {
   return out;
 }
 
-std::vector<std::int64_t> JsonReader::integers(const char* key, std::size_t count) {
-  const Json* value = find(key, true);
+std::vector<std::int64_t> JsonReader::integers(const char* key, std::size_t count,
+                                               const Range& range) {
   std::vector<std::int64_t> out(count, 0);
-  if (!value) return out;
-  if (!value->is_array() || value->size() != count) {
-    fail(key, "Expected a list of " + std::to_string(count) + " whole numbers, found " +
-                  shorten(*value));
-    return out;
-  }
-  for (std::size_t i = 0; i < count; ++i) out[i] = asInteger((*value)[i], key);
+  const Json* value = list(key, count, count, "whole numbers");
+  for (std::size_t i = 0; value && i < count; ++i) out[i] = asInteger((*value)[i], key, range);
+  return out;
+}
+
+std::vector<double> JsonReader::numbers(const char* key, std::size_t count, const Range& range) {
+  std::vector<double> out(count, 0.0);
+  const Json* value = list(key, count, count, "numbers");
+  for (std::size_t i = 0; value && i < count; ++i) out[i] = asNumber((*value)[i], key, range);
   return out;
 }
 
@@ -283,14 +321,10 @@ JsonReader JsonReader::object(const char* key) {
   return child;
 }
 
-std::vector<JsonReader> JsonReader::objects(const char* key) {
-  const Json* value = find(key, true);
+std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t most) {
   std::vector<JsonReader> out;
+  const Json* value = list(key, 0, most, "objects");
   if (!value) return out;
-  if (!value->is_array()) {
-    fail(key, "Expected a list, found " + shorten(*value));
-    return out;
-  }
   for (std::size_t i = 0; i < value->size(); ++i) {
     out.push_back(JsonReader(&(*value)[i], state_, fieldName(key) + "[" + std::to_string(i) + "]"));
     children_->push_back(out.back());
@@ -305,7 +339,8 @@ const Json& JsonReader::raw(const char* key) {
 
 void JsonReader::format(const char* format, int version) {
   std::string found = text("format");
-  std::int64_t number = integer("version");
+  constexpr double kAny = 1e15;  // each has an answer of its own below
+  std::int64_t number = integer("version", {-kAny, kAny});
   if (!ok()) return;
   if (found != format) {
     fail("format", "This is a '" + found + "' file, not a '" + format + "' file");

@@ -1,5 +1,5 @@
-// Strict reading of our JSON files: a missing key, an unknown key, a wrong type or a non-finite
-// number is an Error that names file, field and value.
+// Strict reading of our JSON files: a missing key, an unknown key, a wrong type or a number out of
+// its range is an Error that names file, field and value.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/range.h"
 #include "base/result.h"
 
 namespace trephine {
@@ -20,6 +21,8 @@ using Json = nlohmann::ordered_json;
 // Refuses what is not JSON, a number that no double holds (1e999), a field given twice in one
 // object, nesting deeper than 64 and a file of over 64 MB.
 Result<Json> parseJson(std::string_view text, const std::string& file);
+// Errors: MISSING_FILE, also for what is no regular file (a pipe could keep its reader waiting for
+// ever), and those of parseJson.
 Result<Json> readJsonFile(const std::filesystem::path& file);
 
 // Reads one JSON object field by field. The first problem is kept and every later read returns a
@@ -29,22 +32,28 @@ class JsonReader {
   JsonReader(const Json& object, std::string file, std::string field = "");
 
   bool has(const char* key) const;
-  double number(const char* key);
-  double number(const char* key, double fallback);
-  std::int64_t integer(const char* key);
-  std::int64_t integer(const char* key, std::int64_t fallback);
+  // Every number has a range: there is no other way to read one.
+  double number(const char* key, const Range& range);
+  double number(const char* key, const Range& range, double fallback);
+  std::int64_t integer(const char* key, const Range& range);
+  std::int64_t integer(const char* key, const Range& range, std::int64_t fallback);
   bool boolean(const char* key, bool fallback);
+  // At most 4096 bytes.
   std::string text(const char* key);
   std::string text(const char* key, std::string fallback);
-  Vec3 vec3(const char* key);
-  Vec3 vec3(const char* key, Vec3 fallback);
-  std::vector<std::string> texts(const char* key);
+  Vec3 vec3(const char* key, const Range& range);
+  Vec3 vec3(const char* key, const Range& range, Vec3 fallback);
+  // Three numbers that point somewhere, made a unit vector: their length lies in 0.001 to 1000.
+  Vec3 direction(const char* key);
+  Vec3 direction(const char* key, Vec3 fallback);
+  std::vector<std::string> texts(const char* key, std::size_t most);
   // Always `count` values: zeros after a problem.
-  std::vector<std::int64_t> integers(const char* key, std::size_t count);
+  std::vector<std::int64_t> integers(const char* key, std::size_t count, const Range& range);
+  std::vector<double> numbers(const char* key, std::size_t count, const Range& range);
   // The sub-object or the array's elements, each with its own field name.
   JsonReader object(const char* key);
-  std::vector<JsonReader> objects(const char* key);
-  // The raw value; null where absent.
+  std::vector<JsonReader> objects(const char* key, std::size_t most);
+  // The raw value; null where absent. Not for numbers: they would have no range.
   const Json& raw(const char* key);
 
   // Checks `format` and `version`: a newer version is refused by name.
@@ -65,8 +74,11 @@ class JsonReader {
   };
   JsonReader(const Json* object, std::shared_ptr<State> state, std::string field);
   const Json* find(const char* key, bool required);
-  double asNumber(const Json& value, const char* key);
-  std::int64_t asInteger(const Json& value, const char* key);
+  // The list of that key; null after a problem.
+  const Json* list(const char* key, std::size_t least, std::size_t most, const char* of);
+  double asNumber(const Json& value, const char* key, const Range& range);
+  std::int64_t asInteger(const Json& value, const char* key, const Range& range);
+  void outOfRange(const Json& value, const char* key, const Range& range);
   void checkUnknown();
 
   const Json* object_;

@@ -12,15 +12,24 @@ class Progress {
   // `report` is called on the working thread with a fraction in [0, 1] and a step's name.
   explicit Progress(std::function<void(double fraction, const std::string& step)> report = {})
       : report_(std::move(report)) {}
+  // A part of `whole`, between two of its fractions; cancelled with it. `whole` outlives it.
+  Progress(const Progress& whole, double from, double to)
+      : report_([&whole, from, to](double fraction, const std::string& step) {
+          whole.at(from + fraction * (to - from), step);
+        }),
+        whole_(&whole) {}
 
   void at(double fraction, const std::string& step) const {
     if (report_) report_(fraction, step);
   }
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const {
+    return cancelled_.load(std::memory_order_relaxed) || (whole_ && whole_->cancelled());
+  }
 
  private:
   std::function<void(double, const std::string&)> report_;
+  const Progress* whole_ = nullptr;
   std::atomic<bool> cancelled_{false};
 };
 

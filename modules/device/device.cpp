@@ -8,11 +8,13 @@
 #include <set>
 #include <utility>
 
+#include "device/arm_ranges.h"
+#include "device/library_file.h"
+
 namespace trephine {
 
 namespace {
 
-constexpr std::uint32_t kMaxArmsOfAPlugin = 64;
 constexpr std::size_t kMaxSentence = 1000;
 
 // A name comes from a scene: it must not lead out of the plugin folder.
@@ -67,21 +69,27 @@ std::string lastSentence(const TrephineDeviceApi& api, TrephineDevice* handle) {
   return sentence.empty() ? "The plugin gave no reason" : sentence;
 }
 
-// Empty when an arm can have these capabilities, else the name of one that is impossible.
+// Empty when an arm can have these capabilities, else which of them is impossible and why.
 std::string impossibleCapability(const TrephineCapabilities& c) {
-  const auto positive = [](double v) { return isFinite(v) && v > 0.0; };
-  for (double extent : c.workspace_m) {
-    if (!positive(extent)) return "workspace_m";
+  const struct {
+    const char* name;
+    double value;
+    Range range;
+  } rows[] = {{"workspace_m", c.workspace_m[0], kWorkspace_m},
+              {"workspace_m", c.workspace_m[1], kWorkspace_m},
+              {"workspace_m", c.workspace_m[2], kWorkspace_m},
+              {"peak_force_N", c.peak_force_N, kPeakForce_N},
+              {"continuous_force_N", c.continuous_force_N, kPeakForce_N},
+              {"apparent_mass_kg", c.apparent_mass_kg, kApparentMass_kg},
+              {"rate_hz", c.rate_hz, kDeviceRate_hz},
+              {"max_stiffness_N_per_m", c.max_stiffness_N_per_m, kMaxStiffness_N_per_m},
+              {"max_damping_Ns_per_m", c.max_damping_Ns_per_m, kMaxDamping_Ns_per_m},
+              {"encoder_step_m", c.encoder_step_m, kEncoderStep_m}};
+  for (const auto& [name, value, range] : rows) {
+    if (range.holds(value)) continue;
+    return "'" + std::string(name) + "' of " + plainNumber(value) + ", which must lie " +
+           range.words();
   }
-  if (!positive(c.peak_force_N)) return "peak_force_N";
-  if (!positive(c.continuous_force_N)) return "continuous_force_N";
-  if (!(c.apparent_mass_kg >= 1e-4 && c.apparent_mass_kg <= 100.0)) return "apparent_mass_kg";
-  if (!positive(c.rate_hz)) return "rate_hz";
-  if (!positive(c.max_stiffness_N_per_m)) return "max_stiffness_N_per_m";
-  if (!isFinite(c.max_damping_Ns_per_m) || c.max_damping_Ns_per_m < 0.0) {
-    return "max_damping_Ns_per_m";
-  }
-  if (!(c.encoder_step_m >= 0.0 && c.encoder_step_m <= 0.01)) return "encoder_step_m";
   return {};
 }
 
@@ -119,6 +127,7 @@ Result<std::shared_ptr<const DevicePlugin>> DevicePlugin::load(
     return Error{"NO_PLUGIN", "There is no device plugin '" + name + "'", file.string(),
                  "Check the device name, or install that plugin into this folder"};
   }
+  if (Status whole = checkLibraryFile(file); !whole) return whole.error();
   std::shared_ptr<DevicePlugin> plugin(new DevicePlugin);
   plugin->library_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!plugin->library_) {
@@ -158,7 +167,8 @@ DevicePlugin::~DevicePlugin() {
 }
 
 std::vector<TrephineArmInfo> DevicePlugin::enumerate() const {
-  const std::uint32_t count = std::min(api_->enumerate(nullptr, 0), kMaxArmsOfAPlugin);
+  const std::uint32_t count =
+      std::min(api_->enumerate(nullptr, 0), std::uint32_t(kMaxArmsOfAPlugin));
   std::vector<TrephineArmInfo> infos(count, sized<TrephineArmInfo>());
   if (count == 0) return infos;
   // An arm may have come or gone in between.
@@ -207,9 +217,9 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
                            " can do: " + lastSentence(api, device->handle_),
                        where);
     }
-    if (std::string field = impossibleCapability(capabilities); !field.empty()) {
+    if (std::string wrong = impossibleCapability(capabilities); !wrong.empty()) {
       return badPlugin(
-          "The plugin states an impossible '" + field + "' for arm " + std::to_string(arm), where);
+          "The plugin states for arm " + std::to_string(arm) + " an impossible " + wrong, where);
     }
     device->capabilities_.push_back(capabilities);
   }

@@ -1,6 +1,7 @@
 // What an arm is to the force that it shows: the few numbers on which stability depends.
 #pragma once
 
+#include "device/arm_ranges.h"  // those of its numbers
 #include "haptics/workspace_map.h"
 
 namespace trephine {
@@ -15,6 +16,7 @@ struct ArmDynamics {
 };
 
 constexpr int kMaxDelayTicks = 16;
+constexpr Range kDelayTicks{0, kMaxDelayTicks, "ticks"};
 
 // Damping [N s/m] and stiffness [N/m] of a tissue.
 struct Impedance {

@@ -22,6 +22,15 @@ Vec3 turning(const Quat& before, const Quat& now, double period_s) {
   return Vec3(by.x, by.y, by.z) * (sign / period_s);
 }
 
+// False for what no arm can say: not finite, metres away from its workspace, no rotation.
+bool isPose(const ArmSample& sample) {
+  constexpr double kLooselyUnit = 1e-2;
+  bool near = true;
+  for (int axis = 0; axis < 3; ++axis) near = near && kPosePlace_m.holds(sample.position_m[axis]);
+  const Quat& q = sample.orientation;
+  return near && std::abs(glm::dot(q, q) - 1.0) <= kLooselyUnit;
+}
+
 // 1 where nothing was limited, so that what was allowed in full stays the same to the last bit.
 double shareOf(double limited, double demanded) {
   return demanded > 0.0 ? limited / demanded : 1.0;
@@ -312,7 +321,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   arm.cuts = false;
 
   if (sample.flags & TREPHINE_ARM_LOST) latch(index, kFaultDeviceLost, input.tick);
-  const bool known = isFinite(sample.position_m) && isFinite(sample.orientation);
+  const bool known = isPose(sample);
   if (!known) {
     ++nonfinite_;
     latch(index, kFaultNonFinite, input.tick);

@@ -46,7 +46,7 @@ struct Command {
 
 // Zero force and no removal while any stands. Each but kFaultLate stays until clear_faults.
 enum Fault : std::uint32_t {
-  kFaultNonFinite = 1u << 0,   // pose, velocity or force was not a number
+  kFaultNonFinite = 1u << 0,   // velocity or force was not a number, or the pose none of an arm
   kFaultLate = 1u << 1,        // a tick came more than 20 ms late; goes by itself (LatenessRule)
   kFaultDeviceLost = 1u << 2,  // the plugin reports the arm gone
   kFaultStalled = 1u << 3,     // that happened too often or for too long

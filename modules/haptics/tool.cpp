@@ -103,32 +103,30 @@ Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length
 }
 
 Result<Tool> makeTool(const ToolDescription& d) {
-  const auto bad = [](const char* field, const std::string& what) {
-    return Error{"BAD_TOOL", what, field, ""};
+  const auto bad = [](const char* field, double value, const std::string& must) {
+    return Error{"BAD_TOOL", "The value " + plainNumber(value) + " must " + must, field, ""};
   };
-  if (!(d.length_mm >= 0.0 && d.length_mm <= 1000.0)) {
-    return bad("length_mm", "A tool's length must lie between 0 and 1000 mm");
+  const bool is_burr = d.kind == ToolKind::burr;
+  const struct {
+    const char* field;
+    double value;
+    Range range;
+  } rows[] = {{"length_mm", d.length_mm, kToolLength_mm},
+              {"points", double(d.points), kToolPoints},
+              {"radius_mm", d.radius_mm, kToolRadius_mm},
+              {"motor_W", d.motor_W, kToolMotor_W},
+              {"shaft_points", is_burr ? d.shaft_points : 0.0, kToolShaftPoints}};
+  for (const auto& [field, value, range] : rows) {
+    if (!range.holds(value)) return bad(field, value, "lie " + range.words());
   }
-  if (d.points < 1 || d.points > 10000) {
-    return bad("points", "A tool has 1 to 10,000 points, not " + std::to_string(d.points));
-  }
-  if (!(d.radius_mm >= 0.05 && d.radius_mm <= 20.0)) {
-    return bad("radius_mm", "A tool's radius must lie between 0.05 and 20 mm");
-  }
-  if (!(d.motor_W >= 0.0 && d.motor_W <= 500.0)) {
-    return bad("motor_W", "A motor gives between 0 and 500 W");
-  }
-  if (d.kind != ToolKind::burr) return sharpTool(d);
-  if (d.shaft_points < 0 || d.shaft_points > 1000) {
-    return bad("shaft_points",
-               "A shaft has 0 to 1,000 points, not " + std::to_string(d.shaft_points));
-  }
+  if (!is_burr) return sharpTool(d);
   const bool cylinder = d.shape == BurrShape::cylinder;
-  if (cylinder && !(d.head_mm >= 2.0 * d.radius_mm && d.head_mm <= 1000.0)) {
-    return bad("head_mm", "A cylinder's head is at least as long as it is thick");
+  if (cylinder && !(d.head_mm >= 2.0 * d.radius_mm && d.head_mm <= kToolLength_mm.high)) {
+    return bad("head_mm", d.head_mm,
+               "be at least twice the radius: a head is as long as it is thick");
   }
   if (d.length_mm < (cylinder ? d.head_mm : 2.0 * d.radius_mm)) {
-    return bad("length_mm", "A burr is at least as long as its head");
+    return bad("length_mm", d.length_mm, "be at least the length of the burr's head");
   }
   return burr(d);
 }

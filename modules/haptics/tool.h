@@ -6,12 +6,19 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/range.h"
 #include "base/result.h"
 
 namespace trephine {
 
 enum class ToolKind { needle, blade, burr };
 enum class BurrShape { sphere, cylinder };
+
+constexpr Range kToolLength_mm{0, 1000, "mm"};  // a burr's: at least its head
+constexpr Range kToolRadius_mm{0.05, 20, "mm"};
+constexpr Range kToolMotor_W{0, 500, "W"};
+constexpr Range kToolPoints{1, 10'000};
+constexpr Range kToolShaftPoints{0, 1000};
 
 // What a scene or a tool file says of a tool, in the millimetres of files.
 struct ToolDescription {
@@ -55,8 +62,8 @@ Tool makeBlade(double length_m, int count);
 // A ball (or a rod with round ends) that cuts, its shell evenly covered with points, and a shaft.
 Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length_m);
 
-// Errors: BAD_TOOL for a length that is not finite or outside 0..1 m, a radius outside 0.05 to 20
-// mm, not 1..10,000 points, a motor outside 0..500 W; `where` names the field of the tool file.
+// Errors: BAD_TOOL for a number out of its range above and a burr shorter than its head; `where`
+// names the field of the tool file.
 Result<Tool> makeTool(const ToolDescription& description);
 
 }  // namespace trephine

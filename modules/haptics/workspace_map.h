@@ -3,8 +3,11 @@
 #pragma once
 
 #include "base/math.h"
+#include "base/range.h"
 
 namespace trephine {
+
+constexpr Range kMapScale{0.01, 100};  // of motion and of force
 
 // p_patient_mm = centre_mm + 1000 s R p_device_m;  f_device = g R^T f_patient.
 // A tissue damping b is therefore g s b at the arm.

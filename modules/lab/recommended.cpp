@@ -7,6 +7,7 @@ namespace trephine {
 namespace {
 constexpr const char* kFormat = "trephine.recommended";
 constexpr int kVersion = 1;
+constexpr Range kFigure{0, 1e15};
 }  // namespace
 
 Json toJson(const std::vector<RecommendedSetting>& settings) {
@@ -29,16 +30,14 @@ Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::p
   reader.format(kFormat, kVersion);
   std::vector<RecommendedSetting> settings;
   std::set<std::string> seen;
-  for (JsonReader& item : reader.objects("knobs")) {
+  for (JsonReader& item : reader.objects("knobs", 1000)) {
     RecommendedSetting s;
     s.knob = item.text("knob");
     s.setting = item.text("setting");
-    s.error = item.number("error");
+    s.error = item.number("error", kFigure);
     s.error_unit = item.text("error_unit");
-    s.cost = item.number("cost");
+    s.cost = item.number("cost", kFigure);
     s.cost_unit = item.text("cost_unit");
-    if (s.error < 0.0) item.fail("error", "An error is 0 or above");
-    if (s.cost < 0.0) item.fail("cost", "A cost is 0 or above");
     if (!seen.insert(s.knob).second) item.fail("knob", "The knob '" + s.knob + "' is given twice");
     settings.push_back(std::move(s));
   }

@@ -23,34 +23,19 @@ using ControllerColumn = CellResult JudgedCell::*;
 constexpr std::array<std::pair<const char*, ControllerColumn>, 3> kColumns{
     {{"off", &JudgedCell::off}, {"seed", &JudgedCell::seed}, {"bounded", &JudgedCell::bounded}}};
 
-double within(JsonReader& item, const char* key, double low, double high) {
-  const double value = item.number(key);
-  if (!(value >= low && value <= high)) {
-    std::ostringstream what;
-    what << "The value " << value << " must lie between " << low << " and " << high;
-    item.fail(key, what.str());
-  }
-  return value;
-}
-
 StabilityCell readCell(JsonReader item) {
   StabilityCell cell;
-  cell.mass_kg = within(item, "mass_kg", 1e-3, 10.0);
-  cell.period_s = within(item, "period_s", 2e-5, 0.05);
-  const std::int64_t delay = item.integer("delay_samples");
-  if (delay < 0 || delay > kMaxDelayTicks) {
-    item.fail("delay_samples", "The value " + std::to_string(delay) + " must lie between 0 and " +
-                                   std::to_string(kMaxDelayTicks));
-  }
-  cell.delay_samples = int(std::clamp<std::int64_t>(delay, 0, kMaxDelayTicks));
-  cell.encoder_m = 1e-3 * within(item, "encoder_mm", 0.0, 5.0);
-  if (item.has("plant_damping")) cell.plant_damping = within(item, "plant_damping", 0.0, 100.0);
+  cell.mass_kg = item.number("mass_kg", {1e-3, 10.0});
+  cell.period_s = item.number("period_s", {2e-5, 0.05});
+  cell.delay_samples = int(item.integer("delay_samples", kDelayTicks));
+  cell.encoder_m = 1e-3 * item.number("encoder_mm", {0.0, 5.0});
+  if (item.has("plant_damping")) cell.plant_damping = item.number("plant_damping", {0.0, 100.0});
   if (!item.raw("hand").is_null()) {
     JsonReader hand = item.object("hand");
-    cell.hand = {within(hand, "b", 0.0, 1e4), within(hand, "k", 0.0, 1e6)};
+    cell.hand = {hand.number("b", {0.0, 1e4}), hand.number("k", {0.0, 1e6})};
   }
   JsonReader tissue = item.object("tissue");
-  cell.tissue = {within(tissue, "b", 0.0, 1e12), within(tissue, "k", 0.0, 1e12)};
+  cell.tissue = {tissue.number("b", {0.0, 1e12}), tissue.number("k", {0.0, 1e12})};
   return cell;
 }
 
@@ -120,11 +105,8 @@ Result<std::vector<StabilityCell>> readGrid(const std::filesystem::path& file) {
   if (!json) return json.error();
   JsonReader reader(*json, file.string());
   std::vector<StabilityCell> cells;
-  for (JsonReader& item : reader.objects("cells")) cells.push_back(readCell(item));
-  if (reader.ok() && (cells.empty() || cells.size() > kMostCells)) {
-    reader.fail("cells", "There must be 1 to " + std::to_string(kMostCells) + " cells, not " +
-                             std::to_string(cells.size()));
-  }
+  for (JsonReader& item : reader.objects("cells", kMostCells)) cells.push_back(readCell(item));
+  if (reader.ok() && cells.empty()) reader.fail("cells", "There must be at least one cell");
   if (Status read = reader.finish(); !read) return read.error();
   return cells;
 }

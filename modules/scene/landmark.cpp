@@ -20,7 +20,13 @@ struct Sought {
   const LabelMap* labels;
   TissueTable tissues;
   int tissue;
+  const Progress& progress;
 
+  // Called a few hundred times a landmark. False: give up.
+  bool goOn(double fraction) const {
+    progress.at(fraction, "Finding landmarks");
+    return !progress.cancelled();
+  }
   bool in(double hu, std::uint8_t label) const { return classify(tissues, hu, label) == tissue; }
   std::uint8_t label(int i, int j, int k) const {
     return labels ? labels->labels[volume.geometry.indexOf(i, j, k)] : 0;
@@ -37,7 +43,7 @@ struct Sought {
 };
 
 // 1st to 99th percentile of the tissue's voxels along each patient axis, in bins of 1 mm. Every
-// second voxel on each axis is looked at.
+// second voxel on each axis is looked at. Not found where it was cancelled.
 Box tissueBox(const Sought& sought) {
   const Volume& volume = sought.volume;
   const GridGeometry& g = volume.geometry;
@@ -49,6 +55,7 @@ Box tissueBox(const Sought& sought) {
   const Mat4 affine = g.voxelToPatient();
   std::uint64_t total = 0;
   for (int k = 0; k < g.size[2]; k += 2) {
+    if (!sought.goOn(double(k) / g.size[2])) return {};
     for (int j = 0; j < g.size[1]; j += 2) {
       for (int i = 0; i < g.size[0]; i += 2) {
         if (!sought.in(volume.at(i, j, k), sought.label(i, j, k))) continue;
@@ -86,14 +93,16 @@ double meanHu(const Volume& volume, const Vec3& at_mm, double radius_mm) {
 }
 
 // The centre of the ball that holds most of the tissue: cells of a third of the radius, each judged
-// by its mean HU and the label in its middle, then counted in boxes of the ball's size.
+// by its mean HU and the label in its middle, then counted in boxes of the ball's size. Nothing
+// where it was cancelled.
 std::optional<Vec3> bulkOf(const Sought& sought, double radius_mm) {
   const Volume& volume = sought.volume;
   const GridGeometry& g = volume.geometry;
   Index3 stride{}, cells{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = std::size_t(axis);
-    stride[a] = std::max(1, int(radius_mm / 3.0 / g.spacing_mm[axis]));
+    const double wide = std::min(radius_mm / 3.0 / g.spacing_mm[axis], double(g.size[a]));
+    stride[a] = std::max(1, int(wide));
     cells[a] = g.size[a] / stride[a];
   }
   const auto cell = [&](int i, int j, int k) {
@@ -103,6 +112,7 @@ std::optional<Vec3> bulkOf(const Sought& sought, double radius_mm) {
   std::vector<std::uint8_t> inside(std::size_t(cells[0]) * std::size_t(cells[1]) *
                                    std::size_t(cells[2]));
   for (int k = 0; k < cells[2]; ++k) {
+    if (!sought.goOn(0.5 * k / cells[2])) return {};
     for (int j = 0; j < cells[1]; ++j) {
       for (int i = 0; i < cells[0]; ++i) {
         std::int64_t sum = 0;
@@ -125,6 +135,7 @@ std::optional<Vec3> bulkOf(const Sought& sought, double radius_mm) {
   int most = 0;
   std::optional<Vec3> centre;
   for (int k = kReach; k < cells[2] - kReach; ++k) {
+    if (!sought.goOn(0.5 + 0.5 * k / cells[2])) return {};
     for (int j = kReach; j < cells[1] - kReach; ++j) {
       for (int i = kReach; i < cells[0] - kReach; ++i) {
         int count = 0;
@@ -164,6 +175,23 @@ Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
   return Ray{box.low_mm + landmark.from * extent_mm, box.low_mm + landmark.towards * extent_mm};
 }
 
+constexpr double kMostAround_mm = 3.0;  // HU are averaged over no more
+
+// The part of a ray near the volume, in mm from its start: beyond is air, however far the ray goes.
+// Empty (begin > end) where it passes the volume by.
+struct Stretch {
+  double begin_mm, end_mm;
+};
+Stretch stretchOf(const GridGeometry& g, const Vec3& from_mm, const Vec3& along, double length_mm) {
+  const double reach_mm = g.diagonal_mm() / 2.0 + glm::length(g.spacing_mm) + kMostAround_mm;
+  const Vec3 to_centre_mm = g.centre_mm() - from_mm;
+  const double nearest_mm = glm::dot(to_centre_mm, along);
+  const double aside_mm = glm::length(to_centre_mm - nearest_mm * along);
+  if (!(aside_mm <= reach_mm)) return {1.0, 0.0};
+  const double half_mm = std::sqrt(reach_mm * reach_mm - aside_mm * aside_mm);
+  return {std::max(0.0, nearest_mm - half_mm), std::min(length_mm, nearest_mm + half_mm)};
+}
+
 }  // namespace
 
 Quat frameAlong(const Vec3& outward) {
@@ -175,15 +203,19 @@ Quat frameAlong(const Vec3& outward) {
 }
 
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
-                                   const TissueSet& tissues, const LabelMap* labels) {
+                                   const TissueSet& tissues, const LabelMap* labels,
+                                   const Progress& progress) {
   const std::string where = "landmark '" + landmark.id + "'";
   const Tissue* tissue = tissues.find(landmark.tissue);
   if (!tissue) {
     return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
                  where, "Name one of its tissues"};
   }
-  const Sought sought{volume, labels, tissueTable(tissues), int(tissue - tissues.tissues.data())};
+  const Sought sought{volume, labels, tissueTable(tissues), int(tissue - tissues.tissues.data()),
+                      progress};
   const Result<Ray> ray = rayOf(landmark, sought);
+  const Error cancelled{"CANCELLED", "Finding the landmarks was cancelled", where, ""};
+  if (progress.cancelled()) return cancelled;
   if (!ray) return ray.error();
   const auto [from_mm, towards_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
@@ -192,9 +224,12 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
   }
   const Vec3 along = (towards_mm - from_mm) / length_mm;
   constexpr double kStep_mm = 0.25;
-  const double radius_mm = std::min(3.0, landmark.run_mm / 4.0);
+  const double radius_mm = std::min(kMostAround_mm, landmark.run_mm / 4.0);
+  const Stretch stretch = stretchOf(volume.geometry, from_mm, along, length_mm);
   double run_mm = 0.0;
-  for (double at_mm = 0.0; at_mm <= length_mm; at_mm += kStep_mm) {
+  for (double at_mm = kStep_mm * std::floor(stretch.begin_mm / kStep_mm); at_mm <= stretch.end_mm;
+       at_mm += kStep_mm) {
+    if (progress.cancelled()) return cancelled;
     const Vec3 place_mm = from_mm + at_mm * along;
     const bool inside = sought.in(meanHu(volume, place_mm, radius_mm), sought.labelNear(place_mm));
     run_mm = inside ? run_mm + kStep_mm : 0.0;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/math.h"
+#include "base/progress.h"
 #include "base/result.h"
 #include "tissue/tissue_set.h"
 #include "volume/label_map.h"
@@ -45,8 +46,10 @@ Quat frameAlong(const Vec3& outward);
 
 // HU are averaged over a quarter of `run_mm`, at most 3 mm, so that noise does not break a run.
 // `labels`, where there are any, are fitted to the volume.
-// Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray.
+// Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray,
+// CANCELLED.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
-                                   const TissueSet& tissues, const LabelMap* labels = nullptr);
+                                   const TissueSet& tissues, const LabelMap* labels = nullptr,
+                                   const Progress& progress = Progress());
 
 }  // namespace trephine

@@ -27,11 +27,15 @@ Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
 }
 
 Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume,
-                                                   const LabelMap* labels) {
+                                                   const LabelMap* labels,
+                                                   const Progress& progress) {
   if (Status known = checkLabels(scene.tissues, labels); !known) return known.error();
   std::vector<PlacedLandmark> placed;
+  const double share = 1.0 / double(scene.landmarks.size());
   for (const Landmark& landmark : scene.landmarks) {
-    Result<LandmarkFrame> frame = findLandmark(landmark, volume, scene.tissues, labels);
+    const double done = share * double(placed.size());
+    Result<LandmarkFrame> frame = findLandmark(landmark, volume, scene.tissues, labels,
+                                               Progress(progress, done, done + share));
     if (!frame) return frame.error();
     placed.push_back({landmark.id, *frame});
   }

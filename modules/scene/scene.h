@@ -80,7 +80,8 @@ struct PlacedLandmark {
 };
 // `labels` are fitted to the volume. Errors: those of checkLabels and findLandmark.
 Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Volume& volume,
-                                                   const LabelMap* labels = nullptr);
+                                                   const LabelMap* labels = nullptr,
+                                                   const Progress& progress = Progress());
 
 // NO_LABELS where a tissue is restricted to a label and there is no label map: it would be nowhere,
 // and nothing would say so.

@@ -10,35 +10,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double readScale(JsonReader& map, const char* key) {
-  const double scale = map.number(key, 1.0);
-  if (!(scale > 0.0 && scale <= 100.0)) {
-    map.fail(key, "The scale must lie above 0 and at most 100, not " + Json(scale).dump());
-  }
-  return scale;
-}
+// Wider than any exercise needs, and narrow enough that all that follows from them is finite.
+constexpr Range kBoxFraction{-10, 10};
+constexpr Range kBulkRadius_mm{3, 300, "mm"};
+constexpr Range kRun_mm{0.01, 300, "mm"};
+constexpr Range kOffset_mm{-1000, 1000, "mm"};
+constexpr Range kPlace_mm{-1e9, 1e9, "mm"};
+constexpr Range kQuaternionPart{-1.001, 1.001};
+constexpr Range kRate_hz{100, 20'000, "Hz"};
+constexpr Range kViewDistance_mm{10, 5000, "mm"};
+constexpr std::size_t kMostInAList = 64;
 
 SceneMap readMap(JsonReader map) {
   SceneMap out;
-  out.motion_scale = readScale(map, "motion_scale");
-  out.force_scale = readScale(map, "force_scale");
+  out.motion_scale = map.number("motion_scale", kMapScale, 1.0);
+  out.force_scale = map.number("force_scale", kMapScale, 1.0);
   if (!map.has("centre_mm")) {
     out.landmark = map.text("landmark");
-    out.offset_mm = map.vec3("offset_mm", Vec3(0.0));
+    out.offset_mm = map.vec3("offset_mm", kOffset_mm, Vec3(0.0));
     return out;
   }
   WorkspaceMap fixed;
-  fixed.centre_mm = map.vec3("centre_mm");
+  fixed.centre_mm = map.vec3("centre_mm", kPlace_mm);
   fixed.motion_scale = out.motion_scale;
   fixed.force_scale = out.force_scale;
-  const Json& q = map.raw("rotation_wxyz");
-  const bool four = q.is_array() && q.size() == 4 &&
-                    std::all_of(q.begin(), q.end(), [](const Json& v) { return v.is_number(); });
-  if (four) {
-    fixed.rotation = Quat(q[0].get<double>(), q[1].get<double>(), q[2].get<double>(), q[3].get<double>());
-  }
-  if (!four || std::abs(glm::length(fixed.rotation) - 1.0) > 1e-6) {
-    map.fail("rotation_wxyz", "Expected a unit quaternion of four numbers, found " + q.dump());
+  const std::vector<double> q = map.numbers("rotation_wxyz", 4, kQuaternionPart);
+  fixed.rotation = Quat(q[0], q[1], q[2], q[3]);
+  if (std::abs(glm::length(fixed.rotation) - 1.0) > 1e-6) {
+    map.fail("rotation_wxyz", "Expected a unit quaternion, found " + Json(q).dump());
   }
   out.fixed = fixed;
   return out;
@@ -46,20 +45,9 @@ SceneMap readMap(JsonReader map) {
 
 ArmDynamics readDynamics(JsonReader item) {
   ArmDynamics dynamics;
-  dynamics.apparent_mass_kg = item.number("apparent_mass_kg");
-  dynamics.encoder_step_m = item.number("encoder_step_m");
-  const std::int64_t delay = item.integer("delay_ticks", 0);
-  if (!(dynamics.apparent_mass_kg >= 1e-4 && dynamics.apparent_mass_kg <= 100.0)) {
-    item.fail("apparent_mass_kg", "The mass must lie between 0.0001 and 100 kg");
-  }
-  if (!(dynamics.encoder_step_m >= 0.0 && dynamics.encoder_step_m <= 0.01)) {
-    item.fail("encoder_step_m", "The step must lie between 0 and 0.01 m");
-  }
-  if (delay < 0 || delay > kMaxDelayTicks) {
-    item.fail("delay_ticks",
-              "The delay must lie between 0 and " + std::to_string(kMaxDelayTicks) + " ticks");
-  }
-  dynamics.delay_ticks = int(delay);
+  dynamics.apparent_mass_kg = item.number("apparent_mass_kg", kApparentMass_kg);
+  dynamics.encoder_step_m = item.number("encoder_step_m", kEncoderStep_m);
+  dynamics.delay_ticks = int(item.integer("delay_ticks", kDelayTicks, 0));
   return dynamics;
 }
 
@@ -68,7 +56,7 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   arm.name = item.text("name");
   JsonReader device = item.object("device");
   arm.plugin = device.text("plugin");
-  arm.device_arm = std::uint32_t(std::clamp<std::int64_t>(device.integer("arm", 0), 0, 255));
+  arm.device_arm = std::uint32_t(device.integer("arm", {0, kMaxArmsOfAPlugin - 1}, 0));
   const std::string config = device.text("config", "");
   if (!config.empty()) {
     arm.device_config = (folder / config).lexically_normal().string();
@@ -79,10 +67,7 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   }
   arm.tool = item.text("tool");
   arm.map = readMap(item.object("map"));
-  arm.max_force_N = item.number("max_force_N", 3.3);
-  if (arm.max_force_N <= 0.0) {
-    item.fail("max_force_N", "The limit must be above 0, not " + Json(arm.max_force_N).dump());
-  }
+  arm.max_force_N = item.number("max_force_N", kPeakForce_N, 3.3);
   if (item.has("dynamics")) arm.dynamics = readDynamics(item.object("dynamics"));
   return arm;
 }
@@ -92,25 +77,26 @@ Landmark readLandmark(JsonReader& item) {
   landmark.id = item.text("id");
   landmark.tissue = item.text("tissue");
   if (item.has("bulk_radius_mm")) {
-    landmark.bulk_radius_mm = item.number("bulk_radius_mm");
-    landmark.outward = item.vec3("outward");
-    const double length = glm::length(landmark.outward);
-    if (landmark.bulk_radius_mm < 3.0 || landmark.bulk_radius_mm > 300.0) {
-      item.fail("bulk_radius_mm", "The radius must lie between 3 and 300 mm, not " +
-                                      Json(landmark.bulk_radius_mm).dump());
-    }
-    if (length <= 0.0) item.fail("outward", "The direction has no length");
-    landmark.outward /= length;
+    landmark.bulk_radius_mm = item.number("bulk_radius_mm", kBulkRadius_mm);
+    landmark.outward = item.direction("outward");
   } else {
-    landmark.from = item.vec3("from");
-    landmark.towards = item.vec3("towards");
+    landmark.from = item.vec3("from", kBoxFraction);
+    landmark.towards = item.vec3("towards", kBoxFraction);
   }
-  landmark.run_mm = item.number("run_mm", 1.0);
-  if (landmark.run_mm <= 0.0 || landmark.run_mm > 300.0) {
-    item.fail("run_mm", "The run must lie above 0 and at most 300 mm, not " +
-                            Json(landmark.run_mm).dump());
-  }
+  landmark.run_mm = item.number("run_mm", kRun_mm, 1.0);
   return landmark;
+}
+
+// Names by which others refer to an element are there once.
+template <class Items, class NameOf>
+void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, NameOf name_of) {
+  std::set<std::string> seen;
+  for (const auto& item : items) {
+    const std::string name = name_of(item);
+    if (!seen.insert(name).second) {
+      reader.fail(list, "'" + name + "' stands twice in the list", "Give each a name of its own");
+    }
+  }
 }
 
 // What one field cannot say: names that must exist, things that must be there once.
@@ -124,9 +110,12 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
   if (scene.arms.empty() || scene.arms.size() > std::size_t(kMaxArms)) {
     reader.fail("arms", "A scene has 1 to 4 arms, this one has " + std::to_string(scene.arms.size()));
   }
-  std::set<std::string> names, devices;
+  checkNamesDiffer(reader, "landmarks", scene.landmarks, [](const auto& l) { return l.id; });
+  checkNamesDiffer(reader, "tools", scene.tools, [](const auto& t) { return t.id; });
+  checkNamesDiffer(reader, "arms", scene.arms, [](const auto& a) { return a.name; });
+  checkNamesDiffer(reader, "laws", scene.laws, [](LawKind law) { return nameOf(kLawNames, law); });
+  std::set<std::string> devices;
   for (const SceneArm& arm : scene.arms) {
-    if (!names.insert(arm.name).second) reader.fail("arms", "Two arms are named '" + arm.name + "'");
     if (!devices.insert(arm.plugin + "/" + std::to_string(arm.device_arm)).second) {
       reader.fail("arms", "The arm '" + arm.name + "' uses a device that another arm uses");
     }
@@ -163,10 +152,13 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) scene.tissues = *std::move(tissues);
-  for (JsonReader& item : reader.objects("landmarks")) scene.landmarks.push_back(readLandmark(item));
-  for (JsonReader& item : reader.objects("tools")) scene.tools.push_back(readSceneTool(item, folder));
-  for (JsonReader& item : reader.objects("arms")) scene.arms.push_back(readArm(item, folder));
-  for (const std::string& name : reader.texts("laws")) {
+  for (JsonReader& item : reader.objects("landmarks", kMostInAList))
+    scene.landmarks.push_back(readLandmark(item));
+  for (JsonReader& item : reader.objects("tools", kMostInAList))
+    scene.tools.push_back(readSceneTool(item, folder));
+  for (JsonReader& item : reader.objects("arms", kMostInAList))
+    scene.arms.push_back(readArm(item, folder));
+  for (const std::string& name : reader.texts("laws", kMostInAList)) {
     if (auto kind = kindOf(kLawNames, name)) {
       scene.laws.push_back(*kind);
     } else {
@@ -191,11 +183,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   } else {
     reader.fail("controller", "Unknown controller '" + controller + "'", choices(kControllerNames));
   }
-  scene.rate_hz = reader.number("rate_hz", 1000.0);
-  if (scene.rate_hz < 100.0 || scene.rate_hz > 20000.0) {
-    reader.fail("rate_hz", "The rate must lie between 100 and 20000 Hz, not " +
-                               Json(scene.rate_hz).dump());
-  }
+  scene.rate_hz = reader.number("rate_hz", kRate_hz, 1000.0);
   const std::string script = reader.text("operator", "");
   if (!script.empty()) {
     scene.operator_file = (folder / script).lexically_normal().string();
@@ -207,11 +195,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   if (reader.has("view")) {
     JsonReader view = reader.object("view");
     scene.view.landmark = view.text("landmark");
-    scene.view.distance_mm = view.number("distance_mm", 350.0);
-    if (scene.view.distance_mm < 10.0 || scene.view.distance_mm > 5000.0) {
-      view.fail("distance_mm", "The distance must lie between 10 and 5000 mm, not " +
-                                   Json(scene.view.distance_mm).dump());
-    }
+    scene.view.distance_mm = view.number("distance_mm", kViewDistance_mm, 350.0);
   }
   if (reader.ok()) checkReferences(reader, scene);
   if (Status status = reader.finish(); !status) return status.error();

@@ -1,7 +1,5 @@
 #include "scene/scene_tool.h"
 
-#include <algorithm>
-
 #include "scene/names.h"
 
 namespace trephine {
@@ -16,7 +14,7 @@ constexpr Names<BurrShape, 2> kShapeNames{
 // What a scene may set itself of a tool that comes from a file.
 constexpr const char* kOwnNumbers[] = {"length_mm", "points", "radius_mm", "shaft_points", "motor_W"};
 
-int limited(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -1, 1'000'000)); }
+constexpr Range kTip_mm{-10'000, 10'000, "mm"};
 
 template <class Kind, std::size_t N>
 Kind readKind(JsonReader& item, const char* key, const std::string& text,
@@ -31,14 +29,15 @@ Tool readTool(JsonReader& item) {
   ToolDescription d;
   d.kind = readKind(item, "kind", item.text("kind"), kToolNames, "tool");
   const bool burr = d.kind == ToolKind::burr;
-  d.length_mm = item.number("length_mm");
-  d.points = limited(item.integer("points", burr ? 64 : 1));
-  d.radius_mm = burr ? item.number("radius_mm") : item.number("radius_mm", 0.6);
-  d.motor_W = item.number("motor_W", 0.0);
+  d.length_mm = item.number("length_mm", kToolLength_mm);
+  d.points = int(item.integer("points", kToolPoints, burr ? 64 : 1));
+  d.radius_mm = burr ? item.number("radius_mm", kToolRadius_mm)
+                     : item.number("radius_mm", kToolRadius_mm, 0.6);
+  d.motor_W = item.number("motor_W", kToolMotor_W, 0.0);
   if (burr) {
     d.shape = readKind(item, "shape", item.text("shape", "sphere"), kShapeNames, "shape");
-    d.shaft_points = limited(item.integer("shaft_points", 0));
-    if (d.shape == BurrShape::cylinder) d.head_mm = item.number("head_mm");
+    d.shaft_points = int(item.integer("shaft_points", kToolShaftPoints, 0));
+    if (d.shape == BurrShape::cylinder) d.head_mm = item.number("head_mm", kToolLength_mm);
   }
   if (!item.ok()) return {};
   Result<Tool> tool = makeTool(d);
@@ -52,13 +51,12 @@ ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
   const std::string file = item.text("mesh", "");
   if (file.empty()) return look;
   look.mesh = (folder / file).lexically_normal();
-  look.tip_mm = item.vec3("tip_mm", Vec3(0.0));
-  look.axis = item.vec3("axis", Vec3(0.0, 0.0, 1.0));
+  look.tip_mm = item.vec3("tip_mm", kTip_mm, Vec3(0.0));
+  look.axis = item.direction("axis", Vec3(0.0, 0.0, 1.0));
   std::error_code ec;
   if (!std::filesystem::is_regular_file(look.mesh, ec)) {
     item.fail("mesh", "The file '" + file + "' is not there", "Check the name");
   }
-  if (!(glm::length(look.axis) > 0.0)) item.fail("axis", "The direction has no length");
   return look;
 }
 
@@ -76,7 +74,7 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
   const std::filesystem::path file = (folder / name).lexically_normal();
   Result<Json> json = readJsonFile(file);
   if (!json) {
-    item.fail("file", json.error().what, json.error().next);
+    item.fail("file", json.error().what + " (" + json.error().where + ")", json.error().next);
     return out;
   }
   for (const char* own : kOwnNumbers) {

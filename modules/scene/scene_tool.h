@@ -15,7 +15,7 @@ namespace trephine {
 struct ToolLook {
   std::filesystem::path mesh;
   Vec3 tip_mm{0.0};            // in the mesh's frame
-  Vec3 axis{0.0, 0.0, 1.0};    // from the tip to the handle
+  Vec3 axis{0.0, 0.0, 1.0};    // from the tip to the handle; unit
 };
 
 struct SceneTool {

@@ -19,14 +19,17 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 9> kCommandNames{
      {"tissues", CommandKind::tissues},
      {"rewind", CommandKind::rewind}}};
 
+constexpr std::size_t kMostWaypoints = 100'000;
+constexpr std::size_t kMostCommands = 10'000;
+
 ScriptHand readHand(JsonReader& item, const Scene& scene) {
   ScriptHand hand;
   hand.arm = item.text("arm");
   const bool known = std::any_of(scene.arms.begin(), scene.arms.end(),
                                  [&](const SceneArm& arm) { return arm.name == hand.arm; });
   if (!known) item.fail("arm", "The scene has no arm '" + hand.arm + "'");
-  for (JsonReader& point : item.objects("waypoints")) {
-    ScriptWaypoint waypoint{point.number("t"), point.vec3("at_mm")};
+  for (JsonReader& point : item.objects("waypoints", kMostWaypoints)) {
+    ScriptWaypoint waypoint{point.number("t", kScriptTime_s), point.vec3("at_mm", kWaypoint_mm)};
     if (!hand.waypoints.empty() && waypoint.time_s <= hand.waypoints.back().time_s) {
       point.fail("t", "The time " + Json(waypoint.time_s).dump() +
                           " is not after the waypoint before it");
@@ -36,9 +39,6 @@ ScriptHand readHand(JsonReader& item, const Scene& scene) {
   if (hand.waypoints.empty()) item.fail("waypoints", "A hand needs at least one waypoint");
   return hand;
 }
-
-// Any whole number as an int; what is no HU stays so and is refused by validate().
-int limitHu(std::int64_t value) { return int(std::clamp<std::int64_t>(value, -100'000, 100'000)); }
 
 // A tissue change starts from what the scene or the change before it says.
 void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
@@ -50,25 +50,23 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
       changes.fail(it.key().c_str(), "The scene has no tissue '" + it.key() + "'");
       return;
     }
-    tissue->hu_min = limitHu(change.integer("hu_min", tissue->hu_min));
-    tissue->hu_max = limitHu(change.integer("hu_max", tissue->hu_max));
-    tissue->damping_Ns_per_m.value =
-        change.number("damping_Ns_per_m", tissue->damping_Ns_per_m.value);
-    tissue->stiffness_N_per_m.value =
-        change.number("stiffness_N_per_m", tissue->stiffness_N_per_m.value);
-    tissue->friction_N.value = change.number("friction_N", tissue->friction_N.value);
-    if (tissue->rupture_N) {
-      tissue->rupture_N->value = change.number("rupture_N", tissue->rupture_N->value);
-    }
-    tissue->cutting_J_per_mm3.value =
-        change.number("cutting_J_per_mm3", tissue->cutting_J_per_mm3.value);
+    tissue->hu_min = int(change.integer("hu_min", kHuRange, tissue->hu_min));
+    tissue->hu_max = int(change.integer("hu_max", kHuRange, tissue->hu_max));
+    const auto mechanics = [&](const char* key, SourcedNumber& number) {
+      number.value = change.number(key, kMechanicsRange, number.value);
+    };
+    mechanics("damping_Ns_per_m", tissue->damping_Ns_per_m);
+    mechanics("stiffness_N_per_m", tissue->stiffness_N_per_m);
+    mechanics("friction_N", tissue->friction_N);
+    if (tissue->rupture_N) mechanics("rupture_N", *tissue->rupture_N);
+    mechanics("cutting_J_per_mm3", tissue->cutting_J_per_mm3);
     tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
   }
 }
 
 ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
   ScriptCommand out;
-  out.time_s = item.number("t");
+  out.time_s = item.number("t", kScriptTime_s);
   const std::string name = item.text("do");
   const auto kind = kindOf(kCommandNames, name);
   if (!kind) {
@@ -85,11 +83,8 @@ ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
     }
   }
   if (out.command.kind == CommandKind::rewind) {
-    const std::int64_t second = item.integer("to_s");
-    out.command.value = std::int32_t(std::clamp<std::int64_t>(second, 0, 1'000'000));
-    if (second < 0 || double(second) > out.time_s) {
-      item.fail("to_s", "One can rewind to a second from 0 to now, not " + std::to_string(second));
-    }
+    const std::int64_t second = item.integer("to_s", {0, out.time_s, "s"});
+    out.command.value = std::int32_t(second);
   }
   if (out.command.kind == CommandKind::tissues) {
     const Json& names = item.raw("tissues");
@@ -121,12 +116,9 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   reader.format("trephine.operator", 1);
   script.name = reader.text("name");
   JsonReader hand = reader.object("hand");
-  script.hand_stiffness_N_per_m = hand.number("stiffness_N_per_m");
-  script.hand_damping_Ns_per_m = hand.number("damping_Ns_per_m");
-  if (script.hand_stiffness_N_per_m < 0.0 || script.hand_damping_Ns_per_m < 0.0) {
-    hand.fail("", "A hand's stiffness and damping are 0 or more");
-  }
-  for (JsonReader& item : reader.objects("arms")) {
+  script.hand_stiffness_N_per_m = hand.number("stiffness_N_per_m", kHandStiffness_N_per_m);
+  script.hand_damping_Ns_per_m = hand.number("damping_Ns_per_m", kHandDamping_Ns_per_m);
+  for (JsonReader& item : reader.objects("arms", std::size_t(kMaxArms))) {
     ScriptHand hand_track = readHand(item, scene);
     for (const ScriptHand& other : script.hands) {
       if (other.arm == hand_track.arm) item.fail("arm", "The arm '" + other.arm + "' stands twice");
@@ -135,7 +127,7 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   }
   TissueSet tissues = scene.tissues;
   if (reader.has("commands")) {
-    for (JsonReader& item : reader.objects("commands")) {
+    for (JsonReader& item : reader.objects("commands", kMostCommands)) {
       ScriptCommand command = readCommand(item, tissues);
       if (!script.commands.empty() && command.time_s < script.commands.back().time_s) {
         item.fail("t", "Commands stand in order of time");

@@ -13,6 +13,12 @@
 
 namespace trephine {
 
+// What the numbers of a script may be: hands of people and of rigs, a day's work at most.
+constexpr Range kHandStiffness_N_per_m{0, 10'000, "N/m"};
+constexpr Range kHandDamping_Ns_per_m{0, 1000, "N s/m"};
+constexpr Range kScriptTime_s{0, 86'400, "s"};
+constexpr Range kWaypoint_mm{-1000, 1000, "mm"};
+
 struct ScriptWaypoint {
   double time_s = 0.0;
   Vec3 at_mm{0.0};  // landmark axes

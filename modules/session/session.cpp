@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 
 #include "base/file.h"
 #include "base/log.h"
@@ -34,11 +32,12 @@ constexpr auto kStopPatience = 250ms;
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;
 
-std::string readText(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
+// Held to the rules of every JSON file before the plugin sees it.
+Result<std::string> readDeviceFile(const std::string& file) {
+  if (file.empty()) return std::string("{}");
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  return json->dump();
 }
 
 // One device a plugin, holding all of the scene's arms that it moves.
@@ -61,11 +60,23 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                      "arms: device.config", "One file configures all arms of a plugin"};
       }
     }
-    Result<std::unique_ptr<Device>> device =
-        Device::open(*plugin, device_arms, config.empty() ? "{}" : readText(config));
-    if (!device) return device.error();
+    Result<std::string> text = readDeviceFile(config);
+    if (!text) return text.error();
+    Result<std::unique_ptr<Device>> device = Device::open(*plugin, device_arms, *text);
+    if (!device) {
+      Error error = device.error();
+      if (error.code == "BAD_DEVICE_CONFIG" && !config.empty()) error.where = config;
+      return error;
+    }
     for (std::size_t i = 0; i < arms.size(); ++i) {
       capabilities[arms[i]] = (*device)->capabilities(i);
+      if (scene.rate_hz > capabilities[arms[i]].rate_hz) {
+        return Error{"BAD_SCENE",
+                     "The scene asks for " + plainNumber(scene.rate_hz) + " Hz, and the " +
+                         scene.arms[arms[i]].name + " arm's device '" + name + "' keeps at most " +
+                         plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
+                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
+      }
       double& limit_N = scene.arms[arms[i]].max_force_N;
       limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
       // A simulated arm moves on with the force that answers its sample. A real one gets that force
@@ -125,7 +136,8 @@ std::filesystem::path freshFile(const std::filesystem::path& folder, const std::
 }
 
 Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
-                                                 const SessionOptions& options) {
+                                                 const SessionOptions& options,
+                                                 const Progress& progress) {
   if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
     return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
                  "Crop it or export it at a lower resolution"};
@@ -137,7 +149,8 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
     if (!fitted) return fitted.error();
     labels = std::make_shared<const LabelMap>(*std::move(fitted));
   }
-  Result<std::vector<PlacedLandmark>> landmarks = placeLandmarks(scene, volume, labels.get());
+  Result<std::vector<PlacedLandmark>> landmarks =
+      placeLandmarks(scene, volume, labels.get(), progress);
   if (!landmarks) return landmarks.error();
   session->landmarks_ = *std::move(landmarks);
   session->scene_ = withFixedMaps(scene, session->landmarks_);

@@ -42,9 +42,10 @@ Status readArmDynamics(Scene& scene);
 class Session {
  public:
   // Finds the landmarks, opens the devices, starts the recording. Errors of all of these; nothing
-  // is left behind on one.
+  // is left behind on one. `progress` is that of finding the landmarks.
   static Result<std::unique_ptr<Session>> create(Scene scene, Volume volume,
-                                                 const SessionOptions& options);
+                                                 const SessionOptions& options,
+                                                 const Progress& progress = Progress());
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

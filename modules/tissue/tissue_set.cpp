@@ -1,7 +1,6 @@
 #include "tissue/tissue_set.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace trephine {
@@ -25,9 +24,6 @@ std::string shown(double value) {
   return isFinite(value) ? Json(value).dump() : std::to_string(value);  // JSON has no nan
 }
 
-// Far beyond steel; what lies below it and above the arm is bounded, and felt as the arm's most.
-constexpr double kAbsurd = 1e9;
-
 Status checkNumber(const std::string& file, const std::string& field, const SourcedNumber& number) {
   if (!isFinite(number.value)) {
     return bad(file, field, "The value " + shown(number.value) + " is not finite");
@@ -36,9 +32,9 @@ Status checkNumber(const std::string& file, const std::string& field, const Sour
     return bad(file, field, "The value " + shown(number.value) + " is negative",
                "A tissue cannot push: use 0 or more");
   }
-  if (number.value > kAbsurd) {
+  if (!kMechanicsRange.holds(number.value)) {
     return bad(file, field, "The value " + shown(number.value) + " is absurd: no tissue has it",
-               "Use at most " + shown(kAbsurd));
+               "Use one " + kMechanicsRange.words());
   }
   if (number.source.empty()) {
     return bad(file, field, "The value " + shown(number.value) + " has no source",
@@ -47,18 +43,9 @@ Status checkNumber(const std::string& file, const std::string& field, const Sour
   return {};
 }
 
-// Narrows what was read: a value that an int does not hold must not wrap into one that it does.
-int asInt(JsonReader& reader, const char* key, std::int64_t value) {
-  if (value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()) {
-    return int(value);
-  }
-  reader.fail(key, "The value " + std::to_string(value) + " is out of range");
-  return 0;
-}
-
 SourcedNumber readSourced(JsonReader& mechanics, const char* key) {
   JsonReader object = mechanics.object(key);
-  return {object.number("value"), object.text("source")};
+  return {object.number("value", kMechanicsRange), object.text("source")};
 }
 
 Json sourced(const SourcedNumber& number) {
@@ -84,9 +71,7 @@ Status validate(const TissueSet& set, const std::string& file) {
     const Tissue& t = set.tissues[i];
     const std::string field = "tissues[" + std::to_string(i) + "]";
     if (t.id.empty()) return bad(file, field + ".id", "The id is empty");
-    constexpr int low = std::numeric_limits<std::int16_t>::min();
-    constexpr int high = std::numeric_limits<std::int16_t>::max();
-    if (t.hu_min > t.hu_max || t.hu_min < low || t.hu_max > high) {
+    if (t.hu_min > t.hu_max || !kHuRange.holds(t.hu_min) || !kHuRange.holds(t.hu_max)) {
       return bad(file, field + ".hu", "The HU range " + range(t) + " is not possible",
                  "Give the lower value first, within -32768..32767");
     }
@@ -94,17 +79,17 @@ Status validate(const TissueSet& set, const std::string& file) {
       return bad(file, field + ".hu_source", "The HU range " + range(t) + " has no source",
                  "Cite one, or write \"tuned here, uncited\"");
     }
-    if (t.label && (*t.label < 1 || *t.label > 255)) {
+    if (t.label && !kLabelRange.holds(*t.label)) {
       return bad(file, field + ".label",
                  "The label " + std::to_string(*t.label) + " is not between 1 and 255",
                  "Give a label of the label map, or none for every voxel");
     }
-    if (!isFinite(t.opacity) || t.opacity < 0.0 || t.opacity > 1.0) {
+    if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
                  "The opacity " + shown(t.opacity) + " is not between 0 and 1");
     }
     for (int c = 0; c < 3; ++c) {
-      if (!isFinite(t.colour[c]) || t.colour[c] < 0.0 || t.colour[c] > 1.0) {
+      if (!kShareRange.holds(t.colour[c])) {
         return bad(file, field + ".colour",
                    "The colour value " + shown(t.colour[c]) + " is not between 0 and 1");
       }
@@ -136,17 +121,17 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
   reader.format("trephine.tissues", 1);
   TissueSet set;
   set.name = reader.text("name");
-  for (JsonReader& item : reader.objects("tissues")) {
+  for (JsonReader& item : reader.objects("tissues", kMaxTissues)) {
     Tissue t;
     t.id = item.text("id");
     t.name = item.text("name");
-    const std::vector<std::int64_t> hu = item.integers("hu", 2);
-    t.hu_min = asInt(item, "hu", hu[0]);
-    t.hu_max = asInt(item, "hu", hu[1]);
+    const std::vector<std::int64_t> hu = item.integers("hu", 2, kHuRange);
+    t.hu_min = int(hu[0]);
+    t.hu_max = int(hu[1]);
     t.hu_source = item.text("hu_source");
-    if (item.has("label")) t.label = asInt(item, "label", item.integer("label"));
-    t.colour = item.vec3("colour");
-    t.opacity = item.number("opacity");
+    if (item.has("label")) t.label = int(item.integer("label", kLabelRange));
+    t.colour = item.vec3("colour", kShareRange);
+    t.opacity = item.number("opacity", kShareRange);
     JsonReader mechanics = item.object("mechanics");
     t.damping_Ns_per_m = readSourced(mechanics, "damping_Ns_per_m");
     t.stiffness_N_per_m = readSourced(mechanics, "stiffness_N_per_m");

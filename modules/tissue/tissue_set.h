@@ -12,9 +12,18 @@
 #include "base/json.h"
 #include "base/limits.h"
 #include "base/math.h"
+#include "base/range.h"
 #include "base/result.h"
 
 namespace trephine {
+
+// What the numbers of a tissue may be, in files, panels and scripts alike.
+constexpr Range kHuRange{-32768, 32767, "HU"};
+constexpr Range kLabelRange{1, 255};
+constexpr Range kShareRange{0, 1};  // opacity, colour
+// Of each of the mechanics. Far beyond steel; what lies below it and above the arm is bounded, and
+// felt as the arm's most.
+constexpr Range kMechanicsRange{0, 1e9};
 
 // A number that a person set, and where it comes from: a citation, or "tuned here, uncited".
 struct SourcedNumber {

@@ -25,6 +25,13 @@ hsize_t rowCount(hid_t dataset) {
   return size;
 }
 
+// Whether the file can hold that many rows of that size: else its tables lie, and there is no need
+// to set aside room for them. Deflate shrinks no further than 1 : 1032.
+bool canHold(hid_t dataset, hsize_t rows, std::size_t row_bytes) {
+  const hsize_t stored = H5Dget_storage_size(dataset);
+  return rows <= stored * 1032 / row_bytes;
+}
+
 // Takes the type over.
 bool readRows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* rows) {
   bool ok = true;
@@ -67,22 +74,16 @@ int readVersion(hid_t file) {
   return version;
 }
 
+// A grid that this program opened: what it can be is asked where a case is read.
 Result<GridGeometry> readGeometry(JsonReader reader) {
+  constexpr double kAny = 1e300;
   GridGeometry g;
-  const Vec3 size = reader.vec3("size");
-  for (int axis = 0; axis < 3; ++axis) g.size[std::size_t(axis)] = std::int32_t(size[axis]);
-  g.spacing_mm = reader.vec3("spacing_mm");
-  g.origin_mm = reader.vec3("origin_mm");
-  const Json& direction = reader.raw("direction");
-  if (!direction.is_array() || direction.size() != 9) reader.fail("direction", "Expected 9 numbers");
-  for (int i = 0; reader.ok() && i < 9; ++i) {
-    const Json& value = direction[std::size_t(i)];
-    if (!value.is_number()) {
-      reader.fail("direction", "Expected 9 numbers");
-    } else {
-      g.direction[i % 3][i / 3] = value.get<double>();
-    }
-  }
+  const auto size = reader.integers("size", 3, {1, 1e6, "voxels"});
+  for (std::size_t axis = 0; axis < 3; ++axis) g.size[axis] = std::int32_t(size[axis]);
+  g.spacing_mm = reader.vec3("spacing_mm", {1e-9, 1e9, "mm"});
+  g.origin_mm = reader.vec3("origin_mm", {-kAny, kAny, "mm"});
+  const auto direction = reader.numbers("direction", 9, {-1.01, 1.01});
+  for (int i = 0; i < 9; ++i) g.direction[i % 3][i / 3] = direction[std::size_t(i)];
   if (Status status = reader.finish(); !status) return status.error();
   return g;
 }
@@ -97,6 +98,26 @@ struct SessionReader::File {
   std::uint64_t tick_count = 0;
   RecordingHeader header;
   std::optional<RecordingEnd> end;
+
+  // Ticks [first, first + count) of ticks and arms; false where they cannot be read.
+  bool read(std::uint64_t first, std::uint64_t count, std::vector<TickRecord>& out) const {
+    std::vector<TickRow> rows(count);
+    std::vector<ArmRecord> arm_rows(count);
+    out.assign(count, TickRecord{});
+    bool ok =
+        readRows(ticks, compoundType(tickFields(), sizeof(TickRow)), first, count, rows.data());
+    for (std::uint64_t i = 0; i < count; ++i) {
+      out[i].tick = rows[i].tick;
+      out[i].late_ns = rows[i].late_ns;
+      out[i].journal = rows[i].journal;
+    }
+    for (std::size_t arm = 0; ok && arm < arms.size(); ++arm) {
+      ok = readRows(arms[arm], compoundType(armFields(), sizeof(ArmRecord)), first, count,
+                    arm_rows.data());
+      for (std::uint64_t i = 0; i < count; ++i) out[i].arms[arm] = arm_rows[i];
+    }
+    return ok;
+  }
 
   Error bad(const std::string& what) const {
     return Error{"BAD_RECORDING", what, path.string(),
@@ -202,47 +223,47 @@ std::uint64_t SessionReader::tickCount() const { return file_->tick_count; }
 const std::optional<RecordingEnd>& SessionReader::end() const { return file_->end; }
 
 Result<std::vector<TickRecord>> SessionReader::ticks(std::uint64_t first, std::uint64_t count) const {
-  std::vector<TickRow> rows(count);
-  std::vector<ArmRecord> arm_rows(count);
-  std::vector<TickRecord> out(count);
-  bool ok = readRows(file_->ticks, compoundType(tickFields(), sizeof(TickRow)), first, count,
-                     rows.data());
-  for (std::uint64_t i = 0; i < count; ++i) {
-    out[i].tick = rows[i].tick;
-    out[i].late_ns = rows[i].late_ns;
-    out[i].journal = rows[i].journal;
+  std::vector<TickRecord> out;
+  if (file_->read(first, count, out)) return out;
+  // The first tick that cannot be read lies in [damaged, last].
+  std::uint64_t damaged = first, last = first + count - 1;
+  while (damaged < last) {
+    const std::uint64_t middle = damaged + (last - damaged) / 2;
+    if (file_->read(damaged, middle - damaged + 1, out)) {
+      damaged = middle + 1;
+    } else {
+      last = middle;
+    }
   }
-  for (std::size_t arm = 0; ok && arm < armCount(); ++arm) {
-    ok = readRows(file_->arms[arm], compoundType(armFields(), sizeof(ArmRecord)), first, count,
-                  arm_rows.data());
-    for (std::uint64_t i = 0; i < count; ++i) out[i].arms[arm] = arm_rows[i];
-  }
-  if (!ok) return file_->bad("The recording is damaged after tick " + std::to_string(first));
-  return out;
+  return file_->bad("The recording is damaged from tick " + std::to_string(damaged) + " on");
 }
 
 Result<std::vector<Event>> SessionReader::events() const {
-  std::vector<Event> out(rowCount(file_->events));
-  if (!readRows(file_->events, eventType(), 0, out.size(), out.data())) {
-    return file_->bad("The recording's events are damaged");
-  }
+  const Error damaged = file_->bad("The recording's events are damaged");
+  const hsize_t count = rowCount(file_->events);
+  if (!canHold(file_->events, count, sizeof(Event))) return damaged;
+  std::vector<Event> out(count);
+  if (!readRows(file_->events, eventType(), 0, out.size(), out.data())) return damaged;
   for (const Event& event : out) {
     const Command& command = event.command;
     const bool controller_known =
         command.kind != CommandKind::controller ||
         (command.value >= 0 && std::size_t(command.value) < kControllerNames.size());
     if (!controller_known || command.tissues.count < 0 || command.tissues.count > kMaxTissues) {
-      return file_->bad("The recording's events are damaged");
+      return file_->bad("The recording's events are damaged at tick " + std::to_string(event.tick));
     }
   }
   return out;
 }
 
 Result<std::vector<CarveRecord>> SessionReader::carves() const {
-  std::vector<CarveRecord> out(rowCount(file_->carves));
+  const Error damaged = file_->bad("The recording's removed voxels are damaged");
+  const hsize_t count = rowCount(file_->carves);
+  if (!canHold(file_->carves, count, sizeof(CarveRecord))) return damaged;
+  std::vector<CarveRecord> out(count);
   if (!readRows(file_->carves, compoundType(carveFields(), sizeof(CarveRecord)), 0, out.size(),
                 out.data())) {
-    return file_->bad("The recording's removed voxels are damaged");
+    return damaged;
   }
   return out;
 }

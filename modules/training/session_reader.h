@@ -27,7 +27,7 @@ class SessionReader {
   // Nothing when the recording was cut short.
   const std::optional<RecordingEnd>& end() const;
 
-  // Ticks [first, first + count). Errors: BAD_RECORDING.
+  // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read.
   Result<std::vector<TickRecord>> ticks(std::uint64_t first, std::uint64_t count) const;
   Result<std::vector<Event>> events() const;
   Result<std::vector<CarveRecord>> carves() const;

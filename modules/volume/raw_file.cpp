@@ -33,29 +33,16 @@ std::optional<VoxelType> typeFrom(const std::string& name) {
   return std::nullopt;
 }
 
-// Row-major, its columns the i, j and k axes in LPS, as an import report has it.
-Mat3 directionOf(JsonReader& fields) {
-  const Json& values = fields.raw("direction");
-  Mat3 direction(1.0);
-  if (!values.is_array() || values.size() != 9) {
-    fields.fail("direction", "Expected nine numbers");
-    return direction;
-  }
-  for (int i = 0; i < 9; ++i) {
-    const Json& value = values[std::size_t(i)];
-    if (!value.is_number()) {
-      fields.fail("direction", "Expected nine numbers");
-      return direction;
-    }
-    direction[i % 3][i / 3] = value.get<double>();
-  }
-  return direction;
-}
+constexpr Range kSize{1, 1e6, "voxels"};
+constexpr Range kSpacing_mm{1e-6, 1000, "mm"};
+constexpr Range kOrigin_mm{-1e6, 1e6, "mm"};
+constexpr Range kHeaderBytes{0, 1e12, "bytes"};
+constexpr Range kScaling{-1e9, 1e9};  // what the voxels become is clamped to 16 bits
 
 Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& header) {
   GridGeometry& g = header.geometry;
-  const auto size = fields.integers("size", 3);
-  g.spacing_mm = fields.vec3("spacing_mm");
+  const auto size = fields.integers("size", 3, kSize);
+  g.spacing_mm = fields.vec3("spacing_mm", kSpacing_mm);
   const std::string name = fields.text("type");
   const auto type = typeFrom(name);
   if (!type)
@@ -69,17 +56,18 @@ Status readSidecar(JsonReader& fields, const fs::path& file, VolumeFileHeader& h
                 "Write little or big");
   }
   header.big_endian = order == "big";
-  const std::int64_t skipped = fields.integer("header_bytes", 0);
-  if (skipped < 0) fields.fail("header_bytes", "A length below 0 is not possible");
-  header.slope = fields.number("slope", 1.0);
-  header.intercept = fields.number("intercept", 0.0);
+  const std::int64_t skipped = fields.integer("header_bytes", kHeaderBytes, 0);
+  header.slope = fields.number("slope", kScaling, 1.0);
+  header.intercept = fields.number("intercept", kScaling, 0.0);
   if (fields.has("origin_mm")) {
-    g.origin_mm = fields.vec3("origin_mm");
+    g.origin_mm = fields.vec3("origin_mm", kOrigin_mm);
   } else {
     header.notes.push_back("The sidecar gives no origin_mm: the first voxel is put at 0, 0, 0");
   }
   if (fields.has("direction")) {
-    g.direction = directionOf(fields);
+    // Row-major, its columns the i, j and k axes in LPS, as an import report has it.
+    const auto rows = fields.numbers("direction", 9, {-1.01, 1.01});
+    for (int i = 0; i < 9; ++i) g.direction[i % 3][i / 3] = rows[std::size_t(i)];
   } else {
     header.notes.push_back(
         "The sidecar gives no direction: rows are taken to run to the patient's left, columns to "

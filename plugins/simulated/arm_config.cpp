@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kVersion = 1;
+constexpr int kMaxDepth = 64;  // printing a value recurses, so nesting has to end
 constexpr double kMinEncoderStep_m = 1e-9;
 
 // Caught in parseConfig: nothing leaves this file by exception.
@@ -21,8 +22,7 @@ struct Refused : std::runtime_error {
 
 struct Range {
   double low;
-  double high;
-  bool low_itself;  // whether `low` is allowed
+  double high;  // both ends are allowed
 };
 
 std::string shown(const Json& value) {
@@ -61,10 +61,8 @@ void checkObject(const Json& value, const std::string& field,
 double checkNumber(const Json& value, const std::string& field, const Range& range) {
   if (!value.is_number()) refuse(field, "expected a number, found " + shown(value) + ".");
   const double number = value.get<double>();
-  const bool above = range.low_itself ? number >= range.low : number > range.low;
-  if (!above || !(number <= range.high)) {
-    refuse(field, "the value " + shown(value) + " must be " +
-                      (range.low_itself ? "at least " : "above ") + shown(range.low) +
+  if (!(number >= range.low && number <= range.high)) {
+    refuse(field, "the value " + shown(value) + " must be at least " + shown(range.low) +
                       " and at most " + shown(range.high) + ".");
   }
   return number;
@@ -103,8 +101,7 @@ Vector extent(const Json& arm, const char* key, const std::string& parent) {
   }
   Vector out{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    out[axis] =
-        checkNumber(value[axis], field + "[" + std::to_string(axis) + "]", {0.0, 10.0, false});
+    out[axis] = checkNumber(value[axis], field + "[" + std::to_string(axis) + "]", {1e-3, 10.0});
   }
   return out;
 }
@@ -116,16 +113,16 @@ ArmConfig parseArm(const Json& arm, const std::string& field) {
                "max_damping_Ns_per_m", "rate_hz"});
   ArmConfig config;
   ArmParameters& p = config.parameters;
-  p.mass_kg = number(arm, "apparent_mass_kg", field, {0.0, 100.0, false});
-  p.damping_Ns_per_m = number(arm, "plant_damping_Ns_per_m", field, {0.0, 1e6, true});
-  p.encoder_step_m = number(arm, "encoder_step_m", field, {0.0, 0.01, true});
+  p.mass_kg = number(arm, "apparent_mass_kg", field, {1e-4, 100.0});
+  p.damping_Ns_per_m = number(arm, "plant_damping_Ns_per_m", field, {0.0, 1e6});
+  p.encoder_step_m = number(arm, "encoder_step_m", field, {0.0, 0.01});
   if (p.encoder_step_m > 0.0 && p.encoder_step_m < kMinEncoderStep_m) {
     refuse(joined(field, "encoder_step_m.value"), "the value " + shown(p.encoder_step_m) +
                                                       " must be 0 or at least " +
                                                       shown(kMinEncoderStep_m) + ".");
   }
   p.workspace_m = extent(arm, "workspace_m", field);
-  p.peak_force_N = number(arm, "peak_force_N", field, {0.0, 1000.0, false});
+  p.peak_force_N = number(arm, "peak_force_N", field, {1e-3, 1000.0});
 
   TrephineCapabilities& c = config.capabilities;
   c.size = sizeof(TrephineCapabilities);
@@ -134,12 +131,12 @@ ArmConfig parseArm(const Json& arm, const std::string& field) {
   c.output_dof = 3;
   for (std::size_t axis = 0; axis < 3; ++axis) c.workspace_m[axis] = p.workspace_m[axis];
   c.peak_force_N = p.peak_force_N;
-  c.continuous_force_N = number(arm, "continuous_force_N", field, {0.0, p.peak_force_N, false});
-  c.max_stiffness_N_per_m = number(arm, "max_stiffness_N_per_m", field, {0.0, 1e9, false});
-  c.max_damping_Ns_per_m = number(arm, "max_damping_Ns_per_m", field, {0.0, 1e9, true});
+  c.continuous_force_N = number(arm, "continuous_force_N", field, {1e-3, p.peak_force_N});
+  c.max_stiffness_N_per_m = number(arm, "max_stiffness_N_per_m", field, {1e-3, 1e9});
+  c.max_damping_Ns_per_m = number(arm, "max_damping_Ns_per_m", field, {0.0, 1e9});
   c.apparent_mass_kg = p.mass_kg;
   c.encoder_step_m = p.encoder_step_m;
-  c.rate_hz = number(arm, "rate_hz", field, {0.0, 1e6, false});
+  c.rate_hz = number(arm, "rate_hz", field, {1.0, 1e6});
   return config;
 }
 
@@ -181,14 +178,14 @@ DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
     }
   }
   if (root.contains("vanish_after_s")) {
-    config.vanish_after_s = checkNumber(root["vanish_after_s"], "vanish_after_s", {0.0, 1e6, true});
+    config.vanish_after_s = checkNumber(root["vanish_after_s"], "vanish_after_s", {0.0, 1e6});
   }
   if (root.contains("block_after_s") != root.contains("block_for_s")) {
     refuse("block_after_s", "'block_after_s' and 'block_for_s' go together.");
   }
   if (root.contains("block_after_s")) {
-    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6, true});
-    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6, true});
+    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6});
+    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6});
   }
   return config;
 }
@@ -197,7 +194,12 @@ DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
 
 bool parseConfig(const char* text, std::size_t n_arms, DeviceConfig& config, std::string& error) {
   try {
-    const Json root = Json::parse(text);
+    const Json root = Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+      if (depth > kMaxDepth) {
+        throw Refused("The text is nested deeper than " + std::to_string(kMaxDepth) + ".");
+      }
+      return true;
+    });
     if (!root.is_object()) throw Refused("Expected an object, found " + shown(root) + ".");
     config = parseRoot(root, n_arms);
     return true;

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,6 +13,7 @@
 #include "imaging/importer.h"
 #include "imaging/provenance.h"
 #include "imaging/report_page.h"
+#include "processor_time.h"
 
 namespace trephine::fuzz {
 
@@ -25,8 +25,7 @@ constexpr double kMostMemory_mb = 256.0;
 // What a slice may have to be decoded here: the importer takes 8192 x 8192, which under sanitizers
 // takes longer than kMostSeconds.
 constexpr std::uint64_t kMostPixels = std::uint64_t(2048) * 2048;
-// Processor time of all threads, so that a busy machine is not taken for a hang; -timeout bounds
-// the time by the clock.
+// Processor time; -timeout bounds the time by the clock.
 constexpr double kMostSeconds = 5.0;
 
 void require(bool holds, const char* what) {
@@ -114,10 +113,6 @@ void import(const fs::path& path, std::uint8_t mode) {
     checkRead(folder, series.uid, request);
     checkRead(folder, series.uid, answered);
   }
-}
-
-double processorSeconds() {
-  return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
 }  // namespace

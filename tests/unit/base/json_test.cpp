@@ -2,6 +2,7 @@
 #include "base/json.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "base/file.h"
 #include "support.h"
@@ -82,10 +83,26 @@ TEST(ReadJsonFile, NamesAFileThatIsNotThere) {
   }
 }
 
-TEST(ReadJsonFile, RefusesAFileWithoutEndInsteadOfReadingItAll) {
-  const Result<Json> json = readJsonFile("/dev/zero");
+TEST(ReadJsonFile, RefusesAFileThatIsTooLargeBeforeItReadsIt) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "f.json", "{}"));
+  std::filesystem::resize_file(folder / "f.json", (64 << 20) + 1);
+  const Result<Json> json = readJsonFile(folder / "f.json");
   ASSERT_FALSE(json.ok());
   EXPECT_NE(json.error().what.find("64 MB"), std::string::npos) << json.error().what;
+}
+
+TEST(ReadJsonFile, DoesNotWaitForAPipeOrReadADevice) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+  for (const std::filesystem::path& path :
+       {folder / "pipe.json", std::filesystem::path("/dev/zero")}) {
+    const Result<Json> json = readJsonFile(path);
+    ASSERT_FALSE(json.ok());
+    EXPECT_EQ(json.error().code, "MISSING_FILE");
+    EXPECT_EQ(json.error().where, path.string());
+    EXPECT_NE(json.error().what.find("pipe"), std::string::npos) << json.error().what;
+  }
 }
 
 }  // namespace

@@ -101,6 +101,11 @@ TEST(DeviceConfig, ImpossibleNumbersAreRefusedWithFieldAndValue) {
       {"max_stiffness_N_per_m", -1.0},
       {"max_damping_Ns_per_m", -0.5},
       {"rate_hz", 0.0},
+      {"apparent_mass_kg", 1e-300},
+      {"peak_force_N", 1e-308},
+      {"peak_force_N", 1e300},
+      {"plant_damping_Ns_per_m", 1e300},
+      {"max_stiffness_N_per_m", 1e300},
   };
   for (const auto& [key, value] : wrong) {
     const char* const field = key;
@@ -158,6 +163,16 @@ TEST(DeviceConfig, TextThatIsNotAJsonObjectIsRefused) {
   // A number beyond a double, and bytes that are not UTF-8.
   EXPECT_EQ(refusal("{\"version\": 1e999}").code, "BAD_DEVICE_CONFIG");
   EXPECT_EQ(refusal("{\"\xff\": 1}").code, "BAD_DEVICE_CONFIG");
+}
+
+TEST(DeviceConfig, NestingWithoutEndIsRefused) {
+  const std::size_t depth = 100'000;
+  for (const char* before : {"", R"({"arm": )", R"({"format": )"}) {
+    const std::string end = *before ? "}" : "";
+    const Error error = refusal(before + std::string(depth, '[') + std::string(depth, ']') + end);
+    EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG") << before;
+    EXPECT_NE(error.what.find("nested deeper than 64"), std::string::npos) << error.sentence();
+  }
 }
 
 TEST(DeviceConfig, AnArmThatIsNotThereIsNamed) {

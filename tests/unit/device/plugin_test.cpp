@@ -1,5 +1,6 @@
 // Finding and refusing plugin libraries.
 #include <dlfcn.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <string>
@@ -87,6 +88,29 @@ TEST(DevicePlugin, AFileThatIsNoLibraryIsRefused) {
   const Error error = refusal("text", folder.path());
   EXPECT_EQ(error.code, "NO_PLUGIN");
   EXPECT_TRUE(names(error.what, "cannot be loaded")) << error.sentence();
+}
+
+TEST(DevicePlugin, ALibraryCutShortIsRefusedWhereverItEnds) {
+  TemporaryFolder folder;
+  const std::filesystem::path whole =
+      std::filesystem::path(TREPHINE_TEST_PLUGIN_DIR) / "trephine_simulated.so";
+  const std::filesystem::path cut = folder / "trephine_cut.so";
+  const std::uintmax_t bytes = std::filesystem::file_size(whole);
+  std::filesystem::copy_file(whole, cut);
+  EXPECT_EQ(refusal("cut", folder.path()).code, "LOADED") << "the whole file loads";
+  for (int part = 19; part >= 0; --part) {
+    std::filesystem::resize_file(cut, bytes * std::uintmax_t(part) / 20);
+    const Error error = refusal("cut", folder.path());
+    EXPECT_EQ(error.code, "NO_PLUGIN") << part;
+    EXPECT_TRUE(names(error.what, "cut short")) << error.sentence();
+    EXPECT_TRUE(names(error.where, "trephine_cut.so")) << error.sentence();
+  }
+}
+
+TEST(DevicePlugin, APipeInItsPlaceIsRefusedInsteadOfWaitedFor) {
+  TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "trephine_pipe.so").c_str(), 0600), 0);
+  EXPECT_EQ(refusal("pipe", folder.path()).code, "NO_PLUGIN");
 }
 
 TEST(DevicePlugin, ALibraryWithoutTheEntryIsRefused) {

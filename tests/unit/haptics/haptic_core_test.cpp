@@ -285,6 +285,35 @@ TEST(HapticCore, AHugeButFiniteSpeedIsClampedOrFaulted) {
   }
 }
 
+TEST(HapticCore, APoseThatNoArmHasIsAFaultAndMovesNothing) {
+  const auto faultsAfter = [](const Vec3& position_m, const Quat& orientation) {
+    Bench bench;
+    bench.push({0, 0, 2}, {0, 0, -4}, 500);
+    TickInput input;
+    input.tick = bench.tick++;
+    input.journal = bench.core.journalState();
+    input.arms[0].position_m = position_m;
+    input.arms[0].orientation = orientation;
+    bench.core.tick(input, nullptr, 0, bench.record);
+    const ArmRecord& arm = bench.record.arms[0];
+    EXPECT_TRUE(isFinite(arm.patient_position_mm) && isFinite(arm.velocity_m_s));
+    if (arm.faults) {
+      EXPECT_EQ(arm.sent_N, Vec3(0.0));
+    }
+    return arm.faults;
+  };
+  const Vec3 inside_m(0.0, 0.0, -0.004);
+  const Quat straight(1, 0, 0, 0);
+  EXPECT_EQ(faultsAfter(inside_m, straight), 0u);
+  EXPECT_EQ(faultsAfter(inside_m, Quat(-1, 0, 0, 0)), 0u);
+  for (double far_m : {2e4, -1e9, 1e300}) {
+    EXPECT_EQ(faultsAfter({0.0, far_m, 0.0}, straight), kFaultNonFinite) << far_m;
+  }
+  for (const Quat& none : {Quat(0, 0, 0, 0), Quat(3, 0, 0, 0), Quat(1e300, 0, 0, 1e300)}) {
+    EXPECT_EQ(faultsAfter(inside_m, none), kFaultNonFinite) << none.w;
+  }
+}
+
 TEST(HapticCore, ADeviceThatIsLostGetsNoForce) {
   Bench bench;
   bench.push({0, 0, 2}, {0, 0, -4}, 500);

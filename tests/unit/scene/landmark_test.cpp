@@ -122,6 +122,40 @@ TEST(Landmark, LooksForATissueWhereItsLabelIs) {
             "TISSUE_NOT_FOUND");
 }
 
+TEST(Landmark, IsFoundAtOnceHoweverFarAwayTheRayBegins) {
+  const Volume v = ball(0);
+  const auto near = findLandmark({"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}}, v, boneOnly());
+  const auto far = findLandmark({"top", "bone", {0.5, 0.5, 1e6}, {0.5, 0.5, -1e6}}, v, boneOnly());
+  ASSERT_TRUE(near.ok() && far.ok());
+  EXPECT_NEAR(glm::length(near->position_mm - far->position_mm), 0.0, 0.5);
+  for (double miles : {1e6, 1e12, 1e300}) {
+    const Landmark aside{"aside", "bone", {miles, 0.5, 1.5}, {miles, 0.5, -miles}};
+    EXPECT_EQ(findLandmark(aside, v, boneOnly()).error().code, "NO_SURFACE") << miles;
+  }
+}
+
+TEST(Landmark, SaysHowFarItIsAndCanBeCancelled) {
+  const Volume v = ball(0);
+  const Landmark from_above{"top", "bone", {0.5, 0.5, 1.5}, {0.5, 0.5, 0.5}};
+  const Landmark bulk{"organ", "bone", {}, {}, 12.0, {0, -1, 0}, 10.0};
+  for (const Landmark& landmark : {from_above, bulk}) {
+    double last = -1.0;
+    int reports = 0;
+    Progress* running = nullptr;
+    Progress progress([&](double fraction, const std::string&) {
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1.0);
+      last = fraction;
+      if (++reports == 5) running->cancel();
+    });
+    running = &progress;
+    const auto frame = findLandmark(landmark, v, boneOnly(), nullptr, progress);
+    ASSERT_FALSE(frame.ok()) << landmark.id;
+    EXPECT_EQ(frame.error().code, "CANCELLED") << landmark.id;
+    EXPECT_EQ(reports, 5) << "it gives up at once";
+  }
+}
+
 TEST(Landmark, IgnoresARunShorterThanAsked) {
   Volume v = ball(0);
   // A sheet of one voxel above the ball.

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "base/system.h"
@@ -94,19 +96,67 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
       {"unknown key", [](Json& s) { s["colour"] = 7; }, "colour", "7"},
       {"unknown law", [](Json& s) { s["laws"][0] = "magic"; }, "laws", "magic"},
       {"unknown controller", [](Json& s) { s["controller"] = "pid"; }, "controller", "pid"},
-      {"unknown tissue", [](Json& s) { s["landmarks"][0]["tissue"] = "cheese"; }, "landmarks", "cheese"},
+      {"unknown tissue", [](Json& s) { s["landmarks"][0]["tissue"] = "cheese"; }, "landmarks",
+       "cheese"},
       {"unknown tool", [](Json& s) { s["arms"][0]["tool"] = "spoon"; }, "arms", "spoon"},
-      {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale", "-1"},
+      {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale",
+       "-1"},
       {"same device", [](Json& s) { s["arms"][1]["device"]["arm"] = 0; }, "arms", "right"},
-      {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm", "1000"},
+      {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm",
+       "1000"},
       {"no points", [](Json& s) { s["tools"][0]["points"] = 0; }, "tools[0].points", "0"},
       {"rate", [](Json& s) { s["rate_hz"] = 5; }, "rate_hz", "5"},
       {"operator", [](Json& s) { s["operator"] = "gone.json"; }, "operator", "gone.json"},
       {"newer", [](Json& s) { s["version"] = 2; }, "version", "2"},
-      {"other format", [](Json& s) { s["format"] = "trephine.tissues"; }, "format", "trephine.tissues"},
+      {"other format", [](Json& s) { s["format"] = "trephine.tissues"; }, "format",
+       "trephine.tissues"},
       {"run", [](Json& s) { s["landmarks"][0]["run_mm"] = 0; }, "landmarks[0].run_mm", "0"},
       {"view", [](Json& s) { s["view"]["distance_mm"] = 1e9; }, "view.distance_mm", "1000000000"},
       {"no arms", [](Json& s) { s["arms"] = Json::array(); }, "arms", "0"},
+      {"law twice", [](Json& s) { s["laws"].push_back(s["laws"][0]); }, "laws", "viscous"},
+      {"tool id twice", [](Json& s) { s["tools"].push_back(s["tools"][0]); }, "tools", "blade"},
+      {"landmark twice", [](Json& s) { s["landmarks"].push_back(s["landmarks"][0]); }, "landmarks",
+       "vault"},
+      {"ray without end", [](Json& s) { s["landmarks"][0]["from"][2] = 1e300; },
+       "landmarks[0].from", "1e+300"},
+      {"ray to nowhere", [](Json& s) { s["landmarks"][0]["towards"][0] = -1e300; },
+       "landmarks[0].towards", "-1e+300"},
+      {"far landmark",
+       [](Json& s) {
+         s["landmarks"][0]["from"] = {1e6, 1e6, 1e6};
+       },
+       "landmarks[0].from", "1000000.0"},
+      {"far offset",
+       [](Json& s) {
+         s["arms"][0]["map"]["offset_mm"] = {0, 0, 1e308};
+       },
+       "arms[0].map.offset_mm", "1e+308"},
+      {"far centre",
+       [](Json& s) {
+         s["arms"][0]["map"] = {{"centre_mm", {1e300, 0, 0}}, {"rotation_wxyz", {1, 0, 0, 0}}};
+       },
+       "arms[0].map.centre_mm", "1e+300"},
+      {"no rotation",
+       [](Json& s) {
+         s["arms"][0]["map"] = {{"centre_mm", {0, 0, 0}}, {"rotation_wxyz", {0.5, 0, 0, 0}}};
+       },
+       "arms[0].map.rotation_wxyz", "0.5"},
+      {"no force", [](Json& s) { s["arms"][0]["map"]["force_scale"] = 1e-308; },
+       "arms[0].map.force_scale", "1e-308"},
+      {"no device arm", [](Json& s) { s["arms"][0]["device"]["arm"] = -3; }, "arms[0].device.arm",
+       "-3"},
+      {"strong arm", [](Json& s) { s["arms"][0]["max_force_N"] = 1e300; }, "arms[0].max_force_N",
+       "1e+300"},
+      {"outward",
+       [](Json& s) {
+         s["landmarks"][0].erase("from");
+         s["landmarks"][0].erase("towards");
+         s["landmarks"][0]["bulk_radius_mm"] = 20;
+         s["landmarks"][0]["outward"] = {0, 0, 0};
+       },
+       "landmarks[0].outward", "length of 0"},
+      {"many landmarks", [](Json& s) { s["landmarks"] = Json(100'000, s["landmarks"][0]); },
+       "landmarks", "100000"},
       {"text for number", [](Json& s) { s["rate_hz"] = "fast"; }, "rate_hz", "fast"},
   };
   for (const Bad& bad : cases) {
@@ -152,6 +202,70 @@ TEST(Scene, AMissingTissueFileIsNamed) {
   ASSERT_FALSE(scene.ok());
   EXPECT_EQ(scene.error().code, "MISSING_FILE");
   EXPECT_NE(scene.error().where.find("gone.json"), std::string::npos);
+}
+
+// A scene beside a tool file of its own.
+class ToolFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene_["tools"] = Json::array({{{"id", "blade"}, {"file", "tool.json"}}});
+    scene_["operator"] = "";
+    scene_["tissues"] = (resourceFolder() / "tissues" / "cranium.json").string();
+    for (Json& arm : scene_["arms"]) arm["device"].erase("config");
+    tool_ = *readJsonFile(resourceFolder() / "tools" / "blade.json");
+    tool_["mesh"] = (resourceFolder() / "tools" / "blade.stl").string();
+  }
+  Result<Scene> read() {
+    std::ofstream(folder_ / "tool.json") << tool_.dump();
+    return parseScene(scene_, folder_ / "scene.json");
+  }
+  void expectRefused(const char* field, const char* value) {
+    const Result<Scene> scene = read();
+    ASSERT_FALSE(scene.ok()) << field;
+    const std::string sentence = scene.error().sentence();
+    for (const char* part : {"scene.json", "tools[0].file", "tool.json", field, value}) {
+      EXPECT_NE(sentence.find(part), std::string::npos) << part << ": " << sentence;
+    }
+  }
+
+  test::TemporaryFolder folder_;
+  Json scene_ = shipped(), tool_;
+};
+
+TEST_F(ToolFile, IsReadBesideItsScene) {
+  const Result<Scene> scene = read();
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  EXPECT_EQ(scene->tools[0].look.axis, Vec3(1, 0, 0));
+}
+
+TEST_F(ToolFile, IsRefusedWithFileFieldAndValueOfANumberOutOfRange) {
+  const std::pair<const char*, Json> wrong[] = {
+      {"length_mm", 1e9}, {"radius_mm", -1},         {"points", 1'000'000},
+      {"motor_W", 1e300}, {"tip_mm", {0, 0, 1e300}},
+  };
+  const Json before = tool_;
+  for (const auto& [key, value] : wrong) {
+    tool_ = before;
+    tool_[key] = value;
+    expectRefused(key, value.is_array() ? "1e+300" : value.dump().c_str());
+  }
+}
+
+TEST_F(ToolFile, HasAnAxisThatPointsSomewhere) {
+  tool_["axis"] = {0, 0, 0};
+  expectRefused("axis", "length of 0");
+  tool_["axis"] = {1e9, 0, 0};
+  expectRefused("axis", "1000000000.0");
+}
+
+TEST_F(ToolFile, ThatIsAPipeIsRefusedInsteadOfWaitedFor) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.json").c_str(), 0600), 0);
+  scene_["tools"][0]["file"] = "pipe.json";
+  const Result<Scene> scene = parseScene(scene_, folder_ / "scene.json");
+  ASSERT_FALSE(scene.ok());
+  const std::string sentence = scene.error().sentence();
+  EXPECT_NE(sentence.find("tools[0].file"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("pipe.json"), std::string::npos) << sentence;
 }
 
 }  // namespace

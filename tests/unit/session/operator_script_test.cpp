@@ -76,11 +76,30 @@ TEST(OperatorScript, NamesWhatIsWrong) {
       {[](Json& s) { s["arms"][0]["waypoints"][1]["t"] = 0.5; }, "waypoints[1].t", "0.5"},
       {[](Json& s) { s["arms"][0]["waypoints"] = Json::array(); }, "waypoints", "waypoint"},
       {[](Json& s) { s["commands"][0]["do"] = "dance"; }, "commands[0].do", "dance"},
-      {[](Json& s) { s["commands"][2]["tissues"] = {{"cheese", {{"yield_N", 1}}}}; }, "cheese", "cheese"},
-      {[](Json& s) { s["commands"][2]["tissues"]["bone"]["damping_Ns_per_m"] = -1; }, "tissues", "-1"},
+      {[](Json& s) {
+         s["commands"][2]["tissues"] = {{"cheese", {{"yield_N", 1}}}};
+       },
+       "cheese", "cheese"},
+      {[](Json& s) { s["commands"][2]["tissues"]["bone"]["damping_Ns_per_m"] = -1; },
+       "bone.damping_Ns_per_m", "-1"},
       {[](Json& s) { s["commands"][3]["controller"] = "pid"; }, "controller", "pid"},
       {[](Json& s) { s["arms"].push_back(s["arms"][0]); }, "arms[1].arm", "right"},
-      {[](Json& s) { s["commands"][2]["tissues"]["bone"] = {{"hu_min", 4294967596}}; }, "tissues", "100000"},
+      {[](Json& s) {
+         s["commands"][2]["tissues"]["bone"] = {{"hu_min", 4294967596}};
+       },
+       "bone.hu_min", "4294967596"},
+      {[](Json& s) { s["hand"]["stiffness_N_per_m"] = 1e9; }, "hand.stiffness_N_per_m",
+       "1000000000.0"},
+      {[](Json& s) { s["hand"]["damping_Ns_per_m"] = -1; }, "hand.damping_Ns_per_m", "-1"},
+      {[](Json& s) { s["arms"][0]["waypoints"][0]["t"] = -1; }, "waypoints[0].t", "-1"},
+      {[](Json& s) { s["arms"][0]["waypoints"][1]["t"] = 1e300; }, "waypoints[1].t", "1e+300"},
+      {[](Json& s) { s["arms"][0]["waypoints"][0]["at_mm"][2] = 1e308; }, "waypoints[0].at_mm",
+       "1e+308"},
+      {[](Json& s) { s["commands"][0]["t"] = -0.5; }, "commands[0].t", "-0.5"},
+      {[](Json& s) {
+         s["commands"][0] = {{"t", 0.5}, {"do", "rewind"}, {"to_s", 1}};
+       },
+       "commands[0].to_s", "1"},
       {[](Json& s) { s["commands"][0]["t"] = 5; }, "commands[1].t", "order"},
       {[](Json& s) { s["version"] = 9; }, "version", "9"},
   };

@@ -1,5 +1,7 @@
 #include "session/session.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -64,6 +66,62 @@ TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
   EXPECT_EQ(result->volume_sha256, report.volume_sha256);
+}
+
+// The one-arm scene with a device file of its own.
+Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_hz = 1000.0) {
+  test::TemporaryFolder folder;
+  Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
+  change(device);
+  EXPECT_TRUE(writeTextFile(folder / "device.json", device.dump()));
+  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  scene.arms[0].device_config = (folder / "device.json").string();
+  scene.rate_hz = rate_hz;
+  const auto session = Session::create(scene, smallHead(), {});
+  return session ? Error{} : session.error();
+}
+
+TEST(Session, NamesFileFieldAndValueOfAWrongDeviceFile) {
+  const Error error =
+      errorWithDeviceFile([](Json& d) { d["arm"]["peak_force_N"]["value"] = 1e300; });
+  EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG");
+  for (const char* part : {"device.json", "arm.peak_force_N.value", "1e+300"}) {
+    EXPECT_NE(error.sentence().find(part), std::string::npos) << error.sentence();
+  }
+}
+
+TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
+  test::TemporaryFolder folder;
+  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  const std::size_t depth = 100'000;
+  ASSERT_TRUE(writeTextFile(folder / "deep.json", R"({"format": )" + std::string(depth, '[') +
+                                                      std::string(depth, ']') + "}"));
+  ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+  for (const char* name : {"deep.json", "pipe.json"}) {
+    scene.arms[0].device_config = (folder / name).string();
+    const auto session = Session::create(scene, smallHead(), {});
+    ASSERT_FALSE(session.ok()) << name;
+    EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
+  }
+}
+
+TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
+  const auto slow = [](Json& d) { d["arm"]["rate_hz"]["value"] = 500; };
+  const Error error = errorWithDeviceFile(slow, 1000.0);
+  EXPECT_EQ(error.code, "BAD_SCENE");
+  EXPECT_EQ(error.where, "rate_hz");
+  EXPECT_NE(error.what.find("1000 Hz"), std::string::npos) << error.what;
+  EXPECT_NE(error.what.find("at most 500 Hz"), std::string::npos) << error.what;
+  EXPECT_EQ(errorWithDeviceFile(slow, 500.0).code, "");
+}
+
+TEST(Session, CanBeCancelledWhileItsLandmarksAreFound) {
+  Progress* running = nullptr;
+  Progress progress([&](double, const std::string&) { running->cancel(); });
+  running = &progress;
+  const auto session = Session::create(cranium(), smallHead(), {}, progress);
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().code, "CANCELLED");
 }
 
 TEST(Session, FreewheelsToTheSameVoxelsTwice) {

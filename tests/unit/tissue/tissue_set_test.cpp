@@ -282,11 +282,29 @@ TEST(TissueFile, RefusesWholeNumbersThatWouldWrapRoundIntoValidOnes) {
 }
 
 TEST(TissueFile, IsHeldToTheRulesOfTheSet) {
-  const Error error =
-      parseErrorAfter([](Json& j) { j["tissues"][1]["mechanics"]["friction_N"]["value"] = -3.0; });
+  const Error error = parseErrorAfter([](Json& j) { j["tissues"][1]["hu"] = {0, 299}; });
   EXPECT_EQ(error.code, "BAD_TISSUE");
-  EXPECT_EQ(error.where, "t.json: tissues[1].mechanics.friction_N");
-  EXPECT_PART(error.what, "-3.0");
+  EXPECT_EQ(error.where, "t.json: tissues[1].hu");
+  EXPECT_PART(error.what, "overlap");
+}
+
+TEST(TissueFile, RefusesNumbersOutOfTheirRangeByFieldAndValue) {
+  const auto expectRefused = [](auto change, const char* field, const char* value) {
+    const Error error = parseErrorAfter(change);
+    EXPECT_EQ(error.where, std::string("t.json: tissues[1].") + field);
+    EXPECT_PART(error.what, value);
+  };
+  for (const Mechanic& m : kMechanics) {
+    const std::string field = std::string("mechanics.") + m.key + ".value";
+    expectRefused([&](Json& j) { j["tissues"][1]["mechanics"][m.key]["value"] = -3.0; },
+                  field.c_str(), "-3.0");
+    expectRefused([&](Json& j) { j["tissues"][1]["mechanics"][m.key]["value"] = 1e12; },
+                  field.c_str(), "1000000000000.0");
+  }
+  expectRefused([](Json& j) { j["tissues"][1]["opacity"] = 1.5; }, "opacity", "1.5");
+  expectRefused([](Json& j) { j["tissues"][1]["colour"][2] = -0.5; }, "colour", "-0.5");
+  expectRefused([](Json& j) { j["tissues"][1]["hu"][1] = 40000; }, "hu", "40000");
+  expectRefused([](Json& j) { j["tissues"][1]["label"] = 0; }, "label", "0");
 }
 
 TEST(TissueFile, NamesANumberThatNoDoubleHoldsByFileFieldAndValue) {

@@ -399,5 +399,34 @@ TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   EXPECT_TRUE(result->identical);
 }
 
+// Where in the file the chunk with row `row` of a table lies.
+std::pair<std::uint64_t, std::uint64_t> chunkWith(const std::filesystem::path& file,
+                                                  const char* table, hsize_t row) {
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t dataset = H5Dopen2(opened, table, H5P_DEFAULT);
+  haddr_t address = 0;
+  hsize_t bytes = 0;
+  unsigned filters = 0;
+  EXPECT_GE(H5Dget_chunk_info_by_coord(dataset, &row, &filters, &address, &bytes), 0);
+  H5Dclose(dataset);
+  H5Fclose(opened);
+  return {address, bytes};
+}
+
+TEST(Recording, ThatIsDamagedInTheMiddleNamesTheTick) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 3000);
+  const auto [address, bytes] = chunkWith(folder / "a.h5", "arm0", 1024);  // chunks of 512 ticks
+  std::fstream file(folder / "a.h5", std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(std::streamoff(address));
+  file << std::string(std::size_t(bytes), '\x5a');
+  file.close();
+  const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "BAD_RECORDING");
+  EXPECT_NE(result.error().what.find("from tick 1024 on"), std::string::npos)
+      << result.error().what;
+}
+
 }  // namespace
 }  // namespace trephine

@@ -126,12 +126,12 @@ TEST_F(RawFile, TheLengthHasToFitExactly) {
   EXPECT_EQ(sized("[3, 2, 2]"), "UNREADABLE");
   EXPECT_EQ(sized("[3, 1, 1]"), "UNREADABLE");
   EXPECT_NE(sentenceOf(folder / "ct.raw").find("12 bytes"), std::string::npos);
-  EXPECT_EQ(sized("[0, 2, 1]"), "UNREADABLE");
-  EXPECT_EQ(sized("[-3, -2, 1]"), "UNREADABLE");
-  EXPECT_EQ(sized("[3000000000, 2, 1]"), "UNREADABLE");
-  EXPECT_EQ(sized("[9999999999, 9999999999, 9999999999]"), "TOO_LARGE");
+  EXPECT_EQ(sized("[0, 2, 1]"), "BAD_FIELD");
+  EXPECT_EQ(sized("[-3, -2, 1]"), "BAD_FIELD");
+  EXPECT_EQ(sized("[3000000000, 2, 1]"), "BAD_FIELD");
+  EXPECT_EQ(sized("[1000000, 1000000, 1000000]"), "TOO_LARGE");
   EXPECT_EQ(codeWith(smallest + ", \"header_bytes\": 1}"), "UNREADABLE");
-  EXPECT_EQ(codeWith(smallest + ", \"header_bytes\": 9000000000000000000}"), "UNREADABLE");
+  EXPECT_EQ(codeWith(smallest + ", \"header_bytes\": 9000000000000000000}"), "BAD_FIELD");
 }
 
 TEST_F(RawFile, ImpossibleGeometryIsRefused) {
@@ -139,7 +139,8 @@ TEST_F(RawFile, ImpossibleGeometryIsRefused) {
             "BAD_GEOMETRY");
   std::string flat = smallest + "}";
   flat.replace(flat.find("0.6"), 3, "0.0");
-  EXPECT_EQ(codeWith(flat), "BAD_GEOMETRY");
+  EXPECT_EQ(codeWith(flat), "BAD_FIELD");
+  EXPECT_NE(sentenceWith(flat).find("spacing_mm"), std::string::npos);
 }
 
 TEST_F(RawFile, ASidecarWithoutVoxelsIsNamed) {

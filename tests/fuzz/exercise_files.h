@@ -1,0 +1,54 @@
+// The files that a person writes for an exercise, and recordings, as inputs: a byte for the kind,
+// then the file's contents. And what stands in for a case when they are used.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene.h"
+#include "session/operator_script.h"
+#include "volume/volume.h"
+
+namespace trephine::fuzz {
+
+enum Kind : std::uint8_t { kScene, kTool, kTissues, kDevice, kOperator, kRecording, kKinds };
+// Of resources, each with files of its kind; recordings are made.
+constexpr const char* kFolders[kRecording] = {"scenes", "tools", "tissues", "devices", "operators"};
+
+constexpr std::uint64_t kTicks = 200;
+
+// Shells of what the shipped tissue sets call scalp, bone and brain or fat, bone and liver, 48^3
+// voxels: every shipped scene finds its landmarks there.
+inline Volume smallHead() {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {48, 48, 48};
+  g.spacing_mm = Vec3(2.0);
+  g.origin_mm = Vec3(-47.0);
+  v.hu.assign(g.voxelCount(), kAirHu);
+  for (std::size_t i = 0; i < v.hu.size(); ++i) {
+    const Index3 at = g.indicesOf(i);
+    const double r = glm::length(g.toPatient_mm(Vec3(at[0], at[1], at[2])));
+    if (r < 46) v.hu[i] = -80;
+    if (r < 44) v.hu[i] = 1200;
+    if (r < 40) v.hu[i] = 45;
+  }
+  return v;
+}
+
+// Every arm of the scene begins in tissue and moves on through it.
+inline Result<OperatorScript> dive(const Scene& scene) {
+  Json arms = Json::array();
+  for (const SceneArm& arm : scene.arms) {
+    arms.push_back(
+        {{"arm", arm.name},
+         {"waypoints", {{{"t", 0}, {"at_mm", {0, 0, -1}}}, {{"t", 0.1}, {"at_mm", {2, 1, -6}}}}}});
+  }
+  const Json script = {{"format", "trephine.operator"},
+                       {"version", 1},
+                       {"name", "dive"},
+                       {"hand", {{"stiffness_N_per_m", 1000}, {"damping_Ns_per_m", 10}}},
+                       {"arms", arms}};
+  return parseOperatorScript(script, "dive", scene);
+}
+
+}  // namespace trephine::fuzz

@@ -1,0 +1,167 @@
+// Any bytes as a scene, tool, tissue, device or operator file, or as a recording: read, and where
+// they are accepted used for a few hundred ticks. See README.md.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "base/system.h"
+#include "exercise_files.h"
+#include "json_mutator.h"
+#include "processor_time.h"
+#include "session/session.h"
+#include "training/replay.h"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+namespace trephine::fuzz {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostSeconds = 2.0;
+constexpr double kMostRecordingSeconds = 5.0;
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "fuzz_exercise: %s\n", what);
+  std::abort();
+}
+
+// A copy of the shipped files, in which the input stands as input.json beside those of its kind.
+class Files {
+ public:
+  Files() {
+    std::string pattern = (fs::temp_directory_path() / "trephine-fuzz-XXXXXX").string();
+    require(::mkdtemp(pattern.data()), "no temporary folder can be made");
+    root_ = pattern;
+    for (const char* folder : kFolders) {
+      fs::copy(resourceFolder() / folder, root_ / folder);
+      require(::mkfifo((root_ / folder / "pipe.json").c_str(), 0600) == 0, "no pipe can be made");
+    }
+  }
+  ~Files() {
+    std::error_code error;
+    fs::remove_all(root_, error);
+  }
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+
+  fs::path put(Kind kind, std::string_view bytes) const {
+    const fs::path file =
+        kind == kRecording ? root_ / "input.h5" : root_ / kFolders[kind] / "input.json";
+    std::ofstream out(file, std::ios::binary);
+    out.write(bytes.data(), std::streamsize(bytes.size()));
+    require(out.good(), "the temporary folder is full");
+    return file;
+  }
+  fs::path scene(const char* name) const { return root_ / "scenes" / name; }
+
+ private:
+  fs::path root_;
+};
+
+void expectSaid(const Error& error) {
+  require(!error.what.empty() && !error.code.empty(), "an error says nothing");
+}
+
+// What was accepted must be fit to be felt.
+void run(const Scene& scene, const OperatorScript& script) {
+  const SessionOptions options{{}, script};
+  Result<std::unique_ptr<Session>> session = Session::create(scene, smallHead(), options);
+  if (!session) return expectSaid(session.error());
+  const Status done = (*session)->freewheel(double(kTicks) / scene.rate_hz);
+  if (!done) return expectSaid(done.error());
+  const RunReport report = (*session)->report();
+  require(report.nonfinite == 0, "what was accepted ends in a force that is not finite");
+  for (const RunReport::Arm& arm : report.arms) {
+    require(isFinite(arm.statistics.max_force_N) && isFinite(arm.statistics.energy_out_J),
+            "what was accepted ends in a force or an energy that is not finite");
+  }
+  toJson(report).dump();
+  toText(report);
+}
+
+void runScene(const Result<Scene>& scene) {
+  if (!scene) return expectSaid(scene.error());
+  const Result<OperatorScript> script = dive(*scene);
+  if (!script) return expectSaid(script.error());
+  run(*scene, *script);
+}
+
+// The shipped scene of the burr, with one of its files replaced by the input.
+void runWith(const Files& files, Kind kind) {
+  Json scene = *readJsonFile(files.scene("burr-hole.json"));
+  if (kind == kTool) scene["tools"][0]["file"] = "../tools/input.json";
+  if (kind == kTissues) scene["tissues"] = "../tissues/input.json";
+  if (kind == kDevice) scene["arms"][0]["device"]["config"] = "../devices/input.json";
+  runScene(parseScene(scene, files.scene("burr-hole.json")));
+}
+
+void runScript(const Files& files, const fs::path& file) {
+  Result<Scene> scene = readScene(files.scene("cranium.json"));
+  require(scene.ok(), "the shipped scene cannot be read");
+  scene->rate_hz = 100.0;  // two seconds of the script
+  const Result<OperatorScript> script = readOperatorScript(file, *scene);
+  if (!script) return expectSaid(script.error());
+  run(*scene, *script);
+}
+
+void replayFile(const fs::path& file) {
+  const auto recording = SessionReader::open(file);
+  if (!recording) return expectSaid(recording.error());
+  const Result<ReplayResult> result = replay(**recording, smallHead());
+  if (!result) return expectSaid(result.error());
+  require(result->identical || result->first_difference, "a replay says nothing");
+}
+
+}  // namespace
+
+}  // namespace trephine::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace trephine;
+  using namespace trephine::fuzz;
+  static const Files files;
+  if (size < 2) return 0;
+  const Kind kind = Kind(data[0] % kKinds);
+  const double start = processorSeconds();
+  const std::filesystem::path file =
+      files.put(kind, {reinterpret_cast<const char*>(data) + 1, size - 1});
+  switch (kind) {
+    case kScene:
+      runScene(readScene(file));
+      break;
+    case kOperator:
+      runScript(files, file);
+      break;
+    case kRecording:
+      replayFile(file);
+      break;
+    default:
+      runWith(files, kind);
+      break;
+  }
+  const double most = kind == kRecording ? kMostRecordingSeconds : kMostSeconds;
+  require(processorSeconds() - start <= most, "an input takes too much processor time");
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  using namespace trephine::fuzz;
+  if (size > 1 && data[0] % kKinds != kRecording && seed % 8 != 0) {
+    const std::string text = mutatedJson({reinterpret_cast<const char*>(data) + 1, size - 1}, seed);
+    if (!text.empty() && text.size() < most) {
+      std::copy(text.begin(), text.end(), data + 1);
+      return text.size() + 1;
+    }
+  }
+  return LLVMFuzzerMutate(data, size, most);
+}
