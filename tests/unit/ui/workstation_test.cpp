@@ -2,7 +2,6 @@
 #include "ui/workstation.h"
 
 #include <gtest/gtest.h>
-
 #include <sys/resource.h>
 
 #include <algorithm>
