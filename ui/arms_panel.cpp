@@ -119,8 +119,9 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   card.bar->setObjectName(prefix + "ForceBar");
   card.bar->setToolTip(
       tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
-  card.energy->setToolTip(tr("Net work that the sent force did on the hand. Tissue gives none out: "
-                             "where an arm does, it pushes by itself or shakes."));
+  card.energy->setToolTip(
+      tr("Net work that the sent force did on the hand. Tissue gives none out: "
+         "where an arm does, it pushes by itself or shakes."));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
   card.parts->setWordWrap(true);
   card.parts->setToolTip(tr("What the controller changes in the force that the tissue demands."));

@@ -194,7 +194,7 @@ void ImportDialog::showImportButton() {
   const bool usable = series && mayBeRead(seriesState(*series, answers()));
   const bool refused = size_->isRefused();
   import_->setEnabled(step_ == Step::choosing && usable && !refused);
-  import_->setToolTip(!series  ? QString()
+  import_->setToolTip(!series   ? QString()
                       : !usable ? verdictSentence(*series, answers())
                       : refused ? tr("Mend the number of the box that is refused")
                                 : QString());

@@ -16,9 +16,9 @@ void MainWindow::showRenderable(ControllerKind in_force) {
   for (const SceneArm& arm : scene.arms) {
     if (!arm.dynamics) continue;
     const Renderable on_arm = renderableOn(arm, scene.rate_hz);
-    most = most ? Renderable{std::min(most->b_max, on_arm.b_max),
-                             std::min(most->k_max, on_arm.k_max)}
-                : on_arm;
+    most =
+        most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
+             : on_arm;
   }
   tissues_->setRenderable(
       most, [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
@@ -48,9 +48,8 @@ void MainWindow::unlessTissuesStay(std::function<void()> go_on) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
     QFileDialog* dialog = saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
-    connect(dialog, &QFileDialog::fileSelected, this, [this, go_on](const QString& file) {
-      workstation_.saveTissues(toPath(file), go_on);
-    });
+    connect(dialog, &QFileDialog::fileSelected, this,
+            [this, go_on](const QString& file) { workstation_.saveTissues(toPath(file), go_on); });
     dialog->open();
   });
   box->open();

@@ -91,8 +91,8 @@ class NumberField : public Box {
     this->interpretText();
     const double from = double(stepsFrom());
     const double to = from + double(steps) * double(this->singleStep());
-    this->setValue(Number(
-        std::clamp(to, std::min(from, double(low_)), std::max(from, double(high_)))));
+    this->setValue(
+        Number(std::clamp(to, std::min(from, double(low_)), std::max(from, double(high_)))));
     this->selectAll();
   }
   QSize sizeHint() const override { return fitted(Box::sizeHint()); }

@@ -86,13 +86,12 @@ void TissuePanel::build() {
   low_ = new WholeNumberField("huLow", editor_);
   high_ = new WholeNumberField("huHigh", editor_);
   for (WholeNumberField* box : {low_, high_}) {
-    box->setLimits(std::numeric_limits<std::int16_t>::min(),
-                   std::numeric_limits<std::int16_t>::max());
+    box->setLimits(int(kHuRange.low), int(kHuRange.high));
     box->setSingleStep(5);
     box->setSuffix(tr(" HU"));
   }
   label_ = new WholeNumberField("label", editor_);
-  label_->setLimits(0, 255);
+  label_->setLimits(0, int(kLabelRange.high));
   label_->setWord(0, tr("any"));
   for (WholeNumberField* box : {low_, high_, label_}) box->entered = [this] { rangeEntered(); };
   problem_ = notice("tissueProblem", editor_);

@@ -8,7 +8,6 @@
 #include <QSlider>
 #include <QToolButton>
 #include <QWidget>
-
 #include <functional>
 #include <optional>
 

@@ -1,5 +1,7 @@
 // Tissues, controller and exercise as a person changes them in the window, and as a slip does not.
 // The steps build on each other, in order.
+#include <QtTest/qtestspontaneevent.h>
+
 #include <QAbstractItemView>
 #include <QApplication>
 #include <QDialogButtonBox>
@@ -12,7 +14,6 @@
 #include <QTabBar>
 #include <QTemporaryDir>
 #include <QtTest>
-#include <QtTest/qtestspontaneevent.h>
 
 #include "tissue/tissue_edits.h"
 #include "ui/colours.h"

@@ -41,7 +41,9 @@ TEST(SameSet, SeesNumbersSourcesLabelsAndColours) {
            [](Tissue& t) { t.hu_min = 1; }, [](Tissue& t) { t.label = 3; },
            [](Tissue& t) { t.colour.x = 0.25; }, [](Tissue& t) { t.damping_Ns_per_m.value = 3.0; },
            [](Tissue& t) { t.friction_N.source = "a book"; },
-           [](Tissue& t) { t.rupture_N = SourcedNumber{0.5, "a book"}; }}) {
+           [](Tissue& t) {
+             t.rupture_N = SourcedNumber{0.5, "a book"};
+           }}) {
     TissueSet other = set;
     change(other.tissues[0]);
     EXPECT_FALSE(sameSet(set, other));

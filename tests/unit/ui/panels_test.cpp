@@ -138,9 +138,12 @@ TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
 TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
   QLabel& felt = find<QLabel>(panel_, "tissueFelt");
   find<QDoubleSpinBox>(panel_, "stiffness").setValue(600.0);
-  panel_.setRenderable(Renderable{10.0, 1000.0}, [](const Tissue& tissue) {
-    return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
-  }, ControllerKind::bounded);
+  panel_.setRenderable(
+      Renderable{10.0, 1000.0},
+      [](const Tissue& tissue) {
+        return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
+      },
+      ControllerKind::bounded);
   EXPECT_TRUE(felt.text().contains("demand 1200 N/m")) << felt.text().toStdString();
   EXPECT_TRUE(felt.text().contains("at most 1000 N/m")) << felt.text().toStdString();
   find<QDoubleSpinBox>(panel_, "damping").setValue(50.0);
@@ -155,7 +158,10 @@ TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMost
   for (ControllerKind kind : {ControllerKind::off, ControllerKind::seed}) {
     panel_.setRenderable(
         Renderable{10.0, 1000.0},
-        [](const Tissue& tissue) { return Impedance{0.0, tissue.stiffness_N_per_m.value}; }, kind);
+        [](const Tissue& tissue) {
+          return Impedance{0.0, tissue.stiffness_N_per_m.value};
+        },
+        kind);
     EXPECT_FALSE(felt.isHidden());
     EXPECT_FALSE(felt.text().contains("is felt")) << felt.text().toStdString();
     EXPECT_FALSE(felt.text().contains("at most")) << felt.text().toStdString();

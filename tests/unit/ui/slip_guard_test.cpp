@@ -1,5 +1,6 @@
 #include "ui/slip_guard.h"
 
+#include <QtTest/qtestspontaneevent.h>
 #include <gtest/gtest.h>
 
 #include <QAbstractItemView>
@@ -12,7 +13,6 @@
 #include <QTabBar>
 #include <QVBoxLayout>
 #include <QWheelEvent>
-#include <QtTest/qtestspontaneevent.h>
 
 #include "qt_support.h"
 
