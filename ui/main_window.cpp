@@ -1,7 +1,6 @@
 #include "ui/main_window.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <QDragEnterEvent>
 #include <QFileDialog>
@@ -18,7 +17,6 @@
 #include "ui/error_dialog.h"
 #include "ui/report_file.h"
 #include "ui/words.h"
-#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -82,7 +80,7 @@ void MainWindow::askForFolder() {
   dialog->setFileMode(QFileDialog::Directory);
   dialog->setOption(QFileDialog::ShowDirsOnly);
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& folder) { openPath(folder); });
+          [this](const QString& folder) { open(toPath(folder)); });
   dialog->open();
 }
 
@@ -91,14 +89,14 @@ void MainWindow::askForFile() {
       fileDialog("fileDialog", tr("Open a file of CT"),
                  tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { openPath(file); });
+          [this](const QString& file) { open(toPath(file)); });
   dialog->open();
 }
 
 void MainWindow::askForScene() {
   QFileDialog* dialog = fileDialog("sceneDialog", tr("Open a scene"), tr("Scene (*.json)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { openPath(file); });
+          [this](const QString& file) { open(toPath(file)); });
   dialog->open();
 }
 
@@ -122,7 +120,13 @@ void MainWindow::dropEvent(QDropEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() != 1 || !urls.front().isLocalFile()) return;
   event->acceptProposedAction();
-  openPath(urls.front().toLocalFile());
+  open(toPath(urls.front().toLocalFile()));
+}
+
+void MainWindow::open(const std::filesystem::path& path) {
+  const auto go_on = [this, path] { workstation_.openPath(path); };
+  if (Workstation::isScene(path)) return unlessSceneIsLost(go_on);
+  go_on();
 }
 
 void MainWindow::showScene() {
@@ -365,21 +369,6 @@ void MainWindow::savePicture(const QString& file) {
   workstation_.save(
       tr("The picture is saved."),
       [picture = *std::move(picture), path = toPath(file)] { return writePng(picture, path); });
-}
-
-void MainWindow::saveVolume(const QString& file) {
-  if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
-  const auto copy = std::make_shared<const Volume>(view_->shownVolume());
-  // What a running exercise shows may be cut further.
-  const bool all = workstation_.phase() == Workstation::Phase::ready;
-  say(tr("Saving the volume\u2026"));
-  workstation_.save(
-      tr("The volume is saved."), [copy, path = toPath(file)] { return writeVolume(*copy, path); },
-      [this, all] {
-        if (!all) return;
-        unsaved_cuts_ = false;
-        if (const auto go_on = std::exchange(after_saving_, {})) go_on();
-      });
 }
 
 void MainWindow::saveReport(const QString& file) {

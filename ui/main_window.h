@@ -79,6 +79,7 @@ class MainWindow : public QMainWindow {
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();
+  void open(const std::filesystem::path& path);
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
   void unlessTissuesStay(std::function<void()> go_on);
   void showScene();
@@ -86,9 +87,12 @@ class MainWindow : public QMainWindow {
   void showCase();
   void showPhase();
   void lookAtCase();
-  // Runs `go_on` at once, or after asking where it would lose what was cut.
+  // Goes on at once with what takes the cuts from the view; where no file has them it asks first.
   void unlessCutsAreLost(std::function<void()> go_on);
-  void openPath(const QString& path);
+  // The same for another scene, which takes edited tissues too.
+  void unlessSceneIsLost(std::function<void()> go_on);
+  void askToSaveVolume(std::function<void()> then);
+  void saveVolumeThen(const QString& file, std::function<void()> then);
   void start();
   void reset();
   void showWholeCase();
@@ -133,10 +137,9 @@ class MainWindow : public QMainWindow {
   int frames_ = 0;                // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;            // the view shows what an ended exercise left
-  std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
   bool unsaved_cuts_ = false;      // and some of it is in no file
-  std::function<void()> after_saving_;  // what waited for the cuts to be saved
-  bool closing_ = false;           // was asked about, and is meant
+  bool may_close_ = false;         // nothing unsaved is left to ask about
+  std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
 };
 
 }  // namespace trephine

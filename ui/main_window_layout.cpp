@@ -186,11 +186,7 @@ void MainWindow::connectParts() {
     askWhereToSave(tr("Save picture"), "trephine.png", tr("Picture (*.png)"),
                    &MainWindow::savePicture);
   });
-  connect(volume_, &QAction::triggered, this, [this] {
-    after_saving_ = {};
-    askWhereToSave(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"),
-                   &MainWindow::saveVolume);
-  });
+  connect(volume_, &QAction::triggered, this, [this] { askToSaveVolume({}); });
   // Space belongs to buttons and lists where they have the focus.
   auto* space = new QShortcut(Qt::Key_Space, view_, nullptr, nullptr, Qt::WidgetShortcut);
   space->setAutoRepeat(false);
@@ -202,7 +198,7 @@ void MainWindow::connectParts() {
           [this](const QString& name) {
             const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
             if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
-            unlessCutsAreLost([this, go_on] { unlessTissuesStay(go_on); });
+            unlessSceneIsLost(go_on);
           });
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
@@ -211,7 +207,8 @@ void MainWindow::connectParts() {
     askWhereToSave(tr("Save report"), "import-report.pdf",
                    tr("PDF (*.pdf);;Web page (*.html *.htm)"), &MainWindow::saveReport);
   });
-  connect(import_, &ImportDialog::pathDropped, this, &MainWindow::openPath);
+  connect(import_, &ImportDialog::pathDropped, this,
+          [this](const QString& path) { open(toPath(path)); });
   connect(import_, &ImportDialog::caseRead, this,
           [this](const std::shared_ptr<const Volume>& volume, const QString& name) {
             unlessCutsAreLost([this, volume, name] { workstation_.openVolume(volume, name); });
@@ -230,9 +227,9 @@ void MainWindow::connectParts() {
     view_->setFocus();
   });
   connect(scenes_, &QComboBox::activated, this, [this](int index) {
-    const std::filesystem::path file = toPath(scenes_->itemData(index).toString());
-    const auto go_on = [this, file] { workstation_.useScene(file); };
-    unlessCutsAreLost([this, go_on] { unlessTissuesStay(go_on); });
+    unlessSceneIsLost([this, file = toPath(scenes_->itemData(index).toString())] {
+      workstation_.useScene(file);
+    });
     showScene();  // back to the one in use where the other cannot be had
     view_->setFocus();
   });

@@ -1,10 +1,12 @@
 // What would lose work: it is asked once, and the way to keep the work is offered.
 #include <QCloseEvent>
+#include <QFileDialog>
 #include <QPushButton>
 
 #include "ui/main_window.h"
 #include "ui/question.h"
 #include "ui/words.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -18,11 +20,37 @@ void MainWindow::unlessCutsAreLost(std::function<void()> go_on) {
   save->setObjectName("saveFirst");
   connect(
       save, &QPushButton::clicked, this,
-      [this, go_on = std::move(go_on)] {
-        volume_->trigger();  // asks where, and forgets what an earlier save was to lead to
-        after_saving_ = go_on;
-      },
-      Qt::QueuedConnection);
+      [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); }, Qt::QueuedConnection);
+}
+
+void MainWindow::askToSaveVolume(std::function<void()> then) {
+  QFileDialog* dialog = saveDialog(tr("Save volume"), "carved.mha",
+                                   tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, then = std::move(then)](const QString& file) { saveVolumeThen(file, then); });
+  dialog->open();
+}
+
+void MainWindow::saveVolume(const QString& file) {
+  saveVolumeThen(file, {});
+}
+
+void MainWindow::saveVolumeThen(const QString& file, std::function<void()> then) {
+  if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
+  const auto copy = std::make_shared<const Volume>(view_->shownVolume());
+  // What a running exercise shows may be cut further.
+  const bool all = workstation_.phase() == Workstation::Phase::ready;
+  say(tr("Saving the volume\u2026"));
+  workstation_.save(
+      tr("The volume is saved."), [copy, path = toPath(file)] { return writeVolume(*copy, path); },
+      [this, all, then = std::move(then)] {
+        if (all) unsaved_cuts_ = false;
+        if (then) then();
+      });
+}
+
+void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
+  unlessCutsAreLost([this, go_on = std::move(go_on)] { unlessTissuesStay(go_on); });
 }
 
 void MainWindow::start() {
@@ -47,29 +75,24 @@ void MainWindow::showWholeCase() {
   showPhase();
 }
 
-// A scene brings its own case; any other path is only looked through until its case is read.
-void MainWindow::openPath(const QString& path) {
-  const auto open = [this, path] { workstation_.openPath(toPath(path)); };
-  if (!Workstation::isScene(toPath(path))) return open();
-  unlessCutsAreLost([this, open] { unlessTissuesStay(open); });
-}
-
 void MainWindow::closeEvent(QCloseEvent* event) {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
   const bool running = phase != Phase::empty && phase != Phase::ready;
-  const bool asks = running || unsaved_cuts_ || workstation_.tissuesEdited();
-  if (closing_ || !asks) return event->accept();
+  if (may_close_ || !(running || unsaved_cuts_ || workstation_.tissuesEdited())) {
+    return QMainWindow::closeEvent(event);
+  }
   event->ignore();
-  const auto close_anyway = [this] {
-    closing_ = true;
-    close();
+  const auto for_good = [this] {
+    unlessTissuesStay([this] {
+      may_close_ = true;
+      close();
+    });
   };
-  const auto then = [this, close_anyway] { unlessTissuesStay(close_anyway); };
-  if (!running) return unlessCutsAreLost(then);
+  if (!running) return unlessCutsAreLost(for_good);
   ask(front(), "closeQuestion", tr("An exercise is running."),
       tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
-      tr("&End it and close"), then);
+      tr("&End it and close"), for_good);
 }
 
 }  // namespace trephine

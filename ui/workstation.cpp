@@ -324,8 +324,8 @@ void Workstation::save(const QString& what, std::function<Status()> write,
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
                                  [this, what, then = std::move(then)](Status status) {
                                    if (!status) return fail(status.error());
-                                   if (then) then();
                                    emit saved(what);
+                                   if (then) then();
                                  });
   if (!begun) fail({"BUSY", "Another file is being saved", "", "Try again in a moment"});
 }

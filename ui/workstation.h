@@ -70,7 +70,7 @@ class Workstation : public QObject {
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 
-  // Runs `write` in the background; `what` names the outcome in saved(), before which `then` runs.
+  // Runs `write` in the background; `what` names the outcome in saved().
   void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
   bool isSaving() const { return saving_.busy(); }
 
