@@ -24,8 +24,8 @@ void MainWindow::unlessCutsAreLost(std::function<void()> go_on) {
 }
 
 void MainWindow::askToSaveVolume(std::function<void()> then) {
-  QFileDialog* dialog = saveDialog(tr("Save volume"), "carved.mha",
-                                   tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"));
+  QFileDialog* dialog =
+      saveDialog(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, then = std::move(then)](const QString& file) { saveVolumeThen(file, then); });
   dialog->open();

@@ -30,14 +30,15 @@ QString whoWords(const std::vector<std::size_t>& arms, const Scene& scene) {
 
 ForceNotice ForceWatch::look(const LoopState& state, const Scene& scene, double still_s) {
   if (still_s > 0.0) {
-    return {StateNotice::tr("NO FORCE"),
-            StateNotice::tr("An arm or the computer does not answer: touch has stood still for %1 s. "
-                            "Wait, or stop the exercise (Ctrl+.).")
-                .arg(std::ceil(still_s)),
-            {}};
+    return {
+        StateNotice::tr("NO FORCE"),
+        StateNotice::tr("An arm or the computer does not answer: touch has stood still for %1 s. "
+                        "Wait, or stop the exercise (Ctrl+.).")
+            .arg(std::ceil(still_s)),
+        {}};
   }
   ForceNotice out;
-  QStringList reasons;                           // each once, in the order of the arms
+  QStringList reasons;                            // each once, in the order of the arms
   std::vector<std::vector<std::size_t>> with_it;  // the arms that have it
   std::vector<std::size_t> all;
   std::uint32_t faults = 0;
@@ -141,13 +142,12 @@ void StateNotice::show(bool paused, const ForceNotice& force) {
   const QString mend =
       force.mend.isEmpty()
           ? QString()
-          : tr("%1 (%2)").arg(force.mend,
-                              force_on_->shortcut().toString(QKeySequence::NativeText));
+          : tr("%1 (%2)").arg(force.mend, force_on_->shortcut().toString(QKeySequence::NativeText));
   const bool without_force = !force.title.isEmpty();
-  const bool same = isHidden() == !(paused || without_force) && pause_.frame->isHidden() != paused &&
-                    force_.frame->isHidden() != without_force &&
-                    force_.title->text() == force.title && force_.why->text() == force.why &&
-                    force_.button->text() == mend;
+  const bool same =
+      isHidden() == !(paused || without_force) && pause_.frame->isHidden() != paused &&
+      force_.frame->isHidden() != without_force && force_.title->text() == force.title &&
+      force_.why->text() == force.why && force_.button->text() == mend;
   if (same) return;
   // A button that goes would leave the keys to whatever comes next in the window.
   const bool had_focus = isAncestorOf(window()->focusWidget());
