@@ -105,7 +105,8 @@ FILESYSTEM_CALL = re.compile(
     r"is_(?:block_file|character_file|directory|empty|fifo|other|regular_file|socket|symlink)|"
     r"last_write_time|permissions|proximate|read_symlink|relative|remove|remove_all|rename|"
     r"resize_file|space|status|symlink_status|temp_directory_path|weakly_canonical)\(")
-ERROR_CODE = re.compile(r"\b(?:std::error_code|(?:std::filesystem|fs)::file_status)&? (\w+)")
+ERROR_CODE = re.compile(r"\b(?:std::error_code|(?:std::filesystem|fs)::file_status)&? (\w+)"
+                        r"|\bauto (\w+) = (?:std::filesystem|fs)::(?:symlink_)?status\(")
 
 SOURCES = {".h", ".hpp", ".c", ".cpp", ".in"}
 TEXTS = SOURCES | {".cmake", ".json", ".md", ".py", ".sh", ".txt", ".yml", ".yaml", ".glsl", ".qss",
@@ -233,7 +234,7 @@ def check_filesystem_calls(report):
     for folder in ("modules", "ui", "app", "plugins"):
         for path in sources_below(report.root, folder):
             text = path.read_text(encoding="utf-8", errors="replace")
-            safe = set(ERROR_CODE.findall(text))
+            safe = {name for found in ERROR_CODE.findall(text) for name in found if name}
             for match in FILESYSTEM_CALL.finditer(text):
                 # A range-for goes on to the next entry without one.
                 in_range_for = "directory_iterator" in match.group(1) and re.search(
