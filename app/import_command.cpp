@@ -81,8 +81,9 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
 // A face that nobody was asked about must not leave the computer unnoticed.
 void warnOfFace(const Provenance& provenance) {
   if (std::ranges::find(provenance.unanswered, "FACE") == provenance.unanswered.end()) return;
-  spdlog::warn("The patient's face can be reconstructed from the volume that was written: before it "
-               "leaves this computer, write it again with --choice FACE=deface");
+  spdlog::warn(
+      "The patient's face can be reconstructed from the volume that was written: before it "
+      "leaves this computer, write it again with --choice FACE=deface");
 }
 
 // What is written can be written, as far as that can be said before a long run.

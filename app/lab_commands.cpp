@@ -57,8 +57,7 @@ Status applyChoices(const RunArguments& arguments, Scene& scene) {
 Status runRealTime(Session& session, double seconds, const Progress& progress) {
   if (Status started = session.start(seconds); !started) return started;
   constexpr double kGivenUp_s = 2.0;  // a device that has not returned by then does not
-  while (!session.finished() && !progress.cancelled() &&
-         session.standsStillFor_s() < kGivenUp_s) {
+  while (!session.finished() && !progress.cancelled() && session.standsStillFor_s() < kGivenUp_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   const bool cancelled = progress.cancelled() && !session.finished();
@@ -180,8 +179,8 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
 int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
   Result<RunOutcome> outcome = runExercise(arguments, progress);
   if (!outcome) return printError("run", outcome.error(), json);
-  const int code = printOutcome("run", toJson(outcome->report), toText(outcome->report),
-                                outcome->failure, json);
+  const int code =
+      printOutcome("run", toJson(outcome->report), toText(outcome->report), outcome->failure, json);
   constexpr int kFaulted = 4;
   return code == 0 && !outcome->report.faults.empty() ? kFaulted : code;
 }

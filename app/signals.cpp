@@ -13,7 +13,9 @@ constexpr unsigned kGrace_s = 30;  // a large volume may still have to be saved
 volatile std::sig_atomic_t received = 0;
 Progress* work = nullptr;
 
-void endNow() { ::_exit(128 + received); }
+void endNow() {
+  ::_exit(128 + received);
+}
 
 // On any thread, the haptic one too: async-signal-safe calls alone.
 void onSignal(int signal) {
@@ -38,6 +40,8 @@ void cancelOnSignals(Progress& progress) {
   std::signal(SIGALRM, onAlarm);
 }
 
-int signalReceived() { return received; }
+int signalReceived() {
+  return received;
+}
 
 }  // namespace trephine

@@ -1,7 +1,5 @@
 #include "ui/main_window.h"
 
-#include <algorithm>
-
 #include <QDragEnterEvent>
 #include <QFileDialog>
 #include <QMessageBox>
@@ -10,6 +8,7 @@
 #include <QSettings>
 #include <QStandardPaths>
 #include <QStatusBar>
+#include <algorithm>
 
 #include "base/system.h"
 #include "render/picture.h"
@@ -102,10 +101,9 @@ void MainWindow::askForScene() {
 
 void MainWindow::askForLabels() {
   QFileDialog* dialog = fileDialog("labelsDialog", tr("Open the case's label map"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) {
-            unlessCutsAreLost([this, file] { workstation_.useLabels(toPath(file)); });
-          });
+  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+    unlessCutsAreLost([this, file] { workstation_.useLabels(toPath(file)); });
+  });
   dialog->open();
 }
 

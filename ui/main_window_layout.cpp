@@ -145,7 +145,8 @@ void MainWindow::buildBars() {
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
-  menuBar()->addMenu(tr("&Exercise"))
+  menuBar()
+      ->addMenu(tr("&Exercise"))
       ->addActions({start_, stop_, pause_, notice_->forceOnAction(), undo_, redo_,
                     rewind_->backAction(), reset_});
   menuBar()->addMenu(tr("&View"))->addAction(look_);
@@ -175,8 +176,7 @@ void MainWindow::connectParts() {
   connect(pause_, &QAction::triggered, this,
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
-  connect(notice_, &StateNotice::forceWanted, this,
-          [this] { command(CommandKind::clear_faults); });
+  connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
   connect(undo_, &QAction::triggered, this, [this] { command(CommandKind::undo); });
   connect(redo_, &QAction::triggered, this, [this] { command(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &MainWindow::reset);
@@ -194,12 +194,11 @@ void MainWindow::connectParts() {
 
   connect(case_, &CasePanel::folderWanted, this, &MainWindow::askForFolder);
   connect(open_file_, &QAction::triggered, this, &MainWindow::askForFile);
-  connect(case_, &CasePanel::phantomWanted, this,
-          [this](const QString& name) {
-            const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
-            if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
-            unlessSceneIsLost(go_on);
-          });
+  connect(case_, &CasePanel::phantomWanted, this, [this](const QString& name) {
+    const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
+    if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
+    unlessSceneIsLost(go_on);
+  });
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
   connect(import_, &ImportDialog::fileWanted, this, &MainWindow::askForFile);

@@ -71,12 +71,14 @@ QString faultWords(std::uint32_t faults) {
     words << tr("A pose or a force was not a number. The force stays off until you ask for it.");
   }
   if (faults & kFaultStalled) {
-    words << tr("The computer was too busy three times within 30 s, or once for over 2 s. The force "
-                "stays off until you ask for it.");
+    words << tr(
+        "The computer was too busy three times within 30 s, or once for over 2 s. The force "
+        "stays off until you ask for it.");
   }
   if (faults == kFaultLate) {
-    words << tr("The computer was too busy: a step came more than 20 ms late. The force comes back "
-                "by itself.");
+    words << tr(
+        "The computer was too busy: a step came more than 20 ms late. The force comes back "
+        "by itself.");
   }
   return words.join('\n');
 }

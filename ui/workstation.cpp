@@ -173,7 +173,8 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
         Result<Volume> volume = openCase(source, progress);
         if (!volume) return volume.error();
         Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
-                   {},    {},         !isPhantom(source), {}, {}, same_scene};
+                   {},    {},         !isPhantom(source),
+                   {},    {},         same_scene};
         if (Status status = place(out, progress); !status) return status.error();
         return out;
       },

@@ -101,7 +101,8 @@ T sized() {
   return value;
 }
 
-// The arms whose calls did not return: a fact of the process, like the libraries that it has loaded.
+// The arms whose calls did not return: a fact of the process, like the libraries that it has
+// loaded.
 struct LeftBehind {
   std::mutex mutex;
   std::set<std::pair<std::string, std::uint32_t>> arms;  // plugin's name, place

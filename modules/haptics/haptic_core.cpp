@@ -73,7 +73,8 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
   put_back_.reserve(kVoxelsPerSlice);
 }
 
-// What the tick keeps of the tissues; of what it knows about the voxels, only what they change goes.
+// What the tick keeps of the tissues; of what it knows about the voxels, only what they change
+// goes.
 void HapticCore::useTissues(const TissueTable& before) {
   const TissueTable& now = parameters_.tissues;
   bool same_voxels = bricks_ && before.count == now.count, same_cuts = same_voxels;
@@ -486,8 +487,8 @@ bool HapticCore::takes(const Arm& arm, const Index3& voxel) const {
 }
 
 // Begins the strokes of the arms that bite and have none; then the arms, the newest stroke first.
-std::array<std::size_t, kMaxArms> HapticCore::newestStrokeFirst(
-    const CarveJournal::Credits& before, std::uint64_t tick) {
+std::array<std::size_t, kMaxArms> HapticCore::newestStrokeFirst(const CarveJournal::Credits& before,
+                                                                std::uint64_t tick) {
   std::array<std::size_t, kMaxArms> order{};
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     order[i] = i;

@@ -79,9 +79,9 @@ bool HapticLoop::step(std::int64_t late_ns) {
 
     // One a tick: a second undo would find the first one still at work.
     Command command;
-    const bool commanded = core_.acceptsCommands() &&
-                           (commands_.pop(command) ||
-                            (operator_ && operator_->command(tick, command)));
+    const bool commanded =
+        core_.acceptsCommands() &&
+        (commands_.pop(command) || (operator_ && operator_->command(tick, command)));
     if (!exchange(input)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);

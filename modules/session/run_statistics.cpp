@@ -38,12 +38,13 @@ const FaultName& nameOf(std::uint32_t fault) {
 }  // namespace
 
 Error memoryNotLocked(const std::string& reason) {
-  return {"MEMORY_NOT_LOCKED",
-          "The haptic thread's memory is not held in place (" + reason +
-              "), so ticks may come late when the system is short of memory",
-          "the limit on locked memory",
-          "Set 'memlock' to 'unlimited' for the users of Trephine in /etc/security/limits.d and log "
-          "in again"};
+  return {
+      "MEMORY_NOT_LOCKED",
+      "The haptic thread's memory is not held in place (" + reason +
+          "), so ticks may come late when the system is short of memory",
+      "the limit on locked memory",
+      "Set 'memlock' to 'unlimited' for the users of Trephine in /etc/security/limits.d and log "
+      "in again"};
 }
 
 Json toJson(const RunReport& report) {

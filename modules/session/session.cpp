@@ -19,8 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-// Counted in ticks, not on the recorder's clock: a recorder that gets to run seldom must not put off
-// what it then finds waiting.
+// Counted in ticks, not on the recorder's clock: a recorder that gets to run seldom must not put
+// off what it then finds waiting.
 constexpr double kFlushEvery_s = 0.25;
 constexpr std::size_t kMostFaults = 1000;  // in a report
 constexpr int kHapticPriority = 80;
@@ -105,11 +105,13 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 
 }  // namespace
 
-// What the haptic thread and the watchdog work on, each of which owns it too: a thread that a device
-// holds goes on with it after the session.
+// What the haptic thread and the watchdog work on, each of which owns it too: a thread that a
+// device holds goes on with it after the session.
 struct Session::Engine {
   Engine(HapticCore& core, std::vector<LoopDevice> devices, std::unique_ptr<Operator> script)
-      : oper(std::move(script), live_hands), loop(core, std::move(devices), &oper), watchdog(loop) {}
+      : oper(std::move(script), live_hands),
+        loop(core, std::move(devices), &oper),
+        watchdog(loop) {}
 
   rt::ParameterSet<LiveHands> live_hands;
   LiveOperator oper;
@@ -252,9 +254,13 @@ Status Session::start(double seconds) {
   return {};
 }
 
-bool Session::finished() const { return engine_->finished.load(std::memory_order_acquire); }
+bool Session::finished() const {
+  return engine_->finished.load(std::memory_order_acquire);
+}
 
-double Session::standsStillFor_s() const { return engine_->watchdog.stillFor_s(); }
+double Session::standsStillFor_s() const {
+  return engine_->watchdog.stillFor_s();
+}
 
 std::optional<bool> Session::memoryLocked() const {
   if (!engine_->memory_known.load(std::memory_order_acquire)) return {};
@@ -310,10 +316,11 @@ void Session::leaveBehind(std::size_t held) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
     names += (names.empty() ? "'" : ", '") + scene_.arms[arm].name + "'";
   }
-  left_behind_ = Error{"DEVICE_STUCK", "The arm " + names + " stopped answering and was left behind",
-                       "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
-                       "What was done until then is recorded. Switch the arm off and on, then "
-                       "start Trephine again"};
+  left_behind_ =
+      Error{"DEVICE_STUCK", "The arm " + names + " stopped answering and was left behind",
+            "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
+            "What was done until then is recorded. Switch the arm off and on, then "
+            "start Trephine again"};
   loop_->closeOthers(held);
 }
 
@@ -349,8 +356,8 @@ void Session::record() {
 }
 
 // In slices, each written before the next is taken: who comes late and finds seconds waiting does
-// not gather them all first. Records first: the loop pushes what belongs to a tick before the tick's
-// record, so that all of it is found after the record was.
+// not gather them all first. Records first: the loop pushes what belongs to a tick before the
+// tick's record, so that all of it is found after the record was.
 void Session::drain() {
   const auto slice = std::uint64_t(kFlushEvery_s * scene_.rate_hz);
   for (bool more = true; more;) {

@@ -156,8 +156,9 @@ void checkFormat(const Json& root) {
 }
 
 DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
-  checkObject(root, "", {"format", "version", "model", "arm", "arms", "vanish_after_s",
-                         "block_after_s", "block_for_s"});
+  checkObject(root, "",
+              {"format", "version", "model", "arm", "arms", "vanish_after_s", "block_after_s",
+               "block_for_s"});
   checkFormat(root);
   checkText(root, "model", "");
   if (root.contains("arm") == root.contains("arms")) {

@@ -47,7 +47,8 @@ struct TrephineDevice {
   bool configured = false;
   bool running = false;
   bool vanished = false;
-  // Calls of safe_stop, from any thread, and how many of them the host has answered with zero force.
+  // Calls of safe_stop, from any thread, and how many of them the host has answered with zero
+  // force.
   std::atomic<std::uint32_t> silences{0};
   std::uint32_t answered = 0;
   std::uint64_t sequence = 0;

@@ -412,7 +412,8 @@ class GuiTest : public QObject {
     const QPoint corner(pressed.width() / 2, 4);  // beside its icon and text
     const QColor on = pressed.pixelColor(corner), off = released.pixelColor(corner);
     QVERIFY2(std::abs(on.red() - off.red()) + std::abs(on.green() - off.green()) +
-                     std::abs(on.blue() - off.blue()) > 90,
+                     std::abs(on.blue() - off.blue()) >
+                 90,
              "the button looks as if it were not pressed");
     QTest::qWait(300);
     const std::uint32_t second = workstation().session()->state().seconds;

@@ -1,5 +1,5 @@
-// The window on small screens: nothing lies outside, and every control can be reached. Run once more
-// at scale 2 (QT_SCALE_FACTOR), where the screen has half as many units each way.
+// The window on small screens: nothing lies outside, and every control can be reached. Run once
+// more at scale 2 (QT_SCALE_FACTOR), where the screen has half as many units each way.
 #include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
@@ -113,9 +113,8 @@ class WindowSizeTest : public QObject {
     auto* purpose = find<QLabel>("purpose");
     QCOMPARE(purpose->visibleRegion().boundingRect(), purpose->rect());
     QVERIFY(purpose->width() >= purpose->sizeHint().width());
-    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/size-%1x%2.png")
-                                     .arg(size.width())
-                                     .arg(size.height())));
+    QVERIFY(window_->grab().save(
+        QString(TREPHINE_ARTEFACTS "/size-%1x%2.png").arg(size.width()).arg(size.height())));
   }
 
   void sizes() {
@@ -201,9 +200,8 @@ class WindowSizeTest : public QObject {
     QCOMPARE(dialog->size(), size);
     const QStringList lost = outOfReach(*dialog);
     QVERIFY2(lost.isEmpty(), qPrintable(lost.join(", ")));
-    QVERIFY(dialog->grab().save(QString(TREPHINE_ARTEFACTS "/import-%1x%2.png")
-                                    .arg(size.width())
-                                    .arg(size.height())));
+    QVERIFY(dialog->grab().save(
+        QString(TREPHINE_ARTEFACTS "/import-%1x%2.png").arg(size.width()).arg(size.height())));
     dialog->close();
   }
 };

@@ -239,8 +239,10 @@ TEST(Removal, TwoEqualToolsInOnePlacePayHalfOfAllEach) {
     EXPECT_EQ(core.journal().entryCount(), all) << "one entry a voxel";
     EXPECT_EQ(std::uint64_t(taken[0] + taken[1]), all);
     const std::uint64_t half = kVoxelShares / 2 * all;
-    EXPECT_EQ(core.journal().paid(0), kind == RemovalKind::work ? half : kVoxelShares * core.journal().removed(0, 0));
-    EXPECT_EQ(core.journal().paid(1), kind == RemovalKind::work ? half : kVoxelShares * core.journal().removed(1, 0));
+    EXPECT_EQ(core.journal().paid(0),
+              kind == RemovalKind::work ? half : kVoxelShares * core.journal().removed(0, 0));
+    EXPECT_EQ(core.journal().paid(1),
+              kind == RemovalKind::work ? half : kVoxelShares * core.journal().removed(1, 0));
   }
 }
 

@@ -56,7 +56,10 @@ struct Held {
   }
   static const TrephineDeviceApi& api() {
     static const TrephineDeviceApi api = {
-        sizeof(TrephineDeviceApi), TREPHINE_DEVICE_ABI, "held", TREPHINE_CLOCK_HOST,
+        sizeof(TrephineDeviceApi),
+        TREPHINE_DEVICE_ABI,
+        "held",
+        TREPHINE_CLOCK_HOST,
         [](TrephineArmInfo*, std::uint32_t) { return 1u; },
         [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
           static int any;

@@ -178,10 +178,12 @@ TEST(Scene, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
   const Bad cases[] = {
       {"operator", [](Json&) {}, "operator", ""},
       {"device", [](Json& s) { s["arms"][0]["device"]["config"] = s["operator"]; }, "config", ""},
-      {"mesh", [](Json& s) {
+      {"mesh",
+       [](Json& s) {
          s["tools"][0] = {{"id", "blade"}, {"kind", "blade"}, {"length_mm", 16}, {"points", 16}};
          s["tools"][0]["mesh"] = s["operator"];
-       }, "mesh", ""},
+       },
+       "mesh", ""},
   };
   for (const Bad& bad : cases) {
     Json json = shipped();

@@ -31,7 +31,9 @@ Volume ball() {
   return v;
 }
 
-Scene cranium() { return *readScene(resourceFolder() / "scenes" / "cranium.json"); }
+Scene cranium() {
+  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+}
 
 SessionOptions scripted(const std::filesystem::path& recording) {
   const Scene scene = cranium();

@@ -281,9 +281,8 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
 // Every event of a recording of a kind, as the tick had it.
 std::size_t commandsIn(const std::filesystem::path& recording) {
   const auto events = (*SessionReader::open(recording))->events();
-  return std::size_t(std::count_if(events->begin(), events->end(), [](const Event& e) {
-    return e.kind == EventKind::command;
-  }));
+  return std::size_t(std::count_if(events->begin(), events->end(),
+                                   [](const Event& e) { return e.kind == EventKind::command; }));
 }
 
 TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
@@ -341,8 +340,7 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
   for (SceneArm& arm : scene.arms) {
-    arm.device_config =
-        arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
+    arm.device_config = arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
   }
   auto session = *Session::create(scene, smallHead(), scripted(folder / "s.h5"));
   ASSERT_TRUE(session->start(0.6).ok());

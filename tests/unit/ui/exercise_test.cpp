@@ -48,8 +48,8 @@ TEST(ExerciseAnswer, HoldsWhatRunPrintsAndTheWindowsFigures) {
 
 TEST(Words, EveryFaultIsSaidInASentence) {
   EXPECT_TRUE(faultWords(0).isEmpty());
-  for (std::uint32_t fault : {kFaultNonFinite, kFaultLate, kFaultDeviceLost, kFaultStalled,
-                              kFaultStuck}) {
+  for (std::uint32_t fault :
+       {kFaultNonFinite, kFaultLate, kFaultDeviceLost, kFaultStalled, kFaultStuck}) {
     EXPECT_TRUE(faultWords(fault).endsWith('.')) << fault;
   }
   EXPECT_EQ(faultWords(kFaultNonFinite | kFaultDeviceLost).split('\n').size(), 2);

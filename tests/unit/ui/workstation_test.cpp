@@ -261,7 +261,8 @@ TEST_F(EditedTissuesTest, ThatCannotBeSavedAreStillEdited) {
 TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
   MainWindow window(folder_.path());
   std::optional<Error> said;
-  QObject::connect(&window, &MainWindow::failed, &window, [&](const Error& error) { said = error; });
+  QObject::connect(&window, &MainWindow::failed, &window,
+                   [&](const Error& error) { said = error; });
   Workstation& shown = window.workstation();
   shown.openVolume(std::make_shared<const Volume>(ball()), "");
   ASSERT_TRUE(waitFor([&] { return shown.phase() == Workstation::Phase::ready; }));
