@@ -20,7 +20,7 @@ constexpr int kTissue_hu = 226;
 Pose channelPose_mm(double t_s, double duration_s) {
   const Vec3& a = EllipsoidShell().half_axes_mm;
   const double x_mm = 10.0 * (t_s - 0.5 * duration_s);
-  return {{x_mm, 0.0, a.z * std::sqrt(1.0 - x_mm * x_mm / (a.x * a.x)) - 1.5}, {}};
+  return {{x_mm, 0.0, a.z * std::sqrt(1.0 - x_mm * x_mm / (a.x * a.x)) - 1.5}, Quat(1, 0, 0, 0)};
 }
 
 // The height of the first tissue below the box's top at (x, y), in steps of `step_mm`.
