@@ -1,0 +1,112 @@
+// The recorder thread of a session: from the loop's rings to the file.
+#include <algorithm>
+#include <chrono>
+
+#include "base/log.h"
+#include "base/rt/thread.h"
+#include "session/session.h"
+
+namespace trephine {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kDrainEvery = 20ms;
+// Counted in ticks, not on the recorder's clock: a recorder that gets to run seldom must not put
+// off what it then finds waiting.
+constexpr double kFlushEvery_s = 0.25;
+constexpr std::size_t kMostFaults = 1000;  // in a report
+
+}  // namespace
+
+void Session::record() {
+  rt::nameThread("recorder");
+  while (!stop_recorder_) {
+    std::this_thread::sleep_for(kDrainEvery);
+    drain();
+  }
+  drain();
+}
+
+// In slices, each written before the next is taken: who comes late and finds seconds waiting does
+// not gather them all first. Records first: the loop pushes what belongs to a tick before the
+// tick's record, so that all of it is found after the record was.
+void Session::drain() {
+  const auto slice = std::uint64_t(kFlushEvery_s * scene_.rate_hz);
+  for (bool more = true; more;) {
+    if (Status spilled = spill_->service(core_->journal()); !spilled) noteFailure(spilled.error());
+    try {
+      TickRecord record;
+      while (unflushed_ticks_ < slice && (more = loop_->records().pop(record))) {
+        for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
+        if (recorder_) recorder_->add(record);
+        ++unflushed_ticks_;
+      }
+      CarveRecord carve;
+      while (loop_->carves().pop(carve)) {
+        if (recorder_) recorder_->add(carve);
+      }
+      Event event;
+      while (loop_->events().pop(event)) {
+        if (recorder_) recorder_->add(event);
+        note(event);
+      }
+    } catch (const std::exception&) {
+      const Error error{"OUT_OF_MEMORY", "The recorder ran out of memory", "the recording",
+                        "Close other programs; what was recorded until now is kept"};
+      if (recorder_) recorder_->abandon(error);
+      noteFailure(error);
+    }
+    if (unflushed_ticks_ >= slice) flush();
+  }
+}
+
+// For the report. Recorder thread, and the owner once that has ended.
+void Session::note(const Event& event) {
+  if (event.kind != EventKind::fault || event.arm < 0) return;
+  if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});
+}
+
+void Session::flush() {
+  if (recorder_) {
+    const Status status = recorder_->flush();
+    // Until here a kill would have lost these.
+    most_behind_ticks_ =
+        std::max<std::uint64_t>(most_behind_ticks_, unflushed_ticks_ + loop_->records().size());
+    if (!status) noteFailure(status.error());
+  }
+  flushed_ticks_ += unflushed_ticks_;
+  unflushed_ticks_ = 0;
+}
+
+// Said at once, since the run may last for long and then ends in another error.
+void Session::noteFailure(const Error& error) {
+  std::lock_guard lock(failure_mutex_);
+  if (failure_) return;
+  failure_ = error;
+  spdlog::error("{}. {}.", error.what, error.next);  // `where` may name a folder
+}
+
+Status Session::recordingStatus() const {
+  std::lock_guard lock(failure_mutex_);
+  if (failure_) return *failure_;
+  return {};
+}
+
+double Session::recorderBehind_s() {
+  if (!recorder_ || !recordingStatus()) return 0.0;
+  const std::uint64_t flushed = flushed_ticks_;  // before the ticks, which go on
+  return double(state().ticks - std::min(flushed, state().ticks)) / scene_.rate_hz;
+}
+
+Status Session::finishRecording() {
+  sha256_after_ = volumeSha256(grid_->snapshot());
+  if (recorder_) {
+    const RecordingEnd end{loop_->ticks(), loop_->dropped(), loop_->missed(), sha256_after_};
+    if (Status status = recorder_->finish(end); !status) noteFailure(status.error());
+  }
+  return recordingStatus();
+}
+
+}  // namespace trephine
