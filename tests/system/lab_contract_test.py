@@ -232,7 +232,7 @@ class BadInput(LabTest):
 
         def negative(scene):
             scene["tissues"]["tissues"][0]["mechanics"]["damping_Ns_per_m"]["value"] = -2
-        self.run_scene(negative, "BAD_TISSUE", "damping_Ns_per_m", "-2")
+        self.run_scene(negative, "BAD_FIELD", "damping_Ns_per_m", "-2")
 
     def test_folders_that_are_missing_empty_or_without_ct(self):
         answer = lab("import", self.folder / "nowhere", expect=2)
