@@ -56,8 +56,7 @@ Status applyChoices(const RunArguments& arguments, Scene& scene) {
 
 Status runRealTime(Session& session, double seconds, const Progress& progress) {
   if (Status started = session.start(seconds); !started) return started;
-  constexpr double kGivenUp_s = 2.0;  // a device that has not returned by then does not
-  while (!session.finished() && !progress.cancelled() && session.standsStillFor_s() < kGivenUp_s) {
+  while (!session.finished() && !progress.cancelled() && session.standsStillFor_s() < Session::kGivenUp_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   const bool cancelled = progress.cancelled() && !session.finished();
@@ -91,6 +90,12 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   }
   if (!arguments.save_volume.empty()) {
     if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();
+    const auto folder = std::filesystem::path(arguments.save_volume).parent_path();
+    std::error_code none;
+    if (!folder.empty() && !std::filesystem::is_directory(folder, none)) {
+      return Error{"MISSING_FOLDER", "There is no folder for the volume", folder.string(),
+                   "Make it, or give --save-volume another place"};
+    }
   }
   const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return made.error();

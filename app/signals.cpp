@@ -37,6 +37,7 @@ void cancelOnSignals(Progress& progress) {
   work = &progress;
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  std::signal(SIGHUP, onSignal);  // the terminal went away
   std::signal(SIGALRM, onAlarm);
 }
 

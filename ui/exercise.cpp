@@ -78,6 +78,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   enum class Step { opening, starting, running, ending } step = Step::opening;
 
   QObject::connect(&window, &MainWindow::failed, &loop, [&](const Error& error) {
+    if (error.code == "DEVICE_STUCK" && step == Step::ending) return;  // a fault in the report
     if (!failure) failure = error;
     loop.quit();
   });
@@ -106,6 +107,11 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
     if (!progress.cancelled()) return;
     if (step == Step::opening) loop.quit();
     workstation.stop();  // does nothing before it runs
+  });
+  // Nobody is there to stop an exercise whose arm does not come back.
+  QObject::connect(&cancelling, &QTimer::timeout, &loop, [&] {
+    const Session* session = workstation.session();
+    if (session && session->standsStillFor_s() > Session::kGivenUp_s) workstation.stop();
   });
   cancelling.start(kCancelPoll_ms);
   window.show();

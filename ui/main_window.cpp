@@ -216,6 +216,7 @@ void MainWindow::showPhase() {
 }
 
 void MainWindow::sessionStarted() {
+  statusBar()->clearMessage();  // of the exercise before
   const Session& session = *workstation_.session();
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
@@ -266,7 +267,15 @@ void MainWindow::tick() {
 
 void MainWindow::showState(Session& session, const LoopState& state) {
   view_->pullChanges(session.grid());
-  arms_->showState(state, session.scene().tissues, limits_N_);
+  constexpr double kOld_s = 0.1;
+  LoopState shown = state;
+  if (session.standsStillFor_s() > kOld_s) {  // what was sent last is not what is sent now
+    for (ArmRecord& arm : shown.record.arms) {
+      arm.faults |= kFaultLate;
+      arm.sent_N = arm.demanded_N = Vec3(0.0);
+    }
+  }
+  arms_->showState(shown, session.scene().tissues, limits_N_);
   if (state.ticks > 0 && controller_shown_ != state.controller) showRenderable(state.controller);
   if (workstation_.session()) {
     pause_->setChecked(state.paused);

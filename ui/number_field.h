@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "ui/colours.h"
+#include "ui/placing.h"
 
 namespace trephine {
 
@@ -128,6 +129,7 @@ class NumberField : public Box {
                                                  "%1 is refused: between %2 and %3 only. %4 stays.")
                          .arg(words(this->value()) + this->suffix(), words(low_), words(high_),
                               words(in_force_) + this->suffix()));
+    giveRoom(*reason_, this->width());
     reason_->show();
   }
 

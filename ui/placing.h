@@ -15,6 +15,11 @@ void centreOver(QWidget& dialog, const QWidget& window);
 // A page that scrolls where the window is small.
 QScrollArea* scrolled(QWidget* page, const char* name);
 
+// Room for all lines of a wrapped text in a column of this width: layouts within a form give it one.
+inline void giveRoom(QLabel& wrapped, int width) {
+  wrapped.setMinimumHeight(wrapped.heightForWidth(width));
+}
+
 // One line that gives way: where it has too little room it ends in dots and the tip says all.
 class ElidedLabel : public QLabel {
  public:

@@ -10,6 +10,7 @@
 
 #include "tissue/tissue_edits.h"
 #include "ui/colours.h"
+#include "ui/placing.h"
 #include "ui/words.h"
 
 namespace trephine {
@@ -215,6 +216,7 @@ void TissuePanel::showGaps() {
   }
   gaps_->setText(tr("Without a tissue: %1. Nothing is drawn, felt or cut there.")
                      .arg(ranges.join(tr(", ", "between ranges of HU"))));
+  giveRoom(*gaps_, high_->width());
   gaps_->setVisible(!ranges.isEmpty());
 }
 
@@ -330,6 +332,7 @@ void TissuePanel::rangeEntered() {
   if (!valid) {
     problem_->setText(
         tr("Not applied. %1. %2.").arg(toQt(valid.error().what), toQt(valid.error().next)));
+    giveRoom(*problem_, high_->width());
     return problem_->show();
   }
   problem_->hide();

@@ -118,8 +118,8 @@ typedef struct TrephineDeviceApi {
                     const double orientation[4], double hand_k, double hand_b);
   int (*stop)(TrephineDevice* device);
   /* Zero force at once, from any thread, in any state, also while another call runs or blocks. It
-   * holds until the next start, or until an exchange has commanded zero force and torque for every
-   * arm: so the host says that it knows, and later exchanges move the arms again. */
+   * holds until the next start, or until an exchange that began after it has commanded zero force and torque for
+   * every arm: so the host says that it knows, and later exchanges move the arms again. */
   void (*safe_stop)(TrephineDevice* device);
   const char* (*last_error)(TrephineDevice* device);
   void (*close)(TrephineDevice* device);

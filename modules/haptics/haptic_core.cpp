@@ -53,6 +53,7 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
   }
   controller = controllers[std::size_t(all.controller)];
   bites.reserve(Removal::kMostBites);
+  taken.reserve(Removal::kMostBites);
 }
 
 HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)

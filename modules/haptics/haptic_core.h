@@ -93,6 +93,7 @@ class HapticCore {
     std::vector<TouchPoint> points;
     std::vector<Bite> bites;  // of this tick
     Index3 bites_low{0, 0, 0}, bites_high{0, 0, 0};  // their bounds
+    std::vector<std::uint32_t> taken;                // their voxels in order, near another arm's
     std::optional<Pose> last_pose;  // device
     Vec3 last_demanded_N{0.0}, last_torque_Nm{0.0};  // patient axes
     bool cuts = false;  // may remove in this tick
@@ -116,6 +117,7 @@ class HapticCore {
   void earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model);
   void removeBites(std::uint64_t tick, TickRecord& record);
   bool takes(const Arm& arm, const Index3& voxel) const;
+  void sortBites();
   std::array<std::size_t, kMaxArms> newestStrokeFirst(const CarveJournal::Credits& before,
                                                       std::uint64_t tick);
   bool erase(std::size_t index, const Bite& bite, std::size_t voxel, std::uint32_t sharers,

@@ -29,6 +29,7 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
       }
     }
   }
+  sortBites();
   const std::array<std::size_t, kMaxArms> order = newestStrokeFirst(before, tick);
   const GridGeometry& geometry = writer_.grid().geometry();
   for (std::size_t n = 0; n < arms_.size(); ++n) {
@@ -69,8 +70,33 @@ bool HapticCore::takes(const Arm& arm, const Index3& voxel) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {  // tools are mostly apart
     if (voxel[axis] < arm.bites_low[axis] || voxel[axis] > arm.bites_high[axis]) return false;
   }
-  const auto same = [&voxel](const Bite& b) { return b.voxel == voxel; };
-  return std::find_if(arm.bites.begin(), arm.bites.end(), same) != arm.bites.end();
+  const auto index =
+      std::uint32_t(writer_.grid().geometry().indexOf(voxel[0], voxel[1], voxel[2]));
+  return std::binary_search(arm.taken.begin(), arm.taken.end(), index);
+}
+
+// Where the bites of two arms may be the same, those of each in order, to be found again.
+void HapticCore::sortBites() {
+  const GridGeometry& geometry = writer_.grid().geometry();
+  for (Arm& arm : arms_) {
+    arm.taken.clear();
+    bool meets = false;
+    for (const Arm& other : arms_) {
+      if (&other == &arm || arm.bites.empty() || other.bites.empty()) continue;
+      bool apart = false;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        apart = apart || other.bites_low[axis] > arm.bites_high[axis] ||
+                other.bites_high[axis] < arm.bites_low[axis];
+      }
+      meets = meets || !apart;
+    }
+    if (!meets) continue;
+    for (const Bite& bite : arm.bites) {
+      const Index3& v = bite.voxel;
+      arm.taken.push_back(std::uint32_t(geometry.indexOf(v[0], v[1], v[2])));
+    }
+    std::sort(arm.taken.begin(), arm.taken.end());
+  }
 }
 
 // Begins the strokes of the arms that bite and have none; then the arms, the newest stroke first.

@@ -31,7 +31,6 @@ Status HapticLoop::startDevices() {
 }
 
 bool HapticLoop::stopDevices() {
-  silence();
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     in_call_ = int(i);
     devices_[i].device->stop();
@@ -40,8 +39,13 @@ bool HapticLoop::stopDevices() {
   return true;
 }
 
+// The device that the loop is calling comes last: its safe_stop may wait for that call.
 void HapticLoop::silence() {
-  for (LoopDevice& d : devices_) d.device->safeStop();
+  const int called = in_call_;
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (int(i) != called) devices_[i].device->safeStop();
+  }
+  if (called >= 0) devices_[std::size_t(called)].device->safeStop();
 }
 
 // Ends a time, begun by setting in_call_, in which this thread may be left behind; false if it was.
@@ -72,10 +76,14 @@ bool HapticLoop::step(std::int64_t late_ns) {
     input.tick = tick;
     input.late_ns = late_ns;
     input.journal = core_.journalState();
-    // A standstill before a tick that came late for it is that tick's lateness, already counted.
+    // Of a standstill for which a tick came late, that tick's lateness is counted already, however
+    // late the word of it comes.
     const std::uint64_t silenced_at = silenced_at_.exchange(0);
-    input.silenced = silenced_at != 0 && !(silenced_at <= tick && last_late_ns_ > kStallLate_ns);
-    last_late_ns_ = late_ns;
+    input.silenced = silenced_at != 0 && !(stalled_ && last_stall_ + 1 >= silenced_at);
+    if (late_ns > kStallLate_ns) {
+      stalled_ = true;
+      last_stall_ = tick;
+    }
 
     // One a tick: a second undo would find the first one still at work.
     Command command;

@@ -128,7 +128,8 @@ class HapticLoop {
   std::array<ArmSample, kMaxArms> last_samples_{};
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
-  std::int64_t last_late_ns_ = 0;
+  bool stalled_ = false;          // a tick came more than 20 ms late,
+  std::uint64_t last_stall_ = 0;  // last this one
   std::atomic<bool> running_{false};
   std::atomic<std::uint64_t> silenced_at_{0};  // tick + 1; 0: not
   // The device that the loop's thread is calling, or one of these.

@@ -28,9 +28,10 @@ void Watchdog::run() {
     lock.unlock();
     const std::uint64_t ticks = loop_.ticks();
     const bool still = standstill.begins(ticks, loop_.running(), clock.now_ns());
-    if (still || asked) loop_.silence();
-    if (still) loop_.noteSilenced(ticks);
+    // Said first: a plugin whose safe_stop takes its time, or for ever, must not hide it.
     still_since_ns_ = standstill.since_ns();
+    if (still) loop_.noteSilenced(ticks);
+    if (still || asked) loop_.silence();
     lock.lock();
     if (asked) {
       silenced_ = true;

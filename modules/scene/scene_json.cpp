@@ -147,6 +147,9 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   scene.name = reader.text("name");
   scene.anatomy = reader.text("anatomy");
   scene.case_source = reader.text("case", "");
+  if (!scene.case_source.empty() && scene.case_source.rfind("phantom:", 0) != 0) {
+    scene.case_source = (folder / scene.case_source).lexically_normal().string();
+  }
   const std::string labels = reader.text("labels", "");
   if (!labels.empty()) scene.labels_file = (folder / labels).lexically_normal().string();
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());

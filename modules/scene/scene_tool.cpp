@@ -78,7 +78,7 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
     return out;
   }
   for (const char* own : kOwnNumbers) {
-    if (item.has(own)) (*json)[own] = item.raw(own);
+    if (item.has(own) && json->is_object()) (*json)[own] = item.raw(own);
   }
   JsonReader reader(*json, file.string());
   reader.format("trephine.tool", 1);

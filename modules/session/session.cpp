@@ -290,14 +290,14 @@ Status Session::stop() {
   }
   stop_recorder_ = true;
   recorder_thread_.join();
-  if (held) leaveBehind(*held);
+  if (held) leaveBehind(*held, silenced);
   engine_->locked->release();
   running_ = false;
   return finishRecording();
 }
 
 // The device `held` keeps the haptic thread: says so in the recording, and closes the others.
-void Session::leaveBehind(std::size_t held) {
+void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
   const LoopDevice& stuck = loop_->devices()[held];
   stuck.device->leaveBehind();
   std::string names;
@@ -309,14 +309,17 @@ void Session::leaveBehind(std::size_t held) {
   if (loop_->silenceIsPending()) add({tick, EventKind::silenced, -1, 0, {}});
   for (std::size_t arm : stuck.arms) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
-    names += (names.empty() ? "'" : ", '") + scene_.arms[arm].name + "'";
+    names += (names.empty() ? "'" : " and '") + scene_.arms[arm].name + "'";
   }
   left_behind_ =
-      Error{"DEVICE_STUCK", "The arm " + names + " stopped answering and was left behind",
+      Error{"DEVICE_STUCK", (stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
+                                   : "The arm " + names + " stopped answering and was left behind"),
             "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
             "What was done until then is recorded. Switch the arm off and on, then "
             "start Trephine again"};
-  loop_->closeOthers(held);
+  // A watchdog that a device holds as well still knows the others; they are silent, and close with
+  // the engine.
+  if (watchdog_ended) loop_->closeOthers(held);
 }
 
 Status Session::freewheel(double seconds, const Progress& progress) {
@@ -351,6 +354,7 @@ bool Session::send(CommandKind kind) {
 
 void Session::holdHands(bool hold) {
   const LoopState& now = state();
+  if (now.ticks == 0) return;  // nobody has looked where the arms are
   for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
     LiveHands::Hand& hand = hands_.hands[i];
     if (hold && !hand.held) hand.position_m = now.record.arms[i].device_position_m;

@@ -65,6 +65,8 @@ class Session {
   Status stop();
   // After stop(), where a device did not answer and was left behind: DEVICE_STUCK.
   const std::optional<Error>& leftBehind() const { return left_behind_; }
+  // A device that has not returned for so long does not: a run without a person is stopped.
+  static constexpr double kGivenUp_s = 2.0;
   // How long the ticks have stood still, from 20 ms on; else 0.
   double standsStillFor_s() const;
   // Whether voxels, the loop's state and its stack are held in memory. Known from the first tick in
@@ -103,7 +105,7 @@ class Session {
   struct Engine;
 
   Session() = default;
-  void leaveBehind(std::size_t held);
+  void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
   void holdHands(bool hold);
   void record();  // the recorder thread

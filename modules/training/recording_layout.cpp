@@ -145,6 +145,11 @@ hid_t endType() {
   return end;
 }
 
+void quietHdf5() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 std::string armDatasetName(std::size_t arm) { return "arm" + std::to_string(arm); }
 
 std::string headSha256(const std::string& build, const std::string& scene,

@@ -46,6 +46,9 @@ struct EndRow {
 };
 hid_t endType();
 
+// Before HDF5 is first used, any number of times: it prints nothing, and does not tidy up at exit,
+// where it would crash on a file that a full disk kept it from closing.
+void quietHdf5();
 std::string armDatasetName(std::size_t arm);  // "arm0"
 
 // Of the texts at the head of a recording, which HDF5 itself does not guard.

@@ -136,8 +136,12 @@ SessionReader::SessionReader() : file_(std::make_unique<File>()) {}
 SessionReader::~SessionReader() = default;
 
 Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  quietHdf5();
   std::error_code ec;
+  if (std::filesystem::exists(path, ec) && !std::filesystem::is_regular_file(path, ec)) {
+    return Error{"BAD_RECORDING", "This is no file but a folder, a pipe or a device", path.string(),
+                 "Give a recording's file"};
+  }
   if (!std::filesystem::is_regular_file(path, ec)) {
     return Error{"MISSING_FILE", "There is no recording", path.string(), "Check the name"};
   }
@@ -179,9 +183,9 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
     return f.bad("The recording is incomplete: its head is damaged");
   }
   Result<Json> scene_json = parseJson(*scene, path.string());
-  if (!scene_json) return scene_json.error();
+  if (!scene_json) return f.bad("The recording is damaged: its scene cannot be read");
   Result<Json> volume_json = parseJson(*volume, path.string());
-  if (!volume_json) return volume_json.error();
+  if (!volume_json) return f.bad("The recording is damaged: its volume cannot be read");
   JsonReader volume_reader(*volume_json, path.string(), "volume");
   f.header.scene = *std::move(scene_json);
   f.header.volume_sha256 = volume_reader.text("sha256");

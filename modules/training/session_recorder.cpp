@@ -171,7 +171,7 @@ SessionRecorder::~SessionRecorder() { file_->close(); }
 Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::filesystem::path& path,
                                                                  const RecordingHeader& header,
                                                                  std::size_t arm_count) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  quietHdf5();
   std::unique_ptr<SessionRecorder> recorder(new SessionRecorder);
   File& f = *recorder->file_;
   f.path = path;

@@ -237,6 +237,8 @@ bool commandsNothing(const TrephineDevice& device, const TrephineArmCommand* com
 int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
              const TrephineArmCommand* commands) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
+  // What was commanded before a safe_stop is no answer to it.
+  const std::uint32_t seen = device->silences.load();
   if (!states || !commands || states->size < sizeof(TrephineArmState) ||
       commands->size < sizeof(TrephineArmCommand)) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "The states or commands have no valid size.");
@@ -261,12 +263,8 @@ int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
     block(device->block_for_s);
   }
   ++device->sequence;
-  const std::uint32_t silences = device->silences.load();
-  bool silenced = silences != device->answered;
-  if (silenced && commandsNothing(*device, commands)) {
-    device->answered = silences;
-    silenced = false;
-  }
+  if (seen != device->answered && commandsNothing(*device, commands)) device->answered = seen;
+  const bool silenced = device->silences.load() != device->answered;
   bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = device->arms[i];

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, EndingTest, lab
 
-SIGNALS = (signal.SIGTERM, signal.SIGINT)
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
 
 def small_head(file):
@@ -66,7 +66,7 @@ class Signals(EndingTest):
             "measure jitter": ("measure", "jitter", "--seconds", 600, "--out", out / "jitter"),
         }
         for number, (name, command) in enumerate(commands.items()):
-            by = SIGNALS[number % 2]
+            by = SIGNALS[number % len(SIGNALS)]
             with self.subTest(command=name, signal=by.name):
                 process = self.start(LAB, *command, "--json")
                 self.wait_for(process, lambda: listens(process))
@@ -156,6 +156,15 @@ class FullDisk(EndingTest):
         self.assertGreater(answer["removed_voxels"], 100)
         saved = lab("import", self.folder / "carved.nii.gz")["series"][0]
         self.assertEqual(saved["volume_sha256"], answer["volume_sha256"])
+
+    def test_a_disk_without_room_for_the_beginning_of_a_recording_is_said(self):
+        case = small_head(self.folder / "head.nii.gz")
+        for blocks in (1, 4, 8):
+            process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, "--seconds", 1,
+                                 "--out", self.folder / "out", "--json", shell=f"ulimit -f {blocks}")
+            code, answer = self.end(process)
+            self.assertEqual(code, 1)
+            self.assert_error(answer, "CANNOT_WRITE", "cannot be started")
 
     @unittest.skipUnless(WINDOW and os.environ.get("DISPLAY"), "needs the window and a display")
     def test_an_exercise_in_the_window_goes_on_and_fails_at_its_end(self):

@@ -172,6 +172,16 @@ class EditsGuiTest : public QObject {
     QVERIFY(!reason->isVisible());
     QCOMPARE(box->value(), before);
     QVERIFY(view().hasFocus());
+
+    // A narrower field: the words need three lines.
+    enter("huLow", "1000000");
+    auto* of_hu = find<QLabel>("huLowRefused");
+    QTRY_VERIFY(of_hu->isVisible());
+    QTRY_VERIFY2(of_hu->height() >= of_hu->heightForWidth(of_hu->width()), "the reason is cut off");
+    auto* low = find<QSpinBox>("huLow");
+    low->setFocus();
+    QTest::keyClick(low, Qt::Key_Escape);
+    QVERIFY(!of_hu->isVisible());
   }
 
   void escapeGivesTheKeysBackFromEveryControl() {

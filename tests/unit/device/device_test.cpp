@@ -1,4 +1,5 @@
 // An opened device: starting, stopping, failing, and what a tick may not do.
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -150,6 +151,24 @@ TEST(Device, AnExchangeOfZeroForceAnswersASafeStopAndLaterForcesMoveTheArmAgain)
   bench.push({1.0, 0.0, 0.0});
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(bench.tick());
   EXPECT_GT(bench.position().x, 0.001);
+}
+
+TEST(Device, WhatWasCommandedBeforeASafeStopIsNoAnswerToIt) {
+  Json json = exactOmni();
+  json.update({{"block_after_s", 0.01}, {"block_for_s", 0.3}});
+  Bench bench(json);
+  ASSERT_TRUE(bench.device && bench.start());
+  bench.push({0.0, 0.0, 0.0});
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.tick());
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    bench.device->safeStop();
+  });
+  ASSERT_TRUE(bench.tick());  // commands zero, and blocks
+  stopper.join();
+  bench.push({1.0, 0.0, 0.0});
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(bench.tick());
+  EXPECT_NEAR(bench.position().x, 0.0, 1e-9);
 }
 
 TEST(Device, CommandsNeedNoSizeFromTheCaller) {

@@ -32,7 +32,7 @@ TEST(Standstill, DoesNotBeginWhileTicksComeOrNothingIsDue) {
 
 // A device of one arm whose exchange waits while `held`.
 struct Held {
-  static inline std::atomic<bool> held{false};
+  static inline std::atomic<bool> held{false}, stops_wait{false};
   static inline std::atomic<int> silences{0}, exchanges{0}, waiting{0};
   static inline std::atomic<double> commanded_N{0.0};
 
@@ -73,7 +73,10 @@ struct Held {
         exchange,
         nullptr,
         [](TrephineDevice*) { return int(TREPHINE_OK); },
-        [](TrephineDevice*) { ++silences; },
+        [](TrephineDevice*) {
+          ++silences;
+          while (stops_wait) std::this_thread::sleep_for(1ms);
+        },
         [](TrephineDevice*) { return ""; },
         [](TrephineDevice*) {},
     };
@@ -157,6 +160,18 @@ TEST(Watchdog, SilencesAtOnceWhenAskedEvenWhileADeviceBlocks) {
   const int before = Held::silences;
   EXPECT_TRUE(running.watchdog->silence(20s));
   EXPECT_GT(Held::silences, before);
+}
+
+// Its safe_stop waits until the device lets go, as one that needs the same mutex.
+TEST(Watchdog, SaysThatTicksStandStillThoughSafeStopDoesNotReturnAndCountsThemOnce) {
+  Running running;
+  Held::stops_wait = true;
+  Held::held = true;
+  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.05; }));
+  EXPECT_TRUE(running.loop->silenceIsPending());
+  Held::held = false;
+  Held::stops_wait = false;
+  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() == 0.0; }));
 }
 
 TEST(HapticLoop, AThreadThatADeviceHoldsIsLeftBehindAndTouchesNoVoxelsLater) {
