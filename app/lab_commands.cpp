@@ -90,15 +90,15 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   }
   if (!arguments.save_volume.empty()) {
     if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();
-    const auto folder = std::filesystem::path(arguments.save_volume).parent_path();
-    std::error_code none;
-    if (!folder.empty() && !std::filesystem::is_directory(folder, none)) {
-      return Error{"MISSING_FOLDER", "There is no folder for the volume", folder.string(),
-                   "Make it, or give --save-volume another place"};
-    }
   }
   const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return made.error();
+  std::error_code none;
+  const auto folder = std::filesystem::path(arguments.save_volume).parent_path();
+  if (!arguments.save_volume.empty() && !folder.empty() && !std::filesystem::is_directory(folder, none)) {
+    return Error{"MISSING_FOLDER", "There is no folder for the volume", folder.string(),
+                 "Make it, or give --save-volume another place"};
+  }
 
   Result<Volume> volume = openCase(scene->case_source, progress);
   if (!volume) return volume.error();

@@ -4,6 +4,7 @@ and with everything that was written in a state that can be used."""
 import gzip
 import json
 import os
+import shutil
 import signal
 import struct
 import subprocess
@@ -11,7 +12,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, WINDOW, EndingTest, lab
+from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
@@ -175,6 +176,38 @@ class FullDisk(EndingTest):
         self.assert_error(answer, "CANNOT_WRITE", "session-")
         self.assertEqual(answer["ticks"], 12000)
         self.assertTrue(lab("replay", answer["recording"])["identical"])
+
+
+class Stuck(EndingTest):
+    """Arms whose driver does not return, or that go away."""
+
+    def scene_with(self, **device):
+        resources = self.folder / "resources"
+        shutil.copytree(SOURCE / "resources", resources)
+        arms = resources / "devices" / "omni.json"
+        arms.write_text(json.dumps(json.loads(arms.read_text()) | device))
+        scene = resources / "scenes" / "cranium.json"
+        head = small_head(scene.parent / "head.nii.gz")
+        scene.write_text(json.dumps(json.loads(scene.read_text()) | {"case": head.name}))
+        return scene
+
+    def test_a_run_lists_the_faults_and_exits_4(self):
+        scene = self.scene_with(block_after_s=0.5, block_for_s=3600)
+        process = self.start(LAB, "run", scene, "--realtime", "--seconds", 3000, "--out",
+                             self.folder / "out", "--json")
+        code, answer = self.end(process)
+        self.assertEqual(code, 4)
+        self.assertEqual([f["fault"] for f in answer["faults"][-2:]], ["stuck", "stuck"])
+        self.assert_whole(self.folder / "out" / "session.h5", scene.parent / "head.nii.gz")
+
+    @unittest.skipUnless(os.environ.get("DISPLAY"), "needs a display")
+    def test_an_exercise_that_nobody_watches_ends_and_lists_them(self):
+        scene = self.scene_with(block_after_s=0.5, block_for_s=3600)
+        process = self.start(WINDOW, "--exercise", scene, "--seconds", 3000, "--out",
+                             self.folder / "out", "--json")
+        code, answer = self.end(process)
+        self.assertEqual(code, 0)
+        self.assertEqual(answer["faults"][-1]["fault"], "stuck")
 
 
 class Damage(EndingTest):

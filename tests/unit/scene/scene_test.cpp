@@ -253,6 +253,25 @@ TEST_F(ToolFile, IsRefusedWithFileFieldAndValueOfANumberOutOfRange) {
   }
 }
 
+TEST_F(ToolFile, ThatIsNoObjectIsRefusedThoughTheSceneSetsANumberOfItsOwn) {
+  scene_["tools"][0]["length_mm"] = 20;
+  for (const Json& other : {Json::array(), Json(1e300), Json("x"), Json()}) {
+    tool_ = other;
+    expectRefused("", "");
+  }
+}
+
+TEST(Scene, FindsItsCaseBesideItselfAndABuiltInOneByName) {
+  Json scene = shipped();
+  EXPECT_EQ(parseScene(scene, resourceFolder() / "scenes" / "scene.json")->case_source,
+            "phantom:cranium");
+  scene["case"] = "../ct";
+  for (Json& arm : scene["arms"]) arm["device"].erase("config");
+  scene["tissues"] = (resourceFolder() / "tissues" / "cranium.json").string();
+  const std::filesystem::path beside = resourceFolder() / "scenes" / "scene.json";
+  EXPECT_EQ(parseScene(scene, beside)->case_source, (resourceFolder() / "ct").string());
+}
+
 TEST_F(ToolFile, HasAnAxisThatPointsSomewhere) {
   tool_["axis"] = {0, 0, 0};
   expectRefused("axis", "length of 0");
