@@ -56,7 +56,8 @@ Status applyChoices(const RunArguments& arguments, Scene& scene) {
 
 Status runRealTime(Session& session, double seconds, const Progress& progress) {
   if (Status started = session.start(seconds); !started) return started;
-  while (!session.finished() && !progress.cancelled() && session.standsStillFor_s() < Session::kGivenUp_s) {
+  while (!session.finished() && !progress.cancelled() &&
+         session.standsStillFor_s() < Session::kGivenUp_s) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   const bool cancelled = progress.cancelled() && !session.finished();
@@ -95,7 +96,8 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   if (Status made = makeFolder(out); !made) return made.error();
   std::error_code none;
   const auto folder = std::filesystem::path(arguments.save_volume).parent_path();
-  if (!arguments.save_volume.empty() && !folder.empty() && !std::filesystem::is_directory(folder, none)) {
+  if (!arguments.save_volume.empty() && !folder.empty() &&
+      !std::filesystem::is_directory(folder, none)) {
     return Error{"MISSING_FOLDER", "There is no folder for the volume", folder.string(),
                  "Make it, or give --save-volume another place"};
   }

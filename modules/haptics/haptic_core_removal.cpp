@@ -70,8 +70,7 @@ bool HapticCore::takes(const Arm& arm, const Index3& voxel) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {  // tools are mostly apart
     if (voxel[axis] < arm.bites_low[axis] || voxel[axis] > arm.bites_high[axis]) return false;
   }
-  const auto index =
-      std::uint32_t(writer_.grid().geometry().indexOf(voxel[0], voxel[1], voxel[2]));
+  const auto index = std::uint32_t(writer_.grid().geometry().indexOf(voxel[0], voxel[1], voxel[2]));
   return std::binary_search(arm.taken.begin(), arm.taken.end(), index);
 }
 
@@ -136,8 +135,8 @@ bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
   const std::int16_t old_hu = writer_.grid().hu(voxel);
   if (!journal_.erase(writer_, arm, voxel, bite.tissue_class, sharers)) return false;
   bricks_->remove(bite.voxel);
-  carves_.push_back({tick, std::uint32_t(voxel), old_hu, std::int8_t(index),
-                     std::int8_t(bite.tissue_class)});
+  carves_.push_back(
+      {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(bite.tissue_class)});
   return true;
 }
 

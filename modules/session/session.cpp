@@ -312,7 +312,8 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
     names += (names.empty() ? "'" : " and '") + scene_.arms[arm].name + "'";
   }
   left_behind_ =
-      Error{"DEVICE_STUCK", (stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
+      Error{"DEVICE_STUCK",
+            (stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
                                    : "The arm " + names + " stopped answering and was left behind"),
             "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
             "What was done until then is recorded. Switch the arm off and on, then "

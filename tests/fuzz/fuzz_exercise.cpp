@@ -11,8 +11,8 @@
 #include <string_view>
 
 #include "base/system.h"
-#include "exercise_files.h"
 #include "device/device.h"
+#include "exercise_files.h"
 #include "json_mutator.h"
 #include "processor_time.h"
 #include "session/session.h"
