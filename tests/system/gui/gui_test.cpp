@@ -144,8 +144,13 @@ class GuiTest : public QObject {
       wheel(-34, modifiers);
       QTest::qWait(500);
       wheel(4, modifiers);
-      if (removedVoxels(*workstation().session()) != standing) return;
-      qInfo("nothing was cut: once more");
+      constexpr std::uint64_t kEnough = 20;  // voxels, or the force went in the middle of it
+      if (removedVoxels(*workstation().session()) > standing + kEnough) return;
+      qInfo("little or nothing was cut: once more");
+      for (int n = 0; n < 5 && removedVoxels(*workstation().session()) != standing; ++n) {
+        find<QAction>("undo")->trigger();
+        QTest::qWait(300);
+      }
       QTest::qWait(1500);
       find<QAction>("forceBack")->trigger();
     }
