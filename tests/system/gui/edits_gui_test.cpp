@@ -15,10 +15,9 @@
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include "gui_support.h"
 #include "tissue/tissue_edits.h"
-#include "ui/colours.h"
 #include "ui/main_window.h"
-#include "ui/start_up.h"
 #include "ui/words.h"
 #include "volume/phantom.h"
 
@@ -27,16 +26,6 @@ using namespace trephine;
 namespace {
 
 constexpr int kLong_ms = 120000;
-
-// The cranium on a grid a quarter as fine: the test is about the window.
-Volume testCase() {
-  GridGeometry geometry = *phantomGeometry("cranium");
-  for (int axis = 0; axis < 3; ++axis) {
-    geometry.size[std::size_t(axis)] /= 4;
-    geometry.spacing_mm[axis] *= 4.0;
-  }
-  return makePhantomOn(*phantomTruth("cranium"), geometry, kPhantomNoiseHu);
-}
 
 }  // namespace
 
@@ -139,7 +128,7 @@ class EditsGuiTest : public QObject {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    workstation().openVolume(std::make_shared<const Volume>(testCase()), "");
+    workstation().openVolume(std::make_shared<const Volume>(test::coarseCranium(4)), "");
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     find<QTabWidget>("leftTabs")->setCurrentIndex(1);
     window_->findChild<TissuePanel*>()->select("bone");
@@ -321,17 +310,6 @@ class EditsGuiTest : public QObject {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) {
-  if (Status display = prepareDisplay(); !display) {
-    std::printf("SKIP: %s\n", display.error().sentence().c_str());
-    return 77;
-  }
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("trephine-test");
-  QStandardPaths::setTestModeEnabled(true);
-  colours::applyTheme(application);
-  EditsGuiTest test;
-  return QTest::qExec(&test, argc, argv);
-}
+int main(int argc, char** argv) { return test::runInWindow<EditsGuiTest>(argc, argv); }
 
 #include "edits_gui_test.moc"

@@ -19,11 +19,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "gui_support.h"
 #include "imaging/ct_writer.h"
 #include "render/picture.h"
-#include "ui/colours.h"
 #include "ui/main_window.h"
-#include "ui/start_up.h"
 #include "ui/words.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
@@ -35,16 +34,6 @@ namespace {
 constexpr int kLong_ms = 120000;
 const char* const kFolderName = "Doe^Jane_1971";  // as identifying as a folder's name can be
 const char* const kDescription = "Phantom, cranium";
-
-// The cranium on a grid half as fine: the test is about the window.
-Volume testCase() {
-  GridGeometry geometry = *phantomGeometry("cranium");
-  for (int axis = 0; axis < 3; ++axis) {
-    geometry.size[std::size_t(axis)] /= 2;
-    geometry.spacing_mm[axis] *= 2.0;
-  }
-  return makePhantomOn(*phantomTruth("cranium"), geometry, kPhantomNoiseHu);
-}
 
 // Pixels that a person sees as different.
 int differentPixels(const Picture& a, const Picture& b) {
@@ -213,7 +202,7 @@ class GuiTest : public QObject {
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    written_ = testCase();
+    written_ = test::coarseCranium(2);
     const QString folder = temporary_.filePath(kFolderName);
     const Status made = writeCtSeries(written_, {kDescription, "HEAD"}, toPath(folder));
     QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
@@ -597,17 +586,6 @@ class GuiTest : public QObject {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) {
-  if (Status display = prepareDisplay(); !display) {
-    std::printf("SKIP: %s\n", display.error().sentence().c_str());
-    return 77;
-  }
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("trephine-test");
-  QStandardPaths::setTestModeEnabled(true);
-  colours::applyTheme(application);
-  GuiTest test;
-  return QTest::qExec(&test, argc, argv);
-}
+int main(int argc, char** argv) { return test::runInWindow<GuiTest>(argc, argv); }
 
 #include "gui_test.moc"

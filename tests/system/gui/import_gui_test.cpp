@@ -22,10 +22,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "gui_support.h"
 #include "imaging/ct_writer.h"
-#include "ui/colours.h"
 #include "ui/main_window.h"
-#include "ui/start_up.h"
 #include "ui/words.h"
 #include "volume/phantom.h"
 
@@ -452,17 +451,6 @@ class ImportGuiTest : public QObject {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) {
-  if (Status display = prepareDisplay(); !display) {
-    std::printf("SKIP: %s\n", display.error().sentence().c_str());
-    return 77;
-  }
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("trephine-test");
-  QStandardPaths::setTestModeEnabled(true);
-  colours::applyTheme(application);
-  ImportGuiTest test;
-  return QTest::qExec(&test, argc, argv);
-}
+int main(int argc, char** argv) { return test::runInWindow<ImportGuiTest>(argc, argv); }
 
 #include "import_gui_test.moc"

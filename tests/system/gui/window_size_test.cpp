@@ -18,11 +18,10 @@
 #include <QtTest>
 #include <cstdio>
 
+#include "gui_support.h"
 #include "imaging/ct_writer.h"
-#include "ui/colours.h"
 #include "ui/main_window.h"
 #include "ui/placing.h"
-#include "ui/start_up.h"
 #include "ui/words.h"
 
 using namespace trephine;
@@ -206,17 +205,6 @@ class WindowSizeTest : public QObject {
   }
 };
 
-int main(int argc, char** argv) {
-  if (Status display = prepareDisplay(); !display) {
-    std::printf("SKIP: %s\n", display.error().sentence().c_str());
-    return 77;
-  }
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("trephine-test");
-  QStandardPaths::setTestModeEnabled(true);
-  colours::applyTheme(application);
-  WindowSizeTest test;
-  return QTest::qExec(&test, argc, argv);
-}
+int main(int argc, char** argv) { return test::runInWindow<WindowSizeTest>(argc, argv); }
 
 #include "window_size_test.moc"
