@@ -7,6 +7,7 @@ namespace trephine {
 namespace {
 
 constexpr std::size_t kTurns = 4;  // ticks
+constexpr double kMostAlongBody = 128.0;
 
 // -1 outside; written so that NaN falls out as "outside".
 std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
@@ -40,12 +41,30 @@ ToolContact::ToolContact(const Tool& tool, const GridGeometry& geometry)
     high_mm_ = glm::max(high_mm_, p);
   }
   const Vec3& spacing = geometry.spacing_mm;
+  const double voxel_mm = std::min({spacing.x, spacing.y, spacing.z});
+  for (const BodyPart& part : tool.body) {
+    const Vec3 from = 1000.0 * part.from_m, along = 1000.0 * part.to_m - from;
+    const int steps = int(std::min(glm::length(along) / voxel_mm, kMostAlongBody)) + 1;
+    for (int n = 0; n <= steps; ++n) body_mm_.push_back(from + (double(n) / steps) * along);
+  }
   reach_ = 1000.0 * tool.point_inset_m / spacing + 0.5;
 }
 
 void ToolContact::forget() {
   std::fill(classes_.begin(), classes_.end(), std::int8_t(-1));
   contact_ = Contact{};
+}
+
+bool ToolContact::wouldTouch(const Grid& grid, const TissueBricks& bricks,
+                             const TissueLookup& lookup, const Pose& pose_mm) const {
+  const Vec3 tip = Vec3(patient_to_voxel_ * glm::dvec4(pose_mm.position, 1.0));
+  const Mat3 to_voxel = Mat3(patient_to_voxel_) * glm::mat3_cast(pose_mm.orientation);
+  const auto inTissue = [&](const Vec3& point_mm) {
+    const Vec3 voxel = tip + to_voxel * point_mm;
+    return bricks.mayHold(voxel, voxel) && classAt(grid, lookup, voxel) >= 0;
+  };
+  return std::any_of(points_mm_.begin(), points_mm_.end(), inTissue) ||
+         std::any_of(body_mm_.begin(), body_mm_.end(), inTissue);
 }
 
 // Each place differs from the point along one axis alone, so its voxel is a step in memory away.

@@ -36,6 +36,9 @@ class ToolContact {
   const Contact& update(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
                         const TissueTable& tissues, const Pose& pose_mm);
   void forget();
+  // Whether any point of the tool, or of the axis of its shaft, would be in tissue at a pose.
+  bool wouldTouch(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
+                  const Pose& pose_mm) const;
 
   const Contact& contact() const { return contact_; }
   // The tissue of each point of the tool, -1 air.
@@ -46,6 +49,7 @@ class ToolContact {
                 const Vec3& voxel) const;
 
   std::vector<Vec3> points_mm_;  // tool frame
+  std::vector<Vec3> body_mm_;    // along the axes of its body, a voxel apart
   std::vector<std::int8_t> classes_;
   std::vector<std::int64_t> voxels_;  // of the points, in this tick; -1 outside
   Mat4 patient_to_voxel_;

@@ -10,12 +10,15 @@ namespace trephine {
 // throughout: patient axes from the laws, device axes at the controller.
 struct ContactForce {
   Vec3 elastic_N{0.0};
-  double stiffness = 0.0;        // N/m
+  double stiffness = 0.0;        // N/m, of soft tissue: along any way
+  double solid_stiffness = 0.0;  // N/m, of what stops the tool: across it the tool goes free
   double damping = 0.0;          // N s/m, the sum over the tool's points
   double stored_J = 0.0;         // that the springs behind elastic_N hold and can give back
   Vec3 damped_turning_N{0.0};    // sum of damping_i (omega x r_i): the points' own velocities
   Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
 
+  // Along the way on which it is stiffest: where a tool is stopped, soft tissue only acts across.
+  double stiffest() const { return stiffness > solid_stiffness ? stiffness : solid_stiffness; }
   Vec3 at(const Vec3& velocity_m_s) const {
     return elastic_N - damping * velocity_m_s - damped_turning_N;
   }

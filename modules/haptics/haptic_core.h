@@ -8,8 +8,10 @@
 
 #include "haptics/contact.h"
 #include "haptics/controllers.h"
+#include "haptics/hand_work.h"
 #include "haptics/haptic_types.h"
 #include "haptics/laws.h"
+#include "haptics/proxy.h"
 #include "haptics/removal.h"
 #include "haptics/safety.h"
 #include "haptics/stiffness_ball.h"
@@ -88,22 +90,28 @@ class HapticCore {
     Controller controller;
     ForceGate gate;
     ToolContact contact;
-    std::optional<StiffnessBall> ball;  // only with the elastic law
+    std::optional<StiffnessBall> ball;  // both only with the elastic law: without it the tool is
+    std::optional<Proxy> proxy;         // where the arm is
     Removal removal;
     std::vector<TouchPoint> points;
     std::vector<Bite> bites;  // of this tick
     Index3 bites_low{0, 0, 0}, bites_high{0, 0, 0};  // their bounds
     std::vector<std::uint32_t> taken;                // their voxels in order, near another arm's
     std::optional<Pose> last_pose;  // device
-    Vec3 last_demanded_N{0.0}, last_torque_Nm{0.0};  // patient axes
-    bool cuts = false;  // may remove in this tick
+    HandWork work;
+    Cutting cutting = Cutting::by_hand;
+    bool cuts = false;     // may remove in this tick
+    bool placed = false;   // the proxy was put where the arm was
+  bool waiting = false;  // without force, until it is out of tissue
+    double free_s = 0.0;   // for so long the arm's own pose has been free, and the tool far from it
+    double letting_go = 0.0;  // above 0: what of the force has faded; 1: all
     Vec3 energy_out_J{0.0};
     std::uint32_t faults = 0;
     std::uint64_t air_ticks = 0;  // since the tool was last in tissue
   };
-  // How an arm moved since the last tick, patient axes.
+  // How an arm moved since the last tick, patient axes; the tool is at its proxy.
   struct Motion {
-    Pose pose_mm;
+    Pose arm_mm, pose_mm;
     Vec3 velocity_m_s{0.0};
     Vec3 turning_rad_s{0.0};
   };
@@ -113,9 +121,13 @@ class HapticCore {
   void forgetForces(bool restored);
   void finishRestore();
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
+  void moveTool(std::size_t index, bool may_cut, std::uint64_t tick, Motion& motion);
+  void letGoOfHook(std::size_t index, std::uint64_t tick, const Motion& motion);
+  bool wouldTouch(const Arm& arm, const Pose& pose_mm) const;
   LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
-  void earn(Arm& arm, const Tool& tool, const Motion& motion, const ContactForce& model);
+  void earn(Arm& arm, const Tool& tool, double lost_J);
   void removeBites(std::uint64_t tick, TickRecord& record);
+  void bite(Arm& arm, const ArmRecord& moved);
   bool takes(const Arm& arm, const Index3& voxel) const;
   void sortBites();
   std::array<std::size_t, kMaxArms> newestStrokeFirst(const CarveJournal::Credits& before,
@@ -135,6 +147,7 @@ class HapticCore {
   bool elastic_ = false;
   bool tissues_finite_ = true;
   bool any_cuttable_ = false;
+  bool soft_push_ = false;  // some soft tissue pushes by the elastic law
   LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;

@@ -9,6 +9,11 @@
 
 namespace trephine {
 
+namespace {
+// What a tool would enter is looked for so far ahead of it: half a voxel, and this at least.
+constexpr double kLeastAhead_mm = 0.25;
+}  // namespace
+
 // All tools bite into the tissue as it was, then it goes. Arms that take the same voxel in a tick
 // share its cost, so that the order of the arms changes no credit. Its entry goes to the newest of
 // their strokes: undo takes that first, so that what any of them took is back once it is undone.
@@ -18,9 +23,7 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
     Arm& arm = arms_[i];
     arm.bites.clear();
     if (!arm.cuts || !may_remove_ || !any_cuttable_) continue;
-    const ArmRecord& moved = record.arms[i];
-    arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues,
-                      {moved.patient_position_mm, moved.patient_orientation}, arm.bites);
+    bite(arm, record.arms[i]);
     arm.bites_low.fill(std::numeric_limits<std::int32_t>::max());
     arm.bites_high.fill(-1);
     for (const Bite& bite : arm.bites) {
@@ -63,6 +66,24 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
     if (journal_.inStroke(arm_number) && arm.air_ticks > stroke_gap_ticks_) {
       journal_.endStroke(arm_number);
     }
+  }
+}
+
+// What the tool would enter, where tissue holds it back, else what it is in. Where nothing of that is
+// left and it is held all the same, what holds it goes.
+void HapticCore::bite(Arm& arm, const ArmRecord& moved) {
+  const GridGeometry& geometry = writer_.grid().geometry();
+  Pose front_mm{moved.proxy_position_mm, moved.proxy_orientation};
+  const bool held = arm.proxy && arm.proxy->held();
+  if (held) {
+    const Vec3& s = geometry.spacing_mm;
+    front_mm = arm.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
+  }
+  arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.bites);
+  if (!held || !arm.bites.empty()) return;
+  for (const Proxy::Blocker& blocker : arm.proxy->blockers()) {
+    arm.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
+                     arm.bites);
   }
 }
 
@@ -149,7 +170,11 @@ bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
   const int arm = int(index);
   const std::int16_t old_hu = writer_.grid().hu(voxel);
   if (!journal_.erase(writer_, arm, voxel, bite.tissue_class, sharers)) return false;
-  bricks_->remove(bite.voxel);
+  const bool solid = lookup_.isSolid(bite.tissue_class);
+  bricks_->remove(bite.voxel, solid);
+  for (Arm& other : arms_) {
+    if (solid && other.proxy) other.proxy->removed();
+  }
   carves_.push_back(
       {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(bite.tissue_class)});
   return true;

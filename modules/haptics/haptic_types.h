@@ -59,7 +59,10 @@ struct ArmRecord {
   Quat device_orientation{1, 0, 0, 0};
   Vec3 patient_position_mm{0.0};  // the tool's tip
   Quat patient_orientation{1, 0, 0, 0};
-  Vec3 velocity_m_s{0.0};  // patient axes, backward difference
+  // Where the tool is, and is drawn: what solid tissue keeps it from entering, it stays out of.
+  Vec3 proxy_position_mm{0.0};
+  Quat proxy_orientation{1, 0, 0, 0};
+  Vec3 velocity_m_s{0.0};  // of the arm, patient axes, backward difference
   Vec3 demanded_N{0.0};    // from the laws
   Vec3 demanded_torque_Nm{0.0};  // about the handle, for arms that can
   Vec3 bounded_N{0.0};     // after the controller
@@ -68,6 +71,9 @@ struct ArmRecord {
   Vec3 energy_out_J{0.0};  // net work of the sent force on the arm so far, by axis: sum F(n-1) dx(n)
   double observer_J = 0.0;  // the controller's own observer
   double alpha = 0.0;       // the controller's gain: of `bounded`, the scale it has learnt
+  double rendered_share = 1.0;  // of the tissues' impedance, before the controller's force
+  double hand_work_J = 0.0;     // the hand's on the tool so far, in the model's units (README.md)
+  double stored_J = 0.0;        // of it in the model's springs
   double cutting_credit_J = 0.0;  // work on tissue, not yet spent on removal
   std::uint32_t controller_parts = 0;  // ControllerPart: which of its parts acted
   std::int32_t tissue_class = -1;
@@ -95,7 +101,11 @@ struct CarveRecord {
 
 // Everything else that happened, stamped with its tick.
 // silenced: the watchdog took the force away before this tick.
-enum class EventKind : std::int32_t { command, fault, journal_full, stroke_began, silenced };
+// starts_in_tissue: an arm has no force and cuts nothing until it has been out of tissue.
+// let_go: a tool that was hooked behind solid tissue went to its arm, which was free.
+enum class EventKind : std::int32_t {
+  command, fault, journal_full, stroke_began, silenced, starts_in_tissue, let_go
+};
 
 struct Event {
   std::uint64_t tick = 0;

@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "haptics/arm_dynamics.h"
+#include "haptics/proxy.h"
 #include "haptics/stiffness_ball.h"
 #include "tissue/tissue_set.h"
 
@@ -28,18 +29,20 @@ struct TouchPoint {
   std::int32_t tissue_class = -1;  // -1 air
 };
 
+// The tool is where its proxy is; it moves as the arm moves it.
 struct LawInput {
   Vec3 tip_m{0.0};
-  Vec3 velocity_m_s{0.0};  // of the tip
+  Vec3 velocity_m_s{0.0};  // of the arm, at the tip
   Vec3 into_m{0.0};        // the way the tool points, of length 1
   std::span<const TouchPoint> points;
   bool touching = false;   // any of them
   std::int32_t tip_class = -1;  // where the tip itself is
   const TissueTable* tissues = nullptr;
   Impedance share{1.0, 1.0};  // of the tissues' damping and stiffness that is rendered
-  ElasticPush push;           // on the tool's ball; only for scenes with the elastic law
+  Pull pull;                  // of solid tissue, which the proxy does not enter; and:
+  ElasticPush push;           // of soft tissue on the tool's ball; both for the elastic law
   Vec3 ball_m{0.0};           // the ball's centre from the tip
-  bool blunt = false;
+  bool parts = false;         // the tool parts the tissue before it, being sharp
   double ball_radius_m = 0.0;
 
   const TissueClass& tissue(const TouchPoint& p) const {

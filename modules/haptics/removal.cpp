@@ -117,6 +117,17 @@ void Removal::end(const Capsule& now) {
   known_ = true;
 }
 
+void Removal::take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
+                   std::vector<Bite>& bites) {
+  const TissueClass& tissue = tissues.classes[std::size_t(tissue_class)];
+  const double cost_J = kind_ == RemovalKind::instant
+                            ? 0.0
+                            : voxelWork_J(tissue, geometry_.voxelVolume_mm3());
+  if (credit_J_ < cost_J || bites.size() == kMostBites) return;
+  credit_J_ -= cost_J;
+  bites.push_back({voxel, tissue_class, cost_J});
+}
+
 bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const {
   const Vec3 low = glm::min(glm::min(clear_.from, clear_.to), glm::min(now.from, now.to));
   const Vec3 high = glm::max(glm::max(clear_.from, clear_.to), glm::max(now.from, now.to));

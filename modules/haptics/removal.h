@@ -51,6 +51,9 @@ class Removal {
   // this tick, to `bites` (room for kMostBites). No allocation.
   void sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
              const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites);
+  // Takes this one voxel, which holds the tool back, if the credit pays for it.
+  void take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
+            std::vector<Bite>& bites);
   // A voxel was shared with another tool, or could not be removed.
   void refund(double work_J) { credit_J_ += work_J; }
   // Tissue came back, or another is meant by a HU: nothing is known to be clear.

@@ -11,20 +11,24 @@ constexpr std::size_t kBricksSearched = 4096;  // for one to recount, a tick
 TissueBricks::TissueBricks(const Grid& grid, const TissueLookup& lookup)
     : size_(grid.geometry().size) {
   for (int axis = 0; axis < 3; ++axis) bricks_[axis] = (size_[axis] + kBrickEdge - 1) / kBrickEdge;
-  count_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), 0);
+  count_.assign(std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]), {});
   std::size_t voxel = 0;
   for (int k = 0; k < size_[2]; ++k) {
     for (int j = 0; j < size_[1]; ++j) {
       const std::size_t row = at(0, j >> kBrickShift, k >> kBrickShift);
       for (int i = 0; i < size_[0]; ++i, ++voxel) {
-        if (lookup.classAt(grid, voxel) >= 0) ++count_[row + std::size_t(i >> kBrickShift)];
+        const int c = lookup.classAt(grid, voxel);
+        if (c < 0) continue;
+        Brick& brick = count_[row + std::size_t(i >> kBrickShift)];
+        ++brick.tissue;
+        if (lookup.isSolid(c)) ++brick.solid;
       }
     }
   }
 }
 
-std::uint16_t TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
-                                     const TissueLookup& lookup) const {
+TissueBricks::Brick TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
+                                           const TissueLookup& lookup) const {
   const GridGeometry& g = grid.geometry();
   const std::size_t row = brick / std::size_t(bricks_[0]);
   const int from[3] = {int(brick % std::size_t(bricks_[0])) << kBrickShift,
@@ -32,12 +36,17 @@ std::uint16_t TissueBricks::tissueIn(std::size_t brick, const Grid& grid,
                        int(row / std::size_t(bricks_[1])) << kBrickShift};
   int to[3];
   for (int axis = 0; axis < 3; ++axis) to[axis] = std::min(from[axis] + kBrickEdge, size_[axis]);
-  std::uint16_t count = 0;
+  Brick count;
   for (int k = from[2]; k < to[2]; ++k) {
     for (int j = from[1]; j < to[1]; ++j) {
       const std::size_t first = g.indexOf(from[0], j, k);
       const std::size_t end = first + std::size_t(to[0] - from[0]);
-      for (std::size_t v = first; v < end; ++v) count += lookup.classAt(grid, v) >= 0;
+      for (std::size_t v = first; v < end; ++v) {
+        const int c = lookup.classAt(grid, v);
+        if (c < 0) continue;
+        ++count.tissue;
+        if (lookup.isSolid(c)) ++count.solid;
+      }
     }
   }
   return count;
@@ -48,7 +57,7 @@ void TissueBricks::recount(const Grid& grid, const TissueLookup& lookup) {
   for (std::size_t n = 0; n < searched; ++n) {
     const std::size_t brick = next_;
     next_ = next_ + 1 == count_.size() ? 0 : next_ + 1;
-    if (count_[brick] != kUnknown) continue;
+    if (count_[brick].tissue != kUnknown) continue;
     count_[brick] = tissueIn(brick, grid, lookup);
     --unknown_;
     return;

@@ -1,5 +1,5 @@
-// How much tissue each 16^3 brick of the grid may hold: where that is nothing, a tool needs no look
-// at its voxels. Counted before the first tick, and down with every voxel that is removed. What is
+// How much tissue each 16^3 brick of the grid may hold, and how much of it is solid: where that is
+// nothing, a tool needs no look at its voxels. Counted before the first tick, and down with every voxel that is removed. What is
 // not known any more is counted anew, a brick a tick.
 #pragma once
 
@@ -17,27 +17,44 @@ class TissueBricks {
   TissueBricks(const Grid& grid, const TissueLookup& lookup);
   // Other HU mean tissue from now on: every brick may hold some. No allocation.
   void markAll() {
-    std::fill(count_.begin(), count_.end(), kUnknown);
+    std::fill(count_.begin(), count_.end(), kUnknownBrick);
     unknown_ = count_.size();
   }
   // Tissue came back, or went again, in this brick of the grid.
   void mark(std::size_t brick) {
-    if (count_[brick] != kUnknown) ++unknown_;
-    count_[brick] = kUnknown;
+    if (count_[brick].tissue != kUnknown) ++unknown_;
+    count_[brick] = kUnknownBrick;
   }
   // Counts the next brick of which nothing is known, if one is near. No allocation.
   void recount(const Grid& grid, const TissueLookup& lookup);
   std::size_t unknown() const { return unknown_; }  // bricks
 
-  void remove(const Index3& voxel) {
-    std::uint16_t& count =
+  void remove(const Index3& voxel, bool solid) {
+    Brick& brick =
         count_[at(voxel[0] >> kBrickShift, voxel[1] >> kBrickShift, voxel[2] >> kBrickShift)];
-    if (count != kUnknown && count > 0) --count;
+    if (brick.tissue == kUnknown) return;
+    if (brick.tissue > 0) --brick.tissue;
+    if (solid && brick.solid > 0) --brick.solid;
   }
 
   // Whether there may be tissue in a box of voxels, its bounds included. False for bounds that are
   // not numbers.
   bool mayHold(const Vec3& low, const Vec3& high) const {
+    return anyIn(low, high, [](const Brick& brick) { return brick.tissue > 0; });
+  }
+  bool mayHoldSolid(const Vec3& low, const Vec3& high) const {
+    return anyIn(low, high, [](const Brick& brick) { return brick.solid > 0; });
+  }
+
+ private:
+  struct Brick {
+    std::uint16_t tissue = 0, solid = 0;  // voxels
+  };
+  static constexpr std::uint16_t kUnknown = 65535;
+  static constexpr Brick kUnknownBrick{kUnknown, kUnknown};
+
+  template <class Holds>
+  bool anyIn(const Vec3& low, const Vec3& high, Holds holds) const {
     int from[3], to[3];
     for (int axis = 0; axis < 3; ++axis) {
       if (!(high[axis] >= -1.0 && low[axis] <= size_[axis])) return false;
@@ -48,16 +65,13 @@ class TissueBricks {
     for (int k = from[2]; k <= to[2]; ++k) {
       for (int j = from[1]; j <= to[1]; ++j) {
         for (int i = from[0]; i <= to[0]; ++i) {
-          if (count_[at(i, j, k)] > 0) return true;
+          if (holds(count_[at(i, j, k)])) return true;
         }
       }
     }
     return false;
   }
-
- private:
-  static constexpr std::uint16_t kUnknown = 65535;
-  std::uint16_t tissueIn(std::size_t brick, const Grid& grid, const TissueLookup& lookup) const;
+  Brick tissueIn(std::size_t brick, const Grid& grid, const TissueLookup& lookup) const;
   std::size_t at(int i, int j, int k) const {
     return (std::size_t(k) * std::size_t(bricks_[1]) + std::size_t(j)) * std::size_t(bricks_[0]) +
            std::size_t(i);
@@ -65,7 +79,7 @@ class TissueBricks {
 
   Index3 size_;
   Index3 bricks_;
-  std::vector<std::uint16_t> count_;
+  std::vector<Brick> count_;
   std::size_t unknown_ = 0;
   std::size_t next_ = 0;  // to be recounted, if it is unknown
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,13 @@ class TissueLookup {
       if (row > 0) fill(tissues, row, rows_.label[std::size_t(row)]);
       *at(row, kAirHu) = -1;
     }
+    solid_.fill(false);
+    for (int c = 0; c < tissues.count; ++c) {
+      solid_[std::size_t(c)] = tissues.classes[std::size_t(c)].solid != 0;
+    }
+  }
+  bool isSolid(int tissue_class) const {
+    return tissue_class >= 0 && solid_[std::size_t(tissue_class)];
   }
   int classOf(std::int16_t hu, std::uint8_t label = 0) const {
     return class_of_[rows_.row[label] * kHus + std::size_t(int(hu) + 32768)];
@@ -55,6 +63,7 @@ class TissueLookup {
 
   LabelRows rows_;
   std::vector<std::int8_t> class_of_;
+  std::array<bool, kMaxTissues> solid_{};
 };
 
 // The firmest tissue is that of the largest friction, then stiffness, then damping. -1 is air.

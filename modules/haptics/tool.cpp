@@ -14,6 +14,18 @@ const Vec3 kAlong(0.0, 0.0, 1.0);  // from the tip towards the handle
 constexpr double kLeastBall_m = 1.5e-3;
 // Share of the shaft's points in a burr's contact, however many there are; tuned here, uncited.
 constexpr double kShaftShare = 0.1;
+// A shaft is thinner than the hole that its head cuts: by this share, and never thicker than that
+// of the shipped burr.
+constexpr double kShaftOfHead = 0.5;
+constexpr double kThickestShaft_m = 1.2e-3;
+
+void addBody(Tool& tool, double length_m) {
+  tool.body.push_back({tool.solid_from_m, tool.solid_to_m, tool.radius_m, true});
+  if (length_m > tool.solid_to_m.z + tool.radius_m) {
+    tool.body.push_back({tool.solid_to_m, length_m * kAlong,
+                         std::min(kShaftOfHead * tool.radius_m, kThickestShaft_m), false});
+  }
+}
 
 // `count` points from `from` to `to`, ends included, with trapezoidal weights that sum to `share`.
 void addLine(Tool& tool, const Vec3& from, const Vec3& to, int count, double share) {
@@ -35,6 +47,7 @@ Tool sharpTool(const ToolDescription& d) {
   // A needle opens tissue with its point, a blade along its edge; a blade of one point is its tip.
   const bool edge = d.kind == ToolKind::blade && d.points > 1;
   tool.solid_to_m = (edge ? 0.001 * d.length_mm : 0.0) * kAlong;
+  addBody(tool, 0.001 * d.length_mm);
   return tool;
 }
 
@@ -72,6 +85,7 @@ Tool burr(const ToolDescription& d) {
   tool.solid_to_m = (radius + straight) * kAlong;
   tool.radius_m = tool.ball_radius_m = radius;
   tool.blunt = true;
+  addBody(tool, length);
   return tool;
 }
 

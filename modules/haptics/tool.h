@@ -34,6 +34,13 @@ struct ToolDescription {
   friend bool operator==(const ToolDescription&, const ToolDescription&) = default;
 };
 
+// A part of a tool that has a body: all within a radius of a segment, tool frame.
+struct BodyPart {
+  Vec3 from_m{0.0}, to_m{0.0};
+  double radius_m = 0.0;
+  bool cuts = false;
+};
+
 struct Tool {
   ToolDescription made_from;
   std::vector<Vec3> points_m;   // tool frame
@@ -42,6 +49,8 @@ struct Tool {
   // What it cuts: all within radius_m of this segment, tool frame.
   Vec3 solid_from_m{0.0}, solid_to_m{0.0};
   double radius_m = 0.0;
+  // What a solid tissue keeps out: the solid that cuts and, where there is one, the shaft.
+  std::vector<BodyPart> body;
   // From a point to the surface of the solid: 0 for points on a shell.
   double point_inset_m = 0.0;
   // The ball with which it presses on elastic tissue touches the tip from inside.

@@ -24,6 +24,9 @@ namespace trephine {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
+// A tool comes from outside: what it starts in gives no force.
+constexpr int kLeadInTicks = 400;
+constexpr double kLeadIn_mm = 12.0;
 constexpr std::size_t kJournalVoxels = 1 << 20;
 constexpr int kServeEvery = 20;  // ticks, as the recorder does
 constexpr TouchPhase kPhases[] = {TouchPhase::free, TouchPhase::contact, TouchPhase::removal};
@@ -61,6 +64,7 @@ TissueTable bone(bool cuttable) {
   c.friction_N = 2.0;
   c.cutting_J_per_mm3 = 0.06;
   c.cuttable = cuttable;
+  c.solid = 1;
   return table;
 }
 
@@ -232,10 +236,10 @@ Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
     HapticCore core(parametersOf(row), *grid.takeWriter());
     TickInput input;
     TickRecord record;
-    for (int n = 0; n < ticks && served && !progress.cancelled(); ++n) {
-      input.tick = std::uint64_t(n);
+    for (int n = -kLeadInTicks; n < ticks && served && !progress.cancelled(); ++n) {
       for (int arm = 0; arm < row.arms; ++arm) {
-        const Pose pose_mm = strokePose_mm(shell, row, arm, n * kPeriod_s);
+        Pose pose_mm = strokePose_mm(shell, row, arm, std::max(0, n) * kPeriod_s);
+        pose_mm.position.z += kLeadIn_mm * std::max(0, -n) / kLeadInTicks;
         ArmSample& sample = input.arms[std::size_t(arm)];
         sample.position_m = 0.001 * pose_mm.position;
         sample.orientation = pose_mm.orientation;
@@ -245,19 +249,21 @@ Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
       core.tick(input, nullptr, 0, record);
       const std::chrono::duration<double, std::nano> took =
           std::chrono::steady_clock::now() - begin;
+      ++input.tick;
 
       bool touching = false;
       for (int arm = 0; arm < row.arms; ++arm) {
         touching = touching || record.arms[std::size_t(arm)].points_in_tissue > 0;
       }
-      row.touched += touching;
-      const bool counts = row.phase == TouchPhase::free || touching || !core.carves().empty();
-      if (counts) ns.push_back(took.count());
-      removed += core.carves().size();
       for (const CarveRecord& carve : core.carves()) {
         changed.emplace_back(carve.voxel, carve.old_hu);
       }
       if (n % kServeEvery == 0) served = (*spill)->service(core.journal());
+      if (n < 0) continue;
+      row.touched += touching;
+      const bool counts = row.phase == TouchPhase::free || touching || !core.carves().empty();
+      if (counts) ns.push_back(took.count());
+      removed += core.carves().size();
     }
   }
   Grid::Writer writer = *grid.takeWriter();

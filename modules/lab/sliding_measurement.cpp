@@ -31,10 +31,11 @@ HapticParameters elasticAlone() {
   bone.hu_min = 226;
   bone.hu_max = 3071;
   bone.stiffness_N_per_m = kStiffness_N_per_m;
+  bone.solid = 1;
   parameters.journal_voxels = 1024;
   parameters.journal_strokes = parameters.journal_seconds = 64;
   ArmParameters arm;
-  arm.tool = makeBurr(kRadius_m, 16, 0, 0.05);
+  arm.tool = makeBurr(kRadius_m, 16, 0, 2.0 * kRadius_m);  // no shaft: it stands upright everywhere
   arm.max_force_N = 3.3;
   parameters.arms = {arm};
   return parameters;
@@ -56,17 +57,22 @@ std::vector<SlidingTick> slide(HapticCore& core, const EllipsoidShell& shell, co
   };
   std::vector<SlidingTick> path;
   double angle = 0.0;
-  for (std::size_t n = 0; n < ticks; ++n) {
+  // From outside: what a tool starts in gives no force.
+  constexpr int kLeadInTicks = 100;
+  constexpr double kLeadIn_m = 4e-3;
+  for (int n = -kLeadInTicks; n < int(ticks); ++n) {
     const Vec3 at_mm = surface_mm(angle);
     SlidingTick tick;
     tick.normal = surfaceNormal(shell, at_mm);
-    const Vec3 centre_m = 0.001 * at_mm + (kRadius_m - kDepth_m) * tick.normal;
+    const double out_m = kLeadIn_m * std::max(0, -n) / kLeadInTicks;
+    const Vec3 centre_m = 0.001 * at_mm + (kRadius_m - kDepth_m + out_m) * tick.normal;
     TickInput input;
-    input.tick = n;
+    input.tick = std::uint64_t(n + kLeadInTicks);
     input.journal = core.journalState();
     input.arms[0].position_m = centre_m - Vec3(0.0, 0.0, kRadius_m);  // the tip, the tool upright
     TickRecord record;
     core.tick(input, nullptr, 0, record);
+    if (n < 0) continue;
     tick.force_N = record.arms[0].demanded_N;
     path.push_back(tick);
     constexpr double kSmall = 1e-5;

@@ -139,6 +139,7 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
     if (mechanics.has("rupture_N")) t.rupture_N = readSourced(mechanics, "rupture_N");
     t.cutting_J_per_mm3 = readSourced(mechanics, "cutting_J_per_mm3");
     t.cuttable = mechanics.boolean("cuttable", true);
+    if (mechanics.has("solid")) t.solid = mechanics.boolean("solid", false);
     set.tissues.push_back(std::move(t));
   }
   if (Status status = reader.finish(); !status) return status.error();
@@ -168,6 +169,7 @@ Json toJson(const TissueSet& set) {
                    {"cutting_J_per_mm3", sourced(t.cutting_J_per_mm3)},
                    {"cuttable", t.cuttable}}}};
     if (t.rupture_N) item["mechanics"]["rupture_N"] = sourced(*t.rupture_N);
+    if (t.solid) item["mechanics"]["solid"] = *t.solid;
     if (t.label) item["label"] = *t.label;
     tissues.push_back(std::move(item));
   }
@@ -187,7 +189,8 @@ TissueTable tissueTable(const TissueSet& set) {
                         t.rupture_N ? t.rupture_N->value : 0.0,
                         t.cutting_J_per_mm3.value,
                         t.cuttable ? 1 : 0,
-                        t.label.value_or(0)};
+                        t.label.value_or(0),
+                        t.isSolid() ? 1 : 0};
   }
   return table;
 }

@@ -25,6 +25,10 @@ constexpr Range kShareRange{0, 1};  // opacity, colour
 // felt as the arm's most.
 constexpr Range kMechanicsRange{0, 1e9};
 
+// What is as stiff as this stops a tool, unless the set says otherwise: no soft tissue comes near it,
+// and no arm lets it be told from bone.
+constexpr double kSolidFrom_N_per_m = 600.0;
+
 // A number that a person set, and where it comes from: a citation, or "tuned here, uncited".
 struct SourcedNumber {
   double value = 0.0;
@@ -46,6 +50,9 @@ struct Tissue {
   std::optional<SourcedNumber> rupture_N;  // rupture law: a capsule's; absent: none
   SourcedNumber cutting_J_per_mm3;  // work that removes it: its specific cutting energy
   bool cuttable = true;
+  // A tool stops at a solid tissue until it is cut; absent: solid from kSolidFrom_N_per_m on.
+  std::optional<bool> solid;
+  bool isSolid() const { return solid.value_or(stiffness_N_per_m.value >= kSolidFrom_N_per_m); }
 };
 
 struct TissueSet {
@@ -76,6 +83,8 @@ struct TissueClass {
   double cutting_J_per_mm3 = 0.0;
   std::int32_t cuttable = 0;
   std::int32_t label = 0;  // 0: of any voxel
+  std::int32_t solid = 0;  // a tool stops at it
+  std::int32_t reserved = 0;
   friend bool operator==(const TissueClass&, const TissueClass&) = default;
 };
 

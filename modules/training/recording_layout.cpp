@@ -55,7 +55,7 @@ constexpr RecordField kTissueFields[] = {
     FIELD(TissueClass, damping_Ns_per_m, f64, 1), FIELD(TissueClass, stiffness_N_per_m, f64, 1),
     FIELD(TissueClass, friction_N, f64, 1),       FIELD(TissueClass, rupture_N, f64, 1),
     FIELD(TissueClass, cutting_J_per_mm3, f64, 1), FIELD(TissueClass, cuttable, i32, 1),
-    FIELD(TissueClass, label, i32, 1),
+    FIELD(TissueClass, label, i32, 1),           FIELD(TissueClass, solid, i32, 1),
 };
 
 constexpr RecordField kEventFields[] = {

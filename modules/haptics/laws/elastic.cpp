@@ -10,20 +10,35 @@ constexpr double kClear = 0.25;
 }  // namespace
 
 void ElasticLaw::add(const LawInput& in, ContactForce& out) {
+  addSolid(in, out);
+  addSoft(in, out);
+}
+
+void ElasticLaw::addSolid(const LawInput& in, ContactForce& out) const {
+  const double k = in.share.stiffness * in.pull.stiffness;
+  if (!(k > 0.0)) return;
+  const Vec3 shift_m = 0.001 * in.pull.shift_mm;
+  const double turn_m2 = 1e-6 * in.pull.turn_mm2;
+  out.elastic_N += k * shift_m;
+  out.torque_Nm += k * turn_m2 * in.pull.turn;
+  out.solid_stiffness += k;
+  out.stored_J += 0.5 * k * (glm::dot(shift_m, shift_m) +
+                             turn_m2 * glm::dot(in.pull.turn, in.pull.turn));
+}
+
+void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   const double size_N = glm::length(in.push.force_N);
   const double at_centre_N = in.push.at_centre * in.ball_radius_m;
   if (!(size_N > 0.0) && !(at_centre_N > 0.0)) {
     forget();
     return;
   }
-  if (size_N > kClear * at_centre_N) normal = in.push.force_N / size_N;
+  if (size_N > kClear * at_centre_N && stiffness == 0.0) normal = in.push.force_N / size_N;
   Vec3 force_N = in.push.force_N;
   double stored_J = in.push.stored_J;
-  if (in.blunt) {
-    const double deep_N = size_N + 2.0 * std::max(0.0, at_centre_N - size_N);
-    force_N = deep_N * normal;
-    if (deep_N > size_N) stored_J = deep_N * deep_N / (2.0 * in.push.at_centre);
-  } else {
+  const Vec3 ball_m = in.tip_m + in.ball_m;
+  if (in.parts) {
+    stiffness = 0.0;
     const bool parts = at_centre_N > size_N;
     most_N = parted ? std::min(most_N, size_N) : size_N;
     parted = parted || parts;
@@ -31,7 +46,21 @@ void ElasticLaw::add(const LawInput& in, ContactForce& out) {
       force_N *= most_N / size_N;
       stored_J *= most_N / size_N;
     }
+  } else if (!(at_centre_N > 0.0)) {
+    stiffness = 0.0;
+  } else {
+    const double k = in.push.at_centre;
+    if (stiffness == 0.0) {
+      depth_m = size_N / k;
+    } else {
+      if (k > stiffness) depth_m *= stiffness / k;
+      depth_m = std::max(0.0, depth_m - glm::dot(ball_m - centre_m, normal));
+    }
+    stiffness = k;
+    force_N = k * depth_m * normal;
+    stored_J = 0.5 * k * depth_m * depth_m;
   }
+  centre_m = ball_m;
   force_N *= in.share.stiffness;
   out.elastic_N += force_N;
   out.stiffness += in.share.stiffness * in.push.stiffness;

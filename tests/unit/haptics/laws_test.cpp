@@ -190,17 +190,62 @@ TEST(ElasticLaw, GivesThePushOfTheBall) {
   EXPECT_DOUBLE_EQ(f.stiffness, 250.0);
 }
 
-// k = 500, r = 2 mm; the centre 1 mm deep: the ball's sum is k (r - 1 mm), the depth 3 mm.
-TEST(ElasticLaw, PushesABluntToolByItsDepthBeyondTheBallsCentre) {
-  Case c;
-  c.in.ball_radius_m = 0.002;
-  c.in.push = {Vec3(0, 0, 0.5), 1e-4, 500.0, 500.0};
-  EXPECT_DOUBLE_EQ(forceOf(ElasticLaw{}, c).z, 0.5) << "a sharp tool has parted the tissue";
-  c.in.blunt = true;
+// k = 500, r = 2 mm, soft tissue below z = 0, the ball's centre at z.
+struct BallCase : Case {
+  explicit BallCase(double z, double stiffness = 500.0) : Case({0, 0, z}) {
+    in.ball_radius_m = 0.002;
+    const double sum_N = stiffness * std::max(0.0, 0.002 - std::abs(z));
+    in.push = {Vec3(0, 0, sum_N), 1e-4, stiffness, z < 0.0 ? stiffness : 0.0};
+  }
+};
+
+TEST(ElasticLaw, PushesAToolThatPartsNothingByItsDepthHoweverDeepItSinks) {
   ElasticLaw law;
-  EXPECT_DOUBLE_EQ(forceOf(law, c).z, 1.5);
-  c.in.push.force_N = Vec3(1e-3, 0, 0);  // closed all around: nothing clear to say
-  EXPECT_NEAR(forceOf(law, c).z, 1.999, 1e-9) << "the last clear normal";
+  for (double z = 0.0025; z > -0.010; z -= 1e-5) {
+    const double depth = std::max(0.0, 0.002 - z);
+    ASSERT_NEAR(forceOf(law, BallCase(z)).z, 500.0 * depth, 0.02) << "at z = " << z;
+  }
+}
+
+TEST(ElasticLaw, ForgetsTheDepthOnceTheBallsCentreIsOut) {
+  ElasticLaw law;
+  for (double z = 0.0025; z > -0.004; z -= 1e-5) forceOf(law, BallCase(z));
+  for (double z = -0.004; z < 0.001; z += 1e-5) forceOf(law, BallCase(z));
+  EXPECT_NEAR(forceOf(law, BallCase(0.001)).z, 0.5, 1e-9);
+}
+
+// What a voxel at the ball's centre is must not flip the push up and down again.
+TEST(ElasticLaw, MakesNoEnergyWhereTheTissueAtTheCentreChanges) {
+  ElasticLaw law;
+  for (double z = 0.0025; z > -0.004; z -= 1e-5) forceOf(law, BallCase(z));
+  EXPECT_NEAR(forceOf(law, BallCase(-0.004)).z, 3.0, 0.02);
+  EXPECT_NEAR(forceOf(law, BallCase(-0.004, 250.0)).z, 1.5, 0.02) << "softer: the push falls";
+  EXPECT_NEAR(forceOf(law, BallCase(-0.004)).z, 1.5, 0.02) << "firmer again: it does not rise";
+}
+
+TEST(ElasticLaw, FadesBeforeASharpToolThatHasPartedTheTissue) {
+  ElasticLaw law;
+  const auto at = [&](double z) {
+    BallCase c(z);
+    c.in.parts = true;
+    return forceOf(law, c).z;
+  };
+  EXPECT_NEAR(at(0.0005), 0.75, 1e-9);
+  EXPECT_NEAR(at(-0.001), 0.5, 1e-9);
+  EXPECT_NEAR(at(-0.0015), 0.25, 1e-9);
+  EXPECT_NEAR(at(-0.001), 0.25, 1e-9) << "it does not come back on the way out";
+}
+
+TEST(ElasticLaw, PullsTheArmToTheProxyThatSolidTissueHolds) {
+  Case c;
+  c.in.pull = {Vec3(0, 0, 2.0), Vec3(0.1, 0, 0), 400.0, 900.0};
+  c.in.share.stiffness = 0.5;
+  const ContactForce f = contactOf(ElasticLaw{}, c);
+  EXPECT_NEAR(f.elastic_N.z, 0.5 * 900.0 * 0.002, 1e-12);
+  EXPECT_NEAR(f.torque_Nm.x, 0.5 * 900.0 * 400e-6 * 0.1, 1e-12);
+  EXPECT_DOUBLE_EQ(f.solid_stiffness, 450.0);
+  EXPECT_DOUBLE_EQ(f.stiffness, 0.0) << "across the pull nothing holds it";
+  EXPECT_NEAR(f.stored_J, 0.5 * 450.0 * (4e-6 + 400e-6 * 0.01), 1e-12);
 }
 
 TEST(RuptureLaw, IsElasticUpToTheRuptureForceAndThenDrops) {

@@ -40,6 +40,7 @@ struct Stroke {
   double speed_mm_per_s = 10.0;
   double cutting_J_per_mm3 = 0.06;
   double turn_rad = 0.0;     // of the tool about y, leaning
+  bool solid = true;
 };
 
 // Into the bone, along it and out again, by a way that turns.
@@ -65,6 +66,7 @@ Outcome run(const Stroke& stroke, int voxels, double box_mm, double rate_hz,
   p.removal = removal;
   p.tissues = test::boneTable(12.0, 900.0, 2.0);
   p.tissues.classes[0].cutting_J_per_mm3 = stroke.cutting_J_per_mm3;
+  p.tissues.classes[0].solid = stroke.solid;
   p.journal_voxels = 4'000'000;
   Grid grid(slope(voxels, box_mm));
   HapticCore core(p, *grid.takeWriter());
@@ -111,7 +113,9 @@ TEST(Removal, AStrokeThatRunsShortOfWorkTakesTheSameOnAnyGridAndAtAnyRate) {
 }
 TEST(Removal, AStrokeByHandAloneTakesTheSameOnAnyGridAndAtAnyRate) {
   Stroke s = burrStroke(0.0, 2.5);
+  s.tool = *makeTool({ToolKind::blade, 16.0, 64, 3.0});
   s.cutting_J_per_mm3 = 3e-4;
+  s.solid = false;
   expectSameOnFineGrids(s);
 }
 TEST(Removal, ASlantedBladeTakesTheSameOnAnyGridAndAtAnyRate) {
@@ -169,10 +173,11 @@ Crossing cross(bool swapped, RemovalKind kind) {
   HapticParameters p = test::oneArm();
   p.arms[0].tool = burrStroke(3.0, 1.0).tool;
   p.arms.push_back(p.arms[0]);
-  p.arms[1].tool = makeBurr(0.002, 64, 0, 0.03);
+  p.arms[1].tool = *makeTool({ToolKind::burr, 30.0, 64, 2.0, 0, BurrShape::sphere, 0.0, 1.0});
   if (swapped) std::swap(p.arms[0], p.arms[1]);
   p.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
   p.removal = kind;
+  p.tissues.classes[0].solid = 1;
   p.journal_voxels = 2'000'000;
   Grid grid(slope(128, 24.6));
   HapticCore core(p, *grid.takeWriter());
@@ -181,8 +186,9 @@ Crossing cross(bool swapped, RemovalKind kind) {
   const std::size_t big = swapped ? 1 : 0, small = 1 - big;
   for (int n = 0; n < 1500; ++n) {
     const double t = n / 1500.0;
-    input.arms[big].position_m = 0.001 * Vec3(-4 + 8 * t, 0, -1.5);
-    input.arms[small].position_m = 0.001 * Vec3(4 - 8 * t, 1.0, -1.2);
+    const double above = std::max(0.0, 4.0 - 20.0 * t);
+    input.arms[big].position_m = 0.001 * Vec3(-4 + 8 * t, 0, -1.5 + above);
+    input.arms[small].position_m = 0.001 * Vec3(4 - 8 * t, 1.0, -1.2 + above);
     input.journal = core.journalState();
     core.tick(input, nullptr, 0, record);
     ++input.tick;
@@ -296,7 +302,7 @@ TEST(Removal, AVoxelThatTwoArmsTookComesBackOnceWithTheNewerStroke) {
 TEST(Removal, CostsNoMoreWorkThanWasDone) {
   for (double motor_W : {0.0, 1.0}) {
     HapticParameters p = test::oneArm();
-    p.arms[0].tool = burrStroke(motor_W, 1.0).tool;
+    p.arms[0].tool = motor_W > 0.0 ? burrStroke(motor_W, 1.0).tool : makeBlade(0.016, 64);
     p.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
     p.removal = RemovalKind::work;
     p.tissues.classes[0].cutting_J_per_mm3 = motor_W > 0.0 ? 0.06 : 1e-4;

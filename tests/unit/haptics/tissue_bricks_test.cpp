@@ -42,7 +42,7 @@ TEST(TissueBricks, ABrickToWhichTissueCameBackIsFullAtOnceAndEmptyAgainWhenItWen
   EXPECT_EQ(b.bricks->unknown(), 0u);
   EXPECT_TRUE(b.above());
   b.writer.store(voxel, kAirHu);
-  b.bricks->remove({8, 8, 24});
+  b.bricks->remove({8, 8, 24}, false);
   EXPECT_FALSE(b.above()) << "counted, not just unknown";
 }
 
@@ -52,7 +52,7 @@ TEST(TissueBricks, WhatIsRemovedWhileABrickIsUnknownIsCountedWithIt) {
   b.writer.store(voxel, test::kBoneHu);
   b.bricks->mark(b.grid.brickOf(voxel));
   b.writer.store(voxel, kAirHu);
-  b.bricks->remove({8, 8, 24});
+  b.bricks->remove({8, 8, 24}, false);
   b.bricks->recount(b.grid, b.lookup);
   EXPECT_FALSE(b.above());
 }

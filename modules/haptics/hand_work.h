@@ -1,0 +1,45 @@
+// The work that a hand did on a tool, in the model's units: what it can pay for.
+#pragma once
+
+#include "base/math.h"
+
+namespace trephine {
+
+// An arm shows a share of what the model demands, over a map that scales force by g and motion by s.
+// Work at the device, divided by (g / s) and by that share, is the work that the same motion does
+// against the model itself: it does not depend on the arm. What of it the model's springs hold comes
+// back; what was lost to the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) - stored, pays for
+// cutting, and only where it rises above all that it was before: what came back is not paid twice.
+class HandWork {
+ public:
+  // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
+  void move(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
+    if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
+  }
+  // What the model's springs hold now, and the share of it that is shown for the next period.
+  // Returns how much more was lost to the tissue than ever before.
+  double hold(double stored_J, double share) {
+    if (!started_) done_J_ = most_lost_J_ + stored_J;  // what they hold at first, nobody put in
+    started_ = true;
+    stored_J_ = stored_J;
+    share_ = share > kLeastShare ? share : kLeastShare;
+    const double lost_J = done_J_ - stored_J;
+    const double more_J = lost_J > most_lost_J_ ? lost_J - most_lost_J_ : 0.0;
+    most_lost_J_ += more_J;
+    return more_J;
+  }
+  // Law states were forgotten: the springs begin anew.
+  void forget() { started_ = false; }
+
+  double done_J() const { return done_J_; }
+  double stored_J() const { return stored_J_; }
+  double share() const { return share_; }
+
+ private:
+  static constexpr double kLeastShare = 1e-6;
+  double done_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;
+  double share_ = 1.0;
+  bool started_ = true;
+};
+
+}  // namespace trephine

@@ -1,0 +1,407 @@
+#include "haptics/solid_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+// Of a voxel's edge: how far the tool may go before the surface is looked at anew, at least.
+constexpr double kMargin = 1.3;
+constexpr double kLeastMargin_mm = 0.25;
+// Rows of voxels are looked at that are no farther apart than this share of a part's radius, or
+// than this, or than a voxel.
+constexpr double kRowsPerRadius = 1.0 / 7.0;
+constexpr double kLeastRows_mm = 0.25;
+constexpr double kStretch_mm = 8.0;  // of a long part, looked at on its own
+constexpr int kMostAlong = 256, kMostDirections = 16;
+constexpr double kLeastCell_mm = 0.25;
+// HU beyond the threshold of a solid tissue that count as all of it, or as nothing of it.
+constexpr double kWhole_hu = 1226.0;
+// Levelled with neighbours within so many radii of a disk whose normals' cosine is at least this.
+constexpr double kSmoothed = 2.5, kAlike = 0.8;
+constexpr std::size_t kMostSmoothed = 96;
+constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
+constexpr double kFlatDisk = 2.0;  // times that where all around it faces alike
+constexpr double kPlate = 0.45;  // half the thickness of one a voxel thick
+constexpr double kNoSide = 0.15;  // of a clear side's slope: below it a voxel has none
+
+// The cell of a cube's face that a direction meets, faces of n^2 cells.
+int cellOf(const Vec3& d, int n) {
+  int axis = 0;
+  if (std::abs(d.y) > std::abs(d.x)) axis = 1;
+  if (std::abs(d.z) > std::abs(d[axis])) axis = 2;
+  const double size = std::abs(d[axis]);
+  if (!(size > 0.0)) return 0;
+  const auto at = [&](double value) { return std::min(n - 1, int((value / size + 1.0) * 0.5 * n)); };
+  const int face = 2 * axis + (d[axis] < 0.0 ? 1 : 0);
+  return (face * n + at(d[(axis + 1) % 3])) * n + at(d[(axis + 2) % 3]);
+}
+
+// Where on an axis the nearest place to a point is, as a share of it.
+double nearestOn(const Vec3& from, const Vec3& along, double per_length2, const Vec3& to) {
+  return std::clamp(glm::dot(to - from, along) * per_length2, 0.0, 1.0);
+}
+
+}  // namespace
+
+Touch touchOf(const SurfacePiece& piece, const PlacedBody& body) {
+  const PlacedBody::Part& part = body.parts[std::size_t(piece.part)];
+  const Vec3 centre =
+      part.from_mm +
+      nearestOn(part.from_mm, part.along_mm, part.per_length2, piece.at_mm) * part.along_mm;
+  const Vec3 away = centre - piece.at_mm;
+  Touch touch;
+  double distance = 0.0, rounding = 0.0;
+  if (piece.normal == Vec3(0.0)) {
+    distance = glm::length(away);
+    touch.normal = distance > 0.0 ? away / distance : Vec3(0.0, 0.0, 1.0);
+    rounding = piece.size_mm;
+  } else {
+    const double height = glm::dot(away, piece.normal);
+    const Vec3 aside = away - height * piece.normal;
+    const double aside2 = glm::dot(aside, aside);
+    if (aside2 <= piece.size_mm * piece.size_mm) {
+      distance = height;
+      touch.normal = piece.normal;
+    } else {  // the disk's rim
+      const Vec3 to_rim = away - aside * (piece.size_mm / std::sqrt(aside2));
+      distance = glm::length(to_rim);
+      touch.normal = distance > 0.0 ? to_rim / distance : piece.normal;
+    }
+  }
+  touch.gap_mm = distance - part.radius_mm - rounding;
+  touch.lever_mm = centre - part.radius_mm * touch.normal - body.tip_mm;
+  return touch;
+}
+
+SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
+    : geometry_(geometry),
+      patient_to_voxel_(geometry.patientToVoxel()),
+      spacing_mm_(geometry.spacing_mm) {
+  const Vec3& s = spacing_mm_;
+  voxel_mm_ = std::min({s.x, s.y, s.z});
+  half_diagonal_mm_ = 0.5 * glm::length(s);
+  margin_mm_ = std::max(kMargin * voxel_mm_, kLeastMargin_mm);
+  reach_mm_ = 0.0;
+  int cells = 0;
+  for (const BodyPart& part : tool.body) {
+    parts_mm_.push_back(
+        {1000.0 * part.from_m, 1000.0 * part.to_m, 1000.0 * part.radius_m, part.cuts});
+    const BodyPart& mm = parts_mm_.back();
+    reach_mm_ = std::max({reach_mm_, glm::length(mm.from_m) + mm.radius_m,
+                          glm::length(mm.to_m) + mm.radius_m});
+    const double length = glm::length(mm.to_m - mm.from_m);
+    Cells of;
+    // A face of a cube around the part is a quarter of its turn wide: cells of half a row's distance.
+    const Index3 apart = rowsApart(mm.radius_m);
+    const double cell_mm = 0.5 * std::min({s.x, apart[1] * s.y, apart[2] * s.z});
+    of.directions =
+        std::clamp(int(std::ceil(1.6 * mm.radius_m / cell_mm)), 2, kMostDirections);
+    of.along = std::clamp(int(std::ceil(length / std::max(cell_mm, kLeastCell_mm))), 1, kMostAlong);
+    of.first = cells;
+    cells += of.along * 6 * of.directions * of.directions;
+    cells_.push_back(of);
+  }
+  pieces_.reserve(std::size_t(cells));
+  rough_.reserve(kMostSmoothed);
+  found_.reserve(std::size_t(cells));
+  cell_.assign(std::size_t(cells), 0);
+  stamp_.assign(std::size_t(cells), 0);
+}
+
+PlacedBody SolidSurface::place(const Pose& pose_mm) const {
+  PlacedBody body;
+  body.tip_mm = pose_mm.position;
+  body.count = std::min(parts_mm_.size(), PlacedBody::kMost);
+  for (std::size_t n = 0; n < body.count; ++n) {
+    const BodyPart& mm = parts_mm_[n];
+    PlacedBody::Part& part = body.parts[n];
+    part.from_mm = pose_mm.position + pose_mm.orientation * mm.from_m;
+    part.along_mm = pose_mm.orientation * (mm.to_m - mm.from_m);
+    const double length2 = glm::dot(part.along_mm, part.along_mm);
+    part.per_length2 = length2 > 0.0 ? 1.0 / length2 : 0.0;
+    part.radius_mm = mm.radius_m;
+  }
+  return body;
+}
+
+bool SolidSurface::mayMeet(const TissueBricks& bricks, const PlacedBody& from,
+                           const PlacedBody& to) const {
+  for (std::size_t n = 0; n < from.count; ++n) {
+    Vec3 low(1e300), high(-1e300);
+    for (const PlacedBody* body : {&from, &to}) {
+      const PlacedBody::Part& part = body->parts[n];
+      for (const Vec3& end : {part.from_mm, part.from_mm + part.along_mm}) {
+        const Vec3 voxel(patient_to_voxel_ * glm::dvec4(end, 1.0));
+        low = glm::min(low, voxel);
+        high = glm::max(high, voxel);
+      }
+    }
+    const double around = from.parts[n].radius_mm + margin_mm_ + half_diagonal_mm_;
+    const Vec3 reach = around / spacing_mm_;
+    if (bricks.mayHoldSolid(low - reach, high + reach)) return true;
+  }
+  return false;
+}
+
+void SolidSurface::gather(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
+                          const TissueTable& tissues, const PlacedBody& body,
+                          Cutting cutting) {
+  pieces_.clear();
+  found_.clear();
+  ++turn_;
+  const View view{grid, lookup, tissues};
+  const auto place = [&](const Vec3& patient_mm) {
+    return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0)) * spacing_mm_;
+  };
+  for (std::size_t n = 0; n < body.count; ++n) {
+    const PlacedBody::Part& part = body.parts[n];
+    const Vec3 from = place(part.from_mm), along = place(part.from_mm + part.along_mm) - from;
+    const double length = glm::length(along);
+    const int count = std::max(1, int(std::ceil(length / kStretch_mm)));
+    for (int number = 0; number < count; ++number) {
+      Stretch stretch;
+      stretch.share = 1.0 / count;
+      stretch.from = number * stretch.share;
+      stretch.along = stretch.share * along;
+      stretch.axis.from = from + stretch.from * along;
+      stretch.axis.to = stretch.axis.from + stretch.along;
+      stretch.axis.radius = part.radius_mm;
+      stretch.per_length2 = length > 0.0 ? 1.0 / glm::dot(stretch.along, stretch.along) : 0.0;
+      stretch.part = n;
+      searchAround(view, bricks, stretch);
+    }
+  }
+  for (const Found& found : found_) {
+    addPiece(view, found, parts_mm_[found.part].cuts ? cutting : Cutting::nothing);
+  }
+  if (pieces_.size() <= kMostSmoothed) smooth();
+}
+
+// Disks that face alike are levelled with their neighbours: what a voxel alone says of the surface
+// is rough by a few degrees and a twentieth of its edge.
+void SolidSurface::smooth() {
+  rough_.assign(pieces_.begin(), pieces_.end());
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    SurfacePiece& piece = pieces_[i];
+    const SurfacePiece& own = rough_[i];
+    if (own.normal == Vec3(0.0)) continue;
+    const double reach2 = kSmoothed * kSmoothed * own.size_mm * own.size_mm;
+    Vec3 normal(0.0);
+    double level = 0.0, sum = 0.0;
+    bool flat = true;
+    for (const SurfacePiece& other : rough_) {
+      const Vec3 apart = other.at_mm - own.at_mm;
+      const double distance2 = glm::dot(apart, apart);
+      if (distance2 >= reach2) continue;
+      const double alike = glm::dot(own.normal, other.normal);
+      if (alike < kAlike) {
+        flat = false;
+        continue;
+      }
+      const double near = 1.0 - distance2 / reach2, weight = near * near * alike;
+      normal += weight * other.normal;
+      level += weight * 0.5 * glm::dot(own.normal + other.normal, apart);
+      sum += weight;
+    }
+    piece.normal = glm::normalize(normal);
+    piece.at_mm = own.at_mm + (level / sum) * piece.normal;
+    if (flat) piece.size_mm *= kFlatDisk;
+  }
+}
+
+// The rows of voxels around a stretch, each from where nothing solid can be outwards to the first
+// that is.
+void SolidSurface::searchAround(const View& view, const TissueBricks& bricks,
+                                const Stretch& stretch) {
+  const Capsule& axis = stretch.axis;
+  const Vec3& s = spacing_mm_;
+  Capsule outer = axis, inner = axis;
+  outer.radius = axis.radius + margin_mm_ + half_diagonal_mm_;
+  inner.radius = axis.radius - half_diagonal_mm_;
+  const Vec3 low = (glm::min(axis.from, axis.to) - outer.radius) / s;
+  const Vec3 high = (glm::max(axis.from, axis.to) + outer.radius) / s;
+  if (!bricks.mayHoldSolid(low, high)) return;
+  const bool hollow = inner.radius > 0.0;
+  const CapsuleRows around(outer), within(hollow ? inner : Capsule{});
+  const Index3 apart = rowsApart(axis.radius);
+  const double per_x = 1.0 / s.x;
+  const auto first = [](double at, int by) { return int(std::max(0.0, at) / by) * by; };
+  // A batch of rows at a time: their voxels are on the way while the others are found.
+  struct Row {
+    int from = 0, left = 0, right = 0, to = 0, j = 0, k = 0;  // right <= left: all of it
+    std::size_t voxel = 0;
+  };
+  std::array<Row, 16> batch;
+  std::size_t count = 0;
+  const auto searchBatch = [&] {
+    for (std::size_t n = 0; n < count; ++n) {
+      const Row& row = batch[n];
+      const auto solidAt = [&](int i) {
+        return view.lookup.isSolid(view.lookup.classAt(view.grid, row.voxel + std::size_t(i)));
+      };
+      if (row.right <= row.left) {
+        for (int i = row.from; i <= row.to; ++i) {
+          if (solidAt(i)) find({i, row.j, row.k}, stretch);
+        }
+        continue;
+      }
+      for (int i = row.left; i >= row.from; --i) {
+        if (!solidAt(i)) continue;
+        find({i, row.j, row.k}, stretch);
+        break;
+      }
+      for (int i = row.right; i <= row.to; ++i) {
+        if (!solidAt(i)) continue;
+        find({i, row.j, row.k}, stretch);
+        break;
+      }
+    }
+    count = 0;
+  };
+  const int last_k = std::min(geometry_.size[2] - 1, int(std::max(-1.0, high.z)));
+  for (int k = first(low.z, apart[2]); k <= last_k; k += apart[2]) {
+    const double z = k * s.z;
+    const Interval band = around.band(z);
+    if (band.empty()) continue;
+    const int last_j = std::min(geometry_.size[1] - 1, int(std::max(-1.0, band.high / s.y)));
+    for (int j = first(band.low / s.y, apart[1]); j <= last_j; j += apart[1]) {
+      const double y = j * s.y;
+      const Interval all = around.row(y, z);
+      if (all.empty() || all.high < 0.0) continue;
+      Row& row = batch[count];
+      row.from = std::max(0, int(all.low * per_x));
+      row.to = std::min(geometry_.size[0] - 1, int(all.high * per_x));
+      if (row.from > row.to) continue;
+      row.j = j;
+      row.k = k;
+      row.voxel = geometry_.indexOf(0, j, k);
+      row.left = row.right = 0;
+      const Interval clear = hollow ? within.row(y, z) : Interval{};
+      if (!clear.empty()) {
+        row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
+        row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
+      }
+      view.grid.prefetch(row.voxel + std::size_t(row.from));
+      view.grid.prefetch(row.voxel + std::size_t(row.to));
+      if (++count == batch.size()) searchBatch();
+    }
+  }
+  searchBatch();
+}
+
+// How many rows lie between two that are looked at, and one.
+Index3 SolidSurface::rowsApart(double radius_mm) const {
+  const double apart_mm = std::max(kRowsPerRadius * radius_mm, kLeastRows_mm);
+  Index3 apart{1, 1, 1};
+  for (int axis = 1; axis < 3; ++axis) {
+    apart[std::size_t(axis)] = std::max(1, int(apart_mm / spacing_mm_[axis]));
+  }
+  return apart;
+}
+
+// Keeps the voxel if it is the nearest of its cell: there what is nearest is at the surface.
+void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
+  const Vec3 centre = Vec3(voxel[0], voxel[1], voxel[2]) * spacing_mm_;
+  const double on_axis =
+      nearestOn(stretch.axis.from, stretch.along, stretch.per_length2, centre);
+  const Vec3 away = centre - (stretch.axis.from + on_axis * stretch.along);
+  const double distance2 = glm::dot(away, away);
+  const double farthest = stretch.axis.radius + margin_mm_ + half_diagonal_mm_;
+  if (distance2 > farthest * farthest) return;
+  const Cells& cells = cells_[stretch.part];
+  const double on_part = stretch.from + on_axis * stretch.share;
+  const int along = std::min(cells.along - 1, int(on_part * cells.along));
+  const std::size_t cell = std::size_t(
+      cells.first + along * 6 * cells.directions * cells.directions +
+      cellOf(away, cells.directions));
+  if (stamp_[cell] != turn_) {
+    stamp_[cell] = turn_;
+    cell_[cell] = std::int32_t(found_.size());
+    found_.push_back({voxel, stretch.part, away, distance2});
+    return;
+  }
+  Found& nearest = found_[std::size_t(cell_[cell])];
+  if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2};
+}
+
+// The piece of a voxel: the slope of the tissue around it, and where along each axis it ends.
+void SolidSurface::addPiece(const View& view, const Found& found, Cutting cutting) {
+  const auto [i, j, k] = found.voxel;
+  const Vec3& s = spacing_mm_;
+  const double radius = parts_mm_[found.part].radius_m;
+  SurfacePiece piece;
+  const std::size_t voxel = geometry_.indexOf(i, j, k);
+  const std::int16_t hu = view.grid.hu(voxel);
+  const int c = view.lookup.classAt(view.grid, voxel, hu);
+  piece.part = std::int32_t(found.part);
+  piece.voxel = std::uint32_t(voxel);
+  piece.tissue_class = std::int8_t(c);
+  piece.cuttable =
+      cutting != Cutting::nothing && view.tissues.classes[std::size_t(c)].cuttable != 0;
+  const Vec3 centre = Vec3(i, j, k) * s;
+  const Mat3& turn = geometry_.direction;
+  const auto add = [&](const Vec3& at, const Vec3& normal, double size) {
+    piece.at_mm = geometry_.origin_mm + turn * at;
+    piece.normal = turn * normal;
+    piece.size_mm = size;
+    pieces_.push_back(piece);
+  };
+  if (piece.cuttable && cutting == Cutting::driven) {
+    // Nothing slips between balls of this size.
+    return add(centre, Vec3(0.0), std::max(0.0, half_diagonal_mm_ - radius));
+  }
+  // The slope of the tissue around the voxel: differences under binomial weights over the 27 voxels
+  // around it (Sobel), the rows as far apart as they are looked at.
+  const double threshold = view.tissues.classes[std::size_t(c)].hu_min - 0.5;
+  const auto beyond = [&](int at_i, int at_j, int at_k) {
+    if (!geometry_.contains(at_i, at_j, at_k)) return -kWhole_hu;
+    const std::size_t there = geometry_.indexOf(at_i, at_j, at_k);
+    const std::int16_t hu_there = view.grid.hu(there);
+    const double more = double(hu_there) - threshold;
+    return view.lookup.isSolid(view.lookup.classAt(view.grid, there, hu_there))
+               ? std::clamp(more, 1.0, kWhole_hu)
+               : std::clamp(more, -kWhole_hu, -1.0);
+  };
+  const Index3 apart = rowsApart(radius);
+  Vec3 slope(0.0);
+  for (int dk = -1; dk <= 1; ++dk) {
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int di = -1; di <= 1; ++di) {
+        const int off = (di != 0) + (dj != 0) + (dk != 0);
+        if (off == 0) continue;
+        const double more = (off == 1 ? 4.0 : off == 2 ? 2.0 : 1.0) *
+                            beyond(i + di, j + dj * apart[1], k + dk * apart[2]);
+        slope += more * Vec3(di, dj, dk);
+      }
+    }
+  }
+  const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
+  slope /= 32.0 * mesh;
+  const double steep = glm::length(slope);
+  const Vec3 n = steep > 0.0 ? -slope / steep : Vec3(0.0);
+  // Without a clear side, or turned away: a plate as thin as a voxel, or the far side of one.
+  if (!(steep * voxel_mm_ > kNoSide * kWhole_hu) || glm::dot(found.away_mm, n) >= 0.0) {
+    return add(centre, Vec3(0.0), kPlate * voxel_mm_);
+  }
+  // How far the tissue reaches beyond the voxel's centre: where along each axis it ends.
+  const double own = std::clamp(double(hu) - threshold, 1.0, kWhole_hu);
+  double depth = 0.0, weight = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    Index3 at = found.voxel;
+    at[std::size_t(axis)] += n[axis] > 0.0 ? 1 : -1;
+    const double next = beyond(at[0], at[1], at[2]);
+    if (next > 0.0) continue;  // solid
+    const double share = std::abs(n[axis]);
+    depth += share * (share * s[axis] * own / (own - next));
+    weight += share;
+  }
+  if (weight == 0.0) return;  // behind the surface, and seen between two that are on it
+  depth /= weight;
+  add(centre + depth * n, n,
+      kDisk * glm::length(mesh * glm::sqrt(glm::max(Vec3(0.0), 1.0 - n * n))));
+}
+
+}  // namespace trephine
