@@ -27,6 +27,7 @@
 #include "session/case_source.h"
 #include "session/session.h"
 #include "training/replay.h"
+#include "training/tick_table.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -94,13 +95,17 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   }
   const std::filesystem::path out = arguments.out;
   if (Status made = makeFolder(out); !made) return made.error();
-  std::error_code none;
-  const auto folder = std::filesystem::path(arguments.save_volume).parent_path();
-  if (!arguments.save_volume.empty() && !folder.empty() &&
-      !std::filesystem::is_directory(folder, none)) {
-    return Error{"MISSING_FOLDER", "There is no folder for the volume", folder.string(),
-                 "Make it, or give --save-volume another place"};
+  const auto checkFolder = [](const std::string& file, const char* what, const char* option) {
+    std::error_code none;
+    const auto folder = std::filesystem::path(file).parent_path();
+    if (folder.empty() || std::filesystem::is_directory(folder, none)) return Status();
+    return Status(Error{"MISSING_FOLDER", std::string("There is no folder for the ") + what,
+                        folder.string(), std::string("Make it, or give ") + option + " another place"});
+  };
+  if (Status is = checkFolder(arguments.save_volume, "volume", "--save-volume"); !is) {
+    return is.error();
   }
+  if (Status is = checkFolder(arguments.csv, "table", "--csv"); !is) return is.error();
 
   Result<Volume> volume = openCase(scene->case_source, progress);
   if (!volume) return volume.error();
@@ -122,6 +127,12 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   if (!arguments.save_volume.empty()) {
     const Status saved = writeVolume((*session)->grid().snapshot(), arguments.save_volume);
     if (!saved) outcome.failure = saved.error();
+  }
+  if (!arguments.csv.empty()) {
+    auto recording = SessionReader::open(options.recording);
+    const Status saved = recording ? writeTickTable(**recording, arguments.csv, progress)
+                                   : Status(recording.error());
+    if (!saved && !outcome.failure) outcome.failure = saved.error();
   }
   if (outcome.failure) return outcome;
   const std::filesystem::path picture = freshFile(out, "picture", ".png");

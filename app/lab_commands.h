@@ -19,6 +19,7 @@ struct RunArguments {
   std::optional<double> rate_hz;
   std::string controller;  // empty: the scene's
   std::string save_volume;
+  std::string csv;  // empty: none
   std::string out;
   bool realtime = false;
 };

@@ -63,6 +63,8 @@ int run(int argc, char** argv) {
   run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
   run_command->add_option("--controller", arguments.controller, "off, seed or bounded");
   run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume");
+  run_command->add_option("--csv", arguments.csv,
+                          "Save position, velocity, forces and the controller's energy, tick by tick");
   run_command->add_option("--out", arguments.out, "Folder for recording and picture")->required();
 
   auto* replay_command = with_json(app.add_subcommand("replay", "Run a recording again and compare"));

@@ -159,7 +159,7 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.bar->setForce(sent_N, demanded_N, limits_N[i]);
     card.force->setText(tr("%1 of %2").arg(newtons(sent_N), newtons(limits_N[i])));
     card.demanded->setText(tr("demanded %1").arg(newtons(demanded_N)));
-    const Vec3& p = arm.patient_position_mm;
+    const Vec3& p = arm.proxy_position_mm;
     card.position->setText(
         tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
     const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;

@@ -32,9 +32,9 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const SceneTool* tool = scene.findTool(scene.arms[i].tool);
     const ArmRecord& arm = state.record.arms[i];
-    if (!tool || !isFinite(arm.patient_position_mm)) continue;
+    if (!tool || !isFinite(arm.proxy_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
-    tools.push_back(toolView(*tool, {arm.patient_position_mm, arm.patient_orientation},
+    tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0,
                              Vec3(colour.redF(), colour.greenF(), colour.blueF())));
   }

@@ -28,7 +28,7 @@ QString whoWords(const std::vector<std::size_t>& arms, const Scene& scene) {
 
 }  // namespace
 
-ForceNotice ForceWatch::look(const LoopState& state, const Scene& scene, double still_s) {
+ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s) {
   if (still_s > 0.0) {
     return {
         StateNotice::tr("NO FORCE"),
@@ -44,17 +44,13 @@ ForceNotice ForceWatch::look(const LoopState& state, const Scene& scene, double 
   std::uint32_t faults = 0;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    const bool sends = arm.sent_N != Vec3(0.0);
-    const bool in_time = state.record.late_ns <= kHoldLate_ns;
-    const bool kept_back =
-        arm.faults == 0 && !state.paused && in_time && !sends && arm.clamped_N != Vec3(0.0);
-    const bool touches = arm.tissue_class >= 0 || arm.points_in_tissue > 0;
-    // A tool at rest may be asked for no force at all and still wait.
-    waiting_[i] = kept_back || (waiting_[i] && !sends && touches);
     QString reason = faultWords(arm.faults);
-    if (reason.isEmpty() && waiting_[i]) {
+    if (reason.isEmpty() && !state.paused && (arm.tool_state & kToolWaits)) {
       reason = StateNotice::tr(
-          "Tissue was put back around the tool. Draw it out of the tissue to feel again.");
+          "The tool is in tissue that it did not come into. Draw it out to feel and to cut.");
+    }
+    if (reason.isEmpty() && (arm.tool_state & kToolLetGo)) {
+      reason = StateNotice::tr("The tool was hooked behind bone: it is let go.");
     }
     if (reason.isEmpty()) continue;
     faults |= arm.faults;
@@ -130,11 +126,10 @@ StateNotice::Card StateNotice::makeCard(const char* name, const char* button_nam
 }
 
 void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s) {
-  show(state.paused, watch_.look(state, scene, still_s));
+  show(state.paused, forceNotice(state, scene, still_s));
 }
 
 void StateNotice::showIdle() {
-  watch_.forget();
   show(false, {});
 }
 

@@ -8,7 +8,6 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QWidget>
-#include <array>
 
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
@@ -21,17 +20,8 @@ struct ForceNotice {
   QString mend;        // what the button says; empty: the force comes back without it
 };
 
-// Tells it from one state after the other of the same exercise.
-class ForceWatch {
- public:
-  // `still_s`: how long the ticks have stood still, and the state with them.
-  ForceNotice look(const LoopState& state, const Scene& scene, double still_s);
-  void forget() { waiting_.fill(false); }
-
- private:
-  // Tissue was put back around the tool (an undo, a rewind): no force until it has been drawn out.
-  std::array<bool, kMaxArms> waiting_{};
-};
+// `still_s`: how long the ticks have stood still, and the state with them.
+ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s);
 
 class StateNotice : public QWidget {
   Q_OBJECT
@@ -63,7 +53,6 @@ class StateNotice : public QWidget {
 
   Card pause_, force_;
   QAction* force_on_;
-  ForceWatch watch_;
 };
 
 }  // namespace trephine

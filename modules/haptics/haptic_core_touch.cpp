@@ -268,6 +268,9 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   arm.cuts = open && arm.cutting != Cutting::nothing && !journal_.busy() && !arm.gate.waitingForAir();
   const double lost_J = finite ? arm.work.hold(model.stored_J, out.rendered_share) : 0.0;
   earn(arm, parameters.tool, jumped ? 0.0 : lost_J);
+  if (arm.waiting || arm.gate.waitingForAir()) out.tool_state |= kToolWaits;
+  if (arm.proxy && arm.proxy->held()) out.tool_state |= kToolHeld;
+  if (arm.letting_go > 0.0) out.tool_state |= kToolLetGo;
   out.hand_work_J = arm.work.done_J();
   out.stored_J = arm.work.stored_J();
   out.cutting_credit_J = arm.removal.credit_J();

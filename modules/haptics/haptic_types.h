@@ -53,6 +53,13 @@ enum Fault : std::uint32_t {
   kFaultStuck = 1u << 4,       // a call of the device did not return: its arms were left behind
 };
 
+// Where a tool stands to what is around it.
+enum ToolState : std::uint32_t {
+  kToolWaits = 1u << 0,    // in tissue that it did not come into: no force, no cutting until it is out
+  kToolHeld = 1u << 1,     // by solid tissue
+  kToolLetGo = 1u << 2,    // was hooked; the force fades, then the tool goes to its arm
+};
+
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.
 struct ArmRecord {
   Vec3 device_position_m{0.0};
@@ -79,6 +86,7 @@ struct ArmRecord {
   std::int32_t tissue_class = -1;
   std::int32_t points_in_tissue = 0;
   std::int32_t removed_voxels = 0;  // in this tick
+  std::uint32_t tool_state = 0;     // ToolState
   std::uint32_t faults = 0;
   std::uint32_t buttons = 0;
   std::uint32_t flags = 0;

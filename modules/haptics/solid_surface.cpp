@@ -20,8 +20,10 @@ constexpr double kLeastCell_mm = 0.25;
 // HU beyond the threshold of a solid tissue that count as all of it, or as nothing of it.
 constexpr double kWhole_hu = 1226.0;
 // Levelled with neighbours within so many radii of a disk whose normals' cosine is at least this.
-constexpr double kSmoothed = 2.5, kAlike = 0.8;
+constexpr double kSmoothed = 2.0, kAlike = 0.8;
 constexpr std::size_t kMostSmoothed = 96;
+constexpr double kFlat = 0.6;  // meshes: two columns and the one between them bend by less
+constexpr double kNoHeight = 3.0;  // meshes: no column is as high
 constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
 constexpr double kFlatDisk = 2.0;  // times that where all around it faces alike
 constexpr double kPlate = 0.45;  // half the thickness of one a voxel thick
@@ -180,8 +182,8 @@ void SolidSurface::gather(const Grid& grid, const TissueBricks& bricks, const Ti
   if (pieces_.size() <= kMostSmoothed) smooth();
 }
 
-// Disks that face alike are levelled with their neighbours: what a voxel alone says of the surface
-// is rough by a few degrees and a twentieth of its edge.
+// Disks that face alike are levelled with their neighbours: where planes that are off by a degree or
+// two meet, a tool would touch the most tilted.
 void SolidSurface::smooth() {
   rough_.assign(pieces_.begin(), pieces_.end());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -191,16 +193,12 @@ void SolidSurface::smooth() {
     const double reach2 = kSmoothed * kSmoothed * own.size_mm * own.size_mm;
     Vec3 normal(0.0);
     double level = 0.0, sum = 0.0;
-    bool flat = true;
     for (const SurfacePiece& other : rough_) {
       const Vec3 apart = other.at_mm - own.at_mm;
       const double distance2 = glm::dot(apart, apart);
       if (distance2 >= reach2) continue;
       const double alike = glm::dot(own.normal, other.normal);
-      if (alike < kAlike) {
-        flat = false;
-        continue;
-      }
+      if (alike < kAlike) continue;
       const double near = 1.0 - distance2 / reach2, weight = near * near * alike;
       normal += weight * other.normal;
       level += weight * 0.5 * glm::dot(own.normal + other.normal, apart);
@@ -208,7 +206,6 @@ void SolidSurface::smooth() {
     }
     piece.normal = glm::normalize(normal);
     piece.at_mm = own.at_mm + (level / sum) * piece.normal;
-    if (flat) piece.size_mm *= kFlatDisk;
   }
 }
 
@@ -353,10 +350,12 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
     // Nothing slips between balls of this size.
     return add(centre, Vec3(0.0), std::max(0.0, half_diagonal_mm_ - radius));
   }
-  // The slope of the tissue around the voxel: differences under binomial weights over the 27 voxels
-  // around it (Sobel), the rows as far apart as they are looked at.
   const double threshold = view.tissues.classes[std::size_t(c)].hu_min - 0.5;
-  const auto beyond = [&](int at_i, int at_j, int at_k) {
+  const Index3 apart = rowsApart(radius);
+  const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
+  // HU beyond the threshold, so many meshes from the voxel.
+  const auto beyond = [&](const Index3& by) {
+    const int at_i = i + by[0] * apart[0], at_j = j + by[1] * apart[1], at_k = k + by[2] * apart[2];
     if (!geometry_.contains(at_i, at_j, at_k)) return -kWhole_hu;
     const std::size_t there = geometry_.indexOf(at_i, at_j, at_k);
     const std::int16_t hu_there = view.grid.hu(there);
@@ -365,20 +364,23 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
                ? std::clamp(more, 1.0, kWhole_hu)
                : std::clamp(more, -kWhole_hu, -1.0);
   };
-  const Index3 apart = rowsApart(radius);
+  // The slope of the tissue around the voxel: differences under binomial weights over the 27 around
+  // it (Sobel).
+  std::array<double, 27> around;
+  const auto numberOf = [](int di, int dj, int dk) {
+    return std::size_t((dk + 1) * 9 + (dj + 1) * 3 + di + 1);
+  };
   Vec3 slope(0.0);
   for (int dk = -1; dk <= 1; ++dk) {
     for (int dj = -1; dj <= 1; ++dj) {
       for (int di = -1; di <= 1; ++di) {
+        const double value = beyond({di, dj, dk});
+        around[numberOf(di, dj, dk)] = value;
         const int off = (di != 0) + (dj != 0) + (dk != 0);
-        if (off == 0) continue;
-        const double more = (off == 1 ? 4.0 : off == 2 ? 2.0 : 1.0) *
-                            beyond(i + di, j + dj * apart[1], k + dk * apart[2]);
-        slope += more * Vec3(di, dj, dk);
+        slope += (off == 1 ? 4.0 : off == 2 ? 2.0 : 1.0) * value * Vec3(di, dj, dk);
       }
     }
   }
-  const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
   slope /= 32.0 * mesh;
   const double steep = glm::length(slope);
   const Vec3 n = steep > 0.0 ? -slope / steep : Vec3(0.0);
@@ -386,21 +388,74 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
   if (!(steep * voxel_mm_ > kNoSide * kWhole_hu) || glm::dot(found.away_mm, n) >= 0.0) {
     return add(centre, Vec3(0.0), kPlate * voxel_mm_);
   }
-  // How far the tissue reaches beyond the voxel's centre: where along each axis it ends.
-  const double own = std::clamp(double(hu) - threshold, 1.0, kWhole_hu);
-  double depth = 0.0, weight = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    Index3 at = found.voxel;
-    at[std::size_t(axis)] += n[axis] > 0.0 ? 1 : -1;
-    const double next = beyond(at[0], at[1], at[2]);
-    if (next > 0.0) continue;  // solid
-    const double share = std::abs(n[axis]);
-    depth += share * (share * s[axis] * own / (own - next));
-    weight += share;
+  // How high the surface stands over the voxel along the axis that it faces most, and over the eight
+  // columns around it.
+  int up = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(n[axis]) * mesh[axis] > std::abs(n[up]) * mesh[up]) up = axis;
   }
-  if (weight == 0.0) return;  // behind the surface, and seen between two that are on it
-  depth /= weight;
-  add(centre + depth * n, n,
+  const int u = (up + 1) % 3, v = (up + 2) % 3, out = n[up] > 0.0 ? 1 : -1;
+  const auto height = [&](int du, int dv) {
+    std::array<double, 5> value;
+    Index3 by{0, 0, 0};
+    by[std::size_t(u)] = du;
+    by[std::size_t(v)] = dv;
+    const auto at = [&](int step) {
+      by[std::size_t(up)] = step * out;
+      return step < -1 || step > 1 ? beyond(by) : around[numberOf(by[0], by[1], by[2])];
+    };
+    value[1] = at(-1);
+    value[2] = at(0);
+    value[3] = at(1);
+    const auto crossing = [&](int below) {
+      return below - 2 + value[std::size_t(below)] /
+                             (value[std::size_t(below)] - value[std::size_t(below + 1)]);
+    };
+    if (value[2] > 0.0 && value[3] < 0.0) return crossing(2);
+    if (value[1] > 0.0 && value[2] < 0.0) return crossing(1);
+    if (value[3] > 0.0) {
+      value[4] = at(2);
+      return value[4] < 0.0 ? crossing(3) : kNoHeight + 1.0;
+    }
+    value[0] = at(-2);
+    return value[0] > 0.0 && value[1] < 0.0 ? crossing(0) : kNoHeight + 1.0;
+  };
+  const double own = height(0, 0);
+  if (own > kNoHeight) return;  // behind the surface, and seen between two that are on it
+  Vec3 axis(0.0);
+  axis[up] = out * mesh[up];
+  // The plane through the columns, by least squares: of two that lie opposite each other both must
+  // have a height, of those across the corners all four.
+  double sum = own, count = 1.0, rough = 0.0;
+  const auto pair = [&](int du, int dv, double& tilt) {
+    const double one = height(du, dv), other = height(-du, -dv);
+    if (one > kNoHeight || other > kNoHeight) return false;
+    tilt = 0.5 * (one - other);
+    rough = std::max(rough, std::abs(one + other - 2.0 * own));
+    sum += one + other;
+    count += 2.0;
+    return true;
+  };
+  double tilt_u = 0.0, tilt_v = 0.0, tilt_uv = 0.0, tilt_vu = 0.0;
+  if (pair(1, 0, tilt_u) && pair(0, 1, tilt_v) && rough < kFlat) {
+    const double sum_before = sum;
+    if (pair(1, 1, tilt_uv) && pair(1, -1, tilt_vu) && rough < kFlat) {
+      tilt_u = (tilt_u + tilt_uv + tilt_vu) / 3.0;
+      tilt_v = (tilt_v + tilt_uv - tilt_vu) / 3.0;
+    } else {
+      sum = sum_before;
+      count = 5.0;
+    }
+    Vec3 normal(0.0);
+    normal[up] = out;
+    normal[u] = -tilt_u * mesh[up] / mesh[u];
+    normal[v] = -tilt_v * mesh[up] / mesh[v];
+    normal = glm::normalize(normal);
+    return add(centre + (sum / count) * axis, normal,
+               kFlatDisk * kDisk *
+                   glm::length(mesh * glm::sqrt(glm::max(Vec3(0.0), 1.0 - normal * normal))));
+  }
+  add(centre + own * axis, n,
       kDisk * glm::length(mesh * glm::sqrt(glm::max(Vec3(0.0), 1.0 - n * n))));
 }
 

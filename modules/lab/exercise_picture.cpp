@@ -21,7 +21,7 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
     tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
-                             {arm.patient_position_mm, arm.patient_orientation},
+                             {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0, Vec3(0.75, 0.78, 0.82)));
   }
   renderer.setTools(tools);

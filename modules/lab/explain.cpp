@@ -174,6 +174,19 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
             keep(force.elastic_N);
           }));
     }
+    if (names(scene.laws, LawKind::elastic)) {
+      // Sliding over the block's top, pressed by a millimetre.
+      Proxy proxy(tool, grid.geometry());
+      Pose at;
+      at.position = Vec3(-10.0, 0.0, 10.0 + 5.0);
+      proxy.place(at);
+      at.position.z = 10.0 - 1.0;
+      add("proxy", medianNs([&] {
+            at.position.x = at.position.x > 10.0 ? -10.0 : at.position.x + 0.01;
+            proxy.follow({grid, bricks, lookup, parameters.tissues}, at, Cutting::nothing);
+            keep(proxy.pull().shift_mm);
+          }));
+    }
     Removal removal(tool, grid.geometry(), scene.removal, parameters.period_s);
     std::vector<Bite> bites;
     bites.reserve(Removal::kMostBites);
@@ -237,6 +250,9 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
               {"laws", laws},
               {"force_at", nameOf(kForceAtNames, scene.force_at)},
               {"removal", nameOf(kRemovalNames, scene.removal)},
+              {"barrier", names(scene.laws, LawKind::elastic)
+                              ? "solid tissue stops a tool until it is cut"
+                              : "no barrier: a tool is where its arm is"},
               {"tissues", tissues},
               {"arms", arms},
               {"bounded", bounded},

@@ -253,7 +253,8 @@ Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
 
       bool touching = false;
       for (int arm = 0; arm < row.arms; ++arm) {
-        touching = touching || record.arms[std::size_t(arm)].points_in_tissue > 0;
+        const ArmRecord& moved = record.arms[std::size_t(arm)];
+        touching = touching || moved.points_in_tissue > 0 || (moved.tool_state & kToolHeld);
       }
       for (const CarveRecord& carve : core.carves()) {
         changed.emplace_back(carve.voxel, carve.old_hu);

@@ -19,6 +19,7 @@ TissueTable tradeTissue(int hu_min, bool cuttable, double cutting_J_per_mm3) {
   bone.friction_N = 2.0;
   bone.cutting_J_per_mm3 = cutting_J_per_mm3;
   bone.cuttable = cuttable;
+  bone.solid = 1;
   return table;
 }
 
@@ -50,19 +51,24 @@ std::optional<StrokeRun> runStroke(const HapticParameters& parameters, Grid& gri
   HapticCore core(parameters, *grid.takeWriter());
   TickInput input;
   TickRecord record;
-  for (std::size_t n = 0; n < ticks; ++n) {
+  // From above, at 25 mm/s: a tool that starts in tissue has no force.
+  const auto lead_in = std::int64_t(std::llround(0.4 / parameters.period_s));
+  for (std::int64_t n = -lead_in; n < std::int64_t(ticks); ++n) {
     if (progress.cancelled()) return {};
-    const Pose pose = pose_mm(double(n) * parameters.period_s);
-    input.tick = n;
+    Pose pose = pose_mm(double(std::max<std::int64_t>(0, n)) * parameters.period_s);
+    pose.position.z += 10.0 * double(std::max<std::int64_t>(0, -n)) / double(lead_in);
     input.arms[0].position_m = 0.001 * pose.position;
     input.arms[0].orientation = pose.orientation;
     input.journal = core.journalState();
     if (!removes) input.journal &= ~std::uint32_t(kJournalRoom);
     const auto begin = std::chrono::steady_clock::now();
     core.tick(input, nullptr, 0, record);
+    ++input.tick;
     const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
-    ns.push_back(took.count());
-    run.demanded_N.push_back(record.arms[0].demanded_N);
+    if (n >= 0) {
+      ns.push_back(took.count());
+      run.demanded_N.push_back(record.arms[0].demanded_N);
+    }
     for (const CarveRecord& carve : core.carves()) {
       run.removed.push_back(carve.voxel);
       run.removed_hu.push_back(carve.old_hu);

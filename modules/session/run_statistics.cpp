@@ -64,6 +64,10 @@ Json toJson(const RunReport& report) {
                       {"arm", report.arms[std::size_t(f.arm)].name},
                       {"fault", nameOf(f.fault).name}});
   }
+  Json warnings = Json::array();
+  for (const RunWarning& w : report.warnings) {
+    warnings.push_back({{"code", w.code}, {"text", w.text}});
+  }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
   return {{"controller", report.controller},
           {"ticks", report.ticks},
@@ -73,6 +77,7 @@ Json toJson(const RunReport& report) {
           {"removed_voxels", report.removed_voxels},
           {"missed_deadlines", report.missed_deadlines},
           {"faults", faults},
+          {"warnings", warnings},
           {"memory_locked", report.memory_locked ? Json(*report.memory_locked) : Json(nullptr)},
           {"nonfinite", report.nonfinite},
           {"events_dropped", report.events_dropped},
@@ -108,6 +113,7 @@ std::string toText(const RunReport& report) {
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
       report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
       static_cast<unsigned long long>(report.missed_deadlines));
+  for (const RunWarning& warning : report.warnings) text += "  " + warning.text + "\n";
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < report.faults.size(); ++i) {
     if (i == kShown) {

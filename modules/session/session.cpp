@@ -439,6 +439,7 @@ RunReport Session::report() const {
     report.arms.push_back(arm);
   }
   report.faults = faults_;
+  report.warnings = warnings_;
   report.memory_locked = memoryLocked();
   if (report.memory_locked == false) report.memory_not_locked = engine_->locked->reason();
   report.missed_deadlines = loop_->missed();

@@ -1,6 +1,7 @@
 // The recorder thread of a session: from the loop's rings to the file.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "base/log.h"
 #include "base/rt/thread.h"
@@ -64,7 +65,22 @@ void Session::drain() {
 
 // For the report. Recorder thread, and the owner once that has ended.
 void Session::note(const Event& event) {
-  if (event.kind != EventKind::fault || event.arm < 0) return;
+  if (event.arm < 0) return;
+  const auto warn = [&](const char* code, const std::string& text) {
+    if (warnings_.size() < kMostFaults) warnings_.push_back({code, text});
+    spdlog::warn("{}", text);
+  };
+  const std::string& arm = scene_.arms[std::size_t(event.arm)].name;
+  if (event.kind == EventKind::starts_in_tissue) {
+    warn("STARTS_IN_TISSUE", "The tool of the " + arm +
+                                 " arm starts in tissue: it has no force and cuts nothing until it "
+                                 "has been moved out");
+  } else if (event.kind == EventKind::let_go) {
+    warn("LET_GO", "The tool of the " + arm + " arm was hooked behind solid tissue " +
+                       plainNumber(std::round(double(event.tick) / scene_.rate_hz * 10.0) / 10.0) +
+                       " s after the start, while the arm was free: it was let go");
+  }
+  if (event.kind != EventKind::fault) return;
   if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});
 }
 

@@ -11,11 +11,9 @@
 
 namespace trephine {
 
-constexpr int kRecordingVersion = 4;
-// 2 knew no label maps. Up to 3 a tick 20 ms late latched a fault, and of two arms in one voxel the
-// first always took it, and seconds to rewind to were counted in pauses too: there a replay by
-// today's rules differs.
-constexpr int kOldestRecordingVersion = 2;
+constexpr int kRecordingVersion = 5;
+// Up to 4 a tool was where its arm was, in bone too: nothing of that can be replayed.
+constexpr int kOldestRecordingVersion = 5;
 
 struct RecordingHeader {
   Json scene;                 // toJson(Scene) with fixed maps and the controller at the start

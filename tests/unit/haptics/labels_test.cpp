@@ -124,7 +124,7 @@ TEST(Labels, AToolRemovesOnlyWhatHasTheLabel) {
 // Its range holds -1000, which is what removal leaves.
 TEST(Labels, WhatWasRemovedIsNoTissueAnyMore) {
   HapticParameters p = burring(liver());
-  p.laws = {LawKind::coulomb, LawKind::elastic};
+  p.laws = {LawKind::coulomb};
   LabelledBench bench(p, halves());
   for (int n = 0; n < 1600; ++n) bench.at({6 - 0.01 * n, 0, 0});
   for (int n = 0; n < 400; ++n) bench.at({-10 + 0.01 * n, 0, 0});

@@ -131,26 +131,22 @@ TEST_F(StateNoticeTest, EachReasonStandsByItsArmAndBothStatesAreSaidAtOnce) {
   EXPECT_NE(why().find("Right arm: A pose"), std::string::npos) << why();
 }
 
-TEST_F(StateNoticeTest, AfterAnUndoAroundTheToolItIsSaidToDrawItOut) {
+TEST_F(StateNoticeTest, OfAToolInTissueThatItDidNotComeIntoItIsSaidToDrawItOut) {
   ArmRecord& arm = state_.record.arms[1];
-  arm.tissue_class = 0;
-  arm.points_in_tissue = 3;
-  arm.clamped_N = Vec3(0, 0, 2);
+  arm.tool_state = kToolWaits;
   show();
   EXPECT_EQ(title(), "NO FORCE: Right arm");
   EXPECT_NE(why().find("Draw it out"), std::string::npos) << why();
   EXPECT_FALSE(shown("forceOn"));
-  arm.clamped_N = Vec3(0);
-  show();
-  EXPECT_FALSE(notice_.isHidden()) << "a tool at rest waits all the same";
-  arm.tissue_class = -1;
-  arm.points_in_tissue = 0;
+  arm.tool_state = kToolHeld;
   show();
   EXPECT_TRUE(notice_.isHidden());
-  arm.tissue_class = 0;
-  arm.clamped_N = arm.sent_N = Vec3(0, 0, 1);
+}
+
+TEST_F(StateNoticeTest, AHookedToolThatIsLetGoIsSaid) {
+  state_.record.arms[0].tool_state = kToolHeld | kToolLetGo;
   show();
-  EXPECT_TRUE(notice_.isHidden());
+  EXPECT_NE(why().find("let go"), std::string::npos) << why();
 }
 
 TEST_F(StateNoticeTest, MouseAndWheelOverTheWordsReachTheView) {

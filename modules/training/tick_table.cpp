@@ -1,0 +1,64 @@
+#include "training/tick_table.h"
+
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <locale>
+
+#include "base/file.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr std::uint64_t kSlice = 4096;  // ticks
+
+Status writeTo(const SessionReader& recording, std::ofstream& out, const Progress& progress) {
+  const Json& scene = recording.header().scene;
+  const double rate_hz = scene.at("rate_hz").get<double>();
+  out.imbue(std::locale::classic());
+  out << std::setprecision(std::numeric_limits<double>::max_digits10);
+  out << "tick,t_s,arm,x_mm,y_mm,z_mm,v_x_m_s,v_y_m_s,v_z_m_s,f_e_x_N,f_e_y_N,f_e_z_N,E_obs_J,"
+         "alpha,f_c_x_N,f_c_y_N,f_c_z_N,sent_x_N,sent_y_N,sent_z_N\n";
+  const auto add = [&](const Vec3& v) { out << ',' << v.x << ',' << v.y << ',' << v.z; };
+  const std::uint64_t count = recording.tickCount();
+  for (std::uint64_t first = 0; first < count; first += kSlice) {
+    if (progress.cancelled()) return Error{"CANCELLED", "The table was cancelled", "", ""};
+    progress.at(double(first) / double(count), "Writing the table");
+    auto ticks = recording.ticks(first, std::min(kSlice, count - first));
+    if (!ticks) return ticks.error();
+    for (const TickRecord& tick : *ticks) {
+      for (std::size_t i = 0; i < recording.armCount(); ++i) {
+        const ArmRecord& arm = tick.arms[i];
+        out << tick.tick << ',' << double(tick.tick) / rate_hz << ','
+            << scene.at("arms").at(i).at("name").get<std::string>();
+        add(arm.patient_position_mm);
+        add(arm.velocity_m_s);
+        add(arm.demanded_N);
+        out << ',' << arm.observer_J << ',' << arm.alpha;
+        add(arm.bounded_N);
+        add(arm.sent_N);
+        out << '\n';
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status writeTickTable(const SessionReader& recording, const std::filesystem::path& file,
+                      const Progress& progress) {
+  return replaceFile(file, [&](const std::filesystem::path& temporary) -> Status {
+    std::ofstream out(temporary, std::ios::binary);
+    if (Status written = writeTo(recording, out, progress); !written) return written;
+    out.close();
+    if (!out) {
+      return Error{"CANNOT_WRITE", "The table could not be written", file.string(),
+                   "Free some space, or write it to another place"};
+    }
+    return {};
+  });
+}
+
+}  // namespace trephine
