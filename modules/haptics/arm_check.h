@@ -17,7 +17,8 @@ namespace trephine {
 //   g   = sum y(n) a(n) / sum a(n)^2
 // and a delay is found where sum (y(n) - a(n - j))^2 is less for j = 1 or -1 than for 0, by more than
 // noise makes and with most of y explained. A firm hand makes g smaller than 1: within the delay it
-// holds the arm back. (Prediction-error identification: Ljung 1999.)
+// holds the arm back. Noise is what the encoder makes, or what surprised in air just before: a hand
+// that changes its force fast then goes on to. (Prediction-error identification: Ljung 1999.)
 class ArmCheck {
  public:
   ArmCheck(const ArmDynamics& stated, const ArmEstimator& estimator, double period_s);
@@ -44,10 +45,11 @@ class ArmCheck {
   Vec3 x_{0.0}, v_{0.0}, a_{0.0};  // of the answer to the forces alone
   Vec3 last_answer_m_{0.0}, last_y_m_{0.0};
   double since_air_s_ = 1e9;
-  // Sums over the first milliseconds of contacts [m2]: a a, its value a sample earlier, y y, y a
-  // with a as it is, a sample earlier, a sample later, and the share of noise in y y.
-  double aa_ = 0.0, aa_before_ = 0.0, yy_ = 0.0, ya_ = 0.0, ya_before_ = 0.0, ya_after_ = 0.0;
-  double noise_m2_ = 0.0;
+  double in_air_m2_ = 0.0;  // mean square of the surprise in air, leaky
+  // Sums over the first milliseconds of contacts, in variances of the noise there: a a, its value a
+  // sample earlier, y y and the noise in it, y a with a as it is, a sample earlier, a sample later.
+  double aa_ = 0.0, aa_before_ = 0.0, yy_ = 0.0, noise_ = 0.0;
+  double ya_ = 0.0, ya_before_ = 0.0, ya_after_ = 0.0;
   double lighter_ = 1.0, hand_share_ = 0.0;
   bool not_as_stated_ = false;
 };

@@ -7,8 +7,8 @@ namespace trephine {
 
 namespace {
 
-// Tuned on the stability grid: hand forces that wander by half a newton in a second.
-constexpr double kHandJerk_N_per_sqrt_s = 0.5124;
+// Tuned on the stability grid: hand forces that wander by 0.7 N in a second.
+constexpr double kHandJerk_N_per_sqrt_s = 0.73;
 constexpr double kFinestStep_m = 1e-8;  // below this a sample counts as exact
 constexpr double kJump_m = 0.02;        // within a period, beyond what was expected
 constexpr int kRiccatiSteps = 4000;

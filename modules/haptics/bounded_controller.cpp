@@ -10,39 +10,40 @@ namespace trephine {
 namespace {
 
 // Tuned on the stability grid and checked on cells that the tuning had not seen (CONTROLLERS.md).
-constexpr double kDampingPerMassRate = 3.3;     // b_max = this m / tau_b
+constexpr double kDampingPerMassRate = 3.35;     // b_max = this m / tau_b
 constexpr double kStiffnessPerMassRate = 0.21;  // k_max = this m / tau_k^2
-constexpr double kCountForce_N = 0.15;    // a count of the encoder changes the force by this
-constexpr double kDelayInDamping = 0.35;  // tau_b = T (1 + this d)
-constexpr double kLagInStiffness = 0.3088;  // tau_k = tau_b + this lag
+constexpr double kCountForce_N = 0.2;    // a count of the encoder changes the force by this
+constexpr double kDelayInDamping = 0.38;  // tau_b = T (1 + this d)
+constexpr double kLagInStiffness = 0.31;  // tau_k = tau_b + this lag
 // Less is rendered where, within the delay, such a hand outdoes the mass: one that anybody may be,
 // and what is added for one that holds the arm back.
-constexpr double kAnyHandDamping = 4.0, kFirmHandDamping = 5.0;            // N s/m
+constexpr double kAnyHandDamping = 4.0, kFirmHandDamping = 3.8;            // N s/m
 constexpr double kFirmHandStiffness = 1500.0, kFirmHandInDamping = 600.0;  // N/m
-constexpr double kFirmHandInCount = 0.3;
-constexpr double kImpact = 7.0;             // stiffness added to k_max as contact begins, of k_max
-constexpr double kImpactTime_s = 0.006219;  // it fades with this
+constexpr double kFirmHandInCount = 0.14;
+constexpr double kImpact = 8.0;             // stiffness added to k_max as contact begins, of k_max
+constexpr double kImpactTime_s = 0.0055;  // it fades with this
 constexpr double kImpactAgain_s = 0.05;     // and is there again after so long in air
 constexpr double kCreditAbove_J = 3.53e-4;  // credit beyond what the spring holds
 constexpr double kMostDebt_J = 1e-3;        // a pose that jumps must not silence the arm for long
 constexpr double kCreditSlack = 0.01;       // of the tolerance may be overdrawn
-constexpr double kLossSeen = 0.6;           // tolerances lost before stiffness is lowered
+constexpr double kLossSeen = 0.45;           // tolerances lost before stiffness is lowered
 constexpr double kLossStep = 0.94;          // by this
-constexpr double kShaking_N = 0.09;         // force that comes and goes, per tick
-constexpr double kShakingTime_s = 0.06444;
-constexpr double kShakingStep = 0.7644;
+constexpr double kShaking_N = 0.0743;         // force that comes and goes, per tick
+constexpr double kShakingTime_s = 0.0644;
+constexpr double kShakingStep = 0.861;
 constexpr double kObeyed = 1e-9;           // of the peak force: rounding of the clamp
-constexpr double kLeastDamping = 0.01612;  // of sqrt(k m), always
-constexpr double kLearntDamping = 1.316;   // of sqrt(k m), once stiffness was lowered
+constexpr double kLeastDamping = 0.018;  // of sqrt(k m), always
+constexpr double kLearntDamping = 1.32;   // of sqrt(k m), once stiffness was lowered
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.05012;
 constexpr double kForget_per_s = 0.5062;  // of the lowering, while in air
 constexpr double kQuiet_s = 1.2;          // in contact, before a scale comes back
 constexpr double kBelowTried = 0.92;      // up to this share of where something happened
-constexpr double kComesBack_per_s = 3.5;
+constexpr double kComesBack_per_s = 6.0;
 constexpr double kCreeps_per_s = 0.01;    // and beyond it
 constexpr double kSameEvent_s = 0.3;      // what happens again so soon is one event
 constexpr double kWorthSaying_N = 1e-6;   // less than this is no difference
+constexpr double kPartOfIt_N = 1e-7;      // nor is this one part's share of it
 
 // What a spring holds that pushes with `force_N`, no more than `peak_N` of which arrives.
 double springEnergy(double force_N, double stiffness, double peak_N) {
@@ -175,6 +176,9 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   } else if (in.touching) {
     energy_J_ = stored_J;  // whoever pressed the tool in here put it in
   }
+  // In a ramp the spring is there already and its force is not: what it holds counts as put in, or
+  // the hand would be asked to pay for it with a force that it does not feel.
+  if (in.touching && not_obeyed_ticks_ > 0) energy_J_ = std::max(energy_J_, stored_J);
   energy_J_ = std::clamp(energy_J_, -kMostDebt_J, stored_J + kCreditAbove_J);
 
   // What is lost is counted on the samples as they are. The forces follow the estimate, so that on
@@ -240,7 +244,7 @@ BoundedController::Ahead BoundedController::ahead() const {
 }
 
 void BoundedController::flag(ControllerPart part, const Vec3& difference_N) {
-  if (glm::dot(difference_N, difference_N) > kWorthSaying_N * kWorthSaying_N) parts_ |= part;
+  if (glm::dot(difference_N, difference_N) > kPartOfIt_N * kPartOfIt_N) parts_ |= part;
 }
 
 // The mean force of a spring and damper over the period, solved for the motion that it causes: the

@@ -6,7 +6,7 @@ namespace trephine {
 
 namespace {
 
-constexpr double kRest_s = 0.15;
+constexpr double kRest_s = 0.2;
 constexpr double kTurned = 0.996;  // cosine: a force that turns by 5 degrees rests no more
 constexpr double kRounding = 1.01;
 // A count's cube, seen across some direction, is at most this wide along an axis, in counts.

@@ -133,6 +133,10 @@ class Chain {
     return sent_N_;
   }
 
+  bool saysNotAsStated() const {
+    return std::visit([](const auto& c) { return c.parts(); }, controller_) & kPartArmNotAsStated;
+  }
+
  private:
   static ControllerKind kindOf(CellDriver driver) {
     if (driver == CellDriver::seed) return ControllerKind::seed;
@@ -287,6 +291,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
   result.fidelity_error = ideal2 > 0.0 ? std::sqrt(error2 / ideal2) : 0.0;
   result.contact_rms_N = inside > 0 ? std::sqrt(contact2 / double(inside)) : 0.0;
   result.stable = isStable(cell, result);
+  result.not_as_stated = chain.saysNotAsStated();
   return result;
 }
 

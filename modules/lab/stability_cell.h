@@ -61,6 +61,7 @@ struct CellResult {
   double fidelity_error = 0.0; // RMS (sent - ideal) over RMS ideal, on the true state; 0: no ideal
   double contact_rms_N = 0.0;  // RMS of the sent force while the tip was inside
   bool stable = true;
+  bool not_as_stated = false;  // the controller says that the arm is not what was claimed of it
 };
 
 // What an encoder of this step cannot see [J].

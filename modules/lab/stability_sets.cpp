@@ -78,6 +78,7 @@ bool applies(const Variation& variation, const StabilityCell& cell) {
 
 void count(const Run& run, SetRow& row) {
   ++row.cells;
+  row.not_as_stated += run.result.not_as_stated;
   if (run.also_ideal) {
     ++row.also_ideal;
     return;
@@ -96,17 +97,19 @@ Json rowJson(const SetRow& row) {
           {"also_ideal", row.also_ideal},
           {"energy_out_mJ_max", 1e3 * row.energy_out_J_max},
           {"cycle_um_max", 1e6 * row.cycle_m_max},
-          {"cycle_Hz", row.cycle_Hz}};
+          {"cycle_Hz", row.cycle_Hz},
+          {"not_as_stated", row.not_as_stated}};
 }
 
 std::string rowText(const char* indent, const SetRow& row) {
-  char line[200];
+  char line[260];
   std::snprintf(line, sizeof(line),
                 "%s%-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law; at most %.3f mJ given "
-                "out, cycle %.0f um at %.0f Hz\n",
+                "out, cycle %.0f um at %.0f Hz; arm not as stated in %zu\n",
                 indent, row.name.c_str(), row.unstable, row.cells,
                 row.cells > 0 ? 100.0 * double(row.unstable) / double(row.cells) : 0.0,
-                row.also_ideal, 1e3 * row.energy_out_J_max, 1e6 * row.cycle_m_max, row.cycle_Hz);
+                row.also_ideal, 1e3 * row.energy_out_J_max, 1e6 * row.cycle_m_max, row.cycle_Hz,
+                row.not_as_stated);
   return line;
 }
 

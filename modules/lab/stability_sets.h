@@ -45,6 +45,7 @@ Result<std::vector<StabilitySet>> readStabilitySets(const std::string& names);
 struct SetRow {
   std::string name;
   std::size_t cells = 0, unstable = 0, also_ideal = 0;
+  std::size_t not_as_stated = 0;  // in which the controller says so; false ones where claims are right
   // Of the cells that are not also_ideal.
   double energy_out_J_max = 0.0;
   double cycle_m_max = 0.0, cycle_Hz = 0.0;  // the largest limit cycle, peak to peak
@@ -64,7 +65,8 @@ std::vector<StabilityCell> representativeCells();
 Result<SetFigures> measureStabilitySet(StabilitySet set, const std::vector<StabilityCell>& cells,
                                        std::optional<double> seconds, const Progress& progress);
 
-// {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, rows: [{name, ...}]}
+// {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz,
+//  not_as_stated, rows: [{name, ...}]}
 Json toJson(const SetFigures& figures);
 std::string toText(const std::string& name, const SetFigures& figures);
 
