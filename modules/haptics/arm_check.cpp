@@ -17,7 +17,6 @@ constexpr double kLessDelay = 0.5;     // a hand's damping looks like less delay
 constexpr double kUnexplained = 0.3;   // of y at most; more is a hand or a blow
 constexpr double kMassAlarm = 1.35;    // lighter by this and twice its own uncertainty,
 constexpr double kMassSure = 0.06;     // which must be no more, since counts are no white noise
-constexpr double kMassSureUnnoised = 0.2;  // or no more than this where no sample surprised in air
 constexpr double kAirTime_s = 0.005;  // the surprise in air is averaged over this
 constexpr double kHandNoise = 8.0;    // what it is beyond the encoder's counts so many times
 constexpr int kMostShift_ticks = 1;
@@ -76,8 +75,7 @@ bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touc
   hand_share_ = std::clamp(1.0 - lighter, 0.0, 1.0);
   const double unsure = 1.0 / std::sqrt(aa_ + kPrior);
   const double left = yy_ - 2.0 * lighter * ya_ + lighter * lighter * aa_ - noise_;
-  const bool unnoised = in_air_m2_ < -1.9 * variance_m2_;  // it starts from -2 of them
-  if (unsure < (unnoised ? kMassSureUnnoised : kMassSure) && lighter - 2.0 * unsure > kMassAlarm && left < kUnexplained * yy_) {
+  if (unsure < kMassSure && lighter - 2.0 * unsure > kMassAlarm && left < kUnexplained * yy_) {
     not_as_stated_ = true;
   }
   return true;

@@ -590,17 +590,17 @@ TEST(BoundedController, CalmsAnArmThatIsLighterThanItWasTold) {
 TEST(LearntScale, ComesBackInContactToJustBelowWhereSomethingHappened) {
   LearntScale scale;
   for (int i = 0; i < 40; ++i) {  // one event: down and down within a moment
-    scale.lower(0.9, 0.05);
+    scale.lower(0.9, 0.2);
     scale.inContact(0.001);
   }
-  ASSERT_LT(scale.value, 0.07);
+  ASSERT_LE(scale.value, 0.2);
   for (int i = 0; i < 1000; ++i) scale.inContact(0.001);
-  EXPECT_LT(scale.value, 0.07) << "not until it has been quiet for a while";
+  EXPECT_LE(scale.value, 0.2) << "not until it has been quiet for a while";
   for (int i = 0; i < 1000; ++i) scale.inContact(0.001);
   EXPECT_GE(scale.value, 0.9) << "0.9 of what was stable, after 2 s";
   EXPECT_LT(scale.value, 0.96) << "and then slowly";
   const double before = scale.value;
-  scale.lower(0.9, 0.05);
+  scale.lower(0.9, 0.2);
   for (int i = 0; i < 3000; ++i) scale.inContact(0.001);
   EXPECT_LT(scale.value, 0.95 * before) << "it stays below where the same happened again";
 }
