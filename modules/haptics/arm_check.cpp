@@ -17,6 +17,7 @@ constexpr double kLessDelay = 0.5;     // a hand's damping looks like less delay
 constexpr double kUnexplained = 0.3;   // of y at most; more is a hand or a blow
 constexpr double kMassAlarm = 1.35;    // lighter by this and twice its own uncertainty,
 constexpr double kMassSure = 0.06;     // which must be no more, since counts are no white noise
+constexpr double kFaded = 1e-9;        // of the noise
 constexpr double kAirTime_s = 0.005;  // the surprise in air is averaged over this
 constexpr double kHandNoise = 8.0;    // what it is beyond the encoder's counts so many times
 constexpr int kMostShift_ticks = 1;
@@ -40,6 +41,17 @@ bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touc
   since_air_s_ = touching ? since_air_s_ + T_ : 0.0;
   if (!looks) return false;
 
+  const Vec3& surprise_m = estimator.surprise_m();
+  if (!touching) {
+    const double beyond_m2 = glm::dot(surprise_m, surprise_m) - 2.0 * variance_m2_;
+    in_air_m2_ += std::min(1.0, T_ / kAirTime_s) * (beyond_m2 - in_air_m2_);
+    // No force, and the last one's answer has faded: nothing to learn from.
+    if (held_N == Vec3(0.0) && glm::dot(x_, x_) < kFaded * variance_m2_) {
+      x_ = v_ = a_ = last_answer_m_ = last_y_m_ = Vec3(0.0);
+      return false;
+    }
+  }
+
   const Vec3 acceleration = held_N / stated_kg_ + a_;
   x_ += T_ * v_ + (0.5 * T_ * T_) * acceleration;
   v_ += T_ * acceleration;
@@ -48,11 +60,6 @@ bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touc
   v_ -= estimator.gain()[1] * answer_m;
   a_ -= estimator.gain()[2] * answer_m;
 
-  const Vec3& surprise_m = estimator.surprise_m();
-  if (!touching) {
-    const double beyond_m2 = glm::dot(surprise_m, surprise_m) - 2.0 * variance_m2_;
-    in_air_m2_ += std::min(1.0, T_ / kAirTime_s) * (beyond_m2 - in_air_m2_);
-  }
   const double per_noise = 1.0 / std::max(variance_m2_, kHandNoise * in_air_m2_);
   const Vec3 y_m = surprise_m + lighter_ * answer_m;
   const double answer2 = glm::dot(answer_m, answer_m);

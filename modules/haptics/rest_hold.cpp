@@ -20,16 +20,19 @@ Vec3 RestHold::follow(Window& window, const Vec3& sample_m, double width_m,
   window.high = glm::max(window.high, sample_m);
   const Vec3 wide_m = window.high - window.low;
   if (window.ticks == 0 || wide_m.x > width_m || wide_m.y > width_m || wide_m.z > width_m) {
-    window = Window{};
     window.low = window.high = sample_m;
+    window.sum_N = force_N;
+    window.ticks = 1;
+    window.holding = false;
+    return force_N;
   }
-  if (window.holding) return window.held_N;
+  if (window.holding) return window.sum_N;
   window.sum_N += force_N;
   ++window.ticks;
   if (window.ticks * T_ < kRest_s) return force_N;
   window.holding = true;
-  window.held_N = window.sum_N / double(window.ticks);
-  return window.held_N;
+  window.sum_N /= double(window.ticks);
+  return window.sum_N;
 }
 
 Vec3 RestHold::hold(const Vec3& elastic_N, double stiffness, const Vec3& position_m,

@@ -25,7 +25,7 @@ class RestHold {
  private:
   struct Window {
     Vec3 low{0.0}, high{0.0};
-    Vec3 sum_N{0.0}, held_N{0.0};
+    Vec3 sum_N{0.0};  // over the ticks, and while holding their mean
     int ticks = 0;
     bool holding = false;
   };
