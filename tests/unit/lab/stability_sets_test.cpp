@@ -103,10 +103,14 @@ TEST(StabilitySets, LetAHandSwingWithoutCallingTheSwingAnOscillation) {
 
 TEST(StabilitySets, TellTheControllerWhatIsClaimedAndNotWhatIs) {
   StabilityCell cell = wall();
+  cell.mass_kg = 0.2;
   cell.encoder_m = 0.0;
-  CellConditions heavier;
+  cell.tissue = {0.0, 1e6};
+  CellConditions heavier, later;
   heavier.mass_claimed = 2.0;
+  later.delay_claimed_more = 1;
   EXPECT_TRUE(runCell(cell, CellDriver::bounded, 1.0, heavier).not_as_stated);
+  EXPECT_TRUE(runCell(cell, CellDriver::bounded, 1.0, later).not_as_stated);
   EXPECT_FALSE(runCell(cell, CellDriver::bounded).not_as_stated);
 }
 
