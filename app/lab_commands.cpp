@@ -19,6 +19,7 @@
 #include "lab/read_floor.h"
 #include "lab/stability_maps.h"
 #include "lab/stability_measurement.h"
+#include "lab/stability_sets.h"
 #include "lab/trade_charts.h"
 #include "lab/trades_measurement.h"
 #include "lab/upload_measurement.h"
@@ -282,31 +283,80 @@ int measureUploadCommand(bool json, const Progress& progress) {
   return 0;
 }
 
-int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
+namespace {
+
+// The grid under every controller, with its table and maps in `out`.
+Result<Json> measureStabilityGrid(std::vector<StabilityCell> cells, double seconds,
+                                  const std::string& out, std::string& text,
+                                  const Progress& progress) {
+  Result<StabilityMeasurement> measured = measureStability(std::move(cells), progress, seconds);
+  if (!measured) return measured.error();
+  if (Status written = writeStabilityTable(*measured, out); !written) return written.error();
+  const Result<Json> maps =
+      drawnFiles("maps", [&] { return writeStabilityMaps(mapCells(*measured), out, progress); });
+  if (!maps) return maps.error();
+  Json answer = toJson(*measured);
+  answer["table"] = (std::filesystem::path(out) / "stability.csv").string();
+  answer["maps"] = *maps;
+  text += toText(*measured) + "  table and maps: " + out + "\n";
+  return answer;
+}
+
+// Every set that was asked for, in the order of their names.
+Result<Json> measureStabilitySets(const StabilityArguments& arguments, std::string& text,
+                                  const Progress& progress) {
+  // Whole scenes are a set of their own; it joins here once it is measured.
+  std::string names = arguments.sets;
+  if (names.empty()) names = arguments.grid.empty() ? "grid,long,moving,hands,claims" : "grid";
+  Result<std::vector<StabilitySet>> sets = readStabilitySets(names);
+  if (!sets) return sets.error();
+  if (arguments.seconds && !(*arguments.seconds >= 1.0 && *arguments.seconds <= 600.0)) {
+    return Error{"BAD_ARGUMENT", "The time must lie between 1 and 600 s", "--seconds", ""};
+  }
+  std::vector<StabilityCell> all = fullGrid(), some = representativeCells();
+  if (!arguments.grid.empty()) {
+    Result<std::vector<StabilityCell>> read = readGrid(arguments.grid);
+    if (!read) return read.error();
+    all = some = *std::move(read);
+  }
+  if (Status made = makeFolder(arguments.out); !made) return made.error();
+
+  Json answer = Json::object();
+  double done = 0.0;
+  for (StabilitySet set : *sets) {
+    const std::string name = nameOf(kStabilitySetNames, set);
+    const double next = done + 1.0 / double(sets->size());
+    const Progress part(progress, done, next);
+    if (set == StabilitySet::grid) {
+      Result<Json> grid = measureStabilityGrid(
+          all, arguments.seconds.value_or(kCellDuration_s), arguments.out, text, part);
+      if (!grid) return grid.error();
+      answer.update(*grid);
+    } else if (set == StabilitySet::rest) {
+      return Error{"BAD_ARGUMENT", "Whole scenes at rest are not measured yet", "--sets", ""};
+    } else {
+      const auto& cells = set == StabilitySet::lasting ? all : some;
+      Result<SetFigures> figures = measureStabilitySet(set, cells, arguments.seconds, part);
+      if (!figures) return figures.error();
+      answer[name] = toJson(*figures);
+      text += toText(name, *figures);
+    }
+    done = next;
+  }
+  return answer;
+}
+
+}  // namespace
+
+int measureStabilityCommand(const StabilityArguments& arguments, bool json,
                             const Progress& progress) {
-  constexpr const char* kName = "measure.stability";
-  std::vector<StabilityCell> cells = fullGrid();
-  if (!grid.empty()) {
-    Result<std::vector<StabilityCell>> read = readGrid(grid);
-    if (!read) return printError(kName, read.error(), json);
-    cells = *std::move(read);
-  }
-  if (Status made = makeFolder(out); !made) return printError(kName, made.error(), json);
-  Result<StabilityMeasurement> measured = measureStability(std::move(cells), progress);
-  if (!measured) return printError(kName, measured.error(), json);
-  if (Status written = writeStabilityTable(*measured, out); !written) {
-    return printError(kName, written.error(), json);
-  }
-  const Result<Json> maps = drawnFiles("maps", [&] { return writeStabilityMaps(mapCells(*measured), out, progress); });
-  if (!maps) return printError(kName, maps.error(), json);
+  std::string text;
+  const Result<Json> answer = measureStabilitySets(arguments, text, progress);
+  if (!answer) return printError("measure.stability", answer.error(), json);
   if (json) {
-    Json answer = toJson(*measured);
-    answer["table"] = (std::filesystem::path(out) / "stability.csv").string();
-    answer["maps"] = *maps;
-    printAnswer(kName, answer);
+    printAnswer("measure.stability", *answer);
   } else {
-    std::printf("%s", toText(*measured).c_str());
-    std::printf("  table and maps: %s\n", out.c_str());
+    std::printf("%s", text.c_str());
   }
   return 0;
 }

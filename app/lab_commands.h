@@ -24,6 +24,13 @@ struct RunArguments {
   bool realtime = false;
 };
 
+struct StabilityArguments {
+  std::string grid;  // empty: the full grid
+  std::string sets;  // "grid,long"; empty: all, or only `grid` where a grid is given
+  std::optional<double> seconds;  // empty: as each set has it
+  std::string out;
+};
+
 struct ImportArguments {
   std::string path;
   std::string series;                // empty: the CT series with most slices
@@ -42,9 +49,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
 int explainCommand(const std::string& scene, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
-// `grid` is empty for the full grid.
-int measureStabilityCommand(const std::string& grid, const std::string& out, bool json,
-                            const Progress&);
+int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);
 int measureExtremesCommand(const std::string& out, bool json, const Progress&);
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureTradesCommand(const std::string& out, bool json, const Progress&);

@@ -82,9 +82,16 @@ int run(int argc, char** argv) {
       with_json(measure_command->add_subcommand("upload", "Partial against full upload"));
   auto* stability_command = with_json(measure_command->add_subcommand(
       "stability", "Every controller over a grid of arms, hands and tissues"));
-  std::string grid;
-  stability_command->add_option("--grid", grid, "A grid of your own (JSON); the full grid unless given");
-  stability_command->add_option("--out", out, "Folder for the table and the maps")->required();
+  StabilityArguments stability;
+  stability_command->add_option("--grid", stability.grid,
+                                "A grid of your own (JSON); the full grid unless given");
+  stability_command->add_option("--sets", stability.sets,
+                                "Which of grid,long,moving,hands,claims; all unless given, of a "
+                                "grid of your own only grid");
+  stability_command->add_option("--seconds", stability.seconds,
+                                "How long a cell runs; 2, long 30, moving 5 unless given");
+  stability_command->add_option("--out", stability.out, "Folder for the table and the maps")
+      ->required();
   auto* extremes_command = with_json(measure_command->add_subcommand(
       "extremes", "Values at the edge of what can be given, through the real loop"));
   extremes_command->add_option("--out", out, "Folder for the table")->required();
@@ -137,7 +144,7 @@ int run(int argc, char** argv) {
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*explain_command) return explainCommand(file, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);
-  if (*stability_command) return measureStabilityCommand(grid, out, json, progress);
+  if (*stability_command) return measureStabilityCommand(stability, json, progress);
   if (*extremes_command) return measureExtremesCommand(out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);

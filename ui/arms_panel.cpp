@@ -167,16 +167,19 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.energy->setText(
         (gives_out ? tr("%1 mJ given out") : tr("%1 mJ")).arg(kMilli * energy_J, 0, 'f', 1));
     colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
-    card.parts->setText(state.controller == ControllerKind::bounded
-                            ? controllerPartWords(arm.controller_parts)
-                            : QStringLiteral("\u2013"));
+    card.parts->setText(controllerPartWords(arm.controller_parts));
     const bool touching =
         arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
     card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
                                    : tr("nothing"));
     colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
-    card.faults->setText(faultWords(arm.faults));
-    card.faults->setVisible(arm.faults != 0);
+    QStringList wrong;
+    if (arm.faults != 0) wrong << faultWords(arm.faults);
+    if (arm.controller_parts & kPartArmNotAsStated) {
+      wrong << tr("The arm's mass or delay is not what its device file states.");
+    }
+    card.faults->setText(wrong.join('\n'));
+    card.faults->setVisible(!wrong.isEmpty());
   }
   missed_->setText(QString::number(state.missed));
   dropped_->setText(QString::number(state.dropped));

@@ -60,6 +60,11 @@ QString controllerPartWords(std::uint32_t parts) {
   if (parts & kPartLearned) words << tr("less, since it shook");
   if (parts & kPartDamping) words << tr("damping added");
   if (parts & kPartCredit) words << tr("energy held back");
+  if (parts & kPartHold) words << tr("held at rest");
+  if (parts & kPartClamp) words << tr("at the arm's limit");
+  if (parts & kPartLimiter) words << tr("rising slowly");
+  if (parts & kPartEstimate) words << tr("position estimated");
+  if (parts & kPartPrediction) words << tr("for when it acts");
   return words.isEmpty() ? tr("nothing to do") : words.join(", ");
 }
 

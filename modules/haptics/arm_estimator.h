@@ -18,13 +18,20 @@ class ArmEstimator {
   ArmEstimator(const ArmDynamics& arm, double period_s);
 
   // After a period in which `held_N` acted on the arm, the sample reads `position_m`. One that lies
-  // 20 mm from what was expected starts the filter anew, at rest.
-  void update(const Vec3& position_m, const Vec3& held_N);
+  // 20 mm from what was expected starts the filter anew, at rest. `lighter`: so many times lighter
+  // than stated is the arm taken to be.
+  void update(const Vec3& position_m, const Vec3& held_N, double lighter = 1.0);
   void forget() { started_ = false; }
 
   const Vec3& position_m() const { return x_; }
   const Vec3& velocity_m_s() const { return v_; }
   const Vec3& handAcceleration_m_s2() const { return a_; }
+  // The last sample less what was expected of it, and the variance that this has on an arm that is
+  // as stated.
+  const Vec3& surprise_m() const { return surprise_m_; }
+  double surpriseVariance_m2() const { return surprise_variance_m2_; }
+  // What a surprise adds to x, v and a.
+  const std::array<double, 3>& gain() const { return gain_; }
   // How long the filter takes to believe a sample, beyond the sample itself [s].
   double lag_s() const { return T_ / gain_[0] - T_; }
 
@@ -34,7 +41,8 @@ class ArmEstimator {
   double T_;
   double mass_kg_;
   std::array<double, 3> gain_{};
-  Vec3 x_{0.0}, v_{0.0}, a_{0.0};
+  double surprise_variance_m2_ = 0.0;
+  Vec3 x_{0.0}, v_{0.0}, a_{0.0}, surprise_m_{0.0};
   bool started_ = false;
 };
 

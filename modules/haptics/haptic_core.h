@@ -103,6 +103,7 @@ class HapticCore {
     bool cuts = false;     // may remove in this tick
     bool placed = false;   // the proxy was put where the arm was
   bool waiting = false;  // without force, until it is out of tissue
+    bool not_as_stated = false;  // mass or delay proved to be another, ever
     double free_s = 0.0;   // for so long the arm's own pose has been free, and the tool far from it
     double letting_go = 0.0;  // above 0: what of the force has faded; 1: all
     Vec3 energy_out_J{0.0};

@@ -264,6 +264,10 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   if (arm.waiting && !arm.gate.waitingForAir()) arm.gate.restored();
   out.sent_N = arm.gate.pass(out.clamped_N, in_tissue, open, input.late_ns, T);
   out.energy_out_J = arm.energy_out_J;
+  arm.not_as_stated = arm.not_as_stated || (out.controller_parts & kPartArmNotAsStated);
+  if (arm.not_as_stated) out.controller_parts |= kPartArmNotAsStated;
+  if (out.clamped_N != out.bounded_N) out.controller_parts |= kPartClamp;
+  if (out.sent_N != out.clamped_N) out.controller_parts |= kPartLimiter;
 
   arm.cuts = open && arm.cutting != Cutting::nothing && !journal_.busy() && !arm.gate.waitingForAir();
   const double lost_J = finite ? arm.work.hold(model.stored_J, out.rendered_share) : 0.0;

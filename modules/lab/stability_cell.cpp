@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "haptics/unseen_energy.h"
 
@@ -73,12 +74,23 @@ class Plant {
   std::array<double, 5> position_{}, velocity_{};
 };
 
-double restAt(double t) {
-  return kCellStart_m + (kCellRest_m - kCellStart_m) * std::min(1.0, t / kCellRamp_s);
-}
-double restSpeedAt(double t) {
-  return t < kCellRamp_s - 1e-9 ? (kCellRest_m - kCellStart_m) / kCellRamp_s : 0.0;
-}
+// Where the hand's rest point is, and how fast it moves.
+struct RestPoint {
+  bool swings = false;
+
+  double at(double t) const {
+    const double ramp = kCellStart_m + (kCellRest_m - kCellStart_m) * std::min(1.0, t / kCellRamp_s);
+    return swings && t > kCellRamp_s ? ramp + kCellSwing_m * std::sin(phase(t)) : ramp;
+  }
+  double speedAt(double t) const {
+    if (t < kCellRamp_s - 1e-9) return (kCellRest_m - kCellStart_m) / kCellRamp_s;
+    return swings ? kCellSwing_m * kTurn * std::cos(phase(t)) : 0.0;
+  }
+
+ private:
+  static constexpr double kTurn = 2.0 * std::numbers::pi * kCellSwing_Hz;
+  static double phase(double t) { return kTurn * (t - kCellRamp_s); }
+};
 
 double idealForce(const Impedance& tissue, double x, double v) {
   if (x >= 0.0) return 0.0;
@@ -88,13 +100,15 @@ double idealForce(const Impedance& tissue, double x, double v) {
 // The chain of the loop in one dimension: law, controller, clamp.
 class Chain {
  public:
-  Chain(const StabilityCell& cell, CellDriver driver, double scale)
+  Chain(const StabilityCell& cell, CellDriver driver, double scale, const CellConditions& told)
       : zero_(driver == CellDriver::zero_force),
         tissue_{scale * cell.tissue.damping, scale * cell.tissue.stiffness},
         period_s_(cell.period_s),
         controller_(makeController(
             kindOf(driver),
-            ArmDynamics{cell.mass_kg, cell.encoder_m, kCellForce_N, cell.delay_samples},
+            ArmDynamics{told.mass_claimed * cell.mass_kg,
+                        told.encoder_claimed_exact ? 0.0 : cell.encoder_m, kCellForce_N,
+                        cell.delay_samples + told.delay_claimed_more},
             cell.period_s)) {}
 
   double tick(double sample_m) {
@@ -119,6 +133,10 @@ class Chain {
     return sent_N_;
   }
 
+  bool saysNotAsStated() const {
+    return std::visit([](const auto& c) { return c.parts(); }, controller_) & kPartArmNotAsStated;
+  }
+
  private:
   static ControllerKind kindOf(CellDriver driver) {
     if (driver == CellDriver::seed) return ControllerKind::seed;
@@ -135,30 +153,50 @@ class Chain {
   double sent_N_ = 0.0;
 };
 
-// Peak to peak over the last quarter of x less its centred mean over 0.1 s, narrower at the end.
-double oscillation_m(const std::vector<double>& x, double period_s) {
-  const std::size_t n = x.size(), first = n - n / 4;
+// What is left of x without its centred mean over 0.1 s, narrower at the end.
+std::vector<double> lessItsMean(const std::vector<double>& x, double period_s) {
+  const std::size_t n = x.size();
   const auto half = std::size_t(std::max(3.0, 0.05 / period_s));
-  std::vector<double> sum(n + 1, 0.0);
+  std::vector<double> sum(n + 1, 0.0), left(n);
   for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + x[i];
-  double low = 0.0, high = 0.0;
-  for (std::size_t i = first; i < n; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     const std::size_t h = std::min({half, i, n - 1 - i});
-    const double off_mean = x[i] - (sum[i + h + 1] - sum[i - h]) / double(2 * h + 1);
-    low = i == first ? off_mean : std::min(low, off_mean);
-    high = i == first ? off_mean : std::max(high, off_mean);
+    left[i] = x[i] - (sum[i + h + 1] - sum[i - h]) / double(2 * h + 1);
   }
-  return high - low;
+  return left;
 }
 
-// The ideal law has no samples: its force follows the state in steps of 2 us, semi-implicitly.
-CellResult runIdeal(const StabilityCell& cell) {
+// Peak to peak and frequency over the last quarter; under a hand that swings without its last
+// 0.1 s, where the narrower mean would leave a part of the swing.
+void judgeMotion(const std::vector<double>& x, double period_s, bool swings, CellResult& result) {
+  std::vector<double> left = lessItsMean(x, period_s);
+  if (swings) left = lessItsMean(left, period_s);
+  const std::size_t first = x.size() - x.size() / 4;
+  const std::size_t cut = swings ? std::size_t(0.1 / period_s) : 0;
+  const std::size_t n = std::max(first, x.size() - std::min(x.size(), cut));
+  const auto [low, high] = std::minmax_element(left.begin() + std::ptrdiff_t(first),
+                                               left.begin() + std::ptrdiff_t(n));
+  result.oscillation_m = first == n ? 0.0 : *high - *low;
+  std::size_t upwards = 0;
+  for (std::size_t i = first + 1; i < n; ++i) upwards += left[i - 1] < 0.0 && left[i] >= 0.0;
+  result.cycle_Hz = n > first ? double(upwards) / (double(n - first) * period_s) : 0.0;
+}
+
+// The ideal law has no samples: its force follows the state in steps of 2 us, semi-implicitly. It
+// is judged at the samples of the cell.
+CellResult runIdeal(const StabilityCell& cell, const CellConditions& conditions) {
   constexpr double h = 2e-6;
+  const RestPoint rest{conditions.moving};
   const double m = cell.mass_kg, b = cell.tissue.damping, k = cell.tissue.stiffness;
   const double c = cell.plant_damping + cell.hand.damping;
-  double x = kCellStart_m, v = kCellSpeed_m_s, squares = 0.0;
+  const auto ticks = std::size_t(std::llround(conditions.seconds / cell.period_s));
+  double x = kCellStart_m, v = kCellSpeed_m_s, squares = 0.0, given_J = 0.0, last_N = 0.0;
   std::size_t inside = 0;
-  for (std::size_t i = 0; double(i) * h < kCellDuration_s; ++i) {
+  std::vector<double> positions;
+  positions.reserve(ticks);
+  CellResult result;
+  for (std::size_t i = 0; double(i) * h < conditions.seconds; ++i) {
+    const double t = double(i) * h;
     double force = 0.0;
     if (x < 0.0) {
       force = std::clamp(-(k * (x + v * h) + b * v) / (1.0 + (b + k * h) * h / m), -kCellForce_N,
@@ -166,12 +204,22 @@ CellResult runIdeal(const StabilityCell& cell) {
       squares += force * force;
       ++inside;
     }
-    const double pull = -cell.hand.stiffness * (x - restAt(double(i) * h));
+    if (positions.size() < ticks && double(positions.size()) * cell.period_s <= t) {
+      positions.push_back(x);
+      if (positions.size() > ticks - ticks / 4) result.step_N += std::abs(force - last_N);
+      last_N = force;
+    }
+    const double pull = -cell.hand.stiffness * (x - rest.at(t));
+    const double before = v;
     v = (v + (force + pull) / m * h) / (1.0 + c * h / m);
     x += v * h;
+    given_J += force * 0.5 * (before + v) * h;
+    result.energy_out_J = std::max(result.energy_out_J, given_J);
   }
-  CellResult result;
   result.contact_rms_N = inside > 0 ? std::sqrt(squares / double(inside)) : 0.0;
+  if (ticks >= 4) result.step_N /= double(ticks / 4);
+  judgeMotion(positions, cell.period_s, conditions.moving, result);
+  result.stable = isStable(cell, result);
   return result;
 }
 
@@ -181,18 +229,23 @@ double unseenEnergy_J(const StabilityCell& cell) {
   return unseenEnergy_J(cell.encoder_m);
 }
 
-bool isStable(const StabilityCell& cell, const CellResult& r) {
-  return r.oscillation_m <= std::max(2e-5, 2.0 * cell.encoder_m) && r.step_N <= 0.1 &&
-         r.energy_out_J <= unseenEnergy_J(cell);
+CellFaults faultsOf(const StabilityCell& cell, const CellResult& r) {
+  // Not a number is a fault.
+  return {!(r.oscillation_m <= std::max(2e-5, 2.0 * cell.encoder_m)), !(r.step_N <= 0.1),
+          !(r.energy_out_J <= unseenEnergy_J(cell))};
 }
 
-CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_scale) {
-  if (driver == CellDriver::ideal) return runIdeal(cell);
+bool isStable(const StabilityCell& cell, const CellResult& r) { return !faultsOf(cell, r).any(); }
+
+CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_scale,
+                   const CellConditions& conditions) {
+  if (driver == CellDriver::ideal) return runIdeal(cell, conditions);
   const double T = cell.period_s;
-  const auto ticks = std::size_t(std::llround(kCellDuration_s / T));
+  const auto ticks = std::size_t(std::llround(conditions.seconds / T));
   const std::size_t last_quarter = ticks - ticks / 4;
   const Plant plant(cell, T / kParts);
-  Chain chain(cell, driver, tissue_scale);
+  const RestPoint rest{conditions.moving};
+  Chain chain(cell, driver, tissue_scale, conditions);
   std::vector<double> pending(std::size_t(cell.delay_samples), 0.0);  // a ring
   std::size_t oldest = 0;
   std::vector<double> positions;
@@ -220,7 +273,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
     for (int part = 0; part < kParts; ++part) {
       const double t = (double(n) + double(part) / kParts) * T;
       const double x0 = x, v0 = v;
-      plant.step(x, v, held_N, restAt(t), restSpeedAt(t));
+      plant.step(x, v, held_N, rest.at(t), rest.speedAt(t));
       put_in_J -= held_N * (x - x0);
       result.energy_out_J = std::max(result.energy_out_J, -put_in_J);
       const double ideal = idealForce(cell.tissue, 0.5 * (x0 + x), 0.5 * (v0 + v));
@@ -234,28 +287,34 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
     }
   }
   result.step_N /= double(ticks - last_quarter);
-  result.oscillation_m = oscillation_m(positions, T);
+  judgeMotion(positions, T, conditions.moving, result);
   result.fidelity_error = ideal2 > 0.0 ? std::sqrt(error2 / ideal2) : 0.0;
   result.contact_rms_N = inside > 0 ? std::sqrt(contact2 / double(inside)) : 0.0;
   result.stable = isStable(cell, result);
+  result.not_as_stated = chain.saysNotAsStated();
   return result;
 }
 
-CellReference referenceOf(const StabilityCell& cell) {
+CellReference referenceOf(const StabilityCell& cell, double seconds) {
+  CellConditions conditions;
+  conditions.seconds = seconds;
+  const auto off = [&](double scale) {
+    return runCell(cell, CellDriver::off, scale, conditions);
+  };
   CellReference reference;
-  reference.off = runCell(cell, CellDriver::off);
+  reference.off = off(1.0);
   if (reference.off.stable) {
-    reference.margin = runCell(cell, CellDriver::off, 2.0).stable;
+    reference.margin = off(2.0).stable;
     if (reference.margin) return reference;
     reference.scale = 1.0;
     reference.contact_rms_N = reference.off.contact_rms_N;
   } else {
     double low = std::log(0.01), high = 0.0;
-    CellResult best = runCell(cell, CellDriver::off, 0.01);
+    CellResult best = off(0.01);
     if (!best.stable) return reference;
     for (int i = 0; i < 12; ++i) {
       const double middle = 0.5 * (low + high);
-      const CellResult tried = runCell(cell, CellDriver::off, std::exp(middle));
+      const CellResult tried = off(std::exp(middle));
       if (tried.stable) {
         low = middle;
         best = tried;

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
-#include <thread>
 #include <utility>
 
 #include "base/file.h"
+#include "lab/on_all_processors.h"
 
 namespace trephine {
 
@@ -45,17 +43,20 @@ std::optional<double> authority(const JudgedCell& cell, ControllerColumn column)
   return (cell.*column).contact_rms_N / *cell.reference.contact_rms_N;
 }
 
-JudgedCell judge(const StabilityCell& cell) {
+JudgedCell judge(const StabilityCell& cell, double seconds) {
+  CellConditions conditions;
+  conditions.seconds = seconds;
+  const auto run = [&](CellDriver driver) { return runCell(cell, driver, 1.0, conditions); };
   JudgedCell judged;
-  judged.reference = referenceOf(cell);
+  judged.reference = referenceOf(cell, seconds);
   judged.off = judged.reference.off;
-  judged.seed = runCell(cell, CellDriver::seed);
-  judged.bounded = runCell(cell, CellDriver::bounded);
-  judged.zero_force = runCell(cell, CellDriver::zero_force);
+  judged.seed = run(CellDriver::seed);
+  judged.bounded = run(CellDriver::bounded);
+  judged.zero_force = run(CellDriver::zero_force);
   const auto reached = authority(judged, &JudgedCell::bounded);
   if (reached && *reached < 0.7) {
     judged.ideal_authority =
-        runCell(cell, CellDriver::ideal).contact_rms_N / *judged.reference.contact_rms_N;
+        run(CellDriver::ideal).contact_rms_N / *judged.reference.contact_rms_N;
   }
   return judged;
 }
@@ -67,7 +68,7 @@ std::string instability(const StabilityCell& cell, const CellResult& r) {
   };
   if (r.oscillation_m > std::max(2e-5, 2.0 * cell.encoder_m)) add("it oscillates");
   if (r.step_N > 0.1) add("the force jumps");
-  if (r.energy_out_J > unseenEnergy_J(cell)) add("energy was given out before the hand was learnt");
+  if (r.energy_out_J > unseenEnergy_J(cell)) add("energy is given out");
   return parts;
 }
 
@@ -112,28 +113,14 @@ Result<std::vector<StabilityCell>> readGrid(const std::filesystem::path& file) {
 }
 
 Result<StabilityMeasurement> measureStability(std::vector<StabilityCell> cells,
-                                              const Progress& progress) {
+                                              const Progress& progress, double seconds) {
   StabilityMeasurement measurement{std::move(cells), {}};
   const std::size_t count = measurement.cells.size();
   measurement.judged.resize(count);
-  std::atomic<std::size_t> next{0}, done{0};
-  const auto work = [&] {
-    for (std::size_t i; !progress.cancelled() && (i = next++) < count; ++done) {
-      measurement.judged[i] = judge(measurement.cells[i]);
-    }
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
-      workers.emplace_back(work);
-    }
-    while (done < count && !progress.cancelled()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      progress.at(double(done) / double(count), "Stability");
-    }
-  }
-  if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
-  progress.at(1.0, "Stability");
+  const bool finished = onAllProcessors(count, "Stability", progress, [&](std::size_t i) {
+    measurement.judged[i] = judge(measurement.cells[i], seconds);
+  });
+  if (!finished) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
   return measurement;
 }
 

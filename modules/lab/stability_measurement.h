@@ -1,5 +1,5 @@
 // The stability laboratory: every controller over a grid of cells, judged against the bars.
-// Definitions: stability_cell.h. The figures are those of the run that prints them.
+// Definitions: stability_cell.h; what more is asked of `bounded`: stability_sets.h. The figures are those of the run that prints them.
 #pragma once
 
 #include <filesystem>
@@ -46,7 +46,8 @@ struct StabilityMeasurement {
 };
 
 // On all processors. Errors: CANCELLED.
-Result<StabilityMeasurement> measureStability(std::vector<StabilityCell> cells, const Progress&);
+Result<StabilityMeasurement> measureStability(std::vector<StabilityCell> cells, const Progress&,
+                                              double seconds = kCellDuration_s);
 
 BarFigures figuresOf(const StabilityMeasurement& measurement, CellResult JudgedCell::*controller);
 

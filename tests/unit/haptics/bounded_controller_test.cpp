@@ -9,6 +9,9 @@
 #include <random>
 #include <vector>
 
+#include "haptics/controllers.h"
+#include "haptics/safety.h"
+
 namespace trephine {
 namespace {
 
@@ -152,7 +155,9 @@ TEST(BoundedController, PassesASoftTissueOnAFineEncoderNearlyUnchanged) {
       if (x < -0.5e-3) {
         const double ideal_N = -tissue.stiffness * x + tissue.damping * v;
         worst = std::max(worst, std::abs(touch.sent_N.x - ideal_N) / ideal_N);
-        ASSERT_EQ(touch.controller.parts(), 0u) << "at " << x;
+        // What differs is the noise of the backward difference, and is said to be that.
+        ASSERT_EQ(touch.controller.parts() & ~(kPartEstimate | kPartPrediction), 0u) << "at " << x;
+        ASSERT_EQ(touch.controller.parts() == 0, touch.sent_N.x == touch.demanded_N) << "at " << x;
       }
     }
     EXPECT_LT(worst, 0.04) << "b " << tissue.damping << ", k " << tissue.stiffness;
@@ -401,30 +406,140 @@ TEST(BoundedController, DoesNotPullAnArmBackThatLeavesASpring) {
   }
 }
 
-TEST(BoundedController, HasNoCreditAfterAnUndoInsideATissue) {
-  // On an arm this light the spring's force would do more work in its first period than an encoder
-  // can miss.
-  Touch touch(arm(0.005, 0.0), {0.5, 500.0});
+TEST(BoundedController, TakesWhatTheSpringHoldsForPutInWhereItBeginsInContact) {
+  Touch touch(arm(0.045, 0.0), {0.5, 500.0});
   for (int i = 0; i < 300; ++i) touch.at(-0.01e-3 * i);
-  const double before_N = touch.sent_N.x;
-  const auto firstWork_J = [](double force_N) {
-    return force_N * force_N * kT * kT / (2.0 * 0.005);
-  };
-  ASSERT_GT(firstWork_J(before_N), 2.0 * unseen_J(arm(0.005, 0.0)));
-  ASSERT_GT(touch.controller.energy_J(), 0.0);
-
   touch.controller.forget();
   EXPECT_EQ(touch.controller.energy_J(), 0.0);
-  touch.sent_N = Vec3(0.0);  // the core sends nothing in the tick of an undo
+  touch.sent_N = Vec3(0.0);  // the core sends nothing in the tick of a resume
   touch.at(-0.003);
-  EXPECT_LE(firstWork_J(touch.sent_N.x), unseen_J(arm(0.005, 0.0)));
-  EXPECT_TRUE(touch.controller.parts() & kPartCredit);
+  EXPECT_NEAR(touch.controller.energy_J(), 0.5 * 500.0 * 0.003 * 0.003, 1e-9);
+  EXPECT_NEAR(touch.sent_N.x, 1.5, 0.1) << "the force is there at once: the gate lets it in slowly";
+}
+
+// An arm under a hand, with the gate that stands behind the controller in the core.
+struct GatedArm {
+  Controller controller;
+  ForceGate gate;
+  double mass_kg = 0.045, x = 0.002, v = 0.0, last_m = 0.002;
+  double encoder_m, demanded_N = 0.0;
+  bool open = true;
+  Impedance hand{3.0, 600.0};
+
+  GatedArm(ControllerKind kind, double step_m)
+      : controller(makeController(kind, arm(0.045, step_m, 1), kT)), encoder_m(step_m) {}
+
+  double tick() {
+    const double sample = encoder_m > 0.0 ? std::round(x / encoder_m) * encoder_m : x;
+    ControllerInput in;
+    in.touching = sample < 0.0;
+    in.position_m.x = sample;
+    in.velocity_m_s.x = (sample - last_m) / kT;
+    in.last_sent_N = gate.sent_N();
+    last_m = sample;
+    const Impedance tissue = in.touching ? Impedance{2.0, 650.0} : Impedance{};
+    const Impedance allowed = limitImpedance(controller, tissue);
+    in.demanded_N.x = -tissue.stiffness * sample - tissue.damping * in.velocity_m_s.x;
+    in.rendered = springAndDamper({-allowed.stiffness * sample, 0.0, 0.0}, allowed.stiffness,
+                                  allowed.damping);
+    demanded_N = in.demanded_N.x;
+    const Vec3 before_N = gate.sent_N();
+    const Vec3 bounded_N = clampForce(boundForce(controller, in), 3.3);
+    const double sent_N = gate.pass(bounded_N, in.touching, open, 0, kT).x;
+    for (int i = 0; i < 20; ++i) {  // the arm takes a force a sample late
+      const double pull = -hand.stiffness * (x + 0.004) - hand.damping * v;
+      v += kT / 20 * (before_N.x + pull) / mass_kg;
+      x += kT / 20 * v;
+    }
+    return sent_N;
+  }
+};
+
+void expectForceBackSoon(GatedArm& held, const char* after) {
+  double before_N = held.gate.sent_N().x, last_step_N = 0.0;
+  int alternations = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double sent_N = held.tick(), step_N = sent_N - before_N;
+    EXPECT_LE(step_N, i < 100 ? 0.05 + 1e-9 : 0.1) << after << ", " << i;
+    alternations += step_N * last_step_N < -0.05 * 0.05;
+    before_N = sent_N;
+    last_step_N = step_N;
+    if (i == 500) {
+      EXPECT_GT(held.demanded_N, 0.5) << "it is pressed";
+      EXPECT_GE(sent_N, 0.8 * held.demanded_N) << after;
+    }
+  }
+  EXPECT_LE(alternations, 1) << after;  // it may turn once
+}
+
+TEST(BoundedController, GivesTheForceBackSoonAfterAResumeAndAfterASwitchInsideATissue) {
+  for (const double step_m : {0.0, kOmniStep_m}) {
+    GatedArm resumed(ControllerKind::bounded, step_m);
+    for (int i = 0; i < 1000; ++i) resumed.tick();
+    resumed.open = false;
+    for (int i = 0; i < 1000; ++i) resumed.tick();
+    resumed.open = true;
+    forgetController(resumed.controller);
+    resumed.gate.change();
+    expectForceBackSoon(resumed, "a resume");
+
+    GatedArm switched(ControllerKind::off, step_m);
+    for (int i = 0; i < 2000; ++i) switched.tick();
+    switched.controller = makeController(ControllerKind::bounded, arm(0.045, step_m, 1), kT);
+    switched.gate.change();
+    expectForceBackSoon(switched, "a switch");
+  }
+}
+
+TEST(BoundedController, FlagsEveryDifferenceAndReturnsTheDemandedForceWhereThereIsNone) {
+  Numbers numbers(7);
+  std::uint32_t seen = 0;
+  for (int run = 0; run < 30; ++run) {
+    Touch touch(arm(numbers.decadesBetween(0.02, 0.2), run % 2 == 0 ? 0.0 : kOmniStep_m, run % 4),
+                {numbers.between(0.0, 20.0), run % 3 == 0 ? 0.0 : numbers.decadesBetween(50.0, 1e5)});
+    for (int i = 0; i < 1500; ++i) {
+      const double x = -0.002 * std::sin(0.004 * i) + (i > 900 ? numbers.between(-1e-4, 1e-4) : 0.0);
+      touch.at(run % 2 == 0 ? x : std::round(x / kOmniStep_m) * kOmniStep_m);
+      const std::uint32_t parts = touch.controller.parts();
+      if (touch.sent_N.x != touch.demanded_N) {
+        ASSERT_NE(parts & ~std::uint32_t(kPartArmNotAsStated), 0u) << "run " << run << " tick " << i;
+      }
+      seen |= parts;
+    }
+  }
+  EXPECT_TRUE(seen & kPartEstimate);
+  EXPECT_TRUE(seen & kPartPrediction);
+  EXPECT_TRUE(seen & kPartArmBound);
+
+  // At rest on exact samples and without a delay nothing differs.
+  Touch resting(arm(0.045, 0.0), {1.0, 300.0});
+  for (int i = 0; i < 3000; ++i) resting.at(i < 100 ? -0.02e-3 * i : -0.002);
+  EXPECT_EQ(resting.sent_N.x, resting.demanded_N);
+  EXPECT_EQ(resting.controller.parts(), 0u);
+}
+
+TEST(BoundedController, HoldsTheForceOfAToolThatRestsBetweenTwoCounts) {
+  Touch touch(arm(0.045, kOmniStep_m), {1.0, 600.0});
+  for (int i = 0; i < 40; ++i) touch.at(-kOmniStep_m * i);
+  double low_N = 1e9, high_N = -1e9;
+  for (int i = 0; i < 1000; ++i) {
+    touch.at(-kOmniStep_m * (39 + (i / 7) % 2));  // to and fro between neighbouring counts
+    if (i < 500) continue;
+    low_N = std::min(low_N, touch.sent_N.x);
+    high_N = std::max(high_N, touch.sent_N.x);
+    ASSERT_TRUE(touch.controller.parts() & kPartHold);
+  }
+  EXPECT_EQ(low_N, high_N);
+  EXPECT_NEAR(low_N, 600.0 * 39.5 * kOmniStep_m, 0.05);
+  touch.at(-kOmniStep_m * 42);
+  EXPECT_FALSE(touch.controller.parts() & kPartHold) << "it left";
 }
 
 // A light arm in a firm damper, and a hand that rests inside it.
 struct HeldArm {
   Touch touch;
   SimulatedArm simulated;
+  std::uint32_t parts_seen = 0;
 
   explicit HeldArm(double told_kg, double true_kg = 0.02)
       : touch(arm(told_kg, kOmniStep_m), {1e4, 0.0}), simulated(arm(true_kg, kOmniStep_m), kT) {}
@@ -437,6 +552,7 @@ struct HeldArm {
       simulated.push_N = -300.0 * (simulated.x + 0.004) - 2.0 * simulated.v;
       simulated.tick(touch);
       steps_N += std::abs(touch.sent_N.x - before_N);
+      parts_seen |= touch.controller.parts();
     }
     return steps_N / ticks;
   }
@@ -451,7 +567,7 @@ TEST(BoundedController, RendersLessOnceAHandShakesAndMoreAgainAfterTimeInAir) {
   shaking.hold(1500);
   const double learnt = shaking.touch.controller.alpha();
   EXPECT_LT(learnt, 0.9);
-  EXPECT_TRUE(shaking.touch.controller.parts() & kPartLearned);
+  EXPECT_TRUE(shaking.parts_seen & kPartLearned);
   EXPECT_LT(shaking.touch.controller.limit({1e9, 0.0}).damping,
             renderable(arm(0.02, kOmniStep_m), 1000.0, 0, {}).b_max);
 
@@ -469,6 +585,24 @@ TEST(BoundedController, CalmsAnArmThatIsLighterThanItWasTold) {
   EXPECT_GT(shaken_N, 0.1) << "it did shake";
   shaking.hold(2000);
   EXPECT_LT(shaking.hold(400), 0.1) << "the bar of the stability grid";
+}
+
+TEST(LearntScale, ComesBackInContactToJustBelowWhereSomethingHappened) {
+  LearntScale scale;
+  for (int i = 0; i < 40; ++i) {  // one event: down and down within a moment
+    scale.lower(0.9, 0.2);
+    scale.inContact(0.001);
+  }
+  ASSERT_LE(scale.value, 0.2);
+  for (int i = 0; i < 1000; ++i) scale.inContact(0.001);
+  EXPECT_LE(scale.value, 0.2) << "not until it has been quiet for a while";
+  for (int i = 0; i < 1000; ++i) scale.inContact(0.001);
+  EXPECT_GE(scale.value, 0.9) << "0.9 of what was stable, after 2 s";
+  EXPECT_LT(scale.value, 0.96) << "and then slowly";
+  const double before = scale.value;
+  scale.lower(0.9, 0.2);
+  for (int i = 0; i < 3000; ++i) scale.inContact(0.001);
+  EXPECT_LT(scale.value, 0.95 * before) << "it stays below where the same happened again";
 }
 
 TEST(BoundedController, RemembersWhatItLearntAfterAnUndo) {

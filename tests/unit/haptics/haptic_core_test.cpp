@@ -92,7 +92,7 @@ TEST(HapticCore, ASlowLoopKeepsTheSignOfStiffness) {
   p.period_s = 0.01;
   p.controller = ControllerKind::bounded;
   p.arms[0].dynamics = {0.045, 5.5e-5, 3.3, 0};
-  p.tissues = test::boneTable(0.5, 100.0, 2.0);
+  p.tissues = test::boneTable(0.5, 60.0, 2.0);
   p.tissues.classes[0].cuttable = 0;
   Bench bench(p);
   for (int i = 0; i <= 100; ++i) {

@@ -1,0 +1,58 @@
+#include "haptics/rest_hold.h"
+
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+constexpr double kRest_s = 0.2;
+constexpr double kTurned = 0.996;  // cosine: a force that turns by 5 degrees rests no more
+constexpr double kRounding = 1.01;
+// A count's cube, seen across some direction, is at most this wide along an axis, in counts.
+constexpr double kAcross = 1.37;
+
+}  // namespace
+
+Vec3 RestHold::follow(Window& window, const Vec3& sample_m, double width_m,
+                      const Vec3& force_N) const {
+  window.low = glm::min(window.low, sample_m);
+  window.high = glm::max(window.high, sample_m);
+  const Vec3 wide_m = window.high - window.low;
+  if (window.ticks == 0 || wide_m.x > width_m || wide_m.y > width_m || wide_m.z > width_m) {
+    window.low = window.high = sample_m;
+    window.sum_N = force_N;
+    window.ticks = 1;
+    window.holding = false;
+    return force_N;
+  }
+  if (window.holding) return window.sum_N;
+  window.sum_N += force_N;
+  ++window.ticks;
+  if (window.ticks * T_ < kRest_s) return force_N;
+  window.holding = true;
+  window.sum_N /= double(window.ticks);
+  return window.sum_N;
+}
+
+Vec3 RestHold::hold(const Vec3& elastic_N, double stiffness, const Vec3& position_m,
+                    const Vec3& force_N) {
+  const double size_N = glm::length(elastic_N);
+  if (!(step_m_ > 0.0) || !(stiffness > 0.0) || !(size_N > 0.0)) {
+    forget();
+    return force_N;
+  }
+  if (along_.ticks == 0 || glm::dot(elastic_N, direction_) < kTurned * size_N) {
+    direction_ = elastic_N / size_N;
+    forget();
+  }
+  const Vec3 n = direction_;
+  const double count_m = kRounding * step_m_ * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  const Vec3 deflection_m(glm::dot(elastic_N, n) / stiffness, 0.0, 0.0);
+  const Vec3 along_N = glm::dot(force_N, n) * n;
+  const Vec3 sliding_m = position_m - glm::dot(position_m, n) * n;
+  return follow(along_, deflection_m, count_m, along_N) +
+         follow(across_, sliding_m, kRounding * kAcross * step_m_, force_N - along_N);
+}
+
+}  // namespace trephine
