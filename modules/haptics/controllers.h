@@ -44,7 +44,7 @@ struct SeedController {
   void forget() { *this = SeedController{}; }
   double energy_J() const { return observer_J; }
   double alpha() const { return last_alpha; }
-  std::uint32_t parts() const { return last_alpha > 0.0 ? kPartDamping : 0; }
+  std::uint32_t parts() const { return last_alpha > 0.0 ? std::uint32_t(kPartDamping) : 0u; }
 
   double observer_J = 0.0;
   double last_alpha = 0.0;

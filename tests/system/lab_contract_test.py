@@ -1,5 +1,6 @@
 """The command line's contract: keys, exit codes, errors; on the built-in cases alone."""
 
+import csv
 import hashlib
 import json
 import os
@@ -18,7 +19,7 @@ SERIES_KEYS = {
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
     "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
-    "missed_deadlines", "faults", "memory_locked", "nonfinite", "events_dropped",
+    "missed_deadlines", "faults", "warnings", "memory_locked", "nonfinite", "events_dropped",
     "recorder_behind_ms", "tick_ns", "volume_sha256_before", "volume_sha256", "recording",
     "picture"}
 ONE_ARM = ("cranium-one-arm", "burr-hole", "liver-one-arm")
@@ -129,10 +130,65 @@ class LiverScenes(ShippedScenes, LabTest):
         self.check("liver", "liver-one-arm")
 
 
+class SeedScenes(LabTest):
+    """The paper's mode: every tick in a table beside the recording."""
+
+    def test_they_run_without_a_barrier_and_write_every_tick(self):
+        for name in ("seed-cranium", "seed-liver"):
+            with self.subTest(name):
+                self.assertIn("no barrier", lab("explain", SCENES / f"{name}.json")["barrier"])
+                table = self.folder / f"{name}.csv"
+                run = lab("run", SCENES / f"{name}.json", "--csv", table, "--seconds", 6,
+                          "--out", self.folder)
+                self.assertEqual(run["controller"], "seed")
+                self.assertEqual(run["warnings"], [])
+                self.assertGreater(run["removed_voxels"], 0)
+                with open(table, newline="") as file:
+                    rows = list(csv.DictReader(file))
+                self.assertEqual(len(rows), run["ticks"] * len(run["arms"]))
+                self.assertEqual([r["arm"] for r in rows[:2]], ["left", "right"])
+                # Eq. 9 and 12: what is sent is the compensated force, within the arm's limit.
+                felt = [r for r in rows if float(r["f_e_x_N"]) != 0.0]
+                self.assertTrue(felt)
+                for row in felt:
+                    f_e, f_c, v = ([float(row[f"{what}_{axis}{unit}"]) for axis in "xyz"]
+                                   for what, unit in (("f_e", "_N"), ("f_c", "_N"), ("v", "_m_s")))
+                    self.assertGreaterEqual(0.0, sum(a * b for a, b in zip(f_e, v)))
+                    if float(row["alpha"]) == 0.0:
+                        self.assertEqual(f_e, f_c)
+
+    def test_a_table_needs_a_folder(self):
+        error = lab("run", SCENES / "seed-liver.json", "--csv", self.folder / "none" / "t.csv",
+                    "--out", self.folder, expect=2)
+        self.assert_error(error, "MISSING_FOLDER", "--csv")
+
+
+class StartsInTissue(LabTest):
+    def test_it_is_a_warning_and_nothing_is_cut_or_felt(self):
+        scene = json.loads((SCENES / "burr-hole.json").read_text())
+        scene["arms"][0]["map"]["offset_mm"] = [0, 0, -3]
+        for part, folder in (("tissues", "tissues"), ("operator", "operators")):
+            scene[part] = str(SCENES.parent / folder / Path(scene[part]).name)
+        scene["tools"][0]["file"] = str(SCENES.parent / "tools" / "burr6.json")
+        scene["arms"][0]["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
+        (self.folder / "scene.json").write_text(json.dumps(scene))
+        rest = {"format": "trephine.operator", "version": 1, "name": "rest",
+                "hand": {"stiffness_N_per_m": 800, "damping_Ns_per_m": 8},
+                "arms": [{"arm": "right", "waypoints": [{"t": 0, "at_mm": [0, 0, -3]},
+                                                        {"t": 1, "at_mm": [0, 0, -3]}]}]}
+        (self.folder / "rest.json").write_text(json.dumps(rest))
+        run = lab("run", self.folder / "scene.json", "--operator", self.folder / "rest.json",
+                  "--out", self.folder)
+        self.assertEqual([w["code"] for w in run["warnings"]], ["STARTS_IN_TISSUE"])
+        self.assertEqual(run["arms"][0]["max_force_N"], 0.0)
+        self.assertEqual(run["removed_voxels"], 0)
+
+
 class Run(LabTest):
     def test_no_shipped_scene_is_forgotten(self):
         self.assertEqual({file.stem for file in SCENES.glob("*.json")},
-                         {"cranium", "cranium-one-arm", "burr-hole", "liver", "liver-one-arm"})
+                         {"cranium", "cranium-one-arm", "burr-hole", "liver", "liver-one-arm",
+                          "seed-cranium", "seed-liver"})
 
     def test_options_reach_the_run(self):
         run = lab("run", SCENES / "cranium.json", "--seconds", 0.5, "--rate", 2000, "--controller",
@@ -176,7 +232,7 @@ class Explain(LabTest):
         answer = lab("explain", SCENES / "liver.json")
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
         parts = {cost["part"] for cost in answer["cost"]}
-        self.assertEqual(parts, {"contact", "law viscous", "law coulomb", "law elastic", "law rupture",
+        self.assertEqual(parts, {"proxy", "contact", "law viscous", "law coulomb", "law elastic", "law rupture",
                                  "controller bounded", "clamp and gate", "removal sweep",
                                  "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))

@@ -224,16 +224,16 @@ TEST(Recording, RefusesAnotherLabelMapAndOneTooMany) {
   EXPECT_NE(too_many.error().what.find("without a label map"), std::string::npos);
 }
 
-// Version 2 knew no label maps and had no field for a tissue's label.
-TEST(Recording, OfTheVersionBeforeLabelMapsReplays) {
+// Up to version 4 a tool was where its arm was.
+TEST(Recording, OfAToolWithoutAProxyIsRefusedByName) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 500);
   const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
-  for (int number : {2, 1}) {
+  for (int number : {5, 4, 1}) {
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &number), 0);
     H5Fflush(file, H5F_SCOPE_GLOBAL);
-    if (number == 2) {
+    if (number == 5) {
       EXPECT_TRUE(replay(**SessionReader::open(folder / "a.h5"), slab())->identical);
     } else {
       EXPECT_EQ(SessionReader::open(folder / "a.h5").error().code, "OLDER_VERSION");
