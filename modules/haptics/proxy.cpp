@@ -15,6 +15,7 @@ constexpr double kNear = 0.05;        // contacts this near are always seen
 constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
 constexpr double kKeptOff = 0.02;     // the solver keeps this between tool and tissue
 constexpr double kArrived = 1e-3;     // a shorter step is none
+constexpr double kSolved_mm = 5e-4;   // the solver's rest
 constexpr int kRounds = 60;           // of the solver
 constexpr int kCorrections = 4;       // where the surface bends
 constexpr int kShorter = 3;           // tries, each with a shorter step
@@ -39,6 +40,7 @@ Proxy::Proxy(const Tool& tool, const GridGeometry& geometry)
 void Proxy::place(const Pose& pose_mm) {
   pose_ = arm_ = pose_mm;
   pull_ = Pull{};
+  stiffness_ = 0.0;
   blocker_count_ = 0;
   gathered_ = false;
 }
@@ -118,7 +120,7 @@ void Proxy::solve(Motion& motion) {
     motion.shift_mm += c.load * c.normal;
     motion.turn += (c.load / turn_mm2_) * c.moment;
   }
-  const double enough_mm = 1e-3 * surface_.voxel_mm();
+  const double enough_mm = kSolved_mm;
   for (int round = 0; round < kRounds; ++round) {
     double worst_mm = 0.0;
     for (std::size_t i = 0; i < contact_count_; ++i) {
@@ -234,9 +236,10 @@ void Proxy::follow(const Tissue& tissue, const Pose& arm_mm, Cutting cutting) {
     if (!whole) step_mm = longest_mm;
   }
   const Motion left = towards(arm_mm, pose_);
-  if (load > 0.0 && cost(left) > kHeld_mm * kHeld_mm) {
-    pull_ = {left.shift_mm, left.turn, turn_mm2_, stiff / load};
-  }
+  if (!(cost(left) > kHeld_mm * kHeld_mm)) stiffness_ = 0.0;
+  // On its way back to an arm that went fast it pulls as it did.
+  if (load > 0.0) stiffness_ = stiff / load;
+  pull_ = {left.shift_mm, left.turn, turn_mm2_, stiffness_};
 }
 
 Pose Proxy::ahead_mm(double by_mm) const {

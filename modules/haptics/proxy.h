@@ -81,6 +81,7 @@ class Proxy {
   Cutting cutting_ = Cutting::nothing;
   double travelled_mm_ = 0.0;  // since the surface was gathered
   double last_step_mm_ = 0.0;
+  double stiffness_ = 0.0;  // of what held it last, until it is at the arm
   std::array<Contact, kMostContacts> contacts_;
   std::size_t contact_count_ = 0;
   std::array<Blocker, kMostContacts> blockers_;

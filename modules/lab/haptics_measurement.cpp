@@ -384,6 +384,10 @@ std::string toText(const HapticsMeasurement& measurement) {
                   touchPhaseName(row.phase), row.median_ns / 1e3, row.p99_ns / 1e3,
                   row.p999_ns / 1e3, row.max_ns / 1e3, row.removed_mm3_per_s);
     text += line;
+    if (isOfItsPhase(row)) continue;
+    std::snprintf(line, sizeof line, "  ... which is not of its phase: it touched in %zu of %zu ticks\n",
+                  row.touched, row.ran);
+    text += line;
   }
   const SlidingMeasurement& s = measurement.sliding;
   std::snprintf(line, sizeof line,

@@ -1,5 +1,6 @@
 #include "training/tick_table.h"
 
+#include <array>
 #include <fstream>
 #include <iomanip>
 #include <limits>
@@ -18,10 +19,11 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
   const double rate_hz = scene.at("rate_hz").get<double>();
   out.imbue(std::locale::classic());
   out << std::setprecision(std::numeric_limits<double>::max_digits10);
-  out << "tick,t_s,arm,x_mm,y_mm,z_mm,v_x_m_s,v_y_m_s,v_z_m_s,f_e_x_N,f_e_y_N,f_e_z_N,E_obs_J,"
+  out << "tick,t_s,arm,x_m,y_m,z_m,v_x_m_s,v_y_m_s,v_z_m_s,f_e_x_N,f_e_y_N,f_e_z_N,E_obs_J,"
          "alpha,f_c_x_N,f_c_y_N,f_c_z_N,sent_x_N,sent_y_N,sent_z_N\n";
   const auto add = [&](const Vec3& v) { out << ',' << v.x << ',' << v.y << ',' << v.z; };
   const std::uint64_t count = recording.tickCount();
+  std::array<Vec3, kMaxArms> before_m;
   for (std::uint64_t first = 0; first < count; first += kSlice) {
     if (progress.cancelled()) return Error{"CANCELLED", "The table was cancelled", "", ""};
     progress.at(double(first) / double(count), "Writing the table");
@@ -32,8 +34,10 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
         const ArmRecord& arm = tick.arms[i];
         out << tick.tick << ',' << double(tick.tick) / rate_hz << ','
             << scene.at("arms").at(i).at("name").get<std::string>();
-        add(arm.patient_position_mm);
-        add(arm.velocity_m_s);
+        const bool first_tick = first == 0 && &tick == ticks->data();
+        add(arm.device_position_m);
+        add(first_tick ? Vec3(0.0) : (arm.device_position_m - before_m[i]) / (1.0 / rate_hz));
+        before_m[i] = arm.device_position_m;
         add(arm.demanded_N);
         out << ',' << arm.observer_J << ',' << arm.alpha;
         add(arm.bounded_N);

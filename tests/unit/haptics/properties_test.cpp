@@ -164,6 +164,7 @@ TEST(Touch, DoesNotDependOnTheTimeStep) {
 TEST(Touch, GivesTheSameBitsInEveryBuild) {
   HapticParameters p = parameters();
   for (TissueClass& tissue : p.tissues.classes) tissue.cuttable = 1;
+  p.tissues.classes[0].solid = 1;
   p.removal = RemovalKind::work;
   p.controller = ControllerKind::bounded;
   p.arms[0].tool.made_from.motor_W = 4.0;
@@ -193,7 +194,49 @@ TEST(Touch, GivesTheSameBitsInEveryBuild) {
     numbers.insert(numbers.end(), {arm.cutting_credit_J, arm.alpha, double(arm.removed_voxels)});
   }
   EXPECT_GT(core.journal().removed(0, 0) + core.journal().removed(0, 1), 100u);
-  EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)), "ec51c8dd3dc43e9b9cded9f35d7a2995dc3db03389963470d78008d22678a671");
+  EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)), "a9e9bdf26cc8497be2b8f442e7a423bbf2f4b1e69fb64139e34722b96e688156");
+}
+
+// Viscous alone, at the tip, instant removal, controller `seed`: the hash is of the build before
+// there was a proxy.
+TEST(Touch, OfTheSeedPaperIsTickForTickAsItWas) {
+  HapticParameters p = test::oneArm();
+  p.arms[0].tool = makeBlade(0.016, 16);
+  p.arms[0].dynamics = {0.045, 5.5e-5, 3.3, 0};
+  p.controller = ControllerKind::seed;
+  p.laws = {LawKind::viscous};
+  p.force_at = ForceAt::tip;
+  p.tissues = test::boneTable(40.0);
+  p.tissues.classes[0].solid = 1;
+  Grid grid(test::boneSlab());
+  HapticCore core(p, *grid.takeWriter());
+  TickInput input;
+  TickRecord record;
+  std::vector<double> numbers;
+  std::mt19937 random(5);  // positions without any library's sine
+  Vec3 at(0.0, 0.0, 3.0), speed(0.0);
+  for (int n = 0; n < 4000; ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double push = double(random() % 2001) / 1000.0 - 1.0;
+      speed[axis] += 0.004 * push - 2e-6 * at[axis] * std::abs(at[axis]);
+    }
+    speed *= 0.98;
+    at += speed;
+    input.arms[0].position_m = 0.001 * at;
+    input.journal = core.journalState();
+    core.tick(input, nullptr, 0, record);
+    ++input.tick;
+    const ArmRecord& arm = record.arms[0];
+    for (const Vec3& v :
+         {arm.velocity_m_s, arm.demanded_N, arm.bounded_N, arm.sent_N, arm.energy_out_J}) {
+      numbers.insert(numbers.end(), {v.x, v.y, v.z});
+    }
+    numbers.insert(numbers.end(), {arm.observer_J, arm.alpha, double(arm.removed_voxels)});
+    ASSERT_EQ(arm.proxy_position_mm, arm.patient_position_mm);
+  }
+  EXPECT_EQ(core.journal().removed(0, 0), 63u);
+  EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)),
+            "5bccb122e4f2834f8636fddade3c89527e806f576290cab42060f05013f71bc2");
 }
 
 }  // namespace

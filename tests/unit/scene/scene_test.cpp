@@ -23,7 +23,7 @@ TEST(Scene, EveryShippedSceneReads) {
     EXPECT_FALSE(scene->operator_file.empty());
     ++count;
   }
-  EXPECT_EQ(count, 5);
+  EXPECT_EQ(count, 7);
 }
 
 TEST(Scene, TheCraniumSceneHasTwoArmsWithBlades) {
