@@ -58,8 +58,12 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
       }
     }
   }
+  const bool solid_went = std::any_of(carves_.begin(), carves_.end(), [&](const CarveRecord& carve) {
+    return lookup_.isSolid(carve.tissue_class);
+  });
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
+    if (solid_went && arm.proxy) arm.proxy->removed();
     if (!arm.cuts) continue;
     const int arm_number = int(i);
     arm.air_ticks = arm.contact.contact().touching() ? 0 : arm.air_ticks + 1;
@@ -170,11 +174,7 @@ bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
   const int arm = int(index);
   const std::int16_t old_hu = writer_.grid().hu(voxel);
   if (!journal_.erase(writer_, arm, voxel, bite.tissue_class, sharers)) return false;
-  const bool solid = lookup_.isSolid(bite.tissue_class);
-  bricks_->remove(bite.voxel, solid);
-  for (Arm& other : arms_) {
-    if (solid && other.proxy) other.proxy->removed();
-  }
+  bricks_->remove(bite.voxel, lookup_.isSolid(bite.tissue_class));
   carves_.push_back(
       {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(bite.tissue_class)});
   return true;

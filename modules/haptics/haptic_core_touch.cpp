@@ -218,7 +218,6 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
   rendered.stored_J *= parameters.map.force_scale / parameters.map.motion_scale;
   rendered.stiffness = at_arm * rendered.stiffest();
-  rendered.solid_stiffness *= at_arm;
   rendered.damping *= at_arm;
   const bool in_contact = law_input.touching || model.stiffest() > 0.0;
   to_controller.demanded_N = out.demanded_N;

@@ -38,11 +38,9 @@ Proxy::Proxy(const Tool& tool, const GridGeometry& geometry)
       turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0) {}
 
 void Proxy::place(const Pose& pose_mm) {
-  pose_ = arm_ = pose_mm;
-  pull_ = Pull{};
+  hold(pose_mm);
+  arm_ = pose_mm;
   stiffness_ = 0.0;
-  blocker_count_ = 0;
-  gathered_ = false;
 }
 
 void Proxy::hold(const Pose& pose_mm) {
@@ -120,7 +118,6 @@ void Proxy::solve(Motion& motion) {
     motion.shift_mm += c.load * c.normal;
     motion.turn += (c.load / turn_mm2_) * c.moment;
   }
-  const double enough_mm = kSolved_mm;
   for (int round = 0; round < kRounds; ++round) {
     double worst_mm = 0.0;
     for (std::size_t i = 0; i < contact_count_; ++i) {
@@ -135,7 +132,7 @@ void Proxy::solve(Motion& motion) {
       motion.turn += (more / turn_mm2_) * c.moment;
       worst_mm = std::max(worst_mm, std::abs(more) * c.softness);
     }
-    if (worst_mm < enough_mm) break;
+    if (worst_mm < kSolved_mm) break;
   }
 }
 

@@ -20,6 +20,11 @@ double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
   return tissue.cutting_J_per_mm3 * voxel_mm3;
 }
 
+// What a tool pays for one.
+double cost_J(RemovalKind kind, const TissueClass& tissue, double voxel_mm3) {
+  return kind == RemovalKind::instant ? 0.0 : voxelWork_J(tissue, voxel_mm3);
+}
+
 // Empty where first > last.
 struct Indices {
   int first = 0, last = -1;
@@ -119,13 +124,11 @@ void Removal::end(const Capsule& now) {
 
 void Removal::take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
                    std::vector<Bite>& bites) {
-  const TissueClass& tissue = tissues.classes[std::size_t(tissue_class)];
-  const double cost_J = kind_ == RemovalKind::instant
-                            ? 0.0
-                            : voxelWork_J(tissue, geometry_.voxelVolume_mm3());
-  if (credit_J_ < cost_J || bites.size() == kMostBites) return;
-  credit_J_ -= cost_J;
-  bites.push_back({voxel, tissue_class, cost_J});
+  const double price_J = cost_J(kind_, tissues.classes[std::size_t(tissue_class)],
+                                geometry_.voxelVolume_mm3());
+  if (credit_J_ < price_J || bites.size() == kMostBites) return;
+  credit_J_ -= price_J;
+  bites.push_back({voxel, tissue_class, price_J});
 }
 
 bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const {
@@ -211,17 +214,15 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
           const std::int16_t hu = grid.hu(voxel);
           const int c = hu == kAirHu ? -1 : lookup.classAt(grid, voxel, hu);
           if (c < 0 || !tissues.classes[std::size_t(c)].cuttable) continue;
-          const double cost_J = kind_ == RemovalKind::instant
-                                    ? 0.0
-                                    : voxelWork_J(tissues.classes[std::size_t(c)], voxel_mm3);
-          const bool affords = kind_ == RemovalKind::instant || credit_J_ >= cost_J;
+          const double price_J = cost_J(kind_, tissues.classes[std::size_t(c)], voxel_mm3);
+          const bool affords = kind_ == RemovalKind::instant || credit_J_ >= price_J;
           if (!affords) paid_ = false;
           if (!affords || bites.size() == kMostBites) {
             row_ = row.number;  // goes on here in the next tick
             return;
           }
-          credit_J_ -= cost_J;
-          bites.push_back({{i, row.j, k}, c, cost_J});
+          credit_J_ -= price_J;
+          bites.push_back({{i, row.j, k}, c, price_J});
         }
       }
       row_ = next;

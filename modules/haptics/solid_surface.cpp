@@ -353,6 +353,11 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
   const double threshold = view.tissues.classes[std::size_t(c)].hu_min - 0.5;
   const Index3 apart = rowsApart(radius);
   const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
+  // `share` of the diagonal of the mesh in its plane.
+  const auto addDisk = [&](const Vec3& at, const Vec3& normal, double share) {
+    const Vec3 in_plane = glm::sqrt(glm::max(Vec3(0.0), 1.0 - normal * normal));
+    add(at, normal, share * glm::length(mesh * in_plane));
+  };
   // HU beyond the threshold, so many meshes from the voxel.
   const auto beyond = [&](const Index3& by) {
     const int at_i = i + by[0] * apart[0], at_j = j + by[1] * apart[1], at_k = k + by[2] * apart[2];
@@ -451,12 +456,9 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
     normal[u] = -tilt_u * mesh[up] / mesh[u];
     normal[v] = -tilt_v * mesh[up] / mesh[v];
     normal = glm::normalize(normal);
-    return add(centre + (sum / count) * axis, normal,
-               kFlatDisk * kDisk *
-                   glm::length(mesh * glm::sqrt(glm::max(Vec3(0.0), 1.0 - normal * normal))));
+    return addDisk(centre + (sum / count) * axis, normal, kFlatDisk * kDisk);
   }
-  add(centre + own * axis, n,
-      kDisk * glm::length(mesh * glm::sqrt(glm::max(Vec3(0.0), 1.0 - n * n))));
+  addDisk(centre + own * axis, n, kDisk);
 }
 
 }  // namespace trephine

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "scene/names.h"
+#include "base/range.h"
 #include "lab/on_all_processors.h"
+#include "scene/names.h"
 
 namespace trephine {
 
@@ -22,19 +23,13 @@ struct Variation {
   bool counts = true;                  // in the total
 };
 
-std::string wordsOf(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%g", value);
-  return text;
-}
-
 std::vector<Variation> variationsOf(StabilitySet set, std::optional<double> seconds) {
   std::vector<Variation> all;
   CellConditions plain;
   plain.seconds = seconds.value_or(kCellDuration_s);
   if (set == StabilitySet::lasting) {
     plain.seconds = seconds.value_or(kLasting_s);
-    all.push_back({wordsOf(plain.seconds) + " s", plain});
+    all.push_back({plainNumber(plain.seconds) + " s", plain});
   } else if (set == StabilitySet::moving) {
     plain.seconds = seconds.value_or(kMoving_s);
     plain.moving = true;
@@ -42,14 +37,14 @@ std::vector<Variation> variationsOf(StabilitySet set, std::optional<double> seco
   } else if (set == StabilitySet::hands) {
     for (double b : {1.0, 2.0, 5.0, 10.0, 0.0}) {
       for (double k : {50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0}) {
-        all.push_back({"k " + wordsOf(k) + " b " + wordsOf(b), plain, Impedance{b, k}, 0, b > 0.0});
+        all.push_back({"k " + plainNumber(k) + " b " + plainNumber(b), plain, Impedance{b, k}, 0, b > 0.0});
       }
     }
   } else if (set == StabilitySet::claims) {
     for (double times : {0.5, 1.5, 2.0, 5.0}) {
       CellConditions claimed = plain;
       claimed.mass_claimed = times;
-      all.push_back({"mass x " + wordsOf(times), claimed});
+      all.push_back({"mass x " + plainNumber(times), claimed});
     }
     // Of an arm that has one sample more than the cell, so that there is one less to claim.
     CellConditions less = plain, more = plain, exact = plain;

@@ -53,11 +53,7 @@ struct FallingArm {
 };
 
 ArmDynamics told(double mass_kg, int delay, double encoder_m = 0.0) {
-  ArmDynamics arm;
-  arm.apparent_mass_kg = mass_kg;
-  arm.delay_ticks = delay;
-  arm.encoder_step_m = encoder_m;
-  return arm;
+  return {mass_kg, encoder_m, ArmDynamics{}.peak_force_N, delay};
 }
 
 TEST(ArmCheck, IsSilentOnAnArmThatIsAsStated) {

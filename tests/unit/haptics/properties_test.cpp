@@ -160,6 +160,22 @@ TEST(Touch, DoesNotDependOnTheTimeStep) {
   EXPECT_LT(std::sqrt(apart / size), 0.05);
 }
 
+// Places [mm] to and fro, without any library's sine.
+struct RandomWalk {
+  std::mt19937 random;
+  double push = 0.0;
+  Vec3 at{0.0}, speed{0.0};
+
+  const Vec3& step() {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double way = double(random() % 2001) / 1000.0 - 1.0;
+      speed[axis] += push * way - 2e-6 * at[axis] * std::abs(at[axis]);
+    }
+    speed *= 0.98;
+    return at += speed;
+  }
+};
+
 // A recording made by one build replays in another: every number of a long run, in one hash.
 TEST(Touch, GivesTheSameBitsInEveryBuild) {
   HapticParameters p = parameters();
@@ -174,16 +190,9 @@ TEST(Touch, GivesTheSameBitsInEveryBuild) {
   TickInput input;
   TickRecord record;
   std::vector<double> numbers;
-  std::mt19937 random(11);  // positions without any library's sine
-  Vec3 at(0.0, 0.0, 11.0), speed(0.0);
+  RandomWalk walk{std::mt19937(11), 0.002, Vec3(0.0, 0.0, 11.0)};
   for (int n = 0; n < 6000; ++n) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double push = double(random() % 2001) / 1000.0 - 1.0;
-      speed[axis] += 0.002 * push - 2e-6 * at[axis] * std::abs(at[axis]);
-    }
-    speed *= 0.98;
-    at += speed;
-    input.arms[0].position_m = 0.001 * at;
+    input.arms[0].position_m = 0.001 * walk.step();
     input.journal = core.journalState();
     core.tick(input, nullptr, 0, record);
     ++input.tick;
@@ -213,16 +222,9 @@ TEST(Touch, OfTheSeedPaperIsTickForTickAsItWas) {
   TickInput input;
   TickRecord record;
   std::vector<double> numbers;
-  std::mt19937 random(5);  // positions without any library's sine
-  Vec3 at(0.0, 0.0, 3.0), speed(0.0);
+  RandomWalk walk{std::mt19937(5), 0.004, Vec3(0.0, 0.0, 3.0)};
   for (int n = 0; n < 4000; ++n) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double push = double(random() % 2001) / 1000.0 - 1.0;
-      speed[axis] += 0.004 * push - 2e-6 * at[axis] * std::abs(at[axis]);
-    }
-    speed *= 0.98;
-    at += speed;
-    input.arms[0].position_m = 0.001 * at;
+    input.arms[0].position_m = 0.001 * walk.step();
     input.journal = core.journalState();
     core.tick(input, nullptr, 0, record);
     ++input.tick;
