@@ -67,7 +67,7 @@ void HapticCore::moveTool(std::size_t index, bool may_cut, std::uint64_t tick, M
     return;
   }
   const bool still = paused_ || arm.faults != 0;
-  const Proxy::Tissue tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
+  const TissueAround tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
   const Pose before = proxy.pose_mm();
   proxy.follow(tissue, motion.arm_mm, may_cut ? arm.cutting : Cutting::nothing);
   if (still && wouldTouch(arm, proxy.pose_mm())) proxy.hold(before);

@@ -9,19 +9,24 @@ namespace {
 
 // All of a voxel's smallest edge.
 constexpr double kStep = 0.45;        // at most, between two looks at the gaps
-constexpr double kNear = 0.05;        // contacts this near are always seen
+constexpr double kNear = 0.05;        // what is this near is always seen
 // Where voxels went, what stands behind them is looked for after so much; in between the tool may
 // enter it by that, and what it enters it cuts or is put back from.
 constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
-constexpr double kKeptOff = 0.02;     // the solver keeps this between tool and tissue
+constexpr double kKeptOff = 0.02;  // what is kept between tool and tissue, where it comes from afar
+constexpr double kTolerated = 0.002;  // what it may be inside by: what slides sinks and rises by it
+constexpr double kInside = 0.1;       // deeper it is put outside
+constexpr double kSame = 1.0;         // flat pieces that touch the tool so near each other are one
 constexpr double kArrived = 1e-3;     // a shorter step is none
-constexpr double kSolved_mm = 5e-4;   // the solver's rest
-constexpr int kRounds = 60;           // of the solver
 constexpr int kCorrections = 4;       // where the surface bends
 constexpr int kShorter = 3;           // tries, each with a shorter step
 constexpr double kShorterBy = 0.4;
 constexpr double kNearer_mm2 = 1e-9;  // or it is not nearer
 constexpr double kHeld_mm = 1e-6;
+// The next look at the surface is spread over ticks, kWorkATick rows each; it begins when at the
+// speed of now it will be done in this share of the time that is left.
+constexpr double kEarly = 0.67;
+constexpr int kWorkATick = 256;
 // A turn costs as a shift of the mean square by which it moves a rod, tip to handle, a third of its
 // length squared; half of that, for the far end moves most. A short tool has a handle all the same.
 constexpr double kHandle_mm = 60.0;
@@ -47,200 +52,272 @@ void Proxy::hold(const Pose& pose_mm) {
   pose_ = pose_mm;
   pull_ = Pull{};
   blocker_count_ = 0;
-  gathered_ = false;
+  changed();
 }
 
-Proxy::Motion Proxy::towards(const Pose& from, const Pose& to) const {
+SmallMotion Proxy::towards(const Pose& from, const Pose& to) const {
   const Quat by = to.orientation * glm::conjugate(from.orientation);
   const double sign = by.w < 0.0 ? -2.0 : 2.0;
   return {to.position - from.position, sign * Vec3(by.x, by.y, by.z)};
 }
 
-double Proxy::way_mm(const Motion& motion) const {
-  return glm::length(motion.shift_mm) + surface_.reach_mm() * glm::length(motion.turn);
+double Proxy::usedUp_mm(const Travel& travel) const {
+  return std::max(travel.of_mm(surface_.near_reach_mm()),
+                  travel.of_mm(surface_.reach_mm()) / SolidSurface::kFar);
 }
 
-double Proxy::cost(const Motion& motion) const {
+double Proxy::way_mm(const SmallMotion& motion) const {
+  Travel travel;
+  travel.add(motion);
+  return usedUp_mm(travel);
+}
+
+double Proxy::cost(const SmallMotion& motion) const {
   return glm::dot(motion.shift_mm, motion.shift_mm) +
          turn_mm2_ * glm::dot(motion.turn, motion.turn);
 }
 
-// The contacts within a distance, at the proxy's pose or one `moved_mm` from it; the least gap of
-// those. A piece from which the tool cannot have come so near is not looked at.
-double Proxy::contacts(const PlacedBody& body, double within_mm, double moved_mm) {
-  contact_count_ = 0;
-  double least_mm = 1e9;
-  const bool here = moved_mm == 0.0;
-  const double kept_off_mm = kKeptOff * surface_.voxel_mm();
+// How much of what the gathered surface is good for is used up after one more step: 1 is all.
+double Proxy::worn(double step_mm) const {
+  const double worn = (usedUp_mm(travelled_) + step_mm) / surface_.margin_mm();
+  if (!stale_) return worn;
+  return std::max(worn, travelled_mm() / std::max(kWorn * surface_.voxel_mm(), kLeastWorn_mm));
+}
+
+// The surface around the body, good for one more step; ahead of time where there is time.
+void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
+                 bool ahead) {
+  const auto begin = [&] {
+    surface_.begin(tissue, body, cutting_);
+    next_travelled_ = {};
+    next_stale_ = false;
+  };
+  const auto goOn = [&](int work) {
+    if (!surface_.goOn(tissue, work)) return;
+    gathered_ = true;
+    travelled_ = next_travelled_;
+    stale_ = next_stale_;
+  };
+  if (gathered_ && stale_) surface_.drop(tissue.grid, tissue.lookup);
+  if (!gathered_) {
+    begin();
+    goOn(SolidSurface::kAll);
+    return;
+  }
+  const double used = worn(step_mm);
+  if (used <= 1.0) {
+    const double ticks = double(surface_.work()) / kWorkATick;
+    if (!ahead || (!surface_.underWay() && worn(ticks / kEarly * speed) <= 1.0)) return;
+    if (!surface_.underWay()) begin();
+    return goOn(kWorkATick);
+  }
+  if (surface_.underWay()) {
+    goOn(SolidSurface::kAll);
+    if (stale_) surface_.drop(tissue.grid, tissue.lookup);
+    if (worn(step_mm) <= 1.0) return;
+  }
+  begin();
+  goOn(SolidSurface::kAll);
+}
+
+// The pieces within a distance of the body, at the proxy's pose or one `moved_mm` from it: the
+// nearest, if there are too many. One from which the tool cannot have come so near is not looked
+// at.
+std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double moved_mm) {
+  std::size_t count = 0;
+  const double travelled = travelled_mm();
   for (SurfacePiece& piece : surface_.pieces()) {
-    const double at_least_mm = piece.gap_mm - (travelled_mm_ + moved_mm - piece.travelled_mm);
-    if (at_least_mm > within_mm) {
-      if (here) piece.load = 0.0;
-      continue;
-    }
+    if (piece.gap_mm - (travelled + moved_mm - piece.travelled_mm) > within_mm) continue;
     const Touch touch = touchOf(piece, body);
-    if (here) {
+    if (moved_mm == 0.0) {
       piece.gap_mm = touch.gap_mm;
-      piece.travelled_mm = travelled_mm_;
+      piece.travelled_mm = travelled;
     }
-    least_mm = std::min(least_mm, touch.gap_mm);
-    if (touch.gap_mm > within_mm) {
-      if (here) piece.load = 0.0;
-      continue;
-    }
-    std::size_t at = contact_count_;
-    if (at == kMostContacts) {  // the nearest matter
-      at = 0;
-      for (std::size_t i = 1; i < kMostContacts; ++i) {
-        if (contacts_[i].gap_mm > contacts_[at].gap_mm) at = i;
-      }
-      if (contacts_[at].gap_mm <= touch.gap_mm) continue;
+    if (touch.gap_mm > within_mm) continue;
+    std::size_t at = count;
+    if (count < kMostTouches) {
+      ++count;
     } else {
-      ++contact_count_;
+      at = 0;
+      for (std::size_t i = 1; i < kMostTouches; ++i) {
+        if (near_[i].touch.gap_mm > near_[at].touch.gap_mm) at = i;
+      }
+      if (near_[at].touch.gap_mm <= touch.gap_mm) continue;
     }
-    Contact& contact = contacts_[at];
-    contact.normal = touch.normal;
-    contact.moment = glm::cross(touch.lever_mm, touch.normal);
-    contact.softness = 1.0 + glm::dot(contact.moment, contact.moment) / turn_mm2_;
+    near_[at] = {touch, &piece, false};
+  }
+  return count;
+}
+
+// The nearest of the flat pieces that touch the tool where one of them does; they are merged with
+// it.
+std::size_t Proxy::merge(std::size_t first, std::size_t count) {
+  const double same2 = std::pow(kSame * surface_.voxel_mm(), 2);
+  const auto together = [&](std::size_t a, std::size_t b) {
+    const Near &one = near_[a], &other = near_[b];
+    const Vec3 apart = one.touch.lever_mm - other.touch.lever_mm;
+    return other.piece->flat && !other.merged && one.piece->part == other.piece->part &&
+           glm::dot(apart, apart) <= same2;
+  };
+  std::size_t nearest = first;
+  for (std::size_t i = first + 1; i < count; ++i) {
+    if (near_[i].touch.gap_mm < near_[nearest].touch.gap_mm && together(first, i)) nearest = i;
+  }
+  for (std::size_t i = first; i < count; ++i)
+    near_[i].merged = near_[i].merged || together(nearest, i);
+  near_[first].merged = true;
+  return nearest;
+}
+
+// What the body touches within a distance, at the proxy's pose or one `moved_mm` from it; the least
+// gap.
+double Proxy::touches(const PlacedBody& body, double within_mm, double moved_mm, double clear_mm) {
+  const std::size_t count = nearPieces(body, within_mm, moved_mm);
+  const double voxel_mm = surface_.voxel_mm();
+  double least_mm = 1e9;
+  touch_count_ = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (near_[n].merged) continue;
+    const bool flat = near_[n].piece->flat;
+    const Near& near = near_[flat ? merge(n, count) : n];
+    const Touch touch =
+        flat ? blended(near.touch, *near.piece, body, surface_.pieces()) : near.touch;
+    least_mm = std::min(least_mm, touch.gap_mm);
+    // What is inside is put outside; what is nearly there stays; what was moved is put just so far
+    // back that it is taken, and if that fails, clear.
+    double keep_mm = clear_mm;
+    if (moved_mm == 0.0 && touch.gap_mm >= -kInside * voxel_mm) {
+      keep_mm = std::min(touch.gap_mm, clear_mm);
+    }
     // No correction throws it farther than half a voxel.
-    contact.gap_mm = std::max(touch.gap_mm, -0.5 * surface_.voxel_mm()) - kept_off_mm;
-    contact.load = here ? piece.load : 0.0;
-    contact.piece = &piece;
+    const double gap_mm = std::max(touch.gap_mm, -0.5 * voxel_mm) - keep_mm;
+    touches_[touch_count_] = {touch.normal, glm::cross(touch.lever_mm, touch.normal), gap_mm, 0.0};
+    touched_[touch_count_++] = near.piece;
   }
   return least_mm;
 }
 
-// The motion nearest to the given one that keeps every gap open: projected Gauss-Seidel, from the
-// loads of the last time.
-void Proxy::solve(Motion& motion) {
-  for (std::size_t i = 0; i < contact_count_; ++i) {
-    const Contact& c = contacts_[i];
-    motion.shift_mm += c.load * c.normal;
-    motion.turn += (c.load / turn_mm2_) * c.moment;
-  }
-  for (int round = 0; round < kRounds; ++round) {
-    double worst_mm = 0.0;
-    for (std::size_t i = 0; i < contact_count_; ++i) {
-      Contact& c = contacts_[i];
-      const double open =
-          c.gap_mm + glm::dot(c.normal, motion.shift_mm) + glm::dot(c.moment, motion.turn);
-      const double load = std::max(0.0, c.load - open / c.softness);
-      const double more = load - c.load;
-      if (more == 0.0) continue;
-      c.load = load;
-      motion.shift_mm += more * c.normal;
-      motion.turn += (more / turn_mm2_) * c.moment;
-      worst_mm = std::max(worst_mm, std::abs(more) * c.softness);
-    }
-    if (worst_mm < kSolved_mm) break;
-  }
+void Proxy::move(const Pose& to, const PlacedBody& body, Way& way) {
+  const SmallMotion by = towards(pose_, to);
+  travelled_.add(by);
+  next_travelled_.add(by);
+  last_step_mm_ += way_mm(by);
+  pose_ = to;
+  way.body = body;
 }
 
-void Proxy::follow(const Tissue& tissue, const Pose& arm_mm, Cutting cutting) {
+// Nothing is near: as far as the surface is known. True when there is more of the way.
+bool Proxy::goFreely(Way& way) {
+  way.load = way.stiff = 0.0;
+  blocker_count_ = 0;
+  const SmallMotion wanted = towards(pose_, arm_);
+  const double length_mm = way_mm(wanted);
+  const double most_mm =
+      surface_.pieces().empty() ? surface_.margin_mm() - usedUp_mm(travelled_) : way.step_mm;
+  const bool whole = length_mm <= most_mm;
+  const double share = most_mm / length_mm;
+  const Pose to = whole ? arm_
+                        : Pose{pose_.position + share * wanted.shift_mm,
+                               turned(share * wanted.turn, pose_.orientation)};
+  move(to, surface_.place(to), way);
+  way.step_mm = kStep * surface_.voxel_mm();
+  return !whole;
+}
+
+// A pose a motion from here, put back onto the surface where that bends, to a gap of at least so
+// much. False where that fails.
+bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, PlacedBody& body,
+                    bool& bent) {
+  there = {pose_.position + motion.shift_mm, turned(motion.turn, pose_.orientation)};
+  body = surface_.place(there);
+  const double voxel_mm = surface_.voxel_mm();
+  const double clear_mm = kKeptOff * voxel_mm, just_mm = least_mm + 0.1 * kTolerated * voxel_mm;
+  double far_mm = way_mm(motion);
+  for (int n = 0; n <= kCorrections; ++n) {
+    const double keep_mm = n == 0 ? just_mm : clear_mm;
+    if (touches(body, 2.0 * clear_mm, far_mm, keep_mm) >= least_mm) return true;
+    bent = true;
+    if (n == kCorrections) break;
+    const SmallMotion back = nearestMotion({}, turn_mm2_, {touches_.data(), touch_count_});
+    if (!(way_mm(back) < voxel_mm)) break;  // they contradict each other
+    there = {there.position + back.shift_mm, turned(back.turn, there.orientation)};
+    body = surface_.place(there);
+    far_mm += way_mm(back);
+  }
+  return false;
+}
+
+// A step along what it touches. True when there is more of the way. Only a pose that is nearer to
+// the arm is taken: so it neither creeps nor buzzes.
+bool Proxy::slide(const TissueAround& tissue, Way& way) {
+  const SmallMotion wanted = towards(pose_, arm_);
+  SmallMotion motion = nearestMotion(wanted, turn_mm2_, {touches_.data(), touch_count_});
+  way.load = way.stiff = 0.0;
+  blocker_count_ = 0;
+  for (std::size_t i = 0; i < touch_count_; ++i) {
+    const double load = touches_[i].load;
+    const SurfacePiece& piece = *touched_[i];
+    if (!(load > 0.0)) continue;
+    way.load += load;
+    way.stiff += load * tissue.classes.classes[std::size_t(piece.tissue_class)].stiffness_N_per_m;
+    if (piece.cuttable) blockers_[blocker_count_++] = {piece.voxel, piece.tissue_class};
+  }
+  const double arrived_mm = kArrived * surface_.voxel_mm();
+  const double length_mm = way_mm(motion);
+  if (length_mm < arrived_mm && !way.inside) return false;
+  const bool whole = length_mm <= way.step_mm;
+  double share = whole ? 1.0 : way.step_mm / length_mm;
+  for (int n = 0; n < kShorter; ++n, share *= kShorterBy) {
+    motion = {share * motion.shift_mm, share * motion.turn};
+    share = 1.0;
+    Pose there;
+    PlacedBody body;
+    bool bent = n > 0;
+    const bool out = putBack(motion, way.least_mm, there, body, bent);
+    if (!out || !(way.inside || cost(towards(there, arm_)) < cost(wanted) - kNearer_mm2)) continue;
+    const double moved_mm = way_mm(towards(pose_, there));
+    move(there, body, way);
+    if (!whole) way.step_mm = kStep * surface_.voxel_mm();
+    return (!whole || bent) && moved_mm >= arrived_mm;
+  }
+  return false;
+}
+
+void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting) {
   arm_ = arm_mm;
   blocker_count_ = 0;
   pull_ = Pull{};
-  PlacedBody body = surface_.place(pose_);
-  if (!surface_.mayMeet(tissue.bricks, body, surface_.place(arm_mm))) {
+  Way way{surface_.place(pose_)};
+  if (!surface_.mayMeet(tissue.bricks, way.body, surface_.place(arm_mm))) {
     place(arm_mm);
     return;
   }
-  if (cutting != cutting_) gathered_ = false;
+  if (cutting != cutting_) changed();
   cutting_ = cutting;
-  const double voxel_mm = surface_.voxel_mm(), longest_mm = kStep * voxel_mm;
-  const double near_mm = kNear * voxel_mm;
   // As far as it went last time it will go again, or twice as far.
-  double step_mm = std::clamp(2.0 * last_step_mm_ + near_mm, near_mm, longest_mm);
+  const double voxel_mm = surface_.voxel_mm(), near_mm = kNear * voxel_mm;
+  way.step_mm = std::clamp(2.0 * last_step_mm_ + near_mm, near_mm, kStep * voxel_mm);
+  const double speed = last_step_mm_;
   last_step_mm_ = 0.0;
-  double load = 0.0, stiff = 0.0;
   for (int step = 0; step < kMostSteps; ++step) {
-    Motion motion = towards(pose_, arm_mm);
-    const double before = cost(motion), way = way_mm(motion);
-    if (stale_ && gathered_) surface_.drop(tissue.grid, tissue.lookup);
-    const bool worn = stale_ && travelled_mm_ > std::max(kWorn * voxel_mm, kLeastWorn_mm);
-    if (!gathered_ || worn || travelled_mm_ + step_mm > surface_.margin_mm()) {
-      surface_.gather(tissue.grid, tissue.bricks, tissue.lookup, tissue.classes, body, cutting);
-      gathered_ = true;
-      stale_ = false;
-      travelled_mm_ = 0.0;
-    }
-    const bool inside = contacts(body, step_mm + 2.0 * kKeptOff * voxel_mm, 0.0) < 0.0;
-    if (way < kHeld_mm && !inside) break;
-    load = stiff = 0.0;
-    blocker_count_ = 0;
-    if (contact_count_ == 0) {  // free as far as it goes in this step
-      const double most_mm = surface_.pieces().empty() ? surface_.margin_mm() - travelled_mm_ : step_mm;
-      const double share = way > most_mm ? most_mm / way : 1.0;
-      pose_ = share < 1.0 ? Pose{pose_.position + share * motion.shift_mm,
-                                 turned(share * motion.turn, pose_.orientation)}
-                          : arm_mm;
-      body = surface_.place(pose_);
-      travelled_mm_ += share * way;
-      last_step_mm_ += share * way;
-      if (share == 1.0) break;
-      step_mm = longest_mm;
-      continue;
-    }
-    solve(motion);
-    for (std::size_t i = 0; i < contact_count_; ++i) {
-      const Contact& c = contacts_[i];
-      c.piece->load = c.load;
-      if (!(c.load > 0.0)) continue;
-      load += c.load;
-      stiff += c.load * tissue.classes.classes[std::size_t(c.piece->tissue_class)].stiffness_N_per_m;
-      if (c.piece->cuttable) blockers_[blocker_count_++] = {c.piece->voxel, c.piece->tissue_class};
-    }
-    double length = way_mm(motion);
-    if (length < kArrived * voxel_mm && !inside) break;
-    const bool whole = length <= step_mm;
-    if (!whole) {
-      motion.shift_mm *= step_mm / length;
-      motion.turn *= step_mm / length;
-    }
-    // Where the surface bends the pose is put back onto it, and only one nearer to the arm is taken:
-    // so it neither creeps nor buzzes.
-    bool moved = false, bent = false;
-    for (int shorter = 0; shorter < kShorter && !moved; ++shorter) {
-      Pose there{pose_.position + motion.shift_mm, turned(motion.turn, pose_.orientation)};
-      PlacedBody body_there = surface_.place(there);
-      double far = way_mm(motion);
-      for (int n = 0; n <= kCorrections; ++n) {
-        if (contacts(body_there, 2.0 * kKeptOff * voxel_mm, far) >= 0.0) {
-          moved = true;
-          break;
-        }
-        bent = true;
-        if (n == kCorrections) break;
-        Motion back;
-        solve(back);
-        there = {there.position + back.shift_mm, turned(back.turn, there.orientation)};
-        body_there = surface_.place(there);
-        far += way_mm(back);
-      }
-      if (moved && !inside && !(cost(towards(there, arm_mm)) < before - kNearer_mm2)) moved = false;
-      if (moved) {
-        length = way_mm(towards(pose_, there));
-        pose_ = there;
-        body = body_there;
-        travelled_mm_ += length;
-        last_step_mm_ += length;
-      } else {
-        motion.shift_mm *= kShorterBy;
-        motion.turn *= kShorterBy;
-      }
-    }
-    if (!moved || (whole && !bent) || length < kArrived * voxel_mm) break;
-    if (!whole) step_mm = longest_mm;
+    look(tissue, way.body, way.step_mm, speed, step == 0);
+    const double clear_mm = kKeptOff * voxel_mm;
+    const double gap_mm = touches(way.body, way.step_mm + 2.0 * clear_mm, 0.0, clear_mm);
+    way.inside = gap_mm < -kInside * voxel_mm;
+    way.least_mm = -kTolerated * voxel_mm;
+    if (!way.inside) way.least_mm = std::min(way.least_mm, gap_mm);
+    if (way_mm(towards(pose_, arm_mm)) < kHeld_mm && !way.inside) break;
+    if (touch_count_ > 0 ? !slide(tissue, way) : !goFreely(way)) break;
   }
-  const Motion left = towards(arm_mm, pose_);
+  const SmallMotion left = towards(arm_mm, pose_);
   if (!(cost(left) > kHeld_mm * kHeld_mm)) stiffness_ = 0.0;
   // On its way back to an arm that went fast it pulls as it did.
-  if (load > 0.0) stiffness_ = stiff / load;
+  if (way.load > 0.0) stiffness_ = way.stiff / way.load;
   pull_ = {left.shift_mm, left.turn, turn_mm2_, stiffness_};
 }
 
 Pose Proxy::ahead_mm(double by_mm) const {
-  const Motion wanted = towards(pose_, arm_);
+  const SmallMotion wanted = towards(pose_, arm_);
   const double way = way_mm(wanted);
   if (!(way > 0.0)) return pose_;
   const double share = std::min(1.0, by_mm / way);

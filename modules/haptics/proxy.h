@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "haptics/nearest_motion.h"
 #include "haptics/solid_surface.h"
 
 namespace trephine {
@@ -22,26 +23,23 @@ class Proxy {
  public:
   Proxy(const Tool& tool, const GridGeometry& geometry);
 
-  // The tissue that it moves among; voxels change between two calls only where changed() says so.
-  struct Tissue {
-    const Grid& grid;
-    const TissueBricks& bricks;
-    const TissueLookup& lookup;
-    const TissueTable& classes;
-  };
   // At the arm, whatever is there.
   void place(const Pose& pose_mm);
   // One tick towards the arm: as near to it as the solid tissue on the way allows, in steps of less
-  // than half a voxel, kMostSteps of them.
-  void follow(const Tissue& tissue, const Pose& arm_mm, Cutting cutting);
+  // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
+  // or removed() said so.
+  void follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting);
   // Stays where it was before follow().
   void hold(const Pose& pose_mm);
   // The pull is let go: this share of its stiffness is left.
   void fade(double share) { pull_.stiffness *= share; }
   // Voxels around it came back, or mean other tissue.
-  void changed() { gathered_ = false; }
+  void changed() {
+    gathered_ = false;
+    surface_.giveUp();
+  }
   // Voxels around it went.
-  void removed() { stale_ = true; }
+  void removed() { stale_ = next_stale_ = true; }
 
   const Pose& pose_mm() const { return pose_; }
   const Pull& pull() const { return pull_; }
@@ -58,33 +56,62 @@ class Proxy {
   static constexpr int kMostSteps = 8;
 
  private:
-  static constexpr std::size_t kMostContacts = 64;
-  struct Contact {
-    Vec3 normal{0.0}, moment{0.0};
-    double gap_mm = 0.0, softness = 0.0, load = 0.0;
-    SurfacePiece* piece = nullptr;
+  // How far the body went, bounds: as a whole and by turning.
+  struct Travel {
+    double shift_mm = 0.0, turn = 0.0;
+    double of_mm(double reach_mm) const { return shift_mm + reach_mm * turn; }
+    void add(const SmallMotion& motion) {
+      shift_mm += glm::length(motion.shift_mm);
+      turn += glm::length(motion.turn);
+    }
   };
-  struct Motion {
-    Vec3 shift_mm{0.0}, turn{0.0};
+  // A tick's way towards the arm.
+  struct Way {
+    PlacedBody body;
+    double step_mm = 0.0;            // at most, in the next step
+    double load = 0.0, stiff = 0.0;  // of the touches in the last one
+    double least_mm = 0.0;           // gap that the next pose may have
+    bool inside = false;
   };
-  Motion towards(const Pose& from, const Pose& to) const;
-  double way_mm(const Motion& motion) const;
-  double cost(const Motion& motion) const;
-  double contacts(const PlacedBody& body, double within_mm, double moved_mm);
-  void solve(Motion& motion);
+  // A piece that is near, before flat ones are merged.
+  struct Near {
+    Touch touch;
+    const SurfacePiece* piece = nullptr;
+    bool merged = false;
+  };
+  SmallMotion towards(const Pose& from, const Pose& to) const;
+  // How far the farthest point moves of what is near tissue, or what is far at a kFar'th: bounds.
+  double usedUp_mm(const Travel& travel) const;
+  double way_mm(const SmallMotion& motion) const;
+  double cost(const SmallMotion& motion) const;
+  double travelled_mm() const { return travelled_.of_mm(surface_.near_reach_mm()); }
+  void look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
+            bool ahead);
+  double worn(double step_mm) const;
+  std::size_t nearPieces(const PlacedBody& body, double within_mm, double moved_mm);
+  std::size_t merge(std::size_t first, std::size_t count);
+  double touches(const PlacedBody& body, double within_mm, double moved_mm, double clear_mm);
+  void move(const Pose& to, const PlacedBody& body, Way& way);
+  bool goFreely(Way& way);
+  bool slide(const TissueAround& tissue, Way& way);
+  bool putBack(const SmallMotion& motion, double least_mm, Pose& there, PlacedBody& body,
+               bool& bent);
 
   SolidSurface surface_;
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
-  bool gathered_ = false, stale_ = false;
+  bool gathered_ = false, stale_ = false, next_stale_ = false;
   Cutting cutting_ = Cutting::nothing;
-  double travelled_mm_ = 0.0;  // since the surface was gathered
+  Travel travelled_,
+      next_travelled_;  // since the surface was gathered, and since the next was begun
   double last_step_mm_ = 0.0;
   double stiffness_ = 0.0;  // of what held it last, until it is at the arm
-  std::array<Contact, kMostContacts> contacts_;
-  std::size_t contact_count_ = 0;
-  std::array<Blocker, kMostContacts> blockers_;
+  std::array<NearTouch, kMostTouches> touches_;
+  std::array<const SurfacePiece*, kMostTouches> touched_;  // by each of them
+  std::array<Near, kMostTouches> near_;
+  std::size_t touch_count_ = 0;
+  std::array<Blocker, kMostTouches> blockers_;
   std::size_t blocker_count_ = 0;
 };
 

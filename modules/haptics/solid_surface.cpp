@@ -9,25 +9,28 @@ namespace {
 
 // Of a voxel's edge: how far the tool may go before the surface is looked at anew, at least.
 constexpr double kMargin = 1.3;
-constexpr double kLeastMargin_mm = 0.25;
+constexpr double kLeastMargin_mm = 0.5;
 // Rows of voxels are looked at that are no farther apart than this share of a part's radius, or
 // than this, or than a voxel.
 constexpr double kRowsPerRadius = 1.0 / 7.0;
-constexpr double kLeastRows_mm = 0.25;
+constexpr double kLeastRows_mm = 0.4;
 constexpr double kStretch_mm = 8.0;  // of a long part, looked at on its own
 constexpr int kMostAlong = 256, kMostDirections = 16;
 constexpr double kLeastCell_mm = 0.25;
 // HU beyond the threshold of a solid tissue that count as all of it, or as nothing of it.
 constexpr double kWhole_hu = 1226.0;
-// Levelled with neighbours within so many radii of a disk whose normals' cosine is at least this.
-constexpr double kSmoothed = 2.0, kAlike = 0.8;
-constexpr std::size_t kMostSmoothed = 96;
+// Where flat disks meet, those within so many radii have a plane together, if their normals' cosine
+// is at least this; the place that it is of is found in so many rounds.
+constexpr double kAlike = 0.8;
+constexpr int kSettled = 2;
+constexpr double kBlended = 1.5;
 constexpr double kFlat = 0.6;  // meshes: two columns and the one between them bend by less
 constexpr double kNoHeight = 3.0;  // meshes: no column is as high
 constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
 constexpr double kFlatDisk = 2.0;  // times that where all around it faces alike
 constexpr double kPlate = 0.45;  // half the thickness of one a voxel thick
 constexpr double kNoSide = 0.15;  // of a clear side's slope: below it a voxel has none
+constexpr int kPieceWork = 8;     // what a piece costs, in rows
 
 // The cell of a cube's face that a direction meets, faces of n^2 cells.
 int cellOf(const Vec3& d, int n) {
@@ -78,6 +81,34 @@ Touch touchOf(const SurfacePiece& piece, const PlacedBody& body) {
   return touch;
 }
 
+Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& body,
+              std::span<const SurfacePiece> pieces) {
+  const double radius_mm = body.parts[std::size_t(piece.part)].radius_mm;
+  const double reach2 = kBlended * kBlended * piece.size_mm * piece.size_mm;
+  const Vec3 centre = body.tip_mm + touch.lever_mm + radius_mm * touch.normal;
+  Touch out = touch;
+  // The place is that of the plane found, whichever piece led there.
+  for (int round = 0; round < kSettled; ++round) {
+    const Vec3 at = centre - (radius_mm + out.gap_mm) * out.normal;
+    Vec3 normals(0.0);
+    double heights = 0.0, weights = 0.0;
+    for (const SurfacePiece& other : pieces) {
+      const Vec3 apart = other.at_mm - at;
+      const double distance2 = glm::dot(apart, apart);
+      if (distance2 >= reach2 || glm::dot(other.normal, touch.normal) < kAlike) continue;
+      const double near = 1.0 - distance2 / reach2, weight = near * near;
+      normals += weight * other.normal;
+      heights -= weight * glm::dot(other.normal, apart);
+      weights += weight;
+    }
+    if (!(weights > 0.0)) break;
+    out.normal = glm::normalize(normals);
+    out.gap_mm = heights / weights + glm::dot(out.normal, centre - at) - radius_mm;
+  }
+  out.lever_mm = centre - radius_mm * out.normal - body.tip_mm;
+  return out;
+}
+
 SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
     : geometry_(geometry),
       patient_to_voxel_(geometry.patientToVoxel()),
@@ -88,6 +119,7 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
   margin_mm_ = std::max(kMargin * voxel_mm_, kLeastMargin_mm);
   reach_mm_ = 0.0;
   int cells = 0;
+  std::size_t stretches = 0;
   for (const BodyPart& part : tool.body) {
     parts_mm_.push_back(
         {1000.0 * part.from_m, 1000.0 * part.to_m, 1000.0 * part.radius_m, part.cuts});
@@ -97,17 +129,20 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
     const double length = glm::length(mm.to_m - mm.from_m);
     Cells of;
     // A face of a cube around the part is a quarter of its turn wide: cells of half a row's distance.
-    const Index3 apart = rowsApart(mm.radius_m);
-    const double cell_mm = 0.5 * std::min({s.x, apart[1] * s.y, apart[2] * s.z});
+    of.apart = rowsApart(mm.radius_m);
+    const double cell_mm = 0.5 * std::min({s.x, of.apart[1] * s.y, of.apart[2] * s.z});
     of.directions =
         std::clamp(int(std::ceil(1.6 * mm.radius_m / cell_mm)), 2, kMostDirections);
     of.along = std::clamp(int(std::ceil(length / std::max(cell_mm, kLeastCell_mm))), 1, kMostAlong);
     of.first = cells;
     cells += of.along * 6 * of.directions * of.directions;
     cells_.push_back(of);
+    stretches += std::size_t(length / kStretch_mm) + 1;
   }
+  near_reach_mm_ = reach_mm_;
   pieces_.reserve(std::size_t(cells));
-  rough_.reserve(kMostSmoothed);
+  next_.reserve(std::size_t(cells));
+  stretches_.reserve(stretches);
   found_.reserve(std::size_t(cells));
   cell_.assign(std::size_t(cells), 0);
   stamp_.assign(std::size_t(cells), 0);
@@ -148,145 +183,148 @@ bool SolidSurface::mayMeet(const TissueBricks& bricks, const PlacedBody& from,
   return false;
 }
 
-void SolidSurface::gather(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-                          const TissueTable& tissues, const PlacedBody& body,
-                          Cutting cutting) {
-  pieces_.clear();
+void SolidSurface::begin(const TissueAround& tissue, const PlacedBody& body, Cutting cutting) {
+  stretches_.clear();
   found_.clear();
+  next_.clear();
+  searched_ = made_ = 0;
+  done_ = 0;
+  under_way_ = true;
+  cutting_ = cutting;
+  next_reach_mm_ = 0.0;
   ++turn_;
-  const View view{grid, lookup, tissues};
   const auto place = [&](const Vec3& patient_mm) {
     return Vec3(patient_to_voxel_ * glm::dvec4(patient_mm, 1.0)) * spacing_mm_;
   };
+  const Vec3 tip = place(body.tip_mm);
   for (std::size_t n = 0; n < body.count; ++n) {
     const PlacedBody::Part& part = body.parts[n];
     const Vec3 from = place(part.from_mm), along = place(part.from_mm + part.along_mm) - from;
     const double length = glm::length(along);
     const int count = std::max(1, int(std::ceil(length / kStretch_mm)));
+    Stretch stretch;
+    stretch.part = n;
+    stretch.share = 1.0 / count;
+    stretch.along = stretch.share * along;
+    stretch.per_length2 = length > 0.0 ? 1.0 / glm::dot(stretch.along, stretch.along) : 0.0;
     for (int number = 0; number < count; ++number) {
-      Stretch stretch;
-      stretch.share = 1.0 / count;
       stretch.from = number * stretch.share;
-      stretch.along = stretch.share * along;
-      stretch.axis.from = from + stretch.from * along;
-      stretch.axis.to = stretch.axis.from + stretch.along;
-      stretch.axis.radius = part.radius_mm;
-      stretch.per_length2 = length > 0.0 ? 1.0 / glm::dot(stretch.along, stretch.along) : 0.0;
-      stretch.part = n;
-      searchAround(view, bricks, stretch);
+      const Vec3 start = from + stretch.from * along;
+      stretch.axis = {start, start + stretch.along, part.radius_mm};
+      const double far_mm = part.radius_mm + kFar * margin_mm_ + half_diagonal_mm_;
+      const Vec3 low = glm::min(stretch.axis.from, stretch.axis.to) - far_mm;
+      const Vec3 high = glm::max(stretch.axis.from, stretch.axis.to) + far_mm;
+      if (!tissue.bricks.mayHoldSolid(low / spacing_mm_, high / spacing_mm_)) continue;
+      next_reach_mm_ =
+          std::max({next_reach_mm_, part.radius_mm + glm::length(stretch.axis.from - tip),
+                    part.radius_mm + glm::length(stretch.axis.to - tip)});
+      addStretch(tissue, stretch);
     }
-  }
-  for (const Found& found : found_) {
-    addPiece(view, found, parts_mm_[found.part].cuts ? cutting : Cutting::nothing);
-  }
-  if (pieces_.size() <= kMostSmoothed) smooth();
-}
-
-// Disks that face alike are levelled with their neighbours: where planes that are off by a degree or
-// two meet, a tool would touch the most tilted.
-void SolidSurface::smooth() {
-  rough_.assign(pieces_.begin(), pieces_.end());
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    SurfacePiece& piece = pieces_[i];
-    const SurfacePiece& own = rough_[i];
-    if (own.normal == Vec3(0.0)) continue;
-    const double reach2 = kSmoothed * kSmoothed * own.size_mm * own.size_mm;
-    Vec3 normal(0.0);
-    double level = 0.0, sum = 0.0;
-    for (const SurfacePiece& other : rough_) {
-      const Vec3 apart = other.at_mm - own.at_mm;
-      const double distance2 = glm::dot(apart, apart);
-      if (distance2 >= reach2) continue;
-      const double alike = glm::dot(own.normal, other.normal);
-      if (alike < kAlike) continue;
-      const double near = 1.0 - distance2 / reach2, weight = near * near * alike;
-      normal += weight * other.normal;
-      level += weight * 0.5 * glm::dot(own.normal + other.normal, apart);
-      sum += weight;
-    }
-    piece.normal = glm::normalize(normal);
-    piece.at_mm = own.at_mm + (level / sum) * piece.normal;
   }
 }
 
-// The rows of voxels around a stretch, each from where nothing solid can be outwards to the first
-// that is.
-void SolidSurface::searchAround(const View& view, const TissueBricks& bricks,
-                                const Stretch& stretch) {
+void SolidSurface::addStretch(const TissueAround& tissue, Stretch stretch) {
   const Capsule& axis = stretch.axis;
-  const Vec3& s = spacing_mm_;
   Capsule outer = axis, inner = axis;
   outer.radius = axis.radius + margin_mm_ + half_diagonal_mm_;
   inner.radius = axis.radius - half_diagonal_mm_;
-  const Vec3 low = (glm::min(axis.from, axis.to) - outer.radius) / s;
-  const Vec3 high = (glm::max(axis.from, axis.to) + outer.radius) / s;
-  if (!bricks.mayHoldSolid(low, high)) return;
-  const bool hollow = inner.radius > 0.0;
-  const CapsuleRows around(outer), within(hollow ? inner : Capsule{});
-  const Index3 apart = rowsApart(axis.radius);
-  const double per_x = 1.0 / s.x;
-  const auto first = [](double at, int by) { return int(std::max(0.0, at) / by) * by; };
-  // A batch of rows at a time: their voxels are on the way while the others are found.
-  struct Row {
-    int from = 0, left = 0, right = 0, to = 0, j = 0, k = 0;  // right <= left: all of it
-    std::size_t voxel = 0;
-  };
-  std::array<Row, 16> batch;
-  std::size_t count = 0;
-  const auto searchBatch = [&] {
-    for (std::size_t n = 0; n < count; ++n) {
-      const Row& row = batch[n];
-      const auto solidAt = [&](int i) {
-        return view.lookup.isSolid(view.lookup.classAt(view.grid, row.voxel + std::size_t(i)));
-      };
-      if (row.right <= row.left) {
-        for (int i = row.from; i <= row.to; ++i) {
-          if (solidAt(i)) find({i, row.j, row.k}, stretch);
-        }
-        continue;
-      }
-      for (int i = row.left; i >= row.from; --i) {
-        if (!solidAt(i)) continue;
-        find({i, row.j, row.k}, stretch);
-        break;
-      }
-      for (int i = row.right; i <= row.to; ++i) {
-        if (!solidAt(i)) continue;
-        find({i, row.j, row.k}, stretch);
-        break;
-      }
-    }
-    count = 0;
-  };
-  const int last_k = std::min(geometry_.size[2] - 1, int(std::max(-1.0, high.z)));
-  for (int k = first(low.z, apart[2]); k <= last_k; k += apart[2]) {
-    const double z = k * s.z;
-    const Interval band = around.band(z);
-    if (band.empty()) continue;
-    const int last_j = std::min(geometry_.size[1] - 1, int(std::max(-1.0, band.high / s.y)));
-    for (int j = first(band.low / s.y, apart[1]); j <= last_j; j += apart[1]) {
-      const double y = j * s.y;
-      const Interval all = around.row(y, z);
-      if (all.empty() || all.high < 0.0) continue;
-      Row& row = batch[count];
-      row.from = std::max(0, int(all.low * per_x));
-      row.to = std::min(geometry_.size[0] - 1, int(all.high * per_x));
-      if (row.from > row.to) continue;
-      row.j = j;
-      row.k = k;
-      row.voxel = geometry_.indexOf(0, j, k);
-      row.left = row.right = 0;
-      const Interval clear = hollow ? within.row(y, z) : Interval{};
-      if (!clear.empty()) {
-        row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
-        row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
-      }
-      view.grid.prefetch(row.voxel + std::size_t(row.from));
-      view.grid.prefetch(row.voxel + std::size_t(row.to));
-      if (++count == batch.size()) searchBatch();
+  const Vec3 low = (glm::min(axis.from, axis.to) - outer.radius) / spacing_mm_;
+  const Vec3 high = (glm::max(axis.from, axis.to) + outer.radius) / spacing_mm_;
+  if (!tissue.bricks.mayHoldSolid(low, high)) return;
+  stretch.hollow = inner.radius > 0.0;
+  stretch.around = CapsuleRows(outer);
+  if (stretch.hollow) stretch.within = CapsuleRows(inner);
+  const int apart = cells_[stretch.part].apart[2];
+  stretch.plane = int(std::max(0.0, low.z) / apart) * apart;
+  stretch.last_plane = std::min(geometry_.size[2] - 1, int(std::max(-1.0, high.z)));
+  stretches_.push_back(stretch);
+}
+
+bool SolidSurface::goOn(const TissueAround& tissue, int work) {
+  for (const int until = done_ + std::min(work, kAll - done_); done_ < until;) {
+    if (searched_ < stretches_.size()) {
+      Stretch& stretch = stretches_[searched_];
+      done_ += searchPlane(tissue, stretch);
+      if (stretch.plane > stretch.last_plane) ++searched_;
+    } else if (made_ < found_.size()) {
+      addPiece(tissue, found_[made_++]);
+      done_ += kPieceWork;
+    } else {
+      std::swap(pieces_, next_);
+      near_reach_mm_ = next_reach_mm_;
+      under_way_ = false;
+      work_ = done_;
+      return true;
     }
   }
-  searchBatch();
+  return false;
+}
+
+// The rows of voxels of a plane around a stretch. Returns how many rows it has.
+int SolidSurface::searchPlane(const TissueAround& tissue, Stretch& stretch) {
+  const Vec3& s = spacing_mm_;
+  const Index3& apart = cells_[stretch.part].apart;
+  const double per_x = 1.0 / s.x;
+  const int k = stretch.plane;
+  stretch.plane += apart[2];
+  if (k > stretch.last_plane) return 1;
+  const double z = k * s.z;
+  const Interval band = stretch.around.band(z);
+  if (band.empty()) return 1;
+  // Some rows at a time: their voxels are on the way while the others are found.
+  std::array<Row, 16> rows;
+  std::size_t count = 0;
+  int all = 1;
+  const int last_j = std::min(geometry_.size[1] - 1, int(std::max(-1.0, band.high / s.y)));
+  for (int j = int(std::max(0.0, band.low / s.y) / apart[1]) * apart[1]; j <= last_j;
+       j += apart[1]) {
+    const double y = j * s.y;
+    const Interval around = stretch.around.row(y, z);
+    if (around.empty() || around.high < 0.0) continue;
+    Row& row = rows[count];
+    row.from = std::max(0, int(around.low * per_x));
+    row.to = std::min(geometry_.size[0] - 1, int(around.high * per_x));
+    if (row.from > row.to) continue;
+    row.j = j;
+    row.k = k;
+    row.voxel = geometry_.indexOf(0, j, k);
+    row.left = row.right = 0;
+    const Interval clear = stretch.hollow ? stretch.within.row(y, z) : Interval{};
+    if (!clear.empty()) {
+      row.left = std::min(row.to, clear.low > 0.0 ? int(clear.low * per_x) + 1 : 0);
+      row.right = std::max({row.from, row.left + 1, int(std::max(0.0, clear.high) * per_x)});
+    }
+    tissue.grid.prefetch(row.voxel + std::size_t(row.from));
+    tissue.grid.prefetch(row.voxel + std::size_t(row.to));
+    ++all;
+    if (++count < rows.size()) continue;
+    searchRows(tissue, stretch, rows);
+    count = 0;
+  }
+  searchRows(tissue, stretch, {rows.data(), count});
+  return all;
+}
+
+// Each row from where nothing solid can be outwards to the first that is.
+void SolidSurface::searchRows(const TissueAround& tissue, const Stretch& stretch,
+                              std::span<const Row> rows) {
+  for (const Row& row : rows) {
+    const auto solidAt = [&](int i) {
+      return tissue.lookup.isSolid(tissue.lookup.classAt(tissue.grid, row.voxel + std::size_t(i)));
+    };
+    if (row.right <= row.left) {
+      for (int i = row.from; i <= row.to; ++i) {
+        if (solidAt(i)) find({i, row.j, row.k}, stretch);
+      }
+      continue;
+    }
+    int i = row.left;
+    while (i >= row.from && !solidAt(i)) --i;
+    if (i >= row.from) find({i, row.j, row.k}, stretch);
+    i = row.right;
+    while (i <= row.to && !solidAt(i)) ++i;
+    if (i <= row.to) find({i, row.j, row.k}, stretch);
+  }
 }
 
 // How many rows lie between two that are looked at, and one.
@@ -325,33 +363,35 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
 }
 
 // The piece of a voxel: the slope of the tissue around it, and where along each axis it ends.
-void SolidSurface::addPiece(const View& view, const Found& found, Cutting cutting) {
+void SolidSurface::addPiece(const TissueAround& tissue, const Found& found) {
   const auto [i, j, k] = found.voxel;
   const Vec3& s = spacing_mm_;
   const double radius = parts_mm_[found.part].radius_m;
   SurfacePiece piece;
   const std::size_t voxel = geometry_.indexOf(i, j, k);
-  const std::int16_t hu = view.grid.hu(voxel);
-  const int c = view.lookup.classAt(view.grid, voxel, hu);
+  const std::int16_t hu = tissue.grid.hu(voxel);
+  const int c = tissue.lookup.classAt(tissue.grid, voxel, hu);
+  if (!tissue.lookup.isSolid(c)) return;  // it went meanwhile
+  const Cutting cutting = parts_mm_[found.part].cuts ? cutting_ : Cutting::nothing;
   piece.part = std::int32_t(found.part);
   piece.voxel = std::uint32_t(voxel);
   piece.tissue_class = std::int8_t(c);
   piece.cuttable =
-      cutting != Cutting::nothing && view.tissues.classes[std::size_t(c)].cuttable != 0;
+      cutting != Cutting::nothing && tissue.classes.classes[std::size_t(c)].cuttable != 0;
   const Vec3 centre = Vec3(i, j, k) * s;
   const Mat3& turn = geometry_.direction;
   const auto add = [&](const Vec3& at, const Vec3& normal, double size) {
     piece.at_mm = geometry_.origin_mm + turn * at;
     piece.normal = turn * normal;
     piece.size_mm = size;
-    pieces_.push_back(piece);
+    next_.push_back(piece);
   };
   if (piece.cuttable && cutting == Cutting::driven) {
     // Nothing slips between balls of this size.
     return add(centre, Vec3(0.0), std::max(0.0, half_diagonal_mm_ - radius));
   }
-  const double threshold = view.tissues.classes[std::size_t(c)].hu_min - 0.5;
-  const Index3 apart = rowsApart(radius);
+  const double threshold = tissue.classes.classes[std::size_t(c)].hu_min - 0.5;
+  const Index3& apart = cells_[found.part].apart;
   const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
   // `share` of the diagonal of the mesh in its plane.
   const auto addDisk = [&](const Vec3& at, const Vec3& normal, double share) {
@@ -363,9 +403,9 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
     const int at_i = i + by[0] * apart[0], at_j = j + by[1] * apart[1], at_k = k + by[2] * apart[2];
     if (!geometry_.contains(at_i, at_j, at_k)) return -kWhole_hu;
     const std::size_t there = geometry_.indexOf(at_i, at_j, at_k);
-    const std::int16_t hu_there = view.grid.hu(there);
+    const std::int16_t hu_there = tissue.grid.hu(there);
     const double more = double(hu_there) - threshold;
-    return view.lookup.isSolid(view.lookup.classAt(view.grid, there, hu_there))
+    return tissue.lookup.isSolid(tissue.lookup.classAt(tissue.grid, there, hu_there))
                ? std::clamp(more, 1.0, kWhole_hu)
                : std::clamp(more, -kWhole_hu, -1.0);
   };
@@ -401,7 +441,7 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
   }
   const int u = (up + 1) % 3, v = (up + 2) % 3, out = n[up] > 0.0 ? 1 : -1;
   const auto height = [&](int du, int dv) {
-    std::array<double, 5> value;
+    std::array<double, 6> value;
     Index3 by{0, 0, 0};
     by[std::size_t(u)] = du;
     by[std::size_t(v)] = dv;
@@ -420,7 +460,9 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
     if (value[1] > 0.0 && value[2] < 0.0) return crossing(1);
     if (value[3] > 0.0) {
       value[4] = at(2);
-      return value[4] < 0.0 ? crossing(3) : kNoHeight + 1.0;
+      if (value[4] < 0.0) return crossing(3);
+      value[5] = at(3);
+      return value[5] < 0.0 ? crossing(4) : kNoHeight + 1.0;
     }
     value[0] = at(-2);
     return value[0] > 0.0 && value[1] < 0.0 ? crossing(0) : kNoHeight + 1.0;
@@ -456,6 +498,7 @@ void SolidSurface::addPiece(const View& view, const Found& found, Cutting cuttin
     normal[u] = -tilt_u * mesh[up] / mesh[u];
     normal[v] = -tilt_v * mesh[up] / mesh[v];
     normal = glm::normalize(normal);
+    piece.flat = true;
     return addDisk(centre + (sum / count) * axis, normal, kFlatDisk * kDisk);
   }
   addDisk(centre + own * axis, n, kDisk);

@@ -25,9 +25,9 @@ struct SurfacePiece {
   std::uint32_t voxel = 0;
   std::int8_t tissue_class = 0;
   bool cuttable = false;   // by this part
-  // The solver's: with what it held the tool back last time, how near the tool was when it was last
-  // looked at, and how far the tool had travelled then.
-  double load = 0.0, gap_mm = 0.0, travelled_mm = 0.0;
+  bool flat = false;       // and so is what is around it
+  // The proxy's: how near the tool was when it was last looked at, how far it had travelled then.
+  double gap_mm = 0.0, travelled_mm = 0.0;
 };
 
 // Where a part of the body touches a piece, or would.
@@ -51,13 +51,25 @@ struct PlacedBody {
 };
 
 Touch touchOf(const SurfacePiece& piece, const PlacedBody& body);
+// The same touch, of the plane that the flat pieces around its place have together: one alone is
+// off by a degree or two.
+Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& body,
+              std::span<const SurfacePiece> pieces);
 
 // Whether a tool removes what it may, by hand or driven by its motor.
 enum class Cutting { nothing, by_hand, driven };
 
+// What a tool moves among.
+struct TissueAround {
+  const Grid& grid;
+  const TissueBricks& bricks;
+  const TissueLookup& lookup;
+  const TissueTable& classes;
+};
+
 // Gathers the pieces near a tool. Of those that a part of the tool meets from the same side one is
-// enough, the nearest; what another sees first after the tool has moved by `margin_mm` is then off by
-// a fraction of that.
+// enough, the nearest; what another sees first after the tool has moved by `margin_mm` is then off
+// by a fraction of that. No allocation after it is made.
 class SolidSurface {
  public:
   SolidSurface(const Tool& tool, const GridGeometry& geometry);
@@ -65,11 +77,18 @@ class SolidSurface {
   PlacedBody place(const Pose& pose_mm) const;
   // Whether there may be solid tissue near the body on its straight way between two poses.
   bool mayMeet(const TissueBricks& bricks, const PlacedBody& from, const PlacedBody& to) const;
-  // All pieces that the body meets within `margin_mm` of where it is. A driven part meets tissue that
-  // it may cut at the centres of its voxels: as they go whole, it takes as many as its volume holds.
-  // No allocation.
-  void gather(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-              const TissueTable& tissues, const PlacedBody& body, Cutting cutting);
+  // Begins to look for all pieces that the body meets within `margin_mm` of where it is. A driven
+  // part meets tissue that it may cut at the centres of its voxels: as they go whole, it takes as
+  // many as its volume holds.
+  void begin(const TissueAround& tissue, const PlacedBody& body, Cutting cutting);
+  // Goes on with it, about a row of voxels for each of `work`. True when it is done and pieces()
+  // are the new ones.
+  bool goOn(const TissueAround& tissue, int work);
+  static constexpr int kAll = 1 << 30;
+  bool underWay() const { return under_way_; }
+  void giveUp() { under_way_ = false; }
+  int work() const { return work_; }  // that the last search took
+
   // Forgets the pieces that are solid no more.
   void drop(const Grid& grid, const TissueLookup& lookup) {
     std::erase_if(pieces_, [&](const SurfacePiece& piece) {
@@ -80,16 +99,15 @@ class SolidSurface {
 
   double margin_mm() const { return margin_mm_; }
   double voxel_mm() const { return voxel_mm_; }  // the smallest edge
-  double reach_mm() const { return reach_mm_; }  // of the body, from the tip
+  // Of the body, from the tip; and of what of it had solid tissue within kFar margins.
+  double reach_mm() const { return reach_mm_; }
+  double near_reach_mm() const { return near_reach_mm_; }
+  static constexpr double kFar = 4.0;
 
  private:
   struct Cells {
     int along = 1, directions = 2, first = 0;  // of a part
-  };
-  struct View {
-    const Grid& grid;
-    const TissueLookup& lookup;
-    const TissueTable& tissues;
+    Index3 apart{1, 1, 1};                     // voxels from one row that is looked at to the next
   };
   // A stretch of a part's axis, in the grid's own axes, millimetres.
   struct Stretch {
@@ -98,6 +116,14 @@ class SolidSurface {
     double per_length2 = 0.0;
     double from = 0.0, share = 1.0;  // where on the part's axis it begins, how much of it it is
     std::size_t part = 0;
+    CapsuleRows around, within;  // solid tissue is looked for between the two
+    bool hollow = false;
+    int plane = 0, last_plane = -1;  // the next to be looked at
+  };
+  // A row of voxels; where right > left, what is between them is not looked at.
+  struct Row {
+    int from = 0, left = 0, right = 0, to = 0, j = 0, k = 0;
+    std::size_t voxel = 0;
   };
   // The nearest solid voxel of a cell.
   struct Found {
@@ -106,10 +132,11 @@ class SolidSurface {
     Vec3 away_mm{0.0};  // from the part's axis, in the grid's own axes
     double distance2_mm2 = 0.0;
   };
-  void searchAround(const View& view, const TissueBricks& bricks, const Stretch& stretch);
+  void addStretch(const TissueAround& tissue, Stretch stretch);
+  int searchPlane(const TissueAround& tissue, Stretch& stretch);
+  void searchRows(const TissueAround& tissue, const Stretch& stretch, std::span<const Row> rows);
   void find(const Index3& voxel, const Stretch& stretch);
-  void smooth();
-  void addPiece(const View& view, const Found& found, Cutting cutting);
+  void addPiece(const TissueAround& tissue, const Found& found);
   Index3 rowsApart(double radius_mm) const;
 
   GridGeometry geometry_;
@@ -118,8 +145,17 @@ class SolidSurface {
   std::vector<Cells> cells_;
   Vec3 spacing_mm_;
   double voxel_mm_, half_diagonal_mm_, margin_mm_, reach_mm_;
-  std::vector<SurfacePiece> pieces_, rough_;
+  std::vector<SurfacePiece> pieces_;
+  double near_reach_mm_ = 0.0;
+  // The search that is under way.
+  bool under_way_ = false;
+  int work_ = 0, done_ = 0;  // of the last search, of this one
+  Cutting cutting_ = Cutting::nothing;
+  double next_reach_mm_ = 0.0;
+  std::vector<Stretch> stretches_;
   std::vector<Found> found_;
+  std::vector<SurfacePiece> next_;
+  std::size_t searched_ = 0, made_ = 0;  // of stretches, of found
   std::vector<std::int32_t> cell_;    // of each cell: which of the found it has
   std::vector<std::uint32_t> stamp_;   // of each cell, when it was last filled
   std::uint32_t turn_ = 0;

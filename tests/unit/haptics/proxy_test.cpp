@@ -41,7 +41,7 @@ struct Surroundings {
     lookup.set(tissues);
     bricks.emplace(grid, lookup);
   }
-  Proxy::Tissue tissue() const { return {grid, *bricks, lookup, tissues}; }
+  TissueAround tissue() const { return {grid, *bricks, lookup, tissues}; }
   // How deep the centre of an uncut voxel lies in the tool's body, at most; below 0: nowhere.
   double deepest_mm(const Tool& tool, const Pose& pose_mm) const {
     double deepest = -1e9;

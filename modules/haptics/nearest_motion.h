@@ -1,0 +1,30 @@
+// The motion that is nearest to a wanted one and enters nothing.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "base/math.h"
+
+namespace trephine {
+
+// A small motion of a rigid body.
+struct SmallMotion {
+  Vec3 shift_mm{0.0};
+  Vec3 turn{0.0};  // 2 sin(angle / 2) along its axis
+};
+
+// Where a body is near something: a motion opens the gap by normal . shift + moment . turn.
+struct NearTouch {
+  Vec3 normal{0.0}, moment{0.0};  // moment: lever x normal, mm
+  double gap_mm = 0.0;
+  double load = 0.0;  // out: how much of the normal the nearest motion has, mm; 0 where it is free
+};
+
+// The motion nearest to `wanted` (|shift|^2 + turn_mm2 |turn|^2 apart) that leaves every gap at 0
+// or above, by the dual method of Goldfarb and Idnani (Mathematical Programming 27, 1983). Touches
+// that contradict others are left out. At most kMostTouches. No allocation.
+constexpr std::size_t kMostTouches = 64;
+SmallMotion nearestMotion(const SmallMotion& wanted, double turn_mm2, std::span<NearTouch> touches);
+
+}  // namespace trephine
