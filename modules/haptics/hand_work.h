@@ -7,8 +7,8 @@ namespace trephine {
 
 // An arm shows a share of what the model demands, over a map that scales force by g and motion by s.
 // Work at the device, divided by (g / s) and by that share, is the work that the same motion does
-// against the model itself: it does not depend on the arm. What of it the model's springs hold comes
-// back; what was lost to the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) - stored, pays for
+// against the model itself: it does not depend on the arm. What of it the springs hold comes back;
+// what went into the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored, pays for
 // cutting, and only where it rises above all that it was before: what came back is not paid twice.
 class HandWork {
  public:
@@ -20,7 +20,8 @@ class HandWork {
   // motor did. Returns how much more went into the tissue than ever before: what an arm gave out, or
   // what a spring came to hold without being pressed, comes off the motor's work too.
   double hold(double stored_J, double share, double motor_J = 0.0) {
-    if (!started_) done_J_ = most_lost_J_ - motor_J_ + stored_J;  // what they hold at first, nobody put in
+    // What the springs hold at first, nobody put in.
+    if (!started_) done_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;
     stored_J_ = stored_J;
     motor_J_ += motor_J;

@@ -42,9 +42,9 @@ class Removal {
   // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
-  // Every tick: the work that the tool did in it on tissue that may be cut, or 0; never less. What is
-  // not spent within 50 ms or so is heat: the credit is capped by the work of that time and of two
-  // voxels.
+  // Every tick: the work that the tool did in it on tissue that may be cut, or 0; never less. What
+  // is not spent within 50 ms or so is heat: the credit is capped by the work of that time and of
+  // two voxels.
   void earn(double work_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `bites` (room for kMostBites). No allocation.
