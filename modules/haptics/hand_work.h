@@ -7,8 +7,8 @@ namespace trephine {
 
 // An arm shows a share of what the model demands, over a map that scales force by g and motion by s.
 // Work at the device, divided by (g / s) and by that share, is the work that the same motion does
-// against the model itself: it does not depend on the arm. What of it the model's springs hold comes
-// back; what was lost to the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) - stored, pays for
+// against the model itself: it does not depend on the arm. What of it the springs hold comes back;
+// what went into the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored, pays for
 // cutting, and only where it rises above all that it was before: what came back is not paid twice.
 class HandWork {
  public:
@@ -16,14 +16,17 @@ class HandWork {
   void move(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
     if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
   }
-  // What the model's springs hold now, and the share of it that is shown for the next period.
-  // Returns how much more was lost to the tissue than ever before.
-  double hold(double stored_J, double share) {
-    if (!started_) done_J_ = most_lost_J_ + stored_J;  // what they hold at first, nobody put in
+  // What the springs hold now, the share of the model that is shown for the next period, and what a
+  // motor did. Returns how much more went into the tissue than ever before: what an arm gave out, or
+  // what a spring came to hold without being pressed, comes off the motor's work too.
+  double hold(double stored_J, double share, double motor_J = 0.0) {
+    // What the springs hold at first, nobody put in.
+    if (!started_) done_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;
     stored_J_ = stored_J;
+    motor_J_ += motor_J;
     share_ = share > kLeastShare ? share : kLeastShare;
-    const double lost_J = done_J_ - stored_J;
+    const double lost_J = done_J_ + motor_J_ - stored_J;
     const double more_J = lost_J > most_lost_J_ ? lost_J - most_lost_J_ : 0.0;
     most_lost_J_ += more_J;
     return more_J;
@@ -33,11 +36,10 @@ class HandWork {
 
   double done_J() const { return done_J_; }
   double stored_J() const { return stored_J_; }
-  double share() const { return share_; }
 
  private:
   static constexpr double kLeastShare = 1e-6;
-  double done_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;
+  double done_J_ = 0.0, motor_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;
   double share_ = 1.0;
   bool started_ = true;
 };

@@ -97,7 +97,6 @@ void HapticCore::useTissues(const TissueTable& before) {
   for (Arm& arm : arms_) {
     if (!same_cuts) arm.removal.forget();
     if (arm.proxy) arm.proxy->changed();
-    arm.gate.change();
   }
 }
 
@@ -166,12 +165,13 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       paused_ = true;
       break;
     case CommandKind::resume:
-      paused_ = false;
+      paused_ = false;  // the laws went on feeling where the tools are
       forgetForces(false);
       break;
     case CommandKind::clear_faults:
       for (Arm& arm : arms_) arm.faults = 0;
       lateness_.clear();
+      forgetLaws();
       forgetForces(false);
       break;
     case CommandKind::controller:
@@ -185,16 +185,26 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::tissues:
       if (command.tissues == parameters_.tissues) break;
       useTissues(std::exchange(parameters_.tissues, command.tissues));
+      for (Arm& arm : arms_) {
+        forgetController(arm.controller);  // it may be holding the force of the tissue before
+        arm.gate.change();
+      }
       break;
   }
 }
 
-// Law states go back and the controller's credit is zero; after voxels were put back, force also
-// waits until the tool is out of tissue.
-void HapticCore::forgetForces(bool restored) {
+void HapticCore::forgetLaws() {
   for (Arm& arm : arms_) {
     for (Law& law : arm.laws) forgetLaw(law);
     for (Law& law : arm.rendered_laws) forgetLaw(law);
+  }
+}
+
+// The controller's credit is zero; after voxels were put back, the laws begin anew too, and force
+// waits until the tool is out of tissue.
+void HapticCore::forgetForces(bool restored) {
+  if (restored) forgetLaws();
+  for (Arm& arm : arms_) {
     forgetController(arm.controller);
     arm.contact.forget();
     arm.removal.forget();

@@ -102,7 +102,7 @@ class HapticCore {
     Cutting cutting = Cutting::by_hand;
     bool cuts = false;     // may remove in this tick
     bool placed = false;   // the proxy was put where the arm was
-  bool waiting = false;  // without force, until it is out of tissue
+    bool waiting = false;  // without force, until it is out of tissue
     bool not_as_stated = false;  // mass or delay proved to be another, ever
     double free_s = 0.0;   // for so long the arm's own pose has been free, and the tool far from it
     double letting_go = 0.0;  // above 0: what of the force has faded; 1: all
@@ -119,6 +119,7 @@ class HapticCore {
 
   void apply(const Command& command, std::uint64_t tick);
   void followLateness(const TickInput& input);
+  void forgetLaws();
   void forgetForces(bool restored);
   void finishRestore();
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
@@ -126,7 +127,7 @@ class HapticCore {
   void letGoOfHook(std::size_t index, std::uint64_t tick, const Motion& motion);
   bool wouldTouch(const Arm& arm, const Pose& pose_mm) const;
   LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
-  void earn(Arm& arm, const Tool& tool, double lost_J);
+  bool atWork(const Arm& arm, const Tool& tool) const;
   void removeBites(std::uint64_t tick, TickRecord& record);
   void bite(Arm& arm, const ArmRecord& moved);
   bool takes(const Arm& arm, const Index3& voxel) const;

@@ -11,6 +11,7 @@ namespace {
 
 // A tool that its arm has left so far behind, the arm free for so long, is hooked and let go.
 constexpr double kHooked_mm = 15.0, kHooked_s = 0.5, kLetGo_s = 0.2;
+constexpr double kLeastShare = 1e-6;  // of a stiffness: less is none
 
 // How an orientation turned from one to another in a time, small angles: 2 Im(q_now q_before*) / T.
 Vec3 turning(const Quat& before, const Quat& now, double period_s) {
@@ -33,11 +34,23 @@ double shareOf(double limited, double demanded) {
   return demanded > 0.0 ? limited / demanded : 1.0;
 }
 
-// What of one force another is, along it.
-double shareOf(const Vec3& rendered_N, const Vec3& model_N) {
-  const double size2 = glm::dot(model_N, model_N);
-  if (!(size2 > 0.0) || rendered_N == model_N) return 1.0;
-  return std::clamp(glm::dot(rendered_N, model_N) / size2, 0.0, 1.0);
+// What of a force is rendered, by size: where a friction turns round, the stiffer model does so before
+// its rendering. Never less than the smaller share of the impedance, or next to nothing of work at
+// the device would count as any amount.
+double shareOf(const Vec3& rendered_N, const Vec3& model_N, const Impedance& share) {
+  if (rendered_N == model_N || model_N == Vec3(0.0)) return 1.0;
+  const double least = std::min({share.damping, share.stiffness, 1.0});
+  return std::clamp(glm::length(rendered_N) / glm::length(model_N), least, 1.0);
+}
+
+// What the springs can give back, in the model's units. A friction that is shown softer is stretched
+// farther; and a spring that pulls with more than the arm can show took no more than that to stretch.
+double givenBack_J(const ContactForce& model, const ContactForce& rendered, double share,
+                   double most_N) {
+  const double stored_J = std::max(model.stored_J, rendered.stored_J / std::max(share, kLeastShare));
+  const double beyond_N = glm::length(model.elastic_N) - most_N;
+  if (!(beyond_N > 0.0) || !(model.stiffest() > 0.0)) return stored_J;
+  return std::max(0.0, stored_J - beyond_N * beyond_N / (2.0 * model.stiffest()));
 }
 
 }  // namespace
@@ -131,16 +144,15 @@ LawInput HapticCore::touch(Arm& arm, const Tool& tool, const Motion& motion) {
   return in;
 }
 
-// What was lost to the tissue pays for cutting, and so does the motor while the tool touches what
-// may be cut.
-void HapticCore::earn(Arm& arm, const Tool& tool, double lost_J) {
-  bool cutting = arm.proxy && !arm.proxy->blockers().empty();
-  for (std::int8_t c : arm.contact.classes().first(tool.cutting_points)) {
-    cutting = cutting || (c >= 0 && parameters_.tissues.classes[std::size_t(c)].cuttable);
-  }
-  const double work_J =
-      cutting && arm.cuts ? lost_J + parameters_.period_s * tool.made_from.motor_W : 0.0;
-  arm.removal.earn(work_J, parameters_.tissues);
+// Whether the tool is at something that it may cut: its motor works on it, and what is lost there
+// pays for cutting.
+bool HapticCore::atWork(const Arm& arm, const Tool& tool) const {
+  if (!arm.cuts) return false;
+  if (arm.proxy && !arm.proxy->blockers().empty()) return true;
+  const auto classes = arm.contact.classes().first(tool.cutting_points);
+  return std::any_of(classes.begin(), classes.end(), [this](std::int8_t c) {
+    return c >= 0 && parameters_.tissues.classes[std::size_t(c)].cuttable;
+  });
 }
 
 void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& out) {
@@ -213,7 +225,10 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   ControllerInput to_controller;
   ContactForce& rendered = to_controller.rendered;
   for (Law& law : arm.rendered_laws) addLaw(law, law_input, rendered);
-  out.rendered_share = shareOf(rendered.at(motion.velocity_m_s), model_N);
+  out.rendered_share = shareOf(rendered.at(motion.velocity_m_s), model_N, law_input.share);
+  const double stored_J = givenBack_J(model, rendered, law_input.share.stiffness,
+                                      parameters.max_force_N / parameters.map.force_scale /
+                                          out.rendered_share);
   rendered.elastic_N = parameters.map.forceToDevice(rendered.elastic_N);
   rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
   rendered.stored_J *= parameters.map.force_scale / parameters.map.motion_scale;
@@ -269,8 +284,10 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   if (out.sent_N != out.clamped_N) out.controller_parts |= kPartLimiter;
 
   arm.cuts = open && arm.cutting != Cutting::nothing && !journal_.busy() && !arm.gate.waitingForAir();
-  const double lost_J = finite ? arm.work.hold(model.stored_J, out.rendered_share) : 0.0;
-  earn(arm, parameters.tool, jumped ? 0.0 : lost_J);
+  const bool at_work = atWork(arm, parameters.tool);
+  const double motor_J = at_work ? T * parameters.tool.made_from.motor_W : 0.0;
+  const double lost_J = finite ? arm.work.hold(stored_J, out.rendered_share, motor_J) : 0.0;
+  arm.removal.earn(at_work && !jumped ? lost_J : 0.0, parameters_.tissues);
   if (arm.waiting || arm.gate.waitingForAir()) out.tool_state |= kToolWaits;
   if (arm.proxy && arm.proxy->held()) out.tool_state |= kToolHeld;
   if (arm.letting_go > 0.0) out.tool_state |= kToolLetGo;

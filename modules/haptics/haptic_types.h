@@ -80,7 +80,7 @@ struct ArmRecord {
   double alpha = 0.0;       // the controller's gain: of `bounded`, the scale it has learnt
   double rendered_share = 1.0;  // of the tissues' impedance, before the controller's force
   double hand_work_J = 0.0;     // the hand's on the tool so far, in the model's units (README.md)
-  double stored_J = 0.0;        // of it in the model's springs
+  double stored_J = 0.0;        // of it in springs, which can give it back
   double cutting_credit_J = 0.0;  // work on tissue, not yet spent on removal
   std::uint32_t controller_parts = 0;  // ControllerPart: which of its parts acted
   std::int32_t tissue_class = -1;

@@ -80,9 +80,8 @@ void Removal::earn(double work_J, const TissueTable& tissues) {
     const TissueClass& t = tissues.classes[std::size_t(c)];
     if (t.cuttable) dearest_J = std::max(dearest_J, voxelWork_J(t, geometry_.voxelVolume_mm3()));
   }
-  recent_J_ = fading_ * (recent_J_ + std::max(0.0, work_J));
-  const double cap_J = recent_J_ + 2.0 * dearest_J;
-  credit_J_ = std::clamp(credit_J_ + work_J, -cap_J, cap_J);
+  recent_J_ = fading_ * (recent_J_ + work_J);
+  credit_J_ = std::min(credit_J_ + work_J, recent_J_ + 2.0 * dearest_J);
 }
 
 void Removal::begin(const Capsule& now) {

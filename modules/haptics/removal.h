@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -43,9 +42,9 @@ class Removal {
   // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
-  // Every tick: the work that the tool did in it on tissue that may be cut, or 0. What is not spent within 50 ms or
-  // so is heat: the credit is capped by the work of that time and of two voxels, and so is a debt
-  // (a spring gives back what pressing it took).
+  // Every tick: the work that the tool did in it on tissue that may be cut, or 0; never less. What
+  // is not spent within 50 ms or so is heat: the credit is capped by the work of that time and of
+  // two voxels.
   void earn(double work_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `bites` (room for kMostBites). No allocation.
@@ -66,7 +65,7 @@ class Removal {
   // It fades from there as if just earned.
   void setCredit(double credit_J) {
     credit_J_ = credit_J;
-    recent_J_ = std::abs(credit_J);
+    recent_J_ = credit_J;
   }
 
   static constexpr std::size_t kMostBites = 512;  // a tick

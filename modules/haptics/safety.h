@@ -11,9 +11,11 @@ namespace trephine {
 Vec3 clampForce(const Vec3& force_N, double max_N);
 
 // After a change (start, undo, tissue edit, controller, resume) the sent force may rise by at most
-// this until it meets the law again.
+// this until it meets the law again, and for so long at least: a law that happens to be met, since it
+// is zero at rest or dips for a tick, may ask for all of its force a tick later.
 constexpr double kSlew_N_per_s = 50.0;  // 0.05 N per ms
-constexpr double kCatchUp_s = 0.1;      // long enough to reach 5 N
+constexpr double kCatchUp_s = 0.5;
+constexpr double kCatchUpAtStart_s = 0.1;  // from rest
 
 // One tick towards `target`: it may fall or turn away at once, but the part along its own direction
 // rises by at most `step_N` above what was sent along that direction before.
@@ -49,8 +51,7 @@ class LatenessRule {
 // Stands between the law and the arm of one hand.
 class ForceGate {
  public:
-  // Something changed under the force: rise slowly until the law is met, and for kCatchUp_s at
-  // least, since a law that happens to be zero now (a tool at rest) may not be a tick later.
+  // Something changed under the force: rise slowly until the law is met, and for kCatchUp_s at least.
   void change() { catch_up_s_ = kCatchUp_s; }
   // Voxels were put back: no force until the tool is out of tissue, then ramp in over 0.2 s.
   void restored() {
@@ -78,7 +79,7 @@ class ForceGate {
  private:
   Vec3 sent_N_{0.0};
   double gain_ = 1.0;
-  double catch_up_s_ = kCatchUp_s;  // above 0: still catching up; a session starts from rest
+  double catch_up_s_ = kCatchUpAtStart_s;  // above 0: still catching up
   bool waiting_for_air_ = false;
 };
 

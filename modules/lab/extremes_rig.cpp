@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPeriod_s = 0.001;
 constexpr int kCatchUpTicks = int(kCatchUp_s / kPeriod_s + 0.5);
+constexpr int kCatchUpTicksAtStart = int(kCatchUpAtStart_s / kPeriod_s + 0.5);
 
 // The handle that the plugin's functions get: TrephineDevice is each plugin's own and opaque here.
 struct ScriptedArm {
@@ -292,7 +293,7 @@ std::string brokenBy(const std::vector<TickRecord>& trace, const std::vector<Eve
     });
   };
   Vec3 before_N(0.0);
-  int since_change = 0;
+  int since_change = kCatchUpTicks - kCatchUpTicksAtStart;
   bool catching_up = true;
   for (const TickRecord& record : trace) {
     const ArmRecord& arm = record.arms[0];

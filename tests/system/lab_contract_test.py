@@ -8,7 +8,8 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, SOURCE, WINDOW, LabTest, lab, without_display
+from lab_support import (
+    LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, without_display)
 
 IMPORT_KEYS = {
     "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen",
@@ -128,6 +129,13 @@ class BurrHoleScene(ShippedScenes, LabTest):
 class LiverScenes(ShippedScenes, LabTest):
     def test_they_remove_tissue_and_replay_identically(self):
         self.check("liver", "liver-one-arm")
+
+
+class FirstTenSeconds(LabTest):
+    def test_every_arm_of_a_shipped_scene_touches_and_removes_tissue(self):
+        for name in SHIPPED:
+            with self.subTest(scene=name):
+                self.assert_touches_and_removes(first_ten_seconds(name, self.folder))
 
 
 class SeedScenes(LabTest):

@@ -11,7 +11,7 @@ import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, SCENES, LabTest, data_folder, lab
+from lab_support import LAB, SCENES, SHIPPED, LabTest, data_folder, first_ten_seconds, lab
 
 SKIPPED = 77
 
@@ -172,6 +172,15 @@ class RealAbdomen(LabTest):
         run = lab("run", SCENES / "liver.json", "--case", self.case, "--out", self.folder)
         self.assertGreater(run["removed_mm3"]["liver"], 1000.0)
         self.assertTrue(lab("replay", run["recording"], "--case", self.case)["identical"])
+
+
+class RealScenes(LabTest):
+    def test_every_arm_of_a_shipped_scene_touches_and_removes_tissue_in_its_first_ten_seconds(self):
+        for name in SHIPPED:
+            case = RealAbdomen.case if name.startswith("liver") else RealCranium.case
+            with self.subTest(scene=name):
+                self.assert_touches_and_removes(
+                    first_ten_seconds(name, self.folder, "--case", case))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Running the programs from tests: what they print, and what it must look like."""
 
+import csv
 import json
 import os
 import subprocess
@@ -27,6 +28,26 @@ def lab(*arguments, expect=0, environment=None, timeout=240):
     return answer
 
 
+SHIPPED = ("burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm")
+
+
+def first_ten_seconds(name, folder, *case):
+    """Of each arm of a shipped scene: when its own script first lets it feel something, and the
+    mm3 that it removed by the end."""
+    table = folder / f"{name}.csv"
+    run = lab("run", SCENES / f"{name}.json", *case, "--seconds", 10, "--csv", table, "--out",
+              folder, environment=without_display())
+    arms = {arm["name"]: {"touches_s": None, "mm3": arm["removed_mm3"]} for arm in run["arms"]}
+    with open(table, newline="") as file:
+        for row in csv.DictReader(file):
+            arm = arms[row["arm"]]
+            if arm["touches_s"] is None and any(float(row[f"f_e_{axis}_N"]) for axis in "xyz"):
+                arm["touches_s"] = float(row["t_s"])
+    for arm, did in arms.items():
+        print(f"{name} {'real' if case else 'own'} {arm}: {did}")
+    return arms
+
+
 def without_display():
     environment = dict(os.environ)
     environment.pop("DISPLAY", None)
@@ -38,6 +59,12 @@ class LabTest(unittest.TestCase):
         self._folder = tempfile.TemporaryDirectory(prefix="trephine-")
         self.folder = Path(self._folder.name)
         self.addCleanup(self._folder.cleanup)
+
+    def assert_touches_and_removes(self, arms):
+        for arm, did in arms.items():
+            self.assertIsNotNone(did["touches_s"], arm)
+            self.assertLess(did["touches_s"], 10.0, arm)
+            self.assertGreaterEqual(did["mm3"], 50.0, arm)
 
     def assert_error(self, answer, code, *words):
         """One clear answer: a stable code, what, where and what to do next."""

@@ -1,0 +1,273 @@
+// The shipped scenes as they are run: what their recordings say of tools, bone and force.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "base/system.h"
+#include "haptics/bounded_controller.h"
+#include "session/case_source.h"
+#include "session/session.h"
+#include "support.h"
+#include "training/session_reader.h"
+
+namespace trephine {
+namespace {
+
+constexpr std::array kShipped{"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm"};
+constexpr double kSeconds = 10.0;
+
+// Each case is opened once.
+const Volume& volumeOf(const std::string& case_source) {
+  static std::map<std::string, Volume> all;
+  if (!all.contains(case_source)) {
+    auto opened = openCase(case_source);
+    EXPECT_TRUE(opened.ok()) << opened.error().sentence();
+    all[case_source] = *std::move(opened);
+  }
+  return all[case_source];
+}
+
+Scene shipped(const std::string& name, const std::string& case_source) {
+  Scene scene = *readScene(resourceFolder() / "scenes" / (name + ".json"));
+  if (!case_source.empty()) scene.case_source = case_source;
+  return scene;
+}
+
+// A scene's first ten seconds, with its own script.
+struct Recorded {
+  Scene scene;  // maps fixed
+  Volume before;
+  std::vector<TickRecord> ticks;
+  std::vector<CarveRecord> carves;
+};
+
+Recorded record(const std::string& name, const std::string& case_source) {
+  const test::TemporaryFolder folder;
+  const Scene scene = shipped(name, case_source);
+  Recorded out;
+  out.before = volumeOf(scene.case_source);
+  const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+  auto session = Session::create(scene, out.before, options);
+  EXPECT_TRUE(session.ok()) << session.error().sentence();
+  EXPECT_TRUE((*session)->freewheel(kSeconds).ok());
+  out.scene = (*session)->scene();
+  auto reader = SessionReader::open(folder / "s.h5");
+  EXPECT_TRUE(reader.ok()) << reader.error().sentence();
+  out.ticks = *(*reader)->ticks(0, (*reader)->tickCount());
+  out.carves = *(*reader)->carves();
+  return out;
+}
+
+// How deep the centre of a voxel of solid tissue lies in the tool's body, at most; below 0: nowhere.
+struct Inside {
+  int voxels = 0;         // deeper than half a voxel
+  double deepest_mm = -1e9;
+};
+
+void lookInside(const Volume& volume, const TissueTable& tissues, const BodyPart& part,
+                const Pose& pose_mm, Inside& inside) {
+  const GridGeometry& g = volume.geometry;
+  const Vec3 from_mm = pose_mm.position + pose_mm.orientation * (1000.0 * part.from_m);
+  const Vec3 along_mm = pose_mm.orientation * (1000.0 * (part.to_m - part.from_m));
+  const Vec3 a = Vec3(g.patientToVoxel() * glm::dvec4(from_mm, 1.0));
+  const Vec3 b = Vec3(g.patientToVoxel() * glm::dvec4(from_mm + along_mm, 1.0));
+  const double radius_mm = 1000.0 * part.radius_m;
+  const double half_mm = 0.5 * std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
+  const Vec3 reach = radius_mm / g.spacing_mm;
+  Index3 low{}, high{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int i = int(axis);
+    low[axis] = int(std::clamp(std::min(a[i], b[i]) - reach[i], 0.0, double(g.size[axis])));
+    high[axis] = int(std::clamp(std::max(a[i], b[i]) + reach[i] + 1.0, 0.0, double(g.size[axis])));
+  }
+  const double length2 = glm::dot(along_mm, along_mm);
+  for (int k = low[2]; k < high[2]; ++k) {
+    for (int j = low[1]; j < high[1]; ++j) {
+      for (int i = low[0]; i < high[0]; ++i) {
+        const int c = classify(tissues, volume.at(i, j, k), 0);
+        if (c < 0 || !tissues.classes[std::size_t(c)].solid) continue;
+        const Vec3 to_mm = g.toPatient_mm(Vec3(i, j, k)) - from_mm;
+        const double t =
+            length2 > 0.0 ? std::clamp(glm::dot(to_mm, along_mm) / length2, 0.0, 1.0) : 0.0;
+        const double deep_mm = radius_mm - glm::length(to_mm - t * along_mm);
+        inside.deepest_mm = std::max(inside.deepest_mm, deep_mm);
+        if (deep_mm > half_mm) ++inside.voxels;
+      }
+    }
+  }
+}
+
+// What a run's recording says of one arm.
+struct Seen {
+  std::string arm;
+  Inside inside;  // uncut solid tissue in the tool where it is drawn, every 50 ms
+  int differs = 0, unflagged = 0;    // ticks whose sent force is not the demanded one; of these
+  int silent = 0, silent_other = 0;  // ticks in which no part acted; of these not equal to the bit
+  std::map<std::string, std::pair<double, int>> sent_N;  // by tissue: sum and ticks
+};
+
+std::vector<Seen> see(const Recorded& run) {
+  constexpr double kWorthAFlag_N = 0.02;
+  const HapticParameters p = hapticParameters(run.scene);
+  std::vector<Seen> seen(p.arms.size());
+  Volume volume = run.before;
+  std::size_t next = 0;
+  for (const TickRecord& tick : run.ticks) {
+    for (; next < run.carves.size() && run.carves[next].tick <= tick.tick; ++next) {
+      volume.hu[run.carves[next].voxel] = kAirHu;
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const ArmRecord& arm = tick.arms[i];
+      Seen& of = seen[i];
+      of.arm = run.scene.arms[i].name;
+      const double apart_N = glm::length(arm.sent_N - arm.demanded_N);
+      const bool flagged = (arm.controller_parts & ~std::uint32_t(kPartArmNotAsStated)) != 0;
+      if (apart_N > kWorthAFlag_N) ++of.differs, of.unflagged += !flagged;
+      if (!flagged) ++of.silent, of.silent_other += arm.sent_N != arm.demanded_N;
+      if (arm.tissue_class >= 0) {
+        auto& [sum_N, ticks] = of.sent_N[run.scene.tissues.tissues[std::size_t(arm.tissue_class)].id];
+        sum_N += glm::length(arm.sent_N);
+        ++ticks;
+      }
+      if (tick.tick % 50 != 49) continue;
+      const Pose drawn_mm{arm.proxy_position_mm, arm.proxy_orientation};
+      for (const BodyPart& part : p.arms[i].tool.body) {
+        lookInside(volume, p.tissues, part, drawn_mm, of.inside);
+      }
+    }
+  }
+  return seen;
+}
+
+// Each run once for all tests.
+const std::vector<Seen>& seenOf(const std::string& name, const std::string& case_source) {
+  static std::map<std::string, std::vector<Seen>> all;
+  const std::string key = name + " on " + case_source;
+  if (!all.contains(key)) all[key] = see(record(name, case_source));
+  return all[key];
+}
+
+std::string realCase(const std::filesystem::path& data, const std::string& name) {
+  const bool liver = name.starts_with("liver");
+  return data / (liver ? "abdomen-ct-totalsegmentator/example_ct.nii.gz" : "head-ct-plastic-skull");
+}
+
+void expectNoBoneInTheTools(const std::string& name, const std::string& case_source) {
+  for (const Seen& seen : seenOf(name, case_source)) {
+    EXPECT_EQ(seen.inside.voxels, 0)
+        << name << ", " << seen.arm << ": by " << seen.inside.deepest_mm << " mm at most";
+    if (name.starts_with("liver")) continue;
+    EXPECT_GT(seen.inside.deepest_mm, -1.0) << name << ", " << seen.arm << " was at the bone";
+  }
+}
+
+void expectEveryDifferenceFlagged(const std::string& name, const std::string& case_source) {
+  for (const Seen& seen : seenOf(name, case_source)) {
+    EXPECT_GT(seen.differs, 100) << name << ", " << seen.arm;
+    EXPECT_EQ(seen.unflagged, 0) << name << ", " << seen.arm << ": of " << seen.differs;
+    EXPECT_EQ(seen.silent_other, 0) << name << ", " << seen.arm << ": of " << seen.silent;
+  }
+}
+
+TEST(ShippedScenes, HaveNoUncutBoneInTheirTools) {
+  for (const char* name : kShipped) expectNoBoneInTheTools(name, "");
+}
+TEST(ShippedScenes, HaveNoUncutBoneInTheirToolsOnRealCases) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  for (const char* name : kShipped) expectNoBoneInTheTools(name, realCase(data, name));
+}
+TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceFromTheDemandedOne) {
+  for (const char* name : kShipped) expectEveryDifferenceFlagged(name, "");
+}
+TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceOnRealCasesToo) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  for (const char* name : kShipped) expectEveryDifferenceFlagged(name, realCase(data, name));
+}
+
+// What an arm is sent at 10 mm/s straight in along the scene's landmark, by tissue [N].
+struct Probed {
+  std::string arm;
+  std::map<std::string, double> mean_N, most_N;
+};
+
+Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
+             const Volume& volume) {
+  HapticParameters p = hapticParameters(placed);
+  p.arms = {p.arms[arm]};
+  p.journal_voxels = 1'000'000;
+  Grid grid{Volume(volume)};
+  HapticCore core(p, *grid.takeWriter());
+  TickInput input;
+  TickRecord record;
+  std::map<std::string, int> ticks;
+  Probed out;
+  out.arm = placed.arms[arm].name;
+  const double count_m = p.arms[0].dynamics.encoder_step_m;
+  for (double z_mm = 60.0; z_mm > -30.0; z_mm -= 10.0 * p.period_s) {
+    const Vec3 at_m = p.arms[0].map.toDevice_m(frame.toPatient_mm(aside_mm + Vec3(0, 0, z_mm)));
+    input.arms[0].position_m = count_m * glm::round(at_m / count_m);
+    input.journal = core.journalState();
+    core.tick(input, nullptr, 0, record);
+    ++input.tick;
+    const int c = record.arms[0].tissue_class;
+    if (c < 0) continue;
+    const std::string& id = placed.tissues.tissues[std::size_t(c)].id;
+    const double sent_N = glm::length(record.arms[0].sent_N);
+    out.mean_N[id] += (sent_N - out.mean_N[id]) / ++ticks[id];
+    out.most_N[id] = std::max(out.most_N[id], sent_N);
+  }
+  return out;
+}
+
+std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
+  const Scene scene = shipped(name, case_source);
+  const Volume& volume = volumeOf(scene.case_source);
+  auto session = Session::create(scene, volume, {});
+  EXPECT_TRUE(session.ok()) << session.error().sentence();
+  const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
+  const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -42, 0) : Vec3(0.0);  // below the ribs
+  std::vector<Probed> out;
+  for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
+    out.push_back(probe((*session)->scene(), arm, frame, aside_mm, volume));
+    for (const auto& [tissue, mean_N] : out.back().mean_N) {
+      std::printf("%-16s %-5s %-6s %-8s mean %.2f N, most %.2f N\n", name.c_str(),
+                  case_source.empty() ? "own" : "real", out.back().arm.c_str(), tissue.c_str(),
+                  mean_N, out.back().most_N[tissue]);
+    }
+  }
+  return out;
+}
+
+void expectBoneFelt(const std::string& name, const std::string& case_source, double least_N) {
+  for (const Probed& probed : probesOf(name, case_source)) {
+    EXPECT_GE(probed.mean_N.at("bone"), least_N) << name << ", " << probed.arm;
+  }
+}
+
+constexpr std::array kCranial{"burr-hole", "cranium", "cranium-one-arm"};
+
+TEST(ShippedScenes, LetBoneBeFeltByHalfANewton) {
+  for (const char* name : kCranial) expectBoneFelt(name, "", 0.5);
+}
+// The vault of the real skull is thinner than the blade is long: from the first touch to the last it
+// is sent a little less on average.
+TEST(ShippedScenes, LetBoneBeFeltOnTheRealSkull) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  for (const std::string name : kCranial) {
+    expectBoneFelt(name, realCase(data, name), name == "burr-hole" ? 0.5 : 0.45);
+  }
+}
+TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
+  for (const char* name : {"liver", "liver-one-arm"}) {
+    for (const Probed& probed : probesOf(name, "")) {
+      EXPECT_GT(probed.most_N.at("capsule"), 1.5 * probed.mean_N.at("liver"))
+          << name << ", " << probed.arm;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trephine
