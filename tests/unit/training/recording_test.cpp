@@ -164,6 +164,7 @@ TEST(Recording, KeepsTheLabelsOfTissuesAlsoOfAChange) {
   test::TemporaryFolder folder;
   Scene scene = sceneWithOneArm();
   scene.tissues.tissues[0].label = 5;
+  scene.tools[0].tool.made_from.motor_W = 0.5;  // it is pressed straight at the other half
   const auto labels = halves();
   Grid grid(slab(), labels);
   HapticCore core(hapticParameters(scene), *grid.takeWriter());
