@@ -38,7 +38,7 @@ TEST(Sliding, OverAFineShellThePushPointsOutAndIsSmooth) {
   EXPECT_EQ(m->ticks, 1500u);
   EXPECT_LT(m->direction_median_deg, 6.0);
   EXPECT_GT(m->direction_median_deg, 0.01);
-  EXPECT_LT(m->step_p99_percent, 15.0);  // on voxels as wide as the ball's radius
+  EXPECT_LT(m->step_p99_percent, 10.0);  // on voxels as wide as the ball's radius
   EXPECT_LT(std::abs(m->depth_error_percent), 60.0);
 }
 
