@@ -17,19 +17,14 @@ constexpr double kLeastRows_mm = 0.4;
 constexpr double kStretch_mm = 8.0;  // of a long part, looked at on its own
 constexpr int kMostAlong = 256, kMostDirections = 16;
 constexpr double kLeastCell_mm = 0.25;
-// HU beyond the threshold of a solid tissue that count as all of it, or as nothing of it.
-constexpr double kWhole_hu = 1226.0;
 // Where flat disks meet, those within so many radii have a plane together, if their normals' cosine
 // is at least this; the place that it is of is found in so many rounds.
 constexpr double kAlike = 0.8;
 constexpr int kSettled = 2;
 constexpr double kBlended = 1.5;
-constexpr double kFlat = 0.6;  // meshes: two columns and the one between them bend by less
-constexpr double kNoHeight = 3.0;  // meshes: no column is as high
 constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
-constexpr double kFlatDisk = 2.0;  // times that where all around it faces alike
+constexpr double kFlatDisk = 1.0;  // where the columns around it are in a plane
 constexpr double kPlate = 0.45;  // half the thickness of one a voxel thick
-constexpr double kNoSide = 0.15;  // of a clear side's slope: below it a voxel has none
 constexpr int kPieceWork = 8;     // what a piece costs, in rows
 
 // The cell of a cube's face that a direction meets, faces of n^2 cells.
@@ -362,146 +357,39 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   if (distance2 < nearest.distance2_mm2) nearest = {voxel, stretch.part, away, distance2};
 }
 
-// The piece of a voxel: the slope of the tissue around it, and where along each axis it ends.
 void SolidSurface::addPiece(const TissueAround& tissue, const Found& found) {
   const auto [i, j, k] = found.voxel;
-  const Vec3& s = spacing_mm_;
   const double radius = parts_mm_[found.part].radius_m;
-  SurfacePiece piece;
   const std::size_t voxel = geometry_.indexOf(i, j, k);
-  const std::int16_t hu = tissue.grid.hu(voxel);
-  const int c = tissue.lookup.classAt(tissue.grid, voxel, hu);
+  const int c = tissue.lookup.classAt(tissue.grid, voxel);
   if (!tissue.lookup.isSolid(c)) return;  // it went meanwhile
   const Cutting cutting = parts_mm_[found.part].cuts ? cutting_ : Cutting::nothing;
+  SurfacePiece piece;
   piece.part = std::int32_t(found.part);
   piece.voxel = std::uint32_t(voxel);
   piece.tissue_class = std::int8_t(c);
   piece.cuttable =
       cutting != Cutting::nothing && tissue.classes.classes[std::size_t(c)].cuttable != 0;
-  const Vec3 centre = Vec3(i, j, k) * s;
-  const Mat3& turn = geometry_.direction;
-  const auto add = [&](const Vec3& at, const Vec3& normal, double size) {
-    piece.at_mm = geometry_.origin_mm + turn * at;
-    piece.normal = turn * normal;
-    piece.size_mm = size;
-    next_.push_back(piece);
-  };
+  Vec3 at = Vec3(i, j, k) * spacing_mm_;
   if (piece.cuttable && cutting == Cutting::driven) {
     // Nothing slips between balls of this size.
-    return add(centre, Vec3(0.0), std::max(0.0, half_diagonal_mm_ - radius));
-  }
-  const double threshold = tissue.classes.classes[std::size_t(c)].hu_min - 0.5;
-  const Index3& apart = cells_[found.part].apart;
-  const Vec3 mesh = s * Vec3(apart[0], apart[1], apart[2]);
-  // `share` of the diagonal of the mesh in its plane.
-  const auto addDisk = [&](const Vec3& at, const Vec3& normal, double share) {
-    const Vec3 in_plane = glm::sqrt(glm::max(Vec3(0.0), 1.0 - normal * normal));
-    add(at, normal, share * glm::length(mesh * in_plane));
-  };
-  // HU beyond the threshold, so many meshes from the voxel.
-  const auto beyond = [&](const Index3& by) {
-    const int at_i = i + by[0] * apart[0], at_j = j + by[1] * apart[1], at_k = k + by[2] * apart[2];
-    if (!geometry_.contains(at_i, at_j, at_k)) return -kWhole_hu;
-    const std::size_t there = geometry_.indexOf(at_i, at_j, at_k);
-    const std::int16_t hu_there = tissue.grid.hu(there);
-    const double more = double(hu_there) - threshold;
-    return tissue.lookup.isSolid(tissue.lookup.classAt(tissue.grid, there, hu_there))
-               ? std::clamp(more, 1.0, kWhole_hu)
-               : std::clamp(more, -kWhole_hu, -1.0);
-  };
-  // The slope of the tissue around the voxel: differences under binomial weights over the 27 around
-  // it (Sobel).
-  std::array<double, 27> around;
-  const auto numberOf = [](int di, int dj, int dk) {
-    return std::size_t((dk + 1) * 9 + (dj + 1) * 3 + di + 1);
-  };
-  Vec3 slope(0.0);
-  for (int dk = -1; dk <= 1; ++dk) {
-    for (int dj = -1; dj <= 1; ++dj) {
-      for (int di = -1; di <= 1; ++di) {
-        const double value = beyond({di, dj, dk});
-        around[numberOf(di, dj, dk)] = value;
-        const int off = (di != 0) + (dj != 0) + (dk != 0);
-        slope += (off == 1 ? 4.0 : off == 2 ? 2.0 : 1.0) * value * Vec3(di, dj, dk);
-      }
-    }
-  }
-  slope /= 32.0 * mesh;
-  const double steep = glm::length(slope);
-  const Vec3 n = steep > 0.0 ? -slope / steep : Vec3(0.0);
-  // Without a clear side, or turned away: a plate as thin as a voxel, or the far side of one.
-  if (!(steep * voxel_mm_ > kNoSide * kWhole_hu) || glm::dot(found.away_mm, n) >= 0.0) {
-    return add(centre, Vec3(0.0), kPlate * voxel_mm_);
-  }
-  // How high the surface stands over the voxel along the axis that it faces most, and over the eight
-  // columns around it.
-  int up = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (std::abs(n[axis]) * mesh[axis] > std::abs(n[up]) * mesh[up]) up = axis;
-  }
-  const int u = (up + 1) % 3, v = (up + 2) % 3, out = n[up] > 0.0 ? 1 : -1;
-  const auto height = [&](int du, int dv) {
-    std::array<double, 6> value;
-    Index3 by{0, 0, 0};
-    by[std::size_t(u)] = du;
-    by[std::size_t(v)] = dv;
-    const auto at = [&](int step) {
-      by[std::size_t(up)] = step * out;
-      return step < -1 || step > 1 ? beyond(by) : around[numberOf(by[0], by[1], by[2])];
-    };
-    value[1] = at(-1);
-    value[2] = at(0);
-    value[3] = at(1);
-    const auto crossing = [&](int below) {
-      return below - 2 + value[std::size_t(below)] /
-                             (value[std::size_t(below)] - value[std::size_t(below + 1)]);
-    };
-    if (value[2] > 0.0 && value[3] < 0.0) return crossing(2);
-    if (value[1] > 0.0 && value[2] < 0.0) return crossing(1);
-    if (value[3] > 0.0) {
-      value[4] = at(2);
-      if (value[4] < 0.0) return crossing(3);
-      value[5] = at(3);
-      return value[5] < 0.0 ? crossing(4) : kNoHeight + 1.0;
-    }
-    value[0] = at(-2);
-    return value[0] > 0.0 && value[1] < 0.0 ? crossing(0) : kNoHeight + 1.0;
-  };
-  const double own = height(0, 0);
-  if (own > kNoHeight) return;  // behind the surface, and seen between two that are on it
-  Vec3 axis(0.0);
-  axis[up] = out * mesh[up];
-  // The plane through the columns, by least squares: of two that lie opposite each other both must
-  // have a height, of those across the corners all four.
-  double sum = own, count = 1.0, rough = 0.0;
-  const auto pair = [&](int du, int dv, double& tilt) {
-    const double one = height(du, dv), other = height(-du, -dv);
-    if (one > kNoHeight || other > kNoHeight) return false;
-    tilt = 0.5 * (one - other);
-    rough = std::max(rough, std::abs(one + other - 2.0 * own));
-    sum += one + other;
-    count += 2.0;
-    return true;
-  };
-  double tilt_u = 0.0, tilt_v = 0.0, tilt_uv = 0.0, tilt_vu = 0.0;
-  if (pair(1, 0, tilt_u) && pair(0, 1, tilt_v) && rough < kFlat) {
-    const double sum_before = sum;
-    if (pair(1, 1, tilt_uv) && pair(1, -1, tilt_vu) && rough < kFlat) {
-      tilt_u = (tilt_u + tilt_uv + tilt_vu) / 3.0;
-      tilt_v = (tilt_v + tilt_uv - tilt_vu) / 3.0;
+    piece.size_mm = std::max(0.0, half_diagonal_mm_ - radius);
+  } else {
+    const VoxelSurroundings around(tissue, found.voxel, cells_[found.part].apart, c);
+    const SurfaceFit fit = fitSurface(around, found.away_mm);
+    if (fit.kind == SurfaceFit::Kind::behind) return;
+    if (fit.kind == SurfaceFit::Kind::plate) {
+      piece.size_mm = kPlate * voxel_mm_;
     } else {
-      sum = sum_before;
-      count = 5.0;
+      piece.flat = fit.kind == SurfaceFit::Kind::flat;
+      at += fit.above_mm;
+      piece.normal = geometry_.direction * fit.normal;
+      const Vec3 in_plane = glm::sqrt(glm::max(Vec3(0.0), 1.0 - fit.normal * fit.normal));
+      piece.size_mm = (piece.flat ? kFlatDisk : kDisk) * glm::length(around.mesh_mm() * in_plane);
     }
-    Vec3 normal(0.0);
-    normal[up] = out;
-    normal[u] = -tilt_u * mesh[up] / mesh[u];
-    normal[v] = -tilt_v * mesh[up] / mesh[v];
-    normal = glm::normalize(normal);
-    piece.flat = true;
-    return addDisk(centre + (sum / count) * axis, normal, kFlatDisk * kDisk);
   }
-  addDisk(centre + own * axis, n, kDisk);
+  piece.at_mm = geometry_.origin_mm + geometry_.direction * at;
+  next_.push_back(piece);
 }
 
 }  // namespace trephine

@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "haptics/surface_fit.h"
 #include "haptics/swept_solid.h"
-#include "haptics/tissue_bricks.h"
-#include "haptics/tissue_lookup.h"
 #include "haptics/tool.h"
 #include "volume/grid.h"
 
@@ -58,14 +57,6 @@ Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& b
 
 // Whether a tool removes what it may, by hand or driven by its motor.
 enum class Cutting { nothing, by_hand, driven };
-
-// What a tool moves among.
-struct TissueAround {
-  const Grid& grid;
-  const TissueBricks& bricks;
-  const TissueLookup& lookup;
-  const TissueTable& classes;
-};
 
 // Gathers the pieces near a tool. Of those that a part of the tool meets from the same side one is
 // enough, the nearest; what another sees first after the tool has moved by `margin_mm` is then off
