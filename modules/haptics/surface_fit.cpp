@@ -87,8 +87,8 @@ class Columns {
   int up_, out_;
 };
 
-// The plane through the columns around the middle one, by least squares: of two that lie opposite each
-// other both must have a height, of those across the corners all four.
+// The plane through the columns around the middle one, by least squares: of two that lie opposite
+// each other both must have a height, of those across the corners all four.
 struct Plane {
   double height = 0.0, tilt_u = 0.0, tilt_v = 0.0;  // meshes
 };

@@ -29,8 +29,8 @@ class VoxelSurroundings {
         apart_(apart),
         threshold_(tissue.classes.classes[std::size_t(tissue_class)].hu_min - 0.5) {}
 
-  // HU beyond the tissue's threshold so many steps from the voxel: above 0 where it is solid, within
-  // kWhole_hu of 0; more or less than that counts as all of it, or as nothing.
+  // HU beyond the tissue's threshold so many steps from the voxel: above 0 where it is solid,
+  // within kWhole_hu of 0; more or less than that counts as all of it, or as nothing.
   double beyond(const Index3& by) const {
     const GridGeometry& geometry = tissue_.grid.geometry();
     const int i = voxel_[0] + by[0] * apart_[0], j = voxel_[1] + by[1] * apart_[1],
