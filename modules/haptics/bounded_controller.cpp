@@ -42,6 +42,7 @@ constexpr double kBelowTried = 0.92;      // up to this share of where something
 constexpr double kComesBack_per_s = 2.6;
 constexpr double kCreeps_per_s = 0.01;    // and beyond it
 constexpr double kSameEvent_s = 0.3;      // what happens again so soon is one event
+constexpr double kOtherTissue = 0.03;     // stiffer or softer by this: no force is held across it
 constexpr double kWorthSaying_N = 1e-6;   // less than this is no difference
 constexpr double kPartOfIt_N = 1e-7;      // nor is this one part's share of it
 
@@ -131,6 +132,11 @@ Impedance BoundedController::limit(const Impedance& tissue) {
   const Impedance learnt{damping_.value * arm.damping, stiffness_.value * arm.stiffness};
   const Impedance limited{std::min(tissue.damping, learnt.damping),
                           std::min(tissue.stiffness, learnt.stiffness)};
+  // An arm at rest does not show that the tissue under it was changed.
+  if (std::abs(tissue.stiffness - tissue_stiffness_) > kOtherTissue * tissue_stiffness_) {
+    hold_.forget();
+    tissue_stiffness_ = tissue.stiffness;
+  }
   parts_ = 0;
   if (tissue.damping > arm.damping || tissue.stiffness > arm.stiffness) parts_ |= kPartArmBound;
   if (limited.damping < std::min(tissue.damping, arm.damping) ||

@@ -1,5 +1,6 @@
 #include "haptics/rest_hold.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trephine {
@@ -7,7 +8,8 @@ namespace trephine {
 namespace {
 
 constexpr double kRest_s = 0.2;
-constexpr double kTurned = 0.996;  // cosine: a force that turns by 5 degrees rests no more
+constexpr double kTurned = 0.09;  // sine: a force that turns by 5 degrees rests no more,
+constexpr double kTurnedCounts = 1.75;  // unless the diagonal of a count's cube turns it by more
 constexpr double kRounding = 1.01;
 // A count's cube, seen across some direction, is at most this wide along an axis, in counts.
 constexpr double kAcross = 1.37;
@@ -42,17 +44,20 @@ Vec3 RestHold::hold(const Vec3& elastic_N, double stiffness, const Vec3& positio
     forget();
     return force_N;
   }
-  if (along_.ticks == 0 || glm::dot(elastic_N, direction_) < kTurned * size_N) {
+  const double along_N = glm::dot(elastic_N, direction_);
+  const double aside_N = glm::length(elastic_N - along_N * direction_);
+  if (along_.ticks == 0 || along_N < 0.0 ||
+      aside_N > std::max(kTurned * size_N, kTurnedCounts * step_m_ * stiffness)) {
     direction_ = elastic_N / size_N;
     forget();
   }
   const Vec3 n = direction_;
   const double count_m = kRounding * step_m_ * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   const Vec3 deflection_m(glm::dot(elastic_N, n) / stiffness, 0.0, 0.0);
-  const Vec3 along_N = glm::dot(force_N, n) * n;
+  const Vec3 pushing_N = glm::dot(force_N, n) * n;
   const Vec3 sliding_m = position_m - glm::dot(position_m, n) * n;
-  return follow(along_, deflection_m, count_m, along_N) +
-         follow(across_, sliding_m, kRounding * kAcross * step_m_, force_N - along_N);
+  return follow(along_, deflection_m, count_m, pushing_N) +
+         follow(across_, sliding_m, kRounding * kAcross * step_m_, force_N - pushing_N);
 }
 
 }  // namespace trephine

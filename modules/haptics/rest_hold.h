@@ -20,8 +20,6 @@ class RestHold {
   Vec3 hold(const Vec3& elastic_N, double stiffness, const Vec3& position_m, const Vec3& force_N);
   void forget() { along_ = across_ = Window{}; }
 
-  bool holding() const { return along_.holding || across_.holding; }
-
  private:
   struct Window {
     Vec3 low{0.0}, high{0.0};
