@@ -22,8 +22,8 @@ const Tool& burr() {
   return tool;
 }
 
-// Where HU crosses 226 between -1000 and 1000, half a millimetre either side of z = 0.
-constexpr double kSurface_mm = 0.113;
+// Where HU crosses 226: 1000 half a millimetre below z = 0, -1000 half a millimetre above.
+constexpr double kSurface_mm = -0.113;
 
 TEST(InsideSolid, IsHowFarTheBodyReachesBeyondTheSurface) {
   const Grid grid(bone());
