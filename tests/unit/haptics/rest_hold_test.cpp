@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace trephine {
 namespace {
 
@@ -40,6 +42,25 @@ TEST(RestHold, LetsGoOfAForceThatTurnsByMoreThanCountsDo) {
   light.run(500, 0.15, 3);
   EXPECT_GT(light.high_N.x - light.low_N.x, 0.1);
   EXPECT_GT(light.high_N.y - light.low_N.y, 0.1);
+}
+
+TEST(RestHold, HoldsATissueWhoseSlopeIsFirmerThanItsStiffness) {
+  // 490 N/m where it is said to be 384: a count changes the push by more than a count's worth.
+  const auto swing_N = [](int counts) {
+    RestHold rest(kStep_m, kT);
+    double low_N = 1e9, high_N = -1e9;
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 at_m(0.0, 0.0, -kStep_m * (25 + counts * ((i / 7) % 2)));
+      const Vec3 elastic_N(0.0, 0.0, -490.0 * at_m.z);
+      const double sent_N = rest.hold(elastic_N, 384.0, at_m, elastic_N).z;
+      if (i < 500) continue;
+      low_N = std::min(low_N, sent_N);
+      high_N = std::max(high_N, sent_N);
+    }
+    return high_N - low_N;
+  };
+  EXPECT_EQ(swing_N(1), 0.0);
+  EXPECT_GT(swing_N(2), 0.05) << "two counts are a motion";
 }
 
 TEST(RestHold, FollowsAToolThatSlides) {
