@@ -17,6 +17,7 @@
 #include "lab/import_measurement.h"
 #include "lab/jitter_measurement.h"
 #include "lab/read_floor.h"
+#include "lab/rest_measurement.h"
 #include "lab/stability_maps.h"
 #include "lab/stability_measurement.h"
 #include "lab/stability_sets.h"
@@ -305,9 +306,8 @@ Result<Json> measureStabilityGrid(std::vector<StabilityCell> cells, double secon
 // Every set that was asked for, in the order of their names.
 Result<Json> measureStabilitySets(const StabilityArguments& arguments, std::string& text,
                                   const Progress& progress) {
-  // Whole scenes are a set of their own; it joins here once it is measured.
   std::string names = arguments.sets;
-  if (names.empty()) names = arguments.grid.empty() ? "grid,long,moving,hands,claims" : "grid";
+  if (names.empty()) names = arguments.grid.empty() ? "grid,long,moving,hands,claims,rest" : "grid";
   Result<std::vector<StabilitySet>> sets = readStabilitySets(names);
   if (!sets) return sets.error();
   if (arguments.seconds && !(*arguments.seconds >= 1.0 && *arguments.seconds <= 600.0)) {
@@ -333,7 +333,10 @@ Result<Json> measureStabilitySets(const StabilityArguments& arguments, std::stri
       if (!grid) return grid.error();
       answer.update(*grid);
     } else if (set == StabilitySet::rest) {
-      return Error{"BAD_ARGUMENT", "Whole scenes at rest are not measured yet", "--sets", ""};
+      Result<RestFigures> figures = measureRest(arguments.seconds, part);
+      if (!figures) return figures.error();
+      answer[name] = toJson(*figures);
+      text += toText(*figures);
     } else {
       const auto& cells = set == StabilitySet::lasting ? all : some;
       Result<SetFigures> figures = measureStabilitySet(set, cells, arguments.seconds, part);
@@ -361,8 +364,9 @@ int measureStabilityCommand(const StabilityArguments& arguments, bool json,
   return 0;
 }
 
-int measureExtremesCommand(const std::string& out, bool json, const Progress& progress) {
-  Result<ExtremesMeasurement> measured = measureExtremes(out, progress);
+int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
+                           const Progress& progress) {
+  Result<ExtremesMeasurement> measured = measureExtremes(out, progress, {true, case_source});
   if (!measured) return printError("measure.extremes", measured.error(), json);
   printMeasured("measure.extremes", *measured, json);
   return measured->all_pass() ? 0 : 3;

@@ -50,7 +50,8 @@ int replayCommand(const std::string& file, const std::string& case_source,
 int explainCommand(const std::string& scene, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
 int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);
-int measureExtremesCommand(const std::string& out, bool json, const Progress&);
+int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
+                           const Progress&);
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureTradesCommand(const std::string& out, bool json, const Progress&);
 // `series` are names; none for all. The program in `options` is filled in.

@@ -86,14 +86,16 @@ int run(int argc, char** argv) {
   stability_command->add_option("--grid", stability.grid,
                                 "A grid of your own (JSON); the full grid unless given");
   stability_command->add_option("--sets", stability.sets,
-                                "Which of grid,long,moving,hands,claims; all unless given, of a "
+                                "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
                                 "grid of your own only grid");
   stability_command->add_option("--seconds", stability.seconds,
-                                "How long a cell runs; 2, long 30, moving 5 unless given");
+                                "How long a cell runs; 2, long 30, moving 5, rest 60 unless given");
   stability_command->add_option("--out", stability.out, "Folder for the table and the maps")
       ->required();
   auto* extremes_command = with_json(measure_command->add_subcommand(
-      "extremes", "Values at the edge of what can be given, through the real loop"));
+      "extremes", "Values at the edge of what can be given, through the real loop, and tools that "
+                  "press, rest and come back"));
+  extremes_command->add_option("--case", case_source, "A real skull for the barrier as well");
   extremes_command->add_option("--out", out, "Folder for the table")->required();
   auto* haptics_command = with_json(measure_command->add_subcommand(
       "haptics", "What a tick costs, and how true the push of elastic tissue is"));
@@ -145,7 +147,7 @@ int run(int argc, char** argv) {
   if (*explain_command) return explainCommand(file, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(stability, json, progress);
-  if (*extremes_command) return measureExtremesCommand(out, json, progress);
+  if (*extremes_command) return measureExtremesCommand(case_source, out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);
   if (*measure_import_command) {

@@ -131,6 +131,7 @@ Impedance BoundedController::limit(const Impedance& tissue) {
   const Impedance learnt{damping_.value * arm.damping, stiffness_.value * arm.stiffness};
   const Impedance limited{std::min(tissue.damping, learnt.damping),
                           std::min(tissue.stiffness, learnt.stiffness)};
+  tissue_stiffness_ = tissue.stiffness;
   parts_ = 0;
   if (tissue.damping > arm.damping || tissue.stiffness > arm.stiffness) parts_ |= kPartArmBound;
   if (limited.damping < std::min(tissue.damping, arm.damping) ||
@@ -336,7 +337,10 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     }
     const Vec3 affordable_N = limitToCredit(force_N, at);
     flag(kPartCredit, affordable_N - force_N);
-    force_N = hold_.hold(in.rendered.elastic_N, in.rendered.stiffness, in.position_m, affordable_N);
+    // Whether it rests is seen in the tissue's own force: what is shown of it changes as it is learnt.
+    const double k = in.rendered.stiffness;
+    const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
+    force_N = hold_.hold(elastic_N, tissue_stiffness_, in.position_m, affordable_N);
     flag(kPartHold, force_N - affordable_N);
     const Vec3 changed_N = force_N - in.demanded_N;
     if (glm::dot(changed_N, changed_N) <= kWorthSaying_N * kWorthSaying_N) {

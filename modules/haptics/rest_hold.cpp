@@ -1,5 +1,6 @@
 #include "haptics/rest_hold.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trephine {
@@ -7,20 +8,22 @@ namespace trephine {
 namespace {
 
 constexpr double kRest_s = 0.2;
-constexpr double kTurned = 0.996;  // cosine: a force that turns by 5 degrees rests no more
+constexpr double kTurned = 0.09;  // sine: a force that turns by 5 degrees rests no more,
+constexpr double kTurnedCounts = 1.75;  // unless the diagonal of a count's cube turns it by more
+constexpr double kSlope = 2.0;  // a tissue's slope may be so many times its stiffness
 constexpr double kRounding = 1.01;
 // A count's cube, seen across some direction, is at most this wide along an axis, in counts.
 constexpr double kAcross = 1.37;
 
 }  // namespace
 
-Vec3 RestHold::follow(Window& window, const Vec3& sample_m, double width_m,
-                      const Vec3& force_N) const {
-  window.low = glm::min(window.low, sample_m);
-  window.high = glm::max(window.high, sample_m);
-  const Vec3 wide_m = window.high - window.low;
-  if (window.ticks == 0 || wide_m.x > width_m || wide_m.y > width_m || wide_m.z > width_m) {
-    window.low = window.high = sample_m;
+template <class Rests>
+Vec3 RestHold::follow(Window& window, const Vec3& sample, const Vec3& force_N,
+                      const Rests& rests) const {
+  window.low = glm::min(window.low, sample);
+  window.high = glm::max(window.high, sample);
+  if (window.ticks == 0 || !rests(window.high - window.low)) {
+    window.low = window.high = sample;
     window.sum_N = force_N;
     window.ticks = 1;
     window.holding = false;
@@ -42,17 +45,26 @@ Vec3 RestHold::hold(const Vec3& elastic_N, double stiffness, const Vec3& positio
     forget();
     return force_N;
   }
-  if (along_.ticks == 0 || glm::dot(elastic_N, direction_) < kTurned * size_N) {
+  const double along_N = glm::dot(elastic_N, direction_);
+  const double aside_N = glm::length(elastic_N - along_N * direction_);
+  if (along_.ticks == 0 || along_N < 0.0 ||
+      aside_N > std::max(kTurned * size_N, kTurnedCounts * step_m_ * stiffness)) {
     direction_ = elastic_N / size_N;
     forget();
   }
   const Vec3 n = direction_;
   const double count_m = kRounding * step_m_ * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  const Vec3 deflection_m(glm::dot(elastic_N, n) / stiffness, 0.0, 0.0);
-  const Vec3 along_N = glm::dot(force_N, n) * n;
+  const Vec3 pushing_N = glm::dot(force_N, n) * n;
   const Vec3 sliding_m = position_m - glm::dot(position_m, n) * n;
-  return follow(along_, deflection_m, count_m, along_N) +
-         follow(across_, sliding_m, kRounding * kAcross * step_m_, force_N - along_N);
+  const double count_N = stiffness * count_m, across_m = kRounding * kAcross * step_m_;
+  const Vec3 along(glm::dot(elastic_N, n), glm::dot(position_m, n), 0.0);
+  return follow(along_, along, pushing_N,
+                [=](const Vec3& wide) {
+                  return wide.x <= count_N || (wide.x <= kSlope * count_N && wide.y <= count_m);
+                }) +
+         follow(across_, sliding_m, force_N - pushing_N, [=](const Vec3& wide) {
+           return wide.x <= across_m && wide.y <= across_m && wide.z <= across_m;
+         });
 }
 
 }  // namespace trephine

@@ -4,8 +4,11 @@
 // samples of a while lie within one count, the force stays what it was on average until one leaves.
 //
 // Not per axis of the encoder but of the contact: along the elastic force, where "the sample" is the
-// spring's own deflection (so a tool that slides over rising ground is followed), and across it,
-// where it is the position (so friction is held while nothing slides).
+// force of the spring's own deflection (so a tool that slides over rising ground is followed), and
+// across it, where it is the position (so friction is held while nothing slides). A count is worth
+// the stiffness times its length; the force is not divided by the stiffness, which itself comes and
+// goes with the points that touch. And since no soft tissue's slope is just its stiffness, a force that
+// changes by two counts' worth rests as well, where the position along it lies within one.
 #pragma once
 
 #include "base/math.h"
@@ -16,11 +19,10 @@ class RestHold {
  public:
   RestHold(double encoder_step_m, double period_s) : step_m_(encoder_step_m), T_(period_s) {}
 
-  // The force to send, in contact with a spring of this stiffness [N/m]; without one, `force_N`.
+  // The force to send instead of `force_N`, in contact with a spring of this stiffness [N/m] that
+  // pushes by `elastic_N` when all of it is shown; without one, `force_N`.
   Vec3 hold(const Vec3& elastic_N, double stiffness, const Vec3& position_m, const Vec3& force_N);
   void forget() { along_ = across_ = Window{}; }
-
-  bool holding() const { return along_.holding || across_.holding; }
 
  private:
   struct Window {
@@ -29,7 +31,9 @@ class RestHold {
     int ticks = 0;
     bool holding = false;
   };
-  Vec3 follow(Window& window, const Vec3& sample_m, double width_m, const Vec3& force_N) const;
+  // `rests` is asked of how far the samples of the window lie apart on each axis.
+  template <class Rests>
+  Vec3 follow(Window& window, const Vec3& sample, const Vec3& force_N, const Rests& rests) const;
 
   double step_m_, T_;
   Vec3 direction_{0.0};  // of the elastic force when the windows began

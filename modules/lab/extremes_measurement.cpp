@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "base/file.h"
 #include "lab/extremes_rig.h"
+#include "lab/extremes_touch.h"
 
 namespace trephine {
 
@@ -590,19 +592,27 @@ bool ExtremesMeasurement::all_pass() const {
 }
 
 Result<ExtremesMeasurement> measureExtremes(const std::filesystem::path& out,
-                                            const Progress& progress) {
+                                            const Progress& progress,
+                                            const ExtremesOptions& options) {
   if (!out.empty()) {
     if (Status made = makeFolder(out); !made) return made.error();
   }
   ExtremesMeasurement measurement;
   const std::vector<Case> all = cases();
   for (const Case& c : all) {
-    progress.at(double(measurement.rows.size()) / double(all.size()), c.name);
+    const double share = options.touch ? 0.1 : 1.0;
+    progress.at(share * double(measurement.rows.size()) / double(all.size()), c.name);
     if (progress.cancelled()) {
       return Error{"CANCELLED", "The measurement was cancelled", "measure extremes", ""};
     }
     const Outcome outcome = c.measure();
     measurement.rows.push_back({c.name, c.input, c.expected, outcome.got, outcome.pass});
+  }
+  if (options.touch) {
+    Result<std::vector<ExtremeRow>> touch =
+        measureTouchExtremes(options.case_source, Progress(progress, 0.1, 1.0));
+    if (!touch) return touch.error();
+    std::move(touch->begin(), touch->end(), std::back_inserter(measurement.rows));
   }
   if (!out.empty()) {
     if (Status written = writeTextFile(out / "extremes.csv", toCsv(measurement)); !written) {

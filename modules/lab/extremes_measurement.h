@@ -23,9 +23,16 @@ struct ExtremesMeasurement {
   bool all_pass() const;
 };
 
-// Writes extremes.csv into the folder `out` unless that is empty. Errors: CANCELLED, CANNOT_WRITE.
+struct ExtremesOptions {
+  bool touch = false;       // the rows of extremes_touch.h as well: a minute
+  std::string case_source;  // of them, a real skull for the barrier; empty: none
+};
+
+// Writes extremes.csv into the folder `out` unless that is empty. Errors: CANCELLED, CANNOT_WRITE, and
+// with `touch` those of the scenes' files and devices and of the case.
 Result<ExtremesMeasurement> measureExtremes(const std::filesystem::path& out = {},
-                                            const Progress& progress = Progress());
+                                            const Progress& progress = Progress(),
+                                            const ExtremesOptions& options = {});
 
 // {rows:[{name, input, expected, got, pass}]}
 Json toJson(const ExtremesMeasurement& measurement);

@@ -1,78 +1,17 @@
 #include "lab/stability_cell.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "haptics/unseen_energy.h"
+#include "lab/held_arm.h"
 
 namespace trephine {
 
 namespace {
 
 constexpr int kParts = 8;  // of a period, for the ideal law and the energy
-
-// x' = v, v' = (F - k_h (x - x_r) - (c + b_h) v) / m with F constant and x_r linear: the state
-// [x v F x_r x_r'] after a time h is exp(M h) times the state before.
-class Plant {
- public:
-  Plant(const StabilityCell& cell, double h) {
-    Matrix M{};
-    M[0][1] = 1.0;
-    M[1][0] = -cell.hand.stiffness / cell.mass_kg;
-    M[1][1] = -(cell.plant_damping + cell.hand.damping) / cell.mass_kg;
-    M[1][2] = 1.0 / cell.mass_kg;
-    M[1][3] = cell.hand.stiffness / cell.mass_kg;
-    M[3][4] = 1.0;
-    // exp by scaling and squaring: 15 terms of the series of M h / 2^n.
-    double norm = 0.0;
-    for (const auto& row : M) {
-      double sum = 0.0;
-      for (double value : row) sum += std::abs(value * h);
-      norm = std::max(norm, sum);
-    }
-    int squarings = 0;
-    for (; norm > 0.25; norm /= 2.0) ++squarings;
-    const double part_h = std::ldexp(h, -squarings);
-    Matrix term{}, result{};
-    for (std::size_t i = 0; i < 5; ++i) term[i][i] = result[i][i] = 1.0;
-    for (int order = 1; order <= 15; ++order) {
-      term = product(term, M);
-      for (std::size_t i = 0; i < 5; ++i) {
-        for (std::size_t j = 0; j < 5; ++j) {
-          term[i][j] *= part_h / order;
-          result[i][j] += term[i][j];
-        }
-      }
-    }
-    for (; squarings > 0; --squarings) result = product(result, result);
-    position_ = result[0];
-    velocity_ = result[1];
-  }
-
-  void step(double& x, double& v, double force, double rest, double rest_speed) const {
-    const std::array<double, 5> state{x, v, force, rest, rest_speed};
-    x = v = 0.0;
-    for (std::size_t i = 0; i < 5; ++i) {
-      x += position_[i] * state[i];
-      v += velocity_[i] * state[i];
-    }
-  }
-
- private:
-  using Matrix = std::array<std::array<double, 5>, 5>;
-  static Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix out{};
-    for (std::size_t i = 0; i < 5; ++i) {
-      for (std::size_t j = 0; j < 5; ++j) {
-        for (std::size_t l = 0; l < 5; ++l) out[i][j] += a[i][l] * b[l][j];
-      }
-    }
-    return out;
-  }
-  std::array<double, 5> position_{}, velocity_{};
-};
 
 // Where the hand's rest point is, and how fast it moves.
 struct RestPoint {
@@ -153,24 +92,12 @@ class Chain {
   double sent_N_ = 0.0;
 };
 
-// What is left of x without its centred mean over 0.1 s, narrower at the end.
-std::vector<double> lessItsMean(const std::vector<double>& x, double period_s) {
-  const std::size_t n = x.size();
-  const auto half = std::size_t(std::max(3.0, 0.05 / period_s));
-  std::vector<double> sum(n + 1, 0.0), left(n);
-  for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + x[i];
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t h = std::min({half, i, n - 1 - i});
-    left[i] = x[i] - (sum[i + h + 1] - sum[i - h]) / double(2 * h + 1);
-  }
-  return left;
-}
-
 // Peak to peak and frequency over the last quarter; under a hand that swings without its last
 // 0.1 s, where the narrower mean would leave a part of the swing.
 void judgeMotion(const std::vector<double>& x, double period_s, bool swings, CellResult& result) {
-  std::vector<double> left = lessItsMean(x, period_s);
-  if (swings) left = lessItsMean(left, period_s);
+  const auto half = std::size_t(std::max(3.0, 0.05 / period_s));  // of 0.1 s
+  std::vector<double> left = lessItsMean(x, half);
+  if (swings) left = lessItsMean(left, half);
   const std::size_t first = x.size() - x.size() / 4;
   const std::size_t cut = swings ? std::size_t(0.1 / period_s) : 0;
   const std::size_t n = std::max(first, x.size() - std::min(x.size(), cut));
@@ -243,7 +170,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
   const double T = cell.period_s;
   const auto ticks = std::size_t(std::llround(conditions.seconds / T));
   const std::size_t last_quarter = ticks - ticks / 4;
-  const Plant plant(cell, T / kParts);
+  const HeldArm plant(cell.mass_kg, cell.plant_damping, cell.hand, T / kParts);
   const RestPoint rest{conditions.moving};
   Chain chain(cell, driver, tissue_scale, conditions);
   std::vector<double> pending(std::size_t(cell.delay_samples), 0.0);  // a ring

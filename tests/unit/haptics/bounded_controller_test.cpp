@@ -535,6 +535,17 @@ TEST(BoundedController, HoldsTheForceOfAToolThatRestsBetweenTwoCounts) {
   EXPECT_FALSE(touch.controller.parts() & kPartHold) << "it left";
 }
 
+TEST(BoundedController, HoldsNoForceAcrossAChangeOfTheTissueUnderAToolAtRest) {
+  Touch touch(arm(0.045, kOmniStep_m), {1.0, 600.0});
+  for (int i = 0; i < 40; ++i) touch.at(-kOmniStep_m * i);
+  for (int i = 0; i < 1000; ++i) touch.at(-kOmniStep_m * 39);
+  const double before_N = touch.sent_N.x;
+  ASSERT_TRUE(touch.controller.parts() & kPartHold);
+  touch.tissue.stiffness = 300.0;
+  for (int i = 0; i < 1000; ++i) touch.at(-kOmniStep_m * 39);
+  EXPECT_NEAR(touch.sent_N.x, 0.5 * before_N, 0.05);
+}
+
 // A light arm in a firm damper, and a hand that rests inside it.
 struct HeldArm {
   Touch touch;
