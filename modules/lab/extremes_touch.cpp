@@ -250,7 +250,7 @@ ExtremeRow barrierRow(const std::string& tool, const Target& target,
     }
   }
   const Vec3& spacing_mm = target.volume.geometry.spacing_mm;
-  const double half_mm = 0.5 * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const double half_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   ExtremeRow out;
   out.name = "barrier: " + tool + ", " + target.name;
   out.input = say("%zu times pressed at 0.5, 2 and 3.3 N by hands of 5 to 1000 N/m for 10 s, from "
