@@ -85,16 +85,18 @@ int run(int argc, char** argv) {
   StabilityArguments stability;
   stability_command->add_option("--grid", stability.grid,
                                 "A grid of your own (JSON); the full grid unless given");
-  stability_command->add_option("--sets", stability.sets,
-                                "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
-                                "grid of your own only grid");
+  stability_command->add_option(
+      "--sets", stability.sets,
+      "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
+      "grid of your own only grid");
   stability_command->add_option("--seconds", stability.seconds,
                                 "How long a cell runs; 2, long 30, moving 5, rest 60 unless given");
   stability_command->add_option("--out", stability.out, "Folder for the table and the maps")
       ->required();
   auto* extremes_command = with_json(measure_command->add_subcommand(
-      "extremes", "Values at the edge of what can be given, through the real loop, and tools that "
-                  "press, rest and come back"));
+      "extremes",
+      "Values at the edge of what can be given, through the real loop, and tools that "
+      "press, rest and come back"));
   extremes_command->add_option("--case", case_source, "A real skull for the barrier as well");
   extremes_command->add_option("--out", out, "Folder for the table")->required();
   auto* haptics_command = with_json(measure_command->add_subcommand(

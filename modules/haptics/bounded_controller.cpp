@@ -337,7 +337,8 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     }
     const Vec3 affordable_N = limitToCredit(force_N, at);
     flag(kPartCredit, affordable_N - force_N);
-    // Whether it rests is seen in the tissue's own force: what is shown of it changes as it is learnt.
+    // Whether it rests is seen in the tissue's own force: what is shown of it changes as it is
+    // learnt.
     const double k = in.rendered.stiffness;
     const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
     force_N = hold_.hold(elastic_N, tissue_stiffness_, in.position_m, affordable_N);

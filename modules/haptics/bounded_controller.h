@@ -96,7 +96,7 @@ class BoundedController {
   bool was_touching_ = false;
   Vec3 last_estimate_m_{0.0}, last_sample_m_{0.0};
   double last_stiffness_ = 0.0;
-  double tissue_stiffness_ = 0.0;  // as demanded
+  double tissue_stiffness_ = 0.0;    // as demanded
   double energy_J_ = 0.0;            // put into the environment and not given back, capped
   double stored_at_sample_J_ = 0.0;  // in the rendered spring
   double dissipated_J_ = 0.0, most_dissipated_J_ = 0.0;  // of this contact

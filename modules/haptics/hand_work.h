@@ -5,11 +5,12 @@
 
 namespace trephine {
 
-// An arm shows a share of what the model demands, over a map that scales force by g and motion by s.
-// Work at the device, divided by (g / s) and by that share, is the work that the same motion does
-// against the model itself: it does not depend on the arm. What of it the springs hold comes back;
-// what went into the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored, pays for
-// cutting, and only where it rises above all that it was before: what came back is not paid twice.
+// An arm shows a share of what the model demands, over a map that scales force by g and motion by
+// s. Work at the device, divided by (g / s) and by that share, is the work that the same motion
+// does against the model itself: it does not depend on the arm. What of it the springs hold comes
+// back; what went into the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored,
+// pays for cutting, and only where it rises above all that it was before: what came back is not
+// paid twice.
 class HandWork {
  public:
   // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
@@ -17,8 +18,8 @@ class HandWork {
     if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
   }
   // What the springs hold now, the share of the model that is shown for the next period, and what a
-  // motor did. Returns how much more went into the tissue than ever before: what an arm gave out, or
-  // what a spring came to hold without being pressed, comes off the motor's work too.
+  // motor did. Returns how much more went into the tissue than ever before: what an arm gave out,
+  // or what a spring came to hold without being pressed, comes off the motor's work too.
   double hold(double stored_J, double share, double motor_J = 0.0) {
     // What the springs hold at first, nobody put in.
     if (!started_) done_J_ = most_lost_J_ - motor_J_ + stored_J;

@@ -34,20 +34,22 @@ double shareOf(double limited, double demanded) {
   return demanded > 0.0 ? limited / demanded : 1.0;
 }
 
-// What of a force is rendered, by size: where a friction turns round, the stiffer model does so before
-// its rendering. Never less than the smaller share of the impedance, or next to nothing of work at
-// the device would count as any amount.
+// What of a force is rendered, by size: where a friction turns round, the stiffer model does so
+// before its rendering. Never less than the smaller share of the impedance, or next to nothing of
+// work at the device would count as any amount.
 double shareOf(const Vec3& rendered_N, const Vec3& model_N, const Impedance& share) {
   if (rendered_N == model_N || model_N == Vec3(0.0)) return 1.0;
   const double least = std::min({share.damping, share.stiffness, 1.0});
   return std::clamp(glm::length(rendered_N) / glm::length(model_N), least, 1.0);
 }
 
-// What the springs can give back, in the model's units. A friction that is shown softer is stretched
-// farther; and a spring that pulls with more than the arm can show took no more than that to stretch.
+// What the springs can give back, in the model's units. A friction that is shown softer is
+// stretched farther; and a spring that pulls with more than the arm can show took no more than that
+// to stretch.
 double givenBack_J(const ContactForce& model, const ContactForce& rendered, double share,
                    double most_N) {
-  const double stored_J = std::max(model.stored_J, rendered.stored_J / std::max(share, kLeastShare));
+  const double stored_J =
+      std::max(model.stored_J, rendered.stored_J / std::max(share, kLeastShare));
   const double beyond_N = glm::length(model.elastic_N) - most_N;
   if (!(beyond_N > 0.0) || !(model.stiffest() > 0.0)) return stored_J;
   return std::max(0.0, stored_J - beyond_N * beyond_N / (2.0 * model.stiffest()));
@@ -226,9 +228,9 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   ContactForce& rendered = to_controller.rendered;
   for (Law& law : arm.rendered_laws) addLaw(law, law_input, rendered);
   out.rendered_share = shareOf(rendered.at(motion.velocity_m_s), model_N, law_input.share);
-  const double stored_J = givenBack_J(model, rendered, law_input.share.stiffness,
-                                      parameters.max_force_N / parameters.map.force_scale /
-                                          out.rendered_share);
+  const double stored_J =
+      givenBack_J(model, rendered, law_input.share.stiffness,
+                  parameters.max_force_N / parameters.map.force_scale / out.rendered_share);
   rendered.elastic_N = parameters.map.forceToDevice(rendered.elastic_N);
   rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
   rendered.stored_J *= parameters.map.force_scale / parameters.map.motion_scale;

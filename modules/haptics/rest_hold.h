@@ -1,14 +1,16 @@
 // Holding still. A tool that rests on a wall rests between two counts of its encoder, and a force
-// that follows the counts drives it to and fro between them: too little for any observer to see, and
-// for as long as it rests. A force that does not change exchanges nothing over a cycle. So once all
-// samples of a while lie within one count, the force stays what it was on average until one leaves.
+// that follows the counts drives it to and fro between them: too little for any observer to see,
+// and for as long as it rests. A force that does not change exchanges nothing over a cycle. So once
+// all samples of a while lie within one count, the force stays what it was on average until one
+// leaves.
 //
-// Not per axis of the encoder but of the contact: along the elastic force, where "the sample" is the
-// force of the spring's own deflection (so a tool that slides over rising ground is followed), and
-// across it, where it is the position (so friction is held while nothing slides). A count is worth
-// the stiffness times its length; the force is not divided by the stiffness, which itself comes and
-// goes with the points that touch. And since no soft tissue's slope is just its stiffness, a force that
-// changes by two counts' worth rests as well, where the position along it lies within one.
+// Not per axis of the encoder but of the contact: along the elastic force, where "the sample" is
+// the force of the spring's own deflection (so a tool that slides over rising ground is followed),
+// and across it, where it is the position (so friction is held while nothing slides). A count is
+// worth the stiffness times its length; the force is not divided by the stiffness, which itself
+// comes and goes with the points that touch. And since no soft tissue's slope is just its
+// stiffness, a force that changes by two counts' worth rests as well, where the position along it
+// lies within one.
 #pragma once
 
 #include "base/math.h"

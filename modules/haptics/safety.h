@@ -11,8 +11,8 @@ namespace trephine {
 Vec3 clampForce(const Vec3& force_N, double max_N);
 
 // After a change (start, undo, tissue edit, controller, resume) the sent force may rise by at most
-// this until it meets the law again, and for so long at least: a law that happens to be met, since it
-// is zero at rest or dips for a tick, may ask for all of its force a tick later.
+// this until it meets the law again, and for so long at least: a law that happens to be met, since
+// it is zero at rest or dips for a tick, may ask for all of its force a tick later.
 constexpr double kSlew_N_per_s = 50.0;  // 0.05 N per ms
 constexpr double kCatchUp_s = 0.5;
 constexpr double kCatchUpAtStart_s = 0.1;  // from rest
@@ -51,7 +51,8 @@ class LatenessRule {
 // Stands between the law and the arm of one hand.
 class ForceGate {
  public:
-  // Something changed under the force: rise slowly until the law is met, and for kCatchUp_s at least.
+  // Something changed under the force: rise slowly until the law is met, and for kCatchUp_s at
+  // least.
   void change() { catch_up_s_ = kCatchUp_s; }
   // Voxels were put back: no force until the tool is out of tissue, then ramp in over 0.2 s.
   void restored() {

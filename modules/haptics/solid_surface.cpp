@@ -25,7 +25,7 @@ constexpr double kBlended = 1.5;
 constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
 constexpr double kFlatDisk = 1.0;  // where the columns around it are in a plane
 constexpr double kPlate = 0.45;    // half the thickness of one a voxel thick
-constexpr int kPieceWork = 8;     // what a piece costs, in rows
+constexpr int kPieceWork = 8;      // what a piece costs, in rows
 
 // The cell of a cube's face that a direction meets, faces of n^2 cells.
 int cellOf(const Vec3& d, int n) {

@@ -28,8 +28,8 @@ struct ExtremesOptions {
   std::string case_source;  // of them, a real skull for the barrier; empty: none
 };
 
-// Writes extremes.csv into the folder `out` unless that is empty. Errors: CANCELLED, CANNOT_WRITE, and
-// with `touch` those of the scenes' files and devices and of the case.
+// Writes extremes.csv into the folder `out` unless that is empty. Errors: CANCELLED, CANNOT_WRITE,
+// and with `touch` those of the scenes' files and devices and of the case.
 Result<ExtremesMeasurement> measureExtremes(const std::filesystem::path& out = {},
                                             const Progress& progress = Progress(),
                                             const ExtremesOptions& options = {});

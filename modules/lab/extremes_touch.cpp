@@ -112,14 +112,15 @@ double insideSolid_mm(const Tool& tool, const Pose& pose_mm, const Grid& grid, i
 PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume& volume,
                       const Press& press, double seconds) {
   constexpr double kT = 1e-3, kAway_mm = 12.0, kPress_s = 1.5, kMoves_s = 3.0;
-  constexpr double kTurn_rad = 0.35, kDrag_mm = 5.0, kSlow_Hz = 0.25, kSlack_mm = 0.5, kLook_mm = 0.25, kSlips_m_s = 0.06;
+  constexpr double kTurn_rad = 0.35, kDrag_mm = 5.0, kSlow_Hz = 0.25, kSlack_mm = 0.5,
+                   kLook_mm = 0.25, kSlips_m_s = 0.06;
   TouchRig rig(touching(tool, tissues), volume, {rigArmOf(kOmni, handOf(press.hand_N_per_m))});
   const Vec3 aside = across(press.push);
   const Quat upright = turned(aside, press.tilt_rad) * pointing(press.push);
   Vec3 start_mm = press.surface_mm - kAway_mm * press.push;
   // Further out where the tool's own length lies in bone there.
-  for (int i = 0; i < 40 && insideSolid_mm(tool, {start_mm, upright}, rig.grid(), kBoneFrom_hu) > 0.0;
-       ++i) {
+  for (int i = 0;
+       i < 40 && insideSolid_mm(tool, {start_mm, upright}, rig.grid(), kBoneFrom_hu) > 0.0; ++i) {
     start_mm -= 5.0 * press.push;
   }
   const double stiffness = std::min(tissues.classes[0].stiffness_N_per_m,
@@ -146,8 +147,8 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
     if (n % 10 == 0 || glm::length(arm.proxy_position_mm - looked_mm) > kLook_mm) {
       looked_mm = arm.proxy_position_mm;
       const Pose proxy{arm.proxy_position_mm, arm.proxy_orientation};
-      result.inside_mm = std::max(result.inside_mm,
-                                  insideSolid_mm(tool, proxy, rig.grid(), kBoneFrom_hu));
+      result.inside_mm =
+          std::max(result.inside_mm, insideSolid_mm(tool, proxy, rig.grid(), kBoneFrom_hu));
     }
     const double push_N = press.hand_N_per_m * glm::length(0.001 * rest_mm - rig.position_m(0));
     const bool slips = glm::length(arm.velocity_m_s) > kSlips_m_s;  // its own mass pushes as well
@@ -231,8 +232,8 @@ const char* wayOf(const Press& press) {
   return press.tilt_rad > 0.0 ? "leaning" : press.at_edge ? "over an edge" : "straight";
 }
 
-ExtremeRow barrierRow(const std::string& tool, const Target& target,
-                      const std::vector<Dive>& dives, std::size_t row) {
+ExtremeRow barrierRow(const std::string& tool, const Target& target, const std::vector<Dive>& dives,
+                      std::size_t row) {
   PressResult worst;
   const Press* where = nullptr;
   std::size_t runs = 0, over = 0, accepted = 0, not_held = 0;
@@ -253,15 +254,20 @@ ExtremeRow barrierRow(const std::string& tool, const Target& target,
   const double half_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   ExtremeRow out;
   out.name = "barrier: " + tool + ", " + target.name;
-  out.input = say("%zu times pressed at 0.5, 2 and 3.3 N by hands of 5 to 1000 N/m for 10 s, from "
-                  "every side, leaning, over edges, turning; cuts nothing", runs);
-  out.expected = say("proxy inside bone by at most %.3g mm; arm beyond it by at most 1.5 times push / "
-                     "renderable stiffness + 0.5 mm", half_mm);
-  out.got = say("inside by %.3f mm; arm at most %.2f mm beyond, %.2f times what %.2f N allow (%s of "
-                "%.1f N by %.0f N/m, learnt scale %.2f), over once that in %zu, over 1.5 times in %zu",
-                inside_mm, worst.beyond_mm, worst.beyond_share, worst.push_N,
-                where ? wayOf(*where) : "", where ? where->force_N : 0.0,
-                where ? where->hand_N_per_m : 0.0, worst.learnt, over, runs - accepted);
+  out.input =
+      say("%zu times pressed at 0.5, 2 and 3.3 N by hands of 5 to 1000 N/m for 10 s, from "
+          "every side, leaning, over edges, turning; cuts nothing",
+          runs);
+  out.expected =
+      say("proxy inside bone by at most %.3g mm; arm beyond it by at most 1.5 times push / "
+          "renderable stiffness + 0.5 mm",
+          half_mm);
+  out.got =
+      say("inside by %.3f mm; arm at most %.2f mm beyond, %.2f times what %.2f N allow (%s of "
+          "%.1f N by %.0f N/m, learnt scale %.2f), over once that in %zu, over 1.5 times in %zu",
+          inside_mm, worst.beyond_mm, worst.beyond_share, worst.push_N, where ? wayOf(*where) : "",
+          where ? where->force_N : 0.0, where ? where->hand_N_per_m : 0.0, worst.learnt, over,
+          runs - accepted);
   if (not_held > 0) out.got += say(", never held in %zu", not_held);
   out.pass = runs > 0 && inside_mm <= half_mm && accepted == runs && not_held < runs;
   return out;
@@ -291,19 +297,21 @@ ExtremeRow atRest(const PlacedScene& liver) {
   for (std::size_t i = 0; i < liver.scene.arms.size(); ++i) {
     const WorkspaceMap map = liver.scene.arms[i].map.fixed.value_or(WorkspaceMap{});
     arms.push_back(rigArmOf(parameters.arms[i].dynamics, {4.0, 600.0}));
-    const Vec3 out_m = map.toDevice_m(map.centre_mm + 50.0 * (liver.frames[i].rotation * Vec3(0, 0, 1)));
+    const Vec3 out_m =
+        map.toDevice_m(map.centre_mm + 50.0 * (liver.frames[i].rotation * Vec3(0, 0, 1)));
     paths.push_back({out_m, Vec3(0.0), Vec3(0.0)});
   }
   const std::vector<HoldResult> held =
       hold(parameters, liver.volume, arms, paths, HoldKind::rest, kRest_s);
-  ExtremeRow row{"at rest in the liver", "needle and blade held for 60 s where their devices' origins are",
-                 "above 2 Hz no more than a count of the encoder, at most 0.2 mJ given out", "", true};
+  ExtremeRow row{
+      "at rest in the liver", "needle and blade held for 60 s where their devices' origins are",
+      "above 2 Hz no more than a count of the encoder, at most 0.2 mJ given out", "", true};
   for (std::size_t i = 0; i < held.size(); ++i) {
     row.pass = row.pass && held[i].touched && !held[i].waited &&
                !faultsOf(HoldKind::rest, held[i], arms[i].encoder_m).any();
-    row.got += say("%s%s: %.0f um at %.0f Hz, %.3f mJ", i ? "; " : "",
-                   liver.scene.arms[i].tool.c_str(), 1e6 * held[i].cycle_m, held[i].cycle_Hz,
-                   1e3 * held[i].energy_out_J);
+    row.got +=
+        say("%s%s: %.0f um at %.0f Hz, %.3f mJ", i ? "; " : "", liver.scene.arms[i].tool.c_str(),
+            1e6 * held[i].cycle_m, held[i].cycle_Hz, 1e3 * held[i].energy_out_J);
   }
   return row;
 }
@@ -356,7 +364,8 @@ ExtremeRow comesBack(const std::string& name, const Tool& burr, ControllerKind f
       step_N = std::max(step_N, sent_N - last_N);
       // To and fro and to again, each time by more than 0.02 N.
       const double up_N = sent_N - last_N;
-      const bool turns = up_N * was_up_N < 0.0 && std::min(std::abs(up_N), std::abs(was_up_N)) > 0.02;
+      const bool turns =
+          up_N * was_up_N < 0.0 && std::min(std::abs(up_N), std::abs(was_up_N)) > 0.02;
       alternations += turns && turned_back;
       turned_back = turns;
       was_up_N = up_N;
@@ -366,19 +375,20 @@ ExtremeRow comesBack(const std::string& name, const Tool& burr, ControllerKind f
     }
     last_N = sent_N;
   }
-  return {name, "a burr without its motor pressed onto bone by 600 N/m, about 1 N",
-          "0.8 to 1.2 of what is demanded after 0.5 s, at most 0.05 N more in a tick, no alternation",
-          say("%.2f of what is demanded, at most %.3f N more in a tick, %d alternations", share, step_N,
-              alternations),
-          share >= 0.8 && share <= 1.2 && step_N <= 0.05 + 1e-9 && alternations == 0};
+  return {
+      name, "a burr without its motor pressed onto bone by 600 N/m, about 1 N",
+      "0.8 to 1.2 of what is demanded after 0.5 s, at most 0.05 N more in a tick, no alternation",
+      say("%.2f of what is demanded, at most %.3f N more in a tick, %d alternations", share, step_N,
+          alternations),
+      share >= 0.8 && share <= 1.2 && step_N <= 0.05 + 1e-9 && alternations == 0};
 }
 
 }  // namespace
 
 Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_source,
                                                      const Progress& progress) {
-  // The shipped tools that are pressed, none of which can cut: bone is not cuttable, or, for a burr,
-  // the motor is off.
+  // The shipped tools that are pressed, none of which can cut: bone is not cuttable, or, for a
+  // burr, the motor is off.
   struct Pressed {
     const char *name, *scene;
     bool cuttable;

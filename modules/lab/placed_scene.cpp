@@ -18,7 +18,8 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / (name + ".json"));
   if (!scene) return scene.error();
   if (Status asked = readArmDynamics(*scene); !asked) return asked.error();
-  Result<Volume> volume = openCase(case_source.empty() ? scene->case_source : case_source, progress);
+  Result<Volume> volume =
+      openCase(case_source.empty() ? scene->case_source : case_source, progress);
   if (!volume) return volume.error();
   const auto landmarks = placeLandmarks(*scene, *volume, nullptr, progress);
   if (!landmarks) return landmarks.error();

@@ -31,8 +31,8 @@ Tool withoutMotor(const Tool& tool);
 // The arm that a claim describes, held by a hand.
 RigArm rigArmOf(const ArmDynamics& dynamics, const Impedance& hand);
 
-// How far along a ray a tissue first runs for a millimetre, before any solid one but itself; nothing
-// where it does not within `reach_mm`.
+// How far along a ray a tissue first runs for a millimetre, before any solid one but itself;
+// nothing where it does not within `reach_mm`.
 std::optional<double> depthOf(const Volume& volume, const TissueTable& tissues, int tissue_class,
                               const Vec3& from_mm, const Vec3& along, double reach_mm);
 

@@ -40,7 +40,9 @@ void judgeMotion(const std::array<std::vector<double>, 3>& x, HoldKind kind, dou
   }
 }
 
-std::string kindName(HoldKind kind) { return kind == HoldKind::rest ? "rest" : "swing"; }
+std::string kindName(HoldKind kind) {
+  return kind == HoldKind::rest ? "rest" : "swing";
+}
 
 }  // namespace
 
@@ -125,8 +127,8 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     };
     const std::vector<HoldResult> held = run(false);
     for (std::size_t i = 0; i < held.size(); ++i) {
-      RestRow row{cell.scene, cell.arms[i], cell.tools[i], cell.place, kind, held[i],
-                  cell.rig[i].encoder_m};
+      RestRow row{cell.scene, cell.arms[i], cell.tools[i],        cell.place,
+                  kind,       held[i],      cell.rig[i].encoder_m};
       row.unstable = faultsOf(kind, held[i], row.encoder_m).any();
       rows[n].push_back(std::move(row));
     }
@@ -136,8 +138,9 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     const std::vector<HoldResult> ideal = run(true);
     for (std::size_t i = 0; i < held.size(); ++i) {
       RestRow& row = rows[n][i];
-      row.also_ideal = row.unstable && faultsOf(kind, held[i], row.encoder_m)
-                                           .allIn(faultsOf(kind, ideal[i], row.encoder_m));
+      row.also_ideal =
+          row.unstable &&
+          faultsOf(kind, held[i], row.encoder_m).allIn(faultsOf(kind, ideal[i], row.encoder_m));
       row.unstable = row.unstable && !row.also_ideal;
     }
   });
@@ -173,7 +176,9 @@ struct RestSum {
   }
 };
 
-bool isBlock(const RestRow& row) { return row.scene.rfind("block", 0) == 0; }
+bool isBlock(const RestRow& row) {
+  return row.scene.rfind("block", 0) == 0;
+}
 
 // Scenes and blocks, at rest and swung; and all.
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
@@ -239,13 +244,13 @@ Json toJson(const RestFigures& figures) {
 std::string toText(const RestFigures& figures) {
   std::string text = "rest\n";
   for (const RestSum& s : sumsOf(figures)) {
-    text += say("  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
-                "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; cutting in %zu, "
-                "nothing felt in %zu\n",
-                s.name.c_str(), s.unstable, s.cells,
-                s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal,
-                s.beyond, 1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.cutting,
-                s.apart);
+    text += say(
+        "  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
+        "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; cutting in %zu, "
+        "nothing felt in %zu\n",
+        s.name.c_str(), s.unstable, s.cells,
+        s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal, s.beyond,
+        1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.cutting, s.apart);
   }
   for (const RestRow& row : figures.rows) {
     if (!row.unstable) continue;

@@ -10,7 +10,8 @@
 // press. Of a rest is judged
 //   cycle       what is left of the arm's true position above 2 Hz (less its centred mean over
 //               0.5 s), peak to peak over the minute: over 20 um and over a count of the encoder;
-//   energy      the most that the arm had ever given out, net, as a session reports it: over 0.2 mJ;
+//   energy      the most that the arm had ever given out, net, as a session reports it: over 0.2
+//   mJ;
 // and of a swing the same beyond the swing itself (less its centred 0.1 s mean, twice), at the bars
 // of a cell under a moving hand (stability_cell.h).
 #pragma once
@@ -49,8 +50,8 @@ HoldFaults faultsOf(HoldKind kind, const HoldResult& result, double encoder_m);
 // Beyond what is accepted of a rest anywhere: two counts of the encoder, 0.5 mJ.
 bool isGrave(HoldKind kind, const HoldResult& result, double encoder_m);
 
-// Every arm on its path, judged for so long after it arrived. `ideal`: the continuous law on perfect
-// arms: no controller, no encoder, 5 kHz.
+// Every arm on its path, judged for so long after it arrived. `ideal`: the continuous law on
+// perfect arms: no controller, no encoder, 5 kHz.
 std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              std::vector<RigArm> arms, const std::vector<HoldPath>& paths,
                              HoldKind kind, double seconds, bool ideal = false);
@@ -71,7 +72,8 @@ constexpr double kRest_s = 60.0;
 // Errors: those of the shipped scenes' files and devices, CANCELLED.
 Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& progress);
 
-// {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, beyond_accepted, cutting,
+// {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, beyond_accepted,
+// cutting,
 //  kinds: [{name, ...}], rows: [{scene, arm, tool, place, kind, cycle_um, cycle_Hz, energy_out_mJ,
 //  unstable, also_ideal, cuts}]}
 Json toJson(const RestFigures& figures);

@@ -51,8 +51,7 @@ void addScene(const std::string& name, const PlacedScene& placed, std::vector<Ho
   origins.place = "at the device's origin";
   for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
     const Vec3 at_mm = placed.scene.arms[arm].map.offset_mm;
-    origins.paths.push_back(
-        pathOf(placed, arm, {at_mm.x, at_mm.y, kFrom_mm}, kFrom_mm - at_mm.z));
+    origins.paths.push_back(pathOf(placed, arm, {at_mm.x, at_mm.y, kFrom_mm}, kFrom_mm - at_mm.z));
   }
   cells.push_back(std::move(origins));
   for (std::size_t t = 0; t < placed.scene.tissues.tissues.size(); ++t) {
@@ -60,14 +59,14 @@ void addScene(const std::string& name, const PlacedScene& placed, std::vector<Ho
       for (double press_mm : {0.5, 2.0}) {
         for (const Impedance& hand : {Impedance{2.0, 300.0}, {4.0, 600.0}, {10.0, 1000.0}}) {
           HoldCell cell = cellOf(name, placed, volume, hand);
-          cell.place =
-              label(placed.scene.tissues.tissues[t].id.c_str(), aside_mm, press_mm, hand);
+          cell.place = label(placed.scene.tissues.tissues[t].id.c_str(), aside_mm, press_mm, hand);
           for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
             const SceneMap& map = placed.scene.arms[arm].map;
             const Vec3 start_mm(map.offset_mm.x + aside_mm, map.offset_mm.y - aside_mm, kFrom_mm);
             const LandmarkFrame& frame = placed.frames[arm];
-            const auto depth_mm = depthOf(placed.volume, table, int(t), frame.toPatient_mm(start_mm),
-                                          frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm);
+            const auto depth_mm =
+                depthOf(placed.volume, table, int(t), frame.toPatient_mm(start_mm),
+                        frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm);
             if (!depth_mm) break;
             // The press is the hand's own: at the device, whatever its motion is scaled by.
             cell.paths.push_back(

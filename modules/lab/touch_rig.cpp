@@ -12,8 +12,8 @@ TouchRig::TouchRig(const HapticParameters& parameters, Volume volume,
       core_(parameters, *grid_.takeWriter()),
       period_s_(parameters.period_s) {
   for (const RigArm& arm : arms) {
-    arms_.push_back({HeldArm(arm.mass_kg, arm.damping_Ns_per_m, arm.hand, period_s_),
-                     arm.encoder_m});
+    arms_.push_back(
+        {HeldArm(arm.mass_kg, arm.damping_Ns_per_m, arm.hand, period_s_), arm.encoder_m});
   }
 }
 
@@ -26,8 +26,8 @@ const TickRecord& TouchRig::step() {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     const Arm& arm = arms_[i];
     ArmSample& sample = input_.arms[i];
-    sample.position_m = arm.encoder_m > 0.0 ? glm::round(arm.x / arm.encoder_m) * arm.encoder_m
-                                            : arm.x;
+    sample.position_m =
+        arm.encoder_m > 0.0 ? glm::round(arm.x / arm.encoder_m) * arm.encoder_m : arm.x;
     sample.orientation = arm.orientation;
   }
   core_.tick(input_, commands_.data(), commands_.size(), record_);

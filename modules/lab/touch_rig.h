@@ -35,7 +35,9 @@ class TouchRig {
 
   const TickRecord& record() const { return record_; }
   const Vec3& position_m(std::size_t arm) const { return arms_[arm].x; }  // true, device axes
-  double energyOut_J(std::size_t arm) const { return arms_[arm].most_out_J; }  // as a session's report
+  double energyOut_J(std::size_t arm) const {
+    return arms_[arm].most_out_J;
+  }  // as a session's report
   std::uint64_t tick() const { return input_.tick; }
   const HapticCore& core() const { return core_; }
   const Grid& grid() const { return grid_; }

@@ -33,7 +33,10 @@ TissueTable table(const Tissue& tissue) {
 // A burr that a hand presses on a block of the tissue.
 struct Pressed {
   Pressed(const Tissue& of, const ArmDynamics& dynamics, double hand_k, ControllerKind controller)
-      : tissue(of), arm(dynamics), k(hand_k), bench(parameters(of, dynamics, controller)),
+      : tissue(of),
+        arm(dynamics),
+        k(hand_k),
+        bench(parameters(of, dynamics, controller)),
         on_the_way_N(std::size_t(dynamics.delay_ticks) + 1, Vec3(0.0)) {}
 
   static HapticParameters parameters(const Tissue& of, const ArmDynamics& dynamics,
@@ -53,8 +56,8 @@ struct Pressed {
     constexpr int kSteps = 20;
     for (int n = 0; n < kSteps; ++n) {
       const Vec3 hand_N = k * (0.001 * rest_mm - at_m) - 10.0 * speed_m_s;
-      speed_m_s += kT / kSteps / arm.apparent_mass_kg *
-                   (hand_N + on_the_way_N.front() - 0.05 * speed_m_s);
+      speed_m_s +=
+          kT / kSteps / arm.apparent_mass_kg * (hand_N + on_the_way_N.front() - 0.05 * speed_m_s);
       at_m += kT / kSteps * speed_m_s;
     }
     const double q = arm.encoder_step_m;
@@ -112,9 +115,9 @@ Return watch(Pressed& pressed, const std::vector<Command>& commands) {
 using Happening = std::vector<Command> (*)(Pressed&);
 
 void expectTheForceBack(ControllerKind before, Happening happen) {
-  for (const ArmDynamics& arm : {ArmDynamics{0.045, kOmniStep_m, 3.3, 0},
-                                 ArmDynamics{0.045, kOmniStep_m, 3.3, 1},
-                                 ArmDynamics{0.020, 0.0, 3.3, 0}}) {
+  for (const ArmDynamics& arm :
+       {ArmDynamics{0.045, kOmniStep_m, 3.3, 0}, ArmDynamics{0.045, kOmniStep_m, 3.3, 1},
+        ArmDynamics{0.020, 0.0, 3.3, 0}}) {
     for (const Tissue& tissue : {kBone, kThick, kLiver}) {
       for (double hand : {300.0, 1000.0}) {
         Pressed pressed(tissue, arm, hand, before);
@@ -166,8 +169,8 @@ TEST(Force, IsBackSoonAndSteadilyWhereTheTissueTurnsSofter) {
 
 // A burr in the hole that it cut, when the bone comes back.
 TEST(Force, StaysAwayFromAToolInRestoredBoneUntilItIsOutThenComesOverTwoTenthsOfASecond) {
-  HapticParameters p = Pressed::parameters(kBone, {0.045, kOmniStep_m, 3.3, 0},
-                                           ControllerKind::bounded);
+  HapticParameters p =
+      Pressed::parameters(kBone, {0.045, kOmniStep_m, 3.3, 0}, ControllerKind::bounded);
   p.arms[0].tool = *makeTool({ToolKind::burr, 30.0, 32, 3.0, 8, BurrShape::sphere, 0.0, 20.0});
   p.tissues.classes[0].cuttable = 1;
   for (CommandKind kind : {CommandKind::undo, CommandKind::reset, CommandKind::rewind}) {

@@ -203,7 +203,8 @@ TEST(Touch, GivesTheSameBitsInEveryBuild) {
     numbers.insert(numbers.end(), {arm.cutting_credit_J, arm.alpha, double(arm.removed_voxels)});
   }
   EXPECT_GT(core.journal().removed(0, 0) + core.journal().removed(0, 1), 100u);
-  EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)), "33c67bf8071955d79b61a3117588962631c0f0bc99a57998f8121738d548bd10");
+  EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)),
+            "33c67bf8071955d79b61a3117588962631c0f0bc99a57998f8121738d548bd10");
 }
 
 // Viscous alone, at the tip, instant removal, controller `seed`: the hash is of the build before

@@ -4,8 +4,8 @@
 namespace trephine {
 namespace {
 
-// In the end a few of the arms of 20 g have given out more than their encoder hides, by hand in tissue
-// that does not give way: the target is none.
+// In the end a few of the arms of 20 g have given out more than their encoder hides, by hand in
+// tissue that does not give way: the target is none.
 TEST(Strokes, TakeNoMoreThanMotorAndHandPaidFor) {
   int given_out = 0;
   constexpr int kStrokes = 400;

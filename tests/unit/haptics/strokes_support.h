@@ -29,8 +29,7 @@ inline Volume blockOf(const Block& block) {
     g.size[std::size_t(axis)] = int(box_mm[axis] / block.spacing_mm[axis]);
   }
   g.spacing_mm = block.spacing_mm;
-  g.origin_mm = -0.5 * block.spacing_mm *
-                Vec3(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1);
+  g.origin_mm = -0.5 * block.spacing_mm * Vec3(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1);
   volume.hu.assign(g.voxelCount(), kAirHu);
   const Vec3 up = glm::normalize(block.up);
   for (std::size_t n = 0; n < volume.hu.size(); ++n) {
@@ -44,8 +43,8 @@ inline Volume blockOf(const Block& block) {
 
 struct Place {
   double t_s = 0.0;
-  Vec3 at_mm{0.0};       // of the arm's tip, patient
-  Vec3 turn_rad{0.0};    // about the patient's axes
+  Vec3 at_mm{0.0};     // of the arm's tip, patient
+  Vec3 turn_rad{0.0};  // about the patient's axes
 };
 
 inline Quat turned(const Vec3& rad) {
@@ -69,11 +68,12 @@ struct Stroke {
 
 struct Account {
   double removed_mm3 = 0.0, removed_J = 0.0;  // at the price of each tissue
-  double motor_J = 0.0;  // while the tool touched or was held
-  double hand_J = 0.0;   // from what was sent, where the arm was and the share that was rendered
+  double motor_J = 0.0;                       // while the tool touched or was held
+  double hand_J = 0.0;  // from what was sent, where the arm was and the share that was rendered
   double stored_J = 0.0;
   double recorded_hand_J = 0.0;
-  double unseen_J = 0.0;   // what the arm's encoder cannot see, in the model's units at the least share
+  double unseen_J =
+      0.0;  // what the arm's encoder cannot see, in the model's units at the least share
   double unpaid_J = 0.0;  // what was ever spent beyond the most that had been put in by then
   double least_share = 1.0;
 };
@@ -138,8 +138,8 @@ inline Account cut(const Stroke& stroke) {
     on_the_way_N.pop_front();
     for (const CarveRecord& carve : core.carves()) {
       out.removed_mm3 += voxel_mm3;
-      out.removed_J += voxel_mm3 *
-                       p.tissues.classes[std::size_t(carve.tissue_class)].cutting_J_per_mm3;
+      out.removed_J +=
+          voxel_mm3 * p.tissues.classes[std::size_t(carve.tissue_class)].cutting_J_per_mm3;
     }
     const bool works = now.points_in_tissue > 0 || (now.tool_state & kToolHeld);
     if (works) out.motor_J += T * stroke.tool.made_from.motor_W;
@@ -153,16 +153,23 @@ inline Account cut(const Stroke& stroke) {
   return out;
 }
 
-inline TissueClass bone() { return {226, 3071, 12.0, 900.0, 2.0, 0.0, 0.06, 1, 0, 1}; }
-inline TissueClass liver() { return {0, 225, 4.0, 120.0, 0.35, 0.0, 5e-6, 1, 0, 0}; }
+inline TissueClass bone() {
+  return {226, 3071, 12.0, 900.0, 2.0, 0.0, 0.06, 1, 0, 1};
+}
+inline TissueClass liver() {
+  return {0, 225, 4.0, 120.0, 0.35, 0.0, 5e-6, 1, 0, 0};
+}
 constexpr std::int16_t kLiverHu = 100;
 
 inline Tool tool(ToolKind kind, double length_mm, double radius_mm, double motor_W,
                  BurrShape shape = BurrShape::sphere) {
   const bool burr = kind == ToolKind::burr;
   const double head_mm = shape == BurrShape::cylinder ? 3.0 * radius_mm : 0.0;
-  return *makeTool({kind, length_mm, kind == ToolKind::needle ? 1 : burr ? 32 : 16, radius_mm,
-                    burr ? 8 : 0, shape, head_mm, motor_W});
+  return *makeTool({kind, length_mm,
+                    kind == ToolKind::needle ? 1
+                    : burr                   ? 32
+                                             : 16,
+                    radius_mm, burr ? 8 : 0, shape, head_mm, motor_W});
 }
 
 // The same numbers with every library.
@@ -170,7 +177,9 @@ struct Random {
   explicit Random(unsigned seed) : engine(seed) { engine.discard(8); }
   int below(int count) { return int(engine() % std::uint32_t(count)); }
   double in(double low, double high) { return low + (high - low) * below(100001) / 100000.0; }
-  double of(std::initializer_list<double> values) { return values.begin()[below(int(values.size()))]; }
+  double of(std::initializer_list<double> values) {
+    return values.begin()[below(int(values.size()))];
+  }
   std::mt19937 engine;
 };
 
@@ -182,11 +191,21 @@ inline Stroke randomStroke(unsigned seed) {
   s.tissues.classes[0] = liver();
   s.tissues.classes[1] = bone();
   switch (random.below(5)) {
-    case 0: s.tool = tool(ToolKind::burr, 30.0, 3.0, random.of({0.6, 2, 4, 20})); break;
-    case 1: s.tool = tool(ToolKind::burr, 20.0, 2.0, random.of({1, 4}), BurrShape::cylinder); break;
-    case 2: s.tool = tool(ToolKind::blade, 16.0, 0.6, random.of({1, 6, 20})); break;
-    case 3: s.tool = tool(ToolKind::blade, 16.0, 0.6, 0.0); break;
-    default: s.tool = tool(ToolKind::needle, 40.0, 0.9, 0.0); break;
+    case 0:
+      s.tool = tool(ToolKind::burr, 30.0, 3.0, random.of({0.6, 2, 4, 20}));
+      break;
+    case 1:
+      s.tool = tool(ToolKind::burr, 20.0, 2.0, random.of({1, 4}), BurrShape::cylinder);
+      break;
+    case 2:
+      s.tool = tool(ToolKind::blade, 16.0, 0.6, random.of({1, 6, 20}));
+      break;
+    case 3:
+      s.tool = tool(ToolKind::blade, 16.0, 0.6, 0.0);
+      break;
+    default:
+      s.tool = tool(ToolKind::needle, 40.0, 0.9, 0.0);
+      break;
   }
   if (s.tool.made_from.motor_W == 0.0) {  // by hand, real bone hardly gives way
     if (random.below(2)) s.block.hu = kLiverHu;
@@ -223,7 +242,8 @@ inline bool expectPaid(unsigned seed) {
   const Account a = cut(randomStroke(seed));
   EXPECT_LE(a.unpaid_J, 1e-9 + 1e-6 * a.removed_J) << "stroke " << seed;
   EXPECT_NEAR(a.recorded_hand_J, a.hand_J, 1e-9 + 1e-6 * std::abs(a.hand_J)) << "stroke " << seed;
-  EXPECT_GT(a.least_share, 0.01) << "stroke " << seed << ": a hundredfold of the work at the device";
+  EXPECT_GT(a.least_share, 0.01) << "stroke " << seed
+                                 << ": a hundredfold of the work at the device";
   const bool over = a.stored_J == 0.0 && a.removed_J > 0.0;
   return !over || a.removed_J <= 1.02 * (a.motor_J + a.hand_J) + a.unseen_J;
 }
@@ -276,9 +296,11 @@ inline void expectSameByAnyArm(const Tried& tried, double spacing_mm) {
   ASSERT_LT(renderable(weak.arm, 1000.0, 1, {}).k_max, 0.7 * 2500.0);
   scaled.force_scale = 0.5;
   scaled.motion_scale = 1.5;
-  for (const auto& [name, stroke] : {std::pair{"20 g", &light}, {"weak", &weak}, {"scaled", &scaled}}) {
+  for (const auto& [name, stroke] :
+       {std::pair{"20 g", &light}, {"weak", &weak}, {"scaled", &scaled}}) {
     const double mm3 = cut(*stroke).removed_mm3;
-    EXPECT_NEAR(mm3, reference, 0.05 * reference) << tried.name << ", " << spacing_mm << " mm, " << name;
+    EXPECT_NEAR(mm3, reference, 0.05 * reference)
+        << tried.name << ", " << spacing_mm << " mm, " << name;
   }
 }
 

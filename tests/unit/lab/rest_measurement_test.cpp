@@ -48,8 +48,7 @@ TEST(AToolThatAHandHolds, IsCaughtWhereItShakes) {
   HapticParameters shaken = burrOnBone();
   shaken.controller = ControllerKind::off;
   shaken.tissues.classes[0].stiffness_N_per_m = 1e5;
-  const HoldResult held =
-      hold(shaken, block(), {RigArm{}}, {kPress}, HoldKind::rest, 2.0).front();
+  const HoldResult held = hold(shaken, block(), {RigArm{}}, {kPress}, HoldKind::rest, 2.0).front();
   EXPECT_TRUE(faultsOf(HoldKind::rest, held, 0.055e-3).cycles) << 1e6 * held.cycle_m << " um";
   EXPECT_TRUE(isGrave(HoldKind::rest, held, 0.055e-3));
   EXPECT_GT(held.cycle_Hz, 2.0);

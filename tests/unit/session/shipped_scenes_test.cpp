@@ -61,9 +61,10 @@ Recorded record(const std::string& name, const std::string& case_source) {
   return out;
 }
 
-// How deep the centre of a voxel of solid tissue lies in the tool's body, at most; below 0: nowhere.
+// How deep the centre of a voxel of solid tissue lies in the tool's body, at most; below 0:
+// nowhere.
 struct Inside {
-  int voxels = 0;         // deeper than half a voxel
+  int voxels = 0;  // deeper than half a voxel
   double deepest_mm = -1e9;
 };
 
@@ -103,8 +104,8 @@ void lookInside(const Volume& volume, const TissueTable& tissues, const BodyPart
 // What a run's recording says of one arm.
 struct Seen {
   std::string arm;
-  Inside inside;  // uncut solid tissue in the tool where it is drawn, every 50 ms
-  int differs = 0, unflagged = 0;    // ticks whose sent force is not the demanded one; of these
+  Inside inside;                   // uncut solid tissue in the tool where it is drawn, every 50 ms
+  int differs = 0, unflagged = 0;  // ticks whose sent force is not the demanded one; of these
   int silent = 0, silent_other = 0;  // ticks in which no part acted; of these not equal to the bit
   std::map<std::string, std::pair<double, int>> sent_N;  // by tissue: sum and ticks
 };
@@ -128,7 +129,8 @@ std::vector<Seen> see(const Recorded& run) {
       if (apart_N > kWorthAFlag_N) ++of.differs, of.unflagged += !flagged;
       if (!flagged) ++of.silent, of.silent_other += arm.sent_N != arm.demanded_N;
       if (arm.tissue_class >= 0) {
-        auto& [sum_N, ticks] = of.sent_N[run.scene.tissues.tissues[std::size_t(arm.tissue_class)].id];
+        auto& [sum_N, ticks] =
+            of.sent_N[run.scene.tissues.tissues[std::size_t(arm.tissue_class)].id];
         sum_N += glm::length(arm.sent_N);
         ++ticks;
       }
@@ -252,8 +254,8 @@ constexpr std::array kCranial{"burr-hole", "cranium", "cranium-one-arm"};
 TEST(ShippedScenes, LetBoneBeFeltByHalfANewton) {
   for (const char* name : kCranial) expectBoneFelt(name, "", 0.5);
 }
-// The vault of the real skull is thinner than the blade is long: from the first touch to the last it
-// is sent a little less on average.
+// The vault of the real skull is thinner than the blade is long: from the first touch to the last
+// it is sent a little less on average.
 TEST(ShippedScenes, LetBoneBeFeltOnTheRealSkull) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const std::string name : kCranial) {
