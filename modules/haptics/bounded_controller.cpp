@@ -10,30 +10,33 @@ namespace trephine {
 namespace {
 
 // Tuned on the stability grid and checked on cells that the tuning had not seen (CONTROLLERS.md).
-constexpr double kDampingPerMassRate = 3.35;     // b_max = this m / tau_b
-constexpr double kStiffnessPerMassRate = 0.21;  // k_max = this m / tau_k^2
-constexpr double kCountForce_N = 0.2;    // a count of the encoder changes the force by this
-constexpr double kDelayInDamping = 0.38;  // tau_b = T (1 + this d)
-constexpr double kLagInStiffness = 0.31;  // tau_k = tau_b + this lag
+constexpr double kDampingPerMassRate = 3.5;       // b_max = this m / tau_b
+constexpr double kStiffnessPerMassRate = 0.2032;  // k_max = this m / tau_k^2
+constexpr double kCountForce_N = 0.20161;   // a count of the encoder changes the force by this
+constexpr double kDelayInDamping = 0.4159;  // tau_b = T (1 + this d)
+constexpr double kLagInStiffness = 0.27;    // tau_k = tau_b + this lag
 // Less is rendered where, within the delay, such a hand outdoes the mass: one that anybody may be,
 // and what is added for one that holds the arm back.
-constexpr double kAnyHandDamping = 4.0, kFirmHandDamping = 3.8;            // N s/m
-constexpr double kFirmHandStiffness = 1500.0, kFirmHandInDamping = 600.0;  // N/m
+constexpr double kAnyHandDamping = 5.6, kFirmHandDamping = 6.0106;          // N s/m
+constexpr double kFirmHandStiffness = 1500.0, kFirmHandInDamping = 495.62;  // N/m
+constexpr double kAnyHandShare = 0.10247;  // of a firm hand's stiffness
 constexpr double kFirmHandInCount = 0.14;
-constexpr double kImpact = 8.0;             // stiffness added to k_max as contact begins, of k_max
-constexpr double kImpactTime_s = 0.0055;  // it fades with this
+constexpr double kImpact = 9.6;             // stiffness added to k_max as contact begins, of k_max
+constexpr double kImpactTime_s = 0.00525;   // it fades with this
 constexpr double kImpactAgain_s = 0.05;     // and is there again after so long in air
-constexpr double kCreditAbove_J = 3.53e-4;  // credit beyond what the spring holds
+constexpr double kCreditAbove_J = 3.5707e-4;  // credit beyond what the spring holds
 constexpr double kMostDebt_J = 1e-3;        // a pose that jumps must not silence the arm for long
 constexpr double kCreditSlack = 0.01;       // of the tolerance may be overdrawn
-constexpr double kLossSeen = 0.45;           // tolerances lost before stiffness is lowered
+constexpr double kLossSeen = 0.39885;       // tolerances lost before stiffness is lowered
 constexpr double kLossStep = 0.94;          // by this
-constexpr double kShaking_N = 0.0743;         // force that comes and goes, per tick
-constexpr double kShakingTime_s = 0.0644;
-constexpr double kShakingStep = 0.861;
+constexpr double kOwed = 0.6;       // tolerances given out on credit before both scales are lowered
+constexpr double kOwedStep = 0.6;   // by this
+constexpr double kShaking_N = 0.1;  // force that comes and goes, per tick
+constexpr double kShakingTime_s = 0.062929;
+constexpr double kShakingStep = 0.95;
 constexpr double kObeyed = 1e-9;           // of the peak force: rounding of the clamp
 constexpr double kLeastDamping = 0.018;  // of sqrt(k m), always
-constexpr double kLearntDamping = 1.32;   // of sqrt(k m), once stiffness was lowered
+constexpr double kLearntDamping = 1.4433;  // of sqrt(k m), once stiffness was lowered
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.2;
 constexpr double kForget_per_s = 0.5062;  // of the lowering, while in air
@@ -59,7 +62,7 @@ Impedance mostOf(const ArmDynamics& arm, double T, double lag_s, double held) {
   const double tau_k = tau_b + kLagInStiffness * lag_s;
   const double damper = (kAnyHandDamping + held * kFirmHandDamping) * delay_s / m;
   const double spring = held * kFirmHandInDamping * delay_s * delay_s / m;
-  const double stiffer = held * kFirmHandStiffness * delay_s * delay_s / m;
+  const double stiffer = (kAnyHandShare + held) * kFirmHandStiffness * delay_s * delay_s / m;
   Impedance most;
   most.damping = kDampingPerMassRate * m / tau_b / (1.0 + damper * damper * damper * damper) /
                  (1.0 + spring * spring);
@@ -122,7 +125,9 @@ BoundedController::BoundedController(const ArmDynamics& arm, double period_s)
       tolerance_J_(unseenEnergy_J(arm.encoder_step_m)),
       estimator_(arm_, period_s),
       check_(arm_, estimator_, period_s),
-      hold_(arm_.encoder_step_m, period_s) {
+      hold_(arm_.encoder_step_m, period_s),
+      counts_(arm_.encoder_step_m, period_s),
+      owed_J_(kOwed * tolerance_J_) {
   most_ = mostOf(arm_, T_, estimator_.lag_s(), 0.0);
 }
 
@@ -147,7 +152,8 @@ void BoundedController::forget() {
   check_.forget();
   hold_.forget();
   sent_N_.fill(Vec3(0.0));
-  energy_J_ = stored_at_sample_J_ = dissipated_J_ = most_dissipated_J_ = 0.0;
+  energy_J_ = stored_as_seen_J_ = dissipated_J_ = most_dissipated_J_ = 0.0;
+  owed_J_ = kOwed * tolerance_J_;
   last_stiffness_ = variation_N_ = 0.0;
   last_force_N_ = drift_N_ = Vec3(0.0);
 }
@@ -180,25 +186,40 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   // In a ramp the spring is there already and its force is not: what it holds counts as put in, or
   // the hand would be asked to pay for it with a force that it does not feel.
   if (in.touching && not_obeyed_ticks_ > 0) energy_J_ = std::max(energy_J_, stored_J);
+  owe();
   energy_J_ = std::clamp(energy_J_, -kMostDebt_J, stored_J + kCreditAbove_J);
 
-  // What is lost is counted on the samples as they are. The forces follow the estimate, so that on
-  // the estimate they would lose nothing, whatever the arm does between two counts.
-  const double at_sample_J = beside_J + springEnergy(sum_N, k, arm_.peak_force_N);
+  // What is lost is counted on the samples. The forces follow the estimate, so that on the estimate
+  // they would lose nothing, whatever the arm does between two counts. Beside a spring, samples
+  // that go to and fro between two counts are where these meet.
+  const Vec3 pair_m = counts_.look(in.position_m);
+  const Vec3 seen_m = k > 0.0 ? pair_m : in.position_m;
+  Vec3 seen_N = in.rendered.elastic_N - k * (seen_m - in.position_m);
+  if (glm::dot(seen_N, in.rendered.elastic_N) <= 0.0) seen_N = Vec3(0.0);
+  const double as_seen_J = beside_J + springEnergy(glm::length(seen_N), k, arm_.peak_force_N);
   if (!in.touching || not_obeyed_ticks_ > 0) {
     dissipated_J_ = most_dissipated_J_ = 0.0;
   } else if (was_touching_ && k <= last_stiffness_) {
     // A spring that turns stiffer under the hand holds energy that nobody put in.
-    const double put_in_J = -glm::dot(held_N, in.position_m - last_sample_m_);
-    dissipated_J_ += put_in_J - (at_sample_J - stored_at_sample_J_);
+    const double put_in_J = -glm::dot(held_N, seen_m - last_seen_m_);
+    dissipated_J_ += put_in_J - (as_seen_J - stored_as_seen_J_);
     most_dissipated_J_ = std::max(most_dissipated_J_, dissipated_J_);
   }
-  stored_at_sample_J_ = at_sample_J;
+  stored_as_seen_J_ = as_seen_J;
   last_stiffness_ = k;
   last_estimate_m_ = x;
-  last_sample_m_ = in.position_m;
+  last_seen_m_ = seen_m;
   was_touching_ = in.touching;
   started_ = true;
+}
+
+// Credit that is overdrawn again and again is an arm that shakes by more than its samples tell.
+void BoundedController::owe() {
+  if (energy_J_ > 0.0) owed_J_ = kOwed * tolerance_J_;
+  if (!(energy_J_ < -owed_J_) || !started_ || not_obeyed_ticks_ > 0) return;
+  owed_J_ = kOwed * tolerance_J_ - energy_J_;
+  stiffness_.lower(kOwedStep, kFloorStiffness);
+  damping_.lower(kOwedStep, kFloorDamping);
 }
 
 // From what the observer and the force show, never from the hand itself.
@@ -208,11 +229,8 @@ void BoundedController::learn(bool touching) {
   const bool elastic = last_stiffness_ > 0.0;
   if (most_dissipated_J_ - dissipated_J_ > kLossSeen * tolerance_J_) {
     most_dissipated_J_ = dissipated_J_;
-    if (elastic) {
-      stiffness_.lower(kLossStep, kFloorStiffness);
-    } else {
-      damping_.lower(kLossStep, kFloorDamping);
-    }
+    if (!elastic || stiffness_.value <= kFloorStiffness) damping_.lower(kLossStep, kFloorDamping);
+    if (elastic) stiffness_.lower(kLossStep, kFloorStiffness);
   }
   if (variation_N_ - glm::length(drift_N_) > kShaking_N) {
     damping_.lower(kShakingStep, kFloorDamping);
@@ -256,7 +274,8 @@ Vec3 BoundedController::render(const ControllerInput& in, const Ahead& at) {
   if (k > 0.0) {
     const double critical = std::sqrt(k * m);
     b = std::max(b, kLeastDamping * critical);
-    if (parts_ & kPartLearned) b = std::max(b, std::min(most_.damping, kLearntDamping * critical));
+    if (parts_ & kPartLearned)
+      b = std::max(b, std::min(damping_.value * most_.damping, kLearntDamping * critical));
   }
   const Vec3& elastic_N = in.rendered.elastic_N;
   const Vec3& hand = estimator_.handAcceleration_m_s2();

@@ -7,6 +7,7 @@
 #include "haptics/arm_check.h"
 #include "haptics/arm_estimator.h"
 #include "haptics/contact_force.h"
+#include "haptics/count_pair.h"
 #include "haptics/rest_hold.h"
 
 namespace trephine {
@@ -71,6 +72,7 @@ class BoundedController {
 
   Vec3 heldForce(const Vec3& last_sent_N);
   void account(const ControllerInput& in, const Vec3& held_N);
+  void owe();
   void learn(bool touching);
   Ahead ahead() const;
   Vec3 render(const ControllerInput& in, const Ahead& at);
@@ -86,6 +88,7 @@ class BoundedController {
   ArmEstimator estimator_;
   ArmCheck check_;
   RestHold hold_;
+  CountPair counts_;
   // Forces that were sent, the newest first: as many as the longest delay that may be found, and
   // the one that acted before them.
   std::array<Vec3, kMaxDelayTicks + 2> sent_N_{};
@@ -94,11 +97,12 @@ class BoundedController {
   double impact_ = 1.0;              // 1 as contact begins, fading
   bool started_ = false;
   bool was_touching_ = false;
-  Vec3 last_estimate_m_{0.0}, last_sample_m_{0.0};
+  Vec3 last_estimate_m_{0.0}, last_seen_m_{0.0};
   double last_stiffness_ = 0.0;
   double tissue_stiffness_ = 0.0;    // as demanded
   double energy_J_ = 0.0;            // put into the environment and not given back, capped
-  double stored_at_sample_J_ = 0.0;  // in the rendered spring
+  double owed_J_;                    // given out beyond what was put in, before a scale falls
+  double stored_as_seen_J_ = 0.0;    // in the rendered spring
   double dissipated_J_ = 0.0, most_dissipated_J_ = 0.0;  // of this contact
   Vec3 last_force_N_{0.0};
   double variation_N_ = 0.0;  // mean |change of force| per tick, leaky

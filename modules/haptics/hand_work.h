@@ -1,6 +1,8 @@
 // The work that a hand did on a tool, in the model's units: what it can pay for.
 #pragma once
 
+#include <algorithm>
+
 #include "base/math.h"
 
 namespace trephine {
@@ -8,30 +10,39 @@ namespace trephine {
 // An arm shows a share of what the model demands, over a map that scales force by g and motion by
 // s. Work at the device, divided by (g / s) and by that share, is the work that the same motion
 // does against the model itself: it does not depend on the arm. What of it the springs hold comes
-// back; what went into the tissue, D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored,
+// back; what went into the tissue,
+//   D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored,
 // pays for cutting, and only where it rises above all that it was before: what came back is not
-// paid twice.
+// paid twice. No more went in than the model itself takes, the same sum with its own force, the
+// mean of both ends of a period: what a controller damps away at an arm that shows a hundredth of
+// the model is no work on tissue.
 class HandWork {
  public:
   // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
   void move(const Vec3& sent_N, const Vec3& moved_m, double device_per_model) {
     if (device_per_model > 0.0) done_J_ -= glm::dot(sent_N, moved_m) / (device_per_model * share_);
+    shown_ = sent_N != Vec3(0.0);
+  }
+  // What the model takes from the same motion, in its own units; once move() was called.
+  void take(double model_J) {
+    if (shown_) taken_J_ += model_J;
   }
   // What the springs hold now, the share of the model that is shown for the next period, and what a
   // motor did. Returns how much more went into the tissue than ever before: what an arm gave out,
   // or what a spring came to hold without being pressed, comes off the motor's work too.
   double hold(double stored_J, double share, double motor_J = 0.0) {
     // What the springs hold at first, nobody put in.
-    if (!started_) done_J_ = most_lost_J_ - motor_J_ + stored_J;
+    if (!started_) done_J_ = taken_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;
     stored_J_ = stored_J;
     motor_J_ += motor_J;
     share_ = share > kLeastShare ? share : kLeastShare;
-    const double lost_J = done_J_ + motor_J_ - stored_J;
-    const double more_J = lost_J > most_lost_J_ ? lost_J - most_lost_J_ : 0.0;
+    const double more_J = std::max(0.0, lost_J() - most_lost_J_);
     most_lost_J_ += more_J;
     return more_J;
   }
+  // What has gone into the tissue by now; it falls where an arm gives out.
+  double lost_J() const { return std::min(done_J_, taken_J_) + motor_J_ - stored_J_; }
   // Law states were forgotten: the springs begin anew.
   void forget() { started_ = false; }
 
@@ -40,9 +51,9 @@ class HandWork {
 
  private:
   static constexpr double kLeastShare = 1e-6;
-  double done_J_ = 0.0, motor_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;
+  double done_J_ = 0.0, taken_J_ = 0.0, motor_J_ = 0.0, stored_J_ = 0.0, most_lost_J_ = 0.0;
   double share_ = 1.0;
-  bool started_ = true;
+  bool started_ = true, shown_ = false;
 };
 
 }  // namespace trephine

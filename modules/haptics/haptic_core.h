@@ -99,9 +99,10 @@ class HapticCore {
     std::vector<std::uint32_t> taken;                // their voxels in order, near another arm's
     std::optional<Pose> last_pose;  // device
     HandWork work;
+    Vec3 last_model_N{0.0};  // patient axes
     Cutting cutting = Cutting::by_hand;
     bool cuts = false;     // may remove in this tick
-    bool placed = false;   // the proxy was put where the arm was
+    bool placed = false;   // its first pose came
     bool waiting = false;  // without force, until it is out of tissue
     bool not_as_stated = false;  // mass or delay proved to be another, ever
     double free_s = 0.0;   // for so long the arm's own pose has been free, and the tool far from it

@@ -13,13 +13,6 @@ namespace {
 constexpr double kHooked_mm = 15.0, kHooked_s = 0.5, kLetGo_s = 0.2;
 constexpr double kLeastShare = 1e-6;  // of a stiffness: less is none
 
-// How an orientation turned from one to another in a time, small angles: 2 Im(q_now q_before*) / T.
-Vec3 turning(const Quat& before, const Quat& now, double period_s) {
-  const Quat by = now * glm::conjugate(before);
-  const double sign = by.w < 0.0 ? -2.0 : 2.0;
-  return Vec3(by.x, by.y, by.z) * (sign / period_s);
-}
-
 // False for what no arm can say: not finite, metres away from its workspace, no rotation.
 bool isPose(const ArmSample& sample) {
   constexpr double kLooselyUnit = 1e-2;
@@ -66,23 +59,35 @@ bool HapticCore::wouldTouch(const Arm& arm, const Pose& pose_mm) const {
 void HapticCore::moveTool(std::size_t index, bool may_cut, std::uint64_t tick, Motion& motion) {
   Arm& arm = arms_[index];
   motion.pose_mm = motion.arm_mm;
-  if (!arm.proxy) return;
+  const bool first = !arm.placed;
+  arm.placed = true;
+  if (!arm.proxy) {
+    if (first && wouldTouch(arm, motion.arm_mm)) {
+      events_.push_back({tick, EventKind::starts_in_tissue, std::int32_t(index), 0, {}});
+    }
+    return;
+  }
   Proxy& proxy = *arm.proxy;
-  if (!arm.placed) {
-    arm.waiting = wouldTouch(arm, motion.arm_mm);
+  const TissueAround tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
+  const auto inTissue = [&] {
+    return proxy.standsInSolid(tissue, motion.arm_mm) || wouldTouch(arm, motion.arm_mm);
+  };
+  if (first) {
+    proxy.place(motion.arm_mm);
+    arm.waiting = inTissue();
     if (arm.waiting) {
       events_.push_back({tick, EventKind::starts_in_tissue, std::int32_t(index), 0, {}});
     }
-    proxy.place(motion.arm_mm);
-    arm.placed = true;
   }
   if (arm.waiting) {
-    arm.waiting = journal_.busy() || wouldTouch(arm, motion.arm_mm);
-    proxy.place(motion.arm_mm);
+    if (journal_.busy()) {
+      proxy.place(motion.arm_mm);
+    } else if (!first) {
+      arm.waiting = inTissue();
+    }
     return;
   }
   const bool still = paused_ || arm.faults != 0;
-  const TissueAround tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
   const Pose before = proxy.pose_mm();
   proxy.follow(tissue, motion.arm_mm, may_cut ? arm.cutting : Cutting::nothing);
   if (still && wouldTouch(arm, proxy.pose_mm())) proxy.hold(before);
@@ -193,7 +198,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   motion.arm_mm = parameters.map.toPatient_mm({sample.position_m, sample.orientation});
   motion.velocity_m_s = parameters.map.velocityToPatient(velocity_m_s);
   motion.turning_rad_s =
-      parameters.map.rotation * turning(before.orientation, sample.orientation, T);
+      parameters.map.rotation * (smallTurn(before.orientation, sample.orientation) / T);
   const bool jumped = glm::length(motion.velocity_m_s) > Removal::kFastest_m_s;
   if (!jumped) {
     arm.work.move(arm.gate.sent_N(), moved_m,
@@ -210,6 +215,9 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
 
   LawInput law_input = touch(arm, parameters.tool, motion);
   out.tissue_class = arm.contact.contact().tissue_class;
+  if (arm.proxy && firmer(parameters_.tissues, arm.proxy->heldBy(), out.tissue_class)) {
+    out.tissue_class = arm.proxy->heldBy();
+  }
   out.points_in_tissue = arm.contact.contact().points;
 
   ContactForce model;
@@ -288,8 +296,12 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   arm.cuts = open && arm.cutting != Cutting::nothing && !journal_.busy() && !arm.gate.waitingForAir();
   const bool at_work = atWork(arm, parameters.tool);
   const double motor_J = at_work ? T * parameters.tool.made_from.motor_W : 0.0;
-  const double lost_J = finite ? arm.work.hold(stored_J, out.rendered_share, motor_J) : 0.0;
-  arm.removal.earn(at_work && !jumped ? lost_J : 0.0, parameters_.tissues);
+  if (finite && !jumped) {
+    arm.work.take(-0.5 * T * glm::dot(arm.last_model_N + model_N, motion.velocity_m_s));
+  }
+  arm.last_model_N = finite ? model_N : Vec3(0.0);
+  const double more_J = finite ? arm.work.hold(stored_J, out.rendered_share, motor_J) : 0.0;
+  arm.removal.earn(at_work && !jumped ? more_J : 0.0, arm.work.lost_J(), parameters_.tissues);
   if (arm.waiting || arm.gate.waitingForAir()) out.tool_state |= kToolWaits;
   if (arm.proxy && arm.proxy->held()) out.tool_state |= kToolHeld;
   if (arm.letting_go > 0.0) out.tool_state |= kToolLetGo;

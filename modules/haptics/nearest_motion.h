@@ -14,6 +14,12 @@ struct SmallMotion {
   Vec3 turn{0.0};  // 2 sin(angle / 2) along its axis
 };
 
+// The turn from one orientation to another.
+inline Vec3 smallTurn(const Quat& from, const Quat& to) {
+  const Quat by = to * glm::conjugate(from);
+  return (by.w < 0.0 ? -2.0 : 2.0) * Vec3(by.x, by.y, by.z);
+}
+
 // Where a body is near something: a motion opens the gap by normal . shift + moment . turn.
 struct NearTouch {
   Vec3 normal{0.0}, moment{0.0};  // moment: lever x normal, mm

@@ -31,6 +31,10 @@ constexpr int kWorkATick = 256;
 // length squared; half of that, for the far end moves most. A short tool has a handle all the same.
 constexpr double kHandle_mm = 60.0;
 
+SmallMotion towards(const Pose& from, const Pose& to) {
+  return {to.position - from.position, smallTurn(from.orientation, to.orientation)};
+}
+
 // A small turn applied to an orientation.
 Quat turned(const Vec3& by, const Quat& q) {
   return glm::normalize(Quat(1.0, 0.5 * by.x, 0.5 * by.y, 0.5 * by.z) * q);
@@ -43,22 +47,41 @@ Proxy::Proxy(const Tool& tool, const GridGeometry& geometry)
       turn_mm2_(std::pow(std::max(surface_.reach_mm(), kHandle_mm), 2) / 6.0) {}
 
 void Proxy::place(const Pose& pose_mm) {
-  hold(pose_mm);
   arm_ = pose_mm;
-  stiffness_ = 0.0;
+  hold(pose_mm);
 }
 
 void Proxy::hold(const Pose& pose_mm) {
   pose_ = pose_mm;
-  pull_ = Pull{};
   blocker_count_ = 0;
   changed();
+  pullBack();
 }
 
-SmallMotion Proxy::towards(const Pose& from, const Pose& to) const {
-  const Quat by = to.orientation * glm::conjugate(from.orientation);
-  const double sign = by.w < 0.0 ? -2.0 : 2.0;
-  return {to.position - from.position, sign * Vec3(by.x, by.y, by.z)};
+// The pull from the arm to the tool. Nothing holds it any more once it is there.
+void Proxy::pullBack() {
+  const SmallMotion left = towards(arm_, pose_);
+  if (!(cost(left) > kHeld_mm * kHeld_mm)) {
+    stiffness_ = 0.0;
+    held_by_ = -1;
+  }
+  pull_ = {left.shift_mm, left.turn, turn_mm2_, stiffness_};
+}
+
+bool Proxy::standsInSolid(const TissueAround& tissue, const Pose& arm_mm) {
+  const SmallMotion by = towards(pose_, arm_mm);
+  travelled_.add(by);
+  next_travelled_.add(by);
+  pose_ = arm_ = arm_mm;
+  pullBack();
+  const PlacedBody body = surface_.place(arm_mm);
+  if (!surface_.mayMeet(tissue.bricks, body, body)) {
+    changed();
+    return false;
+  }
+  const double near_mm = kNear * surface_.voxel_mm();
+  look(tissue, body, near_mm, way_mm(by), true);
+  return touches(body, near_mm, 0.0, 0.0) < -kInside * surface_.voxel_mm();
 }
 
 double Proxy::usedUp_mm(const Travel& travel) const {
@@ -96,9 +119,13 @@ void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step
     if (!surface_.goOn(tissue, work)) return;
     gathered_ = true;
     travelled_ = next_travelled_;
-    stale_ = next_stale_;
+    stale_ = gone_ = next_stale_;
   };
-  if (gathered_ && stale_) surface_.drop(tissue.grid, tissue.lookup);
+  const auto dropGone = [&] {
+    if (gone_) surface_.drop(tissue.grid, tissue.lookup);
+    gone_ = false;
+  };
+  if (gathered_) dropGone();
   if (!gathered_) {
     begin();
     goOn(SolidSurface::kAll);
@@ -113,7 +140,7 @@ void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step
   }
   if (surface_.underWay()) {
     goOn(SolidSurface::kAll);
-    if (stale_) surface_.drop(tissue.grid, tissue.lookup);
+    dropGone();
     if (worn(step_mm) <= 1.0) return;
   }
   begin();
@@ -208,7 +235,7 @@ void Proxy::move(const Pose& to, const PlacedBody& body, Way& way) {
 
 // Nothing is near: as far as the surface is known. True when there is more of the way.
 bool Proxy::goFreely(Way& way) {
-  way.load = way.stiff = 0.0;
+  way.load = way.stiff = way.most = 0.0;
   blocker_count_ = 0;
   const SmallMotion wanted = towards(pose_, arm_);
   const double length_mm = way_mm(wanted);
@@ -252,13 +279,17 @@ bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, Pla
 bool Proxy::slide(const TissueAround& tissue, Way& way) {
   const SmallMotion wanted = towards(pose_, arm_);
   SmallMotion motion = nearestMotion(wanted, turn_mm2_, {touches_.data(), touch_count_});
-  way.load = way.stiff = 0.0;
+  way.load = way.stiff = way.most = 0.0;
   blocker_count_ = 0;
   for (std::size_t i = 0; i < touch_count_; ++i) {
     const double load = touches_[i].load;
     const SurfacePiece& piece = *touched_[i];
     if (!(load > 0.0)) continue;
     way.load += load;
+    if (load > way.most) {
+      way.most = load;
+      way.tissue_class = piece.tissue_class;
+    }
     way.stiff += load * tissue.classes.classes[std::size_t(piece.tissue_class)].stiffness_N_per_m;
     if (piece.cuttable) blockers_[blocker_count_++] = {piece.voxel, piece.tissue_class};
   }
@@ -286,7 +317,6 @@ bool Proxy::slide(const TissueAround& tissue, Way& way) {
 void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting) {
   arm_ = arm_mm;
   blocker_count_ = 0;
-  pull_ = Pull{};
   Way way{surface_.place(pose_)};
   if (!surface_.mayMeet(tissue.bricks, way.body, surface_.place(arm_mm))) {
     place(arm_mm);
@@ -309,11 +339,12 @@ void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutti
     if (way_mm(towards(pose_, arm_mm)) < kHeld_mm && !way.inside) break;
     if (touch_count_ > 0 ? !slide(tissue, way) : !goFreely(way)) break;
   }
-  const SmallMotion left = towards(arm_mm, pose_);
-  if (!(cost(left) > kHeld_mm * kHeld_mm)) stiffness_ = 0.0;
   // On its way back to an arm that went fast it pulls as it did.
-  if (way.load > 0.0) stiffness_ = way.stiff / way.load;
-  pull_ = {left.shift_mm, left.turn, turn_mm2_, stiffness_};
+  if (way.load > 0.0) {
+    stiffness_ = way.stiff / way.load;
+    held_by_ = way.tissue_class;
+  }
+  pullBack();
 }
 
 Pose Proxy::ahead_mm(double by_mm) const {

@@ -29,8 +29,10 @@ class Proxy {
   // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
   // or removed() said so.
   void follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting);
-  // Stays where it was before follow().
+  // Stays where it was before follow(); what held it then pulls on.
   void hold(const Pose& pose_mm);
+  // Goes to the arm, whatever is there. True where its body is in solid tissue.
+  bool standsInSolid(const TissueAround& tissue, const Pose& arm_mm);
   // The pull is let go: this share of its stiffness is left.
   void fade(double share) { pull_.stiffness *= share; }
   // Voxels around it came back, or mean other tissue.
@@ -39,11 +41,13 @@ class Proxy {
     surface_.giveUp();
   }
   // Voxels around it went.
-  void removed() { stale_ = next_stale_ = true; }
+  void removed() { stale_ = next_stale_ = gone_ = true; }
 
   const Pose& pose_mm() const { return pose_; }
   const Pull& pull() const { return pull_; }
-  bool held() const { return pull_.stiffness > 0.0; }
+  bool held() const { return held_by_ >= 0; }
+  // The class of what holds it most, -1 where nothing does.
+  std::int8_t heldBy() const { return held_by_; }
   // The pieces of tissue that hold it back and that this tool may cut.
   struct Blocker {
     std::uint32_t voxel = 0;
@@ -69,7 +73,8 @@ class Proxy {
   struct Way {
     PlacedBody body;
     double step_mm = 0.0;            // at most, in the next step
-    double load = 0.0, stiff = 0.0;  // of the touches in the last one
+    double load = 0.0, stiff = 0.0, most = 0.0;  // of the touches in the last one
+    std::int8_t tissue_class = -1;               // of the most loaded
     double least_mm = 0.0;           // gap that the next pose may have
     bool inside = false;
   };
@@ -79,7 +84,7 @@ class Proxy {
     const SurfacePiece* piece = nullptr;
     bool merged = false;
   };
-  SmallMotion towards(const Pose& from, const Pose& to) const;
+  void pullBack();
   // How far the farthest point moves of what is near tissue, or what is far at a kFar'th: bounds.
   double usedUp_mm(const Travel& travel) const;
   double way_mm(const SmallMotion& motion) const;
@@ -102,11 +107,14 @@ class Proxy {
   Pull pull_;
   double turn_mm2_;
   bool gathered_ = false, stale_ = false, next_stale_ = false;
+  bool gone_ = false;  // some of the pieces may be of voxels that went
   Cutting cutting_ = Cutting::nothing;
   Travel travelled_,
       next_travelled_;  // since the surface was gathered, and since the next was begun
   double last_step_mm_ = 0.0;
-  double stiffness_ = 0.0;  // of what held it last, until it is at the arm
+  // Of what held it last, until it is at the arm.
+  double stiffness_ = 0.0;
+  std::int8_t held_by_ = -1;
   std::array<NearTouch, kMostTouches> touches_;
   std::array<const SurfacePiece*, kMostTouches> touched_;  // by each of them
   std::array<Near, kMostTouches> near_;

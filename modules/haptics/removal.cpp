@@ -74,7 +74,8 @@ Capsule Removal::capsuleAt(const Pose& pose_mm) const {
   return {place(tool_.solid_from_m), place(tool_.solid_to_m), radius_mm_};
 }
 
-void Removal::earn(double work_J, const TissueTable& tissues) {
+void Removal::earn(double work_J, double lost_J, const TissueTable& tissues) {
+  lost_J_ = lost_J;
   double dearest_J = 0.0;
   for (int c = 0; c < tissues.count; ++c) {
     const TissueClass& t = tissues.classes[std::size_t(c)];
@@ -125,8 +126,8 @@ void Removal::take(const Index3& voxel, int tissue_class, const TissueTable& tis
                    std::vector<Bite>& bites) {
   const double price_J = cost_J(kind_, tissues.classes[std::size_t(tissue_class)],
                                 geometry_.voxelVolume_mm3());
-  if (credit_J_ < price_J || bites.size() == kMostBites) return;
-  credit_J_ -= price_J;
+  if (!affords(price_J) || bites.size() == kMostBites) return;
+  spend(price_J);
   bites.push_back({voxel, tissue_class, price_J});
 }
 
@@ -214,13 +215,13 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
           const int c = hu == kAirHu ? -1 : lookup.classAt(grid, voxel, hu);
           if (c < 0 || !tissues.classes[std::size_t(c)].cuttable) continue;
           const double price_J = cost_J(kind_, tissues.classes[std::size_t(c)], voxel_mm3);
-          const bool affords = kind_ == RemovalKind::instant || credit_J_ >= price_J;
-          if (!affords) paid_ = false;
-          if (!affords || bites.size() == kMostBites) {
+          const bool pays = affords(price_J);
+          if (!pays) paid_ = false;
+          if (!pays || bites.size() == kMostBites) {
             row_ = row.number;  // goes on here in the next tick
             return;
           }
-          credit_J_ -= price_J;
+          spend(price_J);
           bites.push_back({{i, row.j, k}, c, price_J});
         }
       }

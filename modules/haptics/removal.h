@@ -44,8 +44,9 @@ class Removal {
 
   // Every tick: the work that the tool did in it on tissue that may be cut, or 0; never less. What
   // is not spent within 50 ms or so is heat: the credit is capped by the work of that time and of
-  // two voxels.
-  void earn(double work_J, const TissueTable& tissues);
+  // two voxels. `lost_J` is all that has ever gone into tissue: no more than that is spent, though
+  // an arm may have given out since it was earned.
+  void earn(double work_J, double lost_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
   // this tick, to `bites` (room for kMostBites). No allocation.
   void sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
@@ -54,7 +55,7 @@ class Removal {
   void take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
             std::vector<Bite>& bites);
   // A voxel was shared with another tool, or could not be removed.
-  void refund(double work_J) { credit_J_ += work_J; }
+  void refund(double work_J) { spend(-work_J); }
   // Tissue came back, or another is meant by a HU: nothing is known to be clear.
   void forget() {
     known_ = false;
@@ -73,6 +74,13 @@ class Removal {
   static constexpr double kFastest_m_s = 5.0;
 
  private:
+  void spend(double price_J) {
+    credit_J_ -= price_J;
+    spent_J_ += price_J;
+  }
+  bool affords(double price_J) const {
+    return kind_ == RemovalKind::instant || (price_J <= credit_J_ && spent_J_ + price_J <= lost_J_);
+  }
   void begin(const Capsule& now);
   void end(const Capsule& now);
   bool mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const;
@@ -91,6 +99,7 @@ class Removal {
   double fading_;          // of recent_J_, a tick
   double recent_J_ = 0.0;  // work of the last 50 ms, fading
   double credit_J_ = 0.0;
+  double lost_J_ = 0.0, spent_J_ = 0.0;
 
   bool known_ = false;  // `clear_` holds: all within it that can be taken has been
   Capsule clear_;

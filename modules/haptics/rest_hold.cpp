@@ -7,7 +7,7 @@ namespace trephine {
 
 namespace {
 
-constexpr double kRest_s = 0.2;
+constexpr double kRest_s = 0.12;
 constexpr double kTurned = 0.09;        // sine: a force that turns by 5 degrees rests no more,
 constexpr double kTurnedCounts = 1.75;  // unless the diagonal of a count's cube turns it by more
 constexpr double kSlope = 2.0;          // a tissue's slope may be so many times its stiffness

@@ -72,9 +72,11 @@ void Session::note(const Event& event) {
   };
   const std::string& arm = scene_.arms[std::size_t(event.arm)].name;
   if (event.kind == EventKind::starts_in_tissue) {
-    warn("STARTS_IN_TISSUE", "The tool of the " + arm +
-                                 " arm starts in tissue: it has no force and cuts nothing until it "
-                                 "has been moved out");
+    warn("STARTS_IN_TISSUE",
+         "The tool of the " + arm + " arm starts in tissue: " +
+             (names(scene_.laws, LawKind::elastic)
+                  ? "it has no force and cuts nothing until it has been moved out"
+                  : "without the elastic law it feels and cuts it from the first moment"));
   } else if (event.kind == EventKind::let_go) {
     warn("LET_GO", "The tool of the " + arm + " arm was hooked behind solid tissue " +
                        plainNumber(std::round(double(event.tick) / scene_.rate_hz * 10.0) / 10.0) +

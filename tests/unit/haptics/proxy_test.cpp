@@ -224,6 +224,7 @@ TEST(HandWork, WhatASpringGivesBackIsNotPaidTwice) {
   double paid = work.hold(0.0, 1.0);
   const auto move = [&](double force_N, double by_m, double stored_J) {
     work.move(Vec3(0, 0, force_N), Vec3(0, 0, by_m), 1.0);
+    work.take(-force_N * by_m);
     paid += work.hold(stored_J, 1.0);
   };
   move(1.0, -0.002, 0.002);  // pressed: all of it is stored
@@ -246,6 +247,87 @@ TEST(HandWork, DoesNotDependOnTheArm) {
   work.move(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 1.0);
   weak.move(Vec3(0, 0, 1.0), Vec3(0, 0, -0.001), 2.0);
   EXPECT_DOUBLE_EQ(work.done_J(), weak.done_J());
+}
+
+TEST(HandWork, WhatAControllerDampsAwayIsNoWorkOnTissue) {
+  HandWork work;
+  double paid = work.hold(0.0, 0.1);
+  for (int n = 0; n < 10; ++n) {
+    work.move(Vec3(0, 0, 0.2), Vec3(0, 0, -0.001), 1.0);  // ten times what the model does
+    work.take(0.0002);
+    paid += work.hold(0.0, 0.1);
+  }
+  EXPECT_NEAR(work.done_J(), 0.02, 1e-15);
+  EXPECT_NEAR(paid, 0.002, 1e-15);
+}
+
+TEST(Barrier, AThickToolThatOverlapsBoneStartsInTissueThoughItsAxisDoesNot) {
+  HapticParameters p = burrWithoutMotor();
+  p.arms[0].tool = makeNeedle(0.06);
+  for (BodyPart& part : p.arms[0].tool.body) part.radius_m = 0.005;
+  Bench bench(p);
+  bench.at({0, 0, kSurface_mm + 3.0});  // its tip is round: 5 mm around the axis
+  ASSERT_EQ(bench.core.events().size(), 1u);
+  EXPECT_EQ(bench.core.events()[0].kind, EventKind::starts_in_tissue);
+  EXPECT_EQ(bench.push({0, 0, kSurface_mm + 3.0}, {0, 0, kSurface_mm + 3.0}, 200), 0.0);
+  EXPECT_NEAR(bench.record.arms[0].proxy_position_mm.z, kSurface_mm + 3.0, 1e-9) << "not thrown";
+  bench.push({0, 0, kSurface_mm + 3.0}, {0, 0, 10}, 200);
+  bench.push({0, 0, 10}, {0, 0, kSurface_mm + 3.0}, 400);
+  EXPECT_GT(glm::length(bench.record.arms[0].sent_N), 0.5);
+}
+
+TEST(Barrier, WithoutTheElasticLawAStartInTissueIsToldToo) {
+  HapticParameters p = burrWithoutMotor();
+  p.laws = {LawKind::viscous};
+  Bench bench(p);
+  bench.at({0, 0, -3});
+  ASSERT_EQ(bench.core.events().size(), 1u);
+  EXPECT_EQ(bench.core.events()[0].kind, EventKind::starts_in_tissue);
+  bench.at({0, 0, -3.1});
+  EXPECT_TRUE(bench.core.events().empty()) << "once";
+}
+
+TEST(Barrier, BoneWithoutStiffnessIsCutByAMotorAllTheSame) {
+  const auto removed = [](double stiffness) {
+    HapticParameters p = burrWithoutMotor();
+    p.arms[0].tool.made_from.motor_W = 6.0;
+    p.tissues = solidBone(true);
+    p.tissues.classes[0].stiffness_N_per_m = stiffness;
+    p.tissues.classes[0].cutting_J_per_mm3 = 0.06;
+    Bench bench(p);
+    bench.push({0, 0, 4}, {0, 0, -4}, 2000);
+    return bench.core.journal().removed(0, 0);
+  };
+  EXPECT_GT(removed(0.0), 50u);
+  EXPECT_EQ(removed(0.0), removed(1e-9));
+}
+
+TEST(Barrier, TheTissueThatHoldsTheToolIsTheOneItTouches) {
+  HapticParameters p = burrWithoutMotor();
+  p.tissues.count = 2;
+  p.tissues.classes[1].hu_min = 0;
+  p.tissues.classes[1].hu_max = 225;
+  Volume volume = cube();
+  for (int k = 52; k < 60; ++k) {  // a soft layer on the bone, where the tool's points lie
+    for (int n = 0; n < 80 * 80; ++n) volume.hu[volume.geometry.indexOf(n % 80, n / 80, k)] = 100;
+  }
+  Bench bench(p, std::move(volume));
+  bench.push({0, 0, 19}, {0, 0, 4}, 1500);
+  EXPECT_TRUE(bench.record.arms[0].tool_state & kToolHeld);
+  EXPECT_EQ(bench.record.arms[0].tissue_class, 0);
+}
+
+TEST(Barrier, InAPauseTheDemandIsStillTheWallsOwn) {
+  Bench bench(burrWithoutMotor());
+  bench.push({0, 0, 4}, {0, 0, -3}, 700);
+  bench.push({0, 0, -3}, {0, 0, -3}, 100);
+  const double before_N = bench.record.arms[0].demanded_N.z;
+  ASSERT_GT(before_N, 1.0);
+  bench.at({0, 0, -3}, {{CommandKind::pause, 0, {}}});
+  EXPECT_NEAR(bench.record.arms[0].demanded_N.z, before_N, 0.02 * before_N);
+  bench.push({0, 0, -3}, {0, 0, -3.5}, 100);
+  EXPECT_NEAR(bench.record.arms[0].demanded_N.z, before_N + 0.45, 0.05);
+  EXPECT_EQ(glm::length(bench.record.arms[0].sent_N), 0.0);
 }
 
 }  // namespace

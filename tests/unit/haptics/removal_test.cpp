@@ -384,12 +384,35 @@ TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
   for (int n = 0; n < 400; ++n) {
     // It comes down along a row that it had no work for.
     const Vec3 at = on_a_voxel + Vec3(0, 0, std::max(0.0, 0.05 * (20 - n)));
-    removal.earn(n < 30 ? 0.0 : 1.0, table);
+    removal.earn(n < 30 ? 0.0 : 1.0, 1e3, table);
     bites.clear();
     removal.sweep(grid, bricks, lookup, table, {at, {1, 0, 0, 0}}, bites);
     for (const Bite& b : bites) writer.store(b.voxel[0], b.voxel[1], b.voxel[2], kAirHu);
   }
   for (int k = 3; k < 26; ++k) EXPECT_EQ(grid.hu(32, 32, k), kAirHu) << k;
+}
+
+TEST(Removal, SpendsNothingThatAnArmHasGivenBackSince) {
+  Grid grid(slope(64, 24.6));
+  TissueLookup lookup;
+  const TissueTable table = test::boneTable();
+  lookup.set(table);
+  const TissueBricks bricks(grid, lookup);
+  Removal removal(burrStroke(3.0, 1.0).tool, grid.geometry(), RemovalKind::work, 1e-3);
+  std::vector<Bite> bites;
+  bites.reserve(Removal::kMostBites);
+  const Pose inside{grid.geometry().toPatient_mm({32, 32, 4}), {1, 0, 0, 0}};
+  removal.earn(1.0, 1.0, table);
+  removal.earn(0.0, 0.0, table);  // all of it came back out of the springs
+  EXPECT_GT(removal.credit_J(), 0.1);
+  removal.sweep(grid, bricks, lookup, table, inside, bites);
+  EXPECT_TRUE(bites.empty());
+  removal.earn(0.0, 0.5, table);
+  for (int n = 0; n < 20; ++n) removal.sweep(grid, bricks, lookup, table, inside, bites);
+  double spent_J = 0.0;
+  for (const Bite& bite : bites) spent_J += bite.cost_J;
+  EXPECT_GT(spent_J, 0.0);
+  EXPECT_LE(spent_J, 0.5);
 }
 
 TEST(Removal, UndoGivesTheCreditBack) {

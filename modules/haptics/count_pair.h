@@ -1,0 +1,49 @@
+// Where an arm is whose samples go to and fro between two counts of an encoder: at their border, as
+// far as anybody can tell. A tool that creeps over a firm wall does so at every count that it
+// passes, by a few micrometres, and taken count by count that looks like a loss of k q^2 each time.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "base/math.h"
+
+namespace trephine {
+
+class CountPair {
+ public:
+  CountPair(double encoder_step_m, double period_s) : step_m_(encoder_step_m), T_(period_s) {}
+
+  // Every tick. On each axis the sample itself, or within 0.1 s of a step back to the count that it
+  // was at before, the middle of the two.
+  Vec3 look(const Vec3& sample_m) {
+    Vec3 at_m = sample_m;
+    if (!(step_m_ > 0.0)) return at_m;
+    for (int i = 0; i < 3; ++i) {
+      Axis& axis = axes_[std::size_t(i)];
+      const double moved_m = std::abs(sample_m[i] - axis.now_m);
+      axis.since_s += T_;
+      if (moved_m > 0.5 * step_m_) {
+        axis.back = moved_m < 1.5 * step_m_ && axis.since_s < kSoon_s &&
+                    std::abs(sample_m[i] - axis.before_m) < 0.5 * step_m_;
+        axis.before_m = axis.now_m;
+        axis.now_m = sample_m[i];
+        axis.since_s = 0.0;
+      }
+      if (axis.back && axis.since_s < kSoon_s) at_m[i] = 0.5 * (axis.now_m + axis.before_m);
+    }
+    return at_m;
+  }
+
+ private:
+  static constexpr double kSoon_s = 0.1;
+  struct Axis {
+    double now_m = 0.0, before_m = 0.0;  // the last two counts
+    double since_s = 1e9;
+    bool back = false;
+  };
+  double step_m_, T_;
+  std::array<Axis, 3> axes_{};
+};
+
+}  // namespace trephine
