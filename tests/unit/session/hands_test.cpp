@@ -114,8 +114,9 @@ TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
   freewheelTalking(session, 8.0, [&] {
     ++talks;
     if (talks < 24) session.moveHand(0, 8.0 * in);
-    if (talks == 24) EXPECT_GE(session.state().record.arms[0].tissue_class, 0);
-    if (talks == 24) EXPECT_TRUE(session.send(CommandKind::reset));
+    if (talks != 24) return;
+    EXPECT_GE(session.state().record.arms[0].tissue_class, 0);
+    EXPECT_TRUE(session.send(CommandKind::reset));
   });
   ASSERT_GT(talks, 26);
   EXPECT_LT(glm::distance(session.handTarget_mm(0), begin_mm), 1e-9);
@@ -156,13 +157,17 @@ TEST(Hands, PressAsHardAfterAPauseAsBefore) {
     if (touched == 0 && sent_N() < 0.7) return session.moveHand(0, -0.5 * out);
     ++touched;
     ++talks;
-    if (talks == 10) pressed_N.push_back(sent_N());  // after 2.5 s
-    if (talks == 10) session.send(CommandKind::pause);
-    if (talks == 14) EXPECT_EQ(sent_N(), 0.0);
-    if (talks == 14) session.send(CommandKind::resume);
-    if (talks == 18) talks = pressed_N.size() < 4 ? 0 : 18;
+    if (talks == 10) {  // after 2.5 s
+      pressed_N.push_back(sent_N());
+      session.send(CommandKind::pause);
+    }
+    if (talks == 14) {
+      EXPECT_EQ(sent_N(), 0.0);
+      session.send(CommandKind::resume);
+      talks = 0;
+    }
   });
-  ASSERT_EQ(pressed_N.size(), 4u);
+  ASSERT_GE(pressed_N.size(), 4u);
   EXPECT_GT(pressed_N[0], 0.5);
   for (double force_N : pressed_N) EXPECT_NEAR(force_N, pressed_N[0], 0.05 * pressed_N[0]);
 }

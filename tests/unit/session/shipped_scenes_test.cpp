@@ -203,7 +203,8 @@ TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
       EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << scene.arms[i].name;
       EXPECT_EQ(record.arms[i].tool_state, 0u) << name << ", " << scene.arms[i].name;
       const double moved_mm = 1000.0 * glm::length(record.arms[i].device_position_m);
-      if (scene.anatomy == "cranium") EXPECT_LT(moved_mm, 0.5) << name << ": it is in air as it is";
+      if (scene.anatomy != "cranium") continue;
+      EXPECT_LT(moved_mm, 0.5) << name << ": it is in air as it is";
     }
   }
 }

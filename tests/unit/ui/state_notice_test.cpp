@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QLayout>
 #include <QMouseEvent>
 #include <QWheelEvent>
 
