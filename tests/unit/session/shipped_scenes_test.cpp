@@ -215,6 +215,40 @@ TEST(ShippedScenes, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
   }
 }
 
+// A hand that presses lightly on the vault.
+TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
+  for (const ControllerKind controller : {ControllerKind::off, ControllerKind::bounded}) {
+    Scene scene = shipped("cranium-one-arm", "");
+    scene.controller = controller;
+    for (Tissue& tissue : scene.tissues.tissues) {
+      tissue.cuttable = false;
+      if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
+    }
+    auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
+    ASSERT_TRUE(session.ok()) << session.error().sentence();
+    const Vec3 down =
+        (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
+    EnergyWatch watch;
+    int gave_out = 0, pressed = 0;
+    double last_J = 0.0;
+    const Progress progress([&](double, const std::string&) {
+      const LoopState& state = (*session)->state();
+      const ArmRecord& arm = state.record.arms[0];
+      gave_out += watch.look(arm, 1.0, state.paused, double(state.ticks) / scene.rate_hz);
+      last_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
+      if (arm.tool_state & kToolHeld) ++pressed;
+      if (pressed < 2) (*session)->moveHand(0, 0.5 * down);
+    });
+    ASSERT_TRUE((*session)->freewheel(25.0, progress).ok());
+    EXPECT_GT(pressed, 10);
+    if (controller == ControllerKind::off) {
+      EXPECT_GT(gave_out, 5) << 1e3 * last_J << " mJ";
+    } else {
+      EXPECT_EQ(gave_out, 0) << 1e3 * last_J << " mJ";
+    }
+  }
+}
+
 TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceFromTheDemandedOne) {
   for (const char* name : kShipped) expectEveryDifferenceFlagged(name, "");
 }
