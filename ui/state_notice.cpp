@@ -48,7 +48,8 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
     if (arm.faults != 0) of_arm << faultWords(arm.faults);
     if (!state.paused && (arm.tool_state & kToolWaits)) {
       of_arm << StateNotice::tr(
-          "The tool is in tissue that it did not come into. Draw it out to feel and to cut: turn the "
+          "The tool is in tissue that it did not come into. Draw it out to feel and to cut: turn "
+          "the "
           "wheel towards you or press Page Up (with Shift for the left hand).");
     }
     if (arm.tool_state & kToolLetGo) {

@@ -21,14 +21,16 @@ struct PartWords {
 
 constexpr PartWords kPartWords[] = {
     {kPartArmBound, QT_TRANSLATE_NOOP("Words", "softer, for this arm"),
-     QT_TRANSLATE_NOOP("Words",
-                       "the tissue is firmer than this arm can show without shaking, so it is shown "
-                       "as firm as the arm can.")},
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "the tissue is firmer than this arm can show without shaking, so it is shown "
+         "as firm as the arm can.")},
     {kPartLearned, QT_TRANSLATE_NOOP("Words", "softer, since it shook"),
      QT_TRANSLATE_NOOP("Words",
                        "the arm shook in this hand, so less is shown until it has been calm.")},
     {kPartDamping, QT_TRANSLATE_NOOP("Words", "damped"),
-     QT_TRANSLATE_NOOP("Words", "a little damping goes with each spring, so that it does not ring.")},
+     QT_TRANSLATE_NOOP("Words",
+                       "a little damping goes with each spring, so that it does not ring.")},
     {kPartCredit, QT_TRANSLATE_NOOP("Words", "energy held back"),
      QT_TRANSLATE_NOOP("Words",
                        "the force would give the hand more energy than the hand put in, so it is "
@@ -40,17 +42,19 @@ constexpr PartWords kPartWords[] = {
     {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's greatest force"),
      QT_TRANSLATE_NOOP("Words", "the tissue demands more force than the arm has.")},
     {kPartLimiter, QT_TRANSLATE_NOOP("Words", "rising slowly"),
-     QT_TRANSLATE_NOOP("Words",
-                       "after a pause, a change or a late step the force comes back slowly, so that "
-                       "it does not kick.")},
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "after a pause, a change or a late step the force comes back slowly, so that "
+         "it does not kick.")},
     {kPartEstimate, QT_TRANSLATE_NOOP("Words", "between encoder steps"),
      QT_TRANSLATE_NOOP("Words",
                        "the encoder tells the place in steps; the force is that of the estimated "
                        "place and speed between them.")},
     {kPartPrediction, QT_TRANSLATE_NOOP("Words", "ahead of the delay"),
-     QT_TRANSLATE_NOOP("Words",
-                       "a force acts a moment after it is computed, so it is that of the place where "
-                       "the arm will be then.")},
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "a force acts a moment after it is computed, so it is that of the place where "
+         "the arm will be then.")},
 };
 }  // namespace
 
@@ -97,7 +101,8 @@ QString controllerWord(ControllerKind kind) {
 QString controllerMeaning(ControllerKind kind) {
   switch (kind) {
     case ControllerKind::off:
-      return tr("What the tissue demands goes to the arm as it is. On firm tissue the arm may shake.");
+      return tr(
+          "What the tissue demands goes to the arm as it is. On firm tissue the arm may shake.");
     case ControllerKind::seed:
       return tr("The passivity controller of the seed paper, for comparison.");
     case ControllerKind::bounded:

@@ -6,8 +6,7 @@
 
 namespace trephine {
 
-bool EnergyWatch::look(const ArmRecord& arm, double device_per_model, bool paused,
-                       double now_s) {
+bool EnergyWatch::look(const ArmRecord& arm, double device_per_model, bool paused, double now_s) {
   const Seen now{arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z, arm.stored_J,
                  arm.rendered_share, now_s};
   const bool returning = paused || arm.faults != 0 || (arm.tool_state & kToolWaits) ||

@@ -13,9 +13,9 @@ namespace trephine {
 // tissue holds then. So it is a leaky account, and nothing is put to it while the force returns.
 class EnergyWatch {
  public:
-  static constexpr double kFault_J = 2e-3;    // in the account
-  static constexpr double kLeak_W = 1e-3;     // no hand feels less
-  static constexpr double kMost_J = 5e-3;     // so that a fault that has ended is soon forgotten
+  static constexpr double kFault_J = 2e-3;  // in the account
+  static constexpr double kLeak_W = 1e-3;   // no hand feels less
+  static constexpr double kMost_J = 5e-3;   // so that a fault that has ended is soon forgotten
 
   // `device_per_model`: a joule of the model at the arm, force scale by motion scale of its map.
   // `now_s`: of the session. True while the arm gives out.

@@ -15,8 +15,8 @@ class Watched {
   ArmRecord arm;
   bool paused = false;
 
-  // Over `seconds` the arm gives out `given_J` and the springs come to hold `stored_J` more. Whether
-  // that was ever a fault.
+  // Over `seconds` the arm gives out `given_J` and the springs come to hold `stored_J` more.
+  // Whether that was ever a fault.
   bool in(double seconds, double given_J, double stored_J = 0.0) {
     bool fault = false;
     const int looks = std::max(1, int(seconds / kEvery_s));

@@ -211,7 +211,8 @@ TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
 
 TEST(ShippedScenes, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
   for (const char* name : kShipped) {
-    for (const Seen& seen : seenOf(name, "")) EXPECT_EQ(seen.gave_out, 0) << name << ", " << seen.arm;
+    for (const Seen& seen : seenOf(name, ""))
+      EXPECT_EQ(seen.gave_out, 0) << name << ", " << seen.arm;
   }
 }
 
@@ -226,8 +227,7 @@ TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
     }
     auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
-    const Vec3 down =
-        (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
+    const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
     EnergyWatch watch;
     int gave_out = 0, pressed = 0;
     double last_J = 0.0;

@@ -7,8 +7,8 @@
 #include <QSlider>
 #include <QSpinBox>
 
-#include "qt_support.h"
 #include "haptics/bounded_controller.h"
+#include "qt_support.h"
 #include "tissue/tissue_edits.h"
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
@@ -303,7 +303,8 @@ TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
   EXPECT_TRUE(find<QLabel>(panel, "rightFaults").isHidden());
   EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ"), colours::kBad));
   EXPECT_TRUE(find<QLabel>(panel, "rightFaults").text().contains("shakes"));
-  EXPECT_TRUE(find<QLabel>(panel, "rightFaults").text().contains("Choose the controller 'Bounded'"));
+  EXPECT_TRUE(
+      find<QLabel>(panel, "rightFaults").text().contains("Choose the controller 'Bounded'"));
   for (int i = 0; i < 80; ++i) shown(0.489);
   EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ"), colours::kText)) << "it has stopped";
   EXPECT_TRUE(energy.toolTip().contains("encoder"));
