@@ -5,7 +5,6 @@
 #include <QFrame>
 #include <QScrollArea>
 
-#include "haptics/unseen_energy.h"
 #include "ui/colours.h"
 #include "ui/words.h"
 
@@ -61,7 +60,9 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   controller_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (const auto& [name, kind] : kControllerNames) {
     controller_->addItem(controllerWord(kind), int(kind));
+    controller_->setItemData(controller_->count() - 1, controllerMeaning(kind), Qt::ToolTipRole);
   }
+  controller_->setCurrentIndex(-1);  // until a scene says which
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
   journal_ =
@@ -95,6 +96,7 @@ void ArmsPanel::setScene(const Scene& scene) {
   card_widgets_.clear();
   cards_.clear();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene.arms[i], i));
+  period_s_ = 1.0 / scene.rate_hz;
   controller_->setCurrentIndex(controller_->findData(int(scene.controller)));
   showIdle();
 }
@@ -115,16 +117,20 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
             value(frame, prefix + "Parts"),
             value(frame, prefix + "Faults"),
             new ForceBar(frame),
-            unseenEnergy_J(arm.dynamics ? arm.dynamics->encoder_step_m : 0.0)};
+            arm.map.force_scale / arm.map.motion_scale,
+            {}};
   card.bar->setObjectName(prefix + "ForceBar");
   card.bar->setToolTip(
       tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
-  card.energy->setToolTip(
-      tr("Net work that the sent force did on the hand. Tissue gives none out: "
-         "where an arm does, it pushes by itself or shakes."));
+  card.energy->setToolTip(tr(
+      "<p>Net work that the sent force did on the hand since the start; below zero where the "
+      "hand worked on the tissue. A little above zero is no fault: the encoder hides about 0.1 mJ "
+      "of each contact, and a force that comes back after a pause or a change gives out what the "
+      "tissue holds.</p><p>Red: just now the arm gives out more than 1 mJ a second beyond what "
+      "was pressed into the tissue. It shakes or pushes by itself.</p>"));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
   card.parts->setWordWrap(true);
-  card.parts->setToolTip(tr("What the controller changes in the force that the tissue demands."));
+  card.parts->setToolTip(forceChangeMeanings());
   card.faults->setWordWrap(true);
   colours::setText(*card.faults, colours::kBad);
 
@@ -136,7 +142,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   form->addRow(quiet(tr("Touches"), frame), card.contact);
   form->addRow(quiet(tr("Tip"), frame), card.position);
   form->addRow(quiet(tr("Energy"), frame), card.energy);
-  form->addRow(quiet(tr("Bounds"), frame), card.parts);
+  form->addRow(quiet(tr("Changed"), frame), card.parts);
   auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(10, 8, 10, 8);
   layout->setSpacing(6);
@@ -152,9 +158,10 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
 
 void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
                           const std::vector<double>& limits_N) {
+  const double now_s = double(state.ticks) * period_s_;
   for (std::size_t i = 0; i < cards_.size() && i < limits_N.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    const Card& card = cards_[i];
+    Card& card = cards_[i];
     const double sent_N = glm::length(arm.sent_N), demanded_N = glm::length(arm.demanded_N);
     card.bar->setForce(sent_N, demanded_N, limits_N[i]);
     card.force->setText(tr("%1 of %2").arg(newtons(sent_N), newtons(limits_N[i])));
@@ -163,11 +170,10 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.position->setText(
         tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
     const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
-    const bool gives_out = energy_J > card.unseen_J;
-    card.energy->setText(
-        (gives_out ? tr("%1 mJ given out") : tr("%1 mJ")).arg(kMilli * energy_J, 0, 'f', 1));
+    const bool gives_out = card.watch.look(arm, card.device_per_model, state.paused, now_s);
+    card.energy->setText(tr("%1 mJ").arg(kMilli * energy_J, 0, 'f', 1));
     colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
-    card.parts->setText(controllerPartWords(arm.controller_parts));
+    card.parts->setText(forceChangeWords(arm, state.paused));
     const bool touching =
         arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
     card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
@@ -175,6 +181,13 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
     QStringList wrong;
     if (arm.faults != 0) wrong << faultWords(arm.faults);
+    if (gives_out) {
+      wrong << (state.controller == ControllerKind::bounded
+                    ? tr("The arm gives out energy: it shakes or pushes by itself.")
+                    : tr("The arm gives out energy: it shakes or pushes by itself. Choose the "
+                         "controller '%1'.")
+                          .arg(controllerWord(ControllerKind::bounded)));
+    }
     if (arm.controller_parts & kPartArmNotAsStated) {
       wrong << tr("The arm's mass or delay is not what its device file states.");
     }
@@ -188,14 +201,15 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
   if (state.ticks > 0) showController(state.controller);  // before, it is not known
 }
 
-void ArmsPanel::showController(ControllerKind kind) {
+void ArmsPanel::showController(std::optional<ControllerKind> kind) {
   if (!controller_->view()->isVisible()) {  // a person may be choosing
-    controller_->setCurrentIndex(controller_->findData(int(kind)));
+    controller_->setCurrentIndex(kind ? controller_->findData(int(*kind)) : -1);
   }
 }
 
 void ArmsPanel::showIdle() {
-  for (const Card& card : cards_) {
+  for (Card& card : cards_) {
+    card.watch = EnergyWatch();
     card.bar->setForce(0.0, 0.0, 1.0);
     for (QLabel* label : {card.contact, card.position, card.energy, card.parts, card.force}) {
       label->setText(QStringLiteral("\u2013"));

@@ -10,6 +10,7 @@
 
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
+#include "session/energy_watch.h"
 #include "ui/force_bar.h"
 
 namespace trephine {
@@ -25,7 +26,7 @@ class ArmsPanel : public QWidget {
   void showState(const LoopState& state, const TissueSet& tissues,
                  const std::vector<double>& limits_N);
   void showIdle();
-  void showController(ControllerKind kind);
+  void showController(std::optional<ControllerKind> kind);  // none: no scene says which
 
  signals:
   void controllerWanted(trephine::ControllerKind kind);
@@ -34,13 +35,15 @@ class ArmsPanel : public QWidget {
   struct Card {
     QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
     ForceBar* bar;
-    double unseen_J;  // energy out up to which nothing is wrong
+    double device_per_model;  // energy
+    EnergyWatch watch;
   };
   Card addCard(const SceneArm& arm, std::size_t index);
 
   QVBoxLayout* cards_layout_;
   std::vector<QWidget*> card_widgets_;
   std::vector<Card> cards_;
+  double period_s_ = 0.001;
   QComboBox* controller_;
   QLabel *missed_, *dropped_, *journal_;
 };

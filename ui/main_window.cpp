@@ -69,8 +69,13 @@ QFileDialog* MainWindow::fileDialog(const char* name, const QString& title,
 }
 
 void MainWindow::openOnceShown(const std::filesystem::path& path) {
+  if (Workstation::isScene(path)) scenes_->setCurrentIndex(-1);
   connect(
-      view_, &ViewWidget::framePainted, this, [this, path] { workstation_.openPath(path); },
+      view_, &ViewWidget::framePainted, this,
+      [this, path] {
+        workstation_.openPath(path);
+        if (!workstation_.isOpening()) showInUse();
+      },
       Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
 }
 
@@ -127,9 +132,13 @@ void MainWindow::open(const std::filesystem::path& path) {
   go_on();
 }
 
-void MainWindow::showScene() {
+// In the list of exercises; without a scene, the one that an imported case would get.
+void MainWindow::showInUse() {
   const std::optional<Scene>& scene = workstation_.scene();
-  if (!scene) return;
+  if (!scene) {
+    scenes_->setCurrentIndex(scenes_->findData(toQt(defaultScene("cranium"))));
+    return arms_->showController({});
+  }
   const QString file = toQt(workstation_.sceneFile());
   int index = scenes_->findData(file);
   if (index < 0) index = scenes_->findText(toQt(scene->name));
@@ -138,11 +147,26 @@ void MainWindow::showScene() {
     index = scenes_->count() - 1;
   }
   scenes_->setCurrentIndex(index);
+  arms_->showController(scene->controller);
+}
+
+void MainWindow::showScene() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  if (!scene) return;
+  showInUse();
   setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
   tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
   showRenderable(scene->controller);
   view_->setTissues(scene->tissues);
   arms_->setScene(*scene);
+}
+
+// Until it is open, or cannot be had.
+void MainWindow::showOpening(const Scene& scene, const std::filesystem::path& file) {
+  scenes_->setPlaceholderText(toQt(scene.name));  // where the list has it not yet
+  const int index = scenes_->findData(toQt(file));
+  scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(toQt(scene.name)));
+  arms_->showController(scene.controller);
 }
 
 void MainWindow::showCase() {
@@ -306,7 +330,9 @@ void MainWindow::showRates() {
 
 void MainWindow::command(CommandKind kind) {
   Session* session = workstation_.session();
-  if (session && !session->send(kind)) say(tr("Busy: try again in a moment."));
+  if (!session) return;
+  if (!session->send(kind)) return say(tr("Busy: try again in a moment."));
+  placeHandPoints();  // a reset moves the hands
 }
 
 void MainWindow::rewind(std::uint32_t second) {
@@ -319,9 +345,7 @@ void MainWindow::rewind(std::uint32_t second) {
 
 void MainWindow::showRewind(const LoopState& state) {
   if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + kAnswerTicks) {
-    say(tr("Back at %1: tissue, counts and forces as they were. Take the tools out of the tissue "
-           "to feel again.")
-            .arg(timeWords(going_back_->second)));
+    say(backWords(going_back_->second, state, *workstation_.scene()));
     going_back_.reset();
   }
   rewind_->showTime(state.seconds, state.busy || going_back_);

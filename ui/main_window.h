@@ -83,6 +83,8 @@ class MainWindow : public QMainWindow {
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
   void unlessTissuesStay(std::function<void()> go_on);
   void showScene();
+  void showInUse();
+  void showOpening(const Scene& scene, const std::filesystem::path& file);
   void showRenderable(ControllerKind in_force);
   void showCase();
   void showPhase();

@@ -226,10 +226,9 @@ void MainWindow::connectParts() {
     view_->setFocus();
   });
   connect(scenes_, &QComboBox::activated, this, [this](int index) {
-    unlessSceneIsLost([this, file = toPath(scenes_->itemData(index).toString())] {
-      workstation_.useScene(file);
-    });
-    showScene();  // back to the one in use where the other cannot be had
+    const auto file = toPath(scenes_->itemData(index).toString());
+    showInUse();  // until the other is on its way: it may be asked about, or not be had
+    unlessSceneIsLost([this, file] { workstation_.useScene(file); });
     view_->setFocus();
   });
 
@@ -244,7 +243,11 @@ void MainWindow::connectParts() {
             tissues_->setEnabled(false);  // they may be about to go
           });
   connect(&workstation_, &Workstation::openingEnded, case_, &CasePanel::endProgress);
-  connect(&workstation_, &Workstation::openingEnded, this, [this] { tissues_->setEnabled(true); });
+  connect(&workstation_, &Workstation::openingEnded, this, [this] {
+    tissues_->setEnabled(true);
+    showInUse();
+  });
+  connect(&workstation_, &Workstation::sceneOpening, this, &MainWindow::showOpening);
   connect(&workstation_, &Workstation::sceneChanged, this, &MainWindow::showScene);
   connect(&workstation_, &Workstation::caseOpened, this, &MainWindow::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &MainWindow::showPhase);
@@ -267,7 +270,7 @@ void MainWindow::fillScenes() {
   for (const std::filesystem::path& file : files) {
     if (Result<Scene> scene = readScene(file)) scenes_->addItem(toQt(scene->name), toQt(file));
   }
-  scenes_->setCurrentIndex(scenes_->findData(toQt(defaultScene("cranium"))));
+  showInUse();
 }
 
 }  // namespace trephine

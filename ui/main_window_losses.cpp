@@ -62,7 +62,8 @@ void MainWindow::reset() {
     const LoopState& state = session->state();
     if (!state.can_undo && !state.can_redo) return;  // nothing was cut
     ask(this, "resetQuestion", tr("Put all tissue back?"),
-        tr("Undo cannot bring the cuts again. The bar of seconds still leads back to them."),
+        tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
+           "that mouse and keys move go back to where they began."),
         tr("&Put back"), [this] { command(CommandKind::reset); });
   } else if (workstation_.phase() == Workstation::Phase::ready) {
     unlessCutsAreLost([this] { showWholeCase(); });

@@ -44,14 +44,18 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   std::uint32_t faults = 0;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    QString reason = faultWords(arm.faults);
-    if (reason.isEmpty() && !state.paused && (arm.tool_state & kToolWaits)) {
-      reason = StateNotice::tr(
-          "The tool is in tissue that it did not come into. Draw it out to feel and to cut.");
+    QStringList of_arm;
+    if (arm.faults != 0) of_arm << faultWords(arm.faults);
+    if (!state.paused && (arm.tool_state & kToolWaits)) {
+      of_arm << StateNotice::tr(
+          "The tool is in tissue that it did not come into. Draw it out to feel and to cut: turn "
+          "the "
+          "wheel towards you or press Page Up (with Shift for the left hand).");
     }
-    if (reason.isEmpty() && (arm.tool_state & kToolLetGo)) {
-      reason = StateNotice::tr("The tool was hooked behind bone: it is let go.");
+    if (arm.tool_state & kToolLetGo) {
+      of_arm << StateNotice::tr("The tool was hooked behind bone: it is let go.");
     }
+    const QString reason = of_arm.join('\n');
     if (reason.isEmpty()) continue;
     faults |= arm.faults;
     all.push_back(i);
@@ -76,6 +80,19 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
     out.mend = StateNotice::tr("Force on");
   }
   return out;
+}
+
+QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene) {
+  const QString back =
+      StateNotice::tr("Back at %1: tissue, counts and forces as they were. The clock runs on.")
+          .arg(timeWords(second));
+  std::vector<std::size_t> waiting;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    if (state.record.arms[i].tool_state & kToolWaits) waiting.push_back(i);
+  }
+  if (waiting.empty()) return back;
+  return StateNotice::tr("%1 %2: draw the tool out of the tissue to feel again.")
+      .arg(back, whoWords(waiting, scene));
 }
 
 StateNotice::StateNotice(QWidget* view) : QWidget(view) {
@@ -166,6 +183,8 @@ bool StateNotice::eventFilter(QObject* watched, QEvent* event) {
 void StateNotice::place() {
   const QWidget* view = parentWidget();
   const int width = std::min(kWidest, view->width() - 2 * kMargin);
+  // Where words changed within a card, only the card's own layout knows it yet.
+  for (QFrame* frame : {pause_.frame, force_.frame}) frame->updateGeometry();
   layout()->activate();
   const int height = layout()->totalHeightForWidth(width);
   setGeometry((view->width() - width) / 2, kMargin, width, height);

@@ -23,6 +23,9 @@ struct ForceNotice {
 // `still_s`: how long the ticks have stood still, and the state with them.
 ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s);
 
+// What is said once a rewind has come to its second: the state is the one after it.
+QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene);
+
 class StateNotice : public QWidget {
   Q_OBJECT
  public:

@@ -4,6 +4,7 @@
 #include <QFile>
 #include <QStringList>
 
+#include "haptics/bounded_controller.h"
 #include "haptics/haptic_types.h"
 
 namespace trephine {
@@ -12,6 +13,49 @@ namespace {
 QString tr(const char* text) {
   return QCoreApplication::translate("Words", text);
 }
+
+struct PartWords {
+  ControllerPart part;
+  const char *words, *meaning;
+};
+
+constexpr PartWords kPartWords[] = {
+    {kPartArmBound, QT_TRANSLATE_NOOP("Words", "softer, for this arm"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "the tissue is firmer than this arm can show without shaking, so it is shown "
+         "as firm as the arm can.")},
+    {kPartLearned, QT_TRANSLATE_NOOP("Words", "softer, since it shook"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the arm shook in this hand, so less is shown until it has been calm.")},
+    {kPartDamping, QT_TRANSLATE_NOOP("Words", "damped"),
+     QT_TRANSLATE_NOOP("Words",
+                       "a little damping goes with each spring, so that it does not ring.")},
+    {kPartCredit, QT_TRANSLATE_NOOP("Words", "energy held back"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the force would give the hand more energy than the hand put in, so it is "
+                       "made smaller.")},
+    {kPartHold, QT_TRANSLATE_NOOP("Words", "steady while it rests"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the tool rests, so the force stays as it is and does not buzz between two "
+                       "steps of the encoder.")},
+    {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's greatest force"),
+     QT_TRANSLATE_NOOP("Words", "the tissue demands more force than the arm has.")},
+    {kPartLimiter, QT_TRANSLATE_NOOP("Words", "rising slowly"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "after a pause, a change or a late step the force comes back slowly, so that "
+         "it does not kick.")},
+    {kPartEstimate, QT_TRANSLATE_NOOP("Words", "between encoder steps"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the encoder tells the place in steps; the force is that of the estimated "
+                       "place and speed between them.")},
+    {kPartPrediction, QT_TRANSLATE_NOOP("Words", "ahead of the delay"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "a force acts a moment after it is computed, so it is that of the place where "
+         "the arm will be then.")},
+};
 }  // namespace
 
 QString toQt(const std::string& utf8) {
@@ -47,25 +91,47 @@ QString controllerWord(ControllerKind kind) {
     case ControllerKind::off:
       return tr("Off");
     case ControllerKind::seed:
-      return tr("Passivity (seed)");
+      return tr("Seed (passivity)");
     case ControllerKind::bounded:
       return tr("Bounded");
   }
   return {};
 }
 
-QString controllerPartWords(std::uint32_t parts) {
+QString controllerMeaning(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::off:
+      return tr(
+          "What the tissue demands goes to the arm as it is. On firm tissue the arm may shake.");
+    case ControllerKind::seed:
+      return tr("The passivity controller of the seed paper, for comparison.");
+    case ControllerKind::bounded:
+      return tr("Keeps the arm calm on any tissue, and changes nothing where nothing is wrong.");
+  }
+  return {};
+}
+
+QString forceChangeWords(const ArmRecord& arm, bool paused) {
+  if (paused) return tr("no force: paused");
+  if (arm.faults == kFaultLate) return tr("no force until the computer keeps up");
+  if (arm.faults != 0) return tr("no force until asked for");
+  if (arm.tool_state & kToolWaits) return tr("no force until drawn out");
   QStringList words;
-  if (parts & kPartArmBound) words << tr("bounded by the arm");
-  if (parts & kPartLearned) words << tr("less, since it shook");
-  if (parts & kPartDamping) words << tr("damping added");
-  if (parts & kPartCredit) words << tr("energy held back");
-  if (parts & kPartHold) words << tr("held at rest");
-  if (parts & kPartClamp) words << tr("at the arm's limit");
-  if (parts & kPartLimiter) words << tr("rising slowly");
-  if (parts & kPartEstimate) words << tr("position estimated");
-  if (parts & kPartPrediction) words << tr("for when it acts");
-  return words.isEmpty() ? tr("nothing to do") : words.join(", ");
+  for (const PartWords& part : kPartWords) {
+    if (arm.controller_parts & part.part) words << tr(part.words);
+  }
+  return words.isEmpty() ? tr("nothing") : words.join(", ");
+}
+
+QString forceChangeMeanings() {
+  QString rows;
+  for (const PartWords& part : kPartWords) {
+    rows += QStringLiteral("<p><b>%1</b>: %2</p>").arg(tr(part.words), tr(part.meaning));
+  }
+  return tr("<p>What is changed in the force that the tissue demands, before it is sent.</p>") +
+         rows +
+         tr("<p><b>no force</b>: in a pause, a fault, and tissue that the tool did not come into, "
+            "nothing is sent.</p>");
 }
 
 QString faultWords(std::uint32_t faults) {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/result.h"
-#include "haptics/controllers.h"
+#include "haptics/haptic_types.h"
 #include "imaging/importer.h"
 
 namespace trephine {
@@ -21,8 +21,13 @@ QString purposeText();
 
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
-// Which parts of `bounded` acted (ControllerPart), in words.
-QString controllerPartWords(std::uint32_t parts);
+// What a controller does, in a sentence.
+QString controllerMeaning(ControllerKind kind);
+// What makes the sent force another than the demanded one: the parts of the controller that acted
+// (ControllerPart), or why there is none at all.
+QString forceChangeWords(const ArmRecord& arm, bool paused);
+// Each of those words explained, as rich text.
+QString forceChangeMeanings();
 // Each fault bit as a sentence, one a line; empty for none.
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.

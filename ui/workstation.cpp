@@ -167,6 +167,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     return;
   }
   if (!scene.case_source.empty() && source != scene.case_source) scene.labels_file.clear();
+  if (!same_scene) emit sceneOpening(scene, scene_file);
   opening_.run(
       [scene = std::move(scene), scene_file, source,
        same_scene](const Progress& progress) -> Result<Opened> {
@@ -192,6 +193,7 @@ void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const 
 }
 
 void Workstation::placeAndOpen(Opened opening) {
+  if (!opening.same_scene) emit sceneOpening(opening.scene, opening.scene_file);
   opening_.run(
       [opening = std::move(opening)](const Progress& progress) mutable -> Result<Opened> {
         if (Status status = place(opening, progress); !status) return status.error();
@@ -238,7 +240,7 @@ void Workstation::start(const std::filesystem::path& recordings,
       [scene = *scene_, volume = volume_, labels = labels_, recordings, stem,
        script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
-        SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels};
+        SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels, true};
         return Session::create(scene, Volume(*volume), options, progress);
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {

@@ -77,6 +77,8 @@ class Workstation : public QObject {
  signals:
   void openingProgressed(double fraction, const QString& step);
   void openingEnded();
+  // Another scene is being opened; scene() is still the one before.
+  void sceneOpening(const trephine::Scene& scene, const std::filesystem::path& file);
   void sceneChanged();
   void caseOpened();
   void phaseChanged();  // or isOpening()

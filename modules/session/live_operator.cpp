@@ -8,8 +8,8 @@ void LiveOperator::targets(std::uint64_t tick, HandTarget* hands, std::size_t ar
   for (std::size_t arm = 0; arm < arm_count; ++arm) {
     const LiveHands::Hand& hand = live_.value().hands[arm];
     if (!hand.live && !hand.held && script_) continue;
-    hands[arm] = {Pose{hand.position_m, Quat(1, 0, 0, 0)}, hand.stiffness_N_per_m,
-                  hand.damping_Ns_per_m};
+    hands[arm] = {Pose{hand.held ? hand.held_m : hand.position_m, Quat(1, 0, 0, 0)},
+                  hand.stiffness_N_per_m, hand.damping_Ns_per_m};
   }
 }
 

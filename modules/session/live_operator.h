@@ -16,7 +16,8 @@ struct LiveHands {
     Vec3 position_m{0.0};
     double stiffness_N_per_m = 0.0;
     double damping_Ns_per_m = 0.0;
-    bool held = false;  // in a pause: rests at the position, whoever moves it otherwise
+    bool held = false;  // in a pause: rests at `held_m`, whoever moves it otherwise
+    Vec3 held_m{0.0};
   };
   std::array<Hand, kMaxArms> hands{};
 };

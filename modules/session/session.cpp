@@ -11,6 +11,7 @@
 #include "base/rt/thread.h"
 #include "base/system.h"
 #include "haptics/watchdog.h"
+#include "session/hand_start.h"
 
 namespace trephine {
 
@@ -191,6 +192,7 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
       std::make_shared<Engine>(*session->core_, std::move(devices), std::move(script));
   session->engine_->live_hands.write(session->hands_);
   session->loop_ = &session->engine_->loop;
+  if (options.hands_outside && !options.script) session->beginOutside();
   session->statistics_.resize(session->scene_.arms.size());
 
   if (!options.recording.empty()) {
@@ -350,7 +352,32 @@ bool Session::send(CommandKind kind) {
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
   const bool sent = loop_->commands().push({kind, 0, {}});
   if (sent ? kind == CommandKind::resume : !held) holdHands(false);
+  if (sent && kind == CommandKind::reset) {  // the tissue comes back around the tools
+    for (std::size_t i = 0; i < begin_m_.size(); ++i) {
+      if (begin_m_[i]) hands_.hands[i].position_m = *begin_m_[i];
+    }
+    engine_->live_hands.write(hands_);
+  }
   return sent;
+}
+
+void Session::beginOutside() {
+  std::vector<double> reach_mm;
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
+    reach_mm.push_back(1000.0 * scale * capabilities_[i].workspace_m[2] / 2.0);
+  }
+  const std::vector<double> back_mm = drawnBack_mm(core_->parameters(), *grid_, reach_mm);
+  for (const LoopDevice& d : loop_->devices()) {
+    if (!d.device->takesTargets()) continue;  // a real arm is where it is
+    for (std::size_t i : d.arms) {
+      const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
+      begin_m_[i] = Vec3(0.0, 0.0, back_mm[i] / (1000.0 * scale));
+      hands_.hands[i].live = true;
+      hands_.hands[i].position_m = *begin_m_[i];
+    }
+  }
+  engine_->live_hands.write(hands_);
 }
 
 void Session::holdHands(bool hold) {
@@ -358,7 +385,7 @@ void Session::holdHands(bool hold) {
   if (now.ticks == 0) return;  // nobody has looked where the arms are
   for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
     LiveHands::Hand& hand = hands_.hands[i];
-    if (hold && !hand.held) hand.position_m = now.record.arms[i].device_position_m;
+    if (hold && !hand.held) hand.held_m = now.record.arms[i].device_position_m;
     hand.held = hold;
   }
   engine_->live_hands.write(hands_);
@@ -397,7 +424,7 @@ void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
   if (hands_.hands[arm].held || state().paused) return;
   const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
   LiveHands::Hand& hand = hands_.hands[arm];
-  if (!hand.live) {
+  if (!hand.live) {  // taken over from a script, or from rest
     hand.live = true;
     hand.position_m = state().record.arms[arm].device_position_m;
   }

@@ -33,6 +33,9 @@ struct SessionOptions {
   std::filesystem::path recording;       // empty: not recorded
   std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
   std::shared_ptr<const LabelMap> labels{};  // null: none; is fitted to the volume
+  // Without a script: the hands of simulated arms begin outside of tissue (hand_start.h), and a
+  // reset takes them back there.
+  bool hands_outside = false;
 };
 
 // Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
@@ -79,7 +82,7 @@ class Session {
 
   // Live input. Commands are answered within a tick or two; false when 64 of them are waiting.
   // From a pause to a resume the hands of simulated arms rest where their arms are: a hand that
-  // was pressing would sink into tissue that no longer pushes back.
+  // was pressing would sink into tissue that no longer pushes back. Then it presses as before.
   bool send(CommandKind kind);
   // Tissue, counts and law states as they were in that second of the session.
   bool rewind(std::uint32_t second);
@@ -108,6 +111,7 @@ class Session {
   void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
   void holdHands(bool hold);
+  void beginOutside();
   void record();  // the recorder thread
   void drain();
   void flush();
@@ -122,6 +126,7 @@ class Session {
   std::unique_ptr<Grid> grid_;
   std::unique_ptr<HapticCore> core_;
   LiveHands hands_;  // the owner's side of the engine's
+  std::array<std::optional<Vec3>, kMaxArms> begin_m_{};  // where a hand begins, outside of tissue
   std::shared_ptr<Engine> engine_;
   HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/system.h"
 #include "gui_support.h"
 #include "imaging/ct_writer.h"
 #include "render/picture.h"
@@ -237,6 +238,20 @@ class GuiTest : public QObject {
     find<QMessageBox>("errorDialog")->close();
     QTRY_VERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
     QVERIFY(!find<QAction>("start")->isEnabled());
+  }
+
+  void whileAnExerciseIsOpenedItIsTheOneThatIsShown() {
+    auto *scenes = find<QComboBox>("scenes"), *controller = find<QComboBox>("controller");
+    const QString before = scenes->currentText();
+    QCOMPARE(controller->currentText(), QString());
+    workstation().openPath(resourceFolder() / "scenes" / "seed-liver.json");
+    QVERIFY(workstation().isOpening());
+    QVERIFY2(scenes->currentText().contains("liver"), qPrintable(scenes->currentText()));
+    QCOMPARE(controller->currentText(), controllerWord(ControllerKind::seed));
+    workstation().cancelOpening();
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    QCOMPARE(scenes->currentText(), before);
+    QCOMPARE(controller->currentText(), QString());
   }
 
   void openingCanBeCancelled() {
@@ -483,6 +498,8 @@ class GuiTest : public QObject {
     auto* no_force = find<QFrame>("forceNotice");
     QVERIFY2(no_force->isVisible(), "nobody says why nothing is felt");
     QVERIFY(find<QLabel>("forceNoticeWhy")->text().contains("Draw it out"));
+    QVERIFY2(window_->statusBar()->currentMessage().contains("draw the tool out"),
+             qPrintable(window_->statusBar()->currentMessage()));
     wheel(-30);
     QTRY_VERIFY(!no_force->isVisible());
     QCOMPARE(shownSha(), sha_before_);

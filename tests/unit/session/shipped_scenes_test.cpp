@@ -9,6 +9,7 @@
 #include "base/system.h"
 #include "haptics/bounded_controller.h"
 #include "session/case_source.h"
+#include "session/energy_watch.h"
 #include "session/session.h"
 #include "support.h"
 #include "training/session_reader.h"
@@ -105,6 +106,7 @@ void lookInside(const Volume& volume, const TissueTable& tissues, const BodyPart
 struct Seen {
   std::string arm;
   Inside inside;                   // uncut solid tissue in the tool where it is drawn, every 50 ms
+  int gave_out = 0;                // looks, one every 66 ms, at which that was called a fault
   int differs = 0, unflagged = 0;  // ticks whose sent force is not the demanded one; of these
   int silent = 0, silent_other = 0;  // ticks in which no part acted; of these not equal to the bit
   std::map<std::string, std::pair<double, int>> sent_N;  // by tissue: sum and ticks
@@ -116,6 +118,7 @@ std::vector<Seen> see(const Recorded& run) {
   std::vector<Seen> seen(p.arms.size());
   Volume volume = run.before;
   std::size_t next = 0;
+  std::vector<EnergyWatch> watches(seen.size());
   for (const TickRecord& tick : run.ticks) {
     for (; next < run.carves.size() && run.carves[next].tick <= tick.tick; ++next) {
       volume.hu[run.carves[next].voxel] = kAirHu;
@@ -133,6 +136,11 @@ std::vector<Seen> see(const Recorded& run) {
             of.sent_N[run.scene.tissues.tissues[std::size_t(arm.tissue_class)].id];
         sum_N += glm::length(arm.sent_N);
         ++ticks;
+      }
+      const WorkspaceMap& map = p.arms[i].map;
+      if (tick.tick % 66 == 0) {
+        of.gave_out += watches[i].look(arm, map.force_scale / map.motion_scale, false,
+                                       double(tick.tick) * p.period_s);
       }
       if (tick.tick % 50 != 49) continue;
       const Pose drawn_mm{arm.proxy_position_mm, arm.proxy_orientation};
@@ -181,6 +189,66 @@ TEST(ShippedScenes, HaveNoUncutBoneInTheirToolsOnRealCases) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : kShipped) expectNoBoneInTheTools(name, realCase(data, name));
 }
+// The window's hands, which no script moves.
+TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
+  for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
+                           "seed-cranium", "seed-liver"}) {
+    const Scene scene = shipped(name, "");
+    auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
+    ASSERT_TRUE(session.ok()) << session.error().sentence();
+    ASSERT_TRUE((*session)->freewheel(0.5).ok());
+    EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
+    const TickRecord& record = (*session)->state().record;
+    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+      EXPECT_EQ(record.arms[i].tissue_class, -1) << name << ", " << scene.arms[i].name;
+      EXPECT_EQ(record.arms[i].tool_state, 0u) << name << ", " << scene.arms[i].name;
+      const double moved_mm = 1000.0 * glm::length(record.arms[i].device_position_m);
+      if (scene.anatomy != "cranium") continue;
+      EXPECT_LT(moved_mm, 0.5) << name << ": it is in air as it is";
+    }
+  }
+}
+
+TEST(ShippedScenes, GiveOutNoEnergyThatTheWindowWouldCallAFault) {
+  for (const char* name : kShipped) {
+    for (const Seen& seen : seenOf(name, ""))
+      EXPECT_EQ(seen.gave_out, 0) << name << ", " << seen.arm;
+  }
+}
+
+// A hand that presses lightly on the vault.
+TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
+  for (const ControllerKind controller : {ControllerKind::off, ControllerKind::bounded}) {
+    Scene scene = shipped("cranium-one-arm", "");
+    scene.controller = controller;
+    for (Tissue& tissue : scene.tissues.tissues) {
+      tissue.cuttable = false;
+      if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
+    }
+    auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
+    ASSERT_TRUE(session.ok()) << session.error().sentence();
+    const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
+    EnergyWatch watch;
+    int gave_out = 0, pressed = 0;
+    double last_J = 0.0;
+    const Progress progress([&](double, const std::string&) {
+      const LoopState& state = (*session)->state();
+      const ArmRecord& arm = state.record.arms[0];
+      gave_out += watch.look(arm, 1.0, state.paused, double(state.ticks) / scene.rate_hz);
+      last_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
+      if (arm.tool_state & kToolHeld) ++pressed;
+      if (pressed < 2) (*session)->moveHand(0, 0.5 * down);
+    });
+    ASSERT_TRUE((*session)->freewheel(25.0, progress).ok());
+    EXPECT_GT(pressed, 10);
+    if (controller == ControllerKind::off) {
+      EXPECT_GT(gave_out, 5) << 1e3 * last_J << " mJ";
+    } else {
+      EXPECT_EQ(gave_out, 0) << 1e3 * last_J << " mJ";
+    }
+  }
+}
+
 TEST(ShippedScenes, FlagEveryDifferenceOfTheSentForceFromTheDemandedOne) {
   for (const char* name : kShipped) expectEveryDifferenceFlagged(name, "");
 }

@@ -1,17 +1,20 @@
 #include <gtest/gtest.h>
 
+#include <QComboBox>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
 
+#include "haptics/bounded_controller.h"
 #include "qt_support.h"
 #include "tissue/tissue_edits.h"
 #include "ui/arms_panel.h"
 #include "ui/case_panel.h"
 #include "ui/colours.h"
 #include "ui/tissue_panel.h"
+#include "ui/words.h"
 
 namespace trephine {
 namespace {
@@ -281,25 +284,74 @@ TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
   EXPECT_FALSE(find<QLabel>(panel, "rightFaults").isHidden());
 }
 
-TEST_F(PanelTest, EnergyGivenOutIsSaidAndColouredAsWrongFromWhatTheEncoderSees) {
+TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
   ArmsPanel panel;
   Scene scene;
   scene.arms.resize(1);
   scene.arms[0].name = "right";
-  scene.arms[0].dynamics = ArmDynamics{};
-  scene.arms[0].dynamics->encoder_step_m = 0.2e-3;  // at 1 N, 0.2 mJ
   panel.setScene(scene);
   QLabel& energy = find<QLabel>(panel, "rightEnergy");
+  LoopState state;
   const auto shown = [&](double energy_J) {
-    LoopState state;
+    state.ticks += 66;
     state.record.arms[0].energy_out_J = {energy_J, 0.0, 0.0};
     panel.showState(state, {}, {3.3});
     return std::pair(energy.text(), energy.palette().color(QPalette::WindowText));
   };
-  EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ given out"), colours::kBad));
-  EXPECT_EQ(shown(0.12e-3), std::pair(QString("0.1 mJ"), colours::kText));
-  EXPECT_EQ(shown(0.25e-3).second, colours::kBad);
   EXPECT_EQ(shown(-0.2), std::pair(QString("-200.0 mJ"), colours::kText));
+  EXPECT_EQ(shown(-0.1999), std::pair(QString("-199.9 mJ"), colours::kText)) << "of one contact";
+  EXPECT_TRUE(find<QLabel>(panel, "rightFaults").isHidden());
+  EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ"), colours::kBad));
+  EXPECT_TRUE(find<QLabel>(panel, "rightFaults").text().contains("shakes"));
+  EXPECT_TRUE(
+      find<QLabel>(panel, "rightFaults").text().contains("Choose the controller 'Bounded'"));
+  for (int i = 0; i < 80; ++i) shown(0.489);
+  EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ"), colours::kText)) << "it has stopped";
+  EXPECT_TRUE(energy.toolTip().contains("encoder"));
+}
+
+TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {
+  ArmRecord arm;
+  EXPECT_EQ(forceChangeWords(arm, false), "nothing");
+  arm.controller_parts = kPartLimiter;
+  EXPECT_EQ(forceChangeWords(arm, false), "rising slowly");
+  EXPECT_EQ(forceChangeWords(arm, true), "no force: paused");
+  arm.tool_state = kToolWaits;
+  EXPECT_EQ(forceChangeWords(arm, false), "no force until drawn out");
+  arm.faults = kFaultLate;
+  EXPECT_EQ(forceChangeWords(arm, false), "no force until the computer keeps up");
+  arm.faults = kFaultLate | kFaultStalled;
+  EXPECT_EQ(forceChangeWords(arm, false), "no force until asked for");
+}
+
+TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
+  ArmsPanel panel;
+  Scene scene;
+  scene.arms.resize(1);
+  scene.arms[0].name = "right";
+  panel.setScene(scene);
+  const QString help = find<QLabel>(panel, "rightParts").toolTip();
+  for (std::uint32_t bit = kPartArmBound; bit <= kPartLimiter; bit <<= 1) {
+    ArmRecord arm;
+    arm.controller_parts = bit;
+    const QString words = forceChangeWords(arm, false);
+    EXPECT_NE(words, "nothing") << bit;
+    EXPECT_TRUE(help.contains("<b>" + words + "</b>: ")) << words.toStdString();
+  }
+}
+
+TEST_F(PanelTest, ControllersAreCalledAsTheirPageCallsThemAndNoneIsShownBeforeAScene) {
+  ArmsPanel panel;
+  auto& list = find<QComboBox>(panel, "controller");
+  EXPECT_EQ(list.currentIndex(), -1) << "nothing is open";
+  ASSERT_EQ(list.count(), int(kControllerNames.size()));
+  for (const auto& [name, kind] : kControllerNames) {
+    const int item = list.findData(int(kind));
+    EXPECT_TRUE(list.itemText(item).startsWith(QString::fromStdString(std::string(name)),
+                                               Qt::CaseInsensitive))
+        << list.itemText(item).toStdString();
+    EXPECT_FALSE(list.itemData(item, Qt::ToolTipRole).toString().isEmpty());
+  }
 }
 
 }  // namespace

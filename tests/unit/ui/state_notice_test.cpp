@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QLayout>
 #include <QMouseEvent>
 #include <QWheelEvent>
 
@@ -137,10 +138,69 @@ TEST_F(StateNoticeTest, OfAToolInTissueThatItDidNotComeIntoItIsSaidToDrawItOut) 
   show();
   EXPECT_EQ(title(), "NO FORCE: Right arm");
   EXPECT_NE(why().find("Draw it out"), std::string::npos) << why();
+  EXPECT_NE(why().find("turn the wheel towards you"), std::string::npos) << why();
   EXPECT_FALSE(shown("forceOn"));
   arm.tool_state = kToolHeld;
   show();
   EXPECT_TRUE(notice_.isHidden());
+}
+
+TEST_F(StateNoticeTest, OfTwoReasonsWithoutForceBothAreSaid) {
+  ArmRecord& arm = state_.record.arms[1];
+  arm.tool_state = kToolWaits;
+  arm.faults = kFaultLate | kFaultStalled;
+  show();
+  EXPECT_NE(why().find("until you ask for it"), std::string::npos) << why();
+  EXPECT_NE(why().find("Draw it out"), std::string::npos) << why();
+  EXPECT_TRUE(shown("forceOn"));
+}
+
+TEST_F(StateNoticeTest, AfterARewindItIsSaidToDrawOutOnlyWhatIsInTissueThatCameBack) {
+  std::string words = backWords(20, state_, scene_).toStdString();
+  EXPECT_EQ(words.find("Back at 0:20"), 0u) << words;
+  EXPECT_NE(words.find("clock runs on"), std::string::npos) << words;
+  EXPECT_EQ(words.find("draw"), std::string::npos) << words;
+  state_.record.arms[0].tool_state = kToolWaits;
+  words = backWords(20, state_, scene_).toStdString();
+  EXPECT_NE(words.find("Left arm: draw the tool out"), std::string::npos) << words;
+}
+
+TEST_F(StateNoticeTest, WhateverCameBeforeEachCardIsAsHighAsItsWords) {
+  ArmRecord& arm = state_.record.arms[1];
+  const auto expectFits = [&](const char* when) {
+    int bottom = 0;
+    for (const char* card : {"pauseNotice", "forceNotice"}) {
+      auto& frame = find<QFrame>(card);
+      if (!frame.isVisible()) continue;
+      EXPECT_EQ(frame.height(), frame.layout()->totalHeightForWidth(frame.width())) << when << card;
+      bottom = std::max(bottom, frame.geometry().bottom());
+      for (QLabel* label : frame.findChildren<QLabel*>()) {
+        EXPECT_GE(label->height(), label->heightForWidth(label->width())) << when << card;
+      }
+    }
+    EXPECT_EQ(bottom + 1, notice_.height()) << when;
+  };
+  for (int round = 0; round < 2; ++round) {
+    for (const bool at_once : {false, true}) {
+      const auto next = [&](const char* when) {
+        show();
+        if (!at_once) QCoreApplication::processEvents();
+        expectFits(when);
+      };
+      state_.paused = false;
+      arm.faults = 0;
+      arm.tool_state = kToolWaits;
+      next("in tissue: ");
+      state_.paused = true;
+      next("paused: ");
+      arm.faults = kFaultLate | kFaultStalled;
+      next("paused, stalled: ");
+      state_.paused = false;
+      next("stalled in tissue: ");
+      arm.faults = 0;
+      next("force on: ");
+    }
+  }
 }
 
 TEST_F(StateNoticeTest, AHookedToolThatIsLetGoIsSaid) {

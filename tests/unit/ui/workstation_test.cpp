@@ -205,6 +205,26 @@ TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
   EXPECT_EQ(told->command.tissues.classes[tissues.tissues.size() - 1].damping_Ns_per_m, 20.0);
 }
 
+// What the scene finds is deep in soft tissue, and so is where it puts the tools.
+TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
+  Volume deep = ball();
+  for (std::size_t i = 0; i < deep.hu.size(); ++i) {
+    const Index3 at = deep.geometry.indicesOf(i);
+    const double r = glm::length(deep.geometry.toPatient_mm(Vec3(at[0], at[1], at[2])));
+    deep.hu[i] = std::int16_t(r < 15.0 ? 1200 : r < 42.0 ? -20 : kAirHu);
+  }
+  workstation_.openVolume(std::make_shared<const Volume>(deep), "");
+  ASSERT_TRUE(wait());
+  workstation_.start(folder_.path(), {}, 1e9);
+  ASSERT_TRUE(waitFor([this] { return workstation_.session() != nullptr; }));
+  ASSERT_TRUE(waitFor([this] { return workstation_.session()->state().ticks > 10; }));
+  for (int arm : {0, 1}) {
+    const ArmRecord& record = workstation_.session()->state().record.arms[arm];
+    EXPECT_EQ(record.tissue_class, -1) << arm;
+    EXPECT_EQ(record.tool_state & kToolWaits, 0u) << arm;
+  }
+}
+
 class EditedTissuesTest : public WorkstationTest {
  protected:
   EditedTissuesTest() {
