@@ -118,7 +118,8 @@ Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint64_t tick,
       return Error{"NOT_REPLAYABLE",
                    "The recording's tick " + std::to_string(tick) + " tells of a journal (" +
                        std::to_string(recorded) + ") that the replay cannot come to",
-                   "ticks: journal", "Replay the recording as it was made: this one is damaged or was changed"};
+                   "ticks: journal",
+                   "Replay the recording as it was made: this one is damaged or was changed"};
     }
   }
   return {};
