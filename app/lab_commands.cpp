@@ -1,16 +1,12 @@
 #include "app/lab_commands.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <thread>
 
 #include "app/answer.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
 #include "imaging/ct_writer.h"
-#include "lab/exercise_picture.h"
 #include "lab/explain.h"
 #include "lab/extremes_measurement.h"
 #include "lab/haptics_measurement.h"
@@ -27,127 +23,12 @@
 #include "render/display_probe.h"
 #include "scene/names.h"
 #include "session/case_source.h"
-#include "session/session.h"
 #include "training/replay.h"
-#include "training/tick_table.h"
 #include "volume/phantom.h"
-#include "volume/volume_files.h"
 
 namespace trephine {
 
 namespace {
-
-// Puts the command line's choices into the scene.
-Status applyChoices(const RunArguments& arguments, Scene& scene) {
-  if (!arguments.case_source.empty()) {
-    if (!scene.case_source.empty()) scene.labels_file.clear();  // of another case
-    scene.case_source = arguments.case_source;
-  }
-  if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
-  if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
-  if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
-    return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
-  }
-  if (arguments.controller.empty()) return {};
-  if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
-    scene.controller = *kind;
-    return {};
-  }
-  return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
-               "--controller", choices(kControllerNames)};
-}
-
-Status runRealTime(Session& session, double seconds, const Progress& progress) {
-  if (Status started = session.start(seconds); !started) return started;
-  while (!session.finished() && !progress.cancelled() &&
-         session.standsStillFor_s() < Session::kGivenUp_s) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  const bool cancelled = progress.cancelled() && !session.finished();
-  if (Status stopped = session.stop(); !stopped) return stopped;
-  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
-  return {};
-}
-
-struct RunOutcome {
-  RunReport report;
-  std::optional<Error> failure;  // the recording's, or the person ended the run
-};
-
-// Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
-Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& progress) {
-  Result<Scene> scene = readScene(arguments.scene);
-  if (!scene) return scene.error();
-  if (Status chosen = applyChoices(arguments, *scene); !chosen) return chosen.error();
-  SessionOptions options;
-  const std::string script_file =
-      arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
-  if (!script_file.empty()) {
-    Result<OperatorScript> script = readOperatorScript(script_file, *scene);
-    if (!script) return script.error();
-    options.script = *std::move(script);
-  }
-  const double seconds =
-      arguments.seconds.value_or(options.script ? options.script->duration_s() : 10.0);
-  if (!(seconds > 0.0 && seconds <= 86400.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day", "--seconds", ""};
-  }
-  if (!arguments.save_volume.empty()) {
-    if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();
-  }
-  const std::filesystem::path out = arguments.out;
-  if (Status made = makeFolder(out); !made) return made.error();
-  const auto checkFolder = [](const std::string& file, const char* what, const char* option) {
-    std::error_code none;
-    const auto folder = std::filesystem::path(file).parent_path();
-    if (folder.empty() || std::filesystem::is_directory(folder, none)) return Status();
-    return Status(Error{"MISSING_FOLDER", std::string("There is no folder for the ") + what,
-                        folder.string(), std::string("Make it, or give ") + option + " another place"});
-  };
-  if (Status is = checkFolder(arguments.save_volume, "volume", "--save-volume"); !is) {
-    return is.error();
-  }
-  if (Status is = checkFolder(arguments.csv, "table", "--csv"); !is) return is.error();
-
-  Result<Volume> volume = openCase(scene->case_source, progress);
-  if (!volume) return volume.error();
-  Result<std::shared_ptr<const LabelMap>> labels =
-      openLabels(scene->labels_file, volume->geometry);
-  if (!labels) return labels.error();
-  options.labels = *std::move(labels);
-  options.recording = freshFile(out, "session", ".h5");
-  Result<std::unique_ptr<Session>> session =
-      Session::create(*scene, *std::move(volume), options, progress);
-  if (!session) return session.error();
-
-  const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)
-                                        : (*session)->freewheel(seconds, progress);
-  RunOutcome outcome{(*session)->report(), {}};
-  if (!ran) outcome.failure = ran.error();
-  if (!ran && outcome.report.ticks == 0) return ran.error();
-  // First of all: what was cut is kept, whatever became of the recording.
-  if (!arguments.save_volume.empty()) {
-    const Status saved = writeVolume((*session)->grid().snapshot(), arguments.save_volume);
-    if (!saved) outcome.failure = saved.error();
-  }
-  if (!arguments.csv.empty()) {
-    auto recording = SessionReader::open(options.recording);
-    const Status saved = recording ? writeTickTable(**recording, arguments.csv, progress)
-                                   : Status(recording.error());
-    if (!saved && !outcome.failure) outcome.failure = saved.error();
-  }
-  if (outcome.failure) return outcome;
-  const std::filesystem::path picture = freshFile(out, "picture", ".png");
-  const Status drawn = writeExercisePicture(**session, picture);
-  if (drawn) {
-    outcome.report.picture = picture.string();
-  } else if (drawn.error().code == "NO_DISPLAY" || drawn.error().code == "NO_OPENGL") {
-    spdlog::info("No picture is drawn: {}", drawn.error().what);
-  } else {
-    return drawn.error();
-  }
-  return outcome;
-}
 
 // What a measurement came to, for a program or for a person.
 template <class Measurement>
@@ -194,15 +75,6 @@ int phantomCommand(const std::string& name, const std::string& out, bool json,
     std::printf("%d slices of the %s phantom are in %s\n", g.size[2], name.c_str(), out.c_str());
   }
   return 0;
-}
-
-int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
-  Result<RunOutcome> outcome = runExercise(arguments, progress);
-  if (!outcome) return printError("run", outcome.error(), json);
-  const int code =
-      printOutcome("run", toJson(outcome->report), toText(outcome->report), outcome->failure, json);
-  constexpr int kFaulted = 4;
-  return code == 0 && !outcome->report.faults.empty() ? kFaulted : code;
 }
 
 int replayCommand(const std::string& file, const std::string& case_source,
@@ -260,14 +132,7 @@ int explainCommand(const std::string& scene_file, bool json, const Progress& pro
   if (json) {
     printAnswer("explain", *answer);
   } else {
-    std::printf("%s\n", answer->dump(2).c_str());
-    if (answer->contains("settings")) {
-      for (const Json& s : (*answer)["settings"]) {
-        std::printf("%s: %s (recommended: %s)\n", s["knob"].get<std::string>().c_str(),
-                    s["setting"].get<std::string>().c_str(),
-                    s["recommended"].get<std::string>().c_str());
-      }
-    }
+    std::printf("%s", explanationText(*answer).c_str());
   }
   return 0;
 }
@@ -366,6 +231,14 @@ int measureStabilityCommand(const StabilityArguments& arguments, bool json,
 
 int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
                            const Progress& progress) {
+  std::error_code ec;  // the phantoms take their time before it is opened
+  if (!case_source.empty() && !isPhantom(case_source) &&
+      !std::filesystem::exists(case_source, ec)) {
+    return printError("measure.extremes",
+                      {"MISSING_FOLDER", "There is no such case", case_source,
+                       "Give a folder of CT, a volume file, phantom:cranium or phantom:abdomen"},
+                      json);
+  }
   Result<ExtremesMeasurement> measured = measureExtremes(out, progress, {true, case_source});
   if (!measured) return printError("measure.extremes", measured.error(), json);
   printMeasured("measure.extremes", *measured, json);

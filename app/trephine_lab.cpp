@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "app/answer.h"
@@ -25,6 +26,13 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", buildName());
   bool json = false;
+
+  // An empty name is no choice: with it an option would do what it does when it is not given.
+  const CLI::Validator named(
+      [](const std::string& name) {
+        return name.empty() ? std::string("needs a name, not nothing") : std::string();
+      },
+      "");
 
   std::string phantom, out, file, case_source, labels;
   RunArguments arguments;
@@ -62,10 +70,15 @@ int run(int argc, char** argv) {
   run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
   run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
   run_command->add_option("--controller", arguments.controller, "off, seed or bounded");
-  run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume");
-  run_command->add_option("--csv", arguments.csv,
-                          "Save position, velocity, forces and the controller's energy, tick by tick");
-  run_command->add_option("--out", arguments.out, "Folder for recording and picture")->required();
+  run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume")
+      ->check(named);
+  run_command
+      ->add_option("--csv", arguments.csv,
+                   "Save position, velocity, forces and the controller's energy, tick by tick")
+      ->check(named);
+  run_command->add_option("--out", arguments.out, "Folder for recording and picture")
+      ->required()
+      ->check(named);
 
   auto* replay_command = with_json(app.add_subcommand("replay", "Run a recording again and compare"));
   replay_command->add_option("file", file, "A session file")->required();
@@ -85,10 +98,11 @@ int run(int argc, char** argv) {
   StabilityArguments stability;
   stability_command->add_option("--grid", stability.grid,
                                 "A grid of your own (JSON); the full grid unless given");
-  stability_command->add_option(
-      "--sets", stability.sets,
-      "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
-      "grid of your own only grid");
+  stability_command
+      ->add_option("--sets", stability.sets,
+                   "Which of grid,long,moving,hands,claims,rest; all unless given, of a "
+                   "grid of your own only grid")
+      ->check(named);
   stability_command->add_option("--seconds", stability.seconds,
                                 "How long a cell runs; 2, long 30, moving 5, rest 60 unless given");
   stability_command->add_option("--out", stability.out, "Folder for the table and the maps")
@@ -138,8 +152,21 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // The flag itself may stand behind what could not be parsed.
-    if (error.get_exit_code() == 0 || !wantsJson(argc, argv)) return app.exit(error) == 0 ? 0 : 1;
-    return printError("usage", {"BAD_ARGUMENT", error.what(), "the command line", "See --help"}, true);
+    if (error.get_exit_code() == 0) return app.exit(error);
+    // Of a word that is no command the parser says only that a command is missing.
+    const bool missing = (*measure_command ? *measure_command : app).get_subcommands().empty();
+    const std::vector<std::string> words = app.remaining(true);
+    const auto word = std::find_if(words.begin(), words.end(),
+                                   [](const std::string& w) { return !w.starts_with('-'); });
+    const bool misnamed = missing && word != words.end();
+    const std::string what =
+        misnamed ? "There is no command '" + *word + "'" : std::string(error.what());
+    if (!wantsJson(argc, argv)) {
+      if (!misnamed) return app.exit(error) == 0 ? 0 : 1;
+      std::fprintf(stderr, "%s\nRun with --help for more information.\n", what.c_str());
+      return 1;
+    }
+    return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
   }
   setUpLog(json);
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);

@@ -14,9 +14,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Error writeError(const fs::path& target, const std::string& reason) {
-  return Error{"CANNOT_WRITE", "The file could not be written: " + reason, target.string(),
-               "Check free space and that you may write there; nothing that was there is lost"};
+Error writeError(const fs::path& target, int error) {
+  return Error{"CANNOT_WRITE",
+               std::string("The file could not be written: ") +
+                   (error ? std::strerror(error) : "unknown reason"),
+               target.string(), afterFailedWrite(error) + "; nothing that was there is lost"};
+}
+
+// Keeps the target's extension.
+fs::path temporaryFor(const fs::path& target) {
+  const fs::path name = target.filename();
+  std::string extension = name.extension().string();
+  if (extension == ".gz") extension = name.stem().extension().string() + extension;
+  fs::path temporary = target;
+  return temporary.replace_filename("." + name.string() + ".part" + std::to_string(::getpid()) +
+                                    extension);
 }
 
 // Makes the data durable, and reports the errors that a full disk delays until now.
@@ -30,13 +42,7 @@ bool syncToDisk(const fs::path& file) {
 }  // namespace
 
 Status replaceFile(const fs::path& target, const std::function<Status(const fs::path&)>& write) {
-  fs::path name = target.filename();
-  std::string extension = name.extension().string();
-  if (extension == ".gz") extension = name.stem().extension().string() + extension;
-  fs::path temporary = target;
-  temporary.replace_filename("." + name.string() + ".part" + std::to_string(::getpid()) +
-                             extension);
-
+  const fs::path temporary = temporaryFor(target);
   Status written = write(temporary);
   std::error_code ec;
   if (!written) {
@@ -44,16 +50,49 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     return written;
   }
   if (!syncToDisk(temporary)) {
-    std::string reason = std::strerror(errno);
+    const int error = errno;
     fs::remove(temporary, ec);
-    return writeError(target, reason);
+    return writeError(target, error);
   }
   fs::rename(temporary, target, ec);
   if (ec) {
-    std::string reason = ec.message();
+    const int error = ec.value();
     fs::remove(temporary, ec);
-    return writeError(target, reason);
+    return writeError(target, error);
   }
+  return {};
+}
+
+std::string afterFailedWrite(int error) {
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    return "Free some space, or choose another place";
+  }
+  if (error == EACCES || error == EPERM || error == EROFS) {
+    return "Choose a place where you may write";
+  }
+  return "Choose another place";
+}
+
+Status checkNewFile(const fs::path& file, const std::string& option) {
+  std::error_code ec;
+  const fs::file_status there = fs::symlink_status(file, ec);
+  if (fs::exists(there)) {
+    return Error{"CANNOT_WRITE",
+                 fs::is_directory(there)
+                     ? "This is a folder, not a new file"
+                     : "There is something of this name already, which would be lost",
+                 file.string(), "Give " + option + " a name that is not taken"};
+  }
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!fs::is_directory(folder, ec)) {
+    return Error{"MISSING_FOLDER", "There is no folder for this file", file.string(),
+                 "Make it, or give " + option + " another place"};
+  }
+  const fs::path temporary = temporaryFor(file);
+  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) return writeError(file, errno);
+  ::close(fd);
+  fs::remove(temporary, ec);
   return {};
 }
 
@@ -63,7 +102,7 @@ Status writeTextFile(const fs::path& target, std::string_view text) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
-    if (!out) return writeError(target, errno ? std::strerror(errno) : "unknown reason");
+    if (!out) return writeError(target, errno);
     return {};
   });
 }

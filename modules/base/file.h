@@ -15,6 +15,15 @@ namespace trephine {
 Status replaceFile(const std::filesystem::path& target,
                    const std::function<Status(const std::filesystem::path&)>& write);
 
+// Whether a file can be made there that is not there yet: nothing has its name, be it a folder, a
+// device or a broken link, and the folder takes it. `option` is what a person gave it with. Errors:
+// CANNOT_WRITE, MISSING_FOLDER.
+Status checkNewFile(const std::filesystem::path& file, const std::string& option);
+
+// What a person can do about a write that failed with this errno: space is named only where it is
+// short.
+std::string afterFailedWrite(int error);
+
 Status writeTextFile(const std::filesystem::path& target, std::string_view text);
 
 // Makes the folder and its parents.

@@ -1,13 +1,25 @@
 #include "haptics/duration_histogram.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace trephine {
 
+// By its highest 11 bits.
+std::size_t DurationHistogram::binOf(std::uint64_t ns) {
+  ns = std::min(ns, (std::uint64_t(1) << kMostBits) - 1);
+  const int shift = std::max(0, int(std::bit_width(ns)) - (kFineBits + 1));
+  return std::size_t(shift) * kFine + std::size_t(ns >> shift);
+}
+
+double DurationHistogram::upperEdge_ns(std::size_t bin) {
+  const std::size_t shift = bin < 2 * kFine ? 0 : bin / kFine - 1;
+  return double((std::uint64_t(bin - shift * kFine) + 1) << shift);
+}
+
 void DurationHistogram::add(std::int64_t ns) {
-  const auto bin = std::size_t(std::clamp<std::int64_t>(ns / kBin_ns, 0, std::int64_t(kBins)));
-  ++bins_[bin];
+  ++bins_[binOf(std::uint64_t(std::max<std::int64_t>(ns, 0)))];
   ++count_;
   max_ns_ = std::max(max_ns_, ns);
 }
@@ -18,7 +30,7 @@ DurationSummary DurationHistogram::summary() const {
     std::uint64_t seen = 0;
     for (std::size_t bin = 0; bin < kBins; ++bin) {
       seen += bins_[bin];
-      if (seen >= wanted) return std::min(double(bin + 1) * kBin_ns, double(max_ns_));
+      if (seen >= wanted) return std::min(upperEdge_ns(bin), double(max_ns_));
     }
     return double(max_ns_);
   };

@@ -1,4 +1,5 @@
-// Durations of ticks, counted without allocation: 10 ns bins to 200 us, then the largest seen.
+// Durations of ticks, counted without allocation: bins of a thousandth of the duration, up to a
+// minute.
 #pragma once
 
 #include <array>
@@ -17,9 +18,15 @@ class DurationHistogram {
   std::uint64_t count() const { return count_; }
 
  private:
-  static constexpr std::int64_t kBin_ns = 10;
-  static constexpr std::size_t kBins = 20000;
-  std::array<std::uint32_t, kBins + 1> bins_{};
+  // Up to 2 * kFine ns a bin is 1 ns wide; from there on each doubling has kFine bins.
+  static constexpr int kFineBits = 10;
+  static constexpr std::uint64_t kFine = 1u << kFineBits;
+  static constexpr int kMostBits = 36;  // 2^36 ns are 69 s: what is longer is counted as that
+  static constexpr std::size_t kBins = (kMostBits - kFineBits + 1) * kFine;
+  static std::size_t binOf(std::uint64_t ns);
+  static double upperEdge_ns(std::size_t bin);
+
+  std::array<std::uint32_t, kBins> bins_{};
   std::uint64_t count_ = 0;
   std::int64_t max_ns_ = 0;
 };

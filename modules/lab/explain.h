@@ -14,12 +14,18 @@ namespace trephine {
 
 // -> {scene, case, rate_hz, controller, laws, removal, tissues,
 //     arms:[{name, plugin, tool, points, renderable}],
+//     warnings:[{code, text}] as of a run of the scene's own script in its own case: tools that
+//     start in tissue; null where it has no case or no script,
 //     settings:[{knob, setting, recommended}] where `recommended.json` is among the resources,
-//     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part, arm (null: any), ns_per_tick}], tick_ns}
-// Each part is timed alone (median of many batches) on a small block of the scene's firmest tissue;
-// tick_ns is a whole tick of all arms there, without the devices. Errors: those of the devices,
-// CANCELLED.
+//     bounded:[what the arms do not show of a tissue, and what is felt], journal_mb, cost:[{part,
+//     arm (null: any), ns_per_tick}], tick_ns}
+// Each part is timed alone (median of batches, about 0.1 s for all of them) on a small block of the
+// scene's firmest tissue; tick_ns is a whole tick of all arms there, without the devices. Errors:
+// those of the devices, the script and the case, CANCELLED.
 Result<Json> explainScene(Scene scene, const Progress& progress = Progress());
+
+// The same for a person, some lines.
+std::string explanationText(const Json& explained);
 
 // The knobs of `measure trades` that a scene sets, each once: knob and setting.
 std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene);

@@ -56,6 +56,17 @@ Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landm
   return fixed;
 }
 
+std::vector<LandmarkFrame> armFrames(const Scene& scene,
+                                     const std::vector<PlacedLandmark>& landmarks) {
+  std::vector<LandmarkFrame> frames(scene.arms.size());
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    for (const PlacedLandmark& landmark : landmarks) {
+      if (landmark.id == scene.arms[i].map.landmark) frames[i] = landmark.frame;
+    }
+  }
+  return frames;
+}
+
 Renderable renderableOn(const SceneArm& arm, double rate_hz) {
   const ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
   WorkspaceMap map;

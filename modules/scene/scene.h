@@ -90,6 +90,10 @@ Status checkLabels(const TissueSet& tissues, const LabelMap* labels);
 // The same scene with every arm's map fixed at its landmark.
 Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
 
+// By arm: the frame of its map's landmark, in which a script gives its waypoints.
+std::vector<LandmarkFrame> armFrames(const Scene& scene,
+                                     const std::vector<PlacedLandmark>& landmarks);
+
 // What an arm renders at the scene's rate, in the tissue's own numbers.
 Renderable renderableOn(const SceneArm& arm, double rate_hz);
 

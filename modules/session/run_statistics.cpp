@@ -47,6 +47,14 @@ Error memoryNotLocked(const std::string& reason) {
       "in again"};
 }
 
+RunWarning startsInTissue(const std::string& arm, bool barrier) {
+  return {
+      "STARTS_IN_TISSUE",
+      "The tool of the " + arm + " arm starts in tissue: " +
+          (barrier ? "it has no force and cuts nothing until it has been moved out"
+                   : "without the elastic law it feels and cuts it from the first moment")};
+}
+
 Json toJson(const RunReport& report) {
   Json arms = Json::array();
   for (const RunReport::Arm& arm : report.arms) {
@@ -69,7 +77,8 @@ Json toJson(const RunReport& report) {
     warnings.push_back({{"code", w.code}, {"text", w.text}});
   }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
-  return {{"controller", report.controller},
+  return {{"controller", report.controllers.back()},
+          {"controllers", report.controllers},
           {"ticks", report.ticks},
           {"rate_hz", report.rate_hz},
           {"arms", arms},
@@ -90,7 +99,9 @@ Json toJson(const RunReport& report) {
           {"volume_sha256_before", report.volume_sha256_before},
           {"volume_sha256", report.volume_sha256},
           {"recording", file(report.recording)},
-          {"picture", file(report.picture)}};
+          {"picture", file(report.picture)},
+          {"volume", file(report.volume)},
+          {"table", file(report.table)}};
 }
 
 std::string toText(const RunReport& report) {
@@ -100,8 +111,14 @@ std::string toText(const RunReport& report) {
     std::snprintf(line, sizeof(line), values...);
     text += line;
   };
-  add("%.1f s of touch at %.0f Hz, controller '%s'\n", double(report.ticks) / report.rate_hz,
-      report.rate_hz, report.controller.c_str());
+  add("%.1f s of touch at %.0f Hz, controller '%s'", double(report.ticks) / report.rate_hz,
+      report.rate_hz, report.controllers.front().c_str());
+  constexpr std::size_t kNamed = 4;
+  for (std::size_t i = 1; i < report.controllers.size() && i < kNamed; ++i) {
+    text += ", later '" + report.controllers[i] + "'";
+  }
+  if (report.controllers.size() > kNamed) text += " and so on";
+  text += "\n";
   for (const RunReport::Arm& arm : report.arms) {
     add("  %-6s  in tissue %.1f s, at most %.2f N, removed %.0f mm3\n", arm.name.c_str(),
         double(arm.statistics.contact_ticks) / report.rate_hz, arm.statistics.max_force_N,
@@ -132,6 +149,8 @@ std::string toText(const RunReport& report) {
     add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
   }
   if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
+  if (!report.volume.empty()) text += "  volume: " + report.volume + "\n";
+  if (!report.table.empty()) text += "  table: " + report.table + "\n";
   return text;
 }
 

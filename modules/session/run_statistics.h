@@ -31,8 +31,11 @@ struct RunWarning {
   std::string code, text;
 };
 
+// Of a scene whose tool begins in tissue.
+RunWarning startsInTissue(const std::string& arm, bool barrier);
+
 struct RunReport {
-  std::string controller;
+  std::vector<std::string> controllers;  // one after the other, at least one
   std::uint64_t ticks = 0;
   double rate_hz = 0.0;
   struct Arm {
@@ -53,7 +56,7 @@ struct RunReport {
   double recorder_behind_ms = 0.0;  // the most of the session that was not on disk yet
   DurationSummary tick_ns;
   std::string volume_sha256_before, volume_sha256;
-  std::string recording, picture;  // files; empty: none
+  std::string recording, picture, volume, table;  // files; empty: none
 };
 
 // What it means that memory could not be locked, and how it is allowed.

@@ -152,6 +152,7 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   if (!landmarks) return landmarks.error();
   session->landmarks_ = *std::move(landmarks);
   session->scene_ = withFixedMaps(scene, session->landmarks_);
+  session->controllers_.emplace_back(controllerName(scene.controller));
 
   std::vector<LoopDevice> devices;
   if (Status opened = openDevices(session->scene_, devices, session->capabilities_); !opened) {
@@ -177,13 +178,8 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   session->spill_ = *std::move(spill);
   std::unique_ptr<Operator> script;
   if (options.script) {
-    std::vector<LandmarkFrame> frames(scene.arms.size());
-    for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-      for (const PlacedLandmark& l : session->landmarks_) {
-        if (l.id == scene.arms[i].map.landmark) frames[i] = l.frame;
-      }
-    }
-    script = std::make_unique<ScriptOperator>(*options.script, session->scene_, frames);
+    script = std::make_unique<ScriptOperator>(*options.script, session->scene_,
+                                              armFrames(scene, session->landmarks_));
   }
   for (LiveHands::Hand& hand : session->hands_.hands) {
     hand = {false, Vec3(0.0), kMouseStiffness_N_per_m, kMouseDamping_Ns_per_m};
@@ -328,13 +324,15 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
 Status Session::freewheel(double seconds, const Progress& progress) {
   if (Status started = loop_->startDevices(); !started) return started;
   const auto ticks = std::uint64_t(std::llround(seconds * scene_.rate_hz));
-  // Drained often enough that no ring can fill: they hold thousands of ticks.
-  constexpr std::uint64_t kDrainTicks = 256;
+  // Drained often enough that no ring can fill, which hold thousands of ticks, and that a kill
+  // costs no more of a slow session than of a fast one.
+  const auto drain_ticks =
+      std::clamp<std::uint64_t>(std::uint64_t(kFlushEvery_s * scene_.rate_hz), 1, 256);
   bool cancelled = false;
   for (std::uint64_t i = 0; i < ticks && !cancelled; ++i) {
     loop_->step(0);
     const bool waits = core_->journalState() != (kJournalRoom | kJournalReady);
-    if (i % kDrainTicks == 0 || waits || loop_->carves().size() > loop_->carves().capacity() / 2) {
+    if (i % drain_ticks == 0 || waits || loop_->carves().size() > loop_->carves().capacity() / 2) {
       drain();
       progress.at(double(i) / double(ticks), "Running");
       cancelled = progress.cancelled();
@@ -448,7 +446,7 @@ const LoopState& Session::state() {
 
 RunReport Session::report() const {
   RunReport report;
-  report.controller = controllerName(core_->controller());
+  report.controllers = controllers_;
   report.ticks = loop_->ticks();
   report.rate_hz = scene_.rate_hz;
   const double voxel_mm3 = grid_->geometry().voxelVolume_mm3();

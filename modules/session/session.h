@@ -115,6 +115,9 @@ class Session {
   void record();  // the recorder thread
   void drain();
   void flush();
+  // So much of the session may wait to be written. Counted in ticks, not on the recorder's clock: a
+  // recorder that gets to run seldom must not put off what it then finds waiting.
+  static constexpr double kFlushEvery_s = 0.25;
   Status finishRecording();
   void noteFailure(const Error& error);
 
@@ -134,6 +137,7 @@ class Session {
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
   std::vector<RunWarning> warnings_;
+  std::vector<std::string> controllers_;                       // one after the other
   std::uint64_t unflushed_ticks_ = 0, most_behind_ticks_ = 0;  // the recorder's
   std::atomic<std::uint64_t> flushed_ticks_{0};
 

@@ -14,9 +14,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-// Counted in ticks, not on the recorder's clock: a recorder that gets to run seldom must not put
-// off what it then finds waiting.
-constexpr double kFlushEvery_s = 0.25;
 constexpr std::size_t kMostFaults = 1000;  // in a report
 
 }  // namespace
@@ -65,22 +62,24 @@ void Session::drain() {
 
 // For the report. Recorder thread, and the owner once that has ended.
 void Session::note(const Event& event) {
+  const Command& command = event.command;
+  if (event.kind == EventKind::command && command.kind == CommandKind::controller &&
+      controllers_.size() < kMostFaults) {
+    const std::string name(controllerName(ControllerKind(command.value)));
+    if (name != controllers_.back()) controllers_.push_back(name);
+  }
   if (event.arm < 0) return;
-  const auto warn = [&](const char* code, const std::string& text) {
-    if (warnings_.size() < kMostFaults) warnings_.push_back({code, text});
-    spdlog::warn("{}", text);
+  const auto warn = [&](const RunWarning& warning) {
+    if (warnings_.size() < kMostFaults) warnings_.push_back(warning);
+    spdlog::warn("{}", warning.text);
   };
   const std::string& arm = scene_.arms[std::size_t(event.arm)].name;
   if (event.kind == EventKind::starts_in_tissue) {
-    warn("STARTS_IN_TISSUE",
-         "The tool of the " + arm + " arm starts in tissue: " +
-             (names(scene_.laws, LawKind::elastic)
-                  ? "it has no force and cuts nothing until it has been moved out"
-                  : "without the elastic law it feels and cuts it from the first moment"));
+    warn(startsInTissue(arm, names(scene_.laws, LawKind::elastic)));
   } else if (event.kind == EventKind::let_go) {
-    warn("LET_GO", "The tool of the " + arm + " arm was hooked behind solid tissue " +
-                       plainNumber(std::round(double(event.tick) / scene_.rate_hz * 10.0) / 10.0) +
-                       " s after the start, while the arm was free: it was let go");
+    warn({"LET_GO", "The tool of the " + arm + " arm was hooked behind solid tissue " +
+                        plainNumber(std::round(double(event.tick) / scene_.rate_hz * 10.0) / 10.0) +
+                        " s after the start, while the arm was free: it was let go"});
   }
   if (event.kind != EventKind::fault) return;
   if (faults_.size() < kMostFaults) faults_.push_back({event.tick, event.arm, event.value});

@@ -109,6 +109,9 @@ std::size_t RecordField::bytes() const {
 std::span<const RecordField> armFields() { return kArmFields; }
 std::span<const RecordField> tickFields() { return kTickFields; }
 std::span<const RecordField> carveFields() { return kCarveFields; }
+std::span<const RecordField> eventFields() {
+  return kEventFields;
+}
 
 hid_t compoundType(std::span<const RecordField> fields, std::size_t size) {
   const hid_t compound = H5Tcreate(H5T_COMPOUND, size);

@@ -32,6 +32,7 @@ struct TickRow {
 std::span<const RecordField> armFields();    // ArmRecord
 std::span<const RecordField> tickFields();   // TickRow
 std::span<const RecordField> carveFields();  // CarveRecord
+std::span<const RecordField> eventFields();  // Event, but for the tissues of its command
 
 // HDF5 memory types; the caller closes them with H5Tclose.
 hid_t compoundType(std::span<const RecordField> fields, std::size_t size);

@@ -68,14 +68,58 @@ std::optional<ReplayDifference> compareCarves(const std::vector<CarveRecord>& re
   return {};
 }
 
+Json eventJson(const Event& event) {
+  Json json = Json::object();
+  for (const RecordField& field : eventFields()) json[field.name] = fieldJson(field, &event);
+  return json;
+}
+
+bool same(const Event& a, const Event& b) {
+  return !compare(eventFields(), a, b, a.tick, a.arm) && a.command.tissues == b.command.tissues;
+}
+
+// The recorded events of this tick against those of the core: strokes, faults, what was let go.
+std::optional<ReplayDifference> compareEvents(std::span<const Event> recorded,
+                                              const std::vector<Event>& replayed,
+                                              std::uint64_t tick) {
+  for (std::size_t i = 0; i < std::max(recorded.size(), replayed.size()); ++i) {
+    const Event* was = i < recorded.size() ? &recorded[i] : nullptr;
+    const Event* is = i < replayed.size() ? &replayed[i] : nullptr;
+    if (was && is && same(*was, *is)) continue;
+    return ReplayDifference{tick, (was ? was : is)->arm, "events",
+                            was ? eventJson(*was) : Json(nullptr),
+                            is ? eventJson(*is) : Json(nullptr)};
+  }
+  return {};
+}
+
+// What a recording that ended in order holds beyond its last tick: of an arm that was left behind
+// alone, in the tick that did not come.
+std::optional<ReplayDifference> whatIsLeft(std::span<const Event> events,
+                                           std::span<const CarveRecord> carves,
+                                           std::uint64_t ticks) {
+  for (const Event& event : events) {
+    const bool stuck = event.kind == EventKind::fault && event.value == kFaultStuck;
+    if (event.tick == ticks && (stuck || event.kind == EventKind::silenced)) continue;
+    return ReplayDifference{event.tick, event.arm, "events", eventJson(event), nullptr};
+  }
+  if (carves.empty()) return {};
+  const CarveRecord& carve = carves.front();
+  return ReplayDifference{carve.tick, carve.arm, "removed_voxels", carve.voxel, nullptr};
+}
+
 // Gets the journal to where it allows at least what it allowed when this was recorded.
-Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint32_t recorded) {
+Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint64_t tick,
+                    std::uint32_t recorded) {
   constexpr int kTries = 1000;
   for (int tries = 0; (core.journalState() & recorded) != recorded; ++tries) {
     if (Status served = spill.service(core.journal()); !served) return served;
     if (tries == kTries) {
-      return Error{"NOT_REPLAYABLE", "The journal of what was removed cannot be kept",
-                   "the temporary folder", "Free some space and replay again"};
+      return Error{"NOT_REPLAYABLE",
+                   "The recording's tick " + std::to_string(tick) + " tells of a journal (" +
+                       std::to_string(recorded) + ") that the replay cannot come to",
+                   "ticks: journal",
+                   "Replay the recording as it was made: this one is damaged or was changed"};
     }
   }
   return {};
@@ -162,12 +206,13 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
         input.arms[i] = {arm.device_position_m, arm.device_orientation, arm.buttons, arm.flags};
       }
       commands.clear();
+      const std::size_t first_event = next_event;
       for (; next_event < events->size() && (*events)[next_event].tick <= recorded.tick; ++next_event) {
         const Event& event = (*events)[next_event];
         if (event.kind == EventKind::command) commands.push_back(event.command);
         if (event.kind == EventKind::silenced) input.silenced = true;
       }
-      if (Status served = serveJournal(core, **spill, recorded.journal); !served) {
+      if (Status served = serveJournal(core, **spill, recorded.tick, recorded.journal); !served) {
         return served.error();
       }
       TickRecord replayed;
@@ -179,8 +224,18 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
             compare(armFields(), recorded.arms[i], replayed.arms[i], recorded.tick, int(i));
       }
       if (!difference) difference = compareCarves(*carves, next_carve, core.carves(), recorded.tick);
+      if (!difference) {
+        const std::span all(*events);
+        difference = compareEvents(all.subspan(first_event, next_event - first_event),
+                                   core.events(), recorded.tick);
+      }
       if (difference) break;
     }
+  }
+  // A recording that was cut short may know of more than of its last whole tick.
+  if (!result.first_difference && !result.cut_short) {
+    result.first_difference = whatIsLeft(std::span(*events).subspan(next_event),
+                                         std::span(*carves).subspan(next_carve), result.ticks);
   }
   result.volume_sha256 = volumeSha256(grid.snapshot());
   if (!result.first_difference && recording.end() &&

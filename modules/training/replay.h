@@ -1,4 +1,5 @@
-// Runs a recording through the core again, without hardware, and compares every bit.
+// Runs a recording through the core again, without hardware, and compares every bit: of the arms,
+// the removed voxels and the events.
 #pragma once
 
 #include <optional>

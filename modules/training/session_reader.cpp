@@ -177,9 +177,8 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   const auto scene = readText(f.file, "scene");
   const auto volume = readText(f.file, "volume");
   const auto build = readText(f.file, "build");
-  const auto head_sha256 = readText(f.file, "head_sha256");  // older recordings have none
-  if (version < 1 || !scene || !volume || !build ||
-      (head_sha256 && *head_sha256 != headSha256(*build, *scene, *volume))) {
+  const auto head_sha256 = readText(f.file, "head_sha256");
+  if (!scene || !volume || !build || head_sha256 != headSha256(*build, *scene, *volume)) {
     return f.bad("The recording is incomplete: its head is damaged");
   }
   Result<Json> scene_json = parseJson(*scene, path.string());
@@ -206,8 +205,11 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   if (f.ticks < 0 || f.carves < 0 || f.events < 0 || f.arms.empty()) {
     return f.bad("The recording is incomplete: its tables are damaged");
   }
-  hsize_t count = rowCount(f.ticks);
-  for (hid_t arm : f.arms) count = std::min(count, rowCount(arm));
+  hsize_t count = rowCount(f.ticks), most = count;
+  for (hid_t arm : f.arms) {
+    count = std::min(count, rowCount(arm));
+    most = std::max(most, rowCount(arm));
+  }
   f.tick_count = count;
 
   if (const hid_t end = H5Dopen2(f.file, "end", H5P_DEFAULT); end >= 0) {
@@ -217,6 +219,12 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
                            std::string(row.volume_sha256, sizeof(row.volume_sha256))};
     }
     H5Dclose(end);
+  }
+  // What ended in order has all its rows, unless it says that it dropped some.
+  if (f.end && f.end->dropped == 0 && (f.end->ticks != count || most != count)) {
+    return f.bad("The recording contradicts itself: its end counts " +
+                 std::to_string(f.end->ticks) + " ticks, and its tables hold " +
+                 std::to_string(count) + (most == count ? "" : " to " + std::to_string(most)));
   }
   return reader;
 }

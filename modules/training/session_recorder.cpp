@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/file.h"
 #include "training/recording_layout.h"
 
 namespace trephine {
@@ -146,7 +147,7 @@ struct SessionRecorder::File {
                       std::string("The recording can no longer be written: ") +
                           (errno ? std::strerror(errno) : "unknown reason"),
                       path.filename().string(),
-                      "Free some space; what was recorded until now is kept"};
+                      afterFailedWrite(errno) + "; what was recorded until now is kept"};
     }
     return *failure;
   }
@@ -184,7 +185,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
     return Error{"CANNOT_WRITE",
                  std::string("The recording cannot be started: ") +
                      (errno ? std::strerror(errno) : "unknown reason"),
-                 path.string(), "Choose another folder, or free some space"};
+                 path.string(), afterFailedWrite(errno)};
   };
   if (f.file < 0) return cannot();
 

@@ -8,10 +8,8 @@
 
 namespace trephine {
 
-// tick, t_s and arm; position [m] and velocity [m/s]; f_e the demanded force, f_c the controller's
-// and sent what went to the arm [N]; E_obs [J] and alpha the controller's. All at the device, in its
-// axes, the forces on the arm: what the controller saw. Names as in the seed paper. Numbers are written so that they read
-// back as they were. Errors: those of the recording and of the disk, CANCELLED.
+// The columns: resources/schemas/csv.md. Replaces what is at `file`. Numbers are written so that
+// they read back as they were. Errors: those of the recording, CANNOT_WRITE, CANCELLED.
 Status writeTickTable(const SessionReader& recording, const std::filesystem::path& file,
                       const Progress& progress = Progress());
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <system_error>
 
+#include "base/file.h"
+
 namespace trephine {
 namespace {
 
@@ -50,7 +52,7 @@ Result<std::unique_ptr<JournalSpill>> JournalSpill::create(const std::filesystem
   if (descriptor < 0) {
     return Error{"CANNOT_WRITE",
                  "The journal of what is removed cannot be kept on disk: " + reason(errno),
-                 folder.string(), "Choose another folder, or free some space"};
+                 folder.string(), afterFailedWrite(errno)};
   }
   return std::unique_ptr<JournalSpill>(new JournalSpill(descriptor, folder));
 }
@@ -82,11 +84,12 @@ Status JournalSpill::save(CarveLog& log) {
     log.markSaved(first + done / sizeof(CarveEntry));
     if (done == bytes.size()) continue;
     write_failed_ = true;
-    return Error{
-        "CANNOT_WRITE", "The journal of what is removed can no longer be written: " + reason(error),
-        folder_.string(),
-        "Free some space and start the session anew; until memory is full removal goes on, "
-        "and undo and rewind work still"};
+    return Error{"CANNOT_WRITE",
+                 "The journal of what is removed can no longer be written: " + reason(error),
+                 folder_.string(),
+                 afterFailedWrite(error) +
+                     ", and start the session anew; until memory is full removal goes "
+                     "on, and undo and rewind work still"};
   }
   return {};
 }

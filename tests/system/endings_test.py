@@ -1,48 +1,18 @@
 """How the programs end when they are told to, or when the disk is full: in order, with one answer,
 and with everything that was written in a state that can be used."""
 
-import gzip
 import json
 import os
 import shutil
 import signal
-import struct
 import subprocess
 import time
 import unittest
 from pathlib import Path
 
-from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab
+from lab_support import LAB, PATIENCE_S, SCENES, SOURCE, WINDOW, EndingTest, lab, small_head
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-
-
-def small_head(file):
-    """A ball of bone in scalp, 80 voxels of 1.2 mm along each axis."""
-    n, spacing = 80, 1.2
-    header = bytearray(352)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
-    struct.pack_into("<2h", header, 70, 4, 16)
-    struct.pack_into("<4f", header, 76, 1, spacing, spacing, spacing)
-    struct.pack_into("<f", header, 108, 352)
-    struct.pack_into("<f", header, 112, 1)
-    struct.pack_into("<h", header, 254, 1)
-    start = -spacing * (n - 1) / 2
-    for row in range(3):
-        line = [0.0, 0.0, 0.0, start]
-        line[row] = spacing
-        struct.pack_into("<4f", header, 280 + 16 * row, *line)
-    header[344:348] = b"n+1\0"
-    square = [(start + spacing * i) ** 2 for i in range(n)]
-    voxels = []
-    for k in range(n):
-        for j in range(n):
-            for i in range(n):
-                rr = square[i] + square[j] + square[k]
-                voxels.append(35 if rr < 32**2 else 1200 if rr < 39**2 else -20 if rr < 44**2 else -1024)
-    file.write_bytes(gzip.compress(bytes(header) + struct.pack(f"<{len(voxels)}h", *voxels), 1))
-    return file
 
 
 def listens(process):
@@ -58,6 +28,7 @@ class Signals(EndingTest):
         commands = {
             "phantom": ("phantom", "cranium", "--out", out / "ct"),
             "run": ("run", SCENES / "cranium.json", "--seconds", 3000, "--out", out / "run"),
+            "explain": ("explain", SCENES / "liver.json"),
             "measure stability": ("measure", "stability", "--out", out / "stability"),
             "measure extremes": ("measure", "extremes", "--out", out / "extremes"),
             "measure haptics": ("measure", "haptics", "--out", out / "haptics"),
@@ -90,14 +61,14 @@ class Signals(EndingTest):
                 self.assertEqual(code, 128 + by)
                 self.assert_error(answer, "CANCELLED")
 
-    def test_a_run_that_is_ended_keeps_recording_and_volume(self):
+    def test_a_run_that_is_ended_keeps_recording_volume_and_table(self):
         case = small_head(self.folder / "head.nii.gz")
         for by, pace in zip(SIGNALS, (("--realtime",), ())):
             with self.subTest(signal=by.name):
                 out = self.folder / by.name
                 process = self.start(LAB, "run", SCENES / "cranium.json", "--case", case, *pace,
                                      "--seconds", 3000, "--save-volume", out / "carved.nii.gz",
-                                     "--out", out, "--json")
+                                     "--csv", out / "ticks.csv", "--out", out, "--json")
                 self.wait_for(process, (out / "session.h5").exists)
                 time.sleep(1)
                 code, answer = self.end(process, by)
@@ -108,6 +79,9 @@ class Signals(EndingTest):
                 self.assertGreater(answer["ticks"], 100)
                 saved = lab("import", out / "carved.nii.gz")["series"][0]
                 self.assertEqual(saved["volume_sha256"], answer["volume_sha256"])
+                self.assertEqual(answer["table"], str(out / "ticks.csv"))
+                with open(out / "ticks.csv") as table:
+                    self.assertEqual(sum(1 for _ in table), 1 + 2 * answer["ticks"])
 
     @unittest.skipUnless(WINDOW and os.environ.get("DISPLAY"), "needs the window and a display")
     def test_an_exercise_in_the_window_that_is_ended_keeps_its_recording(self):

@@ -9,7 +9,8 @@ import unittest
 from pathlib import Path
 
 from lab_support import (
-    LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, without_display)
+    LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, small_head,
+    without_display)
 
 IMPORT_KEYS = {
     "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen",
@@ -19,10 +20,10 @@ SERIES_KEYS = {
     "verdict", "size", "spacing_mm", "origin_mm", "direction",
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
-    "schema", "build", "controller", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
+    "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
     "missed_deadlines", "faults", "warnings", "memory_locked", "nonfinite", "events_dropped",
     "recorder_behind_ms", "tick_ns", "volume_sha256_before", "volume_sha256", "recording",
-    "picture"}
+    "picture", "volume", "table"}
 ONE_ARM = ("cranium-one-arm", "burr-hole", "liver-one-arm")
 
 
@@ -185,9 +186,15 @@ class StartsInTissue(LabTest):
                 "arms": [{"arm": "right", "waypoints": [{"t": 0, "at_mm": [0, 0, -3]},
                                                         {"t": 1, "at_mm": [0, 0, -3]}]}]}
         (self.folder / "rest.json").write_text(json.dumps(rest))
-        run = lab("run", self.folder / "scene.json", "--operator", self.folder / "rest.json",
-                  "--out", self.folder)
+        scene["operator"] = "rest.json"
+        (self.folder / "scene.json").write_text(json.dumps(scene))
+        table = self.folder / "ticks.csv"
+        run = lab("run", self.folder / "scene.json", "--out", self.folder, "--csv", table)
         self.assertEqual([w["code"] for w in run["warnings"]], ["STARTS_IN_TISSUE"])
+        with open(table, newline="") as file:
+            self.assertEqual({row["tool_state"] for row in csv.DictReader(file)}, {"1"})
+        explained = lab("explain", self.folder / "scene.json")
+        self.assertEqual(explained["warnings"], run["warnings"])
         self.assertEqual(run["arms"][0]["max_force_N"], 0.0)
         self.assertEqual(run["removed_voxels"], 0)
 
@@ -214,6 +221,95 @@ class Run(LabTest):
         self.assertEqual(hashlib.sha256(Path(first["recording"]).read_bytes()).hexdigest(), digest)
 
 
+class Targets(LabTest):
+    """Where `run` is told to save its table and its volume."""
+
+    def refused(self, *options, code="CANNOT_WRITE", words=()):
+        """Refused before the run: nothing is recorded."""
+        before = sorted(self.folder.rglob("*"))
+        answer = lab("run", SCENES / "cranium.json", "--seconds", 0.1, "--out", self.folder / "out",
+                     *options, expect=1)
+        self.assert_error(answer, code, *words)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def test_nothing_that_is_there_is_written_over(self):
+        run = lab("run", SCENES / "cranium.json", "--seconds", 0.1, "--out", self.folder / "out",
+                  "--csv", self.folder / "ticks.csv", "--save-volume", self.folder / "cut.nii.gz",
+                  environment=without_display())
+        scene = self.folder / "scene.json"
+        scene.write_text((SCENES / "cranium.json").read_text())
+        (self.folder / "link.csv").symlink_to(scene)
+        (self.folder / "broken.csv").symlink_to(self.folder / "none")
+        os.mkfifo(self.folder / "fifo.csv")
+        files = [Path(run[what]) for what in ("recording", "table", "volume")] + [scene]
+        before = [file.read_bytes() for file in files]
+        for target in [*files, *(self.folder / name for name in
+                                 ("link.csv", "broken.csv", "fifo.csv")), Path("/dev/full")]:
+            with self.subTest(target.name):
+                self.refused("--csv", target, words=(str(target), "--csv"))
+        self.refused("--csv", self.folder, words=("folder", "--csv"))
+        self.refused("--save-volume", run["volume"], words=("--save-volume",))
+        self.assertEqual([file.read_bytes() for file in files], before)
+        self.assertTrue(Path("/dev/full").is_char_device())
+
+    def test_the_case_of_the_run_is_spared(self):
+        case = small_head(self.folder / "head.nii.gz")
+        before = case.read_bytes()
+        for option in ("--save-volume", "--csv"):
+            self.refused("--case", case, option, case, words=("would be lost",))
+        self.assertEqual(case.read_bytes(), before)
+
+    def test_what_the_run_itself_will_write_is_spared(self):
+        out = self.folder / "out"
+        self.refused("--csv", out / ".." / "out" / "session.h5", words=("The run itself",))
+        volume = self.folder / "v.nii"
+        self.refused("--csv", volume, "--save-volume", volume, words=("The run itself",))
+
+    def test_a_folder_that_cannot_be_written_to_is_said_before_the_run(self):
+        self.refused("--csv", self.folder / "none" / "t.csv", code="MISSING_FOLDER", words=("--csv",))
+        self.refused("--csv", "/proc/t.csv")
+
+    def test_an_empty_name_is_no_choice(self):
+        for option in ("--csv", "--save-volume"):
+            self.refused(option, "", code="BAD_ARGUMENT", words=(option,))
+
+    def test_a_folder_that_was_made_for_nothing_goes_again(self):
+        out = self.folder / "a" / "b"
+        answer = lab("run", SCENES / "cranium.json", "--case", self.folder / "none", "--out", out,
+                     expect=1)
+        self.assertIn("error", answer)
+        self.assertEqual(list(self.folder.iterdir()), [])
+        (self.folder / "own").mkdir()
+        lab("run", SCENES / "cranium.json", "--case", self.folder / "none", "--out",
+            self.folder / "own", expect=1)
+        self.assertTrue((self.folder / "own").is_dir(), "it was there before")
+
+    def test_the_answer_names_what_was_written(self):
+        done = subprocess.run(
+            [LAB, "run", SCENES / "cranium.json", "--seconds", "0.1", "--out", self.folder, "--csv",
+             self.folder / "t.csv", "--save-volume", self.folder / "v.mha"],
+            capture_output=True, text=True, check=True)
+        self.assertIn(f"table: {self.folder}/t.csv", done.stdout)
+        self.assertIn(f"volume: {self.folder}/v.mha", done.stdout)
+
+
+class Controllers(LabTest):
+    def test_a_script_that_changes_the_controller_is_told_with_both(self):
+        script = {"format": "trephine.operator", "version": 1, "name": "change",
+                  "hand": {"stiffness_N_per_m": 800, "damping_Ns_per_m": 8},
+                  "arms": [{"arm": "right", "waypoints": [{"t": 0, "at_mm": [0, 0, 18]}]}],
+                  "commands": [{"t": 0.1, "do": "controller", "controller": "off"}]}
+        (self.folder / "change.json").write_text(json.dumps(script))
+        arguments = ("run", SCENES / "cranium.json", "--operator", self.folder / "change.json",
+                     "--seconds", 0.3, "--out", self.folder)
+        run = lab(*arguments)
+        self.assertEqual(run["controllers"], ["bounded", "off"])
+        self.assertEqual(run["controller"], "off")
+        text = subprocess.run([LAB, *map(str, arguments)], capture_output=True, text=True,
+                              check=True).stdout
+        self.assertIn("controller 'bounded', later 'off'\n", text)
+
+
 class OwnScript(LabTest):
     def test_a_script_of_ones_own_takes_back_both_its_strokes(self):
         script = {
@@ -235,6 +331,19 @@ class OwnScript(LabTest):
         self.assertTrue(lab("replay", run["recording"])["identical"])
 
 
+def small_scene(folder, tool=None):
+    """The shipped scene of one arm in a small head, in a file of its own, with a tool of its own."""
+    scene = json.loads((SCENES / "cranium-one-arm.json").read_text())
+    for part, where in (("tissues", "tissues"), ("operator", "operators")):
+        scene[part] = str(SCENES.parent / where / Path(scene[part]).name)
+    arm = scene["arms"][0]
+    arm["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
+    scene["tools"] = [{"id": arm["tool"], **(tool or {"file": str(SCENES.parent / "tools" / "blade.json")})}]
+    scene["case"] = str(small_head(folder / "head.nii.gz"))
+    (folder / "scene.json").write_text(json.dumps(scene))
+    return folder / "scene.json"
+
+
 class Explain(LabTest):
     def test_explain_lists_what_is_instantiated_and_its_cost(self):
         answer = lab("explain", SCENES / "liver.json")
@@ -245,25 +354,37 @@ class Explain(LabTest):
                                  "removal of one voxel"})
         self.assertTrue(all(cost["ns_per_tick"] > 0 for cost in answer["cost"]))
         self.assertGreater(answer["tick_ns"], 0)
+        self.assertEqual(answer["warnings"], [])
+
+    def test_the_thickest_tools_are_explained_in_time(self):
+        for tool in ({"kind": "blade", "length_mm": 60, "points": 16, "radius_mm": 20},
+                     {"kind": "burr", "length_mm": 60, "points": 32, "radius_mm": 20}):
+            with self.subTest(tool["kind"]):
+                answer = lab("explain", small_scene(self.folder, tool), timeout=60)
+                self.assertGreater(answer["tick_ns"], 0)
 
     def test_explain_sets_a_scenes_settings_beside_the_recommended_ones(self):
+        scene = small_scene(self.folder)
         recommended = {
             knob["knob"]: knob["setting"]
             for knob in json.loads((SOURCE / "resources" / "recommended.json").read_text())["knobs"]}
-        answer = lab("explain", SCENES / "cranium.json")
+        answer = lab("explain", scene)
         self.assertEqual(answer["settings"],
                          [{"knob": knob, "setting": setting, "recommended": recommended[knob]}
                           for knob, setting in (("points_blade", "16"), ("force_at", "distributed"),
                                                 ("rate_hz", "1000"))])
-        text = subprocess.run([LAB, "explain", SCENES / "cranium.json"], capture_output=True,
+        text = subprocess.run([LAB, "explain", scene], capture_output=True,
                               text=True, check=True).stdout
         self.assertIn(f"points_blade: 16 (recommended: {recommended['points_blade']})", text)
+        self.assertNotIn("{", text, "words, no JSON")
+        for said in ("right arm", "'bounded'", "solid tissue stops a tool", "a tick"):
+            self.assertIn(said, text)
 
         # Without the resource there is nothing to say; a broken one is an error.
         bare = {**os.environ, "TREPHINE_RESOURCES": str(self.folder)}
-        self.assertNotIn("settings", lab("explain", SCENES / "cranium.json", environment=bare))
+        self.assertNotIn("settings", lab("explain", scene, environment=bare))
         (self.folder / "recommended.json").write_text('{"format": "trephine.recommended"}')
-        answer = lab("explain", SCENES / "cranium.json", environment=bare, expect=1)
+        answer = lab("explain", scene, environment=bare, expect=1)
         self.assert_error(answer, "BAD_FIELD", "recommended.json")
 
 
@@ -322,13 +443,12 @@ class BadInput(LabTest):
         self.assert_error(lab("replay", self.folder / "none.h5", expect=1), "MISSING_FILE", "none.h5")
 
     def test_a_full_disk_stops_with_one_line_and_loses_nothing(self):
-        (self.folder / "precious.mha").write_text("precious")
         shell = (f'ulimit -f 64; exec "{LAB}" run "{SCENES}/cranium.json" --seconds 2 '
-                 f'--save-volume "{self.folder}/precious.mha" --out "{self.folder}/out" --json')
+                 f'--save-volume "{self.folder}/cut.mha" --out "{self.folder}/out" --json')
         done = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assert_error(json.loads(done.stdout), "CANNOT_WRITE")
-        self.assertEqual((self.folder / "precious.mha").read_text(), "precious")
+        self.assertEqual([f for f in self.folder.rglob("*") if f.is_file()], [])
 
     def test_a_missing_temporary_folder_is_named_where_one_is_needed(self):
         missing = {**os.environ, "TMPDIR": str(self.folder / "none")}
@@ -355,6 +475,15 @@ class BadInput(LabTest):
             self.assertTrue(done.stderr.strip())
         for arguments in (["dance"], ["run", SCENES / "cranium.json", "--out", self.folder, "--seconds"]):
             self.assert_error(lab(*arguments, expect=1), "BAD_ARGUMENT")
+        for arguments in (["dance"], ["measure", "dance"]):
+            self.assert_error(lab(*arguments, expect=1), "BAD_ARGUMENT", "'dance'")
+            done = subprocess.run([LAB, *arguments], capture_output=True, text=True)
+            self.assertIn("'dance'", done.stderr)
+        answer = lab("measure", "stability", "--sets", "", "--out", self.folder, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "--sets")
+        answer = lab("measure", "extremes", "--case", self.folder / "nothere", "--out",
+                     self.folder / "out", expect=1, timeout=20)
+        self.assert_error(answer, "MISSING_FOLDER", "nothere")
         answer = lab("run", SCENES / "cranium.json", "--save-volume", "x.foo", "--out", self.folder,
                      expect=1)
         self.assert_error(answer, "UNKNOWN_FORMAT", "x.foo")

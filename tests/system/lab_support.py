@@ -1,8 +1,10 @@
 """Running the programs from tests: what they print, and what it must look like."""
 
 import csv
+import gzip
 import json
 import os
+import struct
 import subprocess
 import tempfile
 import time
@@ -46,6 +48,34 @@ def first_ten_seconds(name, folder, *case):
     for arm, did in arms.items():
         print(f"{name} {'real' if case else 'own'} {arm}: {did}")
     return arms
+
+
+def small_head(file):
+    """A ball of bone in scalp, 80 voxels of 1.2 mm along each axis."""
+    n, spacing = 80, 1.2
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<4f", header, 76, 1, spacing, spacing, spacing)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<f", header, 112, 1)
+    struct.pack_into("<h", header, 254, 1)
+    start = -spacing * (n - 1) / 2
+    for row in range(3):
+        line = [0.0, 0.0, 0.0, start]
+        line[row] = spacing
+        struct.pack_into("<4f", header, 280 + 16 * row, *line)
+    header[344:348] = b"n+1\0"
+    square = [(start + spacing * i) ** 2 for i in range(n)]
+    voxels = []
+    for k in range(n):
+        for j in range(n):
+            for i in range(n):
+                rr = square[i] + square[j] + square[k]
+                voxels.append(35 if rr < 32**2 else 1200 if rr < 39**2 else -20 if rr < 44**2 else -1024)
+    file.write_bytes(gzip.compress(bytes(header) + struct.pack(f"<{len(voxels)}h", *voxels), 1))
+    return file
 
 
 def without_display():

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -95,6 +97,43 @@ TEST(WriteTextFile, LeavesAFolderInItsPlaceAlone) {
   EXPECT_EQ(status.error().code, "CANNOT_WRITE");
   EXPECT_TRUE(fs::is_directory(folder / "taken"));
   EXPECT_EQ(filesIn(folder.path()), 1u);
+}
+
+TEST(NewFile, IsRefusedWhereAnythingHasItsNameAndLeavesItAlone) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(writeTextFile(folder / "file", "old"));
+  ASSERT_TRUE(makeFolder(folder / "folder"));
+  ASSERT_EQ(::mkfifo((folder / "fifo").c_str(), 0600), 0);
+  fs::create_symlink(folder / "file", folder / "link");
+  fs::create_symlink(folder / "none", folder / "broken");
+  for (const fs::path& taken : {folder / "file", folder / "folder", folder / "fifo",
+                                folder / "link", folder / "broken", fs::path("/dev/full")}) {
+    const Status status = checkNewFile(taken, "--csv");
+    ASSERT_FALSE(status) << taken;
+    EXPECT_EQ(status.error().code, "CANNOT_WRITE");
+    EXPECT_EQ(status.error().where, taken.string());
+    EXPECT_NE(status.error().next.find("--csv"), std::string::npos);
+  }
+  EXPECT_EQ(contentOf(folder / "file"), "old");
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST(NewFile, NeedsAFolderThatTakesIt) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(checkNewFile(folder / "new", "--csv"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  EXPECT_EQ(checkNewFile(folder / "none" / "new", "--csv").error().code, "MISSING_FOLDER");
+  EXPECT_EQ(checkNewFile("/proc/new", "--csv").error().code, "CANNOT_WRITE");
+}
+
+TEST(AfterFailedWrite, SpaceIsNamedOnlyWhereItIsShort) {
+  for (int error : {ENOSPC, EDQUOT, EFBIG}) {
+    EXPECT_NE(afterFailedWrite(error).find("space"), std::string::npos) << error;
+  }
+  for (int error : {EACCES, EROFS, ENOENT, EIO, 0}) {
+    EXPECT_EQ(afterFailedWrite(error).find("space"), std::string::npos) << error;
+    EXPECT_FALSE(afterFailedWrite(error).empty());
+  }
 }
 
 TEST(ReplaceFile, ShowsTheTargetOnlyWhenItIsComplete) {

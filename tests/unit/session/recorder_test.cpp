@@ -40,7 +40,7 @@ SessionOptions scripted(const std::filesystem::path& recording) {
   return {recording, *readOperatorScript(scene.operator_file, scene)};
 }
 
-// At 100 Hz the recorder is called for every 2.56 s of a freewheeling session.
+// A slow session is drained as often in its own time as a fast one.
 TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
@@ -52,11 +52,12 @@ TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
     const auto done = std::uint64_t(std::llround(fraction * 1000.0)) + 1;
     const auto reader = SessionReader::open(folder / "s.h5");
     ASSERT_TRUE(reader.ok()) << reader.error().sentence();
-    EXPECT_LE(done - (*reader)->tickCount(), 100u) << "of " << done;
+    EXPECT_LE(done - (*reader)->tickCount(), 50u) << "of " << done;
     ++looks;
   });
   ASSERT_TRUE((*session)->freewheel(10.0, look).ok());
   EXPECT_GE(looks, 3);
+  EXPECT_LT((*session)->report().recorder_behind_ms, 1000.0);
 }
 
 std::vector<pid_t> threadsNamed(const std::string& name) {

@@ -168,6 +168,8 @@ TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   const RunReport report = session.report();
   EXPECT_GT(report.arms[1].statistics.contact_ticks, 0u);
   EXPECT_GT(report.arms[1].statistics.max_force_N, 0.0);
+  EXPECT_EQ(report.controllers, (std::vector<std::string>{"bounded", "off"}));
+  EXPECT_NE(toText(report).find("controller 'bounded', later 'off'\n"), std::string::npos);
 
   const auto result = replay(**SessionReader::open(folder / "s.h5"), smallHead());
   ASSERT_TRUE(result.ok()) << result.error().sentence();

@@ -5,11 +5,13 @@
 
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 
 #include "scene/scene.h"
 #include "support.h"
+#include "training/recording_layout.h"
 #include "training/replay.h"
 #include "training/session_reader.h"
 #include "training/session_recorder.h"
@@ -345,13 +347,111 @@ TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherScene) {
   EXPECT_EQ(reader.error().code, "BAD_RECORDING");
 }
 
-TEST(Recording, OfBeforeTheHeadWasGuardedReplays) {
+TEST(Recording, WhoseHeadIsNoLongerGuardedIsDamaged) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100);
   const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   ASSERT_GE(H5Ldelete(file, "head_sha256", H5P_DEFAULT), 0);
   H5Fclose(file);
-  EXPECT_EQ(endOfReplay(folder / "a.h5"), "identical");
+  EXPECT_EQ(endOfReplay(folder / "a.h5"), "BAD_RECORDING");
+}
+
+// Reads the rows of a table, lets them be changed, and writes them back, as many as are left.
+template <class Row>
+void edit(const std::filesystem::path& file, const char* table, hid_t type,
+          const std::function<void(std::vector<Row>&)>& change) {
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t dataset = H5Dopen2(opened, table, H5P_DEFAULT);
+  const hid_t space = H5Dget_space(dataset);
+  hsize_t size = 0;
+  H5Sget_simple_extent_dims(space, &size, nullptr);
+  H5Sclose(space);
+  std::vector<Row> rows(size);
+  ASSERT_GE(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()), 0);
+  change(rows);
+  size = rows.size();
+  ASSERT_GE(H5Dset_extent(dataset, &size), 0);
+  if (size > 0) {
+    ASSERT_GE(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()), 0);
+  }
+  H5Tclose(type);
+  H5Dclose(dataset);
+  H5Fclose(opened);
+}
+
+// How the replay of a run ends whose table was edited.
+template <class Row>
+std::string endOfEdited(const char* table, hid_t type,
+                        const std::function<void(std::vector<Row>&)>& change) {
+  static const test::TemporaryFolder folder;
+  if (!std::filesystem::exists(folder / "whole.h5")) recordRun(folder / "whole.h5", 1000);
+  std::filesystem::copy_file(folder / "whole.h5", folder / "edited.h5",
+                             std::filesystem::copy_options::overwrite_existing);
+  edit(folder / "edited.h5", table, type, change);
+  return endOfReplay(folder / "edited.h5");
+}
+
+TEST(Recording, WhoseEventsWereEmptiedOrEditedDiffers) {
+  const auto edited = [](const std::function<void(std::vector<Event>&)>& change) {
+    return endOfEdited<Event>("events", eventType(), change);
+  };
+  EXPECT_EQ(edited([](auto&) {}), "identical");
+  EXPECT_EQ(edited([](auto& e) { e.clear(); }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e.pop_back(); }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].kind = EventKind(99); }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].tick += 1; }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e[0].arm = 3; }), "differs");
+  EXPECT_EQ(edited([](auto& e) { e.back().tick = std::uint64_t(-1); }), "differs");
+  EXPECT_EQ(edited([](auto& e) {
+              e.push_back({std::uint64_t(-1), EventKind(99), 0, 0, {}});
+            }),
+            "differs");
+  EXPECT_EQ(edited([](auto& e) {
+              e.insert(e.begin(), Event{0, EventKind::starts_in_tissue, 0, 0, {}});
+            }),
+            "differs");
+}
+
+// An arm that was left behind is told of in the tick that did not come.
+TEST(Recording, OfAnArmThatWasLeftBehindReplays) {
+  EXPECT_EQ(endOfEdited<Event>("events", eventType(),
+                               [](auto& e) {
+                                 e.push_back({1000, EventKind::silenced, -1, 0, {}});
+                                 e.push_back({1000, EventKind::fault, 0, kFaultStuck, {}});
+                               }),
+            "identical");
+}
+
+TEST(Recording, OfVoxelsRemovedAfterItsEndDiffers) {
+  EXPECT_EQ(
+      endOfEdited<CarveRecord>("removed_voxels", compoundType(carveFields(), sizeof(CarveRecord)),
+                               [](auto& carves) {
+                                 carves.push_back(carves.back());
+                                 carves.back().tick = 5000;
+                               }),
+      "differs");
+}
+
+TEST(Recording, WhoseEndAndTablesCountOtherTicksIsDamaged) {
+  EXPECT_EQ(endOfEdited<EndRow>("end", endType(), [](auto& end) { end[0].ticks = 10; }),
+            "BAD_RECORDING");
+  EXPECT_EQ(endOfEdited<TickRow>("ticks", compoundType(tickFields(), sizeof(TickRow)),
+                                 [](auto& ticks) { ticks.resize(ticks.size() + 100); }),
+            "BAD_RECORDING");
+}
+
+TEST(Recording, OfAJournalThatCannotBeSaysSoAndAsksForNoSpace) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 1000);
+  edit<TickRow>(folder / "a.h5", "ticks", compoundType(tickFields(), sizeof(TickRow)),
+                [](auto& ticks) { ticks[700].journal = 255; });
+  const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "NOT_REPLAYABLE");
+  const std::string sentence = result.error().sentence();
+  EXPECT_NE(sentence.find("tick 700 "), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("255"), std::string::npos) << sentence;
+  EXPECT_EQ(sentence.find("space"), std::string::npos) << sentence;
 }
 
 TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {

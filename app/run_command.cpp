@@ -1,0 +1,219 @@
+// `run`: an exercise with a scripted operator, and the files that it leaves.
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "app/answer.h"
+#include "app/lab_commands.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "lab/exercise_picture.h"
+#include "scene/names.h"
+#include "session/case_source.h"
+#include "session/session.h"
+#include "training/tick_table.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folder of a run. What was made of it goes again if nothing came to lie in it.
+class OutFolder {
+ public:
+  explicit OutFolder(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code ec;
+    for (fs::path at = fs::absolute(folder_, ec); !at.empty() && !fs::exists(at, ec);
+         at = at.parent_path()) {
+      made_.push_back(at);
+    }
+  }
+  ~OutFolder() {
+    std::error_code ec;
+    for (const fs::path& at : made_) fs::remove(at, ec);  // only an empty folder goes
+  }
+  OutFolder(const OutFolder&) = delete;
+  OutFolder& operator=(const OutFolder&) = delete;
+  Status make() const { return makeFolder(folder_); }
+
+ private:
+  fs::path folder_;
+  std::vector<fs::path> made_;  // the deepest first
+};
+
+// Puts the command line's choices into the scene.
+Status applyChoices(const RunArguments& arguments, Scene& scene) {
+  if (!arguments.case_source.empty()) {
+    if (!scene.case_source.empty()) scene.labels_file.clear();  // of another case
+    scene.case_source = arguments.case_source;
+  }
+  if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
+  if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
+  if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
+    return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
+  }
+  if (arguments.controller.empty()) return {};
+  if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
+    scene.controller = *kind;
+    return {};
+  }
+  return Error{"BAD_ARGUMENT", "There is no controller '" + arguments.controller + "'",
+               "--controller", choices(kControllerNames)};
+}
+
+// A run writes over nothing: what it is to save goes to names that nothing has, neither now nor by
+// its own recording.
+Status checkTargets(const RunArguments& arguments, const fs::path& recording) {
+  const std::pair<const char*, const std::string&> targets[] = {
+      {"--save-volume", arguments.save_volume}, {"--csv", arguments.csv}};
+  std::error_code ec;
+  std::vector<fs::path> taken{fs::weakly_canonical(recording, ec)};
+  for (const auto& [option, target] : targets) {
+    if (target.empty()) continue;
+    if (Status free = checkNewFile(target, option); !free) return free;
+    const fs::path file = fs::weakly_canonical(target, ec);
+    if (std::find(taken.begin(), taken.end(), file) != taken.end()) {
+      return Error{"CANNOT_WRITE", "The run itself writes another file of this name", target,
+                   std::string("Give ") + option + " a name of its own"};
+    }
+    taken.push_back(file);
+  }
+  return {};
+}
+
+Status runRealTime(Session& session, double seconds, const Progress& progress) {
+  if (Status started = session.start(seconds); !started) return started;
+  while (!session.finished() && !progress.cancelled() &&
+         session.standsStillFor_s() < Session::kGivenUp_s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  const bool cancelled = progress.cancelled() && !session.finished();
+  if (Status stopped = session.stop(); !stopped) return stopped;
+  if (cancelled) return Error{"CANCELLED", "The run was cancelled", "", ""};
+  return {};
+}
+
+struct RunOutcome {
+  RunReport report;
+  std::optional<Error> failure;  // the recording's, or the person ended the run
+};
+
+// Who ended the run does not wait for long: what of the table is not written within this time is
+// left, and that is said.
+constexpr std::chrono::seconds kPatience{5};
+
+Status saveTable(const fs::path& recording, const std::string& file, bool ended,
+                 const Progress& progress) {
+  const auto reader = SessionReader::open(recording);
+  if (!reader) return reader.error();
+  if (!ended) return writeTickTable(**reader, file, progress);
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  Progress* clock = nullptr;
+  Progress patience([&](double fraction, const std::string& step) {
+    progress.at(fraction, step);
+    if (std::chrono::steady_clock::now() > until) clock->cancel();
+  });
+  clock = &patience;
+  return writeTickTable(**reader, file, patience);
+}
+
+// What a run that did not end well has not written either is said with the reason.
+void saveWhatWasAsked(const RunArguments& arguments, const fs::path& recording, Session& session,
+                      const Progress& progress, RunOutcome& outcome) {
+  const bool ended = progress.cancelled();
+  const auto note = [&](const Status& saved, const std::string& file, const char* what,
+                        std::string& written) {
+    if (saved) {
+      written = file;
+    } else if (!outcome.failure) {
+      outcome.failure = saved.error();
+    } else {
+      outcome.failure->what += std::string("; the ") + what + " was not written";
+    }
+  };
+  // First of all: what was cut is kept, whatever became of the recording.
+  if (!arguments.save_volume.empty()) {
+    note(writeVolume(session.grid().snapshot(), arguments.save_volume), arguments.save_volume,
+         "volume (--save-volume)", outcome.report.volume);
+  }
+  if (!arguments.csv.empty()) {
+    note(saveTable(recording, arguments.csv, ended, progress), arguments.csv, "table (--csv)",
+         outcome.report.table);
+  }
+}
+
+// Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
+Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& progress) {
+  Result<Scene> scene = readScene(arguments.scene);
+  if (!scene) return scene.error();
+  if (Status chosen = applyChoices(arguments, *scene); !chosen) return chosen.error();
+  SessionOptions options;
+  const std::string script_file =
+      arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
+  if (!script_file.empty()) {
+    Result<OperatorScript> script = readOperatorScript(script_file, *scene);
+    if (!script) return script.error();
+    options.script = *std::move(script);
+  }
+  const double seconds =
+      arguments.seconds.value_or(options.script ? options.script->duration_s() : 10.0);
+  if (!(seconds > 0.0 && seconds <= 86400.0)) {
+    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day", "--seconds", ""};
+  }
+  if (!arguments.save_volume.empty()) {
+    if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();
+  }
+  const OutFolder folder(arguments.out);
+  if (Status made = folder.make(); !made) return made.error();
+  const fs::path out = arguments.out;
+  options.recording = freshFile(out, "session", ".h5");
+  if (Status can = checkTargets(arguments, options.recording); !can) return can.error();
+
+  Result<Volume> volume = openCase(scene->case_source, progress);
+  if (!volume) return volume.error();
+  Result<std::shared_ptr<const LabelMap>> labels = openLabels(scene->labels_file, volume->geometry);
+  if (!labels) return labels.error();
+  options.labels = *std::move(labels);
+  Result<std::unique_ptr<Session>> session =
+      Session::create(*scene, *std::move(volume), options, progress);
+  if (!session) return session.error();
+
+  const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)
+                                        : (*session)->freewheel(seconds, progress);
+  RunOutcome outcome{(*session)->report(), {}};
+  if (!ran) outcome.failure = ran.error();
+  if (!ran && outcome.report.ticks == 0) return ran.error();
+  saveWhatWasAsked(arguments, options.recording, **session, progress, outcome);
+  if (outcome.failure) return outcome;
+  const fs::path picture = freshFile(out, "picture", ".png");
+  const Status drawn = writeExercisePicture(**session, picture);
+  if (drawn) {
+    outcome.report.picture = picture.string();
+  } else if (drawn.error().code == "NO_DISPLAY" || drawn.error().code == "NO_OPENGL") {
+    spdlog::info("No picture is drawn: {}", drawn.error().what);
+  } else {
+    return drawn.error();
+  }
+  return outcome;
+}
+
+}  // namespace
+
+int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
+  Result<RunOutcome> outcome = runExercise(arguments, progress);
+  if (!outcome) {
+    Error error = outcome.error();
+    const bool asked = !arguments.csv.empty() || !arguments.save_volume.empty();
+    if (error.code == "CANCELLED" && asked)
+      error.what += "; the run had not begun, nothing was saved";
+    return printError("run", error, json);
+  }
+  const int code =
+      printOutcome("run", toJson(outcome->report), toText(outcome->report), outcome->failure, json);
+  constexpr int kFaulted = 4;
+  return code == 0 && !outcome->report.faults.empty() ? kFaulted : code;
+}
+
+}  // namespace trephine
