@@ -40,6 +40,7 @@ constexpr double kLearntDamping = 1.4433;  // of sqrt(k m), once stiffness was l
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.2;
 constexpr double kForget_per_s = 0.5062;  // of the lowering, while in air
+constexpr double kForgetAtRest = 0.5;     // times as fast
 constexpr double kQuiet_s = 1.2;          // in contact, before a scale comes back
 constexpr double kBelowTried = 0.92;      // up to this share of where something happened
 constexpr double kComesBack_per_s = 2.6;
@@ -238,9 +239,10 @@ void BoundedController::learn(bool touching) {
     variation_N_ = 0.0;
     drift_N_ = Vec3(0.0);
   }
-  if (!touching) {
-    damping_.inAir(T_);
-    stiffness_.inAir(T_);
+  if (!touching || (hold_.rests() && not_obeyed_ticks_ == 0)) {
+    const double period_s = touching ? kForgetAtRest * T_ : T_;
+    damping_.inAir(period_s);
+    stiffness_.inAir(period_s);
   } else if (not_obeyed_ticks_ == 0) {
     damping_.inContact(T_);
     stiffness_.inContact(T_);

@@ -25,6 +25,8 @@ class RestHold {
   // pushes by `elastic_N` when all of it is shown; without one, `force_N`.
   Vec3 hold(const Vec3& elastic_N, double stiffness, const Vec3& position_m, const Vec3& force_N);
   void forget() { along_ = across_ = Window{}; }
+  // All of the force is held.
+  bool rests() const { return along_.holding && across_.holding; }
 
  private:
   struct Window {

@@ -108,9 +108,10 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   TickRecord record;
   core.tick(input, nullptr, 0, record);
   Json warnings = Json::array();
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    if (!(record.arms[i].tool_state & kToolWaits)) continue;
-    const RunWarning warning = startsInTissue(scene.arms[i].name, names(scene.laws, LawKind::elastic));
+  for (const Event& event : core.events()) {
+    if (event.kind != EventKind::starts_in_tissue) continue;
+    const RunWarning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,
+                                              names(scene.laws, LawKind::elastic));
     warnings.push_back({{"code", warning.code}, {"text", warning.text}});
   }
   return warnings;

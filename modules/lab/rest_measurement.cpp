@@ -15,7 +15,7 @@ namespace trephine {
 namespace {
 
 constexpr double kApproach_m_s = 0.02, kSettle_s = 3.0;
-constexpr double kSwing_s = 10.0, kSwing_Hz = 1.0;
+constexpr double kSwing_s = 10.0, kSwing_Hz = 1.0, kCreep_m_s = 2e-4;
 constexpr double kIdealPeriod_s = 2e-4;
 constexpr double kStill_m = 20e-6, kStill_J = 2e-4, kGrave_J = 5e-4;
 constexpr double kAbove2Hz_s = 0.5, kBesideSwing_s = 0.1;  // of the mean that is taken off
@@ -23,11 +23,11 @@ constexpr double kAbove2Hz_s = 0.5, kBesideSwing_s = 0.1;  // of the mean that i
 // Peak to peak and frequency of what is left along the axis that has most of it.
 void judgeMotion(const std::array<std::vector<double>, 3>& x, HoldKind kind, double period_s,
                  HoldResult& result) {
-  const double mean_s = kind == HoldKind::swing ? kBesideSwing_s : kAbove2Hz_s;
+  const double mean_s = kind == HoldKind::rest ? kAbove2Hz_s : kBesideSwing_s;
   const auto half = std::size_t(std::lround(0.5 * mean_s / period_s));
   for (const std::vector<double>& axis : x) {
     std::vector<double> left = lessItsMean(axis, half);
-    if (kind == HoldKind::swing) left = lessItsMean(left, half);
+    if (kind != HoldKind::rest) left = lessItsMean(left, half);
     const std::size_t end = 2 * half;  // where the mean is narrower
     if (left.size() <= 2 * end + 1) continue;
     const auto first = left.begin() + std::ptrdiff_t(end), last = left.end() - std::ptrdiff_t(end);
@@ -40,8 +40,15 @@ void judgeMotion(const std::array<std::vector<double>, 3>& x, HoldKind kind, dou
   }
 }
 
+// A unit vector across another.
+Vec3 acrossOf(const Vec3& v) {
+  const Vec3 other = std::abs(v.x) < std::abs(v.y) ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  return glm::normalize(glm::cross(v, other));
+}
+
 std::string kindName(HoldKind kind) {
-  return kind == HoldKind::rest ? "rest" : "swing";
+  constexpr const char* kNames[] = {"rest", "swing", "creep"};
+  return kNames[std::size_t(kind)];
 }
 
 }  // namespace
@@ -80,6 +87,7 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
   const auto ticks = std::size_t(std::llround((judged_s + seconds) / T));
   std::vector<HoldResult> results(paths.size());
   std::vector<std::array<std::vector<double>, 3>> x(paths.size());
+  std::vector<double> sent_N(paths.size()), demanded_N(paths.size());
   constexpr double kTurn = 6.283185307179586 * kSwing_Hz;
   for (std::size_t n = 0; n < ticks; ++n) {
     const double t = double(n + 1) * T;
@@ -88,6 +96,9 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
       Vec3 at_m = p.start_m + std::min(1.0, t / arrived_s) * (p.held_m - p.start_m);
       if (kind == HoldKind::swing && t > arrived_s) {
         at_m += std::sin(kTurn * (t - arrived_s)) * p.swing_m;
+      }
+      if (kind == HoldKind::creep && t > arrived_s) {
+        at_m += (kCreep_m_s * (t - arrived_s)) * acrossOf(p.swing_m);
       }
       rig.moveHand(i, at_m);
     }
@@ -98,13 +109,16 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
       results[i].touched = results[i].touched || arm.demanded_N != Vec3(0.0);
       results[i].waited = results[i].waited || (arm.tool_state & kToolWaits);
       results[i].removed_voxels += std::uint64_t(arm.removed_voxels);
+      sent_N[i] += glm::length(arm.sent_N);
+      demanded_N[i] += glm::length(arm.demanded_N);
       for (int axis = 0; axis < 3; ++axis) {
         x[i][std::size_t(axis)].push_back(rig.position_m(i)[axis]);
       }
     }
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    results[i].energy_out_J = rig.energyOut_J(i);
+    results[i].energy_out_J = kind == HoldKind::rest ? rig.energyOut_J(i) : rig.trueEnergyOut_J(i);
+    if (demanded_N[i] > 0.0) results[i].shown = sent_N[i] / demanded_N[i];
     judgeMotion(x[i], kind, T, results[i]);
   }
   return results;
@@ -115,12 +129,12 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
   if (!cells) return cells.error();
   RestFigures figures;
   figures.seconds = seconds.value_or(kRest_s);
-  constexpr HoldKind kKinds[] = {HoldKind::rest, HoldKind::swing};
-  std::vector<std::vector<RestRow>> rows(2 * cells->size());
+  constexpr HoldKind kKinds[] = {HoldKind::rest, HoldKind::swing, HoldKind::creep};
+  std::vector<std::vector<RestRow>> rows(3 * cells->size());
   const Progress part(progress, 0.1, 1.0);
   const bool finished = onAllProcessors(rows.size(), "Rest", part, [&](std::size_t n) {
-    const HoldCell& cell = (*cells)[n / 2];
-    const HoldKind kind = kKinds[n % 2];
+    const HoldCell& cell = (*cells)[n / 3];
+    const HoldKind kind = kKinds[n % 3];
     const double s = kind == HoldKind::rest ? figures.seconds : std::min(kSwing_s, figures.seconds);
     const auto run = [&](bool ideal) {
       return hold(cell.parameters, *cell.volume, cell.rig, cell.paths, kind, s, ideal);
@@ -156,12 +170,15 @@ namespace {
 struct RestSum {
   std::string name;
   std::size_t cells = 0, unstable = 0, also_ideal = 0, beyond = 0, cutting = 0, apart = 0;
-  double energy_out_J_max = 0.0, cycle_m_max = 0.0, cycle_Hz = 0.0;
+  double energy_out_J_max = 0.0, cycle_m_max = 0.0, cycle_Hz = 0.0, least_shown = 1.0;
 
   void add(const RestRow& row) {
     ++cells;
     cutting += row.result.removed_voxels > 0;
     apart += row.result.waited || !row.result.touched;
+    if (row.result.touched && !row.result.waited) {
+      least_shown = std::min(least_shown, row.result.shown);
+    }
     if (row.also_ideal) {
       ++also_ideal;
       return;
@@ -180,16 +197,21 @@ bool isBlock(const RestRow& row) {
   return row.scene.rfind("block", 0) == 0;
 }
 
-// Scenes and blocks, at rest and swung; and all.
+// Scenes and blocks, at rest, swung and creeping; and all.
 std::vector<RestSum> sumsOf(const RestFigures& figures) {
-  std::vector<RestSum> sums(5);
+  std::vector<RestSum> sums(7);
   const std::string minute = plainNumber(figures.seconds) + " s";
-  const std::string names[] = {"scenes at rest, " + minute, "scenes swung",
-                               "blocks at rest, " + minute, "blocks swung", "all"};
-  for (std::size_t i = 0; i < 5; ++i) sums[i].name = names[i];
+  const std::string names[] = {"scenes at rest, " + minute,
+                               "scenes swung",
+                               "scenes creeping",
+                               "blocks at rest, " + minute,
+                               "blocks swung",
+                               "blocks creeping",
+                               "all"};
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].name = names[i];
   for (const RestRow& row : figures.rows) {
-    sums[std::size_t(2 * isBlock(row) + (row.kind == HoldKind::swing))].add(row);
-    sums[4].add(row);
+    sums[3 * std::size_t(isBlock(row)) + std::size_t(row.kind)].add(row);
+    sums.back().add(row);
   }
   return sums;
 }
@@ -201,6 +223,7 @@ Json sumJson(const RestSum& s) {
           {"energy_out_mJ_max", 1e3 * s.energy_out_J_max},
           {"cycle_um_max", 1e6 * s.cycle_m_max},
           {"cycle_Hz", s.cycle_Hz},
+          {"least_shown", s.least_shown},
           {"beyond_accepted", s.beyond},
           {"cutting", s.cutting},
           {"felt_nothing", s.apart}};
@@ -233,6 +256,7 @@ Json toJson(const RestFigures& figures) {
                             {"cycle_um", 1e6 * row.result.cycle_m},
                             {"cycle_Hz", row.result.cycle_Hz},
                             {"energy_out_mJ", 1e3 * row.result.energy_out_J},
+                            {"shown", row.result.shown},
                             {"unstable", row.unstable},
                             {"also_ideal", row.also_ideal},
                             {"cuts", row.result.removed_voxels > 0},
@@ -244,13 +268,14 @@ Json toJson(const RestFigures& figures) {
 std::string toText(const RestFigures& figures) {
   std::string text = "rest\n";
   for (const RestSum& s : sumsOf(figures)) {
-    text += say(
-        "  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
-        "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; cutting in %zu, "
-        "nothing felt in %zu\n",
-        s.name.c_str(), s.unstable, s.cells,
-        s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal, s.beyond,
-        1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.cutting, s.apart);
+    text +=
+        say("  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
+            "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; at least %.2f of the "
+            "demand sent; cutting in %zu, nothing felt in %zu\n",
+            s.name.c_str(), s.unstable, s.cells,
+            s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal,
+            s.beyond, 1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.least_shown,
+            s.cutting, s.apart);
   }
   for (const RestRow& row : figures.rows) {
     if (!row.unstable) continue;

@@ -6,14 +6,15 @@
 //            and 1000 N/m;
 //   blocks   each tool, sum of laws, tissue and arm once: pressed into a block of the tissue.
 // Hands come from outside, motors are off, and a tool that cuts by hand meanwhile is said so. Each
-// is held still for a minute, `rest`, and swung to and fro by 4 mm at 1 Hz, `swing`: along the
-// press. Of a rest is judged
+// is held still for a minute, `rest`; swung to and fro by 4 mm at 1 Hz along the press, `swing`;
+// and drawn across it at 0.2 mm/s, `creep`. Of a rest is judged
 //   cycle       what is left of the arm's true position above 2 Hz (less its centred mean over
 //               0.5 s), peak to peak over the minute: over 20 um and over a count of the encoder;
 //   energy      the most that the arm had ever given out, net, as a session reports it: over 0.2
 //   mJ;
-// and of a swing the same beyond the swing itself (less its centred 0.1 s mean, twice), at the bars
-// of a cell under a moving hand (stability_cell.h).
+// and of the others the same beyond the motion itself (less its centred 0.1 s mean, twice), at the
+// bars of a cell under a moving hand (stability_cell.h) and as there where the arm truly was: a
+// count that is passed under force adds up to k q^2 that nobody gave out.
 #pragma once
 
 #include <optional>
@@ -27,9 +28,10 @@
 
 namespace trephine {
 
-enum class HoldKind { rest, swing };
+enum class HoldKind { rest, swing, creep };
 
-// Where one hand is: from `start` to `held`, and there it stays or swings by +-`swing`.
+// Where one hand is: from `start` to `held`, and there it stays, swings by +-`swing` or creeps
+// across it.
 struct HoldPath {
   Vec3 start_m{0.0}, held_m{0.0}, swing_m{0.0};  // device axes
 };
@@ -40,6 +42,7 @@ struct HoldResult {
   bool touched = false;              // while it was judged
   bool waited = false;               // it began in tissue: nothing was felt
   std::uint64_t removed_voxels = 0;  // while it was judged
+  double shown = 1.0;  // of the demanded force was sent, on average, while it was judged
 };
 struct HoldFaults {
   bool cycles = false, gives_out = false;
@@ -75,7 +78,7 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
 // {cells, unstable, also_ideal, energy_out_mJ_max, cycle_um_max, cycle_Hz, beyond_accepted,
 // cutting,
 //  kinds: [{name, ...}], rows: [{scene, arm, tool, place, kind, cycle_um, cycle_Hz, energy_out_mJ,
-//  unstable, also_ideal, cuts}]}
+//  shown, unstable, also_ideal, cuts}]}
 Json toJson(const RestFigures& figures);
 std::string toText(const RestFigures& figures);
 

@@ -38,11 +38,14 @@ const TickRecord& TouchRig::step() {
     const Vec3& out_J = record_.arms[i].energy_out_J;
     arm.most_out_J = std::max(arm.most_out_J, out_J.x + out_J.y + out_J.z);
     const Vec3& force_N = record_.arms[i].sent_N;
+    const Vec3 before_m = arm.x;
     const Vec3 speed_m_s = (arm.rest_m - arm.last_rest_m) / period_s_;
     for (int axis = 0; axis < 3; ++axis) {
       arm.plant.step(arm.x[axis], arm.v[axis], force_N[axis], arm.last_rest_m[axis],
                      speed_m_s[axis]);
     }
+    arm.truly_out_J += glm::dot(force_N, arm.x - before_m);
+    arm.most_truly_out_J = std::max(arm.most_truly_out_J, arm.truly_out_J);
     arm.last_rest_m = arm.rest_m;
   }
   return record_;

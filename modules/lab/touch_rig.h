@@ -35,9 +35,10 @@ class TouchRig {
 
   const TickRecord& record() const { return record_; }
   const Vec3& position_m(std::size_t arm) const { return arms_[arm].x; }  // true, device axes
-  double energyOut_J(std::size_t arm) const {
-    return arms_[arm].most_out_J;
-  }  // as a session's report
+  // The most that the arm had given out, net: counted on the samples, as in a session's report, and
+  // on where the arm truly was.
+  double energyOut_J(std::size_t arm) const { return arms_[arm].most_out_J; }
+  double trueEnergyOut_J(std::size_t arm) const { return arms_[arm].most_truly_out_J; }
   std::uint64_t tick() const { return input_.tick; }
   const HapticCore& core() const { return core_; }
   const Grid& grid() const { return grid_; }
@@ -48,7 +49,7 @@ class TouchRig {
     double encoder_m;
     Vec3 x{0.0}, v{0.0}, rest_m{0.0}, last_rest_m{0.0};
     Quat orientation{1, 0, 0, 0};
-    double most_out_J = 0.0;
+    double most_out_J = 0.0, truly_out_J = 0.0, most_truly_out_J = 0.0;
   };
   Grid grid_;
   HapticCore core_;

@@ -51,7 +51,7 @@ class WholeScenes(LabTest):
         scenes = {row["scene"] for row in answer["rows"]}
         self.assertLessEqual({"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                               "block of bone"}, scenes)
-        self.assertEqual({row["kind"] for row in answer["rows"]}, {"rest", "swing"})
+        self.assertEqual({row["kind"] for row in answer["rows"]}, {"rest", "swing", "creep"})
         self.assertEqual({row["tool"] for row in answer["rows"]}, {"burr", "blade", "needle"})
         # A tool that a scene's hand holds in tissue feels it.
         self.assertEqual([row for row in answer["rows"] if "pressed" in row["place"]
