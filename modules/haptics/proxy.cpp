@@ -16,6 +16,7 @@ constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
 constexpr double kKeptOff = 0.02;  // what is kept between tool and tissue, where it comes from afar
 constexpr double kTolerated = 0.002;  // what it may be inside by: what slides sinks and rises by it
 constexpr double kInside = 0.1;       // deeper it is put outside
+constexpr double kStands = 0.6;  // deeper it was there from the start: a voxel's centre is in it
 constexpr double kSame = 1.0;         // flat pieces that touch the tool so near each other are one
 constexpr double kArrived = 1e-3;     // a shorter step is none
 constexpr int kCorrections = 4;       // where the surface bends
@@ -81,7 +82,8 @@ bool Proxy::standsInSolid(const TissueAround& tissue, const Pose& arm_mm) {
   }
   const double near_mm = kNear * surface_.voxel_mm();
   look(tissue, body, near_mm, way_mm(by), true);
-  return touches(body, near_mm, 0.0, 0.0) < -kInside * surface_.voxel_mm();
+  return touches(body, near_mm, 0.0, 0.0) < -kStands * surface_.voxel_mm() &&
+         surface_.centreIn(body);
 }
 
 double Proxy::usedUp_mm(const Travel& travel) const {

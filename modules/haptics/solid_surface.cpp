@@ -143,6 +143,16 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
   stamp_.assign(std::size_t(cells), 0);
 }
 
+bool SolidSurface::centreIn(const PlacedBody& body) const {
+  return std::any_of(pieces_.begin(), pieces_.end(), [&](const SurfacePiece& piece) {
+    const Index3 v = geometry_.indicesOf(piece.voxel);
+    const PlacedBody::Part& part = body.parts[std::size_t(piece.part)];
+    const Vec3 from = geometry_.toPatient_mm(Vec3(v[0], v[1], v[2])) - part.from_mm;
+    const double on = std::clamp(glm::dot(from, part.along_mm) * part.per_length2, 0.0, 1.0);
+    return glm::length(from - on * part.along_mm) < part.radius_mm;
+  });
+}
+
 PlacedBody SolidSurface::place(const Pose& pose_mm) const {
   PlacedBody body;
   body.tip_mm = pose_mm.position;

@@ -87,6 +87,8 @@ class SolidSurface {
     });
   }
   std::span<SurfacePiece> pieces() { return pieces_; }
+  // Whether the centre of a piece's voxel is in the body.
+  bool centreIn(const PlacedBody& body) const;
 
   double margin_mm() const { return margin_mm_; }
   double voxel_mm() const { return voxel_mm_; }  // the smallest edge

@@ -141,7 +141,7 @@ TEST(RateKnob, ASlowRateIsFartherFromTheTruthAndCostsLess) {
   ASSERT_EQ(rows->size(), 2u);
   const TradeRow &slow = (*rows)[0], &usual = (*rows)[1];
   EXPECT_EQ(slow.setting, "250");
-  EXPECT_GT(slow.error, 1.5 * usual.error);
+  EXPECT_GT(slow.error, 1.1 * usual.error);
   EXPECT_LT(slow.extraOf("b_max_Ns_per_m"), usual.extraOf("b_max_Ns_per_m"));
   EXPECT_NEAR(usual.cost, 100.0 * usual.extraOf("tick_ns") * 1e-9 * 1000.0, 1e-9);
 }
