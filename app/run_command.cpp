@@ -25,8 +25,8 @@ class OutFolder {
  public:
   explicit OutFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code ec;
-    for (fs::path at = fs::absolute(folder_, ec); !at.empty() && !fs::exists(at, ec);
-         at = at.parent_path()) {
+    for (fs::path at = fs::absolute(folder_, ec);
+         !at.empty() && !fs::exists(fs::symlink_status(at, ec)); at = at.parent_path()) {
       made_.push_back(at);
     }
   }
@@ -69,11 +69,14 @@ Status checkTargets(const RunArguments& arguments, const fs::path& recording) {
   const std::pair<const char*, const std::string&> targets[] = {
       {"--save-volume", arguments.save_volume}, {"--csv", arguments.csv}};
   std::error_code ec;
-  std::vector<fs::path> taken{fs::weakly_canonical(recording, ec)};
+  const auto whole = [&](const fs::path& file) {
+    return fs::weakly_canonical(fs::absolute(file, ec), ec);
+  };
+  std::vector<fs::path> taken{whole(recording)};
   for (const auto& [option, target] : targets) {
     if (target.empty()) continue;
     if (Status free = checkNewFile(target, option); !free) return free;
-    const fs::path file = fs::weakly_canonical(target, ec);
+    const fs::path file = whole(target);
     if (std::find(taken.begin(), taken.end(), file) != taken.end()) {
       return Error{"CANNOT_WRITE", "The run itself writes another file of this name", target,
                    std::string("Give ") + option + " a name of its own"};

@@ -213,6 +213,7 @@ void HapticCore::forgetForces(bool restored) {
     if (restored) {
       arm.gate.restored();
       arm.waiting = arm.proxy.has_value();
+      arm.letting_go = arm.free_s = 0.0;
     } else {
       arm.gate.change();
     }

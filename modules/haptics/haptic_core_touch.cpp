@@ -90,8 +90,11 @@ void HapticCore::moveTool(std::size_t index, bool may_cut, std::uint64_t tick, M
   const bool still = paused_ || arm.faults != 0;
   const Pose before = proxy.pose_mm();
   proxy.follow(tissue, motion.arm_mm, may_cut ? arm.cutting : Cutting::nothing);
-  if (still && wouldTouch(arm, proxy.pose_mm())) proxy.hold(before);
-  letGoOfHook(index, tick, motion);
+  if (still) {
+    if (wouldTouch(arm, proxy.pose_mm())) proxy.hold(before);
+  } else {
+    letGoOfHook(index, tick, motion);
+  }
   motion.pose_mm = proxy.pose_mm();
 }
 
@@ -274,7 +277,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
     for (Law& law : arm.laws) forgetLaw(law);
     for (Law& law : arm.rendered_laws) forgetLaw(law);
     forgetController(arm.controller);
-    arm.work = HandWork();
+    arm.work.forget();
     if (arm.proxy) arm.proxy->place(motion.arm_mm);
     if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
     out.velocity_m_s = out.demanded_N = out.demanded_torque_Nm = out.bounded_N = Vec3(0.0);

@@ -112,6 +112,10 @@ double Proxy::worn(double step_mm) const {
 // The surface around the body, good for one more step; ahead of time where there is time.
 void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
                  bool ahead) {
+  const auto dropGone = [&] {
+    if (gone_) surface_.drop(tissue.grid, tissue.lookup);
+    gone_ = false;
+  };
   const auto begin = [&] {
     surface_.begin(tissue, body, cutting_);
     next_travelled_ = {};
@@ -122,17 +126,14 @@ void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step
     gathered_ = true;
     travelled_ = next_travelled_;
     stale_ = gone_ = next_stale_;
+    dropGone();
   };
-  const auto dropGone = [&] {
-    if (gone_) surface_.drop(tissue.grid, tissue.lookup);
-    gone_ = false;
-  };
-  if (gathered_) dropGone();
   if (!gathered_) {
     begin();
     goOn(SolidSurface::kAll);
     return;
   }
+  dropGone();
   const double used = worn(step_mm);
   if (used <= 1.0) {
     const double ticks = double(surface_.work()) / kWorkATick;
@@ -142,7 +143,6 @@ void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step
   }
   if (surface_.underWay()) {
     goOn(SolidSurface::kAll);
-    dropGone();
     if (worn(step_mm) <= 1.0) return;
   }
   begin();

@@ -19,10 +19,17 @@ std::vector<double> drawnBack_mm(const HapticParameters& parameters, const Grid&
     const ArmParameters& arm = parameters.arms[i];
     const ToolContact contact(arm.tool, grid.geometry());
     const Pose origin = arm.map.toPatient_mm(Pose{});
+    double radius_mm = 0.0;
+    for (const BodyPart& part : arm.tool.body) {
+      radius_mm = std::max(radius_mm, 1000.0 * part.radius_m);
+    }
     const Vec3 back = origin.orientation * Vec3(0.0, 0.0, 1.0);
     const auto inTissue = [&](double by_mm) {
-      return contact.wouldTouch(grid, bricks, lookup,
-                                {origin.position + by_mm * back, origin.orientation});
+      const auto touches = [&](double at_mm) {
+        return contact.wouldTouch(grid, bricks, lookup,
+                                  {origin.position + at_mm * back, origin.orientation});
+      };
+      return touches(by_mm) || touches(by_mm - radius_mm);  // its points lie on the axis
     };
     double by_mm = 0.0;
     if (inTissue(0.0)) {
