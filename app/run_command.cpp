@@ -26,7 +26,8 @@ class OutFolder {
   explicit OutFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code ec;
     for (fs::path at = fs::absolute(folder_, ec);
-         !at.empty() && !fs::exists(fs::symlink_status(at, ec)); at = at.parent_path()) {
+         !at.empty() && fs::symlink_status(at, ec).type() == fs::file_type::not_found;
+         at = at.parent_path()) {
       made_.push_back(at);
     }
   }
