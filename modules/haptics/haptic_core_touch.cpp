@@ -59,26 +59,25 @@ bool HapticCore::wouldTouch(const Arm& arm, const Pose& pose_mm) const {
 void HapticCore::moveTool(std::size_t index, bool may_cut, std::uint64_t tick, Motion& motion) {
   Arm& arm = arms_[index];
   motion.pose_mm = motion.arm_mm;
+  const TissueAround tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
+  // The tool at its arm; its body is looked at only where none of its points tells.
+  const auto inTissue = [&] {
+    const bool touches = wouldTouch(arm, motion.arm_mm);
+    if (!arm.proxy) return touches;
+    if (touches) arm.proxy->place(motion.arm_mm);
+    return touches || arm.proxy->standsInSolid(tissue, motion.arm_mm);
+  };
   const bool first = !arm.placed;
   arm.placed = true;
-  if (!arm.proxy) {
-    if (first && wouldTouch(arm, motion.arm_mm)) {
-      events_.push_back({tick, EventKind::starts_in_tissue, std::int32_t(index), 0, {}});
-    }
-    return;
-  }
-  Proxy& proxy = *arm.proxy;
-  const TissueAround tissue{writer_.grid(), *bricks_, lookup_, parameters_.tissues};
-  const auto inTissue = [&] {
-    return proxy.standsInSolid(tissue, motion.arm_mm) || wouldTouch(arm, motion.arm_mm);
-  };
   if (first) {
-    proxy.place(motion.arm_mm);
-    arm.waiting = inTissue();
-    if (arm.waiting) {
+    if (arm.proxy) arm.proxy->place(motion.arm_mm);
+    if (inTissue()) {
+      arm.waiting = arm.proxy.has_value();
       events_.push_back({tick, EventKind::starts_in_tissue, std::int32_t(index), 0, {}});
     }
   }
+  if (!arm.proxy) return;
+  Proxy& proxy = *arm.proxy;
   if (arm.waiting) {
     if (journal_.busy()) {
       proxy.place(motion.arm_mm);
