@@ -198,7 +198,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   } else if (drawn.error().code == "NO_DISPLAY" || drawn.error().code == "NO_OPENGL") {
     spdlog::info("No picture is drawn: {}", drawn.error().what);
   } else {
-    return drawn.error();
+    outcome.failure = drawn.error();
   }
   return outcome;
 }

@@ -180,7 +180,7 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
       k > 0.0 ? std::max(0.0, in.rendered.stored_J - sum_N * sum_N / (2.0 * k)) : 0.0;
   const double stored_J = beside_J + springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
   if (started_) {
-    energy_J_ -= glm::dot(held_N, x - last_estimate_m_);
+    energy_J_ += in.turned_J - glm::dot(held_N, x - last_estimate_m_);
   } else if (in.touching) {
     energy_J_ = stored_J;  // whoever pressed the tool in here put it in
   }
@@ -202,7 +202,7 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
     dissipated_J_ = most_dissipated_J_ = 0.0;
   } else if (was_touching_ && k <= last_stiffness_) {
     // A spring that turns stiffer under the hand holds energy that nobody put in.
-    const double put_in_J = -glm::dot(held_N, seen_m - last_seen_m_);
+    const double put_in_J = in.turned_J - glm::dot(held_N, seen_m - last_seen_m_);
     dissipated_J_ += put_in_J - (as_seen_J - stored_as_seen_J_);
     most_dissipated_J_ = std::max(most_dissipated_J_, dissipated_J_);
   }

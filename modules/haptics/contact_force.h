@@ -16,9 +16,14 @@ struct ContactForce {
   double stored_J = 0.0;         // that the springs behind elastic_N hold and can give back
   Vec3 damped_turning_N{0.0};    // sum of damping_i (omega x r_i): the points' own velocities
   Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
+  Vec3 elastic_torque_Nm{0.0};   // the springs' part of it
 
   // Along the way on which it is stiffest: where a tool is stopped, soft tissue only acts across.
   double stiffest() const { return stiffness > solid_stiffness ? stiffness : solid_stiffness; }
+  void addElasticTorque(const Vec3& Nm) {
+    torque_Nm += Nm;
+    elastic_torque_Nm += Nm;
+  }
   Vec3 at(const Vec3& velocity_m_s) const {
     return elastic_N - damping * velocity_m_s - damped_turning_N;
   }
@@ -41,6 +46,7 @@ struct ControllerInput {
   Vec3 position_m{0.0};    // sampled
   Vec3 velocity_m_s{0.0};  // backward difference
   Vec3 last_sent_N{0.0};   // by the tick before
+  double turned_J = 0.0;   // put into the springs since then by turning the tool
   double period_s = 0.001;
 };
 

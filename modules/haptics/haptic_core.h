@@ -100,6 +100,7 @@ class HapticCore {
     std::optional<Pose> last_pose;  // device
     HandWork work;
     Vec3 last_model_N{0.0};  // patient axes
+    Vec3 last_elastic_Nm{0.0};  // as rendered, patient axes
     Cutting cutting = Cutting::by_hand;
     bool cuts = false;     // may remove in this tick
     bool placed = false;   // its first pose came

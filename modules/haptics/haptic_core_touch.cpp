@@ -241,9 +241,15 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   const double stored_J =
       givenBack_J(model, rendered, law_input.share.stiffness,
                   parameters.max_force_N / parameters.map.force_scale / out.rendered_share);
+  // No arm here turns a hand. What the hand puts into a spring by turning, it puts in all the same.
+  const double device_per_model = parameters.map.force_scale / parameters.map.motion_scale;
+  to_controller.turned_J = -0.5 * T * device_per_model *
+                           glm::dot(arm.last_elastic_Nm + rendered.elastic_torque_Nm,
+                                    motion.turning_rad_s);
+  arm.last_elastic_Nm = rendered.elastic_torque_Nm;
   rendered.elastic_N = parameters.map.forceToDevice(rendered.elastic_N);
   rendered.damped_turning_N = parameters.map.forceToDevice(rendered.damped_turning_N);
-  rendered.stored_J *= parameters.map.force_scale / parameters.map.motion_scale;
+  rendered.stored_J *= device_per_model;
   rendered.stiffness = at_arm * rendered.stiffest();
   rendered.damping *= at_arm;
   const bool in_contact = law_input.touching || model.stiffest() > 0.0;
@@ -278,6 +284,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
     forgetController(arm.controller);
     arm.work.forget();
     if (arm.proxy) arm.proxy->place(motion.arm_mm);
+    arm.last_elastic_Nm = Vec3(0.0);
     if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
     out.velocity_m_s = out.demanded_N = out.demanded_torque_Nm = out.bounded_N = Vec3(0.0);
     out.observer_J = out.alpha = 0.0;

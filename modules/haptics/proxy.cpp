@@ -49,12 +49,17 @@ Proxy::Proxy(const Tool& tool, const GridGeometry& geometry)
 
 void Proxy::place(const Pose& pose_mm) {
   arm_ = pose_mm;
+  loaded_ = false;
   hold(pose_mm);
 }
 
 void Proxy::hold(const Pose& pose_mm) {
   pose_ = pose_mm;
   blocker_count_ = 0;
+  if (!loaded_) {
+    stiffness_ = 0.0;
+    held_by_ = -1;
+  }
   changed();
   pullBack();
 }
@@ -342,7 +347,8 @@ void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutti
     if (touch_count_ > 0 ? !slide(tissue, way) : !goFreely(way)) break;
   }
   // On its way back to an arm that went fast it pulls as it did.
-  if (way.load > 0.0) {
+  loaded_ = way.load > 0.0;
+  if (loaded_) {
     stiffness_ = way.stiff / way.load;
     held_by_ = way.tissue_class;
   }

@@ -29,7 +29,8 @@ class Proxy {
   // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
   // or removed() said so.
   void follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting);
-  // Stays where it was before follow(); what held it then pulls on.
+  // Stays where it was before follow(). What held it in the last step of that pulls on; where
+  // nothing did, nothing pulls.
   void hold(const Pose& pose_mm);
   // Goes to the arm, whatever is there. True where its body is in solid tissue.
   bool standsInSolid(const TissueAround& tissue, const Pose& arm_mm);
@@ -113,6 +114,7 @@ class Proxy {
       next_travelled_;  // since the surface was gathered, and since the next was begun
   double last_step_mm_ = 0.0;
   // Of what held it last, until it is at the arm.
+  bool loaded_ = false;  // in the last step
   double stiffness_ = 0.0;
   std::int8_t held_by_ = -1;
   std::array<NearTouch, kMostTouches> touches_;

@@ -63,9 +63,10 @@ class Removal {
   }
 
   double credit_J() const { return credit_J_; }
-  // It fades from there as if just earned.
+  // As it was before an undo's stroke, or after a redo's: what that stroke spent was not spent, or
+  // was. It fades from there as if just earned.
   void setCredit(double credit_J) {
-    credit_J_ = credit_J;
+    spend(credit_J_ - credit_J);
     recent_J_ = credit_J;
   }
 

@@ -8,6 +8,7 @@ namespace trephine {
 namespace {
 
 constexpr double kRest_s = 0.12;
+constexpr double kFading_s = 0.02;
 constexpr double kTurned = 0.09;        // sine: a force that turns by 5 degrees rests no more,
 constexpr double kTurnedCounts = 1.75;  // unless the diagonal of a count's cube turns it by more
 constexpr double kSlope = 2.0;          // a tissue's slope may be so many times its stiffness
@@ -18,21 +19,27 @@ constexpr double kAcross = 1.37;
 }  // namespace
 
 template <class Rests>
-Vec3 RestHold::follow(Window& window, const Vec3& sample, const Vec3& force_N,
+Vec3 RestHold::follow(Window& window, const Vec3& sample, const Vec3& force_N, double count_N,
                       const Rests& rests) const {
+  window.fading_N /= 1.0 + T_ / kFading_s;
   window.low = glm::min(window.low, sample);
   window.high = glm::max(window.high, sample);
   if (window.ticks == 0 || !rests(window.high - window.low)) {
+    if (window.holding) {
+      const Vec3 jump_N = window.sum_N - force_N;
+      const double size_N = glm::length(jump_N);
+      window.fading_N = size_N > count_N ? jump_N * (1.0 - count_N / size_N) : Vec3(0.0);
+    }
     window.low = window.high = sample;
     window.sum_N = force_N;
     window.ticks = 1;
     window.holding = false;
-    return force_N;
+    return force_N + window.fading_N;
   }
   if (window.holding) return window.sum_N;
   window.sum_N += force_N;
   ++window.ticks;
-  if (window.ticks * T_ < kRest_s) return force_N;
+  if (window.ticks * T_ < kRest_s) return force_N + window.fading_N;
   window.holding = true;
   window.sum_N /= double(window.ticks);
   return window.sum_N;
@@ -58,11 +65,11 @@ Vec3 RestHold::hold(const Vec3& elastic_N, double stiffness, const Vec3& positio
   const Vec3 sliding_m = position_m - glm::dot(position_m, n) * n;
   const double count_N = stiffness * count_m, across_m = kRounding * kAcross * step_m_;
   const Vec3 along(glm::dot(elastic_N, n), glm::dot(position_m, n), 0.0);
-  return follow(along_, along, pushing_N,
+  return follow(along_, along, pushing_N, count_N,
                 [=](const Vec3& wide) {
                   return wide.x <= count_N || (wide.x <= kSlope * count_N && wide.y <= count_m);
                 }) +
-         follow(across_, sliding_m, force_N - pushing_N, [=](const Vec3& wide) {
+         follow(across_, sliding_m, force_N - pushing_N, count_N, [=](const Vec3& wide) {
            return wide.x <= across_m && wide.y <= across_m && wide.z <= across_m;
          });
 }

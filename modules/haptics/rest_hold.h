@@ -11,6 +11,9 @@
 // comes and goes with the points that touch. And since no soft tissue's slope is just its
 // stiffness, a force that changes by two counts' worth rests as well, where the position along it
 // lies within one.
+//
+// A stiffness that comes back while the force is held would make that jump as a count is left: what
+// of the jump is more than a count is worth fades over 20 ms.
 #pragma once
 
 #include "base/math.h"
@@ -34,10 +37,13 @@ class RestHold {
     Vec3 sum_N{0.0};  // over the ticks, and while holding their mean
     int ticks = 0;
     bool holding = false;
+    Vec3 fading_N{0.0};  // of the force that was held
   };
-  // `rests` is asked of how far the samples of the window lie apart on each axis.
+  // `rests` is asked of how far the samples of the window lie apart on each axis; a count is worth
+  // `count_N`.
   template <class Rests>
-  Vec3 follow(Window& window, const Vec3& sample, const Vec3& force_N, const Rests& rests) const;
+  Vec3 follow(Window& window, const Vec3& sample, const Vec3& force_N, double count_N,
+              const Rests& rests) const;
 
   double step_m_, T_;
   Vec3 direction_{0.0};  // of the elastic force when the windows began

@@ -113,7 +113,7 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
                       const Press& press, double seconds) {
   constexpr double kT = 1e-3, kAway_mm = 12.0, kPress_s = 1.5, kMoves_s = 3.0;
   constexpr double kTurn_rad = 0.35, kDrag_mm = 5.0, kSlow_Hz = 0.25, kSlack_mm = 0.5,
-                   kLook_mm = 0.25, kSlips_m_s = 0.06;
+                   kLook_mm = 0.25, kSlips_m_s = 0.06, kCaught_s = 0.1;
   TouchRig rig(touching(tool, tissues), volume, {rigArmOf(kOmni, handOf(press.hand_N_per_m))});
   const Vec3 aside = across(press.push);
   const Quat upright = turned(aside, press.tilt_rad) * pointing(press.push);
@@ -131,6 +131,7 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
   rig.turnHand(0, upright);
   PressResult result;
   Vec3 looked_mm = start_mm;
+  double slipped_s = 0.0;
   const int ticks = int(seconds / kT + 0.5);
   for (int n = 0; n < ticks; ++n) {
     const double t = (n + 1) * kT;
@@ -151,8 +152,9 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
           std::max(result.inside_mm, insideSolid_mm(tool, proxy, rig.grid(), kBoneFrom_hu));
     }
     const double push_N = press.hand_N_per_m * glm::length(0.001 * rest_mm - rig.position_m(0));
-    const bool slips = glm::length(arm.velocity_m_s) > kSlips_m_s;  // its own mass pushes as well
-    if (t < 0.5 * seconds || slips || !(arm.tool_state & kToolHeld)) continue;
+    // While it slips, and as it is caught, its own mass pushes as well.
+    if (glm::length(arm.velocity_m_s) > kSlips_m_s) slipped_s = t;
+    if (t < 0.5 * seconds || t - slipped_s < kCaught_s || !(arm.tool_state & kToolHeld)) continue;
     if (push_N > kOmni.peak_force_N) continue;
     const double beyond_mm = glm::length(arm.proxy_position_mm - arm.patient_position_mm);
     const double allowed_mm = 1000.0 * push_N / stiffness + kSlack_mm;

@@ -27,7 +27,7 @@ struct Press {
 struct PressResult {
   double inside_mm = 0.0;  // the most that the tool, at its proxy, was inside bone
   // The most that the arm was beyond its proxy, of what the push allows, in the second half, where
-  // the push was within the arm's limit and the tool did not slip.
+  // the push was within the arm's limit and the tool did not slip, nor was just caught.
   double beyond_mm = 0.0, beyond_share = 0.0;
   double push_N = 0.0, learnt = 1.0;  // then: the hand's, and the controller's scale
   bool held = false;

@@ -30,7 +30,7 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
     out.elastic_N += force_N;
     out.stiffness += p.weight * k;
     out.stored_J += 0.5 * p.weight * k * glm::dot(stretch_m, stretch_m);
-    out.torque_Nm += glm::cross(p.arm_m, force_N);
+    out.addElasticTorque(glm::cross(p.arm_m, force_N));
   }
 }
 

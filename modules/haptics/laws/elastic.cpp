@@ -20,7 +20,7 @@ void ElasticLaw::addSolid(const LawInput& in, ContactForce& out) const {
   const Vec3 shift_m = 0.001 * in.pull.shift_mm;
   const double turn_m2 = 1e-6 * in.pull.turn_mm2;
   out.elastic_N += k * shift_m;
-  out.torque_Nm += k * turn_m2 * in.pull.turn;
+  out.addElasticTorque(k * turn_m2 * in.pull.turn);
   out.solid_stiffness += k;
   out.stored_J += 0.5 * k * (glm::dot(shift_m, shift_m) +
                              turn_m2 * glm::dot(in.pull.turn, in.pull.turn));
@@ -65,7 +65,7 @@ void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   out.elastic_N += force_N;
   out.stiffness += in.share.stiffness * in.push.stiffness;
   out.stored_J += in.share.stiffness * stored_J;
-  out.torque_Nm += glm::cross(in.ball_m, force_N);
+  out.addElasticTorque(glm::cross(in.ball_m, force_N));
 }
 
 }  // namespace trephine

@@ -531,7 +531,7 @@ TEST(BoundedController, HoldsTheForceOfAToolThatRestsBetweenTwoCounts) {
   }
   EXPECT_EQ(low_N, high_N);
   EXPECT_NEAR(low_N, 600.0 * 39.5 * kOmniStep_m, 0.05);
-  touch.at(-kOmniStep_m * 42);
+  for (int i = 0; i < 320; ++i) touch.at(-kOmniStep_m * (42 + i / 4));
   EXPECT_FALSE(touch.controller.parts() & kPartHold) << "it left";
 }
 
@@ -544,6 +544,43 @@ TEST(BoundedController, HoldsNoForceAcrossAChangeOfTheTissueUnderAToolAtRest) {
   touch.tissue.stiffness = 300.0;
   for (int i = 0; i < 1000; ++i) touch.at(-kOmniStep_m * 39);
   EXPECT_NEAR(touch.sent_N.x, 0.5 * before_N, 0.05);
+}
+
+// A tool is turned while its arm stays: the spring that held it at 1 N comes to pull at 2 N.
+struct Turned {
+  double least_N = 1e9, alpha = 0.0;
+
+  explicit Turned(bool told) {
+    constexpr double kK_N_per_m = 300.0;
+    BoundedController controller(arm(0.045, kOmniStep_m), kT);
+    ControllerInput in;
+    in.touching = true;
+    double last_N = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      // Pressed by 3.3 mm in a second, then turned for another.
+      const double pressed_m = std::min(1.0, 0.001 * i) / kK_N_per_m;
+      const double pull_N = kK_N_per_m * pressed_m + std::max(0.0, 0.001 * i - 1.0);
+      in.velocity_m_s.x = (-pressed_m - in.position_m.x) / kT;
+      in.position_m.x = -pressed_m;
+      in.turned_J = i > 1000 && told ? (pull_N * pull_N - last_N * last_N) / (2.0 * kK_N_per_m) : 0.0;
+      const Impedance allowed = controller.limit({0.0, kK_N_per_m});
+      in.demanded_N.x = pull_N;
+      in.rendered = springAndDamper(in.demanded_N * (allowed.stiffness / kK_N_per_m), allowed.stiffness, 0.0);
+      in.last_sent_N = controller.bound(in);
+      if (i > 1100) least_N = std::min(least_N, in.last_sent_N.x);
+      alpha = controller.alpha();
+      last_N = pull_N;
+    }
+  }
+};
+
+TEST(BoundedController, ShowsTheForceOfASpringThatWasStretchedByTurningTheTool) {
+  const Turned told(true);
+  EXPECT_GT(told.least_N, 1.0);
+  EXPECT_EQ(told.alpha, 1.0);
+  // Or it would be energy that nobody put in: held back, and taken for an arm that shakes.
+  const Turned not_told(false);
+  EXPECT_TRUE(not_told.least_N < 0.9 || not_told.alpha < 0.5);
 }
 
 // A light arm in a firm damper, and a hand that rests inside it.

@@ -75,6 +75,26 @@ Quat turnAbout(const Vec3& axis, double angle) {
 
 const Tool kTools[] = {makeNeedle(0.06), makeBlade(0.016, 16), makeBurr(0.003, 32, 8, 0.03)};
 
+TEST(Proxy, HeldBackByAPauseOnItsWayThroughAirIsPulledByNothing) {
+  Surroundings bone(cube());
+  Proxy proxy(kTools[2], bone.grid.geometry());
+  const Quat upright(1, 0, 0, 0);
+  proxy.place({{0, 0, 8}, upright});
+  for (int i = 0; i < 60; ++i) {
+    proxy.follow(bone.tissue(), {{0, 0, 8 - 0.05 * i}, upright}, Cutting::nothing);
+  }
+  const Pose on_bone = proxy.pose_mm();
+  proxy.hold(on_bone);
+  EXPECT_EQ(proxy.pull().stiffness, 900.0) << "bone held it";
+  proxy.follow(bone.tissue(), {{0, 0, 5}, upright}, Cutting::nothing);
+  ASSERT_GT(proxy.pull().stiffness, 0.0);
+  // Away from the bone: on the way nothing holds it but the pause.
+  proxy.follow(bone.tissue(), {{0, 0, 16}, upright}, Cutting::nothing);
+  proxy.hold(on_bone);
+  EXPECT_EQ(proxy.pull().stiffness, 0.0);
+  EXPECT_FALSE(proxy.held());
+}
+
 TEST(Proxy, IsAtTheArmWhereNothingIsSolid) {
   Surroundings air(test::boneSlab(), test::boneTable());
   Proxy proxy(kTools[0], air.grid.geometry());

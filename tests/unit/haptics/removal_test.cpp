@@ -105,6 +105,28 @@ void expectSame(const Stroke& stroke, int voxels, double box_mm) {
 // 0.19 and 0.1 mm: as 256^3 and 512^3 over 49.2 mm.
 void expectSameOnFineGrids(const Stroke& stroke) { expectSame(stroke, 256, 24.6); }
 
+TEST(Removal, SpendsAgainAfterAnUndoWhatTheUndoneStrokeSpent) {
+  const Volume bone = slope(16, 8.0);
+  TissueTable tissues = test::boneTable(12.0, 900.0, 2.0);
+  tissues.classes[0].cutting_J_per_mm3 = 0.06;
+  Removal removal(burrStroke(0.0, 1.0).tool, bone.geometry, RemovalKind::work, 1e-3);
+  const double price_J = 0.06 * bone.geometry.voxelVolume_mm3();
+  removal.earn(1.5 * price_J, 1.5 * price_J, tissues);
+  const double before_J = removal.credit_J();
+  std::vector<Bite> bites;
+  removal.take({1, 1, 1}, 0, tissues, bites);
+  removal.take({1, 1, 2}, 0, tissues, bites);
+  ASSERT_EQ(bites.size(), 1u) << "it pays for one";
+  removal.setCredit(before_J);
+  removal.take({1, 1, 2}, 0, tissues, bites);
+  EXPECT_EQ(bites.size(), 2u);
+  // And after a redo it has spent it.
+  removal.setCredit(before_J - price_J);
+  removal.setCredit(before_J - price_J);
+  removal.take({1, 1, 3}, 0, tissues, bites);
+  EXPECT_EQ(bites.size(), 2u);
+}
+
 TEST(Removal, AStrokeWithAStrongMotorTakesTheSameOnAnyGridAndAtAnyRate) {
   expectSameOnFineGrids(burrStroke(40.0, 1.5));
 }

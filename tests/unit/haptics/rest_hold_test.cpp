@@ -63,6 +63,23 @@ TEST(RestHold, HoldsATissueWhoseSlopeIsFirmerThanItsStiffness) {
   EXPECT_GT(swing_N(2), 0.05) << "two counts are a motion";
 }
 
+TEST(RestHold, LetsGoWithoutAJumpOfAForceThatWouldBeAnotherByNow) {
+  // What is shown of a stiffness comes back while it is held: from half to all of it.
+  RestHold rest(kStep_m, kT);
+  double last_N = 0.0, most_N = 0.0;
+  for (int i = 0; i < 1400; ++i) {
+    const Vec3 at_m(0.0, 0.0, -kStep_m * (i < 1000 ? 20 : 22));
+    const double shown = i < 500 ? 0.5 : 1.0;
+    const Vec3 elastic_N = -kStiffness * at_m;
+    const double sent_N = rest.hold(elastic_N, kStiffness, at_m, shown * elastic_N).z;
+    if (i == 999) EXPECT_NEAR(sent_N, 0.5 * elastic_N.z, 1e-9);
+    if (i >= 1000) most_N = std::max(most_N, sent_N - last_N);
+    if (i == 1399) EXPECT_NEAR(sent_N, elastic_N.z, 1e-6);
+    last_N = sent_N;
+  }
+  EXPECT_LT(most_N, 2.0 * kStiffness * kStep_m);
+}
+
 TEST(RestHold, FollowsAToolThatSlides) {
   Light light;
   light.run(500, 3.0, 0);

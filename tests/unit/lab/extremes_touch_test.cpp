@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "volume/phantom.h"
+
 namespace trephine {
 namespace {
 
@@ -41,6 +43,16 @@ TEST(APress, IsHeldByBoneThatItCannotCut) {
   EXPECT_TRUE(held.held);
   EXPECT_LE(held.inside_mm, 0.5);
   EXPECT_GT(held.beyond_mm, 0.5);
+  EXPECT_LT(held.beyond_share, 1.5);
+}
+
+// What turning stretches is put in by the hand, though no arm feels it: or the force went, and the
+// arm sank to three times its depth.
+TEST(APress, IsHeldAsFirmlyWhileTheToolIsTurnedAndDragged) {
+  Press press{Vec3(0.0, 0.0, -89.9), Vec3(0, 0, 1), 2.0, 50.0};
+  press.moves = true;
+  const PressResult held = pressInto(burr(), boneOnly(true), *makePhantom("cranium"), press);
+  EXPECT_TRUE(held.held);
   EXPECT_LT(held.beyond_share, 1.5);
 }
 
