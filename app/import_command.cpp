@@ -6,8 +6,8 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "imaging/importer.h"
-#include "imaging/provenance.h"
-#include "imaging/report_page.h"
+#include "imaging/report/provenance.h"
+#include "imaging/report/report_page.h"
 #include "volume/volume_files.h"
 
 namespace trephine {

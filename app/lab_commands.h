@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "lab/import_measurement.h"
+#include "lab/import/import_measurement.h"
 
 namespace trephine {
 

@@ -7,7 +7,7 @@
 #include "app/lab_commands.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "lab/exercise_picture.h"
+#include "lab/exercise/exercise_picture.h"
 #include "scene/names.h"
 #include "session/case_source.h"
 #include "session/session.h"

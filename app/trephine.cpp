@@ -7,12 +7,12 @@
 #include "app/signals.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "ui/colours.h"
-#include "ui/error_dialog.h"
-#include "ui/exercise.h"
-#include "ui/main_window.h"
-#include "ui/start_up.h"
-#include "ui/words.h"
+#include "ui/common/colours.h"
+#include "ui/common/error_dialog.h"
+#include "ui/common/words.h"
+#include "ui/frame/exercise.h"
+#include "ui/frame/main_window.h"
+#include "ui/frame/start_up.h"
 
 namespace {
 

@@ -6,15 +6,15 @@
 #include <utility>
 
 #include "base/system.h"
-#include "imaging/assembly.h"
-#include "imaging/dicom_pixels.h"
-#include "imaging/file_series.h"
-#include "imaging/scan.h"
-#include "imaging/series.h"
-#include "imaging/text.h"
-#include "imaging/transfer_syntax.h"
-#include "imaging/volume_steps.h"
-#include "imaging/workers.h"
+#include "imaging/common/text.h"
+#include "imaging/common/workers.h"
+#include "imaging/dicom/dicom_pixels.h"
+#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/files/file_series.h"
+#include "imaging/series/assembly.h"
+#include "imaging/series/scan.h"
+#include "imaging/series/series.h"
+#include "imaging/steps/volume_steps.h"
 
 namespace trephine {
 

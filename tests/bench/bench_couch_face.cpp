@@ -8,8 +8,8 @@
 #include <ctime>
 #include <new>
 
-#include "imaging/couch.h"
-#include "imaging/face.h"
+#include "imaging/steps/couch.h"
+#include "imaging/steps/face.h"
 #include "unit/imaging/painted.h"
 
 namespace {

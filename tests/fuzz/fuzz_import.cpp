@@ -11,8 +11,8 @@
 
 #include "framing.h"
 #include "imaging/importer.h"
-#include "imaging/provenance.h"
-#include "imaging/report_page.h"
+#include "imaging/report/provenance.h"
+#include "imaging/report/report_page.h"
 #include "processor_time.h"
 
 namespace trephine::fuzz {

@@ -28,7 +28,7 @@
 #include <map>
 
 #include "framing.h"
-#include "imaging/ct_writer.h"
+#include "imaging/dicom/ct_writer.h"
 #include "imaging/importer.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
@@ -238,7 +238,7 @@ Bytes jpeg2000(DcmDataset& data, bool irreversible, bool jp2) {
   return read(file);
 }
 
-// Every transfer syntax of imaging/transfer_syntax.cpp.
+// Every transfer syntax of imaging/dicom/transfer_syntax.cpp.
 void addSyntaxes(const Seeds& seeds, const Series& plain, const fs::path& codestreams) {
   const auto keep = [](DcmDataset&, int) {};
   seeds.add("implicit", changed(plain, keep, EXS_LittleEndianImplicit));

@@ -35,6 +35,37 @@ MODULES = set(ROOMS)
 ROOMS["ui"] = MODULES
 ROOMS["app"] = MODULES | {"ui"}
 
+# Rooms with inner folders, and the arrows between those. What lies beside them sees all of them, and
+# none of them sees it. Every source of other rooms lies in the room's own folder, or in one that
+# is part of it as a whole.
+INNER = {
+    "imaging": {
+        "common": set(),
+        "dicom": {"common"},
+        "report": {"common", "dicom"},
+        "series": {"common", "dicom", "report"},
+        "steps": {"common", "report", "series"},
+        "files": {"common", "report", "series"},
+    },
+    "lab": {
+        "common": set(),
+        "machine": {"common"},
+        "stability": {"common"},
+        "touch": {"common"},
+        "trades": {"common", "touch"},
+        "import": {"common"},
+        "exercise": {"common", "trades"},
+    },
+    "ui": {
+        "common": set(),
+        "views": {"common"},
+        "tissue": {"common"},
+        "training": {"common"},
+        "cases": {"common", "views"},
+        "frame": {"common", "views", "tissue", "training", "cases"},
+    },
+}
+
 # The libraries a room may name under USES; threads and dl are the system's own.
 MAY_USE = {
     "base": {"glm", "json", "spdlog", "openssl"},
@@ -194,6 +225,31 @@ def check_room(report, rooms, room):
                 report.add(path, line, f"the room '{name}' may not include <{header}>")
 
 
+def inner_folder(path_in_room):
+    """"dicom" of "dicom/codecs.h"; "" of what lies in the room's own folder."""
+    return path_in_room.split("/")[0] if "/" in path_in_room else ""
+
+
+def check_inner_folders(report, rooms):
+    """Every #include within a room that has inner folders, against their arrows."""
+    for name, arrows in INNER.items():
+        if name not in rooms:
+            continue
+        folder = report.root / rooms[name]["dir"]
+        for path in sources_below(report.root, rooms[name]["dir"]):
+            inner = inner_folder(path.relative_to(folder).as_posix())
+            if inner and inner not in arrows:
+                report.add(path, 0, f"'{inner}' is no inner folder of the room '{name}'")
+                continue
+            for line, header, quoted in includes(path):
+                if not quoted or not header.startswith(name + "/"):
+                    continue
+                target = inner_folder(header.split("/", 1)[1])
+                if inner and target != inner and target not in arrows[inner]:
+                    report.add(path, line, f"the folder '{name}/{inner}' does not depend on "
+                                           f"'{name}/{target}'".replace("/'", "'"))
+
+
 def check_plugins(report):
     """Plugins see the device ABI's header, the standard library and JSON, and their own files."""
     for path in sources_below(report.root, "plugins"):
@@ -275,6 +331,7 @@ def check(root, declared):
         check_declaration(report, room)
     for room in rooms.values():
         check_room(report, rooms, room)
+    check_inner_folders(report, rooms)
     check_plugins(report)
     check_stray_sources(report, rooms)
     check_filesystem_calls(report)
@@ -318,6 +375,19 @@ VIOLATIONS = [
 ]
 
 
+def inner_violations():
+    """In each inner folder, a file that includes one of its room that no arrow leads to."""
+    for room, arrows in INNER.items():
+        base = room if room == "ui" else f"modules/{room}"
+        for inner, allowed in arrows.items():
+            other = next(iter(sorted(set(arrows) - allowed - {inner})), None)
+            target = f"{room}/{other}" if other else room
+            yield (f"an arrow against the table in {room}/{inner}", f"{base}/{inner}/planted.h",
+                   f'#include "{target}/planted.h"\n', f"does not depend on '{target}'")
+        yield (f"an unknown folder in {room}", f"{base}/planted/planted.h", "\n",
+               "is no inner folder")
+
+
 def self_test(root, declared):
     failures = []
     skipped = shutil.ignore_patterns(".git", "build*", "out", ".cache", "__pycache__")
@@ -325,7 +395,7 @@ def self_test(root, declared):
         tree = pathlib.Path(folder).resolve() / "tree"
         shutil.copytree(root, tree, ignore=skipped, symlinks=True)
         before = set(check(tree, declared).lines)
-        for what, name, text, words in VIOLATIONS:
+        for what, name, text, words in [*VIOLATIONS, *inner_violations()]:
             path = tree / name
             old = path.read_text(encoding="utf-8") if path.is_file() else None
             path.parent.mkdir(parents=True, exist_ok=True)

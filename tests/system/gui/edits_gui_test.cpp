@@ -17,8 +17,8 @@
 
 #include "gui_support.h"
 #include "tissue/tissue_edits.h"
-#include "ui/main_window.h"
-#include "ui/words.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
 #include "volume/phantom.h"
 
 using namespace trephine;

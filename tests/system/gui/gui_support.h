@@ -6,8 +6,8 @@
 #include <QtTest>
 #include <cstdio>
 
-#include "ui/colours.h"
-#include "ui/start_up.h"
+#include "ui/common/colours.h"
+#include "ui/frame/start_up.h"
 #include "volume/phantom.h"
 
 namespace trephine::test {

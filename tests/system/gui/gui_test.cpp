@@ -21,10 +21,10 @@
 
 #include "base/system.h"
 #include "gui_support.h"
-#include "imaging/ct_writer.h"
+#include "imaging/dicom/ct_writer.h"
 #include "render/picture.h"
-#include "ui/main_window.h"
-#include "ui/words.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 

@@ -23,9 +23,9 @@
 #include <filesystem>
 
 #include "gui_support.h"
-#include "imaging/ct_writer.h"
-#include "ui/main_window.h"
-#include "ui/words.h"
+#include "imaging/dicom/ct_writer.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
 #include "volume/phantom.h"
 
 using namespace trephine;

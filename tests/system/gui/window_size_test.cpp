@@ -19,10 +19,10 @@
 #include <cstdio>
 
 #include "gui_support.h"
-#include "imaging/ct_writer.h"
-#include "ui/main_window.h"
-#include "ui/placing.h"
-#include "ui/words.h"
+#include "imaging/dicom/ct_writer.h"
+#include "ui/common/placing.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
 
 using namespace trephine;
 

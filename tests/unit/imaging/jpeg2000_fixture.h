@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/jpeg2000.h"
+#include "imaging/dicom/jpeg2000.h"
 
 namespace trephine::test {
 

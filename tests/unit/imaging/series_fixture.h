@@ -10,7 +10,7 @@
 #include <string>
 
 #include "dicom_maker.h"
-#include "imaging/ct_writer.h"
+#include "imaging/dicom/ct_writer.h"
 #include "imaging/importer.h"
 #include "support.h"
 

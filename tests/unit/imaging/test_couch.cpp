@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "imaging/couch.h"
+#include "imaging/steps/couch.h"
 #include "painted.h"
 #include "volume/phantom.h"
 

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstdio>
 
-#include "imaging/couch.h"
-#include "imaging/face.h"
 #include "imaging/importer.h"
+#include "imaging/steps/couch.h"
+#include "imaging/steps/face.h"
 #include "support.h"
 #include "volume/reduce.h"
 #include "volume/volume_files.h"

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "imaging/face.h"
+#include "imaging/steps/face.h"
 #include "painted.h"
 #include "volume/phantom.h"
 #include "volume/reduce.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "imaging/text.h"
+#include "imaging/common/text.h"
 
 namespace trephine {
 

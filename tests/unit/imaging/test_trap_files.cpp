@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "imaging/provenance.h"
-#include "imaging/report_page.h"
+#include "imaging/report/provenance.h"
+#include "imaging/report/report_page.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

@@ -1,5 +1,5 @@
-#include "imaging/provenance.h"
-#include "imaging/report_page.h"
+#include "imaging/report/provenance.h"
+#include "imaging/report/report_page.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

@@ -1,4 +1,4 @@
-#include "lab/child_process.h"
+#include "lab/import/child_process.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 #include <thread>
 
-#include "lab/read_floor.h"
+#include "lab/import/read_floor.h"
 #include "support.h"
 
 namespace trephine {

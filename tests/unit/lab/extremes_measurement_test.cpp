@@ -1,4 +1,4 @@
-#include "lab/extremes_measurement.h"
+#include "lab/touch/extremes_measurement.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "lab/extremes_rig.h"
+#include "lab/touch/extremes_rig.h"
 #include "support.h"
 
 namespace trephine {

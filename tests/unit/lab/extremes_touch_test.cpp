@@ -1,4 +1,4 @@
-#include "lab/extremes_touch.h"
+#include "lab/touch/extremes_touch.h"
 
 #include <gtest/gtest.h>
 

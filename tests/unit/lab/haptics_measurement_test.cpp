@@ -1,4 +1,4 @@
-#include "lab/haptics_measurement.h"
+#include "lab/touch/haptics_measurement.h"
 
 #include <gtest/gtest.h>
 

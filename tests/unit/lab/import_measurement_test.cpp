@@ -1,4 +1,4 @@
-#include "lab/import_measurement.h"
+#include "lab/import/import_measurement.h"
 
 #include <gtest/gtest.h>
 

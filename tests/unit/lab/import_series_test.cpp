@@ -1,4 +1,4 @@
-#include "lab/import_series.h"
+#include "lab/import/import_series.h"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
@@ -15,8 +15,8 @@
 #include <map>
 #include <set>
 
+#include "imaging/dicom/jpeg2000.h"
 #include "imaging/importer.h"
-#include "imaging/jpeg2000.h"
 #include "support.h"
 
 namespace trephine {

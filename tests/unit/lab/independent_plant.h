@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "haptics/controllers.h"
-#include "lab/stability_cell.h"
+#include "lab/stability/stability_cell.h"
 
 namespace trephine::test {
 

@@ -1,4 +1,4 @@
-#include "lab/jitter_measurement.h"
+#include "lab/machine/jitter_measurement.h"
 
 #include <gtest/gtest.h>
 

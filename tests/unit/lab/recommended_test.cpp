@@ -1,9 +1,9 @@
-#include "lab/recommended.h"
+#include "lab/trades/recommended.h"
 
 #include <gtest/gtest.h>
 
 #include "base/file.h"
-#include "lab/explain.h"
+#include "lab/exercise/explain.h"
 #include "support.h"
 
 namespace trephine {

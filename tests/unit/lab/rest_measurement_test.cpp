@@ -1,10 +1,10 @@
-#include "lab/rest_measurement.h"
+#include "lab/touch/rest_measurement.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "lab/placed_scene.h"
+#include "lab/touch/placed_scene.h"
 
 namespace trephine {
 namespace {

@@ -1,4 +1,4 @@
-#include "lab/shell_phantom.h"
+#include "lab/common/shell_phantom.h"
 
 #include <gtest/gtest.h>
 

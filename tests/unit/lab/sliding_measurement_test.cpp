@@ -1,4 +1,4 @@
-#include "lab/sliding_measurement.h"
+#include "lab/touch/sliding_measurement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lab/stability_cell.h"
+#include "lab/stability/stability_cell.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lab/stability_maps.h"
+#include "lab/stability/stability_maps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lab/stability_measurement.h"
+#include "lab/stability/stability_measurement.h"
 
 #include <gtest/gtest.h>
 

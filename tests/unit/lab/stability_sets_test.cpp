@@ -1,4 +1,4 @@
-#include "lab/stability_sets.h"
+#include "lab/stability/stability_sets.h"
 
 #include <gtest/gtest.h>
 

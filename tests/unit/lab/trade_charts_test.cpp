@@ -1,4 +1,4 @@
-#include "lab/trade_charts.h"
+#include "lab/trades/trade_charts.h"
 
 #include <gtest/gtest.h>
 

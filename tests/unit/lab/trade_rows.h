@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "lab/trades_measurement.h"
+#include "lab/trades/trades_measurement.h"
 
 namespace trephine::test {
 

@@ -1,11 +1,11 @@
-#include "lab/trade_velocity.h"
+#include "lab/trades/trade_velocity.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lab/trade_arm.h"
-#include "lab/trade_knobs.h"
+#include "lab/trades/trade_arm.h"
+#include "lab/trades/trade_knobs.h"
 
 namespace trephine {
 namespace {

@@ -1,4 +1,4 @@
-#include "lab/trades_measurement.h"
+#include "lab/trades/trades_measurement.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <map>
 #include <set>
 
-#include "lab/recommended.h"
-#include "lab/trade_knobs.h"
-#include "lab/trade_stroke.h"
+#include "lab/trades/recommended.h"
+#include "lab/trades/trade_knobs.h"
+#include "lab/trades/trade_stroke.h"
 #include "support.h"
 #include "trade_rows.h"
 

@@ -1,4 +1,4 @@
-#include "ui/background_task.h"
+#include "ui/common/background_task.h"
 
 #include <gtest/gtest.h>
 

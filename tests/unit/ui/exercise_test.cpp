@@ -1,12 +1,12 @@
-#include "ui/exercise.h"
+#include "ui/frame/exercise.h"
 
 #include <gtest/gtest.h>
 
 #include <QStringList>
 
 #include "haptics/haptic_types.h"
-#include "ui/start_up.h"
-#include "ui/words.h"
+#include "ui/common/words.h"
+#include "ui/frame/start_up.h"
 
 namespace trephine {
 namespace {

@@ -1,4 +1,4 @@
-#include "ui/import_task.h"
+#include "ui/cases/import_task.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <QTemporaryDir>
 #include <QThread>
 
-#include "imaging/ct_writer.h"
+#include "imaging/dicom/ct_writer.h"
 #include "qt_support.h"
-#include "ui/import_dialog.h"
-#include "ui/words.h"
+#include "ui/cases/import_dialog.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 namespace {

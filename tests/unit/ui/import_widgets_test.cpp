@@ -11,12 +11,12 @@
 
 #include "import_support.h"
 #include "qt_support.h"
-#include "ui/choice_panel.h"
-#include "ui/report_card.h"
-#include "ui/series_list.h"
-#include "ui/size_panel.h"
-#include "ui/slice_preview.h"
-#include "ui/state_mark.h"
+#include "ui/cases/choice_panel.h"
+#include "ui/cases/report_card.h"
+#include "ui/cases/series_list.h"
+#include "ui/cases/size_panel.h"
+#include "ui/cases/state_mark.h"
+#include "ui/views/slice_preview.h"
 
 namespace trephine {
 namespace {

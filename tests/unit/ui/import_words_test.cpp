@@ -1,10 +1,10 @@
-#include "ui/import_words.h"
+#include "ui/cases/import_words.h"
 
 #include <gtest/gtest.h>
 
 #include "import_support.h"
 #include "qt_support.h"
-#include "ui/slice_image.h"
+#include "ui/views/slice_image.h"
 
 namespace trephine {
 namespace {

@@ -10,11 +10,11 @@
 #include "haptics/bounded_controller.h"
 #include "qt_support.h"
 #include "tissue/tissue_edits.h"
-#include "ui/arms_panel.h"
-#include "ui/case_panel.h"
-#include "ui/colours.h"
-#include "ui/tissue_panel.h"
-#include "ui/words.h"
+#include "ui/cases/case_panel.h"
+#include "ui/common/colours.h"
+#include "ui/common/words.h"
+#include "ui/tissue/tissue_panel.h"
+#include "ui/training/arms_panel.h"
 
 namespace trephine {
 namespace {

@@ -1,4 +1,4 @@
-#include "ui/question.h"
+#include "ui/common/question.h"
 
 #include <gtest/gtest.h>
 

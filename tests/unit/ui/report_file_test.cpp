@@ -1,14 +1,14 @@
-#include "ui/report_file.h"
+#include "ui/cases/report_file.h"
 
 #include <gtest/gtest.h>
 
 #include <QFile>
 #include <QTemporaryDir>
 
-#include "imaging/report_page.h"
+#include "imaging/report/report_page.h"
 #include "import_support.h"
 #include "qt_support.h"
-#include "ui/words.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 namespace {

@@ -1,4 +1,6 @@
 // The bar without an exercise: what it shows and asks for as time runs and a person chooses.
+#include "ui/training/rewind_bar.h"
+
 #include <gtest/gtest.h>
 
 #include <QKeyEvent>
@@ -6,7 +8,6 @@
 #include <QWheelEvent>
 
 #include "qt_support.h"
-#include "ui/rewind_bar.h"
 
 namespace trephine {
 namespace {

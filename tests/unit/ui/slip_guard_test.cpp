@@ -1,4 +1,4 @@
-#include "ui/slip_guard.h"
+#include "ui/common/slip_guard.h"
 
 #include <QtTest/qtestspontaneevent.h>
 #include <gtest/gtest.h>

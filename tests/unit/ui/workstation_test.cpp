@@ -1,5 +1,5 @@
 // The workstation without a window: a case, its label map, an exercise on both.
-#include "ui/workstation.h"
+#include "ui/frame/workstation.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@
 #include "support.h"
 #include "tissue/tissue_edits.h"
 #include "training/session_reader.h"
-#include "ui/main_window.h"
+#include "ui/frame/main_window.h"
 #include "volume/volume_files.h"
 
 namespace trephine {

@@ -1,0 +1,24 @@
+// Compressed frames -> stored words.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "base/result.h"
+#include "imaging/dicom/dicom_file.h"
+#include "imaging/dicom/transfer_syntax.h"
+
+namespace trephine {
+
+// Whether a codestream of this syntax lost something, by its first bytes: a DCT, a JPEG-LS that is
+// near, a point transform, the irreversible wavelet. Nothing where they do not tell. Any thread.
+std::optional<bool> isLossyCodestream(const TransferSyntax& syntax,
+                                      std::span<const std::uint8_t> first_bytes);
+
+// Decodes one grey frame into rows * columns words in native byte order; 8-bit pixels are widened.
+// The codestream's own size must be that of the header. Error: `what` says why not. Any thread.
+Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> codestream,
+                   const DicomHeader& header, std::int16_t* words);
+
+}  // namespace trephine

@@ -1,0 +1,362 @@
+#include "imaging/dicom/dicom_file.h"
+
+#include <cctype>
+#include <cstring>
+#include <functional>
+
+#include "imaging/dicom/codecs.h"
+#include "imaging/dicom/dicom_pixels.h"
+#include "imaging/dicom/dicom_stream.h"
+#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/transfer_syntax.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr std::string_view kDicomDir = "1.2.840.10008.1.3.10";
+constexpr const char* kUnnamedSeries = "unnamed";
+constexpr int kMostFrames = 100000;
+
+Error skip(std::string reason) {
+  return Error{"SKIPPED", std::move(reason), "", ""};
+}
+
+// Whether the first bytes can be DICOM: the preamble's mark, or a first element of group 2 or 8.
+// DCMTK itself takes any bytes for a data set without a preamble.
+bool looksLikeDicom(std::string_view head) {
+  if (head.size() >= 132 && head.substr(128, 4) == "DICM") return true;
+  if (head.size() < 16) return false;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
+  const auto isGroup = [](unsigned char high, unsigned char low) {
+    return high == 0 && (low == 2 || low == 8);
+  };
+  const bool little = isGroup(byte(1), byte(0)), big = isGroup(byte(0), byte(1));
+  if (!little && !big) return false;
+  if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
+  return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
+}
+
+// Whether DCMTK came to the element's end. Its transfer state does not tell: values of odd length
+// never become ready.
+struct ElementState : DcmObject {
+  static bool isWhole(const DcmObject& element) {
+    return (element.*&ElementState::errorFlag).good();
+  }
+};
+
+// An element that the file's end cut holds what was in memory before, be it another patient's name.
+void dropHalfRead(DcmItem& item) {
+  std::vector<DcmObject*> half_read;
+  for (DcmObject* at = item.nextInContainer(nullptr); at; at = item.nextInContainer(at)) {
+    if (!ElementState::isWhole(*at)) half_read.push_back(at);
+  }
+  for (DcmObject* element : half_read) delete item.remove(element);
+}
+
+// Slope and intercept stand in the data set, or in a functional group of an enhanced image.
+void readRescale(const DicomItem& item, DicomHeader& header) {
+  StoredFormat& format = header.format;
+  const std::string slope = trimmedText(item, DCM_RescaleSlope);
+  const std::string intercept = trimmedText(item, DCM_RescaleIntercept);
+  const auto slope_value = parseDecimal(slope), intercept_value = parseDecimal(intercept);
+  header.rescale_bad = (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
+  format.slope = slope_value.value_or(1.0);
+  format.intercept = intercept_value.value_or(0.0);
+  header.intercept_given = intercept_value.has_value();
+  header.rescale_given = slope_value && intercept_value && *slope_value != 0.0;
+  if (format.slope == 0.0) format.slope = 1.0;
+  header.rescale_type = trimmedText(item, DCM_RescaleType);
+}
+
+void readFormat(const DicomItem& data, DicomHeader& header) {
+  StoredFormat& format = header.format;
+  header.bits_allocated = countOr(data, DCM_BitsAllocated, 0, 64);
+  format.bits_stored = countOr(data, DCM_BitsStored, header.bits_allocated, 64);
+  format.high_bit = countOr(data, DCM_HighBit, format.bits_stored - 1, 63);
+  format.is_signed = countOr(data, DCM_PixelRepresentation, 0, 1) == 1;
+  // US or SS: kept as the word that the pixels would hold.
+  const auto padding = parseInteger(valueText(data, DCM_PixelPaddingValue));
+  const auto limit = parseInteger(valueText(data, DCM_PixelPaddingRangeLimit));
+  if (padding) {
+    format.padding =
+        StoredFormat::Padding{std::uint16_t(*padding), std::uint16_t(limit.value_or(*padding))};
+  }
+}
+
+void readSpacing(const DicomItem& item, DicomHeader& header) {
+  header.pixel_spacing_mm = decimals<2>(item, DCM_PixelSpacing);
+  if (header.pixel_spacing_mm && std::ranges::min(*header.pixel_spacing_mm) <= 0.0) {
+    header.pixel_spacing_mm.reset();
+  }
+}
+
+void readPosition(const DicomItem& item, DicomHeader& header) {
+  header.position_mm.reset();
+  if (const auto p = decimals<3>(item, DCM_ImagePositionPatient)) {
+    header.position_mm = Vec3((*p)[0], (*p)[1], (*p)[2]);
+  }
+}
+
+std::optional<double> number(const DicomItem& item, const DcmTagKey& tag) {
+  return parseDecimal(trimmedText(item, tag));
+}
+
+void readPhase(const DicomItem& data, DicomHeader& header) {
+  header.phase[kTemporalPosition] = number(data, DCM_TemporalPositionIdentifier);
+  header.phase[kCardiacPercent] = number(data, DCM_NominalPercentageOfCardiacPhase);
+  header.phase[kAcquisitionNumber] = number(data, DCM_AcquisitionNumber);
+  header.phase[kTriggerTime] = number(data, DCM_TriggerTime);
+  const auto date_time = timeNumber(data, DCM_AcquisitionDateTime);
+  header.phase[kAcquisitionTime] = date_time ? date_time : timeNumber(data, DCM_AcquisitionTime);
+  header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
+}
+
+// The first item of a sequence.
+DicomItem firstItem(const DicomItem& item, const DcmTagKey& sequence) {
+  const std::vector<DcmItem*> items = item.items(sequence);
+  return DicomItem(items.empty() ? nullptr : items.front());
+}
+
+// Enhanced CT: what a frame says of itself overrides what all share (PS3.3 C.7.6.16).
+void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHeader& header) {
+  const auto group = [&](const DcmTagKey& macro) {
+    DicomItem item = firstItem(own, macro);
+    return item.empty() ? firstItem(shared, macro) : item;
+  };
+  const auto read = [&](const DcmTagKey& macro, const auto& values) {
+    if (const DicomItem item = group(macro); !item.empty()) values(item);
+  };
+  read(DCM_PixelMeasuresSequence, [&](const DicomItem& item) { readSpacing(item, header); });
+  read(DCM_PlanePositionSequence, [&](const DicomItem& item) { readPosition(item, header); });
+  read(DCM_PlaneOrientationSequence, [&](const DicomItem& item) {
+    header.orientation = decimals<6>(item, DCM_ImageOrientationPatient);
+  });
+  read(DCM_PixelValueTransformationSequence,
+       [&](const DicomItem& item) { readRescale(item, header); });
+  read(DCM_CTImageFrameTypeSequence, [&](const DicomItem& item) {
+    header.image_type = splitValues(trimmedText(item, DCM_FrameType));
+  });
+  read(DCM_CardiacSynchronizationSequence, [&](const DicomItem& item) {
+    header.phase[kCardiacPercent] = number(item, DCM_NominalPercentageOfCardiacPhase);
+  });
+  read(DCM_FrameContentSequence, [&](const DicomItem& item) {
+    header.phase[kTemporalPosition] = number(item, DCM_TemporalPositionIndex);
+    header.phase[kAcquisitionNumber] = number(item, DCM_FrameAcquisitionNumber);
+    header.phase[kAcquisitionTime] = timeNumber(item, DCM_FrameAcquisitionDateTime);
+  });
+}
+
+// Whether a frame's pixels lie before the end of a file that is cut.
+bool isThere(const DicomHeader& frame) {
+  if (frame.defect != Defect::cut || !frame.pixels) return false;
+  if (frame.pixels->encapsulated) {
+    const auto& frames = frame.pixels->frames;
+    return std::size_t(frame.frame) < frames.size() && !frames[std::size_t(frame.frame)].empty();
+  }
+  const TransferSyntax* syntax = findTransferSyntax(frame.transfer_syntax);
+  return syntax && syntax->codec == Codec::none && frame.frameBytes() > 0 &&
+         frame.pixels->offset + frame.frameBytes() * std::uint64_t(frame.frame + 1) <=
+             frame.file_bytes;
+}
+
+std::vector<DicomHeader> splitFrames(const DicomItem& data, DicomHeader whole) {
+  const bool grouped = data.find(DCM_SharedFunctionalGroupsSequence) ||
+                       data.find(DCM_PerFrameFunctionalGroupsSequence);
+  const std::vector<DcmItem*> per_frame = data.items(DCM_PerFrameFunctionalGroupsSequence);
+  const bool lost = !whole.pixels || (whole.pixels->encapsulated && whole.pixels->frames.empty());
+  // A claim of frames that are not there is refused once, not a hundred thousand times.
+  if ((whole.frames == 1 && !grouped) || whole.defect == Defect::size_mismatch ||
+      (lost && per_frame.size() < std::size_t(whole.frames))) {
+    std::vector<DicomHeader> one;
+    one.push_back(std::move(whole));
+    return one;
+  }
+  // Without functional groups nothing says where a frame lies.
+  if (!grouped) whole.position_mm.reset();
+  const DicomItem shared = firstItem(data, DCM_SharedFunctionalGroupsSequence);
+  std::vector<DicomHeader> frames(std::size_t(whole.frames), whole);
+  for (int n = 0; n < whole.frames; ++n) {
+    DicomHeader& frame = frames[std::size_t(n)];
+    frame.frame = n;
+    if (isThere(frame)) {
+      frame.defect = Defect::none;
+      frame.defect_text.clear();
+    }
+    if (whole.frames > 1) frame.instance_number = std::to_string(n + 1);
+    const bool there = std::size_t(n) < per_frame.size();
+    readFunctionalGroups(shared, DicomItem(there ? per_frame[std::size_t(n)] : nullptr), frame);
+  }
+  return frames;
+}
+
+// Compares what the pixel element holds with what rows, columns and bits need, in 64 bit.
+void checkPixels(bool cut, DicomHeader& header) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  if (!syntax) return;
+  const auto spoilt = [&](Defect defect, std::string text) {
+    header.defect = defect;
+    header.defect_text = std::move(text);
+  };
+  const PixelPlace& place = *header.pixels;
+  if (cut) spoilt(Defect::cut, "its pixels are cut short");
+  if (cut && (header.frames == 1 || place.encapsulated)) return;
+  const bool encapsulated = syntax->codec == Codec::dcmtk || syntax->codec == Codec::jpeg2000;
+  if (place.encapsulated != encapsulated) {
+    return spoilt(Defect::size_mismatch, "its pixels are not stored as its transfer syntax says");
+  }
+  if (encapsulated) {
+    if (place.frames.empty()) {
+      spoilt(Defect::size_mismatch, "its frames cannot be told apart");
+    }
+    return;
+  }
+  const std::uint64_t needed = header.frameBytes() * std::uint64_t(std::max(header.frames, 1));
+  if (header.bits_allocated % 8 != 0 || needed == 0) return;
+  // Writers pad, by less than a row; more means that rows or columns are wrong.
+  // Deflate shrinks to a thousandth at most.
+  if (syntax->codec == Codec::deflated && needed / 1032 > header.file_bytes) {
+    return spoilt(Defect::size_mismatch, "it is too small for the pixels that it claims");
+  }
+  const std::uint64_t row = header.frameBytes() / std::uint64_t(header.rows);
+  if (place.bytes < needed || place.bytes - needed >= std::max<std::uint64_t>(row, 2)) {
+    spoilt(Defect::size_mismatch, "it holds " + std::to_string(place.bytes) +
+                                      " bytes of pixels where " + std::to_string(header.columns) +
+                                      "x" + std::to_string(header.rows) + " need " +
+                                      std::to_string(needed));
+  }
+}
+
+// The first bytes of the first frame's codestream, whatever fragments they lie in.
+std::vector<std::uint8_t> firstBytes(const DicomHeader& header) {
+  constexpr std::uint64_t kEnough = 4096;
+  std::vector<std::uint8_t> bytes;
+  for (const PixelPlace::Fragment& fragment : header.pixels->frames.front()) {
+    const auto wanted = std::min<std::uint64_t>(fragment.bytes, kEnough - bytes.size());
+    const auto part = readBytes(header.file, fragment.offset, wanted);
+    if (!part || wanted == 0) break;
+    bytes.insert(bytes.end(), part->begin(), part->end());
+  }
+  return bytes;
+}
+
+// Whether HU can differ from what the scanner made. The codestream may tell what its name does not.
+bool isLossy(const DicomItem& data, const DicomHeader& header) {
+  if (trimmedText(data, DCM_LossyImageCompression) == "01") return true;
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  if (!syntax || syntax->loss == Loss::never) return false;
+  if (syntax->loss == Loss::always) return true;
+  if (!header.pixels || header.pixels->frames.empty()) return false;
+  return isLossyCodestream(*syntax, firstBytes(header)).value_or(syntax->loss == Loss::may_be);
+}
+
+void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  bool cut = false;
+  std::string vr;
+  if (syntax && syntax->codec == Codec::deflated && stream.eos()) {
+    // No pixels follow.
+  } else if (syntax && syntax->codec == Codec::deflated) {
+    // Its offset lies in the inflated data set; its length is compared when it is inflated.
+    auto place = std::make_shared<PixelPlace>();
+    place->bytes = header.frameBytes() * std::uint64_t(header.frames);
+    header.pixels = std::move(place);
+    vr = "OW";
+  } else {
+    header.big_endian = xfer.getByteOrder() == EBO_BigEndian;
+    header.pixels =
+        findPixels(header.file, header.file_bytes, std::uint64_t(stream.tell()), stream.newest(),
+                   xfer.isExplicitVR(), header.big_endian, header.frames, vr, cut);
+  }
+  header.has_pixels = header.pixels != nullptr;
+  header.swapped_pairs = header.big_endian && header.bits_allocated == 8 && vr == "OW";
+  header.ambiguous_order = header.big_endian && header.bits_allocated > 8 && vr == "OB";
+  if (header.has_pixels) checkPixels(cut, header);
+}
+
+}  // namespace
+
+Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& file,
+                                                  std::uint64_t file_bytes) {
+  setUpDcmtk();
+  if (file_bytes == 0) return skip("the file is empty");
+  DicomStream stream(file);
+  const std::string_view head = stream.beginning(1024);
+  if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
+  if (!looksLikeDicom(head)) return skip("not a DICOM file");
+  if (head.find(kDicomDir) != head.npos) {
+    return skip("a DICOMDIR: the files themselves are read instead");
+  }
+  if (nestsTooDeeply(file, file_bytes)) return skip("nested too deeply");
+
+  DcmFileFormat dicom;
+  dicom.transferInit();
+  const bool cut =
+      dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad();
+  if (cut) {
+    dropHalfRead(*dicom.getDataset());
+    dropHalfRead(*dicom.getMetaInfo());
+  }
+  dicom.transferEnd();
+  const DicomItem data(dicom.getDataset()), meta(dicom.getMetaInfo());
+  const DcmXfer xfer(dicom.getDataset()->getOriginalXfer());
+
+  DicomHeader header;
+  header.file = file;
+  header.file_bytes = file_bytes;
+  header.series_uid = uidText(data, DCM_SeriesInstanceUID);
+  header.sop_class = uidText(data, DCM_SOPClassUID);
+  if (header.sop_class.empty()) header.sop_class = uidText(meta, DCM_MediaStorageSOPClassUID);
+  header.sop_instance = uidText(data, DCM_SOPInstanceUID);
+  if (header.sop_instance.empty()) {
+    header.sop_instance = uidText(meta, DCM_MediaStorageSOPInstanceUID);
+  }
+  // Anonymising software empties UIDs; that the attribute is there tells such files from debris.
+  if (header.series_uid.empty() && data.find(DCM_SeriesInstanceUID) &&
+      valueText(data, DCM_SeriesInstanceUID).empty()) {
+    header.series_uid = kUnnamedSeries;
+    header.series_key = trimmedText(data, DCM_SeriesNumber) + "\\" +
+                        trimmedText(data, DCM_SeriesDate) + "\\" +
+                        trimmedText(data, DCM_SeriesTime);
+  }
+  for (const auto& [uid, name] : {std::pair(&header.series_uid, "Series Instance UID"),
+                                  std::pair(&header.sop_class, "SOP Class UID"),
+                                  std::pair(&header.sop_instance, "SOP Instance UID")}) {
+    if (!uid->empty()) continue;
+    return skip(cut ? "the DICOM header is cut short or damaged"
+                    : std::string("a DICOM file without a ") + name);
+  }
+  header.study_uid = uidText(data, DCM_StudyInstanceUID);
+  header.frame_of_reference = uidText(data, DCM_FrameOfReferenceUID);
+  header.modality = trimmedText(data, DCM_Modality);
+  header.description = decodedText(data, DCM_SeriesDescription);
+  header.body_part = trimmedText(data, DCM_BodyPartExamined);
+  header.image_type = splitValues(trimmedText(data, DCM_ImageType));
+  header.instance_number = trimmedText(data, DCM_InstanceNumber);
+  header.photometric = trimmedText(data, DCM_PhotometricInterpretation);
+  header.transfer_syntax = uidText(meta, DCM_TransferSyntaxUID);
+  if (header.transfer_syntax.empty()) {
+    header.transfer_syntax = xfer.getXferID();
+  }
+  header.rows = countOr(data, DCM_Rows, 0, 65535);
+  header.columns = countOr(data, DCM_Columns, 0, 65535);
+  header.samples = countOr(data, DCM_SamplesPerPixel, 1, 4);
+  header.frames = std::max(countOr(data, DCM_NumberOfFrames, 1, kMostFrames), 1);
+  readFormat(data, header);
+  readRescale(data, header);
+  readPosition(data, header);
+  readSpacing(data, header);
+  readPhase(data, header);
+  header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
+
+  if (cut) {
+    header.defect = Defect::cut;
+    header.defect_text = "its header is cut short";
+  } else {
+    findPixelsOf(xfer, stream, header);
+  }
+  header.lossy = isLossy(data, header);
+  return splitFrames(data, std::move(header));
+}
+
+}  // namespace trephine

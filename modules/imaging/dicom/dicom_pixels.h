@@ -1,0 +1,47 @@
+// Where a DICOM file keeps its pixels, and its frames' stored words.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/result.h"
+#include "imaging/dicom/dicom_file.h"
+
+namespace trephine {
+
+// Of what was read before `value_offset`, where the value of Pixel Data begins, `newest` are the
+// last bytes; an encapsulated value's items are walked. Null where it is no Pixel Data element.
+// Frames of an encapsulated value are told apart by their number of fragments or the basic offset
+// table; none are given where that fails. `cut` is set where the file ends before the value does;
+// frames that are not whole then have no fragments.
+std::shared_ptr<const PixelPlace> findPixels(const std::filesystem::path& file,
+                                             std::uint64_t file_bytes, std::uint64_t value_offset,
+                                             const std::array<std::uint8_t, 12>& newest,
+                                             bool explicit_vr, bool big_endian, int frames,
+                                             std::string& vr, bool& cut);
+
+// A part of a file; nothing where it is not all there.
+std::optional<std::vector<std::uint8_t>> readBytes(const std::filesystem::path& file,
+                                                   std::uint64_t offset, std::uint64_t bytes);
+
+// Reads frames of one series. Any number of threads at once.
+class PixelReader {
+ public:
+  // The frame's words in native byte order into `words` (rows * columns; 8-bit pixels widened).
+  // Fails, with the reason in `what`, unless the file holds exactly what `header` said.
+  Status read(const DicomHeader& header, std::int16_t* words);
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+  Result<std::shared_ptr<const Bytes>> inflated(const DicomHeader& header);
+
+  std::mutex mutex_;
+  std::map<std::filesystem::path, std::shared_ptr<const Bytes>> inflated_;  // multi-frame files
+};
+
+}  // namespace trephine

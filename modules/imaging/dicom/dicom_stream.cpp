@@ -1,0 +1,154 @@
+#include "imaging/dicom/dicom_stream.h"
+
+#include <dcmtk/dcmdata/dcistrmf.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace trephine {
+
+namespace {
+
+// A level of nesting takes at least 16 bytes of file and up to 2.1 KB of stack (measured), so that
+// a file of this size cannot exhaust a worker's stack; the items of larger ones are counted first.
+constexpr std::uint64_t kSafeBytes = std::uint64_t(2) << 20;
+constexpr std::size_t kMostItems = 100000;
+constexpr offile_off_t kMostSkipped = offile_off_t(256) << 20;  // inflated in about a second
+
+// Stands for a value that was skipped: it cannot be had later.
+class NoValue : public DcmInputStreamFactory {
+ public:
+  DcmInputStream* create() const override { return nullptr; }
+  DcmInputStreamFactory* clone() const override { return new NoValue; }
+  DcmInputStreamFactoryType ident() const override { return DFT_DcmInputFileStreamFactory; }
+};
+
+}  // namespace
+
+FileBlocks::FileBlocks(const std::filesystem::path& file)
+    : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+  struct stat status {};
+  good_ = file_ >= 0 && ::fstat(file_, &status) == 0;
+  end_ = good_ ? offile_off_t(status.st_size) : 0;
+}
+
+FileBlocks::~FileBlocks() {
+  if (file_ >= 0) ::close(file_);
+}
+
+OFBool FileBlocks::good() const {
+  return good_;
+}
+
+OFCondition FileBlocks::status() const {
+  return good_ ? EC_Normal : EC_InvalidFilename;
+}
+
+OFBool FileBlocks::eos() {
+  return at_ >= end_;
+}
+
+offile_off_t FileBlocks::avail() {
+  return std::max<offile_off_t>(end_ - at_, 0);
+}
+
+void FileBlocks::fill(offile_off_t from) {
+  held_ = std::max<offile_off_t>(::pread(file_, block_.data(), block_.size(), off_t(from)), 0);
+  block_at_ = from;
+}
+
+offile_off_t FileBlocks::read(void* to, offile_off_t bytes) {
+  offile_off_t done = 0;
+  while (good_ && done < bytes && at_ < end_) {
+    if (at_ < block_at_ || at_ >= block_at_ + held_) fill(at_);
+    if (held_ == 0) {
+      end_ = at_;  // it has become shorter, or cannot be read
+      break;
+    }
+    const offile_off_t part = std::min({block_at_ + held_ - at_, bytes - done, end_ - at_});
+    std::memcpy(static_cast<char*>(to) + done, block_.data() + (at_ - block_at_),
+                std::size_t(part));
+    done += part;
+    at_ += part;
+  }
+  return done;
+}
+
+offile_off_t FileBlocks::skip(offile_off_t bytes) {
+  const offile_off_t part = std::clamp<offile_off_t>(bytes, 0, avail());
+  at_ += part;
+  return part;
+}
+
+void FileBlocks::putback(offile_off_t bytes) {
+  good_ = good_ && bytes <= at_;
+  if (good_) at_ -= bytes;
+}
+
+std::string_view FileBlocks::beginning(std::size_t most) {
+  if (good_ && (held_ == 0 || block_at_ != 0)) fill(0);
+  return {block_.data(), std::min(most, std::size_t(held_))};
+}
+
+DicomStream::DicomStream(const std::filesystem::path& file)
+    : DcmInputStream(&blocks_), blocks_(file), path_(file) {}
+
+offile_off_t DicomStream::avail() {
+  if (std::uint64_t(read_) > kSafeBytes || skipped_ > kMostSkipped) return 0;
+  return DcmInputStream::avail();
+}
+
+offile_off_t DicomStream::read(void* to, offile_off_t bytes) {
+  const offile_off_t count = DcmInputStream::read(to, bytes);
+  if (deflated_) read_ += count;
+  const std::size_t fresh = std::min(std::size_t(std::max<offile_off_t>(count, 0)), newest_.size());
+  if (fresh == 0) return count;
+  const std::size_t kept = newest_.size() - fresh;
+  std::memmove(newest_.data(), newest_.data() + fresh, kept);
+  std::memcpy(newest_.data() + kept,
+              static_cast<const std::uint8_t*>(to) + (std::size_t(count) - fresh), fresh);
+  return count;
+}
+
+offile_off_t DicomStream::skip(offile_off_t bytes) {
+  if (bytes > 0) newest_.fill(0);
+  if (deflated_) skipped_ += bytes;
+  return skipped_ > kMostSkipped ? 0 : DcmInputStream::skip(bytes);
+}
+
+OFCondition DicomStream::installCompressionFilter(E_StreamCompression filter) {
+  deflated_ = true;
+  return DcmInputStream::installCompressionFilter(filter);
+}
+
+DcmInputStreamFactory* DicomStream::newFactory() const {
+  if (deflated_) return new NoValue;
+  return new DcmInputFileStreamFactory(OFFilename(path_.c_str()), tell());
+}
+
+bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes) {
+  if (file_bytes <= kSafeBytes) return false;
+  constexpr std::string_view kLittle("\xFE\xFF\x00\xE0", 4), kBig("\xFF\xFE\xE0\x00", 4);
+  std::ifstream in(file, std::ios::binary);
+  std::string block(std::size_t(1) << 20, '\0');
+  std::size_t items = 0, kept = 0;
+  while (in) {
+    in.read(block.data() + kept, std::streamsize(block.size() - kept));
+    const std::string_view view(block.data(), kept + std::size_t(in.gcount()));
+    for (const std::string_view tag : {kLittle, kBig}) {
+      for (std::size_t at = view.find(tag); at != view.npos; at = view.find(tag, at + 4)) ++items;
+    }
+    if (items > kMostItems) return true;
+    kept = std::min<std::size_t>(3, view.size());  // a tag across two blocks
+    std::memmove(block.data(), view.data() + view.size() - kept, kept);
+  }
+  return false;
+}
+
+}  // namespace trephine

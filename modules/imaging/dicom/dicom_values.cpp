@@ -1,0 +1,110 @@
+#include "imaging/dicom/dicom_values.h"
+
+#include <dcmtk/dcmdata/dcrledrg.h>
+#include <dcmtk/dcmdata/dcspchrs.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+#include <dcmtk/oflog/oflog.h>
+
+#include <mutex>
+
+#include "imaging/dicom/dicom_stream.h"
+
+namespace trephine {
+
+namespace {
+
+std::uint32_t tagNumber(const DcmTagKey& tag) {
+  return std::uint32_t(tag.getGroup()) << 16 | tag.getElement();
+}
+
+}  // namespace
+
+void setUpDcmtk() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    dcmEnableUnknownVRConversion.set(OFTrue);  // known attributes sent as VR UN
+    DcmRLEDecoderRegistration::registerCodecs();
+    DJDecoderRegistration::registerCodecs();
+    DJLSDecoderRegistration::registerCodecs();
+    dcmDataDict.rdlock();  // loads the dictionary
+    dcmDataDict.rdunlock();
+  });
+}
+
+DicomItem::DicomItem(DcmItem* item) {
+  if (!item) return;
+  elements_.reserve(item->card());
+  for (DcmObject* at = item->nextInContainer(nullptr); at; at = item->nextInContainer(at)) {
+    elements_.emplace_back(tagNumber(at->getTag()), static_cast<DcmElement*>(at));
+  }
+  if (!std::ranges::is_sorted(elements_, {}, &Entry::first)) {
+    std::ranges::stable_sort(elements_, {}, &Entry::first);
+  }
+}
+
+DcmElement* DicomItem::find(const DcmTagKey& tag) const {
+  const auto it = std::ranges::lower_bound(elements_, tagNumber(tag), {}, &Entry::first);
+  return it != elements_.end() && it->first == tagNumber(tag) ? it->second : nullptr;
+}
+
+std::vector<DcmItem*> DicomItem::items(const DcmTagKey& sequence) const {
+  std::vector<DcmItem*> items;
+  DcmElement* element = find(sequence);
+  if (!element || element->ident() != EVR_SQ) return items;
+  auto* list = static_cast<DcmSequenceOfItems*>(element);
+  for (DcmObject* at = list->nextInContainer(nullptr); at; at = list->nextInContainer(at)) {
+    items.push_back(static_cast<DcmItem*>(at));
+  }
+  return items;
+}
+
+std::string valueText(const DicomItem& item, const DcmTagKey& tag) {
+  DcmElement* element = item.find(tag);
+  // getLength() would load it.
+  if (!element || element->getLengthField() > kLongestValue) return "";
+  OFString text;
+  if (element->getOFStringArray(text).bad()) return "";
+  return std::string(text.c_str(), text.length());
+}
+
+std::string trimmedText(const DicomItem& item, const DcmTagKey& tag) {
+  return cleanUtf8(valueText(item, tag));
+}
+
+std::string decodedText(const DicomItem& item, const DcmTagKey& tag) {
+  const std::string raw = valueText(item, tag);
+  const bool plain = std::ranges::all_of(raw, [](char c) { return c >= 0x20 && c < 0x7F; });
+  if (plain) return cleanUtf8(raw);
+  const std::string charset = valueText(item, DCM_SpecificCharacterSet);
+  DcmSpecificCharacterSet converter;
+  OFString utf8;
+  if (!charset.empty() &&
+      converter.selectCharacterSet(OFString(charset.data(), charset.size()), "ISO_IR 192").good() &&
+      converter.convertString(OFString(raw.data(), raw.size()), utf8).good()) {
+    return cleanUtf8(std::string_view(utf8.c_str(), utf8.length()));
+  }
+  return guessUtf8(raw);
+}
+
+std::string uidText(const DicomItem& item, const DcmTagKey& tag) {
+  const std::string text = trimmedText(item, tag);
+  const bool valid = text.size() <= 64 && std::ranges::all_of(text, [](char c) {
+                       return c == '.' || (c >= '0' && c <= '9');
+                     });
+  return valid ? text : "";
+}
+
+int countOr(const DicomItem& item, const DcmTagKey& tag, int fallback, int most) {
+  const int count = parseInteger(valueText(item, tag)).value_or(fallback);
+  return count >= 0 && count <= most ? count : 0;
+}
+
+std::optional<double> timeNumber(const DicomItem& item, const DcmTagKey& tag) {
+  std::string text = trimmedText(item, tag);
+  text = text.substr(0, text.find_first_of("+-"));  // the offset from UTC is the same for all
+  return parseDecimal(text);
+}
+
+}  // namespace trephine

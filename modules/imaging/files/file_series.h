@@ -1,0 +1,27 @@
+// A volume file (NIfTI, MetaImage, NRRD, raw) as a series with a report card.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/common/stored_values.h"
+#include "imaging/report/report.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+// Reads the header only. `name` is the file's path below the folder that was opened; it becomes
+// uid and description. A file that cannot be read is a refused series, by the reader's own code.
+SeriesReport assessFile(const std::filesystem::path& file, const std::string& name);
+
+// Reads the voxels and adds what they tell to `report`. Errors: the reader's.
+Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress& progress,
+                              SeriesReport& report);
+
+// One slice, for a preview: the whole file is read. Errors: NO_SUCH_SLICE, the reader's.
+Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index);
+
+}  // namespace trephine

@@ -1,0 +1,20 @@
+// What became of a source on its way to a volume, as JSON: in the import's answer, and in a file
+// beside a volume that is written. It names no patient, path or UID.
+#pragma once
+
+#include <filesystem>
+
+#include "base/json.h"
+#include "base/result.h"
+#include "imaging/report/report.h"
+
+namespace trephine {
+
+Json toJson(const Provenance& provenance);
+
+// "head.nii.gz.provenance.json" for "head.nii.gz".
+std::filesystem::path provenanceFile(const std::filesystem::path& volume_file);
+// Error: CANNOT_WRITE; what was there stays.
+Status writeProvenance(const Provenance& provenance, const std::filesystem::path& volume_file);
+
+}  // namespace trephine

@@ -1,0 +1,111 @@
+#include "imaging/report/report.h"
+
+#include "imaging/common/text.h"
+#include "imaging/report/provenance.h"
+
+namespace trephine {
+
+namespace {
+
+Json vectorJson(const Vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json findingJson(const Finding& finding) {
+  Json slices = Json::array();
+  for (const std::string& slice : finding.slices) slices.push_back(cleanUtf8(slice));
+  return {{"code", finding.code},
+          {"severity", finding.severity},
+          {"text", cleanUtf8(finding.text)},
+          {"slices", std::move(slices)},
+          {"action", cleanUtf8(finding.action)}};
+}
+
+Json choiceJson(const Choice& choice) {
+  return {{"code", choice.code},
+          {"question", choice.question},
+          {"options", choice.options},
+          {"words", choice.words}};
+}
+
+Json seriesJson(const SeriesReport& series) {
+  const GridGeometry& g = series.geometry;
+  Json direction = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) direction.push_back(g.direction[axis][row]);
+  }
+  Json findings = Json::array();
+  for (const Finding& finding : series.findings) findings.push_back(findingJson(finding));
+  Json choices = Json::array();
+  for (const Choice& choice : series.choices) choices.push_back(choiceJson(choice));
+  return {{"uid", cleanUtf8(series.uid)},
+          {"description", cleanUtf8(series.description)},
+          {"modality", cleanUtf8(series.modality)},
+          {"source", series.source},
+          {"slices", series.slices},
+          {"phases", series.phases},
+          {"memory_mb", series.memory_mb},
+          {"verdict", verdictName(series.verdict)},
+          {"size", g.size},
+          {"spacing_mm", vectorJson(g.spacing_mm)},
+          {"origin_mm", vectorJson(g.origin_mm)},
+          {"direction", std::move(direction)},
+          {"hu_min", orNull(series.hu_min)},
+          {"hu_max", orNull(series.hu_max)},
+          {"tilt_deg", series.tilt_deg},
+          {"transfer_syntax", cleanUtf8(series.transfer_syntax)},
+          {"lossy", series.lossy},
+          {"findings", std::move(findings)},
+          {"choices", std::move(choices)},
+          {"volume_sha256", orNull(series.volume_sha256)}};
+}
+
+}  // namespace
+
+const char* verdictName(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::repaired:
+      return "repaired";
+    case Verdict::refused:
+      return "refused";
+  }
+  return "refused";
+}
+
+Json toJson(const ImportReport& report) {
+  Json skipped = Json::array();
+  for (const SkippedFiles& files : report.skipped) {
+    skipped.push_back({{"reason", cleanUtf8(files.reason)}, {"count", files.count}});
+  }
+  Json series = Json::array();
+  for (const SeriesReport& one : report.series) series.push_back(seriesJson(one));
+  Json json = {{"path", cleanUtf8(report.path)},
+               {"files_seen", report.files_seen},
+               {"files_read", report.files_read},
+               {"skipped", std::move(skipped)},
+               {"series", std::move(series)},
+               {"chosen", orNull(report.chosen)},
+               {"provenance", report.provenance ? toJson(*report.provenance) : Json(nullptr)},
+               {"seconds",
+                {{"scan", report.seconds.scan},
+                 {"read", report.seconds.read},
+                 {"hash", report.seconds.hash}}},
+               {"start_rss_mb", report.start_rss_mb},
+               {"peak_rss_mb", report.peak_rss_mb}};
+  if (report.error) {
+    json["error"] = {{"code", report.error->code},
+                     {"what", cleanUtf8(report.error->what)},
+                     {"where", cleanUtf8(report.error->where)},
+                     {"next", cleanUtf8(report.error->next)}};
+  }
+  return json;
+}
+
+}  // namespace trephine

@@ -1,0 +1,124 @@
+// What an import says of a folder: its series, each with a verdict, findings and questions; and
+// what became of the source. Plain data.
+//
+// A report is for the screen: it may hold a series description and paths, never a patient's name.
+// What may leave the machine is the provenance and the page (report_page.h), which hold neither.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "base/result.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+enum class Verdict { pass, repaired, refused };
+const char* verdictName(Verdict verdict);
+
+// One thing noticed about a series. `code` is stable (listed in the room's README), `severity` is
+// "notice", "repair" or "refusal", `action` says in plain words what was done or what to do.
+struct Finding {
+  std::string code;
+  std::string severity;
+  std::string text;
+  std::vector<std::string> slices;  // places in mm along the normal, or instance numbers
+  std::string action;
+};
+
+// A question that only a person can answer. `options` are what `--choice CODE=OPTION` takes, the
+// first is what happens where nobody answers ("refuse" or "keep"); `words` say what each does.
+struct Choice {
+  std::string code;
+  std::string question;
+  std::vector<std::string> options;
+  std::vector<std::string> words;
+};
+
+// What was answered: code -> option.
+using Answers = std::map<std::string, std::string>;
+
+struct ImportRequest {
+  Answers answers;                       // a code that the series does not ask for is no error
+  std::optional<VoxelBox> crop;          // of the grid that the report states; before the reduction
+  int reduction = 1;                     // 1, 2 (half resolution) or 4 (a quarter)
+  std::optional<double> most_memory_mb;  // to be used for it; absent: what is free
+};
+
+// What a reduction cost, measured against the full resolution (volume/reduce.h).
+struct MeasuredLoss {
+  double rms_hu = 0.0;
+  double p99_hu = 0.0;
+  double bone_volume_change_percent = 0.0;
+};
+
+// What became of the source: written beside the volume, so it names no patient, path or UID.
+struct Provenance {
+  std::string source;           // "DICOM", "NIfTI", ...
+  std::string transfer_syntax;  // its name; empty where there is none
+  bool lossy = false;
+  int slices_used = 0;
+  Answers answers;                          // what was done about each question of the series
+  std::vector<std::string> unanswered;      // codes of those that nobody answered
+  std::vector<std::string> unused_answers;  // codes of answers to questions that it did not ask
+  std::vector<Finding> changes;             // findings of severity repair
+  std::optional<VoxelBox> crop;
+  int reduction = 1;
+  std::optional<MeasuredLoss> loss;
+  std::string volume_sha256;
+  std::string build;
+};
+
+struct SeriesReport {
+  std::string uid;  // "#2", "#3" appended when a Series UID is split
+  std::string description;
+  std::string modality;
+  std::string body_part;
+  std::string source = "DICOM";  // or the name of a volume file's format
+  Verdict verdict = Verdict::refused;
+  GridGeometry geometry;                     // of the volume that comes (or would come) out
+  std::optional<int> hu_min, hu_max;         // null while the series is not chosen
+  std::optional<std::string> volume_sha256;  // null while the series is not chosen
+  double tilt_deg = 0.0;
+  std::string transfer_syntax;  // its UID
+  bool lossy = false;
+  int slices = 0;  // frames or slices found, usable or not
+  int phases = 1;
+  double memory_mb = 0.0;  // at the peak of reading it
+  std::vector<Finding> findings;
+  std::vector<Choice> choices;  // still open or answered: all that the series asks
+};
+
+struct SkippedFiles {
+  std::string reason;
+  int count = 0;
+};
+
+struct ImportReport {
+  std::string path;
+  int files_seen = 0;
+  int files_read = 0;
+  std::vector<SkippedFiles> skipped;
+  std::vector<SeriesReport> series;
+  std::optional<std::string> chosen;  // uid
+  std::optional<Provenance> provenance;
+  std::optional<Error> error;  // why no volume can come out of it
+  struct {
+    double scan = 0.0, read = 0.0, hash = 0.0;
+  } seconds;
+  double start_rss_mb = 0.0, peak_rss_mb = 0.0;
+};
+
+// The contract of `trephine-lab import --json`, without schema and build.
+Json toJson(const ImportReport& report);
+
+struct SlicePicture {
+  int columns = 0, rows = 0;
+  Vec3 spacing_mm{1.0};
+  std::vector<std::int16_t> hu;  // row by row
+};
+
+}  // namespace trephine

@@ -1,0 +1,184 @@
+#include "imaging/report/report_page.h"
+
+#include <algorithm>
+
+#include "base/system.h"
+#include "imaging/common/text.h"
+#include "imaging/dicom/transfer_syntax.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr std::size_t kMostSeries = 8;  // in full; the others are counted
+constexpr std::size_t kMostSlices = 6;  // named in a finding
+
+std::string escaped(std::string_view text) {
+  std::string html;
+  for (const char c : cleanUtf8(text)) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+const char* verdictSentence(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "PASS &#8211; can be used as it is";
+    case Verdict::repaired:
+      return "REPAIRED &#8211; can be used; what was changed is said below";
+    case Verdict::refused:
+      return "REFUSED &#8211; cannot be used as it is; what to do is said below";
+  }
+  return "";
+}
+
+const char* verdictColour(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "#1b6e3c";
+    case Verdict::repaired:
+      return "#8a5a00";
+    case Verdict::refused:
+      return "#a02020";
+  }
+  return "#000000";
+}
+
+std::string row(const std::string& name, const std::string& value) {
+  return "<tr><td><b>" + name + "</b></td><td>" + value + "</td></tr>\n";
+}
+
+std::string slicesText(const std::vector<std::string>& slices) {
+  std::string text;
+  for (std::size_t n = 0; n < std::min(slices.size(), kMostSlices); ++n) {
+    text += (n == 0 ? "" : ", ") + escaped(slices[n]);
+  }
+  if (slices.size() > kMostSlices) {
+    text += " and " + std::to_string(slices.size() - kMostSlices) + " more";
+  }
+  return text;
+}
+
+std::string findingRow(const Finding& finding) {
+  std::string text = escaped(finding.text) + ".";
+  if (!finding.slices.empty()) text += " At: " + slicesText(finding.slices) + ".";
+  return "<tr><td>" + escaped(finding.severity) + "</td><td>" + text + "</td><td>" +
+         escaped(finding.action) + (finding.action.empty() ? "" : ".") +
+         "</td><td><font size=\"1\">" + escaped(finding.code) + "</font></td></tr>\n";
+}
+
+std::string seriesSection(const SeriesReport& series, std::size_t number, bool chosen) {
+  const GridGeometry& g = series.geometry;
+  std::string html = "<h3>Series " + std::to_string(number) + (chosen ? " (opened)" : "") +
+                     ": <font color=\"" + verdictColour(series.verdict) + "\">" +
+                     verdictSentence(series.verdict) + "</font></h3>\n<table cellpadding=\"2\">\n";
+  html += row("Kind", escaped(series.modality.empty() ? "unknown" : series.modality) + ", " +
+                          escaped(series.source) +
+                          (series.transfer_syntax.empty()
+                               ? ""
+                               : ", " + escaped(transferSyntaxName(series.transfer_syntax))));
+  html += row("Slices",
+              std::to_string(series.slices) +
+                  (series.phases > 1 ? " in " + std::to_string(series.phases) + " phases" : ""));
+  html +=
+      row("Volume", std::to_string(g.size[0]) + " &times; " + std::to_string(g.size[1]) +
+                        " &times; " + std::to_string(g.size[2]) + " voxels of " +
+                        fixedText(g.spacing_mm.x, 3) + " &times; " + fixedText(g.spacing_mm.y, 3) +
+                        " &times; " + fixedText(g.spacing_mm.z, 3) + " mm");
+  if (series.hu_min && series.hu_max) {
+    html += row("Values",
+                std::to_string(*series.hu_min) + " to " + std::to_string(*series.hu_max) + " HU");
+  }
+  if (series.lossy) html += row("Compression", "with loss");
+  html += "</table>\n";
+  if (series.findings.empty()) return html + "<p>Nothing to remark.</p>\n";
+  html +=
+      "<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\" width=\"100%\">\n"
+      "<tr><th align=\"left\">Severity</th><th align=\"left\">What was found</th>"
+      "<th align=\"left\">What was done, or is to do</th><th align=\"left\">Code</th></tr>\n";
+  for (const Finding& finding : series.findings) html += findingRow(finding);
+  return html + "</table>\n";
+}
+
+std::string provenanceSection(const Provenance& provenance) {
+  std::string html = "<h3>How the volume was made</h3>\n<table cellpadding=\"2\">\n";
+  for (const auto& [code, option] : provenance.answers) {
+    html += row("Choice " + escaped(code), escaped(option));
+  }
+  if (const auto& box = provenance.crop) {
+    std::string text;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      constexpr const char* kNames[] = {"columns ", ", rows ", ", slices "};
+      text += kNames[axis] + std::to_string(box->low[axis] + 1) + " to " +
+              std::to_string(box->high[axis]);
+    }
+    html += row("Crop (counted from 1)", text);
+  }
+  if (provenance.reduction > 1) {
+    html += row("Resolution", provenance.reduction == 2 ? "half" : "a quarter");
+  }
+  if (const auto& loss = provenance.loss) {
+    html += row("Measured loss", fixedText(loss->rms_hu, 1) + " HU rms, 99 % below " +
+                                     fixedText(loss->p99_hu, 0) + " HU, volume of bone " +
+                                     (loss->bone_volume_change_percent >= 0.0 ? "+" : "") +
+                                     fixedText(loss->bone_volume_change_percent, 1) + " %");
+  }
+  html += row("Fingerprint", "<font size=\"1\">" + escaped(provenance.volume_sha256) + "</font>");
+  return html + "</table>\n";
+}
+
+}  // namespace
+
+std::string reportPage(const ImportReport& report) {
+  std::string html =
+      "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>CT import report</title>\n"
+      "<style>@page { size: A4; margin: 15mm } body { font-family: sans-serif; font-size: 9pt }"
+      " h2 { font-size: 14pt } h3 { font-size: 10pt; margin: 8px 0 2px 0 }"
+      " table { font-size: 8pt; border-collapse: collapse }</style></head><body>\n"
+      "<h2>CT import report</h2>\n<p>For training, not for diagnosis or treatment planning. "
+      "This page names no patient.</p>\n";
+  if (report.error) {
+    html +=
+        "<p><b>" + escaped(report.error->what) + ".</b> " + escaped(report.error->next) + ".</p>\n";
+  }
+  // What was opened first, then what can be, then the rest.
+  std::vector<std::size_t> order;
+  for (std::size_t n = 0; n < report.series.size(); ++n) order.push_back(n);
+  const auto chosen = [&](std::size_t n) { return report.chosen == report.series[n].uid; };
+  std::ranges::stable_sort(order, {}, [&](std::size_t n) {
+    return chosen(n) ? 0 : report.series[n].verdict != Verdict::refused ? 1 : 2;
+  });
+  for (std::size_t n = 0; n < std::min(order.size(), kMostSeries); ++n) {
+    html += seriesSection(report.series[order[n]], order[n] + 1, chosen(order[n]));
+  }
+  if (order.size() > kMostSeries) {
+    html += "<p>" + std::to_string(order.size() - kMostSeries) +
+            " more series were found; the window lists them.</p>\n";
+  }
+  if (report.provenance) html += provenanceSection(*report.provenance);
+  html += "<h3>Files</h3>\n<p>" + std::to_string(report.files_seen) + " files were seen, " +
+          std::to_string(report.files_read) + " read.";
+  for (const SkippedFiles& skipped : report.skipped) {
+    html += " Skipped " + std::to_string(skipped.count) + ": " + escaped(skipped.reason) + ".";
+  }
+  return html + "</p>\n<p><font size=\"1\">Trephine " + escaped(buildName()) +
+         "</font></p>\n</body></html>\n";
+}
+
+}  // namespace trephine

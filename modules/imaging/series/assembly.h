@@ -1,0 +1,33 @@
+// A planned series -> its voxels.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/common/stored_values.h"
+#include "imaging/series/series.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+struct Assembly {
+  Volume volume;
+  HuCounts counts;
+  struct Unreadable {
+    std::size_t slice;  // in Series::slices
+    std::string why;
+  };
+  std::vector<Unreadable> unreadable;  // where there are any, the volume is not complete
+};
+
+// Reads the plan's slices on several threads, straight into the volume where nothing is to be
+// interpolated. Errors: OUT_OF_MEMORY, CANCELLED.
+Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
+                          const Progress& progress);
+
+// Voxels for `volume.geometry`; refuses, in words, what does not fit.
+std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb);
+
+}  // namespace trephine

@@ -1,0 +1,143 @@
+#include "imaging/series/scan.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <future>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "imaging/common/text.h"
+#include "imaging/common/workers.h"
+#include "imaging/dicom/dicom_values.h"
+#include "imaging/dicom/dicomdir.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeepestFolder = 32;
+
+struct FoundFile {
+  fs::path path;
+  std::uint64_t bytes;
+};
+
+// Walks the folders; keeps regular files and counts everything else.
+class Walk {
+ public:
+  Walk(ScannedFiles& result, const Progress& progress) : result_(result), progress_(progress) {}
+
+  void visit(const fs::path& path, int depth) {
+    if (progress_.cancelled()) return;
+    struct stat status;
+    if (::stat(path.c_str(), &status) != 0) {
+      ++result_.files_seen;
+      skip("the file could not be opened");
+      return;
+    }
+    const bool first_visit = result_.came_upon.emplace(status.st_dev, status.st_ino).second;
+    if (S_ISDIR(status.st_mode)) {
+      if (first_visit) visitFolder(path, depth);
+      return;
+    }
+    ++result_.files_seen;
+    if (!S_ISREG(status.st_mode)) {
+      skip("not a regular file");
+    } else if (!first_visit) {
+      skip("the same file under another name");
+    } else {
+      files_.push_back({path, std::uint64_t(status.st_size)});
+    }
+  }
+
+  const std::vector<FoundFile>& files() const { return files_; }
+
+ private:
+  void visitFolder(const fs::path& folder, int depth) {
+    if (depth > kDeepestFolder) {
+      skip("a folder more than " + std::to_string(kDeepestFolder) + " levels deep");
+      return;
+    }
+    std::error_code error;
+    std::vector<fs::path> entries;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+      entries.push_back(it->path());
+    }
+    if (error) skip("a folder that could not be opened");
+    std::ranges::sort(entries, {}, &fs::path::native);
+    for (const fs::path& entry : entries) visit(entry, depth + 1);
+  }
+
+  void skip(const std::string& reason) { ++result_.skipped[reason]; }
+
+  ScannedFiles& result_;
+  const Progress& progress_;
+  std::vector<FoundFile> files_;
+};
+
+}  // namespace
+
+std::optional<FileId> fileId(const fs::path& file) {
+  struct stat status;
+  if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+  return FileId{status.st_dev, status.st_ino};
+}
+
+Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return Error{"MISSING_FOLDER", "The folder does not exist or may not be opened",
+                 cleanUtf8(path.string()), "Check the name and that you may read it"};
+  }
+  // Its dictionary takes as long to load as the folders to walk. Workers wait for it.
+  const auto set_up = std::async(setUpDcmtk);
+  ScannedFiles result;
+  progress.at(0.0, "Looking for files");
+  Walk walk(result, progress);
+  std::vector<fs::path> named;
+  if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path);
+  if (named.empty()) {
+    const bool stale = isDicomDir(path);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    walk.visit(stale ? folder : path, 0);
+  }
+  for (const fs::path& file : named) walk.visit(file, 0);
+
+  const std::vector<FoundFile>& files = walk.files();
+  std::vector<std::optional<Result<std::vector<DicomHeader>>>> headers(files.size());
+  const Status read = forEachFile(
+      files.size(), progress, {0.0, 1.0, "Reading headers"},
+      [&](std::size_t i) { headers[i] = readDicomHeaders(files[i].path, files[i].bytes); });
+  if (!read) return read.error();
+
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    auto& frames = *headers[i];
+    if (frames) {
+      ++result.dicom_files;
+      std::ranges::move(frames.value(), std::back_inserter(result.headers));
+    } else if (frames.error().code != kUnreadableFile && isVolumeFile(files[i].path) &&
+               files[i].bytes > 0) {
+      result.volume_files.push_back(files[i].path);
+    } else {
+      ++result.skipped[frames.error().what];
+    }
+    headers[i].reset();
+  }
+  std::ranges::sort(result.headers, {},
+                    [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame, h.file); });
+  std::ranges::sort(result.volume_files);
+  const std::vector<fs::path> listed = result.volume_files;
+  const auto parts = std::erase_if(result.volume_files, [&](const fs::path& file) {
+    const auto other = fileItBelongsTo(file);
+    return other && std::ranges::binary_search(listed, *other);
+  });
+  if (parts > 0) result.skipped["a part of a volume that another file stands for"] = int(parts);
+  return result;
+}
+
+}  // namespace trephine

@@ -1,0 +1,38 @@
+// Finds DICOM files whatever their names, and reads their headers.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/dicom/dicom_file.h"
+
+namespace trephine {
+
+using FileId = std::pair<std::uint64_t, std::uint64_t>;  // device and inode: one file, many names
+using FileIds = std::set<FileId>;
+
+// Nothing where there is no such file.
+std::optional<FileId> fileId(const std::filesystem::path& file);
+
+struct ScannedFiles {
+  std::vector<DicomHeader> headers;  // sorted by SOP Instance UID, then frame and path
+  std::vector<std::filesystem::path> volume_files;  // NIfTI and the like, sorted
+  int dicom_files = 0;                              // that were read
+  int files_seen = 0;                               // everything that is not a folder
+  std::map<std::string, int> skipped;               // by reason; none names a file
+  FileIds came_upon;                                // files and folders, read or not
+};
+
+// `path` is a folder, taken with its subfolders, or one file. Of a DICOMDIR the files that it names
+// are taken, or its folder where one of them is not there. Links are followed, each file and folder
+// once. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY.
+Result<ScannedFiles> scanFiles(const std::filesystem::path& path, const Progress& progress);
+
+}  // namespace trephine

@@ -1,0 +1,46 @@
+// Headers -> series, and what each comes to under given answers.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "imaging/dicom/dicom_file.h"
+#include "imaging/report/report.h"
+#include "imaging/series/series_geometry.h"
+
+namespace trephine {
+
+struct Series {
+  SeriesReport report;              // of the last assessment; grouping's own findings come first
+  std::size_t findings_kept = 0;    // how many those are
+  std::vector<DicomHeader> slices;  // in increasing place along the stack's k axis
+};
+
+// How a series becomes a volume. `sources` index Series::slices, in the order of `stack.order`.
+struct SeriesPlan {
+  Stack stack;
+  std::vector<std::size_t> sources;
+};
+
+// Groups by Study and Series UID and splits what cannot be one stack: different size, spacing,
+// orientation, photometric interpretation, samples, frame of reference, kind, or a localizer.
+// `headers` are sorted by SOP Instance UID; the result does not depend on names or order of files.
+// Files are opened only to compare those that claim to be the same image or lie at one place.
+std::vector<Series> groupSeries(std::vector<DicomHeader> headers);
+
+// Fills the report anew: every finding that headers can give under these answers, choices, geometry
+// and verdict; orders the slices. Pure. (series_checks.cpp)
+SeriesPlan assessSeries(Series& series, const Answers& answers = {});
+
+// The worst of the findings' severities.
+Verdict verdictOf(const std::vector<Finding>& findings);
+
+// "slice 12", by instance number, or "a slice without number".
+std::string sliceName(const DicomHeader& header);
+
+// CT of which a volume could come: images of the CT storage classes.
+bool isCt(const DicomHeader& header);
+// ImageType says LOCALIZER.
+bool isLocalizer(const DicomHeader& header);
+
+}  // namespace trephine

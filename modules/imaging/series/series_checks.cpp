@@ -1,0 +1,366 @@
+// What a series' headers say about it: kind, values, pixels, geometry. Each check adds a finding
+// with its own code; README.md lists them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "imaging/common/text.h"
+#include "imaging/dicom/transfer_syntax.h"
+#include "imaging/series/series.h"
+#include "imaging/series/series_geometry.h"
+#include "imaging/series/series_repeats.h"
+
+namespace trephine {
+
+namespace {
+
+class Findings {
+ public:
+  explicit Findings(Series& series) : series_(series) {}
+
+  void refuse(const char* code, std::string text, std::string action,
+              std::vector<std::string> slices = {}) {
+    series_.report.findings.push_back(
+        {code, "refusal", std::move(text), std::move(slices), std::move(action)});
+  }
+  void repaired(const char* code, std::string text, std::string action,
+                std::vector<std::string> slices = {}) {
+    series_.report.findings.push_back(
+        {code, "repair", std::move(text), std::move(slices), std::move(action)});
+  }
+  void notice(const char* code, std::string text, std::string action,
+              std::vector<std::string> slices = {}) {
+    series_.report.findings.push_back(
+        {code, "notice", std::move(text), std::move(slices), std::move(action)});
+  }
+  // The names of all slices that `test` holds for.
+  template <class Test>
+  std::vector<std::string> slicesWhere(Test test) const {
+    std::vector<std::string> names;
+    for (const DicomHeader& header : series_.slices) {
+      if (test(header)) names.push_back(sliceName(header));
+    }
+    return names;
+  }
+
+ private:
+  Series& series_;
+};
+
+std::string countOfSlices(const std::vector<std::string>& slices) {
+  return std::to_string(slices.size()) + (slices.size() == 1 ? " slice" : " slices");
+}
+
+// The slice that speaks for all: one with pixels where there is one, so with a whole header.
+const DicomHeader& typicalSlice(const std::vector<DicomHeader>& slices) {
+  const auto whole = std::ranges::find(slices, true, &DicomHeader::has_pixels);
+  return whole == slices.end() ? slices.front() : *whole;
+}
+
+// Series of which no volume can come whatever their geometry. True where one of these it is.
+bool refusedByKind(const DicomHeader& first, Findings& findings) {
+  constexpr const char* kChooseCt = "Choose a CT series";
+  const std::string& kind = first.sop_class;
+  const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
+  if (!first.has_pixels && first.defect == Defect::none) {
+    findings.refuse(
+        "NOT_AN_IMAGE_SERIES",
+        (first.modality.empty() ? "The files" : "The files of this " + first.modality + " series") +
+            std::string(" hold no pixels"),
+        kChooseCt);
+  } else if (secondary) {
+    findings.refuse("SECONDARY_CAPTURE", "The series holds captured pictures, not slices",
+                    kChooseCt);
+  } else if (!isCt(first)) {
+    findings.refuse("NOT_CT",
+                    "The series is " + (first.modality.empty() ? "no CT" : first.modality) +
+                        ": its values are not HU",
+                    kChooseCt);
+  } else if (isLocalizer(first)) {
+    findings.refuse("LOCALIZER", "The series is a localizer (scout), not a stack of slices",
+                    kChooseCt);
+  } else if (first.frames > 1 && !first.position_mm && first.defect != Defect::size_mismatch) {
+    findings.refuse("MULTIFRAME",
+                    "The series is stored as multi-frame pictures that do not say where each frame "
+                    "lies",
+                    "Export it as enhanced CT, or as classic CT with one file a slice");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void checkTransferSyntax(const Series& series, Findings& findings) {
+  std::map<std::string, int> counts;
+  for (const DicomHeader& header : series.slices) ++counts[header.transfer_syntax];
+  for (const auto& [uid, count] : counts) {
+    if (findTransferSyntax(uid)) continue;
+    findings.refuse("UNSUPPORTED_TRANSFER_SYNTAX",
+                    "The transfer syntax " + transferSyntaxName(uid) + " (" + cleanUtf8(uid) +
+                        ") of " + std::to_string(count) + " slices cannot be read",
+                    "Export the series uncompressed (Explicit VR Little Endian)");
+  }
+}
+
+void checkLoss(Series& series, const Answers& answers, Findings& findings) {
+  const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
+  if (lossy.empty()) return;
+  const std::string text = countOfSlices(lossy) + " were compressed with loss";
+  const std::string answer =
+      ask({"LOSSY_SOURCE",
+           "The series was compressed with loss: its HU are not those of the scanner. Use it?",
+           {"refuse", "accept"},
+           {"Do not use the series", "Use it for training, marked as lossy"}},
+          answers, series.report.choices);
+  if (answer == "accept") {
+    findings.repaired("LOSSY_SOURCE", text,
+                      "They were taken as they are, as was agreed: small differences of HU are "
+                      "not real",
+                      lossy);
+  } else {
+    findings.refuse("LOSSY_SOURCE", text, "Use the original series, or agree to the loss", lossy);
+  }
+}
+
+void checkValues(const Series& series, Findings& findings) {
+  const DicomHeader& first = typicalSlice(series.slices);
+  const bool grey = first.photometric == "MONOCHROME1" || first.photometric == "MONOCHROME2";
+  if (first.samples != 1 || (!grey && !first.photometric.empty())) {
+    findings.refuse("COLOUR", "The pixels are colour (" + first.photometric + "), not HU",
+                    "Export the original CT slices");
+  }
+  const auto odd_format = findings.slicesWhere([](const DicomHeader& h) {
+    return h.has_pixels && h.samples == 1 &&
+           (!h.holdsGreyWords() || h.ambiguous_order || h.photometric.empty());
+  });
+  if (!odd_format.empty()) {
+    findings.refuse(
+        "PIXEL_FORMAT",
+        countOfSlices(odd_format) +
+            " do not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+            "columns up to 8192 and photometric interpretation as CT must",
+        "Export the series again as CT with 16-bit pixels", odd_format);
+  }
+  const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
+    return h.has_pixels && !h.rescale_type.empty() && h.rescale_type != "HU" &&
+           h.rescale_type != "US";
+  });
+  if (!not_hu.empty()) {
+    findings.refuse("NOT_HU", "The values are " + first.rescale_type + ", not HU",
+                    "Choose the series in HU", not_hu);
+  }
+  const auto bad =
+      findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.rescale_bad; });
+  if (!bad.empty()) {
+    findings.refuse("BAD_RESCALE",
+                    "The rescale slope or intercept of " + countOfSlices(bad) + " is no number",
+                    "Export the series again", bad);
+  }
+  const auto raw = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && !h.intercept_given && !h.rescale_bad; });
+  const auto scaled =
+      findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.intercept_given; });
+  if (!raw.empty() && !scaled.empty()) {
+    findings.refuse("BAD_RESCALE",
+                    countOfSlices(raw) + " lack the rescale intercept that the others have",
+                    "Export the series again", raw);
+  }
+  const auto unscaled = findings.slicesWhere(
+      [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
+  if (!unscaled.empty()) {
+    findings.notice("RESCALE_DEFAULT",
+                    countOfSlices(unscaled) + " lack a rescale slope (or have 0) or intercept",
+                    "Slope 1 and intercept 0 were taken where absent", unscaled);
+  }
+  if (first.photometric == "MONOCHROME1") {
+    findings.notice("MONOCHROME1", "The series is meant to be shown with white for low values",
+                    "The HU are not touched by that");
+  }
+}
+
+void checkSizes(const Series& series, Findings& findings) {
+  std::vector<std::string> mismatched;
+  std::string text;
+  for (const DicomHeader& header : series.slices) {
+    if (header.defect != Defect::size_mismatch) continue;
+    mismatched.push_back(sliceName(header));
+    text = header.defect_text;
+  }
+  if (mismatched.empty()) return;
+  findings.refuse("SIZE_MISMATCH",
+                  countOfSlices(mismatched) + " contradict themselves (the last: " + text + ")",
+                  "Export the series again", mismatched);
+}
+
+bool isLost(const DicomHeader& header) {
+  return header.defect == Defect::cut || !header.has_pixels;
+}
+
+bool isPlaced(const DicomHeader& header) {
+  constexpr double kFarthest_mm = 1e6, kWidestPixel_mm = 1e3, kNarrowestPixel_mm = 1e-4;
+  if (!header.position_mm || !header.orientation || !header.pixel_spacing_mm) return false;
+  const auto& p = *header.position_mm;
+  const auto [least, most] = std::ranges::minmax(*header.pixel_spacing_mm);
+  return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < kFarthest_mm &&
+         most < kWidestPixel_mm && least > kNarrowestPixel_mm;
+}
+
+// "; of these cannot be read: slice 2 (its pixels are cut short)"
+std::string lostText(const std::vector<const DicomHeader*>& lost) {
+  if (lost.empty()) return "";
+  std::string text = "; " + std::to_string(lost.size()) + " of these cannot be read:";
+  for (std::size_t n = 0; n < std::min<std::size_t>(lost.size(), 5); ++n) {
+    text += (n == 0 ? " " : ", ") + sliceName(*lost[n]);
+  }
+  if (lost.size() > 5) text += " and others";
+  const std::string& why = lost.back()->defect_text;
+  return text + " (" + (why.empty() ? "it has no pixels" : why) + ")";
+}
+
+// Slices that are cut before they say where they lie: their gap may not show.
+void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_placed,
+                   const Answers& answers, SeriesReport& report, Findings& findings) {
+  if (lost.empty()) return;
+  std::vector<std::string> names;
+  for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
+  const std::string& why = lost.back()->defect_text;
+  const std::string text = countOfSlices(names) + " cannot be read, nor where they belong (" +
+                           (why.empty() ? "it has no pixels" : why) + ")";
+  const auto given = answers.find("MISSING_SLICES");
+  const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
+  const bool asked =
+      std::ranges::find(report.choices, "MISSING_SLICES", &Choice::code) != report.choices.end();
+  if (!asked && others_are_placed) {
+    report.choices.push_back({"MISSING_SLICES",
+                              "Slices are damaged before they say where they belong. Use the rest?",
+                              {"refuse", "part"},
+                              {"Do not use the series", "Use it without them"}});
+  }
+  if (agreed) {
+    findings.repaired("MISSING_SLICES", text, "They were left out", names);
+  } else {
+    findings.refuse("MISSING_SLICES", text, "Copy these files again from their source", names);
+  }
+}
+
+SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findings) {
+  SeriesPlan plan;
+  const auto nowhere =
+      findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
+  if (!nowhere.empty()) {
+    findings.refuse(
+        "NO_GEOMETRY",
+        countOfSlices(nowhere) + " lack a usable position, orientation or pixel spacing",
+        "Export the series again with its geometry", nowhere);
+    return plan;
+  }
+  std::vector<const DicomHeader*> placed, unplaced, lost;
+  for (const DicomHeader& header : series.slices) {
+    (isPlaced(header) ? placed : unplaced).push_back(&header);
+  }
+  SeriesReport& report = series.report;
+  if (!placed.empty()) {
+    const auto whole = std::ranges::find_if(placed, [](const auto* h) { return h->has_pixels; });
+    const DicomHeader& first = whole == placed.end() ? *placed.front() : **whole;
+    std::vector<std::size_t> used(placed.size());
+    for (std::size_t n = 0; n < used.size(); ++n) used[n] = n;
+    if (const auto axes = axesOf(*first.orientation)) {
+      std::vector<double> places_mm;
+      for (const DicomHeader* h : placed) {
+        places_mm.push_back(glm::dot(*h->position_mm, (*axes)[2]));
+      }
+      used = chooseRepeats(placed, places_mm, answers, report);
+    }
+    StackInput input{first.rows, first.columns, *first.pixel_spacing_mm, *first.orientation, {}, {},
+                     ""};
+    for (const std::size_t n : used) {
+      input.positions_mm.push_back(*placed[n]->position_mm);
+      input.usable.push_back(!isLost(*placed[n]));
+      if (isLost(*placed[n])) lost.push_back(placed[n]);
+    }
+    input.lost_text = lostText(lost);
+    plan.stack = stackSlices(input, answers);
+    report.geometry = plan.stack.geometry;
+    report.tilt_deg = plan.stack.tilt_deg;
+    std::ranges::move(plan.stack.findings, std::back_inserter(report.findings));
+    std::ranges::move(plan.stack.choices, std::back_inserter(report.choices));
+    for (const std::size_t n : plan.stack.order) {
+      plan.sources.push_back(std::size_t(placed[used[n]] - series.slices.data()));
+    }
+  }
+  checkUnplaced(unplaced, !placed.empty(), answers, report, findings);
+  return plan;
+}
+
+// By place where every slice has one, else by instance number.
+void orderSlices(std::vector<DicomHeader>& slices) {
+  std::ranges::stable_sort(slices, {}, [](const DicomHeader& header) {
+    return parseInteger(header.instance_number).value_or(std::numeric_limits<int>::max());
+  });
+  const auto first = std::ranges::find_if(slices, isPlaced);
+  if (first == slices.end()) return;
+  const auto axes = axesOf(*first->orientation);
+  if (!axes) return;
+  std::ranges::stable_sort(slices, {}, [&](const DicomHeader& header) {
+    return isPlaced(header) ? glm::dot(*header.position_mm, (*axes)[2])
+                            : std::numeric_limits<double>::max();
+  });
+}
+
+double memoryMb(const SeriesPlan& plan, const SeriesReport& report) {
+  double voxels = double(report.geometry.voxelCount());
+  if (!plan.stack.oneToOne()) {
+    voxels += double(plan.sources.size()) * report.geometry.size[0] * report.geometry.size[1];
+  }
+  return voxels * sizeof(std::int16_t) / 1048576.0;
+}
+
+}  // namespace
+
+SeriesPlan assessSeries(Series& series, const Answers& answers) {
+  SeriesReport& report = series.report;
+  report.findings.resize(series.findings_kept);
+  report.choices.clear();
+  report.phases = 1;
+  Findings findings(series);
+  orderSlices(series.slices);
+  const DicomHeader& first = typicalSlice(series.slices);
+  report.description = first.description;
+  report.body_part = first.body_part;
+  report.modality = first.modality.empty() && isCt(first) ? "CT" : first.modality;
+  report.transfer_syntax = cleanUtf8(first.transfer_syntax);
+  report.slices = int(series.slices.size());
+  report.geometry = {};
+  report.geometry.size = {first.columns, first.rows, std::int32_t(series.slices.size())};
+  report.geometry.spacing_mm = Vec3(0.0);
+  if (first.pixel_spacing_mm) {
+    report.geometry.spacing_mm.x = (*first.pixel_spacing_mm)[1];
+    report.geometry.spacing_mm.y = (*first.pixel_spacing_mm)[0];
+  }
+  report.lossy = std::ranges::any_of(series.slices, &DicomHeader::lossy);
+
+  SeriesPlan plan;
+  if (!refusedByKind(first, findings)) {
+    checkTransferSyntax(series, findings);
+    checkValues(series, findings);
+    checkLoss(series, answers, findings);
+    checkSizes(series, findings);
+    plan = checkGeometry(series, answers, findings);
+    if (const Status size = checkSize(report.geometry.size, ""); !size) {
+      findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",
+                      size.error().what, size.error().next);
+    }
+    report.memory_mb = memoryMb(plan, report);
+  }
+  // Answers that cannot save the series are not asked for.
+  const auto asked = [&](const Finding& finding) {
+    return finding.severity != "refusal" ||
+           std::ranges::find(report.choices, finding.code, &Choice::code) != report.choices.end();
+  };
+  if (!std::ranges::all_of(report.findings, asked)) report.choices.clear();
+  report.verdict = verdictOf(report.findings);
+  return plan;
+}
+
+}  // namespace trephine

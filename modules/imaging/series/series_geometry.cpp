@@ -1,0 +1,471 @@
+#include "imaging/series/series_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "imaging/common/text.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kOrthonormal = 1e-3;        // headers round cosines to as few as four digits
+constexpr double kJitter = 0.1;              // of the median step: up to here a stack is resampled
+constexpr double kWidestShift = 1.0;         // of the slice's own width: more is no sheared stack
+constexpr std::int64_t kMostSlices = 10000;  // of a volume with filled gaps
+
+double stepTolerance_mm(double step) {
+  return std::max(0.01, 0.01 * step);
+}
+
+struct Slice {
+  std::size_t input;
+  double place_mm;
+  bool usable;
+};
+
+using Slices = std::vector<Slice>;
+
+// How the steps between places compare with their median.
+struct Steps {
+  double median_mm = 0.0, least_mm = 0.0, most_mm = 0.0;
+  std::vector<std::int64_t> multiples;  // of the median that each step is nearest to, at least 1
+  std::int64_t total = 0;               // of the multiples
+  bool even = true;                     // every step is its multiple, within the tolerance
+  bool jittered = true;                 // ... within kJitter
+  bool gaps = false;                    // a multiple over 1
+};
+
+Steps stepsOf(const Slices& slices) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    steps.push_back(slices[i].place_mm - slices[i - 1].place_mm);
+  }
+  std::vector<double> sorted = steps;
+  std::ranges::sort(sorted);
+  Steps result;
+  result.median_mm = sorted[(sorted.size() - 1) / 2];  // of two, the smaller: never a gap
+  result.least_mm = sorted.front();
+  result.most_mm = sorted.back();
+  for (const double step : steps) {
+    const double multiple = std::clamp(std::round(step / result.median_mm), 1.0, 1e9);
+    const double off = std::abs(step - multiple * result.median_mm);
+    const double most = kJitter * result.median_mm;
+    result.even &= off <= std::min(multiple * stepTolerance_mm(result.median_mm),
+                                   std::max(most, stepTolerance_mm(result.median_mm)));
+    result.jittered &= off <= most;
+    result.gaps |= multiple > 1.5;
+    result.multiples.push_back(std::int64_t(multiple));
+    result.total += result.multiples.back();
+  }
+  return result;
+}
+
+// The longest row of usable slices whose steps are `step_mm` within the tolerance.
+Slices longestPart(const Slices& slices, double step_mm, double tolerance_mm) {
+  std::size_t best = 0, best_count = 0, first = 0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const bool goes_on =
+        i > first && slices[i].usable && slices[i - 1].usable &&
+        std::abs(slices[i].place_mm - slices[i - 1].place_mm - step_mm) <= tolerance_mm;
+    if (!goes_on) first = i;
+    if (slices[i].usable && i - first + 1 > best_count) {
+      best = first;
+      best_count = i - first + 1;
+    }
+  }
+  return {slices.begin() + std::ptrdiff_t(best),
+          slices.begin() + std::ptrdiff_t(best + best_count)};
+}
+
+std::string rangeText(const Slices& slices) {
+  return placeText(slices.front().place_mm) + " to " + placeText(slices.back().place_mm);
+}
+
+// The places where a slice is wanted and none can be had, and how many slices that is.
+std::vector<std::string> missingPlaces(const Slices& slices, const Steps& steps,
+                                       std::int64_t& missing) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    if (!slices[i].usable) {
+      ++missing;
+      places.push_back(placeText(slices[i].place_mm));
+    }
+    if (i + 1 == slices.size() || steps.multiples[i] < 2) continue;
+    const std::int64_t gap = steps.multiples[i] - 1;
+    const double step = (slices[i + 1].place_mm - slices[i].place_mm) / double(gap + 1);
+    missing += gap;
+    std::string text = placeText(slices[i].place_mm + step);
+    if (gap > 1) {
+      text += " to " + placeText(slices[i + 1].place_mm - step) + " (" + std::to_string(gap) +
+              " slices)";
+    }
+    places.push_back(std::move(text));
+  }
+  return places;
+}
+
+void trimUnusableEnds(Slices& slices) {
+  while (!slices.empty() && !slices.back().usable) slices.pop_back();
+  while (!slices.empty() && !slices.front().usable) slices.erase(slices.begin());
+}
+
+// Which slices of the volume lie where: `count` of them, evenly from the first place to the last.
+void planSlices(const Slices& slices, std::int64_t count, Stack& stack) {
+  const double first = slices.front().place_mm;
+  const double step = (slices.back().place_mm - first) / double(count - 1);
+  Slices usable;
+  std::ranges::copy_if(slices, std::back_inserter(usable), &Slice::usable);
+  stack.order.clear();
+  stack.places_mm.clear();
+  stack.slices.clear();
+  for (const Slice& slice : usable) {
+    stack.order.push_back(slice.input);
+    stack.places_mm.push_back(slice.place_mm);
+  }
+  std::size_t upper = 0;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const double place = first + step * double(k);
+    while (upper + 1 < usable.size() && usable[upper].place_mm < place) ++upper;
+    const std::size_t lower = upper > 0 ? upper - 1 : 0;
+    const double span = usable[upper].place_mm - usable[lower].place_mm;
+    double share = span > 0.0 ? (place - usable[lower].place_mm) / span : 0.0;
+    const double near = stepTolerance_mm(step) / std::max(span, step);
+    if (share < near) share = 0.0;
+    if (share > 1.0 - near) share = 1.0;
+    stack.slices.push_back(share == 1.0 ? SliceMixture{upper, upper, 0.0}
+                                        : SliceMixture{lower, share == 0.0 ? lower : upper, share});
+  }
+  stack.geometry.size[2] = std::int32_t(count);
+  stack.geometry.spacing_mm.z = step;
+}
+
+// One slice of the volume for each usable one: what a report states of a stack that is even or
+// refused.
+void planAsTheyAre(const Slices& slices, Stack& stack) {
+  stack.slices.clear();
+  stack.order.clear();
+  stack.places_mm.clear();
+  for (const Slice& slice : slices) {
+    if (!slice.usable) continue;
+    stack.slices.push_back({stack.order.size(), stack.order.size(), 0.0});
+    stack.order.push_back(slice.input);
+    stack.places_mm.push_back(slice.place_mm);
+  }
+  stack.geometry.size[2] = std::int32_t(slices.size());
+}
+
+void keepPart(const Slices& part, const char* code, const std::string& text, Stack& stack) {
+  stack.findings.push_back({code,
+                            "repair",
+                            text,
+                            {},
+                            "Only the longest even part was taken, " + rangeText(part) + ", " +
+                                std::to_string(part.size()) + " slices; the rest is not there"});
+  planSlices(part, std::int64_t(part.size()), stack);
+}
+
+// Slices that are not there, or are there and lost, in a stack that is even otherwise (or nearly).
+void planGaps(Slices slices, const Steps& steps, const Answers& answers,
+              const std::string& lost_text, Stack& stack) {
+  std::int64_t missing = 0;
+  const std::vector<std::string> places = missingPlaces(slices, steps, missing);
+  const std::string text = std::to_string(missing) + (missing == 1 ? " slice is" : " slices are") +
+                           " missing from a stack with a step of " + placeText(steps.median_mm) +
+                           lost_text;
+  const Slices part =
+      longestPart(slices, steps.median_mm,
+                  steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
+  Choice choice{
+      "MISSING_SLICES", "What shall become of the gap?", {"refuse"}, {"Do not use the series"}};
+  // From the first usable slice to the last.
+  std::int64_t filled = steps.total + 1;
+  for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) filled -= steps.multiples[i];
+  for (std::size_t i = slices.size(); i-- > 0 && !slices[i].usable;) {
+    filled -= steps.multiples[i - 1];
+  }
+  // A volume that is mostly made up is none.
+  const bool fillable = filled <= 2 * std::ranges::count(slices, true, &Slice::usable);
+  if (fillable) {
+    choice.options.push_back("fill");
+    choice.words.push_back("Fill it by interpolation between the slices beside it, marked as such");
+  }
+  if (part.size() > 1) {
+    choice.options.push_back("part");
+    choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
+                           std::to_string(part.size()) + " slices");
+  }
+  const std::string answer = ask(std::move(choice), answers, stack.choices);
+  if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
+  if (answer == "fill") {
+    trimUnusableEnds(slices);
+    planSlices(slices, filled, stack);
+    stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
+                              "The gap was filled by interpolation: what lies there was not "
+                              "scanned, and a lesion in it cannot be seen. Ends were cut off"});
+    return;
+  }
+  planAsTheyAre(slices, stack);
+  stack.findings.push_back({"MISSING_SLICES", "refusal", text, places,
+                            fillable ? "Copy or export the series again, or choose to fill the gap"
+                                     : "Copy or export the series again"});
+}
+
+void planUneven(const Slices& slices, const Steps& steps, const Answers& answers, Stack& stack) {
+  Slices whole = slices;
+  trimUnusableEnds(whole);
+  const double extent = whole.back().place_mm - whole.front().place_mm;
+  const double wanted = std::round(extent / steps.median_mm) + 1.0;
+  const auto count = std::int64_t(std::min(wanted, double(kMostSlices) + 1.0));
+  const std::string text = "The steps between slices vary from " + fixedText(steps.least_mm, 3) +
+                           " to " + fixedText(steps.most_mm, 3) + " mm (median " +
+                           fixedText(steps.median_mm, 3) + " mm)";
+  const Slices part = longestPart(slices, steps.median_mm, stepTolerance_mm(steps.median_mm));
+  Choice choice{"UNEVEN_SPACING",
+                "How shall the uneven steps be used?",
+                {"refuse"},
+                {"Do not use the series"}};
+  if (count > 1 && count <= kMostSlices) {
+    choice.options.push_back("resample");
+    choice.words.push_back("Interpolate " + std::to_string(count) +
+                           " slices at even steps of about " + placeText(steps.median_mm));
+  }
+  if (part.size() > 1) {
+    choice.options.push_back("part");
+    choice.words.push_back("Use only the longest even part: " + rangeText(part) + ", " +
+                           std::to_string(part.size()) + " slices");
+  }
+  const std::string answer = ask(std::move(choice), answers, stack.choices);
+  if (answer == "part") return keepPart(part, "UNEVEN_SPACING", text, stack);
+  if (answer == "resample") {
+    planSlices(whole, count, stack);
+    stack.findings.push_back({"UNEVEN_SPACING",
+                              "repair",
+                              text,
+                              {},
+                              "Slices were interpolated at even steps of " +
+                                  placeText(stack.geometry.spacing_mm.z) +
+                                  "; where the scan is coarse, detail is only apparent"});
+    return;
+  }
+  planAsTheyAre(slices, stack);
+  stack.findings.push_back({"UNEVEN_SPACING",
+                            "refusal",
+                            text,
+                            {},
+                            "Export the series with even spacing, or choose how to use it"});
+}
+
+// Sets the slices of the volume and its spacing along k.
+void planAlongNormal(const Slices& slices, const Answers& answers, const std::string& lost_text,
+                     Stack& stack) {
+  const Steps steps = stepsOf(slices);
+  stack.geometry.spacing_mm.z = steps.median_mm;
+  const auto usable = std::ranges::count(slices, true, &Slice::usable);
+  const bool lost = std::size_t(usable) < slices.size();
+  if (usable < 2) {
+    planAsTheyAre(slices, stack);
+    stack.findings.push_back({"MISSING_SLICES",
+                              "refusal",
+                              std::to_string(slices.size() - std::size_t(usable)) + " of " +
+                                  std::to_string(slices.size()) + " slices are missing" + lost_text,
+                              {},
+                              "Copy these files again from their source"});
+  } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {
+    planGaps(slices, steps, answers, lost_text, stack);
+  } else if (steps.even && !steps.gaps) {
+    planAsTheyAre(slices, stack);
+    stack.geometry.spacing_mm.z =
+        (slices.back().place_mm - slices.front().place_mm) / double(slices.size() - 1);
+  } else if (steps.jittered && !steps.gaps) {
+    planSlices(slices, std::int64_t(slices.size()), stack);
+    stack.findings.push_back(
+        {"RESAMPLED_SPACING",
+         "repair",
+         "The steps between slices vary from " + fixedText(steps.least_mm, 3) + " to " +
+             fixedText(steps.most_mm, 3) + " mm",
+         {},
+         "Slices were interpolated at even steps of " + fixedText(stack.geometry.spacing_mm.z, 3) +
+             " mm; the scan's extent is kept, and fine detail is slightly blurred"});
+  } else {
+    planUneven(slices, steps, answers, stack);
+  }
+}
+
+// Slices that lie aside of the normal through the first: moved to where they belong.
+void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
+  const Vec3 normal = axes[2];
+  const Vec3 first = input.positions_mm[stack.order.front()];
+  const Vec3 last = input.positions_mm[stack.order.back()];
+  const auto sideways = [&](const Vec3& p) { return p - normal * glm::dot(p, normal); };
+  const double length = glm::dot(last - first, normal);
+  const Vec3 drift = length > 0.0 ? sideways(last - first) / length : Vec3(0.0);  // mm per mm
+  stack.tilt_deg = std::atan(glm::length(drift)) * 180.0 / std::numbers::pi;
+
+  const Vec3 spacing = stack.geometry.spacing_mm;
+  const double tolerance_mm = std::max(0.05, 0.1 * std::min(spacing.x, spacing.y));
+  double worst = 0.0, worst_off_line = 0.0;
+  std::array<double, 2> low{0.0, 0.0}, high{0.0, 0.0};
+  stack.shifts.clear();
+  for (const std::size_t n : stack.order) {
+    const Vec3 aside = sideways(input.positions_mm[n] - first);
+    const double along = glm::dot(input.positions_mm[n] - first, normal);
+    worst = std::max(worst, glm::length(aside));
+    worst_off_line = std::max(worst_off_line, glm::length(aside - drift * along));
+    stack.shifts.push_back(
+        {glm::dot(aside, axes[0]) / spacing.x, glm::dot(aside, axes[1]) / spacing.y});
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      low[axis] = std::min(low[axis], stack.shifts.back()[axis]);
+      high[axis] = std::max(high[axis], stack.shifts.back()[axis]);
+    }
+  }
+  if (worst <= tolerance_mm) {
+    stack.shifts.assign(stack.order.size(), {0.0, 0.0});
+    return;
+  }
+  const bool tilted = worst_off_line <= tolerance_mm;
+  const std::string text =
+      tilted ? "The slices are sheared: the gantry was tilted by " + fixedText(stack.tilt_deg, 1) +
+                   " degrees"
+             : "Slices lie up to " + fixedText(worst_off_line, 2) + " mm aside of the stack's line";
+  const char* code = tilted ? "GANTRY_TILT" : "SHIFTED_SLICES";
+  const double widest =
+      std::max((high[0] - low[0]) / input.columns, (high[1] - low[1]) / input.rows);
+  if (!(widest <= kWidestShift)) {
+    stack.shifts.assign(stack.order.size(), {0.0, 0.0});
+    stack.findings.push_back({code,
+                              "refusal",
+                              text,
+                              {},
+                              "The slices lie farther apart sideways than they are wide: use "
+                              "another series"});
+    return;
+  }
+  // The volume grows by whole voxels, so that the first slice stays on its own grid.
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double before = std::floor(low[axis] + 1e-6), after = std::ceil(high[axis] - 1e-6);
+    for (auto& shift : stack.shifts) shift[axis] -= before;
+    stack.geometry.size[axis] += std::int32_t(after - before);
+    stack.geometry.origin_mm += axes[int(axis)] * (before * spacing[int(axis)]);
+  }
+  stack.findings.push_back(
+      {code,
+       "repair",
+       text,
+       {},
+       std::string(tilted ? "They were straightened" : "They were moved to where they belong") +
+           ", each slice shifted as its position says; new corners are air, and fine detail is "
+           "slightly blurred within slices"});
+}
+
+}  // namespace
+
+bool Stack::sheared() const {
+  return std::ranges::any_of(shifts, [](const auto& s) { return s[0] != 0.0 || s[1] != 0.0; });
+}
+
+bool Stack::oneToOne() const {
+  if (slices.size() != order.size()) return false;
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    if (slices[k].lower != k || slices[k].upper != k) return false;
+  }
+  return true;
+}
+
+std::string placeText(double mm) {
+  return fixedText(mm, 2) + " mm";
+}
+
+std::string ask(Choice choice, const Answers& answers, std::vector<Choice>& choices) {
+  std::string answer = choice.options.front();
+  const auto given = answers.find(choice.code);
+  if (given != answers.end() &&
+      std::ranges::find(choice.options, given->second) != choice.options.end()) {
+    answer = given->second;
+  }
+  choices.push_back(std::move(choice));
+  return answer;
+}
+
+std::optional<Mat3> axesOf(const std::array<double, 6>& cosines) {
+  const Vec3 row(cosines[0], cosines[1], cosines[2]), column(cosines[3], cosines[4], cosines[5]);
+  if (!(std::abs(glm::length(row) - 1.0) <= kOrthonormal) ||
+      !(std::abs(glm::length(column) - 1.0) <= kOrthonormal) ||
+      !(std::abs(glm::dot(row, column)) <= kOrthonormal)) {
+    return std::nullopt;
+  }
+  const Vec3 i_axis = glm::normalize(row);
+  const Vec3 j_axis = glm::normalize(column - i_axis * glm::dot(i_axis, column));
+  return Mat3(i_axis, j_axis, glm::cross(i_axis, j_axis));
+}
+
+Stack stackSlices(const StackInput& input, const Answers& answers) {
+  Stack stack;
+  const std::size_t count = input.positions_mm.size();
+  GridGeometry& geometry = stack.geometry;
+  geometry.size = {input.columns, input.rows, static_cast<std::int32_t>(count)};
+  geometry.spacing_mm = {input.pixel_spacing_mm[1], input.pixel_spacing_mm[0], 0.0};
+  stack.order.resize(count);
+  std::iota(stack.order.begin(), stack.order.end(), std::size_t{0});
+
+  const auto axes = axesOf(input.orientation);
+  if (!axes) {
+    stack.findings.push_back({"NOT_ORTHONORMAL",
+                              "refusal",
+                              "The image orientation is not two perpendicular unit vectors",
+                              {},
+                              "Export the series again; its orientation is damaged"});
+    return stack;
+  }
+  geometry.direction = *axes;
+  if (count == 0) return stack;
+
+  Slices slices;
+  for (std::size_t n = 0; n < count; ++n) {
+    slices.push_back(
+        {n, glm::dot(input.positions_mm[n], (*axes)[2]), input.usable.empty() || input.usable[n]});
+  }
+  std::ranges::stable_sort(slices, {}, &Slice::place_mm);
+  // The first of several at one place, but a usable one where there is one.
+  Slices places;
+  double previous = 0.0;
+  for (const Slice& slice : slices) {
+    if (places.empty() || slice.place_mm - previous > kSamePlace_mm) {
+      places.push_back(slice);
+    } else if (!places.back().usable && slice.usable) {
+      places.back() = slice;
+    }
+    previous = slice.place_mm;
+  }
+  geometry.origin_mm = input.positions_mm[places.front().input];
+  if (places.size() == 1) {
+    geometry.size[2] = 1;
+    if (!places.front().usable) {
+      stack.findings.push_back({"MISSING_SLICES",
+                                "refusal",
+                                "The slice is missing" + input.lost_text,
+                                {},
+                                "Copy the file again from its source"});
+    }
+    stack.places_mm.assign(count, places.front().place_mm);
+    stack.findings.push_back(
+        {"ONE_LOCATION",
+         "refusal",
+         count == 1 ? "A single slice is not a volume"
+                    : "All " + std::to_string(count) + " slices lie at one place: not a volume",
+         {placeText(places.front().place_mm)},
+         count == 1 ? "Choose a series that covers the anatomy; if other slices lie beside this "
+                      "file, open their folder"
+                    : "Choose a series that covers the anatomy"});
+    return stack;
+  }
+  planAlongNormal(places, answers, input.lost_text, stack);
+  if (stack.order.empty()) return stack;
+  geometry.origin_mm = input.positions_mm[stack.order.front()];
+  planSideways(input, *axes, stack);
+  return stack;
+}
+
+}  // namespace trephine

@@ -1,0 +1,320 @@
+#include "imaging/series/series_repeats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "base/sha256.h"
+#include "imaging/common/text.h"
+#include "imaging/common/workers.h"
+#include "imaging/dicom/dicom_pixels.h"
+#include "imaging/series/series_geometry.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kMostPhases = 100;
+constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
+
+// [first, last) of the slices at each place.
+struct Place {
+  std::size_t first, last;
+  std::size_t count() const { return last - first; }
+};
+
+std::vector<Place> placesOf(const std::vector<double>& places_mm) {
+  std::vector<Place> places;
+  for (std::size_t n = 0; n < places_mm.size(); ++n) {
+    if (n == 0 || places_mm[n] - places_mm[n - 1] > kSamePlace_mm) places.push_back({n, n});
+    places.back().last = n + 1;
+  }
+  return places;
+}
+
+const char* const kKeyNames[kPhaseKeys] = {"temporal position", "cardiac phase",    "acquisition",
+                                           "trigger time",      "acquisition time", "content time"};
+
+// Whether the series was scanned more than once, rather than that some slices repeat others.
+bool areMostRepeated(const std::vector<Place>& places) {
+  const auto repeated =
+      std::ranges::count_if(places, [](const Place& place) { return place.count() > 1; });
+  return places.size() > 1 && 2 * std::size_t(repeated) >= places.size();
+}
+
+// A slice's phase by each key's value, if the values make phases: at most one slice of each value
+// at a place, and each value at half of the places at least.
+std::optional<std::vector<int>> phasesBy(PhaseKey key,
+                                         const std::vector<const DicomHeader*>& slices,
+                                         const std::vector<Place>& places) {
+  std::map<double, std::size_t> counts;
+  for (const DicomHeader* slice : slices) {
+    if (!slice->phase[key]) return std::nullopt;
+    ++counts[*slice->phase[key]];
+  }
+  if (counts.size() < 2 || counts.size() > kMostPhases) return std::nullopt;
+  for (const auto& [value, count] : counts) {
+    if (count < 2 || 2 * count < places.size()) return std::nullopt;
+  }
+  std::vector<int> phases(slices.size());
+  for (const Place& place : places) {
+    for (std::size_t n = place.first; n < place.last; ++n) {
+      for (std::size_t m = place.first; m < n; ++m) {
+        if (*slices[m]->phase[key] == *slices[n]->phase[key]) return std::nullopt;
+      }
+      phases[n] = int(std::distance(counts.begin(), counts.find(*slices[n]->phase[key])));
+    }
+  }
+  return phases;
+}
+
+// Phases that were scanned one after the other, by a number that grows from slice to slice: a place
+// that comes again starts the next. Each is at half of the places at least.
+std::optional<std::vector<int>> phasesInTurn(
+    const std::function<std::optional<double>(const DicomHeader&)>& number,
+    const std::vector<const DicomHeader*>& slices, const std::vector<Place>& places) {
+  struct Taken {
+    double number;
+    std::size_t slice, place;
+  };
+  std::vector<Taken> taken;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    for (std::size_t n = places[p].first; n < places[p].last; ++n) {
+      const std::optional<double> value = number(*slices[n]);
+      if (!value) return std::nullopt;
+      taken.push_back({*value, n, p});
+    }
+  }
+  std::ranges::sort(taken, {}, &Taken::number);
+  std::vector<int> phases(slices.size());
+  std::vector<int> last_phase(places.size(), -1);
+  std::vector<std::size_t> counts{0};
+  for (std::size_t n = 0; n < taken.size(); ++n) {
+    if (n > 0 && taken[n].number == taken[n - 1].number) return std::nullopt;
+    if (last_phase[taken[n].place] + 1 == int(counts.size())) counts.push_back(0);
+    const int phase = int(counts.size()) - 1;
+    last_phase[taken[n].place] = phase;
+    phases[taken[n].slice] = phase;
+    ++counts.back();
+  }
+  const auto few = [&](std::size_t count) { return count < 2 || 2 * count < places.size(); };
+  if (counts.size() > std::size_t(kMostPhases) || std::ranges::any_of(counts, few))
+    return std::nullopt;
+  return phases;
+}
+
+// The slices' rank at their place by the first key that tells them apart everywhere, else by
+// instance number.
+std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
+                       const std::vector<Place>& places) {
+  const auto instance = [](const DicomHeader& h) {
+    return double(parseInteger(h.instance_number).value_or(0));
+  };
+  const auto tells = [&](auto key) {
+    return std::ranges::all_of(places, [&](const Place& place) {
+      std::vector<double> values;
+      for (std::size_t n = place.first; n < place.last; ++n) {
+        const std::optional<double> value = key(*slices[n]);
+        if (!value) return false;
+        values.push_back(*value);
+      }
+      std::ranges::sort(values);
+      return std::ranges::adjacent_find(values) == values.end();
+    });
+  };
+  std::vector<int> result(slices.size(), 0);
+  const auto rankBy = [&](auto key) {
+    for (const Place& place : places) {
+      std::vector<std::pair<double, std::size_t>> order;
+      for (std::size_t n = place.first; n < place.last; ++n) {
+        order.emplace_back(key(*slices[n]).value_or(0.0), n);
+      }
+      std::ranges::sort(order);
+      for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        result[order[rank].second] = int(rank);
+      }
+    }
+  };
+  for (int key = 0; key < kPhaseKeys; ++key) {
+    const auto value = [key](const DicomHeader& h) { return h.phase[std::size_t(key)]; };
+    if (!tells(value)) continue;
+    rankBy(value);
+    return result;
+  }
+  rankBy([&](const DicomHeader& h) { return std::optional(instance(h)); });
+  return result;
+}
+
+// What slices with equal HU share; nothing where the pixels cannot be read.
+using Pixels = std::tuple<int, int, StoredFormat, std::string>;
+
+std::optional<Pixels> pixelsOf(PixelReader& reader, const DicomHeader& slice) {
+  if (!slice.has_pixels || slice.defect != Defect::none || !slice.holdsGreyWords()) {
+    return std::nullopt;
+  }
+  std::vector<std::int16_t> words(slice.pixelCount());
+  if (!reader.read(slice, words.data())) return std::nullopt;
+  return Pixels{slice.rows, slice.columns, slice.format,
+                sha256Hex(words.data(), words.size() * sizeof(std::int16_t))};
+}
+
+}  // namespace
+
+void dropEqualRepeats(Series& series) {
+  struct Placed {
+    double place_mm;
+    std::size_t slice;
+  };
+  std::optional<Mat3> axes;
+  std::vector<Placed> placed;
+  for (std::size_t n = 0; n < series.slices.size(); ++n) {
+    const DicomHeader& slice = series.slices[n];
+    if (!slice.position_mm || !slice.orientation) return;
+    if (!axes) axes = axesOf(*slice.orientation);
+    if (!axes) return;
+    placed.push_back({glm::dot(*slice.position_mm, (*axes)[2]), n});
+  }
+  std::ranges::stable_sort(placed, {}, &Placed::place_mm);
+  std::vector<double> places_mm;
+  for (const Placed& slice : placed) places_mm.push_back(slice.place_mm);
+  const std::vector<Place> places = placesOf(places_mm);
+  if (places.size() < 2) return;  // no volume in any case
+  const std::size_t repeats = placed.size() - places.size();
+  const bool scanned_again = areMostRepeated(places);
+
+  PixelReader reader;
+  std::vector<bool> dropped(series.slices.size(), false);
+  Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
+  for (const Place& place : places) {
+    if (place.count() < 2) continue;
+    std::vector<std::optional<Pixels>> pixels(place.count());
+    // On workers, for the reader's sake.
+    const Status read = forEachFile(place.count(), Progress(), {}, [&](std::size_t n) {
+      pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
+    });
+    if (!read) return;
+    std::set<Pixels> seen;
+    std::size_t equal = 0;
+    for (std::size_t n = 0; n < pixels.size(); ++n) {
+      if (!pixels[n] || seen.insert(*std::move(pixels[n])).second) continue;
+      const std::size_t slice = placed[place.first + n].slice;
+      dropped[slice] = true;
+      finding.slices.push_back(sliceName(series.slices[slice]));
+      ++equal;
+    }
+    const bool different = equal + 1 < place.count();
+    // Phases: where two of them are all air, a slice is still one of each.
+    if (different && scanned_again) return;
+    if (different && repeats > kMostCompared) break;  // too many to read them all
+  }
+  if (finding.slices.empty()) return;
+  finding.text = std::to_string(finding.slices.size()) +
+                 (finding.slices.size() == 1 ? " slice repeats" : " slices repeat") +
+                 " another at the same place, pixel by pixel";
+  series.report.findings.push_back(std::move(finding));
+  std::vector<DicomHeader> kept;
+  for (std::size_t n = 0; n < series.slices.size(); ++n) {
+    if (!dropped[n]) kept.push_back(std::move(series.slices[n]));
+  }
+  series.slices = std::move(kept);
+}
+
+std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& slices,
+                                       const std::vector<double>& places_mm, const Answers& answers,
+                                       SeriesReport& report) {
+  const std::vector<Place> places = placesOf(places_mm);
+  const auto [least, most] = std::ranges::minmax(places, {}, &Place::count);
+  std::vector<std::size_t> chosen;
+  if (most.count() == 1 || places.size() == 1) {
+    for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
+    return chosen;
+  }
+  std::optional<std::vector<int>> phases;
+  std::string told_apart_by = "order";
+  const bool scanned_again = areMostRepeated(places);
+  for (int key = 0; scanned_again && key < kPhaseKeys && !phases; ++key) {
+    phases = phasesBy(PhaseKey(key), slices, places);
+    if (phases) told_apart_by = kKeyNames[key];
+  }
+  if (!phases && least.count() == most.count() && most.count() <= kMostPhases) {
+    phases = ranks(slices, places);
+  }
+  for (int key = kAcquisitionTime; scanned_again && key < kPhaseKeys && !phases; ++key) {
+    phases = phasesInTurn([key](const DicomHeader& h) { return h.phase[std::size_t(key)]; }, slices,
+                          places);
+    if (phases) told_apart_by = kKeyNames[key];
+  }
+  if (!phases && scanned_again) {
+    phases = phasesInTurn([](const DicomHeader& h) { return parseDecimal(h.instance_number); },
+                          slices, places);
+  }
+  const auto take = [&](const std::vector<int>& of, int wanted) {
+    for (const Place& place : places) {
+      for (std::size_t n = place.first; n < place.last; ++n) {
+        if (of[n] == wanted) chosen.push_back(n);
+      }
+    }
+  };
+
+  if (phases) {
+    report.phases = 1 + std::ranges::max(*phases);
+    Choice choice{"PHASES", "Which phase shall be used?", {"refuse"}, {"Do not use the series"}};
+    for (int phase = 0; phase < report.phases; ++phase) {
+      choice.options.push_back(std::to_string(phase + 1));
+      choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by + ", " +
+                             std::to_string(std::ranges::count(*phases, phase)) + " slices");
+    }
+    const std::string answer = ask(std::move(choice), answers, report.choices);
+    const std::string text = "The series holds " + std::to_string(report.phases) +
+                             " phases or repeated acquisitions, told apart by " + told_apart_by;
+    if (answer == "refuse") {
+      report.findings.push_back({"PHASES", "refusal", text, {}, "Choose one phase"});
+      take(*phases, 0);
+    } else {
+      report.findings.push_back({"PHASES", "repair", text, {}, "Phase " + answer + " was taken"});
+      take(*phases, *parseInteger(answer) - 1);
+    }
+    return chosen;
+  }
+
+  Finding finding{"DUPLICATE_POSITIONS", "refusal", "", {}, ""};
+  for (const Place& place : places) {
+    if (place.count() > 1) finding.slices.push_back(placeText(places_mm[place.first]));
+  }
+  finding.text = std::to_string(finding.slices.size()) +
+                 (finding.slices.size() == 1 ? " place holds" : " places hold") +
+                 " more than one slice, with different pixels";
+  // Where most places repeat and nothing tells the phases apart, any choice would mix them.
+  std::string answer = "refuse";
+  if (!scanned_again) {
+    answer = ask({"DUPLICATE_POSITIONS",
+                  "Which of the slices at one place shall be used?",
+                  {"refuse", "first", "last"},
+                  {"Do not use the series", "The one that was acquired first",
+                   "The one that was acquired last"}},
+                 answers, report.choices);
+  }
+  std::vector<int> rank = ranks(slices, places);
+  if (answer == "last") {
+    for (const Place& place : places) {
+      for (std::size_t n = place.first; n < place.last; ++n) {
+        rank[n] = int(place.count()) - 1 - rank[n];
+      }
+    }
+  }
+  if (answer == "refuse") {
+    finding.action = "Choose which to use, or remove the slices that do not belong to the scan";
+  } else {
+    finding.severity = "repair";
+    finding.action = "Of each place the " + answer + " was taken, the others left out";
+  }
+  report.findings.push_back(std::move(finding));
+  take(rank, 0);
+  return chosen;
+}
+
+}  // namespace trephine

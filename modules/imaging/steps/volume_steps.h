@@ -1,0 +1,18 @@
+// What is done to a volume once its voxels are there: couch, face, crop, resolution.
+#pragma once
+
+#include <optional>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/report/report.h"
+
+namespace trephine {
+
+// Looks for couch and face, offers them as choices in `series`, and does what `request` asks, in
+// this order: couch, face, crop, reduction. Takes the HU range anew where voxels changed. Errors:
+// BAD_CROP, BAD_REDUCTION, OUT_OF_MEMORY, CANCELLED.
+Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, SeriesReport& series,
+                       Volume& volume, std::optional<MeasuredLoss>& loss);
+
+}  // namespace trephine

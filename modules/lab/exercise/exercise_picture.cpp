@@ -1,0 +1,39 @@
+#include "lab/exercise/exercise_picture.h"
+
+#include "render/scene_renderer.h"
+#include "render/tool_view.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kWidth = 1280, kHeight = 800;
+}
+
+Status writeExercisePicture(Session& session, const std::filesystem::path& file) {
+  Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
+  if (!made) return made.error();
+  SceneRenderer& renderer = **made;
+  const Scene& scene = session.scene();
+  renderer.setTissues(scene.tissues);
+  renderer.setVolume(session.grid());
+  std::vector<ToolView> tools;
+  const LoopState& state = session.state();
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
+                             {arm.proxy_position_mm, arm.proxy_orientation}, arm.tissue_class >= 0,
+                             Vec3(0.75, 0.78, 0.82)));
+  }
+  renderer.setTools(tools);
+  bool placed = false;
+  for (const PlacedLandmark& landmark : session.landmarks()) {
+    if (landmark.id != scene.view.landmark) continue;
+    renderer.lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
+                    landmark.frame.viewUp(), scene.view.distance_mm);
+    placed = true;
+  }
+  if (!placed) renderer.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  return writePng(renderer.picture(), file);
+}
+
+}  // namespace trephine

@@ -1,0 +1,383 @@
+#include "lab/exercise/explain.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <functional>
+#include <locale>
+#include <memory>
+#include <sstream>
+
+#include "base/system.h"
+#include "haptics/haptic_core.h"
+#include "lab/trades/recommended.h"
+#include "scene/names.h"
+#include "session/case_source.h"
+#include "session/session.h"
+#include "volume/grid.h"
+
+namespace trephine {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kBatches = 41;
+constexpr int kBatchSize = 2000;
+// A part that is slow is called less often: no more batches, and no more of one, than this allows.
+constexpr auto kPartTime = 100ms, kBatchTime = 5ms;
+constexpr int kBetweenLooks = 40;  // calls, so that the clock's own time is none of theirs
+static_assert(kBatchSize % kBetweenLooks == 0);
+
+// Median over the batches of the mean time of one call.
+double medianNs(const std::function<void()>& call) {
+  std::vector<double> ns;
+  const auto end = Clock::now() + kPartTime;
+  for (int batch = 0; batch < kBatches && (batch == 0 || Clock::now() < end); ++batch) {
+    const auto begin = Clock::now();
+    int calls = 0;
+    while (calls < kBatchSize && (calls == 0 || Clock::now() < begin + kBatchTime)) {
+      for (int i = 0; i < kBetweenLooks; ++i) call();
+      calls += kBetweenLooks;
+    }
+    const std::chrono::duration<double, std::nano> took = Clock::now() - begin;
+    ns.push_back(took.count() / calls);
+  }
+  const auto middle = ns.begin() + std::ptrdiff_t(ns.size() / 2);
+  std::nth_element(ns.begin(), middle, ns.end());
+  return *middle;
+}
+
+// A 64 mm cube around the origin, its lower half and 10 mm more of the firmest tissue, not
+// cuttable, so that contact lasts; all of it carries that tissue's label.
+Grid block(const TissueSet& tissues) {
+  const auto firmest = std::max_element(
+      tissues.tissues.begin(), tissues.tissues.end(),
+      [](const Tissue& a, const Tissue& b) { return a.friction_N.value < b.friction_N.value; });
+  Volume volume;
+  volume.geometry.size = {64, 64, 64};
+  volume.geometry.origin_mm = Vec3(-31.5);
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  const int hu = firmest->hu_min == kAirHu ? kAirHu + 1 : firmest->hu_min;
+  std::fill_n(volume.hu.begin(), 64 * 64 * 42, std::int16_t(hu));
+  std::shared_ptr<const LabelMap> labels;
+  if (firmest->label) {
+    labels = std::make_shared<const LabelMap>(
+        LabelMap{volume.geometry, std::vector(volume.hu.size(), std::uint8_t(*firmest->label))});
+  }
+  return Grid(std::move(volume), std::move(labels));
+}
+
+// One voxel erased with its journal entry: the mean over a row of voxels, median of the rows.
+double removalNs() {
+  Volume volume;
+  volume.geometry.size = {kBatchSize, kBatches, 1};
+  volume.hu.assign(volume.geometry.voxelCount(), 1000);
+  Grid grid(std::move(volume));
+  Grid::Writer writer = *grid.takeWriter();
+  CarveJournal journal(grid.geometry().voxelCount(), 1, 1);
+  journal.beginStroke(0, {});
+  journal.hasRoom(grid.geometry().voxelCount());
+  std::size_t voxel = 0;
+  return medianNs([&] { journal.erase(writer, 0, voxel++, 0); });
+}
+
+// What a run of the scene's own script in its own case would warn of: the first tick, alone.
+Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
+  if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
+  Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
+  if (!script) return script.error();
+  Result<Volume> volume = openCase(scene.case_source, progress);
+  if (!volume) return volume.error();
+  Result<std::shared_ptr<const LabelMap>> labels = openLabels(scene.labels_file, volume->geometry);
+  if (!labels) return labels.error();
+  Result<std::vector<PlacedLandmark>> landmarks =
+      placeLandmarks(scene, *volume, labels->get(), progress);
+  if (!landmarks) return landmarks.error();
+  const Scene fixed = withFixedMaps(scene, *landmarks);
+  Grid grid(*std::move(volume), *std::move(labels));
+  HapticCore core(hapticParameters(fixed), *grid.takeWriter());
+  std::array<HandTarget, kMaxArms> hands{};
+  ScriptOperator(*script, fixed, armFrames(scene, *landmarks))
+      .targets(0, hands.data(), scene.arms.size());
+  TickInput input;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    input.arms[i].position_m = hands[i].pose_m.position;
+  }
+  TickRecord record;
+  core.tick(input, nullptr, 0, record);
+  Json warnings = Json::array();
+  for (const Event& event : core.events()) {
+    if (event.kind != EventKind::starts_in_tissue) continue;
+    const RunWarning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,
+                                              names(scene.laws, LawKind::elastic));
+    warnings.push_back({{"code", warning.code}, {"text", warning.text}});
+  }
+  return warnings;
+}
+
+// Keeps the optimiser from dropping a result that nobody reads.
+void keep(const Vec3& value) {
+  asm volatile("" : : "g"(&value) : "memory");
+}
+
+// What the scene sets of the knobs that were measured, beside what is recommended. Null without a
+// recommendation.
+Result<Json> settingsOf(const Scene& scene) {
+  const std::filesystem::path file = resourceFolder() / "recommended.json";
+  std::error_code ec;
+  if (!std::filesystem::exists(file, ec)) return Json(nullptr);
+  Result<std::vector<RecommendedSetting>> recommended = readRecommended(file);
+  if (!recommended) return recommended.error();
+  Json settings = Json::array();
+  for (const auto& [knob, setting] : sceneSettings(scene)) {
+    for (const RecommendedSetting& r : *recommended) {
+      if (r.knob != knob) continue;
+      settings.push_back({{"knob", knob}, {"setting", setting}, {"recommended", r.setting}});
+    }
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  const auto add = [&](const std::string& knob, const std::string& setting) {
+    const std::pair entry(knob, setting);
+    if (std::find(settings.begin(), settings.end(), entry) == settings.end()) {
+      settings.push_back(entry);
+    }
+  };
+  for (const SceneArm& arm : scene.arms) {
+    const SceneTool* tool = scene.findTool(arm.tool);
+    if (!tool) continue;
+    const ToolDescription& made = tool->tool.made_from;
+    if (made.kind == ToolKind::blade) add("points_blade", std::to_string(made.points));
+    if (made.kind == ToolKind::burr) add("points_burr", std::to_string(made.points));
+  }
+  add("force_at", nameOf(kForceAtNames, scene.force_at));
+  std::ostringstream rate;
+  rate.imbue(std::locale::classic());
+  rate << scene.rate_hz;
+  add("rate_hz", rate.str());
+  return settings;
+}
+
+Result<Json> explainScene(Scene scene, const Progress& progress) {
+  if (Status asked = readArmDynamics(scene); !asked) return asked.error();
+  const Result<Json> warnings = warningsAtStart(scene, Progress(progress, 0.0, 0.5));
+  if (!warnings) return warnings.error();
+  HapticParameters parameters = hapticParameters(scene);
+  for (int i = 0; i < parameters.tissues.count; ++i) {
+    parameters.tissues.classes[std::size_t(i)].cuttable = 0;
+  }
+  for (ArmParameters& arm : parameters.arms) arm.map.centre_mm = Vec3(0.0);
+  Grid grid = block(scene.tissues);
+
+  Json cost = Json::array(), arms = Json::array();
+  // Nothing is timed any more once it was cancelled.
+  const double parts = double(scene.arms.size() * (scene.laws.size() + 5) + 2);
+  double timed = 0.0;
+  const auto time = [&](const std::string& part, const std::function<void()>& call) {
+    if (progress.cancelled()) return 0.0;
+    progress.at(0.5 + 0.5 * timed++ / parts, "Timing " + part);
+    return medianNs(call);
+  };
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const SceneArm& arm = scene.arms[i];
+    const Tool& tool = parameters.arms[i].tool;
+    const Renderable most = renderableOn(arm, scene.rate_hz);
+    arms.push_back(
+        {{"name", arm.name},
+         {"plugin", arm.plugin},
+         {"tool", arm.tool},
+         {"points", tool.points_m.size()},
+         {"renderable", {{"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}}}});
+    const auto add = [&](const std::string& part, const std::function<void()>& call) {
+      cost.push_back({{"part", part}, {"arm", arm.name}, {"ns_per_tick", time(part, call)}});
+    };
+    ToolContact contact(tool, grid.geometry());
+    TissueLookup lookup;
+    lookup.set(parameters.tissues);
+    const TissueBricks bricks(grid, lookup);
+    add("contact", [&] { contact.update(grid, bricks, lookup, parameters.tissues, Pose{}); });
+    std::vector<TouchPoint> points(scene.force_at == ForceAt::tip ? 1 : tool.points_m.size());
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      points[p].tissue_class = contact.contact().tissue_class;
+      points[p].weight = points.size() == 1 ? 1.0 : tool.weights[p];
+      points[p].arm_m = points.size() == 1 ? Vec3(0.0) : tool.points_m[p];
+    }
+    LawInput input;
+    input.points = points;
+    input.tissues = &parameters.tissues;
+    input.touching = contact.contact().touching();
+    input.tip_class = contact.classes()[0];
+    input.ball_radius_m = tool.ball_radius_m;
+    for (LawKind kind : scene.laws) {
+      Law law = makeLaw(kind, points.size());
+      std::optional<StiffnessBall> ball;
+      StiffnessByLabel stiffness;
+      if (kind == LawKind::elastic) {
+        ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, ballDirections(tool.blunt));
+        stiffness.set(parameters.tissues);
+      }
+      add("law " + nameOf(kLawNames, kind), [&] {
+        input.tip_m.x += 1e-6;
+        // Half of the ball in tissue.
+        if (ball) input.push = ball->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
+        ContactForce force;
+        addLaw(law, input, force);
+        keep(force.elastic_N);
+      });
+    }
+    if (names(scene.laws, LawKind::elastic)) {
+      // Sliding over the block's top, pressed by a millimetre. It comes from above: a tool that
+      // began in the tissue would be held on all sides.
+      const double resting_mm = 10.0 + 1000.0 * (tool.radius_m - tool.solid_from_m.z);
+      Proxy proxy(tool, grid.geometry());
+      Pose at;
+      at.position = Vec3(-10.0, 0.0, resting_mm + 5.0);
+      proxy.place(at);
+      at.position.z = resting_mm - 1.0;
+      add("proxy", [&] {
+        at.position.x = at.position.x > 10.0 ? -10.0 : at.position.x + 0.01;
+        proxy.follow({grid, bricks, lookup, parameters.tissues}, at, Cutting::nothing);
+        keep(proxy.pull().shift_mm);
+      });
+    }
+    Removal removal(tool, grid.geometry(), scene.removal, parameters.period_s);
+    std::vector<Bite> bites;
+    bites.reserve(Removal::kMostBites);
+    Pose moving;
+    add("removal sweep", [&] {
+      moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
+      removal.sweep(grid, bricks, lookup, parameters.tissues, moving, bites);
+    });
+    Controller controller =
+        makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
+    ControllerInput to_controller;
+    to_controller.touching = true;
+    to_controller.period_s = parameters.period_s;
+    to_controller.velocity_m_s = Vec3(-0.01, 0.0, 0.0);
+    add("controller " + std::string(controllerName(scene.controller)), [&] {
+      const Impedance limited = limitImpedance(controller, {12.0, 900.0});
+      to_controller.rendered =
+          springAndDamper(Vec3(1.0, 0.5, 0.2), limited.stiffness, limited.damping);
+      to_controller.demanded_N = to_controller.rendered.at(to_controller.velocity_m_s);
+      to_controller.position_m.x -= 1e-9;
+      to_controller.last_sent_N = boundForce(controller, to_controller);
+      keep(to_controller.last_sent_N);
+    });
+    ForceGate gate;
+    add("clamp and gate", [&] {
+      keep(gate.pass(clampForce(Vec3(4.0, 0.0, 1.0), arm.max_force_N), true, true, 0,
+                     parameters.period_s));
+    });
+  }
+
+  const double removal_ns = progress.cancelled() ? 0.0 : removalNs();
+  cost.push_back({{"part", "removal of one voxel"}, {"arm", nullptr}, {"ns_per_tick", removal_ns}});
+  HapticCore core(parameters, *grid.takeWriter());
+  TickInput input;
+  TickRecord record;
+  const double tick_ns = time("whole tick", [&] {
+    ++input.tick;
+    input.journal = core.journalState();
+    input.arms[0].position_m.x = 1e-6 * double(input.tick % 1000);
+    core.tick(input, nullptr, 0, record);
+  });
+
+  if (progress.cancelled()) return Error{"CANCELLED", "The explanation was cancelled", "", ""};
+
+  Json tissues = Json::array(), laws = Json::array();
+  for (const Tissue& tissue : scene.tissues.tissues) tissues.push_back(tissue.id);
+  for (LawKind kind : scene.laws) laws.push_back(nameOf(kLawNames, kind));
+  Json bounded = Json::array();
+  for (const BoundedTissue& b : boundedTissues(scene)) {
+    bounded.push_back({{"arm", b.arm},
+                       {"tissue", b.tissue},
+                       {"damping_Ns_per_m", b.demanded.damping},
+                       {"damping_felt_Ns_per_m", b.felt.damping},
+                       {"stiffness_N_per_m", b.demanded.stiffness},
+                       {"stiffness_felt_N_per_m", b.felt.stiffness}});
+  }
+  const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
+  const bool named_case = scene.case_source.rfind("phantom:", 0) == 0;
+  Json answer{
+      {"scene", scene.name},
+      {"case", named_case ? Json(scene.case_source) : Json(nullptr)},
+      {"rate_hz", scene.rate_hz},
+      {"controller", controllerName(scene.controller)},
+      {"laws", laws},
+      {"force_at", nameOf(kForceAtNames, scene.force_at)},
+      {"removal", nameOf(kRemovalNames, scene.removal)},
+      {"barrier", names(scene.laws, LawKind::elastic) ? "solid tissue stops a tool until it is cut"
+                                                      : "no barrier: a tool is where its arm is"},
+      {"tissues", tissues},
+      {"arms", arms},
+      {"warnings", *warnings},
+      {"bounded", bounded},
+      {"journal_mb", journal_mb},
+      {"cost", cost},
+      {"tick_ns", tick_ns}};
+  Result<Json> settings = settingsOf(scene);
+  if (!settings) return settings.error();
+  if (!settings->is_null()) answer["settings"] = *settings;
+  return answer;
+}
+
+std::string explanationText(const Json& explained) {
+  const auto word = [](const Json& j, const char* key) { return j.at(key).get<std::string>(); };
+  const auto number = [](const Json& j, const char* key) { return j.at(key).get<double>(); };
+  const auto list = [&](const char* key) {
+    std::string text;
+    for (const Json& item : explained.at(key))
+      text += (text.empty() ? "" : ", ") + item.get<std::string>();
+    return text;
+  };
+  std::string text;
+  const auto add = [&](const char* format, auto... values) {
+    char line[512];
+    std::snprintf(line, sizeof(line), format, values...);
+    text += line;
+  };
+  text += word(explained, "scene") + "\n";
+  if (explained.at("case").is_string()) text += "  case: " + word(explained, "case") + "\n";
+  add("  %.0f Hz, controller '%s', force at: %s, removal: %s\n", number(explained, "rate_hz"),
+      word(explained, "controller").c_str(), word(explained, "force_at").c_str(),
+      word(explained, "removal").c_str());
+  text += "  laws: " + list("laws") + "\n  tissues: " + list("tissues") + "\n";
+  text += "  " + word(explained, "barrier") + "\n";
+  for (const Json& arm : explained.at("arms")) {
+    const Json& most = arm.at("renderable");
+    add("  %s arm: %s, tool '%s' of %d points; shows at most %.3g N s/m and %.4g N/m\n",
+        word(arm, "name").c_str(), word(arm, "plugin").c_str(), word(arm, "tool").c_str(),
+        arm.at("points").get<int>(), number(most, "b_max_Ns_per_m"), number(most, "k_max_N_per_m"));
+  }
+  for (const Json& b : explained.at("bounded")) {
+    add("  '%s' is firmer than the %s arm shows: of %.4g N s/m and %.4g N/m, %.4g and %.4g are "
+        "felt\n",
+        word(b, "tissue").c_str(), word(b, "arm").c_str(), number(b, "damping_Ns_per_m"),
+        number(b, "stiffness_N_per_m"), number(b, "damping_felt_Ns_per_m"),
+        number(b, "stiffness_felt_N_per_m"));
+  }
+  for (const Json& warning : explained.at("warnings")) text += "  " + word(warning, "text") + "\n";
+  add("  a tick of all arms takes %.2f us here, of %.0f us; its parts, each alone:\n",
+      number(explained, "tick_ns") / 1e3, 1e6 / number(explained, "rate_hz"));
+  for (const Json& part : explained.at("cost")) {
+    add("    %8.3f us  %s%s\n", number(part, "ns_per_tick") / 1e3, word(part, "part").c_str(),
+        part.at("arm").is_string() ? (", " + word(part, "arm") + " arm").c_str() : "");
+  }
+  add("  the journal of what is removed takes %.0f MB of memory\n",
+      number(explained, "journal_mb"));
+  if (!explained.contains("settings")) return text;
+  for (const Json& s : explained.at("settings")) {
+    text += "  " + word(s, "knob") + ": " + word(s, "setting") +
+            " (recommended: " + word(s, "recommended") + ")\n";
+  }
+  return text;
+}
+
+}  // namespace trephine

@@ -1,0 +1,162 @@
+#include "lab/import/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <sstream>
+
+extern char** environ;
+
+namespace trephine {
+
+namespace {
+
+constexpr int kPoll_ms = 100;
+
+std::int64_t now_ns() {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return std::int64_t(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  void close() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+Error cannotRun(const ChildCommand& command, int error) {
+  return {"CANNOT_RUN", std::string("A program could not be run: ") + std::strerror(error),
+          std::filesystem::path(command.words.front()).filename().string(), ""};
+}
+
+// What the child tells before its exec, and after an exec that failed.
+struct Report {
+  std::int64_t start_ns = 0;
+  int error = 0;
+};
+
+// In the child, between fork and exec: nothing but system calls.
+[[noreturn]] void becomeProgram(const ChildCommand& command, char* const* arguments,
+                                char* const* environment, int output, int nothing, int reports) {
+  Report report;
+  const int isolation = command.offline ? CLONE_NEWUSER | CLONE_NEWNET : 0;
+  if ((isolation == 0 || ::unshare(isolation) == 0) && ::dup2(output, STDOUT_FILENO) >= 0 &&
+      ::dup2(nothing, STDERR_FILENO) >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 &&
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0) {
+    report.start_ns = now_ns();
+    if (::write(reports, &report, sizeof report) == sizeof report) {
+      ::execve(arguments[0], arguments, environment);
+    }
+  }
+  report.error = errno;
+  static_cast<void>(!::write(reports, &report, sizeof report));
+  ::_exit(127);
+}
+
+std::vector<char*> pointersTo(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<std::string> environmentWith(const std::filesystem::path& home) {
+  std::vector<std::string> environment{"HOME=" + home.string()};
+  for (char** variable = environ; *variable; ++variable) {
+    if (std::strncmp(*variable, "HOME=", 5) != 0) environment.emplace_back(*variable);
+  }
+  return environment;
+}
+
+}  // namespace
+
+Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress) {
+  const Descriptor output(
+      ::open(command.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  const Descriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  int ends[2] = {-1, -1};
+  if (output.get() < 0 || nothing.get() < 0 || ::pipe2(ends, O_CLOEXEC) != 0) {
+    return cannotRun(command, errno);
+  }
+  const Descriptor reports(ends[0]);
+  Descriptor reporting(ends[1]);
+  std::vector<std::string> words = command.words;
+  std::vector<std::string> variables = environmentWith(command.home);
+  const std::vector<char*> arguments = pointersTo(words);
+  const std::vector<char*> environment = pointersTo(variables);
+
+  const pid_t child = ::fork();
+  if (child < 0) return cannotRun(command, errno);
+  if (child == 0) {
+    becomeProgram(command, arguments.data(), environment.data(), output.get(), nothing.get(),
+                  reporting.get());
+  }
+  reporting.close();
+  Report report;
+  for (Report next; ::read(reports.get(), &next, sizeof next) == sizeof next;) report = next;
+
+  const Descriptor process(int(::syscall(SYS_pidfd_open, child, 0)));
+  ChildRun run;
+  bool killed = false;
+  const std::int64_t limit_ns = report.start_ns + std::int64_t(command.limit_s * 1e9);
+  while (!killed) {
+    pollfd ended{process.get(), POLLIN, 0};
+    const int polled = ::poll(&ended, 1, kPoll_ms);
+    if (polled > 0 && ended.revents != 0) break;
+    run.timed_out = now_ns() > limit_ns;
+    if (progress.cancelled() || run.timed_out || process.get() < 0) {
+      ::kill(child, SIGKILL);
+      killed = true;
+    }
+  }
+  const std::int64_t end_ns = now_ns();
+  int status = 0;
+  rusage usage{};
+  while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  if (progress.cancelled()) return Error{"CANCELLED", "The measurement was cancelled", "", ""};
+  if (report.error != 0) return cannotRun(command, report.error);
+  if (process.get() < 0) return cannotRun(command, ENOSYS);
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  run.seconds = double(end_ns - report.start_ns) / 1e9;
+  run.peak_rss_mb = double(usage.ru_maxrss) / 1024.0;
+  return run;
+}
+
+std::optional<std::filesystem::path> findProgram(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path program = std::filesystem::path(folder) / name;
+    std::error_code none;
+    if (std::filesystem::is_regular_file(program, none) && ::access(program.c_str(), X_OK) == 0) {
+      return program;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace trephine

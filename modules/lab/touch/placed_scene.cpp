@@ -1,0 +1,77 @@
+#include "lab/touch/placed_scene.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/system.h"
+#include "session/case_source.h"
+#include "session/session.h"
+
+namespace trephine {
+
+std::vector<std::string> shippedScenes() {
+  return {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm"};
+}
+
+Result<PlacedScene> placeScene(const std::string& name, const std::string& case_source,
+                               const Progress& progress) {
+  Result<Scene> scene = readScene(resourceFolder() / "scenes" / (name + ".json"));
+  if (!scene) return scene.error();
+  if (Status asked = readArmDynamics(*scene); !asked) return asked.error();
+  Result<Volume> volume =
+      openCase(case_source.empty() ? scene->case_source : case_source, progress);
+  if (!volume) return volume.error();
+  const auto landmarks = placeLandmarks(*scene, *volume, nullptr, progress);
+  if (!landmarks) return landmarks.error();
+  PlacedScene placed{withFixedMaps(*scene, *landmarks), *std::move(volume), {}};
+  for (const SceneArm& arm : placed.scene.arms) {
+    LandmarkFrame frame;
+    for (const PlacedLandmark& l : *landmarks) {
+      if (l.id == arm.map.landmark) frame = l.frame;
+    }
+    placed.frames.push_back(frame);
+  }
+  return placed;
+}
+
+Tool withoutMotor(const Tool& tool) {
+  Tool off = tool;
+  off.made_from.motor_W = 0.0;
+  return off;
+}
+
+HapticParameters withoutMotors(const Scene& scene) {
+  HapticParameters parameters = hapticParameters(scene);
+  for (ArmParameters& arm : parameters.arms) arm.tool = withoutMotor(arm.tool);
+  parameters.journal_voxels = 1 << 20;
+  parameters.journal_seconds = 4096;
+  return parameters;
+}
+
+RigArm rigArmOf(const ArmDynamics& dynamics, const Impedance& hand) {
+  RigArm arm;
+  arm.mass_kg = dynamics.apparent_mass_kg;
+  arm.encoder_m = dynamics.encoder_step_m;
+  arm.hand = hand;
+  return arm;
+}
+
+std::optional<double> depthOf(const Volume& volume, const TissueTable& tissues, int tissue_class,
+                              const Vec3& from_mm, const Vec3& along, double reach_mm) {
+  constexpr double kStep_mm = 0.1, kRun_mm = 1.0;
+  const Mat4 to_voxel = volume.geometry.patientToVoxel();
+  double run_mm = 0.0, solid_mm = 0.0;
+  for (double way_mm = 0.0; way_mm < reach_mm; way_mm += kStep_mm) {
+    const Vec3 v = glm::round(Vec3(to_voxel * glm::dvec4(from_mm + way_mm * along, 1.0)));
+    const int i = int(v.x), j = int(v.y), k = int(v.z);
+    const int c = volume.geometry.contains(i, j, k) ? classify(tissues, volume.at(i, j, k)) : -1;
+    run_mm = c == tissue_class ? run_mm + kStep_mm : 0.0;
+    if (run_mm >= kRun_mm) return way_mm - run_mm + kStep_mm;
+    const bool solid = c >= 0 && tissues.classes[std::size_t(c)].solid;
+    solid_mm = solid ? solid_mm + kStep_mm : 0.0;
+    if (solid_mm >= kRun_mm && c != tissue_class) return {};
+  }
+  return {};
+}
+
+}  // namespace trephine

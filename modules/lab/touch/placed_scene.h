@@ -1,0 +1,39 @@
+// Shipped scenes as measurements use them: placed in a case, with the arms that would move them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "lab/touch/touch_rig.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+// The files' stems, without the two that are the seed paper's.
+std::vector<std::string> shippedScenes();
+
+struct PlacedScene {
+  Scene scene;  // maps fixed, dynamics of the devices that it names
+  Volume volume;
+  std::vector<LandmarkFrame> frames;  // by arm: its landmark
+};
+// `case_source`: empty for the scene's own. Errors: those of the scene's files, case and devices.
+Result<PlacedScene> placeScene(const std::string& name, const std::string& case_source,
+                               const Progress& progress);
+
+// What the core needs of it, every tool's motor switched off, with a small journal.
+HapticParameters withoutMotors(const Scene& scene);
+Tool withoutMotor(const Tool& tool);
+
+// The arm that a claim describes, held by a hand.
+RigArm rigArmOf(const ArmDynamics& dynamics, const Impedance& hand);
+
+// How far along a ray a tissue first runs for a millimetre, before any solid one but itself;
+// nothing where it does not within `reach_mm`.
+std::optional<double> depthOf(const Volume& volume, const TissueTable& tissues, int tissue_class,
+                              const Vec3& from_mm, const Vec3& along, double reach_mm);
+
+}  // namespace trephine

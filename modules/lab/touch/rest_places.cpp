@@ -1,0 +1,164 @@
+#include "lab/touch/rest_places.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "lab/touch/placed_scene.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kFrom_mm = 60.0;  // above a landmark: outside the patient
+constexpr double kReach_mm = 100.0;
+constexpr double kSwing_m = 0.004;
+
+std::string label(const char* tissue, double aside_mm, double press_mm, const Impedance& hand) {
+  return std::string(tissue) + (aside_mm > 0.0 ? " aside" : "") + ", pressed " +
+         plainNumber(press_mm) + " mm by " + plainNumber(hand.stiffness) + " N/m";
+}
+
+HoldCell cellOf(const std::string& name, const PlacedScene& placed,
+                const std::shared_ptr<const Volume>& volume, const Impedance& hand) {
+  HoldCell cell;
+  cell.scene = name;
+  cell.parameters = withoutMotors(placed.scene);
+  cell.volume = volume;
+  for (std::size_t i = 0; i < placed.scene.arms.size(); ++i) {
+    cell.arms.push_back(placed.scene.arms[i].name);
+    cell.tools.push_back(placed.scene.arms[i].tool);
+    cell.rig.push_back(rigArmOf(cell.parameters.arms[i].dynamics, hand));
+  }
+  return cell;
+}
+
+// From outside to `depth_mm` below the start, along the landmark's own axis, in device axes.
+HoldPath pathOf(const PlacedScene& placed, std::size_t arm, const Vec3& start_mm, double depth_mm) {
+  const WorkspaceMap map = placed.scene.arms[arm].map.fixed.value_or(WorkspaceMap{});
+  const LandmarkFrame& frame = placed.frames[arm];
+  HoldPath path;
+  path.start_m = map.toDevice_m(frame.toPatient_mm(start_mm));
+  path.held_m = map.toDevice_m(frame.toPatient_mm(start_mm - Vec3(0.0, 0.0, depth_mm)));
+  path.swing_m = kSwing_m * glm::normalize(path.held_m - path.start_m);
+  return path;
+}
+
+void addScene(const std::string& name, const PlacedScene& placed, std::vector<HoldCell>& cells) {
+  const auto volume = std::make_shared<const Volume>(placed.volume);
+  const TissueTable table = tissueTable(placed.scene.tissues);
+  // At the devices' origins, in the window's hand.
+  HoldCell origins = cellOf(name, placed, volume, {4.0, 600.0});
+  origins.place = "at the device's origin";
+  for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
+    const Vec3 at_mm = placed.scene.arms[arm].map.offset_mm;
+    origins.paths.push_back(pathOf(placed, arm, {at_mm.x, at_mm.y, kFrom_mm}, kFrom_mm - at_mm.z));
+  }
+  cells.push_back(std::move(origins));
+  for (std::size_t t = 0; t < placed.scene.tissues.tissues.size(); ++t) {
+    for (double aside_mm : {0.0, 7.0}) {
+      for (double press_mm : {0.5, 2.0}) {
+        for (const Impedance& hand : {Impedance{2.0, 300.0}, {4.0, 600.0}, {10.0, 1000.0}}) {
+          HoldCell cell = cellOf(name, placed, volume, hand);
+          cell.place = label(placed.scene.tissues.tissues[t].id.c_str(), aside_mm, press_mm, hand);
+          for (std::size_t arm = 0; arm < placed.scene.arms.size(); ++arm) {
+            const SceneMap& map = placed.scene.arms[arm].map;
+            const Vec3 start_mm(map.offset_mm.x + aside_mm, map.offset_mm.y - aside_mm, kFrom_mm);
+            const LandmarkFrame& frame = placed.frames[arm];
+            const auto depth_mm =
+                depthOf(placed.volume, table, int(t), frame.toPatient_mm(start_mm),
+                        frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm);
+            if (!depth_mm) break;
+            // The press is the hand's own: at the device, whatever its motion is scaled by.
+            cell.paths.push_back(
+                pathOf(placed, arm, start_mm, *depth_mm + press_mm * map.motion_scale));
+          }
+          if (cell.paths.size() == placed.scene.arms.size()) cells.push_back(std::move(cell));
+        }
+      }
+    }
+  }
+}
+
+struct NamedArm {
+  const char* name;
+  ArmDynamics dynamics;
+};
+const NamedArm kArms[] = {{"omni", {0.045, 0.055e-3, 3.3, 0}},
+                          {"20 g", {0.020, 0.055e-3, 3.3, 0}},
+                          {"coarse", {0.045, 0.110e-3, 3.3, 0}}};  // half the stiffness of an Omni
+const std::pair<const char*, std::vector<LawKind>> kSums[] = {
+    {"viscous", {LawKind::viscous}},
+    {"viscous, coulomb", {LawKind::viscous, LawKind::coulomb}},
+    {"viscous, coulomb, elastic", {LawKind::viscous, LawKind::coulomb, LawKind::elastic}},
+    {"viscous, coulomb, elastic, rupture",
+     {LawKind::viscous, LawKind::coulomb, LawKind::elastic, LawKind::rupture}}};
+
+// 24 mm of one tissue below the plane through the origin, and air above it.
+std::shared_ptr<const Volume> blockOf(const Tissue& tissue) {
+  Volume volume;
+  volume.geometry.size = {32, 32, 48};
+  volume.geometry.origin_mm = Vec3(-15.5, -15.5, -23.5);
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  const auto hu = std::int16_t((tissue.hu_min + std::min(tissue.hu_max, 1000)) / 2);
+  std::fill_n(volume.hu.begin(), std::ptrdiff_t(32 * 32 * 24), hu);
+  return std::make_shared<const Volume>(std::move(volume));
+}
+
+// Each tissue of the scene's set under each of its tools, by each sum of laws and each arm.
+void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
+               std::vector<HoldCell>& cells) {
+  for (const Tissue& tissue : scene.tissues.tissues) {
+    const auto volume = blockOf(tissue);
+    for (const SceneTool* tool : tools) {
+      for (const auto& [sum, laws] : kSums) {
+        for (const NamedArm& arm : kArms) {
+          HoldCell cell;
+          cell.scene = std::string("block of ") + tissue.id;
+          cell.place = sum;
+          cell.arms = {arm.name};
+          cell.tools = {tool->id};
+          cell.volume = volume;
+          cell.parameters = withoutMotors(scene);
+          cell.parameters.laws = laws;
+          cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};
+          cell.rig = {rigArmOf(arm.dynamics, {4.0, 600.0})};
+          cell.paths = {{Vec3(0.0, 0.0, 0.01), Vec3(0.0, 0.0, -0.002), Vec3(0.0, 0.0, -kSwing_m)}};
+          cells.push_back(std::move(cell));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Result<std::vector<HoldCell>> restPlaces(const Progress& progress) {
+  std::vector<HoldCell> cells;
+  std::vector<Scene> scenes;
+  for (const std::string& name : shippedScenes()) {
+    progress.at(double(scenes.size()) / double(shippedScenes().size()), name);
+    Result<PlacedScene> placed = placeScene(name, "", progress);
+    if (!placed) return placed.error();
+    addScene(name, *placed, cells);
+    scenes.push_back(placed->scene);
+  }
+  // Every tool that any shipped scene has, on every tissue that any has.
+  std::vector<const SceneTool*> tools;
+  std::vector<const Scene*> sets;
+  for (const Scene& scene : scenes) {
+    for (const SceneTool& tool : scene.tools) {
+      const bool known = std::any_of(tools.begin(), tools.end(), [&](const SceneTool* t) {
+        return t->tool.made_from == tool.tool.made_from;
+      });
+      if (!known) tools.push_back(&tool);
+    }
+    const bool known = std::any_of(sets.begin(), sets.end(), [&](const Scene* s) {
+      return s->tissues.name == scene.tissues.name;
+    });
+    if (!known) sets.push_back(&scene);
+  }
+  for (const Scene* scene : sets) addBlocks(*scene, tools, cells);
+  return cells;
+}
+
+}  // namespace trephine

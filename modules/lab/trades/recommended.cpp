@@ -1,0 +1,48 @@
+#include "lab/trades/recommended.h"
+
+#include <set>
+
+namespace trephine {
+
+namespace {
+constexpr const char* kFormat = "trephine.recommended";
+constexpr int kVersion = 1;
+constexpr Range kFigure{0, 1e15};
+}  // namespace
+
+Json toJson(const std::vector<RecommendedSetting>& settings) {
+  Json knobs = Json::array();
+  for (const RecommendedSetting& s : settings) {
+    knobs.push_back({{"knob", s.knob},
+                     {"setting", s.setting},
+                     {"error", s.error},
+                     {"error_unit", s.error_unit},
+                     {"cost", s.cost},
+                     {"cost_unit", s.cost_unit}});
+  }
+  return {{"format", kFormat}, {"version", kVersion}, {"knobs", knobs}};
+}
+
+Result<std::vector<RecommendedSetting>> readRecommended(const std::filesystem::path& file) {
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  JsonReader reader(*json, file.string());
+  reader.format(kFormat, kVersion);
+  std::vector<RecommendedSetting> settings;
+  std::set<std::string> seen;
+  for (JsonReader& item : reader.objects("knobs", 1000)) {
+    RecommendedSetting s;
+    s.knob = item.text("knob");
+    s.setting = item.text("setting");
+    s.error = item.number("error", kFigure);
+    s.error_unit = item.text("error_unit");
+    s.cost = item.number("cost", kFigure);
+    s.cost_unit = item.text("cost_unit");
+    if (!seen.insert(s.knob).second) item.fail("knob", "The knob '" + s.knob + "' is given twice");
+    settings.push_back(std::move(s));
+  }
+  if (Status read = reader.finish(); !read) return read.error();
+  return settings;
+}
+
+}  // namespace trephine

@@ -1,0 +1,331 @@
+#include "ui/cases/import_dialog.h"
+
+#include <QDragEnterEvent>
+#include <QKeyEvent>
+#include <QMimeData>
+#include <QShowEvent>
+#include <algorithm>
+
+#include "ui/cases/import_words.h"
+#include "ui/common/placing.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+const SeriesReport* findSeries(const std::vector<SeriesReport>& series, const std::string& uid) {
+  const auto found = std::ranges::find(series, uid, &SeriesReport::uid);
+  return found == series.end() ? nullptr : &*found;
+}
+
+// Whether columns and rows of the stored slices are those of the volume.
+bool isAsStored(const SeriesReport& series, const QImage& slice) {
+  return series.tilt_deg == 0.0 && slice.width() == series.geometry.size[0] &&
+         slice.height() == series.geometry.size[1];
+}
+
+}  // namespace
+
+ImportDialog::ImportDialog(ImportTask& task, QWidget* parent) : QDialog(parent), task_(task) {
+  build();
+  connectParts();
+  showStep(Step::empty);
+}
+
+const SeriesReport* ImportDialog::selected() const {
+  return findSeries(task_.report().series, list_->selectedUid());
+}
+
+SeriesReport* ImportDialog::before() {
+  const auto found = std::ranges::find(before_, list_->selectedUid(), &SeriesReport::uid);
+  return found == before_.end() ? nullptr : &*found;
+}
+
+// The list says what the series is, not how much of it was read last.
+void ImportDialog::listSelected() {
+  SeriesReport listed = *selected();
+  listed.geometry = before()->geometry;
+  list_->updateSeries(listed, answers());
+}
+
+// --- The folder ---
+
+void ImportDialog::open() {
+  if (task_.hasFolder() && step_ != Step::scanning) {
+    showStep(Step::choosing);
+    task_.wantThumbnails(list_->withoutThumbnail());
+    seriesSelected();
+  }
+  QDialog::open();
+}
+
+// Qt's own guess of the place is off by the frame that it expects.
+void ImportDialog::showEvent(QShowEvent* event) {
+  QDialog::showEvent(event);
+  if (!event->spontaneous() && parentWidget()) centreOver(*this, *parentWidget()->window());
+}
+
+void ImportDialog::reject() {
+  task_.wantNothing();
+  if (task_.isWorking()) task_.cancel();
+  (void)task_.takeVolume();
+  QDialog::reject();
+}
+
+void ImportDialog::scanned() {
+  before_ = task_.report().series;
+  answers_.clear();
+  showFolder();
+}
+
+void ImportDialog::showFolder() {
+  folder_->setText(folderWords(task_.report()));
+  showStep(Step::choosing);
+  list_->showSeries(task_.report().series, answers_);
+  if (const std::optional<std::string>& best = task_.bestSeries()) {
+    list_->select(*best);
+  } else {
+    list_->setCurrentRow(0);
+  }
+  task_.wantThumbnails(list_->withoutThumbnail());
+  list_->setFocus();
+}
+
+void ImportDialog::stopped() {
+  const bool was_scanning = step_ == Step::scanning;
+  if (was_scanning && !task_.hasFolder()) {
+    showStep(Step::empty);
+    return reject();
+  }
+  showStep(Step::choosing);
+  if (!isVisible()) return;
+  if (was_scanning) return showFolder();  // the one before
+  before_ = task_.report().series;        // what could not be read may ask more now
+  seriesSelected();
+}
+
+void ImportDialog::dragEnterEvent(QDragEnterEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void ImportDialog::dropEvent(QDropEvent* event) {
+  event->acceptProposedAction();
+  emit pathDropped(event->mimeData()->urls().front().toLocalFile());
+}
+
+// From the questions Esc goes back, as Back does; the rest is the dialog's.
+void ImportDialog::keyPressEvent(QKeyEvent* event) {
+  if (event->key() == Qt::Key_Escape && step_ == Step::asking) return back();
+  QDialog::keyPressEvent(event);
+}
+
+void ImportDialog::say(const QString& text) {
+  if (task_.isWorking()) return;
+  status_->setText(text);
+  status_->show();
+}
+
+void ImportDialog::showStep(Step step) {
+  step_ = step;
+  const bool working = step == Step::scanning || step == Step::reading;
+  const bool choosing = step == Step::choosing;
+  for (QWidget* part : {static_cast<QWidget*>(list_), static_cast<QWidget*>(open_folder_),
+                        static_cast<QWidget*>(open_file_), static_cast<QWidget*>(series_page_)}) {
+    part->setEnabled(choosing);
+  }
+  preview_->setEnabled(!working);
+  right_->setCurrentWidget(step == Step::asking ? asking_page_ : series_page_);
+  for (QWidget* part : {static_cast<QWidget*>(status_), static_cast<QWidget*>(progress_),
+                        static_cast<QWidget*>(cancel_)}) {
+    part->setVisible(working);
+  }
+  purpose_->setVisible(!working);
+  close_->setVisible(!working && step != Step::asking);
+  import_->setVisible(step != Step::asking);
+  report_->setVisible(choosing && task_.hasFolder());
+  back_->setVisible(step == Step::asking);
+  open_case_->setVisible(step == Step::asking);
+  (step == Step::asking ? open_case_ : import_)->setDefault(true);
+  if (step == Step::scanning) {
+    status_->setText(tr("Looking through the files"));
+    progress_->setValue(0);
+    folder_->clear();
+    list_->showSeries({}, {});
+  }
+  showImportButton();
+}
+
+// --- The series ---
+
+void ImportDialog::seriesSelected() {
+  const SeriesReport* series = selected();
+  card_->setVisible(series);
+  size_box_->setVisible(series && seriesState(*series, answers()) != SeriesState::refused);
+  if (!series) {
+    const std::optional<Error>& error = task_.report().error;
+    choices_->ask({}, {});
+    preview_->showNothing(step_ == Step::choosing && error
+                              ? toQt(error->what + ". " + error->next + '.')
+                              : QString());
+    return showImportButton();
+  }
+  const bool grid_known = before()->verdict != Verdict::refused;
+  size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
+  choices_->ask(before()->choices, answers());
+  showSelected();
+  const GridGeometry& grid = before()->geometry;
+  preview_->showStack(series->slices,
+                      grid.spacing_mm.z > 0.0 ? std::optional(grid.direction) : std::nullopt);
+}
+
+// What answers change of what is shown.
+void ImportDialog::showSelected() {
+  const SeriesReport* series = selected();
+  if (!series) return;
+  card_->showSeries(*series, answers(), availableMemory_mb());
+  listSelected();
+  showImportButton();
+}
+
+void ImportDialog::showImportButton() {
+  const SeriesReport* series = selected();
+  const bool usable = series && mayBeRead(seriesState(*series, answers()));
+  const bool refused = size_->isRefused();
+  import_->setEnabled(step_ == Step::choosing && usable && !refused);
+  import_->setToolTip(!series   ? QString()
+                      : !usable ? verdictSentence(*series, answers())
+                      : refused ? tr("Mend the number of the box that is refused")
+                                : QString());
+}
+
+void ImportDialog::sliceWanted(int index) {
+  if (step_ == Step::asking) {
+    if (!task_.volume()) return;
+    preview_->showSlice(index, sliceOf(*task_.volume(), index));
+    showCouch(index);
+  } else {
+    task_.wantSlice(list_->selectedUid(), index);
+  }
+}
+
+// What would be taken out of slice `k` of the volume that was read.
+void ImportDialog::showCouch(int k) {
+  preview_->canvas().setMarked(couchMask(task_.couch(), *task_.volume(), k));
+}
+
+void ImportDialog::showSlice(const QString& uid, int index, const Result<SlicePicture>& picture) {
+  if (step_ == Step::asking || uid != toQt(list_->selectedUid())) return;
+  preview_->showSlice(index, picture);
+  showKept();
+}
+
+void ImportDialog::showKept() {
+  SliceCanvas& canvas = preview_->canvas();
+  const SeriesReport* series = before();
+  const bool grid_known = series && series->verdict != Verdict::refused;
+  const bool as_stored = grid_known && isAsStored(*series, canvas.image());
+  const bool choosing = step_ == Step::choosing;
+  canvas.setDrawable(choosing && as_stored);
+  size_note_->setText(
+      grid_known ? tr("The volume is straightened when it is read, so its box cannot be drawn on "
+                      "the slices as they are stored.")
+                 : tr("What your answers make of it can be cropped once it has been read."));
+  size_note_->setVisible(
+      series && (!grid_known || (size_->crop() && !as_stored && !canvas.image().isNull())));
+  if (!choosing || !as_stored || !size_->crop()) return canvas.setKept({});
+  const VoxelBox box = size_->box();
+  const bool slices_too = series->slices == series->geometry.size[2];
+  const bool inside = preview_->index() >= box.low[2] && preview_->index() < box.high[2];
+  canvas.setKept(slices_too && !inside ? QRect()
+                                       : QRect(box.low[0], box.low[1], box.high[0] - box.low[0],
+                                               box.high[1] - box.low[1]));
+}
+
+void ImportDialog::boxDrawn(const QRect& pixels) {
+  VoxelBox box = size_->box();
+  box.low[0] = pixels.left();
+  box.low[1] = pixels.top();
+  box.high[0] = pixels.left() + pixels.width();
+  box.high[1] = pixels.top() + pixels.height();
+  size_->setBox(box);
+}
+
+// --- Reading ---
+
+void ImportDialog::import() {
+  if (!import_->isEnabled()) return;
+  request_ = {answers(), size_->crop(), size_->reduction(), {}};
+  loss_told_ = false;
+  showStep(Step::reading);
+  task_.read(list_->selectedUid(), request_);
+}
+
+void ImportDialog::readDone() {
+  const SeriesReport* after = selected();
+  if (!after) return;
+  listSelected();
+  if (!request_.crop && request_.reduction == 1) {  // now the whole grid is known
+    before()->geometry = after->geometry;
+    before()->verdict = after->verdict;
+  }
+  const std::vector<Choice> questions = newChoices(*before(), *after, answers());
+  const std::optional<Provenance>& provenance = task_.report().provenance;
+  const bool tell_loss = provenance && provenance->loss && !loss_told_;
+  if (questions.empty() && !tell_loss) return openCase();
+  ask(*after, questions);
+}
+
+void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& questions) {
+  const std::optional<Provenance>& provenance = task_.report().provenance;
+  loss_->setText(provenance && provenance->loss ? lossWords(*provenance->loss) : QString());
+  loss_->setVisible(!loss_->text().isEmpty());
+  loss_told_ = true;
+  couch_->setVisible(task_.couch().found);
+  face_->setVisible(std::ranges::find(questions, "FACE", &Choice::code) != questions.end());
+  late_choices_->ask(questions, {});
+  showStep(Step::asking);
+  open_case_->setEnabled(late_choices_->allAnswered());
+  preview_->canvas().setKept({});
+  preview_->canvas().setDrawable(false);
+  preview_->showStack(after.geometry.size[2], after.geometry.direction);
+  if (auto* first = late_choices_->findChild<QAbstractButton*>()) {
+    first->setFocus();
+  } else {
+    open_case_->setFocus();
+  }
+}
+
+// All that was asked after reading has an answer: what is not as it was read is read again.
+void ImportDialog::answered() {
+  if (!late_choices_->allAnswered()) return;
+  bool as_read = true;
+  const SeriesReport* after = selected();
+  for (const auto& [code, option] : late_choices_->answers()) {
+    answers()[code] = option;
+    const auto choice = std::ranges::find(after->choices, code, &Choice::code);
+    as_read &= choice != after->choices.end() && option == choice->options.front();
+  }
+  if (as_read) return openCase();
+  request_.answers = answers();
+  showStep(Step::reading);
+  task_.read(list_->selectedUid(), request_);
+}
+
+void ImportDialog::openCase() {
+  const SeriesReport* series = selected();
+  const std::shared_ptr<const Volume> volume = task_.takeVolume();
+  task_.wantNothing();
+  showStep(Step::choosing);
+  accept();
+  emit caseRead(volume, seriesName(*series));
+}
+
+void ImportDialog::back() {
+  (void)task_.takeVolume();
+  showStep(Step::choosing);
+  seriesSelected();
+}
+
+}  // namespace trephine

@@ -1,0 +1,107 @@
+// Importing: the series of a folder or file, what the import found out about each, a look at its
+// slices, the questions it asks, how much of it is read and how finely. What comes out is a volume.
+// It shows what ImportTask knows and asks it for work; it decides nothing about images.
+#pragma once
+
+#include <QDialog>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QStackedWidget>
+#include <map>
+
+#include "ui/cases/choice_panel.h"
+#include "ui/cases/import_task.h"
+#include "ui/cases/report_card.h"
+#include "ui/cases/series_list.h"
+#include "ui/cases/size_panel.h"
+#include "ui/views/slice_preview.h"
+
+namespace trephine {
+
+class ImportDialog : public QDialog {
+  Q_OBJECT
+ public:
+  // Opens by itself when the task begins to scan.
+  explicit ImportDialog(ImportTask& task, QWidget* parent = nullptr);
+
+  void open() override;  // the folder scanned last, once more
+  void say(const QString& text);
+
+ public slots:
+  void reject() override;
+
+ signals:
+  void folderWanted();
+  void fileWanted();
+  void pathDropped(const QString& path);
+  void reportWanted();
+  void caseRead(const std::shared_ptr<const trephine::Volume>& volume, const QString& name);
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  // Empty: nothing scanned. Asking: read, and something is to be said or asked before it opens.
+  enum class Step { empty, scanning, choosing, reading, asking };
+
+  // import_dialog_layout.cpp
+  void build();
+  QWidget* buildFolderColumn();
+  QWidget* buildSeriesPage();
+  QWidget* buildAskingPage();
+  QLayout* buildBottomRow();
+  void connectParts();
+
+  void showStep(Step step);
+  void scanned();
+  void showFolder();
+  void stopped();
+  void readDone();
+  void seriesSelected();
+  void showSelected();
+  void showImportButton();
+  void showSlice(const QString& uid, int index, const Result<SlicePicture>& picture);
+  void showKept();
+  void sliceWanted(int index);
+  void showCouch(int k);
+  void boxDrawn(const QRect& pixels);
+  void import();
+  void ask(const SeriesReport& after, const std::vector<Choice>& questions);
+  void answered();
+  void openCase();
+  void back();
+  const SeriesReport* selected() const;  // as the last read left it
+  SeriesReport* before();                // the same before it was read
+  void listSelected();
+  Answers& answers() { return answers_[list_->selectedUid()]; }
+
+  ImportTask& task_;
+  Step step_ = Step::empty;
+  // As scanned: what a read leaves of a series has other questions and the size that was asked for.
+  std::vector<SeriesReport> before_;
+  std::map<std::string, Answers> answers_;  // by uid, as long as the folder is open
+  ImportRequest request_;                   // what is being read
+  bool loss_told_ = false;                  // of it
+
+  SeriesList* list_;
+  QLabel* folder_;
+  SlicePreview* preview_;
+  QStackedWidget* right_;
+  QScrollArea *series_page_, *asking_page_;
+  ReportCard* card_;
+  ChoicePanel *choices_, *late_choices_;
+  SizePanel* size_;
+  QWidget* size_box_;
+  QLabel *size_note_, *loss_, *couch_, *face_;
+  QLabel *status_, *purpose_;
+  QProgressBar* progress_;
+  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_,
+      *open_case_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,204 @@
+#include <QHBoxLayout>
+#include <QSplitter>
+#include <QVBoxLayout>
+
+#include "ui/cases/import_dialog.h"
+#include "ui/common/icons.h"
+#include "ui/common/placing.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kProgressSteps = 1000;
+constexpr int kListWidth = 300, kReportWidth = 360;
+
+QLabel* wrapped(const char* name, bool quiet) {
+  auto* label = new QLabel;
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  label->setTextFormat(Qt::PlainText);
+  label->setProperty("quiet", quiet);
+  return label;
+}
+
+QLabel* heading(const QString& text) {
+  auto* label = new QLabel(text);
+  label->setProperty("title", true);
+  return label;
+}
+
+QPushButton* button(const char* name, const QString& text) {
+  auto* made = new QPushButton(text);
+  made->setObjectName(name);
+  made->setAutoDefault(false);
+  return made;
+}
+
+}  // namespace
+
+void ImportDialog::build() {
+  setObjectName("importDialog");
+  setWindowTitle(tr("Import CT"));
+  setAcceptDrops(true);
+  preview_ = new SlicePreview;
+  preview_->setObjectName("slicePreview");
+  right_ = new QStackedWidget;
+  series_page_ = scrolled(buildSeriesPage(), "seriesPage");
+  asking_page_ = scrolled(buildAskingPage(), "askingPage");
+  right_->addWidget(series_page_);
+  right_->addWidget(asking_page_);
+
+  auto* columns = new QSplitter(Qt::Horizontal);
+  columns->addWidget(buildFolderColumn());
+  columns->addWidget(preview_);
+  columns->addWidget(right_);
+  columns->setChildrenCollapsible(false);
+  columns->setStretchFactor(0, 0);
+  columns->setStretchFactor(1, 1);
+  columns->setStretchFactor(2, 0);
+  columns->setSizes({kListWidth, 520, kReportWidth});
+
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(columns, 1);
+  layout->addLayout(buildBottomRow());
+  resize(sizeOnScreen({1200, 740}, *this));
+}
+
+QWidget* ImportDialog::buildFolderColumn() {
+  open_folder_ = button("importFolder", tr("Open &folder\u2026"));
+  open_file_ = button("importFile", tr("Open fi&le\u2026"));
+  open_folder_->setIcon(symbolIcon(Symbol::open));
+  auto* open_row = new QHBoxLayout;
+  open_row->addWidget(open_folder_);
+  open_row->addWidget(open_file_);
+  list_ = new SeriesList;
+  list_->setObjectName("seriesList");
+  folder_ = wrapped("folderWords", true);
+  auto* column = new QWidget;
+  auto* layout = new QVBoxLayout(column);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(open_row);
+  layout->addWidget(list_, 1);
+  folder_->setAlignment(Qt::AlignTop);
+  auto* folder_area = scrolled(folder_, "folderArea");
+  folder_area->setMaximumHeight(6 * fontMetrics().lineSpacing());
+  layout->addWidget(folder_area);
+  return column;
+}
+
+QWidget* ImportDialog::buildSeriesPage() {
+  choices_ = new ChoicePanel;
+  choices_->setObjectName("choices");
+  card_ = new ReportCard(choices_);
+  size_ = new SizePanel;
+  size_note_ = wrapped("sizeNote", true);
+  size_box_ = new QWidget;
+  auto* size_layout = new QVBoxLayout(size_box_);
+  size_layout->setContentsMargins(0, 0, 0, 0);
+  size_layout->addWidget(heading(tr("How much of it, and how finely")));
+  size_layout->addWidget(size_);
+  size_layout->addWidget(size_note_);
+  auto* page = new QWidget;
+  auto* layout = new QVBoxLayout(page);
+  layout->setContentsMargins(8, 0, 8, 0);
+  layout->setSpacing(10);
+  layout->addWidget(card_);
+  layout->addStretch(1);
+  layout->addWidget(size_box_);
+  return page;
+}
+
+QWidget* ImportDialog::buildAskingPage() {
+  loss_ = wrapped("lossWords", false);
+  couch_ = wrapped("couchNote", true);
+  couch_->setText(tr("In the slices, what would be taken out is tinted."));
+  face_ = wrapped("faceWarning", false);
+  face_->setText(
+      tr("From this CT the face can be made visible, and the patient recognised. Keep it "
+         "only where the exercise needs it and everyone who sees the case may know who "
+         "it is."));
+  late_choices_ = new ChoicePanel;
+  late_choices_->setObjectName("lateChoices");
+  auto* page = new QWidget;
+  auto* layout = new QVBoxLayout(page);
+  layout->setContentsMargins(8, 0, 8, 0);
+  layout->setSpacing(10);
+  layout->addWidget(heading(tr("Before the case opens")));
+  layout->addWidget(loss_);
+  layout->addWidget(face_);
+  layout->addWidget(couch_);
+  layout->addWidget(late_choices_);
+  layout->addStretch(1);
+  return page;
+}
+
+QLayout* ImportDialog::buildBottomRow() {
+  status_ = new ElidedLabel;
+  status_->setObjectName("importStatus");
+  status_->setProperty("quiet", true);
+  progress_ = new QProgressBar;
+  progress_->setObjectName("importProgress");
+  progress_->setRange(0, kProgressSteps);
+  progress_->setTextVisible(false);
+  progress_->setMaximumHeight(14);
+  report_ = button("saveReport", tr("Save &report\u2026"));
+  cancel_ = button("cancelImport", tr("&Cancel"));
+  close_ = button("closeImport", tr("&Close"));
+  back_ = button("importBack", tr("&Back"));
+  import_ = button("import", tr("&Import"));
+  import_->setDefault(true);
+  open_case_ = button("openCase", tr("&Open the case"));
+  purpose_ = new ElidedLabel(purposeText());
+  purpose_->setProperty("quiet", true);
+  auto* row = new QHBoxLayout;
+  row->addWidget(purpose_);
+  row->addWidget(status_);
+  row->addWidget(progress_, 1);
+  row->addStretch(1);
+  for (QPushButton* each : {report_, back_, close_, cancel_, import_, open_case_}) {
+    each->setMinimumWidth(110);
+    row->addWidget(each);
+  }
+  return row;
+}
+
+void ImportDialog::connectParts() {
+  connect(open_folder_, &QPushButton::clicked, this, &ImportDialog::folderWanted);
+  connect(open_file_, &QPushButton::clicked, this, &ImportDialog::fileWanted);
+  connect(list_, &SeriesList::seriesSelected, this, &ImportDialog::seriesSelected);
+  connect(list_, &SeriesList::seriesActivated, this, &ImportDialog::import);
+  connect(preview_, &SlicePreview::sliceWanted, this, &ImportDialog::sliceWanted);
+  connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportDialog::boxDrawn);
+  connect(size_, &SizePanel::changed, this, &ImportDialog::showKept);
+  connect(size_, &SizePanel::changed, this, &ImportDialog::showImportButton);
+  connect(choices_, &ChoicePanel::answered, this, [this] {
+    for (const auto& [code, option] : choices_->answers()) answers()[code] = option;
+    showSelected();
+  });
+  connect(late_choices_, &ChoicePanel::answered, this,
+          [this] { open_case_->setEnabled(late_choices_->allAnswered()); });
+  connect(import_, &QPushButton::clicked, this, &ImportDialog::import);
+  connect(open_case_, &QPushButton::clicked, this, &ImportDialog::answered);
+  connect(report_, &QPushButton::clicked, this, &ImportDialog::reportWanted);
+  connect(back_, &QPushButton::clicked, this, &ImportDialog::back);
+  connect(close_, &QPushButton::clicked, this, &ImportDialog::reject);
+  connect(cancel_, &QPushButton::clicked, &task_, &ImportTask::cancel);
+
+  connect(&task_, &ImportTask::scanBegan, this, [this] {
+    showStep(Step::scanning);
+    if (!isVisible()) QDialog::open();
+  });
+  connect(&task_, &ImportTask::progressed, this, [this](double fraction, const QString& step) {
+    status_->setText(step);
+    progress_->setValue(int(fraction * kProgressSteps));
+  });
+  connect(&task_, &ImportTask::scanned, this, &ImportDialog::scanned);
+  connect(&task_, &ImportTask::readDone, this, &ImportDialog::readDone);
+  connect(&task_, &ImportTask::stopped, this, &ImportDialog::stopped);
+  connect(&task_, &ImportTask::sliceReady, this, &ImportDialog::showSlice);
+  connect(&task_, &ImportTask::thumbnailReady, list_, &SeriesList::setThumbnail);
+}
+
+}  // namespace trephine

@@ -1,0 +1,170 @@
+#include "ui/cases/import_task.h"
+
+#include <algorithm>
+
+#include "ui/common/words.h"
+#include "ui/views/slice_image.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kThumbnailPixels = 160;  // sharp at twice the size it is shown at
+
+struct ReadSeries {
+  std::shared_ptr<const Volume> volume;
+  CouchFinding couch;
+};
+
+bool asks(const ImportReport& report, const std::string& uid, const char* code) {
+  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
+  return series != report.series.end() &&
+         std::ranges::find(series->choices, code, &Choice::code) != series->choices.end();
+}
+
+}  // namespace
+
+ImportTask::ImportTask(QObject* parent) : QObject(parent) {
+  connect(&task_, &BackgroundTask::progressed, this, &ImportTask::progressed);
+}
+
+ImportTask::~ImportTask() = default;
+
+void ImportTask::begin(std::function<void()> work) {
+  if (task_.busy()) task_.cancel();
+  working_ = true;
+  cancelled_ = false;
+  next_ = std::move(work);
+  step();
+}
+
+void ImportTask::end(void (ImportTask::*done)()) {
+  if (!next_) {  // else something else is wanted by now
+    working_ = false;
+    emit(this->*done)();
+  }
+  step();
+}
+
+template <class Outcome>
+void ImportTask::endWithout(const Outcome& outcome) {
+  if (!next_) {
+    working_ = false;
+    emit stopped();
+    if (!outcome && outcome.error().code != "CANCELLED") emit failed(outcome.error());
+  }
+  step();
+}
+
+void ImportTask::scan(const std::filesystem::path& path) {
+  wantNothing();
+  emit scanBegan();
+  begin([this, path] {
+    task_.run([path](const Progress& progress) { return CtFolder::scan(path, progress); },
+              [this](Result<CtFolder> scanned) {
+                if (!scanned || cancelled_) return endWithout(scanned);
+                folder_ = std::make_shared<CtFolder>(*std::move(scanned));
+                report_ = folder_->report();
+                best_ = folder_->bestSeries();
+                volume_.reset();
+                end(&ImportTask::scanned);
+              });
+  });
+}
+
+void ImportTask::read(const std::string& uid, const ImportRequest& request) {
+  if (!folder_) return;
+  wanted_.reset();
+  volume_.reset();  // there is room for one
+  couch_ = {};
+  begin([this, uid, request] {
+    task_.run(
+        [folder = folder_, uid, request](const Progress& progress) -> Result<ReadSeries> {
+          Result<Volume> volume = folder->read(uid, request, progress);
+          if (!volume) return volume.error();
+          ReadSeries read{std::make_shared<const Volume>(*std::move(volume)), {}};
+          if (asks(folder->report(), uid, "COUCH") && !request.answers.contains("COUCH")) {
+            read.couch = findCouch(*read.volume);
+          }
+          return read;
+        },
+        [this](Result<ReadSeries> read) {
+          report_ = folder_->report();  // a refusal is told there too
+          if (!read || cancelled_) return endWithout(read);
+          volume_ = std::move(read->volume);
+          couch_ = std::move(read->couch);
+          end(&ImportTask::readDone);
+        });
+  });
+}
+
+void ImportTask::cancel() {
+  if (!working_) return;
+  cancelled_ = true;
+  if (!next_) return task_.cancel();
+  next_ = {};
+  working_ = false;
+  emit stopped();
+}
+
+void ImportTask::wantSlice(const std::string& uid, int index) {
+  wanted_ = {uid, index};
+  step();
+}
+
+void ImportTask::wantThumbnails(const std::vector<std::string>& uids) {
+  thumbnails_.assign(uids.begin(), uids.end());
+  step();
+}
+
+void ImportTask::wantNothing() {
+  wanted_.reset();
+  thumbnails_.clear();
+}
+
+void ImportTask::step() {
+  if (task_.busy()) return;
+  if (next_) {
+    std::exchange(next_, {})();
+  } else if (folder_ && wanted_) {
+    readSlice(*std::exchange(wanted_, {}));
+  } else if (folder_ && !thumbnails_.empty()) {
+    const std::string uid = std::move(thumbnails_.front());
+    thumbnails_.pop_front();
+    makeThumbnail(uid);
+  }
+}
+
+void ImportTask::readSlice(const Wanted& wanted) {
+  task_.run([folder = folder_,
+             wanted](const Progress&) { return folder->slice(wanted.uid, wanted.index); },
+            [this, wanted](const Result<SlicePicture>& picture) {
+              emit sliceReady(toQt(wanted.uid), wanted.index, picture);
+              step();
+            });
+}
+
+void ImportTask::makeThumbnail(const std::string& uid) {
+  const auto series = std::ranges::find(report_.series, uid, &SeriesReport::uid);
+  if (series == report_.series.end()) return step();
+  task_.run(
+      [folder = folder_, uid, middle = series->slices / 2, is_ct = series->modality == "CT",
+       turned = mirroringOf(series->geometry.direction)](const Progress&) -> Result<QImage> {
+        const Result<SlicePicture> slice = folder->slice(uid, middle);
+        if (!slice) return slice.error();
+        const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);
+        const double tall = double(slice->rows) * slice->spacing_mm.y;
+        const double wide = double(slice->columns) * slice->spacing_mm.x;
+        const double scale = kThumbnailPixels / std::max(tall, wide);
+        return windowed(*slice, window)
+            .mirrored(turned.across, turned.down)
+            .scaled(std::max(1, int(wide * scale)), std::max(1, int(tall * scale)),
+                    Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
+      },
+      [this, uid](const Result<QImage>& picture) {
+        emit thumbnailReady(toQt(uid), picture ? *picture : QImage());
+        step();
+      });
+}
+
+}  // namespace trephine

@@ -1,0 +1,87 @@
+// The folder that is being imported, and all work on it: scan, read, slices, thumbnails, one after
+// the other on one background thread, because a CtFolder is used by one thread at a time. Every
+// method is called, and every signal sent, on the window's thread.
+#pragma once
+
+#include <QImage>
+#include <QObject>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "imaging/importer.h"
+#include "imaging/steps/couch.h"
+#include "ui/common/background_task.h"
+
+namespace trephine {
+
+class ImportTask : public QObject {
+  Q_OBJECT
+ public:
+  explicit ImportTask(QObject* parent = nullptr);
+  ~ImportTask() override;
+
+  // Finds the series of a folder or file. The folder scanned before stays until this one is there.
+  void scan(const std::filesystem::path& path);
+  // Reads a series of the folder; volume() has it after readDone().
+  void read(const std::string& uid, const ImportRequest& request);
+  // Ends the scan or read; stopped() follows.
+  void cancel();
+  bool isWorking() const { return working_; }
+
+  bool hasFolder() const { return folder_ != nullptr; }
+  const ImportReport& report() const { return report_; }  // as scan or the last read left it
+  const std::optional<std::string>& bestSeries() const { return best_; }
+  const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  // The couch in volume(), where the series asks about it and that is not answered yet.
+  const CouchFinding& couch() const { return couch_; }
+  std::shared_ptr<const Volume> takeVolume() { return std::exchange(volume_, {}); }
+
+  // The slice to look at. Only the last one wanted is read; what was wanted before is dropped.
+  void wantSlice(const std::string& uid, int index);
+  // The middle slices of these series as small pictures, in this order, while nothing else waits.
+  void wantThumbnails(const std::vector<std::string>& uids);
+  // No slices and thumbnails any more.
+  void wantNothing();
+
+ signals:
+  void scanBegan();
+  void progressed(double fraction, const QString& step);
+  void scanned();
+  void readDone();
+  void stopped();  // scan or read failed or was cancelled
+  void failed(const trephine::Error& error);
+  // A slice, or in its place why there is none.
+  void sliceReady(const QString& uid, int index,
+                  const trephine::Result<trephine::SlicePicture>& picture);
+  void thumbnailReady(const QString& uid, const QImage& picture);  // null: there is none
+
+ private:
+  struct Wanted {
+    std::string uid;
+    int index;
+  };
+  void begin(std::function<void()> work);
+  void step();
+  void end(void (ImportTask::*done)());
+  template <class Outcome>
+  void endWithout(const Outcome& outcome);
+  void readSlice(const Wanted& wanted);
+  void makeThumbnail(const std::string& uid);
+
+  std::shared_ptr<CtFolder> folder_;
+  ImportReport report_;
+  std::optional<std::string> best_;
+  std::shared_ptr<const Volume> volume_;
+  CouchFinding couch_;
+  bool cancelled_ = false;      // even where the work came to its end first
+  bool working_ = false;        // a scan or read is under way or waits for a slice to end
+  std::function<void()> next_;  // starts it
+  std::optional<Wanted> wanted_;
+  std::deque<std::string> thumbnails_;
+  BackgroundTask task_;  // last, so that it is joined before what it works on goes
+};
+
+}  // namespace trephine

@@ -1,0 +1,40 @@
+// The series of a folder: a picture, the description, what it is, and its state in shape, colour
+// and word. Usable CT comes first.
+#pragma once
+
+#include <QListWidget>
+#include <map>
+
+#include "ui/cases/import_words.h"
+
+namespace trephine {
+
+class SeriesList : public QListWidget {
+  Q_OBJECT
+ public:
+  explicit SeriesList(QWidget* parent = nullptr);
+
+  // Shows these in the order of seriesOrder(); `answers` are those given so far, by uid.
+  void showSeries(const std::vector<SeriesReport>& series,
+                  const std::map<std::string, Answers>& answers);
+  // What reading or answering has changed about one of them; the order stays.
+  void updateSeries(const SeriesReport& series, const Answers& answers);
+  void setThumbnail(const QString& uid, const QImage& picture);
+  void select(const std::string& uid);
+  std::string selectedUid() const;  // empty where nothing is
+  std::vector<std::string> withoutThumbnail() const;
+
+ signals:
+  void seriesSelected();
+  void seriesActivated();  // Return, or a double click
+
+ private:
+  QListWidgetItem* itemOf(const QString& uid) const;
+};
+
+// Positions in `series` as they are listed: what can be read, then what asks, then the rest; CT
+// first in each, and those with more slices before others.
+std::vector<std::size_t> seriesOrder(const std::vector<SeriesReport>& series,
+                                     const std::map<std::string, Answers>& answers);
+
+}  // namespace trephine

@@ -1,0 +1,78 @@
+#include "ui/common/colours.h"
+
+#include <QPalette>
+#include <QStyleFactory>
+
+namespace trephine::colours {
+
+void applyTheme(QApplication& application) {
+  application.setStyle(QStyleFactory::create("Fusion"));
+  QPalette p;
+  p.setColor(QPalette::Window, kWindow);
+  p.setColor(QPalette::WindowText, kText);
+  p.setColor(QPalette::Base, kPanel);
+  p.setColor(QPalette::AlternateBase, kWindow);
+  p.setColor(QPalette::Text, kText);
+  p.setColor(QPalette::Button, kRaised);
+  p.setColor(QPalette::ButtonText, kText);
+  p.setColor(QPalette::BrightText, Qt::white);
+  p.setColor(QPalette::ToolTipBase, kRaised);
+  p.setColor(QPalette::ToolTipText, kText);
+  p.setColor(QPalette::PlaceholderText, kQuiet);
+  p.setColor(QPalette::Highlight, kAccent);
+  p.setColor(QPalette::HighlightedText, Qt::white);
+  p.setColor(QPalette::Link, kAccent);
+  p.setColor(QPalette::Light, kLine);
+  p.setColor(QPalette::Midlight, kLine);
+  p.setColor(QPalette::Mid, kPanel);
+  p.setColor(QPalette::Dark, kPanel);
+  p.setColor(QPalette::Shadow, Qt::black);
+  const QColor off = kQuiet.darker(150);
+  for (QPalette::ColorRole role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
+    p.setColor(QPalette::Disabled, role, off);
+  }
+  p.setColor(QPalette::Disabled, QPalette::Highlight, kLine);
+  application.setPalette(p);
+
+  // What a palette cannot say. Colours by name, so that this list and the palette stay one.
+  application.setStyleSheet(
+      QString(
+          "QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+          "QToolBar { border: none; border-bottom: 1px solid %4; padding: 4px; spacing: 4px; }"
+          "QToolBar QToolButton { padding: 4px 8px; border-radius: 4px; }"
+          "QToolBar QToolButton:hover { background: %2; }"
+          "QToolBar QToolButton:pressed { background: %4; }"
+          "QToolButton#qt_toolbar_ext_button { padding: 0; font-weight: bold; }"
+          "QToolBar QToolButton:checked { background: %6; color: white; }"
+          "QStatusBar { border-top: 1px solid %4; }"
+          "QStatusBar::item { border: none; }"
+          "QLabel[quiet=\"true\"] { color: %5; }"
+          "QLabel[title=\"true\"] { font-weight: bold; }"
+          "QToolButton[segment=\"true\"] { padding: 3px 10px; border: 1px solid %3;"
+          " border-radius: 4px; background: %2; }"
+          "QToolButton[segment=\"true\"]:hover { border-color: %5; }"
+          "QToolButton[segment=\"true\"]:focus { border-color: %7; }"
+          "QToolButton[segment=\"true\"]:checked { background: %6; color: white; }"
+          "QRadioButton::indicator { width: 14px; height: 14px; border-radius: 8px;"
+          " border: 1px solid %5; background: %4; }"
+          "QRadioButton::indicator:checked { border-color: %6; background:"
+          " qradialgradient(cx: 0.5, cy: 0.5, radius: 0.5, fx: 0.5, fy: 0.5, stop: 0.48 white,"
+          " stop: 0.58 %6); }"
+          "QRadioButton::indicator:focus { border: 1px solid white; }"
+          "QRadioButton::indicator:disabled { border-color: %3; }"
+          "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }"
+          // Over a picture of bone and of black alike.
+          "QFrame[notice=\"true\"] { background: %4; border: 2px solid %8; border-radius: 8px; }"
+          "QLabel[noticeTitle=\"true\"] { font-size: 28px; font-weight: bold; color: %8; }")
+          .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
+               kAccent.darker(125).name(), kAccent.name(), kCaution.name()));
+}
+
+void setText(QLabel& label, const QColor& colour) {
+  QPalette palette = label.palette();
+  if (palette.color(QPalette::WindowText) == colour) return;
+  palette.setColor(QPalette::WindowText, colour);
+  label.setPalette(palette);
+}
+
+}  // namespace trephine::colours

@@ -1,0 +1,68 @@
+#include "ui/common/slip_guard.h"
+
+#include <QAbstractSpinBox>
+#include <QApplication>
+#include <QComboBox>
+#include <QKeyEvent>
+#include <QScrollBar>
+#include <QTabBar>
+
+namespace trephine {
+
+namespace {
+
+bool turnsByWheel(const QWidget* widget) {
+  return qobject_cast<const QAbstractSpinBox*>(widget) || qobject_cast<const QTabBar*>(widget) ||
+         (qobject_cast<const QAbstractSlider*>(widget) && !qobject_cast<const QScrollBar*>(widget));
+}
+
+// Passes an event on to the widgets around.
+bool passOn(QEvent* event) {
+  event->ignore();
+  return true;
+}
+
+bool filterKey(QComboBox& choices, QKeyEvent* event) {
+  switch (event->key()) {
+    case Qt::Key_Up:
+    case Qt::Key_Down:
+      choices.showPopup();
+      return true;
+    case Qt::Key_F4:
+    case Qt::Key_Space:  // both open it
+    case Qt::Key_Tab:
+    case Qt::Key_Backtab:
+      return false;
+    default:
+      return passOn(event);
+  }
+}
+
+}  // namespace
+
+SlipGuard::SlipGuard(QObject* parent) : QObject(parent) {
+  qApp->installEventFilter(this);
+}
+
+bool SlipGuard::eventFilter(QObject* watched, QEvent* event) {
+  const QEvent::Type type = event->type();
+  if (type != QEvent::Wheel && type != QEvent::KeyPress && type != QEvent::Polish) return false;
+  auto* widget = qobject_cast<QWidget*>(watched);
+  if (!widget) return false;
+  auto* choices = qobject_cast<QComboBox*>(widget);
+  if (choices && choices->isEditable()) return false;
+  switch (type) {
+    case QEvent::Polish:
+      if ((choices || turnsByWheel(widget)) && widget->focusPolicy() == Qt::WheelFocus) {
+        widget->setFocusPolicy(Qt::StrongFocus);
+      }
+      return false;
+    case QEvent::Wheel:
+      if (choices || (turnsByWheel(widget) && !widget->hasFocus())) return passOn(event);
+      return false;
+    default:
+      return choices && filterKey(*choices, static_cast<QKeyEvent*>(event));
+  }
+}
+
+}  // namespace trephine

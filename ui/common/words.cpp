@@ -1,0 +1,183 @@
+#include "ui/common/words.h"
+
+#include <QCoreApplication>
+#include <QFile>
+#include <QStringList>
+
+#include "haptics/bounded_controller.h"
+#include "haptics/haptic_types.h"
+
+namespace trephine {
+
+namespace {
+QString tr(const char* text) {
+  return QCoreApplication::translate("Words", text);
+}
+
+struct PartWords {
+  ControllerPart part;
+  const char *words, *meaning;
+};
+
+constexpr PartWords kPartWords[] = {
+    {kPartArmBound, QT_TRANSLATE_NOOP("Words", "softer, for this arm"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "the tissue is firmer than this arm can show without shaking, so it is shown "
+         "as firm as the arm can.")},
+    {kPartLearned, QT_TRANSLATE_NOOP("Words", "softer, since it shook"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the arm shook in this hand, so less is shown until it has been calm.")},
+    {kPartDamping, QT_TRANSLATE_NOOP("Words", "damped"),
+     QT_TRANSLATE_NOOP("Words",
+                       "a little damping goes with each spring, so that it does not ring.")},
+    {kPartCredit, QT_TRANSLATE_NOOP("Words", "energy held back"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the force would give the hand more energy than the hand put in, so it is "
+                       "made smaller.")},
+    {kPartHold, QT_TRANSLATE_NOOP("Words", "steady while it rests"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the tool rests, so the force stays as it is and does not buzz between two "
+                       "steps of the encoder.")},
+    {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's greatest force"),
+     QT_TRANSLATE_NOOP("Words", "the tissue demands more force than the arm has.")},
+    {kPartLimiter, QT_TRANSLATE_NOOP("Words", "rising slowly"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "after a pause, a change or a late step the force comes back slowly, so that "
+         "it does not kick.")},
+    {kPartEstimate, QT_TRANSLATE_NOOP("Words", "between encoder steps"),
+     QT_TRANSLATE_NOOP("Words",
+                       "the encoder tells the place in steps; the force is that of the estimated "
+                       "place and speed between them.")},
+    {kPartPrediction, QT_TRANSLATE_NOOP("Words", "ahead of the delay"),
+     QT_TRANSLATE_NOOP(
+         "Words",
+         "a force acts a moment after it is computed, so it is that of the place where "
+         "the arm will be then.")},
+};
+}  // namespace
+
+QString toQt(const std::string& utf8) {
+  return QString::fromStdString(utf8);
+}
+
+std::filesystem::path toPath(const QString& text) {
+  return QFile::encodeName(text).toStdString();
+}
+
+QString toQt(const std::filesystem::path& path) {
+  return QFile::decodeName(QByteArray::fromStdString(path.string()));
+}
+
+QString purposeText() {
+  return tr("For training, not for diagnosis or treatment planning");
+}
+
+QString verdictWord(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return tr("Pass");
+    case Verdict::repaired:
+      return tr("Repaired");
+    case Verdict::refused:
+      return tr("Refused");
+  }
+  return {};
+}
+
+QString controllerWord(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::off:
+      return tr("Off");
+    case ControllerKind::seed:
+      return tr("Seed (passivity)");
+    case ControllerKind::bounded:
+      return tr("Bounded");
+  }
+  return {};
+}
+
+QString controllerMeaning(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::off:
+      return tr(
+          "What the tissue demands goes to the arm as it is. On firm tissue the arm may shake.");
+    case ControllerKind::seed:
+      return tr("The passivity controller of the seed paper, for comparison.");
+    case ControllerKind::bounded:
+      return tr("Keeps the arm calm on any tissue, and changes nothing where nothing is wrong.");
+  }
+  return {};
+}
+
+QString forceChangeWords(const ArmRecord& arm, bool paused) {
+  if (paused) return tr("no force: paused");
+  if (arm.faults == kFaultLate) return tr("no force until the computer keeps up");
+  if (arm.faults != 0) return tr("no force until asked for");
+  if (arm.tool_state & kToolWaits) return tr("no force until drawn out");
+  QStringList words;
+  for (const PartWords& part : kPartWords) {
+    if (arm.controller_parts & part.part) words << tr(part.words);
+  }
+  return words.isEmpty() ? tr("nothing") : words.join(", ");
+}
+
+QString forceChangeMeanings() {
+  QString rows;
+  for (const PartWords& part : kPartWords) {
+    rows += QStringLiteral("<p><b>%1</b>: %2</p>").arg(tr(part.words), tr(part.meaning));
+  }
+  return tr("<p>What is changed in the force that the tissue demands, before it is sent.</p>") +
+         rows +
+         tr("<p><b>no force</b>: in a pause, a fault, and tissue that the tool did not come into, "
+            "nothing is sent.</p>");
+}
+
+QString faultWords(std::uint32_t faults) {
+  QStringList words;
+  if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  if (faults & kFaultStuck) words << tr("The arm's driver does not return: it was left behind.");
+  if (faults & kFaultNonFinite) {
+    words << tr("A pose or a force was not a number. The force stays off until you ask for it.");
+  }
+  if (faults & kFaultStalled) {
+    words << tr(
+        "The computer was too busy three times within 30 s, or once for over 2 s. The force "
+        "stays off until you ask for it.");
+  }
+  if (faults == kFaultLate) {
+    words << tr(
+        "The computer was too busy: a step came more than 20 ms late. The force comes back "
+        "by itself.");
+  }
+  return words.join('\n');
+}
+
+QString findingWords(const SeriesReport& series) {
+  QStringList lines;
+  for (const Finding& finding : series.findings) {
+    QString line = toQt(finding.text);
+    if (!line.isEmpty() && !line.endsWith('.')) line += '.';
+    if (!finding.action.empty()) line += ' ' + toQt(finding.action);
+    if (!line.endsWith('.')) line += '.';
+    lines << line;
+  }
+  return lines.join('\n');
+}
+
+QString timeWords(std::uint32_t seconds) {
+  return QStringLiteral("%1:%2").arg(seconds / 60).arg(seconds % 60, 2, 10, QLatin1Char('0'));
+}
+
+QString sizeWords(const GridGeometry& g) {
+  return tr("%1 \u00d7 %2 \u00d7 %3 voxels\n%4 \u00d7 %5 \u00d7 %6 mm")
+      .arg(g.size[0])
+      .arg(g.size[1])
+      .arg(g.size[2])
+      .arg(g.spacing_mm.x, 0, 'f', 2)
+      .arg(g.spacing_mm.y, 0, 'f', 2)
+      .arg(g.spacing_mm.z, 0, 'f', 2);
+}
+
+}  // namespace trephine

@@ -1,0 +1,164 @@
+#include "ui/frame/exercise.h"
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
+#include <QTimer>
+#include <algorithm>
+#include <cmath>
+
+#include "base/file.h"
+#include "ui/frame/main_window.h"
+#include "ui/frame/start_up.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kHeartbeat_ms = 5;
+constexpr int kCancelPoll_ms = 50;
+
+// Measures the longest time for which the event loop did not come round.
+class Heartbeat {
+ public:
+  Heartbeat() {
+    timer_.setTimerType(Qt::PreciseTimer);
+    timer_.setInterval(kHeartbeat_ms);
+    QObject::connect(&timer_, &QTimer::timeout, &timer_, [this] { beat(); });
+  }
+  void start() {
+    longest_ms_ = 0.0;
+    since_.start();
+    timer_.start();
+  }
+  void stop() {
+    beat();
+    timer_.stop();
+  }
+  double longest_ms() const { return longest_ms_; }
+
+ private:
+  void beat() {
+    longest_ms_ = std::max(longest_ms_, double(since_.nsecsElapsed()) * 1e-6);
+    since_.restart();
+  }
+  QTimer timer_;
+  QElapsedTimer since_;
+  double longest_ms_ = 0.0;
+};
+
+}  // namespace
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(share * double(values.size()));
+  return values[std::size_t(std::clamp(rank - 1.0, 0.0, double(values.size() - 1)))];
+}
+
+Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progress& progress) {
+  Result<Scene> scene = readScene(options.scene);
+  if (!scene) return scene.error();
+  if (scene->operator_file.empty()) {
+    return Error{"NO_OPERATOR", "The scene has no script to play", options.scene.string(),
+                 "Name one under 'operator' in the scene"};
+  }
+  Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+  if (!script) return script.error();
+  if (Status made = makeFolder(options.out); !made) return made.error();
+  const double seconds = options.seconds.value_or(script->duration_s());
+
+  ExerciseOutcome outcome;
+  std::optional<Error> failure;
+  std::vector<double> frame_ms;
+  Heartbeat heartbeat;
+  QEventLoop loop;
+  MainWindow window(options.out);
+  Workstation& workstation = window.workstation();
+  enum class Step { opening, starting, running, ending } step = Step::opening;
+
+  QObject::connect(&window, &MainWindow::failed, &loop, [&](const Error& error) {
+    if (error.code == "DEVICE_STUCK" && step == Step::ending) return;  // a fault in the report
+    if (!failure) failure = error;
+    loop.quit();
+  });
+  QObject::connect(
+      &window.view(), &ViewWidget::framePainted, &loop, [&](double paint_ms, bool with_volume) {
+        if (step == Step::running) frame_ms.push_back(paint_ms);
+        if (step != Step::opening || !with_volume) return;
+        outcome.start_ms = msSinceProcessStart();
+        step = Step::starting;
+        QTimer::singleShot(0, &window, [&] { window.startExercise(*script, seconds); });
+      });
+  QObject::connect(&workstation, &Workstation::sessionStarted, &loop, [&] {
+    step = Step::running;
+    heartbeat.start();
+  });
+  QObject::connect(&workstation, &Workstation::sessionEnded, &loop, [&](Session& session) {
+    heartbeat.stop();
+    step = Step::ending;
+    outcome.report = session.report();
+    QTimer::singleShot(0, &loop, &QEventLoop::quit);
+  });
+  QObject::connect(&workstation, &Workstation::recordingFailed, &loop,
+                   [&](const Error& error) { outcome.failure = error; });
+  QTimer cancelling;
+  QObject::connect(&cancelling, &QTimer::timeout, &loop, [&] {
+    if (!progress.cancelled()) return;
+    if (step == Step::opening) loop.quit();
+    workstation.stop();  // does nothing before it runs
+  });
+  // Nobody is there to stop an exercise whose arm does not come back.
+  QObject::connect(&cancelling, &QTimer::timeout, &loop, [&] {
+    const Session* session = workstation.session();
+    if (session && session->standsStillFor_s() > Session::kGivenUp_s) workstation.stop();
+  });
+  cancelling.start(kCancelPoll_ms);
+  window.show();
+  workstation.openPath(options.scene);
+  if (!failure) loop.exec();
+  const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};
+  if (step != Step::ending && progress.cancelled()) return cancelled;
+  if (step != Step::ending && failure) return *failure;
+  if (step != Step::ending) {
+    return Error{"STOPPED", "The window was closed before the exercise ended", "",
+                 "Start it again"};
+  }
+  if (failure) outcome.failure = failure;
+  if (progress.cancelled()) {
+    outcome.failure = cancelled;
+    return outcome;
+  }
+
+  Result<Picture> picture = window.view().picture();
+  if (!picture) return picture.error();
+  const std::filesystem::path file = freshFile(options.out, "picture", ".png");
+  if (Status written = writePng(*picture, file); !written) return written.error();
+  outcome.report.picture = file.string();
+  outcome.frames = int(frame_ms.size());
+  outcome.frame_median_ms = percentile(frame_ms, 0.5);
+  outcome.frame_p99_ms = percentile(frame_ms, 0.99);
+  outcome.longest_stall_ms = heartbeat.longest_ms();
+  return outcome;
+}
+
+Json toJson(const ExerciseOutcome& outcome) {
+  Json json = toJson(outcome.report);
+  json["start_ms"] = outcome.start_ms;
+  json["frames"] = outcome.frames;
+  json["frame_ms"] = {{"median", outcome.frame_median_ms}, {"p99", outcome.frame_p99_ms}};
+  json["longest_stall_ms"] = outcome.longest_stall_ms;
+  return json;
+}
+
+std::string toText(const ExerciseOutcome& outcome) {
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "Window: first picture after %.0f ms, %d pictures, median %.1f ms, p99 %.1f ms, "
+                "longest stall %.0f ms\n",
+                outcome.start_ms, outcome.frames, outcome.frame_median_ms, outcome.frame_p99_ms,
+                outcome.longest_stall_ms);
+  return toText(outcome.report) + line;
+}
+
+}  // namespace trephine

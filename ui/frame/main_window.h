@@ -1,0 +1,147 @@
+// The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
+// connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
+// builds it, main_window_tissues.cpp is what it does with tissues, main_window_losses.cpp what it
+// asks before work is lost, main_window.cpp the rest.)
+#pragma once
+
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QMainWindow>
+#include <QTabWidget>
+#include <QTimer>
+#include <filesystem>
+#include <functional>
+
+#include "ui/cases/case_panel.h"
+#include "ui/cases/import_dialog.h"
+#include "ui/common/icons.h"
+#include "ui/common/slip_guard.h"
+#include "ui/frame/workstation.h"
+#include "ui/tissue/tissue_panel.h"
+#include "ui/training/arms_panel.h"
+#include "ui/training/rewind_bar.h"
+#include "ui/training/state_notice.h"
+#include "ui/views/view_widget.h"
+
+class QFileDialog;
+
+namespace trephine {
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+ public:
+  // Recordings go into `recordings`; empty: the user's own folder of sessions.
+  explicit MainWindow(std::filesystem::path recordings = {}, QWidget* parent = nullptr);
+
+  Workstation& workstation() { return workstation_; }
+  ViewWidget& view() { return *view_; }
+
+  // As Workstation::openPath, once the window has its place on the screen: what opens over it then
+  // knows where that is.
+  void openOnceShown(const std::filesystem::path& path);
+  // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
+  void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
+  // The 3-D view as a PNG, and the voxels as they are now; errors become dialogs.
+  void savePicture(const QString& file);
+  void saveVolume(const QString& file);
+  void saveReport(const QString& file);  // of the folder scanned last: PDF or HTML
+
+ signals:
+  // Beside the dialog that is shown.
+  void failed(const trephine::Error& error);
+
+ protected:
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  static constexpr double kNoEnd_s = 1e9;
+
+  void buildActions();
+  void buildBars();
+  void buildPanels();
+  void connectParts();
+  QAction* makeAction(Symbol symbol, const char* name, const QString& text, const QKeySequence& key,
+                      const QString& tip);
+  void fillScenes();
+
+  QWidget* front();  // the window or dialog that a further dialog belongs to
+  // A dialog over the front window that goes away by itself and leaves no names on disk.
+  QFileDialog* fileDialog(const char* name, const QString& title, const QString& filter = {});
+  void askForFolder();
+  void askForFile();
+  void askForScene();
+  void askForLabels();
+  QFileDialog* saveDialog(const QString& title, const QString& suggestion, const QString& filter);
+  void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
+                      void (MainWindow::*save)(const QString&));
+  void showAbout();
+  void open(const std::filesystem::path& path);
+  // Goes on with what takes the place of the tissues; where they have been edited it asks first.
+  void unlessTissuesStay(std::function<void()> go_on);
+  void showScene();
+  void showInUse();
+  void showOpening(const Scene& scene, const std::filesystem::path& file);
+  void showRenderable(ControllerKind in_force);
+  void showCase();
+  void showPhase();
+  void lookAtCase();
+  // Goes on at once with what takes the cuts from the view; where no file has them it asks first.
+  void unlessCutsAreLost(std::function<void()> go_on);
+  // The same for another scene, which takes edited tissues too.
+  void unlessSceneIsLost(std::function<void()> go_on);
+  void askToSaveVolume(std::function<void()> then);
+  void saveVolumeThen(const QString& file, std::function<void()> then);
+  void start();
+  void reset();
+  void showWholeCase();
+  void command(CommandKind kind);
+  void rewind(std::uint32_t second);
+  void showRewind(const LoopState& state);
+  void moveHand(Hand hand, const Vec3& by_mm);
+  void placeHandPoints();
+  std::size_t armOf(Hand hand) const;
+  void sessionStarted();
+  void sessionEnded(Session& session);
+  void tick();
+  void showState(Session& session, const LoopState& state);
+  void showRates();
+  void say(const QString& text);
+  void report(const Error& error);
+  void askToGoOn(const Error& error);
+
+  SlipGuard slip_guard_;
+  Workstation workstation_;
+  std::filesystem::path recordings_;
+  QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_,
+      *picture_, *volume_, *look_;
+  QComboBox* scenes_;
+  QTabWidget* left_;
+  CasePanel* case_;
+  ImportDialog* import_;
+  TissuePanel* tissues_;
+  ArmsPanel* arms_;
+  ViewWidget* view_;
+  StateNotice* notice_;  // over the view
+  RewindBar* rewind_;
+  QLabel *hint_, *rates_;
+  QTimer frame_timer_;
+  QElapsedTimer panel_clock_, rate_clock_;
+  std::vector<double> limits_N_;  // of the running session's arms
+  struct GoingBack {
+    std::uint32_t second;
+    std::uint64_t asked_tick;
+  };
+  std::optional<GoingBack> going_back_;  // until it is said that one is there
+  int frames_ = 0;                       // since the rates were shown
+  std::uint64_t ticks_shown_ = 0;
+  bool carved_ = false;                             // the view shows what an ended exercise left
+  bool unsaved_cuts_ = false;                       // and some of it is in no file
+  bool may_close_ = false;                          // nothing unsaved is left to ask about
+  std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
+};
+
+}  // namespace trephine

@@ -1,0 +1,99 @@
+// What would lose work: it is asked once, and the way to keep the work is offered.
+#include <QCloseEvent>
+#include <QFileDialog>
+#include <QPushButton>
+
+#include "ui/common/question.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+void MainWindow::unlessCutsAreLost(std::function<void()> go_on) {
+  if (!unsaved_cuts_) return go_on();
+  QMessageBox* question =
+      ask(front(), "cutsQuestion", tr("What was cut is not saved as a volume."),
+          tr("Going on takes it from the view. The recording of the exercise is kept."),
+          tr("&Go on without it"), go_on);
+  auto* save = question->addButton(tr("&Save volume\u2026"), QMessageBox::AcceptRole);
+  save->setObjectName("saveFirst");
+  connect(
+      save, &QPushButton::clicked, this,
+      [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); }, Qt::QueuedConnection);
+}
+
+void MainWindow::askToSaveVolume(std::function<void()> then) {
+  QFileDialog* dialog =
+      saveDialog(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, then = std::move(then)](const QString& file) { saveVolumeThen(file, then); });
+  dialog->open();
+}
+
+void MainWindow::saveVolume(const QString& file) {
+  saveVolumeThen(file, {});
+}
+
+void MainWindow::saveVolumeThen(const QString& file, std::function<void()> then) {
+  if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
+  const auto copy = std::make_shared<const Volume>(view_->shownVolume());
+  // What a running exercise shows may be cut further.
+  const bool all = workstation_.phase() == Workstation::Phase::ready;
+  say(tr("Saving the volume\u2026"));
+  workstation_.save(
+      tr("The volume is saved."), [copy, path = toPath(file)] { return writeVolume(*copy, path); },
+      [this, all, then = std::move(then)] {
+        if (all) unsaved_cuts_ = false;
+        if (then) then();
+      });
+}
+
+void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
+  unlessCutsAreLost([this, go_on = std::move(go_on)] { unlessTissuesStay(go_on); });
+}
+
+void MainWindow::start() {
+  unlessCutsAreLost([this] { startExercise(); });
+}
+
+void MainWindow::reset() {
+  if (Session* session = workstation_.session()) {
+    const LoopState& state = session->state();
+    if (!state.can_undo && !state.can_redo) return;  // nothing was cut
+    ask(this, "resetQuestion", tr("Put all tissue back?"),
+        tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
+           "that mouse and keys move go back to where they began."),
+        tr("&Put back"), [this] { command(CommandKind::reset); });
+  } else if (workstation_.phase() == Workstation::Phase::ready) {
+    unlessCutsAreLost([this] { showWholeCase(); });
+  }
+}
+
+void MainWindow::showWholeCase() {
+  carved_ = unsaved_cuts_ = false;
+  view_->showVolume(Grid(*workstation_.volume(), workstation_.labels()));
+  showPhase();
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  using Phase = Workstation::Phase;
+  const Phase phase = workstation_.phase();
+  const bool running = phase != Phase::empty && phase != Phase::ready;
+  if (may_close_ || !(running || unsaved_cuts_ || workstation_.tissuesEdited())) {
+    return QMainWindow::closeEvent(event);
+  }
+  event->ignore();
+  const auto for_good = [this] {
+    unlessTissuesStay([this] {
+      may_close_ = true;
+      close();
+    });
+  };
+  if (!running) return unlessCutsAreLost(for_good);
+  ask(front(), "closeQuestion", tr("An exercise is running."),
+      tr("Closing ends it. Its recording is kept; what was cut is not saved as a volume."),
+      tr("&End it and close"), for_good);
+}
+
+}  // namespace trephine

@@ -1,0 +1,124 @@
+// What the window works on: the case that is open, the scene, and the exercise that runs. No
+// widget. Long work (scan, read, place landmarks, start, stop, save) goes to background threads;
+// every method is called, and every signal sent, on the window's thread.
+#pragma once
+
+#include <QObject>
+#include <memory>
+#include <optional>
+
+#include "session/session.h"
+#include "ui/cases/import_task.h"
+#include "ui/common/background_task.h"
+
+namespace trephine {
+
+class Workstation : public QObject {
+  Q_OBJECT
+ public:
+  enum class Phase { empty, ready, starting, running, ending };
+
+  explicit Workstation(QObject* parent = nullptr);
+  ~Workstation() override;
+
+  // A scene (.json, unless it is the sidecar of a .raw) brings its own case; any other folder or
+  // file is scanned for import().
+  void openPath(const std::filesystem::path& path);
+  // Whether openPath() takes it for a scene.
+  static bool isScene(const std::filesystem::path& path);
+  // One of the built-in cases, with the scene in use where that fits the anatomy.
+  void openPhantom(const std::string& name);
+  bool sceneFits(const std::string& anatomy) const { return scene_ && scene_->anatomy == anatomy; }
+  // What an import has read; `name` is for the screen only.
+  void openVolume(const std::shared_ptr<const Volume>& volume, const QString& name);
+  // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
+  void useScene(const std::filesystem::path& file);
+  // The label map of the open case. Another case has none until it is given.
+  void useLabels(const std::filesystem::path& file);
+  void cancelOpening() { opening_.cancel(); }
+  bool isOpening() const { return opening_.busy(); }
+  ImportTask& import() { return import_; }
+
+  Phase phase() const { return phase_; }
+  const std::optional<Scene>& scene() const { return scene_; }
+  const std::filesystem::path& sceneFile() const { return scene_file_; }
+  const std::shared_ptr<const Volume>& volume() const { return volume_; }
+  const QString& caseName() const { return case_name_; }
+  // Fitted to the volume; null: none.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+  // Where the scene wants to be looked at, when the case has that landmark.
+  std::optional<LandmarkFrame> viewLandmark() const;
+
+  // Starts from the case as it was opened. `script` moves the hands until the mouse does; after
+  // `seconds` the session is finished() and waits for stop().
+  void start(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
+             double seconds);
+  void stop();
+  // Emits recordingFailed() when the running exercise can no longer be recorded. The window asks
+  // with every picture.
+  void checkRecording();
+  // Only while the phase is running.
+  Session* session() const { return phase_ == Phase::running ? session_.get() : nullptr; }
+  // Felt at once, in an exercise that is being started too, and kept for the next one. The tissues
+  // are kept as long as the scene is, whatever the case.
+  void setTissues(const TissueSet& tissues);
+  void setController(ControllerKind kind);
+  // The tissues as the scene's file has them, or as they were saved last; and whether they have
+  // been edited since.
+  const TissueSet& declaredTissues() const { return declared_tissues_; }
+  bool tissuesEdited() const;
+  // As a file that scenes can name; `then` follows once it is written.
+  void saveTissues(const std::filesystem::path& file, std::function<void()> then);
+
+  // Runs `write` in the background; `what` names the outcome in saved().
+  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
+  bool isSaving() const { return saving_.busy(); }
+
+ signals:
+  void openingProgressed(double fraction, const QString& step);
+  void openingEnded();
+  // Another scene is being opened; scene() is still the one before.
+  void sceneOpening(const trephine::Scene& scene, const std::filesystem::path& file);
+  void sceneChanged();
+  void caseOpened();
+  void phaseChanged();  // or isOpening()
+  void sessionStarted();
+  // Once an exercise, which goes on; stop() does not say it again.
+  void recordingFailed(const trephine::Error& error);
+  // The exercise's last state; `session` goes away after it.
+  void sessionEnded(trephine::Session& session);
+  void saved(const QString& what);
+  void failed(const trephine::Error& error);
+
+ private:
+  struct Opened;
+  bool mayOpen();
+  std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
+  void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
+                  bool same_scene = false);
+  void placeAndOpen(Opened opening);
+  void opened(Result<Opened> outcome);
+  void started(std::unique_ptr<Session> session, double seconds);
+  void setPhase(Phase phase);
+  void fail(const Error& error);
+
+  Phase phase_ = Phase::empty;
+  std::optional<Scene> scene_;
+  std::filesystem::path scene_file_;
+  TissueSet declared_tissues_;
+  std::shared_ptr<const Volume> volume_;
+  QString case_name_;  // empty where it has none
+  std::shared_ptr<const LabelMap> labels_;
+  std::vector<PlacedLandmark> landmarks_;
+  bool own_case_ = false;  // the user's, not a built-in one
+  std::unique_ptr<Session> session_;
+  std::optional<Error> recording_failure_;  // said of this exercise
+  // Last, so that they are joined before what they work on goes.
+  ImportTask import_;
+  BackgroundTask opening_, running_, saving_;
+};
+
+// The scene that fits a case of this anatomy, among the product's own.
+std::filesystem::path defaultScene(const std::string& anatomy);
+
+}  // namespace trephine

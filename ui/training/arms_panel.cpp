@@ -1,0 +1,226 @@
+#include "ui/training/arms_panel.h"
+
+#include <QAbstractItemView>
+#include <QFormLayout>
+#include <QFrame>
+#include <QScrollArea>
+
+#include "ui/common/colours.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kMilli = 1000.0;
+
+QLabel* value(QWidget* parent, const QString& name) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
+}
+
+QLabel* quiet(const QString& text, QWidget* parent) {
+  auto* label = new QLabel(text, parent);
+  label->setProperty("quiet", true);
+  return label;
+}
+
+QString newtons(double force_N) {
+  return ArmsPanel::tr("%1 N").arg(force_N, 0, 'f', 2);
+}
+
+}  // namespace
+
+QColor armColour(const SceneArm& arm, std::size_t index) {
+  const bool left = arm.name == "left" || (arm.name != "right" && index == 0);
+  return left ? colours::kLeftArm : colours::kRightArm;
+}
+
+QString armName(const SceneArm& arm) {
+  if (arm.name == "left") return ArmsPanel::tr("Left arm");
+  if (arm.name == "right") return ArmsPanel::tr("Right arm");
+  return toQt(arm.name);
+}
+
+ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
+  auto* inside = new QWidget(this);
+  cards_layout_ = new QVBoxLayout(inside);
+  cards_layout_->setContentsMargins(10, 10, 10, 10);
+  cards_layout_->setSpacing(10);
+  auto* area = new QScrollArea(this);
+  area->setWidget(inside);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+
+  controller_ = new QComboBox(inside);
+  controller_->setObjectName("controller");
+  controller_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  for (const auto& [name, kind] : kControllerNames) {
+    controller_->addItem(controllerWord(kind), int(kind));
+    controller_->setItemData(controller_->count() - 1, controllerMeaning(kind), Qt::ToolTipRole);
+  }
+  controller_->setCurrentIndex(-1);  // until a scene says which
+  missed_ = value(inside, "missedDeadlines");
+  dropped_ = value(inside, "dropped");
+  journal_ =
+      new QLabel(tr("The way back can no longer be kept on the disk: nothing more is removed. Undo "
+                    "and rewind still work. Free some space, then start the exercise anew."),
+                 inside);
+  journal_->setWordWrap(true);
+  colours::setText(*journal_, colours::kBad);
+  journal_->hide();
+
+  auto* common = new QFormLayout;
+  common->setVerticalSpacing(6);
+  common->addRow(quiet(tr("Controller"), inside), controller_);
+  common->addRow(quiet(tr("Missed deadlines"), inside), missed_);
+  common->addRow(quiet(tr("Dropped records"), inside), dropped_);
+  cards_layout_->addLayout(common);
+  cards_layout_->addWidget(journal_);
+  cards_layout_->addStretch(1);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(area);
+
+  connect(controller_, &QComboBox::activated, this,
+          [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
+  showIdle();
+}
+
+void ArmsPanel::setScene(const Scene& scene) {
+  for (QWidget* card : card_widgets_) delete card;
+  card_widgets_.clear();
+  cards_.clear();
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene.arms[i], i));
+  period_s_ = 1.0 / scene.rate_hz;
+  controller_->setCurrentIndex(controller_->findData(int(scene.controller)));
+  showIdle();
+}
+
+ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
+  auto* frame = new QFrame(this);
+  frame->setProperty("card", true);
+  const QString prefix = toQt(arm.name);
+  auto* title = new QLabel(armName(arm), frame);
+  title->setProperty("title", true);
+  colours::setText(*title, armColour(arm, index));
+
+  Card card{value(frame, prefix + "Contact"),
+            value(frame, prefix + "Position"),
+            value(frame, prefix + "Force"),
+            value(frame, prefix + "Demanded"),
+            value(frame, prefix + "Energy"),
+            value(frame, prefix + "Parts"),
+            value(frame, prefix + "Faults"),
+            new ForceBar(frame),
+            arm.map.force_scale / arm.map.motion_scale,
+            {}};
+  card.bar->setObjectName(prefix + "ForceBar");
+  card.bar->setToolTip(
+      tr("Bar: the force sent, against the arm's limit. Mark: the force demanded."));
+  card.energy->setToolTip(tr(
+      "<p>Net work that the sent force did on the hand since the start; below zero where the "
+      "hand worked on the tissue. A little above zero is no fault: the encoder hides about 0.1 mJ "
+      "of each contact, and a force that comes back after a pause or a change gives out what the "
+      "tissue holds.</p><p>Red: just now the arm gives out more than 1 mJ a second beyond what "
+      "was pressed into the tissue. It shakes or pushes by itself.</p>"));
+  card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
+  card.parts->setWordWrap(true);
+  card.parts->setToolTip(forceChangeMeanings());
+  card.faults->setWordWrap(true);
+  colours::setText(*card.faults, colours::kBad);
+
+  auto* force_row = new QHBoxLayout;
+  force_row->addWidget(card.force, 1);
+  force_row->addWidget(card.demanded);
+  auto* form = new QFormLayout;
+  form->setVerticalSpacing(4);
+  form->addRow(quiet(tr("Touches"), frame), card.contact);
+  form->addRow(quiet(tr("Tip"), frame), card.position);
+  form->addRow(quiet(tr("Energy"), frame), card.energy);
+  form->addRow(quiet(tr("Changed"), frame), card.parts);
+  auto* layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(10, 8, 10, 8);
+  layout->setSpacing(6);
+  layout->addWidget(title);
+  layout->addWidget(card.bar);
+  layout->addLayout(force_row);
+  layout->addLayout(form);
+  layout->addWidget(card.faults);
+  cards_layout_->insertWidget(int(index), frame);
+  card_widgets_.push_back(frame);
+  return card;
+}
+
+void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
+                          const std::vector<double>& limits_N) {
+  const double now_s = double(state.ticks) * period_s_;
+  for (std::size_t i = 0; i < cards_.size() && i < limits_N.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    Card& card = cards_[i];
+    const double sent_N = glm::length(arm.sent_N), demanded_N = glm::length(arm.demanded_N);
+    card.bar->setForce(sent_N, demanded_N, limits_N[i]);
+    card.force->setText(tr("%1 of %2").arg(newtons(sent_N), newtons(limits_N[i])));
+    card.demanded->setText(tr("demanded %1").arg(newtons(demanded_N)));
+    const Vec3& p = arm.proxy_position_mm;
+    card.position->setText(
+        tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
+    const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
+    const bool gives_out = card.watch.look(arm, card.device_per_model, state.paused, now_s);
+    card.energy->setText(tr("%1 mJ").arg(kMilli * energy_J, 0, 'f', 1));
+    colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
+    card.parts->setText(forceChangeWords(arm, state.paused));
+    const bool touching =
+        arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
+    card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
+                                   : tr("nothing"));
+    colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
+    QStringList wrong;
+    if (arm.faults != 0) wrong << faultWords(arm.faults);
+    if (gives_out) {
+      wrong << (state.controller == ControllerKind::bounded
+                    ? tr("The arm gives out energy: it shakes or pushes by itself.")
+                    : tr("The arm gives out energy: it shakes or pushes by itself. Choose the "
+                         "controller '%1'.")
+                          .arg(controllerWord(ControllerKind::bounded)));
+    }
+    if (arm.controller_parts & kPartArmNotAsStated) {
+      wrong << tr("The arm's mass or delay is not what its device file states.");
+    }
+    card.faults->setText(wrong.join('\n'));
+    card.faults->setVisible(!wrong.isEmpty());
+  }
+  missed_->setText(QString::number(state.missed));
+  dropped_->setText(QString::number(state.dropped));
+  colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
+  journal_->setVisible(state.journal_full);
+  if (state.ticks > 0) showController(state.controller);  // before, it is not known
+}
+
+void ArmsPanel::showController(std::optional<ControllerKind> kind) {
+  if (!controller_->view()->isVisible()) {  // a person may be choosing
+    controller_->setCurrentIndex(kind ? controller_->findData(int(*kind)) : -1);
+  }
+}
+
+void ArmsPanel::showIdle() {
+  for (Card& card : cards_) {
+    card.watch = EnergyWatch();
+    card.bar->setForce(0.0, 0.0, 1.0);
+    for (QLabel* label : {card.contact, card.position, card.energy, card.parts, card.force}) {
+      label->setText(QStringLiteral("\u2013"));
+    }
+    colours::setText(*card.energy, colours::kText);
+    card.demanded->clear();
+    card.faults->hide();
+  }
+  missed_->setText(QStringLiteral("\u2013"));
+  dropped_->setText(QStringLiteral("\u2013"));
+  journal_->hide();
+}
+
+}  // namespace trephine

@@ -1,0 +1,56 @@
+// Both arms' state while an exercise runs: where they are, what they feel against their limit, the
+// energy they gave out, the tissue they touch, their faults; and the controller of both.
+#pragma once
+
+#include <QComboBox>
+#include <QLabel>
+#include <QVBoxLayout>
+#include <QWidget>
+#include <vector>
+
+#include "haptics/haptic_loop.h"
+#include "scene/scene.h"
+#include "session/energy_watch.h"
+#include "ui/training/force_bar.h"
+
+namespace trephine {
+
+class ArmsPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ArmsPanel(QWidget* parent = nullptr);
+
+  // One card an arm of the scene.
+  void setScene(const Scene& scene);
+  // The newest state; `limits_N` by arm.
+  void showState(const LoopState& state, const TissueSet& tissues,
+                 const std::vector<double>& limits_N);
+  void showIdle();
+  void showController(std::optional<ControllerKind> kind);  // none: no scene says which
+
+ signals:
+  void controllerWanted(trephine::ControllerKind kind);
+
+ private:
+  struct Card {
+    QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
+    ForceBar* bar;
+    double device_per_model;  // energy
+    EnergyWatch watch;
+  };
+  Card addCard(const SceneArm& arm, std::size_t index);
+
+  QVBoxLayout* cards_layout_;
+  std::vector<QWidget*> card_widgets_;
+  std::vector<Card> cards_;
+  double period_s_ = 0.001;
+  QComboBox* controller_;
+  QLabel *missed_, *dropped_, *journal_;
+};
+
+// The colour in which an arm's tool and card are drawn.
+QColor armColour(const SceneArm& arm, std::size_t index);
+// "Left arm".
+QString armName(const SceneArm& arm);
+
+}  // namespace trephine

@@ -1,0 +1,200 @@
+#include "ui/training/rewind_bar.h"
+
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QProxyStyle>
+#include <QSignalBlocker>
+#include <QWheelEvent>
+#include <algorithm>
+#include <initializer_list>
+
+#include "ui/common/icons.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kKeyPause_ms = 600;
+
+// A click is meant for the second under it.
+class ClickedPlace : public QProxyStyle {
+ public:
+  ClickedPlace() : QProxyStyle("Fusion") {}
+  int styleHint(StyleHint hint, const QStyleOption* option, const QWidget* widget,
+                QStyleHintReturn* data) const override {
+    if (hint == SH_Slider_AbsoluteSetButtons) return Qt::LeftButton;
+    return QProxyStyle::styleHint(hint, option, widget, data);
+  }
+};
+
+class TimeSlider : public QSlider {
+ public:
+  explicit TimeSlider(QWidget* parent) : QSlider(Qt::Horizontal, parent) {
+    auto* style = new ClickedPlace;
+    style->setParent(this);
+    setStyle(style);
+  }
+
+ protected:
+  // The wheel moves a hand in the view beside it, and must not go back by a slip.
+  void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+  // Home belongs to the view but where the slider has the focus.
+  bool event(QEvent* event) override {
+    if (event->type() == QEvent::ShortcutOverride) {
+      const int key = static_cast<QKeyEvent*>(event)->key();
+      if (key == Qt::Key_Home || key == Qt::Key_End) event->accept();
+    }
+    return QSlider::event(event);
+  }
+};
+
+}  // namespace
+
+std::uint32_t WayBack::before(std::uint32_t now, std::uint32_t by) const {
+  std::uint32_t second = now;
+  for (auto jump = jumps_.rbegin(); jump != jumps_.rend(); ++jump) {
+    // Made later than where the way has come; a second that one left was before its jump.
+    if (second != now && jump->from >= second) continue;
+    const std::uint32_t since = second - jump->from;
+    if (by < since) break;
+    by -= since;
+    second = jump->to;
+  }
+  return second - std::min(by, second);
+}
+
+RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
+  back_ = new QAction(symbolIcon(Symbol::back), tr("Back %1 s").arg(kBack_s), this);
+  back_->setObjectName("back");
+  back_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_Backspace));
+  back_->setToolTip(tr("Tissue, counts and forces as they were %1 s ago (%2)")
+                        .arg(kBack_s)
+                        .arg(back_->shortcut().toString(QKeySequence::NativeText)));
+  back_button_ = new QToolButton(this);
+  back_button_->setObjectName("backButton");
+  back_button_->setDefaultAction(back_);
+  back_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  back_button_->setAutoRaise(true);
+  slider_ = new TimeSlider(this);
+  slider_->setObjectName("rewindSlider");
+  slider_->setAccessibleName(tr("Second of the exercise to go back to"));
+  slider_->setToolTip(
+      tr("Go back to any second: tissue, counts and forces as they were then.\n"
+         "Left, Right: 1 s. Page Up, Page Down: 10 s. Home: the beginning. Esc: stay."));
+  slider_->setSingleStep(1);
+  slider_->setPageStep(kBack_s);
+  time_ = new QLabel(this);
+  time_->setObjectName("rewindTime");
+  time_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  const QFontMetrics metrics = time_->fontMetrics();
+  time_->setMinimumWidth(std::max(metrics.horizontalAdvance(tr("Going back\u2026")),
+                                  metrics.horizontalAdvance(tr("%1 of %2").arg("00:00", "00:00"))));
+  // By the Tab key only: a click must leave the keys to the hands in the view.
+  for (QWidget* widget : std::initializer_list<QWidget*>{back_button_, slider_}) {
+    widget->setFocusPolicy(Qt::TabFocus);
+  }
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(8, 2, 8, 2);
+  layout->addWidget(back_button_);
+  layout->addWidget(slider_, 1);
+  layout->addWidget(time_);
+
+  keys_.setSingleShot(true);
+  keys_.setInterval(kKeyPause_ms);
+  connect(&keys_, &QTimer::timeout, this, &RewindBar::askChosen);
+  connect(slider_, &QSlider::sliderPressed, &keys_, &QTimer::stop);
+  connect(slider_, &QSlider::sliderReleased, this, &RewindBar::askChosen);
+  connect(slider_, &QSlider::valueChanged, this, [this] {
+    if (!slider_->isSliderDown()) keys_.start();
+    showChosen();
+  });
+  connect(back_, &QAction::triggered, this, &RewindBar::goBack);
+  showIdle();
+}
+
+void RewindBar::showTime(std::uint32_t now, bool going_back) {
+  now_ = now;
+  setUsable(!going_back);
+  if (going_back) {
+    time_->setText(tr("Going back\u2026"));
+  } else if (choosing()) {
+    showChosen();
+  } else {
+    follow();
+  }
+}
+
+void RewindBar::showIdle() {
+  now_ = 0;
+  way_back_.forget();
+  setUsable(false);
+  had_focus_ = nullptr;
+  follow();
+  time_->setText(QStringLiteral("\u2013"));
+}
+
+// Disabled, a widget loses the focus to the next one.
+void RewindBar::setUsable(bool usable) {
+  if (slider_->isEnabled() == usable) return;
+  if (!usable) {
+    keys_.stop();
+    {
+      const QSignalBlocker quiet(slider_);  // letting go here is no choice
+      slider_->setSliderDown(false);
+    }
+    for (QWidget* widget : std::initializer_list<QWidget*>{back_button_, slider_}) {
+      if (widget->hasFocus()) had_focus_ = widget;
+    }
+  }
+  slider_->setEnabled(usable);
+  back_->setEnabled(usable);
+  if (!usable) {
+    lent_to_ = window()->focusWidget();
+  } else if (had_focus_) {
+    if (window()->focusWidget() == lent_to_) had_focus_->setFocus();
+    had_focus_ = nullptr;
+  }
+}
+
+void RewindBar::follow() {
+  {
+    const QSignalBlocker quiet(slider_);
+    slider_->setRange(0, int(now_));
+    slider_->setValue(int(now_));
+  }
+  showChosen();
+}
+
+void RewindBar::showChosen() {
+  const auto chosen = std::uint32_t(slider_->value());
+  const bool newest = slider_->value() == slider_->maximum();
+  time_->setText(newest ? timeWords(now_) : tr("%1 of %2").arg(timeWords(chosen), timeWords(now_)));
+}
+
+void RewindBar::askChosen() {
+  keys_.stop();
+  if (slider_->value() < slider_->maximum()) {
+    ask(std::uint32_t(slider_->value()));
+  } else {
+    follow();
+  }
+}
+
+void RewindBar::goBack() {
+  ask(way_back_.before(now_, kBack_s));
+}
+
+void RewindBar::ask(std::uint32_t second) {
+  keys_.stop();
+  way_back_.went(now_, second);
+  emit rewindAsked(second);
+}
+
+void RewindBar::keyPressEvent(QKeyEvent* event) {
+  if (event->key() != Qt::Key_Escape || !keys_.isActive()) return QWidget::keyPressEvent(event);
+  keys_.stop();
+  follow();
+}
+
+}  // namespace trephine

@@ -1,0 +1,193 @@
+#include "ui/training/state_notice.h"
+
+#include <QEvent>
+#include <QStringList>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/common/words.h"
+#include "ui/training/arms_panel.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kWidest = 460;
+constexpr int kMargin = 16;
+
+// "Left arm", "Both arms": what a line is about.
+QString whoWords(const std::vector<std::size_t>& arms, const Scene& scene) {
+  if (arms.size() > 1 && arms.size() == scene.arms.size()) {
+    return arms.size() == 2 ? StateNotice::tr("Both arms") : StateNotice::tr("All arms");
+  }
+  QStringList names;
+  for (std::size_t arm : arms) names << armName(scene.arms[arm]);
+  return names.join(", ");
+}
+
+}  // namespace
+
+ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still_s) {
+  if (still_s > 0.0) {
+    return {
+        StateNotice::tr("NO FORCE"),
+        StateNotice::tr("An arm or the computer does not answer: touch has stood still for %1 s. "
+                        "Wait, or stop the exercise (Ctrl+.).")
+            .arg(std::ceil(still_s)),
+        {}};
+  }
+  ForceNotice out;
+  QStringList reasons;                            // each once, in the order of the arms
+  std::vector<std::vector<std::size_t>> with_it;  // the arms that have it
+  std::vector<std::size_t> all;
+  std::uint32_t faults = 0;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    QStringList of_arm;
+    if (arm.faults != 0) of_arm << faultWords(arm.faults);
+    if (!state.paused && (arm.tool_state & kToolWaits)) {
+      of_arm << StateNotice::tr(
+          "The tool is in tissue that it did not come into. Draw it out to feel and to cut: turn "
+          "the "
+          "wheel towards you or press Page Up (with Shift for the left hand).");
+    }
+    if (arm.tool_state & kToolLetGo) {
+      of_arm << StateNotice::tr("The tool was hooked behind bone: it is let go.");
+    }
+    const QString reason = of_arm.join('\n');
+    if (reason.isEmpty()) continue;
+    faults |= arm.faults;
+    all.push_back(i);
+    const auto known = reasons.indexOf(reason);
+    if (known < 0) {
+      reasons << reason;
+      with_it.push_back({i});
+    } else {
+      with_it[std::size_t(known)].push_back(i);
+    }
+  }
+  if (all.empty()) return out;
+  out.title = StateNotice::tr("NO FORCE: %1").arg(whoWords(all, scene));
+  for (qsizetype r = 0; r < reasons.size(); ++r) {
+    if (r > 0) out.why += '\n';
+    if (reasons.size() > 1) out.why += whoWords(with_it[std::size_t(r)], scene) + ": ";
+    out.why += reasons[r];
+  }
+  if (faults & kFaultDeviceLost) {
+    out.mend = StateNotice::tr("Try again");
+  } else if (faults & ~std::uint32_t(kFaultLate)) {
+    out.mend = StateNotice::tr("Force on");
+  }
+  return out;
+}
+
+QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene) {
+  const QString back =
+      StateNotice::tr("Back at %1: tissue, counts and forces as they were. The clock runs on.")
+          .arg(timeWords(second));
+  std::vector<std::size_t> waiting;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    if (state.record.arms[i].tool_state & kToolWaits) waiting.push_back(i);
+  }
+  if (waiting.empty()) return back;
+  return StateNotice::tr("%1 %2: draw the tool out of the tissue to feel again.")
+      .arg(back, whoWords(waiting, scene));
+}
+
+StateNotice::StateNotice(QWidget* view) : QWidget(view) {
+  setObjectName("stateNotice");
+  force_on_ = new QAction(tr("Force on"), this);
+  force_on_->setObjectName("forceBack");
+  force_on_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_F));
+  force_on_->setAutoRepeat(false);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(8);
+  pause_ = makeCard("pauseNotice", "goOn");
+  pause_.title->setText(tr("PAUSED"));
+  pause_.why->setText(tr("No force, no cutting, and the clock stands still."));
+  pause_.button->setText(tr("Go on (Space)"));
+  force_ = makeCard("forceNotice", "forceOn");
+  connect(pause_.button, &QPushButton::clicked, this, &StateNotice::goOnWanted);
+  connect(force_.button, &QPushButton::clicked, force_on_, &QAction::trigger);
+  connect(force_on_, &QAction::triggered, this, &StateNotice::forceWanted);
+  view->installEventFilter(this);
+  showIdle();
+}
+
+StateNotice::Card StateNotice::makeCard(const char* name, const char* button_name) {
+  auto* frame = new QFrame(this);
+  frame->setObjectName(name);
+  frame->setProperty("notice", true);
+  auto* title = new QLabel(frame);
+  title->setObjectName(QString(name) + "Title");
+  title->setProperty("noticeTitle", true);
+  auto* why = new QLabel(frame);
+  why->setObjectName(QString(name) + "Why");
+  auto* button = new QPushButton(frame);
+  button->setObjectName(button_name);
+  button->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the hands
+  auto* layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(16, 10, 16, 12);
+  layout->setSpacing(6);
+  for (QLabel* label : {title, why}) {
+    label->setAlignment(Qt::AlignCenter);
+    label->setTextFormat(Qt::PlainText);
+    label->setWordWrap(true);
+    layout->addWidget(label);
+  }
+  layout->addWidget(button, 0, Qt::AlignCenter);
+  this->layout()->addWidget(frame);
+  return {frame, title, why, button};
+}
+
+void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s) {
+  show(state.paused, forceNotice(state, scene, still_s));
+}
+
+void StateNotice::showIdle() {
+  show(false, {});
+}
+
+void StateNotice::show(bool paused, const ForceNotice& force) {
+  const QString mend =
+      force.mend.isEmpty()
+          ? QString()
+          : tr("%1 (%2)").arg(force.mend, force_on_->shortcut().toString(QKeySequence::NativeText));
+  const bool without_force = !force.title.isEmpty();
+  const bool same =
+      isHidden() == !(paused || without_force) && pause_.frame->isHidden() != paused &&
+      force_.frame->isHidden() != without_force && force_.title->text() == force.title &&
+      force_.why->text() == force.why && force_.button->text() == mend;
+  if (same) return;
+  // A button that goes would leave the keys to whatever comes next in the window.
+  const bool had_focus = isAncestorOf(window()->focusWidget());
+  pause_.frame->setVisible(paused);
+  force_.frame->setVisible(without_force);
+  force_.title->setText(force.title);
+  force_.why->setText(force.why);
+  force_.button->setText(mend);
+  force_.button->setVisible(!mend.isEmpty());
+  force_on_->setEnabled(!mend.isEmpty());
+  setVisible(paused || without_force);
+  if (had_focus && !isAncestorOf(window()->focusWidget())) parentWidget()->setFocus();
+  place();
+}
+
+bool StateNotice::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::Resize) place();
+  return QWidget::eventFilter(watched, event);
+}
+
+void StateNotice::place() {
+  const QWidget* view = parentWidget();
+  const int width = std::min(kWidest, view->width() - 2 * kMargin);
+  // Where words changed within a card, only the card's own layout knows it yet.
+  for (QFrame* frame : {pause_.frame, force_.frame}) frame->updateGeometry();
+  layout()->activate();
+  const int height = layout()->totalHeightForWidth(width);
+  setGeometry((view->width() - width) / 2, kMargin, width, height);
+}
+
+}  // namespace trephine

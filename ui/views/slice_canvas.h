@@ -1,0 +1,63 @@
+// Draws one slice in its true proportions and as it is customary to look at one: in front or head
+// up, the patient's right at the left; and what is marked in it. Positions are the slice's own
+// pixels, column and row as stored.
+#pragma once
+
+#include <QImage>
+#include <QWidget>
+#include <optional>
+
+#include "ui/views/slice_image.h"
+
+namespace trephine {
+
+class SliceCanvas : public QWidget {
+  Q_OBJECT
+ public:
+  explicit SliceCanvas(QWidget* parent = nullptr);
+
+  void setSlice(SlicePicture slice);
+  // Unit directions, LPS, of columns, rows and slices; without one slices are drawn as stored.
+  void setDirection(const std::optional<Mat3>& direction);
+  void setWindow(const HuWindow& window);
+  // In place of a slice.
+  void setMessage(const QString& text);
+  // What is kept of the slice, [left, right) x [top, bottom): the rest is drawn darker.
+  void setKept(std::optional<QRect> pixels);
+  // What would be taken out: tinted where `mask` (Format_Alpha8, a value a pixel) is opaque.
+  void setMarked(const QImage& mask);
+  // Whether dragging with the left button draws a box.
+  void setDrawable(bool drawable);
+
+  const QImage& image() const { return image_; }  // as it is drawn
+  const QImage& marked() const { return marked_; }
+  // Where the slice is drawn in the widget; empty without one.
+  QRectF target() const;
+
+ signals:
+  void boxDrawn(const QRect& pixels);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+
+ private:
+  void draw();
+  QPoint pixelAt(const QPointF& position) const;
+  QRectF inWidget(const QRect& pixels) const;
+  void paintKept(QPainter& painter) const;
+  void paintLetters(QPainter& painter) const;
+
+  SlicePicture slice_;
+  HuWindow window_ = kWindowPresets[0].window;
+  QImage image_, marked_;
+  QString message_;
+  std::optional<QRect> kept_;
+  std::optional<Mat3> direction_;
+  Mirroring mirroring_;
+  bool drawable_ = false;
+  std::optional<QPoint> pressed_;
+};
+
+}  // namespace trephine

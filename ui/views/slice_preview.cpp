@@ -1,0 +1,151 @@
+#include "ui/views/slice_preview.h"
+
+#include <QCoreApplication>
+#include <QHBoxLayout>
+#include <QShortcut>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QWheelEvent>
+
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kPageOfSlices = 10;
+constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
+}  // namespace
+
+SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
+  canvas_ = new SliceCanvas(this);
+  canvas_->setObjectName("sliceCanvas");
+
+  windows_ = new QButtonGroup(this);
+  auto* window_row = new QHBoxLayout;
+  window_row->setSpacing(4);
+  auto* title = new QLabel(tr("Window"), this);
+  title->setProperty("quiet", true);
+  window_row->addWidget(title);
+  for (int i = 0; i < int(kWindowPresets.size()); ++i) {
+    const WindowPreset& preset = kWindowPresets[std::size_t(i)];
+    auto* button = new QToolButton(this);
+    button->setObjectName(QString("window%1").arg(i + 1));
+    button->setText(QCoreApplication::translate("HuWindow", preset.name));
+    button->setToolTip(tr("Width %1 HU around %2 HU (key %3). Only the picture changes.")
+                           .arg(preset.window.width_hu)
+                           .arg(preset.window.centre_hu)
+                           .arg(i + 1));
+    button->setCheckable(true);
+    button->setProperty("segment", true);
+    button->setFocusPolicy(Qt::StrongFocus);
+    connect(new QShortcut(QKeySequence(Qt::Key_1 + i), this), &QShortcut::activated, button,
+            &QAbstractButton::click);
+    windows_->addButton(button, i);
+    window_row->addWidget(button);
+  }
+  window_row->addStretch(1);
+  windows_->button(0)->setChecked(true);
+
+  slider_ = new QSlider(Qt::Horizontal, this);
+  slider_->setObjectName("sliceSlider");
+  slider_->setAccessibleName(tr("Slice"));
+  slider_->setPageStep(kPageOfSlices);
+  position_ = new QLabel(this);
+  position_->setObjectName("slicePosition");
+  position_->setMinimumWidth(fontMetrics().horizontalAdvance("Slice 0000 of 0000"));
+  position_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  auto* slider_row = new QHBoxLayout;
+  slider_row->addWidget(slider_, 1);
+  slider_row->addWidget(position_);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 0, 8, 0);
+  layout->addLayout(window_row);
+  layout->addWidget(canvas_, 1);
+  layout->addLayout(slider_row);
+
+  connect(windows_, &QButtonGroup::idClicked, this,
+          [this](int i) { canvas_->setWindow(kWindowPresets[std::size_t(i)].window); });
+  connect(slider_, &QSlider::valueChanged, this, [this](int index) {
+    showPosition();
+    emit sliceWanted(index);
+  });
+  const auto pages = [this](Qt::Key key, QAbstractSlider::SliderAction action) {
+    connect(new QShortcut(QKeySequence(key), this), &QShortcut::activated, this,
+            [this, action] { slider_->triggerAction(action); });
+  };
+  pages(Qt::Key_PageUp, QAbstractSlider::SliderPageStepAdd);
+  pages(Qt::Key_PageDown, QAbstractSlider::SliderPageStepSub);
+  showNothing({});
+}
+
+void SlicePreview::showStack(int count, const std::optional<Mat3>& direction) {
+  if (count <= 0) return showNothing(tr("There is nothing to show."));
+  canvas_->setDirection(direction);
+  {
+    const QSignalBlocker quiet(slider_);
+    slider_->setRange(0, count - 1);
+    slider_->setValue(count / 2);
+  }
+  slider_->setEnabled(count > 1);
+  showPosition();
+  emit sliceWanted(slider_->value());
+}
+
+void SlicePreview::showNothing(const QString& why) {
+  {
+    const QSignalBlocker quiet(slider_);
+    slider_->setRange(0, 0);
+  }
+  slider_->setEnabled(false);
+  position_->clear();
+  canvas_->setMessage(why);
+}
+
+void SlicePreview::showSlice(int index, const Result<SlicePicture>& picture) {
+  if (index < slider_->minimum() || index > slider_->maximum()) return;
+  if (picture) {
+    canvas_->setSlice(*picture);
+  } else if (index == slider_->value()) {
+    canvas_->setMessage(tr("This slice cannot be shown: %1.").arg(toQt(picture.error().what)));
+  }
+}
+
+void SlicePreview::showPosition() {
+  position_->setText(tr("Slice %1 of %2").arg(slider_->value() + 1).arg(slider_->maximum() + 1));
+}
+
+SlicePicture sliceOf(const Volume& volume, int k) {
+  const GridGeometry& g = volume.geometry;
+  if (!g.contains(0, 0, k)) return {};
+  const auto begin = volume.hu.begin() + std::ptrdiff_t(g.indexOf(0, 0, k));
+  return {
+      g.size[0], g.size[1], g.spacing_mm, {begin, begin + std::ptrdiff_t(g.size[0]) * g.size[1]}};
+}
+
+QImage couchMask(const CouchFinding& couch, const Volume& volume, int k) {
+  const GridGeometry& g = volume.geometry;
+  if (!couch.found || !g.contains(0, 0, k)) return {};
+  QImage mask(g.size[0], g.size[1], QImage::Format_Alpha8);
+  for (int j = 0; j < g.size[1]; ++j) {
+    uchar* line = mask.scanLine(j);
+    for (int i = 0; i < g.size[0]; ++i) {
+      line[i] = volume.at(i, j, k) > kNoAirHu && couch.isCouch(i, j, k) ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+void SlicePreview::wheelEvent(QWheelEvent* event) {
+  turned_ += event->angleDelta().y();
+  const int notches = turned_ / QWheelEvent::DefaultDeltasPerStep;
+  turned_ -= notches * QWheelEvent::DefaultDeltasPerStep;  // a touchpad sends parts of a notch
+  slider_->setValue(slider_->value() - notches);
+  event->accept();
+}
+
+void SlicePreview::mousePressEvent(QMouseEvent*) {
+  slider_->setFocus();
+}
+
+}  // namespace trephine

@@ -1,0 +1,271 @@
+#include "ui/views/view_widget.h"
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QOpenGLContext>
+#include <QWheelEvent>
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+constexpr int kStillAfter_ms = 300;
+// A full picture that takes this long would stop a hand that rests for a moment only, so in an
+// exercise it waits for a longer rest.
+constexpr double kSlowPicture_ms = 150.0;
+constexpr int kLongRest_ms = 1500;
+constexpr double kTurn_deg_per_pixel = 0.4;
+constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
+constexpr double kKeyStep_mm = 0.5;
+constexpr double kZoomStep = 1.1;
+constexpr int kKeyTurn_pixels = 12;
+// Movements of a tool that no picture shows.
+constexpr double kToolMoved_mm = 0.02;
+constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
+
+Hand handFor(Qt::KeyboardModifiers modifiers) {
+  return modifiers & Qt::ShiftModifier ? Hand::left : Hand::right;
+}
+
+bool looksAlike(const ToolView& a, const ToolView& b) {
+  return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
+         a.colour == b.colour && a.radius_mm == b.radius_mm && a.head_mm == b.head_mm &&
+         a.mesh_file == b.mesh_file && a.mesh_tip_mm == b.mesh_tip_mm &&
+         a.mesh_axis == b.mesh_axis &&
+         glm::distance(a.pose_mm.position, b.pose_mm.position) < kToolMoved_mm &&
+         std::abs(glm::dot(a.pose_mm.orientation, b.pose_mm.orientation)) > 1.0 - 1e-7;
+}
+
+}  // namespace
+
+ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabel(this)) {
+  setObjectName("view");
+  setAccessibleName(tr("3-D view"));
+  setFocusPolicy(Qt::StrongFocus);
+  setMinimumSize(320, 240);
+  setToolTip(QString());
+  hint_->setObjectName("viewHint");
+  hint_->setAlignment(Qt::AlignCenter);
+  hint_->setWordWrap(true);
+  hint_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  hint_->setProperty("quiet", true);
+  hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
+  still_.setSingleShot(true);
+  connect(&still_, &QTimer::timeout, this, [this] {
+    moving_ = false;
+    renderer_.setMoving(false);
+    update();
+  });
+}
+
+ViewWidget::~ViewWidget() {
+  releaseGraphics();
+  // The base class destroys the context, and says so, when our members are gone.
+  if (context()) disconnect(context(), nullptr, this, nullptr);
+}
+
+void ViewWidget::releaseGraphics() {
+  if (!context()) return;
+  makeCurrent();
+  renderer_.detach();
+  doneCurrent();
+}
+
+void ViewWidget::initializeGL() {
+  connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &ViewWidget::releaseGraphics,
+          Qt::UniqueConnection);
+  drawing_ = renderer_.attach({[this] { return QOpenGLContext::currentContext() == context(); },
+                               [this] { makeCurrent(); }});
+  fitRenderer();
+  if (drawing_) {
+    gl_description_ = renderer_.openGlDescription();
+  } else {
+    emit failed(drawing_.error());
+  }
+}
+
+// The renderer counts device pixels, the widget does not.
+void ViewWidget::fitRenderer() {
+  renderer_.resize(int(std::lround(width() * devicePixelRatioF())),
+                   int(std::lround(height() * devicePixelRatioF())));
+}
+
+void ViewWidget::resizeGL(int, int) {
+  fitRenderer();
+  fitHint();
+}
+
+void ViewWidget::fitHint() {
+  hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
+}
+
+void ViewWidget::paintGL() {
+  QElapsedTimer timer;
+  timer.start();
+  fitRenderer();  // the screen may have changed under the window
+  constexpr double kStrip_ms =
+      50.0;  // a still picture comes in strips, so that input is not kept waiting
+  if (!renderer_.paint(defaultFramebufferObject(), kStrip_ms)) update();
+  const double paint_ms = double(timer.nsecsElapsed()) * 1e-6;
+  if (!moving_) still_picture_ms_ = paint_ms;
+  emit framePainted(paint_ms, renderer_.hasVolume());
+}
+
+void ViewWidget::redraw() {
+  moving_ = true;
+  renderer_.setMoving(true);
+  const bool slow = training_ && still_picture_ms_ > kSlowPicture_ms;
+  still_.start(slow ? kLongRest_ms : kStillAfter_ms);
+  update();
+}
+
+void ViewWidget::showVolume(const Grid& grid) {
+  renderer_.setVolume(grid);
+  hint_->setVisible(!renderer_.hasVolume());
+  redraw();
+}
+
+void ViewWidget::setTissues(const TissueSet& tissues) {
+  renderer_.setTissues(tissues);
+  redraw();
+}
+
+void ViewWidget::lookAtLandmark(const LandmarkFrame& frame, double distance_mm) {
+  renderer_.lookAt(frame.position_mm, frame.viewDirection(), frame.viewUp(), distance_mm);
+  redraw();
+}
+
+void ViewWidget::lookFromFront() {
+  fitRenderer();
+  renderer_.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  redraw();
+}
+
+void ViewWidget::pullChanges(Grid& grid) {
+  if (renderer_.pullChanges(grid)) redraw();
+}
+
+void ViewWidget::setTools(const std::vector<ToolView>& tools) {
+  bool alike = tools.size() == tools_.size();
+  for (std::size_t i = 0; alike && i < tools.size(); ++i) alike = looksAlike(tools[i], tools_[i]);
+  if (alike) return;
+  tools_ = tools;
+  renderer_.setTools(tools);
+  redraw();
+}
+
+void ViewWidget::setTraining(bool training) {
+  training_ = training;
+}
+
+void ViewWidget::setHandPoint(Hand hand, const Vec3& point_mm) {
+  hand_points_mm_[std::size_t(hand)] = point_mm;
+}
+
+Result<Picture> ViewWidget::picture() {
+  if (!context() || !renderer_.hasVolume()) {
+    return Error{"NO_PICTURE", "There is nothing to take a picture of", "3-D view",
+                 "Open a case first"};
+  }
+  makeCurrent();
+  Picture picture = renderer_.picture();
+  doneCurrent();
+  update();  // the picture was drawn with VTK's state, the window's frame is still the old one
+  if (picture.rgb.empty()) {
+    return Error{"NO_PICTURE", "The picture could not be read from the graphics card", "3-D view",
+                 "Try again, or with a smaller window"};
+  }
+  return picture;
+}
+
+void ViewWidget::moveHand(Hand hand, double right_pixels, double up_pixels) {
+  const double mm =
+      renderer_.mmPerPixelAt(hand_points_mm_[std::size_t(hand)]) * devicePixelRatioF();
+  moveHandBy(hand, (renderer_.viewRight() * right_pixels + renderer_.viewUp() * up_pixels) * mm);
+}
+
+void ViewWidget::moveHandBy(Hand hand, const Vec3& by_mm) {
+  emit handMoved(hand, by_mm);
+  redraw();
+}
+
+void ViewWidget::turn(double right_pixels, double down_pixels) {
+  renderer_.orbit(-kTurn_deg_per_pixel * right_pixels, kTurn_deg_per_pixel * down_pixels);
+  redraw();
+}
+
+void ViewWidget::mousePressEvent(QMouseEvent* event) {
+  last_ = event->position();
+}
+
+void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
+  const QPointF moved = event->position() - last_;
+  last_ = event->position();
+  if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
+  if (event->buttons() & Qt::MiddleButton) {
+    renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
+    redraw();
+  } else if (training_ && (event->buttons() & Qt::LeftButton)) {
+    moveHand(handFor(event->modifiers()), moved.x(), -moved.y());
+  } else {
+    turn(moved.x(), moved.y());
+  }
+}
+
+void ViewWidget::mouseReleaseEvent(QMouseEvent*) {}
+
+void ViewWidget::wheelEvent(QWheelEvent* event) {
+  if (!renderer_.hasVolume()) return;
+  // With Shift some systems turn the wheel sideways.
+  const QPoint angle = event->angleDelta();
+  const double notches = double(angle.y() != 0 ? angle.y() : angle.x()) / kWheelNotch;
+  if (training_ && !(event->modifiers() & Qt::ControlModifier)) {
+    moveHandBy(handFor(event->modifiers()), renderer_.viewForward() * (notches * kWheelStep_mm));
+  } else {
+    renderer_.zoom(std::pow(kZoomStep, notches));
+    redraw();
+  }
+  event->accept();
+}
+
+void ViewWidget::keyPressEvent(QKeyEvent* event) {
+  int right = 0, up = 0, deeper = 0;
+  switch (event->key()) {
+    case Qt::Key_Left:
+      right = -1;
+      break;
+    case Qt::Key_Right:
+      right = 1;
+      break;
+    case Qt::Key_Up:
+      up = 1;
+      break;
+    case Qt::Key_Down:
+      up = -1;
+      break;
+    case Qt::Key_PageDown:
+      deeper = 1;
+      break;
+    case Qt::Key_PageUp:
+      deeper = -1;
+      break;
+    default:
+      QOpenGLWidget::keyPressEvent(event);
+      return;
+  }
+  if (!renderer_.hasVolume()) return;
+  if (training_ && !(event->modifiers() & Qt::ControlModifier)) {
+    moveHandBy(
+        handFor(event->modifiers()),
+        kKeyStep_mm * (renderer_.viewRight() * double(right) + renderer_.viewUp() * double(up) +
+                       renderer_.viewForward() * double(deeper)));
+  } else if (deeper != 0) {
+    renderer_.zoom(std::pow(kZoomStep, deeper));
+    redraw();
+  } else {
+    turn(right * kKeyTurn_pixels, -up * kKeyTurn_pixels);
+  }
+}
+
+}  // namespace trephine
