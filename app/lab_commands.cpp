@@ -22,7 +22,7 @@
 #include "lab/trades/trades_measurement.h"
 #include "render/display_probe.h"
 #include "scene/names.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "training/replay.h"
 #include "volume/phantom.h"
 
@@ -91,8 +91,8 @@ int replayCommand(const std::string& file, const std::string& case_source,
                       "Give the folder that the session was run on"};
     return printError("replay", error, json);
   }
-  Result<Volume> volume = openCase(source, progress);
-  if (!volume) return printError("replay", volume.error(), json);
+  Result<Case> of = readCase(source, progress);
+  if (!of) return printError("replay", of.error(), json);
   std::optional<LabelMap> labels;
   if (!labels_file.empty()) {
     Result<LabelMap> read = readLabelMap(labels_file);
@@ -100,7 +100,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
     labels = *std::move(read);
   }
   Result<ReplayResult> result =
-      replay(**recording, *std::move(volume), labels ? &*labels : nullptr, progress);
+      replay(**recording, *of->volume, labels ? &*labels : nullptr, progress, of->sha256);
   if (!result) return printError("replay", result.error(), json);
   if (result->cut_short) spdlog::warn("The recording was cut short; what it holds was replayed");
   Json difference = nullptr;
@@ -232,7 +232,7 @@ int measureStabilityCommand(const StabilityArguments& arguments, bool json,
 int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
                            const Progress& progress) {
   std::error_code ec;  // the phantoms take their time before it is opened
-  if (!case_source.empty() && !isPhantom(case_source) &&
+  if (!case_source.empty() && !phantomNamed(case_source) &&
       !std::filesystem::exists(case_source, ec)) {
     return printError("measure.extremes",
                       {"MISSING_FOLDER", "There is no such case", case_source,

@@ -9,7 +9,7 @@
 #include "base/log.h"
 #include "lab/exercise/exercise_picture.h"
 #include "scene/names.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "session/session.h"
 #include "training/tick_table.h"
 #include "volume/volume_files.h"
@@ -46,10 +46,7 @@ class OutFolder {
 
 // Puts the command line's choices into the scene.
 Status applyChoices(const RunArguments& arguments, Scene& scene) {
-  if (!arguments.case_source.empty()) {
-    if (!scene.case_source.empty()) scene.labels_file.clear();  // of another case
-    scene.case_source = arguments.case_source;
-  }
+  if (!arguments.case_source.empty()) useCase(scene, arguments.case_source);
   if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
   if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
@@ -139,7 +136,7 @@ void saveWhatWasAsked(const RunArguments& arguments, const fs::path& recording, 
   };
   // First of all: what was cut is kept, whatever became of the recording.
   if (!arguments.save_volume.empty()) {
-    note(writeVolume(session.grid().snapshot(), arguments.save_volume), arguments.save_volume,
+    note(writeVolume(slabsOf(session.grid()), arguments.save_volume), arguments.save_volume,
          "volume (--save-volume)", outcome.report.volume);
   }
   if (!arguments.csv.empty()) {
@@ -175,13 +172,16 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   options.recording = freshFile(out, "session", ".h5");
   if (Status can = checkTargets(arguments, options.recording); !can) return can.error();
 
-  Result<Volume> volume = openCase(scene->case_source, progress);
-  if (!volume) return volume.error();
-  Result<std::shared_ptr<const LabelMap>> labels = openLabels(scene->labels_file, volume->geometry);
-  if (!labels) return labels.error();
-  options.labels = *std::move(labels);
-  Result<std::unique_ptr<Session>> session =
-      Session::create(*scene, *std::move(volume), options, progress);
+  Result<Case> of = openCase(*scene, progress);
+  if (!of) return of.error();
+  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
+  // Another run may have taken the name meanwhile.
+  std::error_code ec;
+  while (!session && session.error().code == "CANNOT_WRITE" && fs::exists(options.recording, ec)) {
+    options.recording = freshFile(out, "session", ".h5");
+    if (Status can = checkTargets(arguments, options.recording); !can) return can.error();
+    session = Session::create(*scene, *of, options);
+  }
   if (!session) return session.error();
 
   const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)

@@ -364,6 +364,8 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
     force_N = hold_.hold(elastic_N, tissue_stiffness_, in.position_m, affordable_N);
     flag(kPartHold, force_N - affordable_N);
+    if (!hold_.rests()) held_with_ = parts_ & kPartLearned;
+    parts_ |= held_with_;
     const Vec3 changed_N = force_N - in.demanded_N;
     if (glm::dot(changed_N, changed_N) <= kWorthSaying_N * kWorthSaying_N) {
       parts_ = 0;

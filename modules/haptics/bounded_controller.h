@@ -109,6 +109,7 @@ class BoundedController {
   Vec3 drift_N_{0.0};         // mean change of force per tick, leaky
   int not_obeyed_ticks_ = 0;  // above 0: other forces act than this controller computed
   std::uint32_t parts_ = 0;
+  std::uint32_t held_with_ = 0;  // kPartLearned where what is held was learnt
 };
 
 }  // namespace trephine

@@ -237,16 +237,24 @@ std::string SceneRenderer::openGlDescription() const {
   return text.empty() ? "none" : text;
 }
 
-void SceneRenderer::setVolume(const Grid& grid) {
+void SceneRenderer::setVolume(Volume copy, std::shared_ptr<const LabelMap> labels) {
   Parts& p = *parts_;
   p.stale = true;
-  const bool same_place = grid.geometry() == p.copy.geometry;
+  const bool same_place = copy.geometry == p.copy.geometry;
   p.volume.remove(*p.renderer);
-  p.copy = Volume{};  // its memory goes back before the new copy takes as much
-  if (grid.geometry().voxelCount() == 0) return;
-  p.copy = grid.snapshot();
-  p.volume.show(p.copy, grid.labels(), *p.renderer);
+  p.copy = std::move(copy);
+  if (!hasVolume()) return;
+  p.volume.show(p.copy, std::move(labels), *p.renderer);
   if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+}
+
+void SceneRenderer::refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels) {
+  Parts& p = *parts_;
+  if (!hasVolume() || !(voxels.geometry == p.copy.geometry)) return;
+  p.stale = true;
+  p.volume.remove(*p.renderer);
+  voxels.read(0, p.copy.hu);
+  p.volume.show(p.copy, std::move(labels), *p.renderer);
 }
 
 bool SceneRenderer::hasVolume() const {

@@ -15,6 +15,7 @@
 #include "render/picture.h"
 #include "tissue/tissue_set.h"
 #include "volume/grid.h"
+#include "volume/voxel_slabs.h"
 
 namespace trephine {
 
@@ -57,15 +58,19 @@ class SceneRenderer {
   void detach();  // before the context goes
   std::string openGlDescription() const;
 
-  // Takes a copy of the grid, with its labels, and looks at it. Full upload at the next paint.
-  void setVolume(const Grid& grid);
+  // Looks at these voxels, its own from now on, and those labels of theirs. The camera stays where
+  // the place in the patient is the same. Full upload at the next paint.
+  void setVolume(Volume copy, std::shared_ptr<const LabelMap> labels);
+  void setVolume(const Grid& grid) { setVolume(grid.snapshot(), grid.labels()); }
+  // Copies all voxels again, from others of the same geometry. Allocates none.
+  void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels);
   bool hasVolume() const;
   void setTissues(const TissueSet& tissues);
   // Copies what the writer changed since the last call and keeps the boxes for the next paint.
   // True when there is something new to draw.
   bool pullChanges(Grid& grid);
   void setTools(const std::vector<ToolView>& tools);
-  // Draws the renderer's own copy, for saving: what is on the screen.
+  // What is on the screen.
   const Volume& copy() const;
 
   void resize(int width, int height);  // device pixels

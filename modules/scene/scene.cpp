@@ -15,6 +15,12 @@ const Landmark* Scene::findLandmarkById(const std::string& id) const {
   return it == landmarks.end() ? nullptr : &*it;
 }
 
+void useCase(Scene& scene, const std::string& case_source) {
+  if (case_source == scene.case_source) return;
+  if (!scene.case_source.empty()) scene.labels_file.clear();
+  scene.case_source = case_source;
+}
+
 Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
   for (const Tissue& tissue : tissues.tissues) {
     if (!tissue.label || labels) continue;

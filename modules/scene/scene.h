@@ -64,6 +64,10 @@ struct Scene {
   const Landmark* findLandmarkById(const std::string& id) const;
 };
 
+// The scene is run on this case instead ("" is one that has no name): a label map that the scene
+// names beside its own case is of that one.
+void useCase(Scene& scene, const std::string& case_source);
+
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
 // field and value named), BAD_TISSUE, BAD_SCENE.
 Result<Scene> readScene(const std::filesystem::path& file);

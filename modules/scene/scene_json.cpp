@@ -3,6 +3,7 @@
 
 #include "scene/names.h"
 #include "scene/scene.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -147,7 +148,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   scene.name = reader.text("name");
   scene.anatomy = reader.text("anatomy");
   scene.case_source = reader.text("case", "");
-  if (!scene.case_source.empty() && scene.case_source.rfind("phantom:", 0) != 0) {
+  if (!scene.case_source.empty() && !phantomNamed(scene.case_source)) {
     scene.case_source = (folder / scene.case_source).lexically_normal().string();
   }
   const std::string labels = reader.text("labels", "");
@@ -251,7 +252,7 @@ Json toJson(const Scene& scene) {
   for (LawKind law : scene.laws) laws.push_back(nameOf(kLawNames, law));
   Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", scene.name},
                {"anatomy", scene.anatomy}};
-  if (scene.case_source.rfind("phantom:", 0) == 0) json["case"] = scene.case_source;
+  if (phantomNamed(scene.case_source)) json["case"] = scene.case_source;
   json["tissues"] = toJson(scene.tissues);
   json["landmarks"] = landmarks;
   json["tools"] = tools;

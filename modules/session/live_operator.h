@@ -24,15 +24,23 @@ struct LiveHands {
 
 class LiveOperator : public Operator {
  public:
-  // `script` may be null.
-  LiveOperator(std::unique_ptr<Operator> script, rt::ParameterSet<LiveHands>& live)
-      : script_(std::move(script)), live_(live) {}
+  // `script` may be null. From where a pause held it a hand goes back to where it wants to be in
+  // the 0.2 s in which the force comes back, or it would plunge into what does not yet push.
+  LiveOperator(std::unique_ptr<Operator> script, rt::ParameterSet<LiveHands>& live, double period_s)
+      : script_(std::move(script)), live_(live), share_a_tick_(period_s / kComesBack_s) {}
   void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) override;
   bool command(std::uint64_t tick, Command& out) override;
 
  private:
+  static constexpr double kComesBack_s = 0.2;
+  struct Release {
+    Vec3 from_m{0.0};
+    double share = 1.0;  // of the way back
+  };
   std::unique_ptr<Operator> script_;
   rt::ParameterSet<LiveHands>& live_;
+  double share_a_tick_;
+  std::array<Release, kMaxArms> released_;
 };
 
 }  // namespace trephine

@@ -146,7 +146,10 @@ std::string toText(const RunReport& report) {
   }
   if (!report.recording.empty()) {
     text += "  session: " + report.recording + "\n";
-    add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
+    constexpr double kUsual_ms = 500.0;  // it is written in slices of 0.25 s
+    if (report.recorder_behind_ms > kUsual_ms) {
+      add("  the recording was at most %.0f ms behind\n", report.recorder_behind_ms);
+    }
   }
   if (!report.picture.empty()) text += "  picture: " + report.picture + "\n";
   if (!report.volume.empty()) text += "  volume: " + report.volume + "\n";

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <limits>
 #include <map>
+#include <new>
 
 #include "base/file.h"
 #include "base/log.h"
@@ -24,6 +25,7 @@ constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread doe
 // stop() answers within 0.5 s: so long it waits for the force to go, and then for the thread.
 constexpr auto kSilencePatience = 100ms;
 constexpr auto kStopPatience = 250ms;
+constexpr std::uint64_t kAnswerTicks = 2;  // within which a command is answered
 // How the mouse holds a simulated arm: a firm but not a rigid hand.
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;
@@ -105,7 +107,7 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 // device holds goes on with it after the session.
 struct Session::Engine {
   Engine(HapticCore& core, std::vector<LoopDevice> devices, std::unique_ptr<Operator> script)
-      : oper(std::move(script), live_hands),
+      : oper(std::move(script), live_hands, core.parameters().period_s),
         loop(core, std::move(devices), &oper),
         watchdog(loop) {}
 
@@ -133,79 +135,78 @@ std::filesystem::path freshFile(const std::filesystem::path& folder, const std::
   return file;
 }
 
-Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
-                                                 const SessionOptions& options,
-                                                 const Progress& progress) {
+Result<std::unique_ptr<Session>> Session::create(const Scene& scene, const Case& of,
+                                                 const SessionOptions& options) {
+  std::unique_ptr<Session> session(new Session);
+  try {
+    if (Status set = session->set(scene, of, options); !set) return set.error();
+  } catch (const std::bad_alloc&) {
+    return Error{"OUT_OF_MEMORY", "There is not enough memory for the exercise", "the case",
+                 "Close other programs, or import the case cropped or at a lower resolution"};
+  }
+  return session;
+}
+
+Status Session::set(const Scene& scene, const Case& of, const SessionOptions& options) {
+  if (of.misfit) return *of.misfit;
+  const Volume& volume = *of.volume;
   if (volume.geometry.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
     return Error{"TOO_LARGE", "The case has more than 2^32 voxels", "the case",
                  "Crop it or export it at a lower resolution"};
   }
-  std::unique_ptr<Session> session(new Session);
-  std::shared_ptr<const LabelMap> labels = options.labels;
-  if (labels && !(labels->geometry == volume.geometry)) {
-    Result<LabelMap> fitted = fitTo(*labels, volume.geometry);
-    if (!fitted) return fitted.error();
-    labels = std::make_shared<const LabelMap>(*std::move(fitted));
-  }
-  Result<std::vector<PlacedLandmark>> landmarks =
-      placeLandmarks(scene, volume, labels.get(), progress);
-  if (!landmarks) return landmarks.error();
-  session->landmarks_ = *std::move(landmarks);
-  session->scene_ = withFixedMaps(scene, session->landmarks_);
-  session->controllers_.emplace_back(controllerName(scene.controller));
+  if (Status known = checkLabels(scene.tissues, of.labels.get()); !known) return known;
+  landmarks_ = of.landmarks;
+  scene_ = withFixedMaps(scene, landmarks_);
+  controllers_.emplace_back(controllerName(scene.controller));
 
   std::vector<LoopDevice> devices;
-  if (Status opened = openDevices(session->scene_, devices, session->capabilities_); !opened) {
-    return opened.error();
-  }
+  if (Status opened = openDevices(scene_, devices, capabilities_); !opened) return opened;
 
-  session->sha256_before_ = volumeSha256(volume);
-  session->grid_ = std::make_unique<Grid>(std::move(volume), labels);
-  warnOfAbsentLabels(scene.tissues, labels.get());
-  for (const BoundedTissue& b : boundedTissues(session->scene_)) {
+  sha256_before_ = of.sha256;
+  grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
+  warnOfAbsentLabels(scene.tissues, of.labels.get());
+  for (const BoundedTissue& b : boundedTissues(scene_)) {
     spdlog::warn("'{}' is firmer than the {} arm shows: of {:.4g} N s/m and {:.4g} N/m, {:.4g} and "
                  "{:.4g} are felt",
                  b.tissue, b.arm, b.demanded.damping, b.demanded.stiffness, b.felt.damping,
                  b.felt.stiffness);
   }
-  session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
-                                                *session->grid_->takeWriter());
+  core_ = std::make_unique<HapticCore>(hapticParameters(scene_), *grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
   const Result<std::filesystem::path> spill_folder = beside.empty() ? temporaryFolder() : beside;
   if (!spill_folder) return spill_folder.error();
   Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*spill_folder);
   if (!spill) return spill.error();
-  session->spill_ = *std::move(spill);
+  spill_ = *std::move(spill);
   std::unique_ptr<Operator> script;
   if (options.script) {
-    script = std::make_unique<ScriptOperator>(*options.script, session->scene_,
-                                              armFrames(scene, session->landmarks_));
+    script =
+        std::make_unique<ScriptOperator>(*options.script, scene_, armFrames(scene, landmarks_));
   }
-  for (LiveHands::Hand& hand : session->hands_.hands) {
+  for (LiveHands::Hand& hand : hands_.hands) {
     hand = {false, Vec3(0.0), kMouseStiffness_N_per_m, kMouseDamping_Ns_per_m};
   }
-  session->engine_ =
-      std::make_shared<Engine>(*session->core_, std::move(devices), std::move(script));
-  session->engine_->live_hands.write(session->hands_);
-  session->loop_ = &session->engine_->loop;
-  if (options.hands_outside && !options.script) session->beginOutside();
-  session->statistics_.resize(session->scene_.arms.size());
+  engine_ = std::make_shared<Engine>(*core_, std::move(devices), std::move(script));
+  engine_->live_hands.write(hands_);
+  loop_ = &engine_->loop;
+  if (options.hands_outside && !options.script) beginOutside();
+  statistics_.resize(scene_.arms.size());
 
   if (!options.recording.empty()) {
-    session->recording_file_ = options.recording;
-    const RecordingHeader header{toJson(session->scene_), session->sha256_before_,
-                                 session->grid_->geometry(), buildName(),
-                                 labels ? labelsSha256(*labels) : ""};
+    recording_file_ = options.recording;
+    const RecordingHeader header{toJson(scene_), sha256_before_, grid_->geometry(), buildName(),
+                                 of.labels ? labelsSha256(*of.labels) : ""};
     Result<std::unique_ptr<SessionRecorder>> recorder =
-        SessionRecorder::create(options.recording, header, session->scene_.arms.size());
+        SessionRecorder::create(options.recording, header, scene_.arms.size());
     if (!recorder) return recorder.error();
-    session->recorder_ = *std::move(recorder);
+    recorder_ = *std::move(recorder);
   }
-  return session;
+  return {};
 }
 
 Session::~Session() {
   if (running_) (void)stop();
+  if (recorder_ && !recording_ended_) (void)finishRecording();  // it never came to a tick
 }
 
 Status readArmDynamics(Scene& scene) {
@@ -345,7 +346,27 @@ Status Session::freewheel(double seconds, const Progress& progress) {
   return finished;
 }
 
+bool Session::freeze() {
+  const LoopState& now = state();
+  if (!frozen_) {
+    paused_before_ = now.paused;
+    if (!paused_before_ && !send(CommandKind::pause)) return false;
+    frozen_ = true;
+    frozen_at_tick_ = now.ticks;
+    return false;
+  }
+  // What was asked for before has begun by then.
+  return now.paused && !now.busy && now.ticks > frozen_at_tick_ + kAnswerTicks;
+}
+
+void Session::thaw() {
+  if (!frozen_) return;
+  frozen_ = false;
+  if (!paused_before_) (void)send(CommandKind::resume);
+}
+
 bool Session::send(CommandKind kind) {
+  if (frozen_ && kind != CommandKind::pause) return false;
   const bool held = hands_.hands[0].held;
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
   const bool sent = loop_->commands().push({kind, 0, {}});
@@ -390,6 +411,7 @@ void Session::holdHands(bool hold) {
 }
 
 bool Session::rewind(std::uint32_t second) {
+  if (frozen_) return false;
   return loop_->commands().push({CommandKind::rewind, std::int32_t(second), {}});
 }
 

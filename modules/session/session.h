@@ -20,6 +20,7 @@
 #include "base/result.h"
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
+#include "session/case.h"
 #include "session/live_operator.h"
 #include "session/operator_script.h"
 #include "session/run_statistics.h"
@@ -32,7 +33,6 @@ namespace trephine {
 struct SessionOptions {
   std::filesystem::path recording;       // empty: not recorded
   std::optional<OperatorScript> script;  // empty: the hands rest until the window moves them
-  std::shared_ptr<const LabelMap> labels{};  // null: none; is fitted to the volume
   // Without a script: the hands of simulated arms begin outside of tissue (hand_start.h), and a
   // reset takes them back there.
   bool hands_outside = false;
@@ -44,11 +44,11 @@ Status readArmDynamics(Scene& scene);
 
 class Session {
  public:
-  // Finds the landmarks, opens the devices, starts the recording. Errors of all of these; nothing
-  // is left behind on one. `progress` is that of finding the landmarks.
-  static Result<std::unique_ptr<Session>> create(Scene scene, Volume volume,
-                                                 const SessionOptions& options,
-                                                 const Progress& progress = Progress());
+  // Takes a copy of the voxels of a case that was placed in the scene, opens the devices, starts
+  // the recording. Errors of all of these, the case's misfit, OUT_OF_MEMORY; nothing is left behind
+  // on one. Any thread.
+  static Result<std::unique_ptr<Session>> create(const Scene& scene, const Case& of,
+                                                 const SessionOptions& options);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -56,6 +56,8 @@ class Session {
   const Scene& scene() const { return scene_; }  // maps fixed, forces within the arms' limits
   const std::vector<PlacedLandmark>& landmarks() const { return landmarks_; }
   Grid& grid() { return *grid_; }
+  // What was cut, also when the session is gone.
+  std::shared_ptr<const Grid> carved() const { return grid_; }
   const TrephineCapabilities& capabilities(std::size_t arm) const { return capabilities_[arm]; }
 
   // Real time, until stop() or `seconds`.
@@ -84,6 +86,10 @@ class Session {
   // From a pause to a resume the hands of simulated arms rest where their arms are: a hand that
   // was pressing would sink into tissue that no longer pushes back. Then it presses as before.
   bool send(CommandKind kind);
+  // From the answer true to thaw() no voxel changes, so that the grid can be read: pauses, and
+  // refuses what would bring tissue back or go on. To be asked again until it is true.
+  bool freeze();
+  void thaw();  // goes on, unless it was paused before
   // Tissue, counts and law states as they were in that second of the session.
   bool rewind(std::uint32_t second);
   bool setController(ControllerKind kind);
@@ -108,6 +114,7 @@ class Session {
   struct Engine;
 
   Session() = default;
+  Status set(const Scene& scene, const Case& of, const SessionOptions& options);
   void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
   void holdHands(bool hold);
@@ -126,13 +133,14 @@ class Session {
   std::vector<TrephineCapabilities> capabilities_;
   std::string sha256_before_, sha256_after_;
   std::filesystem::path recording_file_;
-  std::unique_ptr<Grid> grid_;
+  std::shared_ptr<Grid> grid_;
   std::unique_ptr<HapticCore> core_;
   LiveHands hands_;  // the owner's side of the engine's
   std::array<std::optional<Vec3>, kMaxArms> begin_m_{};  // where a hand begins, outside of tissue
   std::shared_ptr<Engine> engine_;
   HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;
+  bool recording_ended_ = false;
   std::unique_ptr<JournalSpill> spill_;
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
@@ -142,6 +150,8 @@ class Session {
   std::atomic<std::uint64_t> flushed_ticks_{0};
 
   bool running_ = false;
+  bool frozen_ = false, paused_before_ = false;
+  std::uint64_t frozen_at_tick_ = 0;
   std::atomic<bool> stop_recorder_{false};
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/rt/thread.h"
 #include "session/session.h"
+#include "volume/voxel_slabs.h"
 
 namespace trephine {
 
@@ -118,7 +119,8 @@ double Session::recorderBehind_s() {
 }
 
 Status Session::finishRecording() {
-  sha256_after_ = volumeSha256(grid_->snapshot());
+  sha256_after_ = slabsSha256(slabsOf(*grid_));
+  recording_ended_ = true;
   if (recorder_) {
     const RecordingEnd end{loop_->ticks(), loop_->dropped(), loop_->missed(), sha256_after_};
     if (Status status = recorder_->finish(end); !status) noteFailure(status.error());

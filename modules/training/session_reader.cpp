@@ -212,13 +212,16 @@ Result<std::unique_ptr<SessionReader>> SessionReader::open(const std::filesystem
   }
   f.tick_count = count;
 
-  if (const hid_t end = H5Dopen2(f.file, "end", H5P_DEFAULT); end >= 0) {
-    EndRow row;
-    if (rowCount(end) == 1 && readRows(end, endType(), 0, 1, &row)) {
-      f.end = RecordingEnd{row.ticks, row.dropped, row.missed,
-                           std::string(row.volume_sha256, sizeof(row.volume_sha256))};
-    }
-    H5Dclose(end);
+  // The end of a recording that was killed has no row; one that cannot be read is damage.
+  const hid_t end = H5Dopen2(f.file, "end", H5P_DEFAULT);
+  const hsize_t ends = end >= 0 ? rowCount(end) : 1;
+  EndRow row;
+  const bool read = end >= 0 && ends == 1 && readRows(end, endType(), 0, 1, &row);
+  if (end >= 0) H5Dclose(end);
+  if (ends > 0 && !read) return f.bad("The recording is damaged: its end cannot be read");
+  if (read) {
+    f.end = RecordingEnd{row.ticks, row.dropped, row.missed,
+                         std::string(row.volume_sha256, sizeof(row.volume_sha256))};
   }
   // What ended in order has all its rows, unless it says that it dropped some.
   if (f.end && f.end->dropped == 0 && (f.end->ticks != count || most != count)) {

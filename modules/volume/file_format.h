@@ -21,10 +21,10 @@ Result<VolumeFileHeader> readRawHeader(const std::filesystem::path& file);
 std::optional<std::filesystem::path> sibling(const std::filesystem::path& file,
                                              const std::string& ending);
 
-// To `temporary`, for a right-handed volume that was checked; errors name `target`.
-Status writeMetaImage(const Volume& volume, const std::filesystem::path& temporary,
+// To `temporary`, for a right-handed grid that was checked; errors name `target`.
+Status writeMetaImage(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
                       const std::filesystem::path& target);
-Status writeNifti(const Volume& volume, const std::filesystem::path& temporary,
+Status writeNifti(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
                   const std::filesystem::path& target);
 
 // ---- Errors, by code.

@@ -212,11 +212,13 @@ Result<VolumeFileHeader> readMetaImageHeader(const fs::path& file) {
   return header;
 }
 
-Status writeMetaImage(const Volume& volume, const fs::path& temporary, const fs::path& target) {
+Status writeMetaImage(const VoxelSlabs& voxels, const fs::path& temporary, const fs::path& target) {
   std::ofstream out(temporary, std::ios::binary);
-  out << headerText(volume.geometry);
-  out.write(reinterpret_cast<const char*>(volume.hu.data()),
-            std::streamsize(volume.hu.size() * sizeof(std::int16_t)));
+  out << headerText(voxels.geometry);
+  voxels.forEach([&](std::span<const std::int16_t> slab) {
+    out.write(reinterpret_cast<const char*>(slab.data()), std::streamsize(slab.size_bytes()));
+    return bool(out);
+  });
   out.close();
   if (!out) return cannotWrite(target);
   return {};

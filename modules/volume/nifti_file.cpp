@@ -217,7 +217,9 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   return header;
 }
 
-Status writeNifti(const Volume& volume, const fs::path& temporary, const fs::path& target) {
+Status writeNifti(const VoxelSlabs& slabs, const fs::path& temporary, const fs::path& target) {
+  Volume volume{slabs.geometry, Voxels(slabs.geometry.voxelCount())};
+  slabs.read(0, volume.hu);
   const GridGeometry& g = volume.geometry;
   vtkNew<vtkShortArray> voxels;
   // VTK only reads them; the 1 leaves them ours.

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -60,6 +61,7 @@ struct Phantom {
   Vec3 spacing_mm;
 };
 
+constexpr std::string_view kPrefix = "phantom:";
 constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
 const std::array<Phantom, 2> kPhantoms{{
     {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.0}},
@@ -217,6 +219,15 @@ Result<PhantomTruth> phantomTruth(const std::string& name) {
   const auto phantom = findPhantom(name);
   if (!phantom) return phantom.error();
   return phantom.value()->truth;
+}
+
+std::optional<std::string> phantomNamed(const std::string& case_source) {
+  if (!case_source.starts_with(kPrefix)) return std::nullopt;
+  return case_source.substr(kPrefix.size());
+}
+
+std::string phantomSource(const std::string& name) {
+  return std::string(kPrefix) + name;
 }
 
 Result<GridGeometry> phantomGeometry(const std::string& name) {

@@ -4,6 +4,7 @@
 // voxel (partial-volume edges) plus Gaussian noise from a fixed seed. The same bits everywhere.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ Result<GridGeometry> phantomGeometry(const std::string& name);
 
 // Standard deviation of the noise added to every voxel, HU.
 constexpr double kPhantomNoiseHu = 8.0;
+
+// "cranium" of "phantom:cranium", as scenes, commands and recordings name a built-in case; nothing
+// of what is none.
+std::optional<std::string> phantomNamed(const std::string& case_source);
+std::string phantomSource(const std::string& name);
 
 // Makes the volume, on two threads. CANCELLED when `progress` says so; UNKNOWN_PHANTOM.
 Result<Volume> makePhantom(const std::string& name, const Progress& progress = Progress());

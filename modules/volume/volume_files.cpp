@@ -98,24 +98,30 @@ Status checkVolumeFileName(const fs::path& file) {
                        "Give the file one of these endings");
 }
 
-Status writeVolume(const Volume& volume, const fs::path& file) {
+Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progress& progress) {
   if (auto status = checkVolumeFileName(file); !status) return status;
-  if (auto status = checkSize(volume.geometry.size, file.string()); !status) return status;
-  if (auto status = checkGeometry(volume.geometry, file); !status) return status;
-  if (leftHanded(volume.geometry)) {
-    Volume turned = volume;
-    turnSliceAxis(turned.geometry);
-    reverseSlices(turned);
-    return writeVolume(turned, file);
-  }
+  if (auto status = checkSize(voxels.geometry.size, file.string()); !status) return status;
+  if (auto status = checkGeometry(voxels.geometry, file); !status) return status;
+  if (leftHanded(voxels.geometry)) return writeVolume(reversedSlices(voxels), file, progress);
+  VoxelSlabs told = voxels;
+  told.read = [&](std::size_t first, std::span<std::int16_t> into) {
+    progress.at(double(first) / double(voxels.geometry.voxelCount()), "Saving the volume");
+    voxels.read(first, into);
+  };
   return replaceFile(file, [&](const fs::path& temporary) -> Status {
     try {
-      return endsWith(file, ".mha") ? writeMetaImage(volume, temporary, file)
-                                    : writeNifti(volume, temporary, file);
+      const Status written = endsWith(file, ".mha") ? writeMetaImage(told, temporary, file)
+                                                    : writeNifti(told, temporary, file);
+      if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
+      return written;
     } catch (const std::exception&) {
       return cannotWrite(file);
     }
   });
+}
+
+Status writeVolume(const Volume& volume, const fs::path& file) {
+  return writeVolume(slabsOf(volume), file);
 }
 
 }  // namespace trephine

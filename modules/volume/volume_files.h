@@ -15,6 +15,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "volume/volume.h"
+#include "volume/voxel_slabs.h"
 
 namespace trephine {
 
@@ -88,6 +89,9 @@ Result<Volume> readVolume(const std::filesystem::path& file, const Progress& pro
 // BAD_SIZE, TOO_LARGE, CANNOT_WRITE.
 // checkVolumeFileName says before a long run whether the name can be written at all.
 Status checkVolumeFileName(const std::filesystem::path& file);
+// Cancelled in between, nothing was written: CANCELLED.
+Status writeVolume(const VoxelSlabs& voxels, const std::filesystem::path& file,
+                   const Progress& progress = Progress());
 Status writeVolume(const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace trephine

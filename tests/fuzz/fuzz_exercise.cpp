@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "base/system.h"
+#include "cases.h"
 #include "device/device.h"
 #include "exercise_files.h"
 #include "json_mutator.h"
@@ -75,7 +76,8 @@ void expectSaid(const Error& error) {
 // What was accepted must be fit to be felt.
 void run(const Scene& scene, const OperatorScript& script) {
   const SessionOptions options{{}, script};
-  Result<std::unique_ptr<Session>> session = Session::create(scene, smallHead(), options);
+  Result<std::unique_ptr<Session>> session =
+      Session::create(scene, test::placed(scene, smallHead()), options);
   if (!session) return expectSaid(session.error());
   const Status done = (*session)->freewheel(double(kTicks) / scene.rate_hz);
   if (!done) return expectSaid(done.error());

@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "cases.h"
 #include "exercise_files.h"
 #include "session/session.h"
 #include "training/replay.h"
@@ -34,7 +35,8 @@ Status record(const fs::path& scene_file, const fs::path& file) {
   if (!scene) return scene.error();
   const Result<OperatorScript> script = dive(*scene);
   if (!script) return script.error();
-  Result<std::unique_ptr<Session>> session = Session::create(*scene, smallHead(), {file, *script});
+  Result<std::unique_ptr<Session>> session =
+      Session::create(*scene, test::placed(*scene, smallHead()), {file, *script});
   if (!session) return session.error();
   if (Status run = (*session)->freewheel(double(kTicks) / scene->rate_hz); !run) return run;
   const auto recording = SessionReader::open(file);

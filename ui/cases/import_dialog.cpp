@@ -315,11 +315,13 @@ void ImportDialog::answered() {
 
 void ImportDialog::openCase() {
   const SeriesReport* series = selected();
-  const std::shared_ptr<const Volume> volume = task_.takeVolume();
+  Case read = caseOf(task_.takeVolume(), series->volume_sha256.value_or(""));
+  read.provenance = task_.report().provenance;
+  read.name = seriesName(*series).toStdString();
   task_.wantNothing();
   showStep(Step::choosing);
   accept();
-  emit caseRead(volume, seriesName(*series));
+  emit caseRead(read);
 }
 
 void ImportDialog::back() {

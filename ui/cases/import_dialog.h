@@ -11,6 +11,7 @@
 #include <QStackedWidget>
 #include <map>
 
+#include "session/case.h"
 #include "ui/cases/choice_panel.h"
 #include "ui/cases/import_task.h"
 #include "ui/cases/report_card.h"
@@ -37,7 +38,7 @@ class ImportDialog : public QDialog {
   void fileWanted();
   void pathDropped(const QString& path);
   void reportWanted();
-  void caseRead(const std::shared_ptr<const trephine::Volume>& volume, const QString& name);
+  void caseRead(const trephine::Case& read);
 
  protected:
   void dragEnterEvent(QDragEnterEvent* event) override;

@@ -169,16 +169,20 @@ void MainWindow::showOpening(const Scene& scene, const std::filesystem::path& fi
 }
 
 void MainWindow::showCase() {
-  const std::shared_ptr<const Volume>& volume = workstation_.volume();
-  if (!volume) return;
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of) return;
   carved_ = unsaved_cuts_ = false;
   view_->setTools({});
-  view_->showVolume(Grid(*volume, workstation_.labels()));
-  QString about = sizeWords(volume->geometry);
-  if (const QString name = workstation_.caseName(); !name.isEmpty()) about = name + '\n' + about;
-  if (workstation_.labels()) about += tr("\nwith a label map");
+  if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {
+    view_->showVolume(std::move(mirror), of->labels);
+  } else {
+    view_->refill(slabsOf(*of->volume), of->labels);
+  }
+  QString about = sizeWords(of->volume->geometry);
+  if (!of->name.empty()) about = toQt(of->name) + '\n' + about;
+  if (of->labels) about += tr("\nwith a label map");
   case_->showCase(about);
-  tissues_->setLabelsOpen(workstation_.labels() != nullptr);
+  tissues_->setLabelsOpen(of->labels != nullptr);
   lookAtCase();
   showPhase();
 }
@@ -229,7 +233,7 @@ void MainWindow::showPhase() {
       break;
     case Phase::running:
       hint_->setText(
-          tr("Drag, arrow keys: right hand. Wheel: depth. Shift: left hand. Space: pause."));
+          tr("Space: pause. Drag, arrow keys: right hand. Wheel: depth. Shift: left hand."));
       break;
     default:
       hint_->setText(opening ? tr("Opening a case\u2026")
@@ -240,14 +244,14 @@ void MainWindow::showPhase() {
 
 void MainWindow::sessionStarted() {
   statusBar()->clearMessage();  // of the exercise before
-  const Session& session = *workstation_.session();
+  Session& session = *workstation_.session();
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
   going_back_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
   // The view has the case already, unless an earlier exercise left its cuts there.
-  if (carved_) view_->showVolume(workstation_.session()->grid());
+  if (carved_) view_->refill(slabsOf(session.grid()), workstation_.currentCase()->labels);
   carved_ = true;
   unsaved_cuts_ = false;
   placeHandPoints();

@@ -208,10 +208,9 @@ void MainWindow::connectParts() {
   });
   connect(import_, &ImportDialog::pathDropped, this,
           [this](const QString& path) { open(toPath(path)); });
-  connect(import_, &ImportDialog::caseRead, this,
-          [this](const std::shared_ptr<const Volume>& volume, const QString& name) {
-            unlessCutsAreLost([this, volume, name] { workstation_.openVolume(volume, name); });
-          });
+  connect(import_, &ImportDialog::caseRead, this, [this](const Case& read) {
+    unlessCutsAreLost([this, read] { workstation_.openImported(read); });
+  });
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { case_->setSeriesAtHand(true); });
   connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);

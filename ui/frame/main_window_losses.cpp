@@ -6,7 +6,6 @@
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
-#include "volume/volume_files.h"
 
 namespace trephine {
 
@@ -36,17 +35,13 @@ void MainWindow::saveVolume(const QString& file) {
 }
 
 void MainWindow::saveVolumeThen(const QString& file, std::function<void()> then) {
-  if (Session* session = workstation_.session()) view_->pullChanges(session->grid());
-  const auto copy = std::make_shared<const Volume>(view_->shownVolume());
   // What a running exercise shows may be cut further.
   const bool all = workstation_.phase() == Workstation::Phase::ready;
   say(tr("Saving the volume\u2026"));
-  workstation_.save(
-      tr("The volume is saved."), [copy, path = toPath(file)] { return writeVolume(*copy, path); },
-      [this, all, then = std::move(then)] {
-        if (all) unsaved_cuts_ = false;
-        if (then) then();
-      });
+  workstation_.saveVolume(toPath(file), [this, all, then = std::move(then)] {
+    if (all) unsaved_cuts_ = false;
+    if (then) then();
+  });
 }
 
 void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
@@ -72,7 +67,9 @@ void MainWindow::reset() {
 
 void MainWindow::showWholeCase() {
   carved_ = unsaved_cuts_ = false;
-  view_->showVolume(Grid(*workstation_.volume(), workstation_.labels()));
+  workstation_.makeWhole();
+  const Case& of = *workstation_.currentCase();
+  view_->refill(slabsOf(*of.volume), of.labels);
   showPhase();
 }
 

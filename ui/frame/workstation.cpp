@@ -1,12 +1,14 @@
 #include "ui/frame/workstation.h"
 
 #include <QDateTime>
+#include <QTimer>
+#include <new>
 
 #include "base/file.h"
 #include "base/system.h"
-#include "session/case_source.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
+#include "volume/phantom.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -14,42 +16,19 @@ namespace trephine {
 struct Workstation::Opened {
   Scene scene;
   std::filesystem::path scene_file;
-  std::shared_ptr<const Volume> volume;
-  std::vector<PlacedLandmark> landmarks;
-  std::optional<Error> misfit;  // the case has not what the scene looks for
-  bool own_case = false;
-  QString case_name;
-  std::shared_ptr<const LabelMap> labels{};
+  std::optional<Case> of;   // none: the scene's own is read
   bool same_scene = false;  // its tissues stay as they are edited
+  std::string labels_file{};  // instead of what the case has; empty: that stays
+  Volume mirror{};
 };
 
 namespace {
 
-constexpr double kVolumeShare = 0.9;  // of the work of opening; the rest is finding landmarks
+// While a save waits for the haptic thread to stand still.
+constexpr int kLookAgain_ms = 10;
 
-// Reads the label map that `scene` names, unless there is one, and places the landmarks; a case
-// without them can be looked at all the same. Error: CANCELLED.
-template <class Opened>
-Status place(Opened& opened, const Progress& progress) {
-  progress.at(kVolumeShare, "Finding landmarks");
-  if (!opened.labels) {
-    auto labels = openLabels(opened.scene.labels_file, opened.volume->geometry);
-    if (!labels) {
-      opened.misfit = labels.error();
-      return {};
-    }
-    opened.labels = *std::move(labels);
-  }
-  const Progress finding(progress, kVolumeShare, 1.0);
-  auto placed = placeLandmarks(opened.scene, *opened.volume, opened.labels.get(), finding);
-  if (placed) {
-    opened.landmarks = *std::move(placed);
-  } else if (placed.error().code == "CANCELLED") {
-    return placed.error();
-  } else {
-    opened.misfit = placed.error();
-  }
-  return {};
+Error busySaving() {
+  return {"BUSY", "Another file is being saved", "", "Try again in a moment"};
 }
 
 }  // namespace
@@ -123,15 +102,16 @@ void Workstation::openPhantom(const std::string& name) {
   const std::filesystem::path file = fits ? scene_file_ : defaultScene(name);
   std::optional<Scene> scene = readSceneOrFail(file);
   if (scene && fits) scene->tissues = scene_->tissues;
-  if (scene) openSource(*std::move(scene), file, "phantom:" + name, fits);
+  if (scene) openSource(*std::move(scene), file, phantomSource(name), fits);
 }
 
 void Workstation::useScene(const std::filesystem::path& file) {
   if (!mayOpen()) return;
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
-  if (volume_ && (own_case_ || scene->case_source.empty())) {
-    placeAndOpen({*std::move(scene), file, volume_, {}, {}, own_case_, case_name_, labels_});
+  if (case_ && (!case_->built_in || scene->case_source.empty())) {
+    useCase(*scene, scene_->case_source);
+    openInBackground({*std::move(scene), file, case_});
   } else {
     const std::string source = scene->case_source;
     openSource(*std::move(scene), file, source);
@@ -140,21 +120,12 @@ void Workstation::useScene(const std::filesystem::path& file) {
 
 void Workstation::useLabels(const std::filesystem::path& file) {
   if (!mayOpen()) return;
-  if (!volume_) {
+  if (!case_) {
     fail({"NO_CASE", "There is no case that a label map could belong to", "",
           "Open the case first, then its label map"});
     return;
   }
-  opening_.run(
-      [scene = *scene_, scene_file = scene_file_, volume = volume_, own = own_case_,
-       name = case_name_, file](const Progress& progress) -> Result<Opened> {
-        auto labels = openLabels(file.string(), volume->geometry);
-        if (!labels) return labels.error();
-        Opened out{scene, scene_file, volume, {}, {}, own, name, *std::move(labels), true};
-        if (Status status = place(out, progress); !status) return status.error();
-        return out;
-      },
-      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
+  openInBackground({*scene_, scene_file_, case_, true, file.string()});
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
@@ -166,37 +137,40 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     emit sceneChanged();
     return;
   }
-  if (!scene.case_source.empty() && source != scene.case_source) scene.labels_file.clear();
-  if (!same_scene) emit sceneOpening(scene, scene_file);
-  opening_.run(
-      [scene = std::move(scene), scene_file, source,
-       same_scene](const Progress& progress) -> Result<Opened> {
-        Result<Volume> volume = openCase(source, progress);
-        if (!volume) return volume.error();
-        Opened out{scene, scene_file, std::make_shared<const Volume>(*std::move(volume)),
-                   {},    {},         !isPhantom(source),
-                   {},    {},         same_scene};
-        if (Status status = place(out, progress); !status) return status.error();
-        return out;
-      },
-      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
+  useCase(scene, source);
+  openInBackground({std::move(scene), scene_file, {}, same_scene});
 }
 
-void Workstation::openVolume(const std::shared_ptr<const Volume>& volume, const QString& name) {
+void Workstation::openImported(const Case& read) {
   if (!mayOpen()) return;
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
-  if (!scene->case_source.empty()) scene->labels_file.clear();  // of another case
-  placeAndOpen({*std::move(scene), file, volume, {}, {}, true, name, {}, scene_.has_value()});
+  useCase(*scene, "");
+  openInBackground({*std::move(scene), file, read, scene_.has_value()});
 }
 
-void Workstation::placeAndOpen(Opened opening) {
+void Workstation::openInBackground(Opened opening) {
   if (!opening.same_scene) emit sceneOpening(opening.scene, opening.scene_file);
+  const std::shared_ptr<const Volume> shown = case_ ? case_->volume : nullptr;
   opening_.run(
-      [opening = std::move(opening)](const Progress& progress) mutable -> Result<Opened> {
-        if (Status status = place(opening, progress); !status) return status.error();
+      [opening = std::move(opening), shown](const Progress& progress) mutable -> Result<Opened> {
+        if (opening.of && !opening.labels_file.empty()) {
+          Result<Case> labelled = withLabels(*opening.of, opening.labels_file);
+          if (!labelled) return labelled.error();
+          opening.of = *std::move(labelled);
+        }
+        Result<Case> placed = opening.of ? placedIn(opening.scene, *opening.of, progress)
+                                         : openCase(opening.scene, progress);
+        if (!placed) return placed.error();
+        opening.of = *std::move(placed);
+        try {
+          if (opening.of->volume != shown) opening.mirror = *opening.of->volume;
+        } catch (const std::bad_alloc&) {
+          return Error{"OUT_OF_MEMORY", "There is not enough memory to show the case", "the case",
+                       "Close other programs, or import it cropped or at a lower resolution"};
+        }
         return std::move(opening);
       },
       [this](Result<Opened> outcome) { opened(std::move(outcome)); });
@@ -211,19 +185,18 @@ void Workstation::opened(Result<Opened> outcome) {
   }
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
-  volume_ = std::move(outcome->volume);
-  landmarks_ = std::move(outcome->landmarks);
-  own_case_ = outcome->own_case;
-  case_name_ = std::move(outcome->case_name);
-  labels_ = std::move(outcome->labels);
+  case_ = std::move(outcome->of);
+  mirror_ = std::move(outcome->mirror);
+  carved_.reset();
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);
-  if (outcome->misfit) fail(*outcome->misfit);
+  if (case_->misfit) fail(*case_->misfit);
 }
 
 std::optional<LandmarkFrame> Workstation::viewLandmark() const {
-  for (const PlacedLandmark& landmark : landmarks_) {
+  if (!case_) return {};
+  for (const PlacedLandmark& landmark : case_->landmarks) {
     if (scene_ && landmark.id == scene_->view.landmark) return landmark.frame;
   }
   return {};
@@ -236,12 +209,15 @@ void Workstation::start(const std::filesystem::path& recordings,
   // The name is the time: nothing of the patient, nothing of the folder.
   const std::string stem =
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
+  carved_.reset();  // its memory is the next one's
   running_.run(
-      [scene = *scene_, volume = volume_, labels = labels_, recordings, stem,
+      [scene = *scene_, of = *case_, recordings, stem,
        script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
-        SessionOptions options{freshFile(recordings, stem, ".h5"), script, labels, true};
-        return Session::create(scene, Volume(*volume), options, progress);
+        // Tissues may have been edited since the case did not fit.
+        const Result<Case> placed = of.misfit ? placedIn(scene, of, progress) : of;
+        if (!placed) return placed.error();
+        return Session::create(scene, *placed, {freshFile(recordings, stem, ".h5"), script, true});
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {
         if (!created) {
@@ -282,6 +258,7 @@ void Workstation::stop() {
   setPhase(Phase::ending);  // from here to the outcome the session is the background thread's
   running_.run([session = session_.get()](const Progress&) { return session->stop(); },
                [this](Status stopped) {
+                 carved_ = session_->carved();
                  emit sessionEnded(*session_);
                  const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
@@ -322,6 +299,41 @@ void Workstation::saveTissues(const std::filesystem::path& file, std::function<v
       });
 }
 
+void Workstation::saveVolume(const std::filesystem::path& file, std::function<void()> then) {
+  if (isSaving()) return fail(busySaving());
+  if (session()) return saveOnceStill(file, std::move(then));
+  save(
+      tr("The volume is saved."),
+      [carved = carved_, whole = case_->volume, file] {
+        return writeVolume(carved ? slabsOf(*carved) : slabsOf(*whole), file);
+      },
+      std::move(then));
+}
+
+// The grid is read where its writer stands still: in a pause, or once the exercise has ended.
+void Workstation::saveOnceStill(const std::filesystem::path& file, std::function<void()> then) {
+  if (!session_) return saveVolume(file, std::move(then));
+  if (!session_->freeze()) {
+    QTimer::singleShot(kLookAgain_ms, this,
+                       [this, file, then = std::move(then)] { saveOnceStill(file, then); });
+    return;
+  }
+  const auto thaw = [this] {
+    if (session()) session_->thaw();
+  };
+  const bool begun = saving_.run([grid = session_->carved(), file](
+                                     const Progress&) { return writeVolume(slabsOf(*grid), file); },
+                                 [this, thaw, then = std::move(then)](Status status) {
+                                   thaw();
+                                   if (!status) return fail(status.error());
+                                   emit saved(tr("The volume is saved."));
+                                   if (then) then();
+                                 });
+  if (begun) return;
+  thaw();
+  fail(busySaving());
+}
+
 void Workstation::save(const QString& what, std::function<Status()> write,
                        std::function<void()> then) {
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
@@ -330,7 +342,7 @@ void Workstation::save(const QString& what, std::function<Status()> write,
                                    emit saved(what);
                                    if (then) then();
                                  });
-  if (!begun) fail({"BUSY", "Another file is being saved", "", "Try again in a moment"});
+  if (!begun) fail(busySaving());
 }
 
 }  // namespace trephine

@@ -29,8 +29,8 @@ class Workstation : public QObject {
   // One of the built-in cases, with the scene in use where that fits the anatomy.
   void openPhantom(const std::string& name);
   bool sceneFits(const std::string& anatomy) const { return scene_ && scene_->anatomy == anatomy; }
-  // What an import has read; `name` is for the screen only.
-  void openVolume(const std::shared_ptr<const Volume>& volume, const QString& name);
+  // What an import has read.
+  void openImported(const Case& read);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   // The label map of the open case. Another case has none until it is given.
@@ -42,10 +42,11 @@ class Workstation : public QObject {
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }
   const std::filesystem::path& sceneFile() const { return scene_file_; }
-  const std::shared_ptr<const Volume>& volume() const { return volume_; }
-  const QString& caseName() const { return case_name_; }
-  // Fitted to the volume; null: none.
-  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+  // Placed in the scene.
+  const std::optional<Case>& currentCase() const { return case_; }
+  // A copy of its voxels for the view, made in the background; empty once it was taken, or where
+  // the view has one already.
+  Volume takeMirror() { return std::exchange(mirror_, {}); }
   // Where the scene wants to be looked at, when the case has that landmark.
   std::optional<LandmarkFrame> viewLandmark() const;
 
@@ -69,6 +70,14 @@ class Workstation : public QObject {
   bool tissuesEdited() const;
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
+
+  // The voxels as they are now: of the running exercise, which pauses for it, of the one that ended
+  // last, or of the case. Says so in saved().
+  void saveVolume(const std::filesystem::path& file, std::function<void()> then = {});
+  // What the exercise that ended last cut; null: the case is whole. makeWhole() lets
+  // go of it.
+  const std::shared_ptr<const Grid>& carved() const { return carved_; }
+  void makeWhole() { carved_.reset(); }
 
   // Runs `write` in the background; `what` names the outcome in saved().
   void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
@@ -96,9 +105,10 @@ class Workstation : public QObject {
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
                   bool same_scene = false);
-  void placeAndOpen(Opened opening);
+  void openInBackground(Opened opening);
   void opened(Result<Opened> outcome);
   void started(std::unique_ptr<Session> session, double seconds);
+  void saveOnceStill(const std::filesystem::path& file, std::function<void()> then);
   void setPhase(Phase phase);
   void fail(const Error& error);
 
@@ -106,12 +116,10 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   TissueSet declared_tissues_;
-  std::shared_ptr<const Volume> volume_;
-  QString case_name_;  // empty where it has none
-  std::shared_ptr<const LabelMap> labels_;
-  std::vector<PlacedLandmark> landmarks_;
-  bool own_case_ = false;  // the user's, not a built-in one
+  std::optional<Case> case_;
+  Volume mirror_;
   std::unique_ptr<Session> session_;
+  std::shared_ptr<const Grid> carved_;
   std::optional<Error> recording_failure_;  // said of this exercise
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;

@@ -4,6 +4,7 @@
 #include <QFormLayout>
 #include <QFrame>
 #include <QScrollArea>
+#include <cmath>
 
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
@@ -130,6 +131,8 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
       "was pressed into the tissue. It shakes or pushes by itself.</p>"));
   card.position->setToolTip(tr("Tip of the tool in the patient, mm: left, posterior, superior."));
   card.parts->setWordWrap(true);
+  card.parts->setMinimumHeight(2 * card.parts->fontMetrics().lineSpacing());  // or all below moves
+  card.parts->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   card.parts->setToolTip(forceChangeMeanings());
   card.faults->setWordWrap(true);
   colours::setText(*card.faults, colours::kBad);
@@ -171,7 +174,8 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
         tr("%1, %2, %3 mm").arg(p.x, 0, 'f', 1).arg(p.y, 0, 'f', 1).arg(p.z, 0, 'f', 1));
     const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
     const bool gives_out = card.watch.look(arm, card.device_per_model, state.paused, now_s);
-    card.energy->setText(tr("%1 mJ").arg(kMilli * energy_J, 0, 'f', 1));
+    const double tenths = std::round(10.0 * kMilli * energy_J) + 0.0;  // no "-0.0"
+    card.energy->setText(tr("%1 mJ").arg(0.1 * tenths, 0, 'f', 1));
     colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
     card.parts->setText(forceChangeWords(arm, state.paused));
     const bool touching =

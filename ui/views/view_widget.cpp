@@ -120,9 +120,14 @@ void ViewWidget::redraw() {
   update();
 }
 
-void ViewWidget::showVolume(const Grid& grid) {
-  renderer_.setVolume(grid);
+void ViewWidget::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels) {
+  renderer_.setVolume(std::move(copy), labels);
   hint_->setVisible(!renderer_.hasVolume());
+  redraw();
+}
+
+void ViewWidget::refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels) {
+  renderer_.refill(voxels, labels);
   redraw();
 }
 

@@ -29,8 +29,11 @@ class ViewWidget : public QOpenGLWidget {
   explicit ViewWidget(QWidget* parent = nullptr);
   ~ViewWidget() override;
 
-  // Takes a copy of the voxels; the camera stays where the place in the patient is the same.
-  void showVolume(const Grid& grid);
+  // Shows these voxels, its own from now on; the camera stays where the place in the patient is the
+  // same.
+  void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels);
+  // All voxels of the same place again, from elsewhere.
+  void refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels);
   void setTissues(const TissueSet& tissues);
   // Looks at a landmark from outside, or at the whole case from the front.
   void lookAtLandmark(const LandmarkFrame& frame, double distance_mm);

@@ -12,9 +12,10 @@
 #include "haptics/haptic_core.h"
 #include "lab/trades/recommended.h"
 #include "scene/names.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "session/session.h"
 #include "volume/grid.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -88,18 +89,14 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
   Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
   if (!script) return script.error();
-  Result<Volume> volume = openCase(scene.case_source, progress);
-  if (!volume) return volume.error();
-  Result<std::shared_ptr<const LabelMap>> labels = openLabels(scene.labels_file, volume->geometry);
-  if (!labels) return labels.error();
-  Result<std::vector<PlacedLandmark>> landmarks =
-      placeLandmarks(scene, *volume, labels->get(), progress);
-  if (!landmarks) return landmarks.error();
-  const Scene fixed = withFixedMaps(scene, *landmarks);
-  Grid grid(*std::move(volume), *std::move(labels));
+  const Result<Case> of = openCase(scene, progress);
+  if (!of) return of.error();
+  if (of->misfit) return *of->misfit;
+  const Scene fixed = withFixedMaps(scene, of->landmarks);
+  Grid grid(Volume(*of->volume), of->labels);
   HapticCore core(hapticParameters(fixed), *grid.takeWriter());
   std::array<HandTarget, kMaxArms> hands{};
-  ScriptOperator(*script, fixed, armFrames(scene, *landmarks))
+  ScriptOperator(*script, fixed, armFrames(scene, of->landmarks))
       .targets(0, hands.data(), scene.arms.size());
   TickInput input;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
@@ -304,7 +301,7 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
                        {"stiffness_felt_N_per_m", b.felt.stiffness}});
   }
   const double journal_mb = double(core.journal().ramBytes()) / (1024.0 * 1024.0);
-  const bool named_case = scene.case_source.rfind("phantom:", 0) == 0;
+  const bool named_case = phantomNamed(scene.case_source).has_value();
   Json answer{
       {"scene", scene.name},
       {"case", named_case ? Json(scene.case_source) : Json(nullptr)},

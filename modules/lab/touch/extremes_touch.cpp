@@ -9,7 +9,7 @@
 #include "lab/common/on_all_processors.h"
 #include "lab/touch/placed_scene.h"
 #include "lab/touch/rest_measurement.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -304,7 +304,7 @@ ExtremeRow atRest(const PlacedScene& liver) {
     paths.push_back({out_m, Vec3(0.0), Vec3(0.0)});
   }
   const std::vector<HoldResult> held =
-      hold(parameters, liver.volume, arms, paths, HoldKind::rest, kRest_s);
+      hold(parameters, *liver.volume, arms, paths, HoldKind::rest, kRest_s);
   ExtremeRow row{
       "at rest in the liver", "needle and blade held for 60 s where their devices' origins are",
       "above 2 Hz no more than a count of the encoder, at most 0.2 mJ given out", "", true};
@@ -413,9 +413,9 @@ Result<std::vector<ExtremeRow>> measureTouchExtremes(const std::string& case_sou
   if (!phantom) return phantom.error();
   targets.push_back({"phantom", *std::move(phantom)});
   if (!case_source.empty()) {
-    Result<Volume> real = openCase(case_source, progress);
+    const Result<Case> real = readCase(case_source, progress);
     if (!real) return real.error();
-    targets.push_back({"real case", *std::move(real)});
+    targets.push_back({"real case", *real->volume});
   }
 
   std::vector<Dive> dives;

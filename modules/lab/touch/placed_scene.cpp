@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/system.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "session/session.h"
 
 namespace trephine {
@@ -18,20 +18,12 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / (name + ".json"));
   if (!scene) return scene.error();
   if (Status asked = readArmDynamics(*scene); !asked) return asked.error();
-  Result<Volume> volume =
-      openCase(case_source.empty() ? scene->case_source : case_source, progress);
-  if (!volume) return volume.error();
-  const auto landmarks = placeLandmarks(*scene, *volume, nullptr, progress);
-  if (!landmarks) return landmarks.error();
-  PlacedScene placed{withFixedMaps(*scene, *landmarks), *std::move(volume), {}};
-  for (const SceneArm& arm : placed.scene.arms) {
-    LandmarkFrame frame;
-    for (const PlacedLandmark& l : *landmarks) {
-      if (l.id == arm.map.landmark) frame = l.frame;
-    }
-    placed.frames.push_back(frame);
-  }
-  return placed;
+  if (!case_source.empty()) useCase(*scene, case_source);
+  const Result<Case> of = openCase(*scene, progress);
+  if (!of) return of.error();
+  if (of->misfit) return *of->misfit;
+  return PlacedScene{withFixedMaps(*scene, of->landmarks), of->volume,
+                     armFrames(*scene, of->landmarks)};
 }
 
 Tool withoutMotor(const Tool& tool) {

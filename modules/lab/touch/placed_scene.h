@@ -1,6 +1,7 @@
 // Shipped scenes as measurements use them: placed in a case, with the arms that would move them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ std::vector<std::string> shippedScenes();
 
 struct PlacedScene {
   Scene scene;  // maps fixed, dynamics of the devices that it names
-  Volume volume;
+  std::shared_ptr<const Volume> volume;
   std::vector<LandmarkFrame> frames;  // by arm: its landmark
 };
 // `case_source`: empty for the scene's own. Errors: those of the scene's files, case and devices.

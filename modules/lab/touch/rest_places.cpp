@@ -44,7 +44,7 @@ HoldPath pathOf(const PlacedScene& placed, std::size_t arm, const Vec3& start_mm
 }
 
 void addScene(const std::string& name, const PlacedScene& placed, std::vector<HoldCell>& cells) {
-  const auto volume = std::make_shared<const Volume>(placed.volume);
+  const std::shared_ptr<const Volume>& volume = placed.volume;
   const TissueTable table = tissueTable(placed.scene.tissues);
   // At the devices' origins, in the window's hand.
   HoldCell origins = cellOf(name, placed, volume, {4.0, 600.0});
@@ -65,7 +65,7 @@ void addScene(const std::string& name, const PlacedScene& placed, std::vector<Ho
             const Vec3 start_mm(map.offset_mm.x + aside_mm, map.offset_mm.y - aside_mm, kFrom_mm);
             const LandmarkFrame& frame = placed.frames[arm];
             const auto depth_mm =
-                depthOf(placed.volume, table, int(t), frame.toPatient_mm(start_mm),
+                depthOf(*placed.volume, table, int(t), frame.toPatient_mm(start_mm),
                         frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm);
             if (!depth_mm) break;
             // The press is the hand's own: at the device, whatever its motion is scaled by.

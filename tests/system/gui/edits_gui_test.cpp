@@ -98,7 +98,7 @@ class EditsGuiTest : public QObject {
     activate();
     const TissueSet tissues = workstation().scene()->tissues;
     const auto file = workstation().sceneFile();
-    const auto volume = workstation().volume();
+    const auto volume = workstation().currentCase()->volume;
     auto* controller = find<QComboBox>("controller");
     auto* scenes = find<QComboBox>("scenes");
     const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
@@ -117,7 +117,7 @@ class EditsGuiTest : public QObject {
     QCOMPARE(scenes->currentIndex(), scene_was);
     QCOMPARE(find<QTabWidget>("leftTabs")->currentIndex(), 1);
     QVERIFY(workstation().sceneFile() == file);
-    QVERIFY(workstation().volume() == volume);
+    QVERIFY(workstation().currentCase()->volume == volume);
     QVERIFY(!workstation().isOpening());
   }
 

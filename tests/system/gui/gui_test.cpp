@@ -264,7 +264,7 @@ class GuiTest : public QObject {
     QVERIFY(ended.count() == 1 || ended.wait(kLong_ms));
     QCoreApplication::processEvents();
     QVERIFY(!cancel->isVisible());
-    QVERIFY(!workstation().volume());
+    QVERIFY(!workstation().currentCase());
     QCOMPARE(failed.count(), 0);  // who cancels needs no dialog
   }
 

@@ -221,7 +221,7 @@ class ImportGuiTest : public QObject {
     QTest::keyClick(list(), Qt::Key_Return);
     QVERIFY(opened.wait(kLong_ms));
     QVERIFY(!dialog()->isVisible());
-    QVERIFY(workstation().volume()->hu == block({64, 48, 40}, 0).hu);
+    QVERIFY(workstation().currentCase()->volume->hu == block({64, 48, 40}, 0).hu);
     QCOMPARE(workstation().caseName(), QString("Head 3.0"));
 
     QTRY_VERIFY(find<QPushButton>("anotherSeries")->isEnabled());
@@ -233,7 +233,7 @@ class ImportGuiTest : public QObject {
     QTRY_COMPARE(find<QLabel>("slicePosition")->text(), QString("Slice 11 of 20"));
     QTest::keyClick(list(), Qt::Key_Return);
     QVERIFY(opened.wait(kLong_ms));
-    QVERIFY(workstation().volume()->hu == block({64, 48, 20}, 1).hu);
+    QVERIFY(workstation().currentCase()->volume->hu == block({64, 48, 20}, 1).hu);
     closeError();
   }
 
@@ -253,7 +253,7 @@ class ImportGuiTest : public QObject {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     QTest::mouseClick(import, Qt::LeftButton);
     QVERIFY(opened.wait(kLong_ms));
-    QCOMPARE(workstation().volume()->geometry.size[2], 40);
+    QCOMPARE(workstation().currentCase()->volume->geometry.size[2], 40);
     closeError();
 
     QTest::mouseClick(find<QPushButton>("anotherSeries"), Qt::LeftButton);
@@ -302,13 +302,13 @@ class ImportGuiTest : public QObject {
     const ImportRequest request{{{"COUCH", "remove"}, {"FACE", "deface"}}, {}, 1, {}};
     const Result<Volume> wanted = same->read(*same->bestSeries(), request, Progress());
     QVERIFY(wanted.ok());
-    QVERIFY(workstation().volume()->hu == wanted->hu);
-    QVERIFY(workstation().volume()->hu != headOnACouch().hu);
+    QVERIFY(workstation().currentCase()->volume->hu == wanted->hu);
+    QVERIFY(workstation().currentCase()->volume->hu != headOnACouch().hu);
 
     find<QPushButton>("anotherSeries")->click();
     find<QPushButton>("import")->click();
     QVERIFY(opened.wait(kLong_ms));  // what was answered is not asked again
-    QVERIFY(workstation().volume()->hu == wanted->hu);
+    QVERIFY(workstation().currentCase()->volume->hu == wanted->hu);
     closeError();
   }
 
@@ -323,7 +323,7 @@ class ImportGuiTest : public QObject {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     find<QPushButton>("openCase")->click();
     QVERIFY(opened.wait(kLong_ms));
-    QVERIFY((workstation().volume()->geometry.size == Index3{32, 24, 20}));
+    QVERIFY((workstation().currentCase()->volume->geometry.size == Index3{32, 24, 20}));
     closeError();
   }
 
@@ -357,14 +357,14 @@ class ImportGuiTest : public QObject {
   }
 
   void aReadIsCancelledAndTheCaseBeforeStaysOpen() {
-    const std::shared_ptr<const Volume> before = workstation().volume();
+    const std::shared_ptr<const Volume> before = workstation().currentCase()->volume;
     open(temporary_.filePath("two"));
     find<QPushButton>("import")->click();
     QTest::mouseClick(find<QPushButton>("cancelImport"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
     QVERIFY(dialog()->isVisible());
     QVERIFY(find<QPushButton>("import")->isEnabled());
-    QCOMPARE(workstation().volume(), before);
+    QCOMPARE(workstation().currentCase()->volume, before);
   }
 
   void aReportIsSavedWithoutNamingTheFolder() {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "base/system.h"
+#include "cases.h"
 #include "session/hand_start.h"
 #include "session/session.h"
 #include "support.h"
@@ -93,7 +94,7 @@ void freewheelTalking(Session& session, double seconds, const std::function<void
 
 TEST(Hands, BeginOutsideOfTheTissueThatTheScenePutsThemIn) {
   for (const bool outside : {false, true}) {
-    auto made = Session::create(liver(), smallBelly(), {{}, {}, {}, outside});
+    auto made = Session::create(liver(), test::placed(liver(), smallBelly()), {{}, {}, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.3).ok());
     const ArmRecord& arm = (*made)->state().record.arms[0];
@@ -105,7 +106,7 @@ TEST(Hands, BeginOutsideOfTheTissueThatTheScenePutsThemIn) {
 }
 
 TEST(Hands, AreBackWhereTheyBeganAfterAReset) {
-  auto made = Session::create(liver(), smallBelly(), {{}, {}, {}, true});
+  auto made = Session::create(liver(), test::placed(liver(), smallBelly()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 begin_mm = session.handTarget_mm(0);
@@ -131,7 +132,7 @@ TEST(Hands, AScriptsHandsBeginWhereTheScriptSays) {
   ASSERT_TRUE(script.ok()) << script.error().sentence();
   Vec3 first_mm[2];
   for (const bool outside : {false, true}) {
-    auto made = Session::create(scene, smallBelly(), {{}, *script, {}, outside});
+    auto made = Session::create(scene, test::placed(scene, smallBelly()), {{}, *script, outside});
     ASSERT_TRUE(made.ok()) << made.error().sentence();
     ASSERT_TRUE((*made)->freewheel(0.001).ok());
     first_mm[outside] = (*made)->state().record.arms[0].patient_position_mm;
@@ -146,7 +147,7 @@ TEST(Hands, PressAsHardAfterAPauseAsBefore) {
     tissue.solid = true;
     tissue.stiffness_N_per_m.value = 800.0;
   }
-  auto made = Session::create(scene, smallBelly(), {{}, {}, {}, true});
+  auto made = Session::create(scene, test::placed(scene, smallBelly()), {{}, {}, true});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 out = session.scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, 1.0);

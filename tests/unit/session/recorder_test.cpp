@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/system.h"
+#include "cases.h"
 #include "session/session.h"
 #include "support.h"
 #include "training/replay.h"
@@ -45,7 +46,7 @@ TEST(Recorder, ThatComesLateWritesWhatWaitsBeforeItReturns) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
   scene.rate_hz = 100.0;
-  auto session = Session::create(scene, ball(), scripted(folder / "s.h5"));
+  auto session = Session::create(scene, test::placed(scene, ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   int looks = 0;
   const Progress look([&](double fraction, const std::string&) {
@@ -72,7 +73,8 @@ std::vector<pid_t> threadsNamed(const std::string& name) {
 
 TEST(Recorder, ThatWasHeldUpCountsItAndLosesNothing) {
   test::TemporaryFolder folder;
-  auto session = Session::create(cranium(), ball(), scripted(folder / "s.h5"));
+  auto session =
+      Session::create(cranium(), test::placed(cranium(), ball()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->start(4.0).ok());
   std::this_thread::sleep_for(std::chrono::milliseconds(500));

@@ -9,9 +9,10 @@
 
 #include "base/file.h"
 #include "base/system.h"
-#include "session/case_source.h"
+#include "cases.h"
 #include "support.h"
 #include "training/replay.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 namespace {
@@ -43,7 +44,8 @@ SessionOptions scripted(const std::filesystem::path& recording = {}) {
 
 TEST(Session, BothArmsCutBoneWithinTheForceLimitAndItReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto session = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  auto session =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
@@ -77,7 +79,7 @@ Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
   scene.arms[0].device_config = (folder / "device.json").string();
   scene.rate_hz = rate_hz;
-  const auto session = Session::create(scene, smallHead(), {});
+  const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
   return session ? Error{} : session.error();
 }
 
@@ -99,7 +101,7 @@ TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   for (const char* name : {"deep.json", "pipe.json"}) {
     scene.arms[0].device_config = (folder / name).string();
-    const auto session = Session::create(scene, smallHead(), {});
+    const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
     ASSERT_FALSE(session.ok()) << name;
     EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
   }
@@ -115,19 +117,20 @@ TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
   EXPECT_EQ(errorWithDeviceFile(slow, 500.0).code, "");
 }
 
-TEST(Session, CanBeCancelledWhileItsLandmarksAreFound) {
+TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
   Progress* running = nullptr;
   Progress progress([&](double, const std::string&) { running->cancel(); });
   running = &progress;
-  const auto session = Session::create(cranium(), smallHead(), {}, progress);
-  ASSERT_FALSE(session.ok());
-  EXPECT_EQ(session.error().code, "CANCELLED");
+  const Case of = caseOf(std::make_shared<const Volume>(smallHead()));
+  const auto placed = placedIn(cranium(), of, progress);
+  ASSERT_FALSE(placed.ok());
+  EXPECT_EQ(placed.error().code, "CANCELLED");
 }
 
 TEST(Session, FreewheelsToTheSameVoxelsTwice) {
   std::string first;
   for (int i = 0; i < 2; ++i) {
-    auto session = Session::create(cranium(), smallHead(), scripted());
+    auto session = Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
     ASSERT_TRUE((*session)->freewheel(5.0).ok());
     const std::string hash = (*session)->report().volume_sha256;
     if (i == 0) first = hash;
@@ -137,7 +140,8 @@ TEST(Session, FreewheelsToTheSameVoxelsTwice) {
 
 TEST(Session, RunsInRealTimeTakesLiveInputAndReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto made = Session::create(cranium(), smallHead(), {folder / "s.h5", {}});
+  auto made =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), {folder / "s.h5", {}});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start().ok());
@@ -189,7 +193,7 @@ TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
     tissue.cuttable = false;
     tissue.friction_N.value = 3.0;
   }
-  auto made = Session::create(scene, smallHead(), {});
+  auto made = Session::create(scene, test::placed(scene, smallHead()), {});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   const Vec3 down_mm = glm::normalize(-session.landmarks()[0].frame.position_mm);
@@ -229,7 +233,7 @@ TEST(Session, InAPauseAHandThatWasPressingDoesNotSinkInAndNothingMovesIt) {
 }
 
 TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
-  auto made = Session::create(cranium(), smallHead(), scripted());
+  auto made = Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   std::vector<Vec3> tips_mm;
@@ -247,7 +251,8 @@ TEST(Session, AScriptsHandIsHeldInAPauseAndGoesOnAfterIt) {
 // Both arms cut while everything is changed under them, from another thread than theirs.
 TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdentically) {
   test::TemporaryFolder folder;
-  auto made = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  auto made =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   Session& session = **made;
   ASSERT_TRUE(session.start(6.0).ok());
@@ -289,7 +294,8 @@ std::size_t commandsIn(const std::filesystem::path& recording) {
 
 TEST(Session, RecolouringATissueNeverReachesTheHapticThread) {
   test::TemporaryFolder folder;
-  auto session = *Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  auto session =
+      *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   TissueSet tissues = session->scene().tissues;
   for (int step = 0; step < 200; ++step) {  // more than the ring of commands holds
     tissues.tissues[3].opacity = 0.001 * step;
@@ -319,7 +325,8 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   for (SceneArm& arm : scene.arms) {
     arm.device_config = arms(folder.path(), {{"vanish_after_s", 0.3}});
   }
-  auto session = *Session::create(scene, smallHead(), scripted(folder / "s.h5"));
+  auto session =
+      *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session->freewheel(0.5).ok());
   const RunReport report = session->report();
   ASSERT_EQ(report.faults.size(), 2u);
@@ -331,7 +338,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
             std::string::npos);
 
   scene = cranium();
-  auto sound = *Session::create(scene, smallHead(), scripted());
+  auto sound = *Session::create(scene, test::placed(scene, smallHead()), scripted());
   ASSERT_TRUE(sound->freewheel(0.5).ok());
   EXPECT_TRUE(sound->report().faults.empty());
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
@@ -344,7 +351,8 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   for (SceneArm& arm : scene.arms) {
     arm.device_config = arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
   }
-  auto session = *Session::create(scene, smallHead(), scripted(folder / "s.h5"));
+  auto session =
+      *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(session->start(0.6).ok());
   while (!session->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ASSERT_TRUE(session->stop().ok());
@@ -373,7 +381,7 @@ long lockedKiB() {
 
 TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
   const long before = lockedKiB();
-  auto session = *Session::create(cranium(), smallHead(), scripted());
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   EXPECT_FALSE(session->memoryLocked()) << "not known yet";
   ASSERT_TRUE(session->start(60.0).ok());
   while (session->state().ticks == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -387,7 +395,7 @@ TEST(Session, HoldsItsMemoryWhileItRunsInRealTimeOrSaysHowThatIsAllowed) {
 }
 
 TEST(Session, TwoArmsThatShareVoxelsShareTheirVolumeInTheReport) {
-  auto session = *Session::create(cranium(), smallHead(), scripted());
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   ASSERT_TRUE(session->freewheel(10.0).ok());
   const RunReport report = session->report();
   double of_arms = 0.0, of_tissues = 0.0;
@@ -414,9 +422,10 @@ Scene craniumOfLabels() {
 
 TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
   test::TemporaryFolder folder;
-  SessionOptions options = scripted(folder / "s.h5");
-  const auto labels = options.labels = strips();
-  auto session = Session::create(craniumOfLabels(), smallHead(), options);
+  const auto labels = strips();
+  auto session =
+      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead(), labels),
+                      scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(10.0).ok());
   const RunReport report = (*session)->report();
@@ -444,9 +453,8 @@ TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
 }
 
 // As a file may have it: the axes in another order.
-TEST(Session, FitsALabelMapToTheCase) {
+TEST(Case, FitsALabelMapToItsVoxels) {
   test::TemporaryFolder folder;
-  SessionOptions options = scripted(folder / "s.h5");
   const auto straight = strips();
   LabelMap turned = *straight;
   const GridGeometry& g = straight->geometry;
@@ -456,32 +464,39 @@ TEST(Session, FitsALabelMapToTheCase) {
   for (std::size_t i = 0; i < turned.labels.size(); ++i) {
     turned.labels[i] = straight->labels[i % slice + slice * (std::size_t(g.size[2]) - 1 - i / slice)];
   }
-  options.labels = std::make_shared<const LabelMap>(turned);
-  auto session = Session::create(craniumOfLabels(), smallHead(), options);
+  const Case head = caseOf(std::make_shared<const Volume>(smallHead()));
+  const auto file = [&](const char* name) {
+    const Volume voxels{turned.geometry, Voxels(turned.labels.begin(), turned.labels.end())};
+    EXPECT_TRUE(writeVolume(voxels, folder / name).ok());
+    return (folder / name).string();
+  };
+  const auto labelled = withLabels(head, file("turned.mha"));
+  ASSERT_TRUE(labelled.ok()) << labelled.error().sentence();
+  EXPECT_EQ(labelled->labels->labels, straight->labels);
+  const Case of = *placedIn(craniumOfLabels(), *labelled);
+  auto session = Session::create(craniumOfLabels(), of, scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
-  EXPECT_EQ((*session)->grid().labels()->labels, straight->labels);
   ASSERT_TRUE((*session)->freewheel(0.5).ok());
   EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
   turned.geometry.origin_mm.x += 1000.0;
-  options.labels = std::make_shared<const LabelMap>(turned);
-  EXPECT_EQ(Session::create(craniumOfLabels(), smallHead(), options).error().code,
-            "LABELS_ELSEWHERE");
+  EXPECT_EQ(withLabels(head, file("elsewhere.mha")).error().code, "LABELS_ELSEWHERE");
 }
 
 TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
-  const auto refused = Session::create(craniumOfLabels(), smallHead(), {});
+  const auto refused =
+      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead()), {});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, "NO_LABELS");
   EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
 
-  const auto session = *Session::create(cranium(), smallHead(), {});
+  const auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), {});
   EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
 }
 
 TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
   Volume air = smallHead();
   std::fill(air.hu.begin(), air.hu.end(), kAirHu);
-  auto session = Session::create(cranium(), air, {});
+  auto session = Session::create(cranium(), test::placed(cranium(), air), {});
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
 }
@@ -489,33 +504,65 @@ TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
 TEST(Session, SaysWhenAPluginIsMissing) {
   Scene scene = cranium();
   scene.arms[0].plugin = scene.arms[1].plugin = "nosuch";
-  auto session = Session::create(scene, smallHead(), {});
+  auto session = Session::create(scene, test::placed(scene, smallHead()), {});
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "NO_PLUGIN");
 }
 
 TEST(Session, RefusesTissuesThatCannotBe) {
-  auto session = Session::create(cranium(), smallHead(), {});
+  auto session = Session::create(cranium(), test::placed(cranium(), smallHead()), {});
   TissueSet bad = (*session)->scene().tissues;
   bad.tissues[0].damping_Ns_per_m.value = -1.0;
   EXPECT_FALSE((*session)->setTissues(bad).ok());
 }
 
-TEST(Session, AMissingCaseIsNamed) {
-  EXPECT_EQ(openCase("").error().code, "NO_CASE");
-  EXPECT_EQ(openCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
-  const auto missing = openCase("/no/such/folder");
+TEST(Case, ThatIsMissingIsNamed) {
+  EXPECT_EQ(readCase("").error().code, "NO_CASE");
+  EXPECT_EQ(readCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
+  const auto missing = readCase("/no/such/folder");
   ASSERT_FALSE(missing.ok());
   EXPECT_NE(missing.error().where.find("/no/such/folder"), std::string::npos);
 }
 
-TEST(Session, AMissingLabelMapIsNamedAndNoneIsNoError) {
-  const GridGeometry geometry = smallHead().geometry;
-  EXPECT_EQ(*openLabels("", geometry), nullptr);
-  const auto missing = openLabels("/no/such/seg.nii", geometry);
+TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
+  const Case head = caseOf(std::make_shared<const Volume>(smallHead()));
+  EXPECT_EQ(withLabels(head, "")->labels, nullptr);
+  const auto missing = withLabels(head, "/no/such/seg.nii");
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, "MISSING_FILE");
   EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
+  Scene scene = cranium();
+  scene.labels_file = "/no/such/seg.nii";
+  const Case of = *placedIn(scene, head);
+  ASSERT_TRUE(of.misfit);
+  EXPECT_EQ(Session::create(scene, of, {}).error().code, "MISSING_FILE");
+}
+
+TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
+  const auto voxels = std::make_shared<const Volume>(smallHead());
+  const Case of = *placedIn(cranium(), caseOf(voxels));
+  EXPECT_EQ(of.sha256, volumeSha256(smallHead()));
+  EXPECT_EQ(caseOf(voxels, "known").sha256, "known");
+  auto session = *Session::create(cranium(), of, scripted());
+  ASSERT_TRUE(session->freewheel(10.0).ok());
+  EXPECT_EQ(session->report().volume_sha256_before, of.sha256);
+  EXPECT_EQ(session->report().volume_sha256, volumeSha256(session->grid().snapshot()));
+  EXPECT_NE(session->report().volume_sha256, of.sha256);
+  EXPECT_EQ(voxels->hu, smallHead().hu);
+}
+
+TEST(Scene, OnAnotherCaseHasNoLabelMapOfItsOwn) {
+  Scene scene = cranium();
+  scene.case_source = "phantom:cranium";
+  scene.labels_file = "labels.nii";
+  useCase(scene, "phantom:cranium");
+  EXPECT_EQ(scene.labels_file, "labels.nii");
+  useCase(scene, "");
+  EXPECT_EQ(scene.labels_file, "");
+  EXPECT_FALSE(toJson(scene).contains("case")) << "a recording must not name another case";
+  scene.labels_file = "of the case that is given.nii";
+  useCase(scene, "head.mha");
+  EXPECT_EQ(scene.labels_file, "of the case that is given.nii");
 }
 
 TEST(FreshFile, NeverNamesAFileThatIsThere) {
@@ -528,7 +575,8 @@ TEST(FreshFile, NeverNamesAFileThatIsThere) {
 TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
   const std::filesystem::path folder(std::string(300, 'x'));  // longer than names may be
   EXPECT_EQ(freshFile(folder, "a", ".h5"), folder / "a.h5");
-  const auto made = Session::create(cranium(), smallHead(), scripted(folder / "a.h5"));
+  const auto made =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "a.h5"));
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, "CANNOT_WRITE");
 }
@@ -536,12 +584,14 @@ TEST(FreshFile, OfAFolderThatCannotBeLookedIntoIsLeftToWhoWritesThere) {
 TEST(Session, AMissingTemporaryFolderIsAnErrorWhereOneIsNeeded) {
   test::TemporaryFolder folder;
   const test::Environment missing("TMPDIR", (folder / "none").string());
-  const auto unrecorded = Session::create(cranium(), smallHead(), scripted());
+  const auto unrecorded =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
   ASSERT_FALSE(unrecorded.ok());
   EXPECT_EQ(unrecorded.error().code, "NO_TEMPORARY_FOLDER");
 
   // Beside a recording there is room for what does not fit into memory; a replay has no such place.
-  auto recorded = Session::create(cranium(), smallHead(), scripted(folder / "s.h5"));
+  auto recorded =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
   ASSERT_TRUE(recorded.ok()) << recorded.error().sentence();
   ASSERT_TRUE((*recorded)->freewheel(0.1).ok());
   const auto reader = SessionReader::open(folder / "s.h5");

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "base/system.h"
+#include "cases.h"
 #include "haptics/bounded_controller.h"
-#include "session/case_source.h"
+#include "session/case.h"
 #include "session/energy_watch.h"
 #include "session/session.h"
 #include "support.h"
@@ -24,16 +25,16 @@ constexpr double kSeconds = 10.0;
 const Volume& volumeOf(const std::string& case_source) {
   static std::map<std::string, Volume> all;
   if (!all.contains(case_source)) {
-    auto opened = openCase(case_source);
-    EXPECT_TRUE(opened.ok()) << opened.error().sentence();
-    all[case_source] = *std::move(opened);
+    auto read = readCase(case_source);
+    EXPECT_TRUE(read.ok()) << read.error().sentence();
+    all[case_source] = *read->volume;
   }
   return all[case_source];
 }
 
 Scene shipped(const std::string& name, const std::string& case_source) {
   Scene scene = *readScene(resourceFolder() / "scenes" / (name + ".json"));
-  if (!case_source.empty()) scene.case_source = case_source;
+  if (!case_source.empty()) useCase(scene, case_source);
   return scene;
 }
 
@@ -51,7 +52,7 @@ Recorded record(const std::string& name, const std::string& case_source) {
   Recorded out;
   out.before = volumeOf(scene.case_source);
   const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
-  auto session = Session::create(scene, out.before, options);
+  auto session = Session::create(scene, test::placed(scene, out.before), options);
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   EXPECT_TRUE((*session)->freewheel(kSeconds).ok());
   out.scene = (*session)->scene();
@@ -194,7 +195,8 @@ TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
     const Scene scene = shipped(name, "");
-    auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
+    auto session =
+        Session::create(scene, test::placed(scene, volumeOf(scene.case_source)), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
@@ -225,7 +227,8 @@ TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
       tissue.cuttable = false;
       if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
     }
-    auto session = Session::create(scene, volumeOf(scene.case_source), {{}, {}, {}, true});
+    auto session =
+        Session::create(scene, test::placed(scene, volumeOf(scene.case_source)), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
     EnergyWatch watch;
@@ -295,7 +298,7 @@ Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, c
 std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
   const Scene scene = shipped(name, case_source);
   const Volume& volume = volumeOf(scene.case_source);
-  auto session = Session::create(scene, volume, {});
+  auto session = Session::create(scene, test::placed(scene, volume), {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
   const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -42, 0) : Vec3(0.0);  // below the ribs

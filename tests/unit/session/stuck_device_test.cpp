@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "cases.h"
 #include "session/session.h"
 #include "support.h"
 #include "training/replay.h"
@@ -44,7 +45,7 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   const auto begin = std::chrono::steady_clock::now();
   const Scene blocking = scene(folder.path(), kBlock_s);
   const OperatorScript script = *readOperatorScript(blocking.operator_file, blocking);
-  auto made = Session::create(blocking, block(), {folder / "s.h5", script});
+  auto made = Session::create(blocking, test::placed(blocking, block()), {folder / "s.h5", script});
   ASSERT_TRUE(made.ok()) << made.error().sentence();
   auto session = *std::move(made);
   ASSERT_TRUE(session->start(60.0).ok());
@@ -80,7 +81,8 @@ TEST(StuckDevice, IsLeftBehindByStopAndNotOfferedAgain) {
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical) << result->first_difference->field;
 
-  const auto again = Session::create(scene(folder.path(), 0.0), block(), {});
+  const auto again = Session::create(scene(folder.path(), 0.0),
+                                     test::placed(scene(folder.path(), 0.0), block()), {});
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code, "DEVICE_STUCK");
 

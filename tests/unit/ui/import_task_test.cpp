@@ -147,22 +147,20 @@ TEST_F(ImportTaskTest, AnotherFolderTakesThePlaceOfTheOneBeingScanned) {
 
 TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
   ImportDialog dialog(task_);
-  std::shared_ptr<const Volume> volume;
-  QString name;
-  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog,
-                   [&](const std::shared_ptr<const Volume>& read, const QString& called) {
-                     volume = read;
-                     name = called;
-                   });
+  Case of;
+  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog, [&](const Case& read) { of = read; });
   task_.scan(path());
   EXPECT_TRUE(dialog.isVisible()) << "it opens by itself";
   auto* import = dialog.findChild<QPushButton*>("import");
   EXPECT_FALSE(import->isEnabled());
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
   import->click();
-  ASSERT_TRUE(waitFor([&] { return volume != nullptr; }));
-  EXPECT_EQ(volume->hu, stack(40, 0).hu);
-  EXPECT_EQ(name, "forty");
+  ASSERT_TRUE(waitFor([&] { return of.volume != nullptr; }));
+  EXPECT_EQ(of.volume->hu, stack(40, 0).hu);
+  EXPECT_EQ(of.name, "forty");
+  EXPECT_EQ(of.sha256, volumeSha256(*of.volume));
+  ASSERT_TRUE(of.provenance);
+  EXPECT_EQ(of.provenance->volume_sha256, of.sha256);
   EXPECT_FALSE(dialog.isVisible());
   EXPECT_FALSE(task_.volume()) << "the dialog keeps no second copy";
 

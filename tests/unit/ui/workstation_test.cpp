@@ -69,34 +69,35 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   failed_.reset();
 
   const auto ct = std::make_shared<const Volume>(ball());
-  workstation_.openVolume(ct, "");
+  workstation_.openImported(caseOf(ct));
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(workstation_.volume());
-  EXPECT_EQ(workstation_.labels(), nullptr);
+  ASSERT_TRUE(workstation_.currentCase());
+  EXPECT_EQ(workstation_.currentCase()->labels, nullptr);
   workstation_.useLabels(labels(7));
   ASSERT_TRUE(wait());
   EXPECT_FALSE(failed_) << failed_->sentence();
-  ASSERT_TRUE(workstation_.labels());
-  EXPECT_EQ(workstation_.labels()->labels, std::vector<std::uint8_t>(ball().hu.size(), 7));
+  ASSERT_TRUE(workstation_.currentCase()->labels);
+  EXPECT_EQ(workstation_.currentCase()->labels->labels,
+            std::vector<std::uint8_t>(ball().hu.size(), 7));
 
   workstation_.useLabels(labels(700));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(failed_);
   EXPECT_EQ(failed_->code, "NOT_LABELS");
-  EXPECT_TRUE(workstation_.labels()) << "the one before stays";
+  EXPECT_TRUE(workstation_.currentCase()->labels) << "the one before stays";
   workstation_.useScene(workstation_.sceneFile());
   ASSERT_TRUE(wait());
-  EXPECT_TRUE(workstation_.labels()) << "another exercise on the same case";
-  workstation_.openVolume(ct, "");
+  EXPECT_TRUE(workstation_.currentCase()->labels) << "another exercise on the same case";
+  workstation_.openImported(caseOf(ct));
   ASSERT_TRUE(wait());
-  EXPECT_EQ(workstation_.labels(), nullptr);
+  EXPECT_EQ(workstation_.currentCase()->labels, nullptr);
 }
 
 TEST_F(WorkstationTest, ThatACaseIsBeingOpenedIsToldFromItsBeginningToItsEnd) {
   std::vector<bool> opening;
   QObject::connect(&workstation_, &Workstation::phaseChanged, &workstation_,
                    [&] { opening.push_back(workstation_.isOpening()); });
-  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   EXPECT_EQ(opening, std::vector<bool>{true});
   ASSERT_TRUE(wait());
   EXPECT_FALSE(opening.back());
@@ -119,7 +120,7 @@ TEST_F(WorkstationTest, ARawFilesSidecarIsImportedLikeTheRawFile) {
 }
 
 TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
-  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   TissueSet tissues = workstation_.scene()->tissues;
   tissues.tissues.back().label = 7;
@@ -137,7 +138,7 @@ TEST_F(WorkstationTest, AnExerciseTakesTheLabelMapAndWithoutItIsRefused) {
   workstation_.useLabels(labels(7));
   ASSERT_TRUE(wait());
   ASSERT_TRUE(started()) << (failed_ ? failed_->sentence() : "");
-  EXPECT_EQ(workstation_.session()->grid().labels(), workstation_.labels());
+  EXPECT_EQ(workstation_.session()->grid().labels(), workstation_.currentCase()->labels);
   workstation_.stop();
   EXPECT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
 }
@@ -146,7 +147,7 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
   std::vector<Error> said;
   QObject::connect(&workstation_, &Workstation::recordingFailed, &workstation_,
                    [&](const Error& error) { said.push_back(error); });
-  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   workstation_.start(folder_.path(), {}, 1e9);
   ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
@@ -175,7 +176,7 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
 }
 
 TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
-  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   workstation_.start(folder_.path(), {}, 1e9);
   ASSERT_EQ(workstation_.phase(), Workstation::Phase::starting);
@@ -213,7 +214,7 @@ TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
     const double r = glm::length(deep.geometry.toPatient_mm(Vec3(at[0], at[1], at[2])));
     deep.hu[i] = std::int16_t(r < 15.0 ? 1200 : r < 42.0 ? -20 : kAirHu);
   }
-  workstation_.openVolume(std::make_shared<const Volume>(deep), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(deep)));
   ASSERT_TRUE(wait());
   workstation_.start(folder_.path(), {}, 1e9);
   ASSERT_TRUE(waitFor([this] { return workstation_.session() != nullptr; }));
@@ -228,7 +229,7 @@ TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
 class EditedTissuesTest : public WorkstationTest {
  protected:
   EditedTissuesTest() {
-    workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+    workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
     EXPECT_TRUE(wait());
     TissueSet tissues = workstation_.scene()->tissues;
     tissues.tissues.back().hu_min = 900;
@@ -240,7 +241,7 @@ class EditedTissuesTest : public WorkstationTest {
 TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited) {
   EXPECT_TRUE(workstation_.tissuesEdited());
   EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);
-  workstation_.openVolume(std::make_shared<const Volume>(ball()), "");
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(wait());
   EXPECT_EQ(boneFrom(), 900);
   workstation_.useLabels(labels(7));
@@ -248,7 +249,7 @@ TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited
   tissues.tissues.back().hu_min = 950;  // while the label map is read
   workstation_.setTissues(tissues);
   ASSERT_TRUE(wait());
-  ASSERT_TRUE(workstation_.labels());
+  ASSERT_TRUE(workstation_.currentCase()->labels);
   EXPECT_EQ(boneFrom(), 950);
   EXPECT_TRUE(workstation_.tissuesEdited());
   EXPECT_EQ(workstation_.declaredTissues().tissues.back().hu_min, 226);

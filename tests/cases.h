@@ -1,0 +1,19 @@
+// Voxels of a test as a case that is placed in a scene. Nothing is counted as failed here: a case
+// that does not fit says so when it is used.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "session/case.h"
+
+namespace trephine::test {
+
+inline Case placed(const Scene& scene, Volume volume,
+                   std::shared_ptr<const LabelMap> labels = nullptr) {
+  Case of = caseOf(std::make_shared<const Volume>(std::move(volume)));
+  of.labels = std::move(labels);
+  return *placedIn(scene, std::move(of));
+}
+
+}  // namespace trephine::test
