@@ -128,7 +128,7 @@ class EditsGuiTest : public QObject {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    workstation().openVolume(std::make_shared<const Volume>(test::coarseCranium(4)), "");
+    workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     find<QTabWidget>("leftTabs")->setCurrentIndex(1);
     window_->findChild<TissuePanel*>()->select("bone");

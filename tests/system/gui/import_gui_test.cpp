@@ -222,7 +222,7 @@ class ImportGuiTest : public QObject {
     QVERIFY(opened.wait(kLong_ms));
     QVERIFY(!dialog()->isVisible());
     QVERIFY(workstation().currentCase()->volume->hu == block({64, 48, 40}, 0).hu);
-    QCOMPARE(workstation().caseName(), QString("Head 3.0"));
+    QCOMPARE(QString::fromStdString(workstation().currentCase()->name), QString("Head 3.0"));
 
     QTRY_VERIFY(find<QPushButton>("anotherSeries")->isEnabled());
     closeError();

@@ -344,6 +344,34 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
 }
 
+TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), scripted());
+  ASSERT_TRUE(session->start(30.0).ok());
+  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
+  while (session->state().ticks < 2000) wait();
+  while (!session->freeze()) wait();
+  const std::string before = slabsSha256(slabsOf(session->grid()));
+  EXPECT_TRUE(session->state().paused);
+  for (CommandKind kind : {CommandKind::undo, CommandKind::reset, CommandKind::resume}) {
+    EXPECT_FALSE(session->send(kind));
+  }
+  EXPECT_FALSE(session->rewind(0));
+  const std::uint64_t ticks = session->state().ticks;
+  while (session->state().ticks < ticks + 200) wait();
+  EXPECT_EQ(slabsSha256(slabsOf(session->grid())), before);
+  session->thaw();
+  while (session->state().paused) wait();
+  EXPECT_TRUE(session->send(CommandKind::reset));
+  ASSERT_TRUE(session->send(CommandKind::pause));
+  while (!session->state().paused) wait();
+  while (!session->freeze()) wait();
+  session->thaw();
+  const std::uint64_t later = session->state().ticks;
+  while (session->state().ticks < later + 50) wait();
+  EXPECT_TRUE(session->state().paused) << "a pause that was there before stays";
+  ASSERT_TRUE(session->stop().ok());
+}
+
 // A device that returns late: force away, back, and the same in the replay.
 TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   test::TemporaryFolder folder;

@@ -246,6 +246,18 @@ TEST(Recording, OfAToolWithoutAProxyIsRefusedByName) {
   H5Fclose(file);
 }
 
+TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
+  test::TemporaryFolder folder;
+  recordRun(folder / "a.h5", 500);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, "end", H5P_DEFAULT), 0);
+  H5Fclose(file);
+  const auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_FALSE(reader.ok());
+  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
+  EXPECT_NE(reader.error().what.find("its end cannot be read"), std::string::npos);
+}
+
 TEST(Recording, RefusesToReplayWhatWasDropped) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100, true, 3);

@@ -285,7 +285,7 @@ TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
   QObject::connect(&window, &MainWindow::failed, &window,
                    [&](const Error& error) { said = error; });
   Workstation& shown = window.workstation();
-  shown.openVolume(std::make_shared<const Volume>(ball()), "");
+  shown.openImported(caseOf(std::make_shared<const Volume>(ball())));
   ASSERT_TRUE(waitFor([&] { return shown.phase() == Workstation::Phase::ready; }));
   window.startExercise();
   EXPECT_EQ(shown.phase(), Workstation::Phase::ready);
