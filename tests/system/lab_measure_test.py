@@ -117,11 +117,8 @@ class Trades(LabTest):
         self.assertEqual(settings, {
             "points_blade": ["2", "4", "8", "16", "32", "64", "128", "256"],
             "points_burr": ["8", "16", "32", "64", "128", "256", "512"],
-            "hu_lookup": ["nearest", "trilinear"],
             "force_at": ["tip", "distributed"],
             "rate_hz": ["250", "500", "1000", "2000", "4000", "10000", "20000"],
-            "velocity_estimate": ["backward difference", "low-pass 100 Hz", "low-pass 20 Hz",
-                                  "adaptive window", "kalman"],
             "grid": ["full", "half", "quarter"]})
         chosen = [(row["knob"], row["setting"]) for row in answer["rows"] if row["recommended"]]
         self.assertEqual([knob for knob, _ in chosen], list(settings))
