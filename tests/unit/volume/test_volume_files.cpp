@@ -330,6 +330,8 @@ TEST(VolumeFiles, WhatCannotBeWrittenIsRefused) {
   flat.geometry.spacing_mm.z = 0.0;
   EXPECT_EQ(writeVolume(flat, folder / "a.mha").error().code, "BAD_GEOMETRY");
   EXPECT_EQ(writeVolume(Volume{}, folder / "a.mha").error().code, "BAD_SIZE");
+  EXPECT_EQ(writeVolume(patternVolume({2, 32768, 1}), folder / "a.nii").error().code,
+            "CANNOT_WRITE");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
