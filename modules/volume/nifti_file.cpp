@@ -111,7 +111,9 @@ Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
   }
   if (h.qform() > 0) {
     const double b = h.quaternion(0), c = h.quaternion(1), d = h.quaternion(2);
-    const Quat q(std::sqrt(std::max(0.0, 1.0 - b * b - c * c - d * d)), b, c, d);
+    // Below 1e-7 it is what floats leave of a half turn: libnifti takes it for none as well.
+    const double left = 1.0 - b * b - c * c - d * d;
+    const Quat q(left < 1e-7 ? 0.0 : std::sqrt(left), b, c, d);
     const Mat3 rotation = glm::mat3_cast(glm::normalize(q));
     for (int axis = 0; axis < 3; ++axis) {
       const double sign = axis == 2 && h.pixdim(0) < 0.0 ? -1.0 : 1.0;
