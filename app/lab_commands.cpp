@@ -269,24 +269,20 @@ int measureTradesCommand(const std::string& out, bool json, const Progress& prog
   return 0;
 }
 
-int measureImportCommand(ImportOptions options, const std::vector<std::string>& series,
-                         const std::string& out, bool json, const Progress& progress) {
+int measureImportCommand(const ImportOptions& options, const std::string& out, bool json,
+                         const Progress& progress) {
   constexpr const char* kName = "measure.import";
-  for (const std::string& name : series) {
-    const auto syntax = kindOf(kSeriesSyntaxes, name);
-    if (!syntax) {
-      return printError(kName, {"BAD_ARGUMENT", "There is no series '" + name + "'", "--series",
-                                choices(kSeriesSyntaxes)}, json);
-    }
-    options.syntaxes.push_back(*syntax);
-  }
   std::error_code error;
-  options.program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) {
     return printError(kName, {"CANNOT_RUN", "The program does not find itself", "", ""}, json);
   }
-  Result<ImportMeasurement> measured = measureImport(options, out, progress);
-  if (!measured) return printError(kName, measured.error(), json);
+  Result<ImportMeasurement> measured = measureImport(options, ownSubjects({self}), out, progress);
+  if (!measured) {
+    Error why = measured.error();
+    if (why.where == "--series") why.next += std::string(". ") + kOtherPrograms;
+    return printError(kName, why, json);
+  }
   printMeasured(kName, *measured, json);
   return 0;
 }

@@ -54,9 +54,11 @@ int measureExtremesCommand(const std::string& case_source, const std::string& ou
                            const Progress&);
 int measureHapticsCommand(const std::string& out, bool json, const Progress&);
 int measureTradesCommand(const std::string& out, bool json, const Progress&);
-// `series` are names; none for all. The program in `options` is filled in.
-int measureImportCommand(ImportOptions options, const std::vector<std::string>& series,
-                         const std::string& out, bool json, const Progress&);
+constexpr const char* kOtherPrograms =
+    "Other programs and compressed series are measured by bench_import, which is built with the "
+    "tests (tests/bench/import)";
+int measureImportCommand(const ImportOptions& options, const std::string& out, bool json,
+                         const Progress&);
 int measureReadCommand(const std::string& path, bool json, const Progress&);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 

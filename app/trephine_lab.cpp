@@ -119,24 +119,27 @@ int run(int argc, char** argv) {
   auto* trades_command = with_json(measure_command->add_subcommand(
       "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
   trades_command->add_option("--out", out, "Folder for tables and charts")->required();
-  auto* measure_import_command = with_json(measure_command->add_subcommand(
-      "import", "How fast CT is read, against a plain read and other programs"));
+  auto* measure_import_command = with_json(
+      measure_command->add_subcommand("import", "How fast CT is read, against a plain read"));
   ImportOptions import_options;
-  std::vector<std::string> import_series;
-  int edge = import_options.size[0];
-  measure_import_command->add_flag("--peers", import_options.peers,
-                                   "Other programs too, where they are installed");
-  measure_import_command->add_option("--series", import_series, "Only these; all unless given");
+  int edge = import_options.series.size[0];
+  measure_import_command->footer(kOtherPrograms);
+  measure_import_command->add_flag_callback(
+      "--peers", [] { throw CLI::ValidationError("--peers", kOtherPrograms); },
+      "Other programs too: moved to bench_import");
+  measure_import_command->add_option("--series", import_options.series.names,
+                                     "Only int16 or u12; both unless given");
   measure_import_command->add_option("--size", edge, "Rows and columns")->capture_default_str();
-  measure_import_command->add_option("--slices", import_options.size[2], "Of each series")
+  measure_import_command->add_option("--slices", import_options.series.size[2], "Of each series")
       ->capture_default_str();
   measure_import_command->add_option("--repetitions", import_options.repetitions)
       ->capture_default_str();
-  measure_import_command->add_option("--scan-series", import_options.scan_series,
-                                     "Series in the folder whose headers are read")
+  measure_import_command
+      ->add_option("--scan-series", import_options.series.scan_series,
+                   "Series in the folder whose headers are read")
       ->capture_default_str();
-  measure_import_command->add_option("--scan-slices", import_options.scan_slices,
-                                     "Slices of each of them")
+  measure_import_command
+      ->add_option("--scan-slices", import_options.series.scan_slices, "Slices of each of them")
       ->capture_default_str();
   measure_import_command->add_option("--out", out, "Folder for the table")->required();
   auto* read_command = with_json(
@@ -180,8 +183,8 @@ int run(int argc, char** argv) {
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);
   if (*measure_import_command) {
-    import_options.size[0] = import_options.size[1] = edge;
-    return measureImportCommand(import_options, import_series, out, json, progress);
+    import_options.series.size[0] = import_options.series.size[1] = edge;
+    return measureImportCommand(import_options, out, json, progress);
   }
   if (*read_command) return measureReadCommand(file, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);

@@ -91,7 +91,7 @@ Result<Volume> readVolume(const fs::path& file, const Progress& progress) {
 }
 
 Status checkVolumeFileName(const fs::path& file) {
-  // Lower case only: VTK's writer and replaceFile() go by the ending as it is.
+  // Lower case only, whatever reads them later.
   const std::string name = file.filename().string();
   if (name.ends_with(".mha") || name.ends_with(".nii") || name.ends_with(".nii.gz")) return {};
   return unknownFormat("Volumes are written as .mha, .nii or .nii.gz", file,

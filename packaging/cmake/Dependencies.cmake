@@ -16,9 +16,8 @@ if(HDF5_IS_PARALLEL)
                       "Trephine needs the serial one: install libhdf5-dev, not libhdf5-mpi-dev.")
 endif()
 
-find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
-find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOImage)
 if(TREPHINE_WINDOW)
+  find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
   find_package(VTK REQUIRED COMPONENTS ChartsCore CommonCore CommonDataModel CommonExecutionModel
                CommonTransforms FiltersCore FiltersSources InteractionStyle IOGeometry IOImage
                RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType

@@ -2,10 +2,11 @@
 
 import json
 import os
+import subprocess
 import unittest
 from pathlib import Path
 
-from lab_support import LabTest, lab, without_display
+from lab_support import LAB, LabTest, lab, without_display
 
 
 class Stability(LabTest):
@@ -117,11 +118,8 @@ class Trades(LabTest):
         self.assertEqual(settings, {
             "points_blade": ["2", "4", "8", "16", "32", "64", "128", "256"],
             "points_burr": ["8", "16", "32", "64", "128", "256", "512"],
-            "hu_lookup": ["nearest", "trilinear"],
             "force_at": ["tip", "distributed"],
             "rate_hz": ["250", "500", "1000", "2000", "4000", "10000", "20000"],
-            "velocity_estimate": ["backward difference", "low-pass 100 Hz", "low-pass 20 Hz",
-                                  "adaptive window", "kalman"],
             "grid": ["full", "half", "quarter"]})
         chosen = [(row["knob"], row["setting"]) for row in answer["rows"] if row["recommended"]]
         self.assertEqual([knob for knob, _ in chosen], list(settings))
@@ -133,23 +131,29 @@ class Trades(LabTest):
 
 
 class Import(LabTest):
-    def test_the_import_is_measured_beside_a_plain_read_and_absent_peers(self):
-        # A PATH without programs: what is installed here does not matter.
-        answer = lab("measure", "import", "--peers", "--size", 64, "--slices", 4, "--repetitions",
-                     1, "--scan-series", 2, "--scan-slices", 3, "--out", self.folder / "out",
-                     environment={**os.environ, "PATH": str(self.folder)})
+    SMALL = ("--size", 64, "--slices", 4, "--repetitions", 1, "--scan-series", 2, "--scan-slices", 3)
+    ROW = {"series", "loader", "threads", "seconds_median", "peak_rss_mb", "above_start_mb",
+           "correct", "skipped_reason"}
+    RATIOS = {"int16_to_floor", "int16_to_floor_kept", "u12_to_floor", "u12_to_floor_kept",
+              "command_to_dcm2niix", "scan_to_gdcmscanner", "compressed"}
+    COMPRESSED = {"deflated", "rle", "jpegls", "jpegll", "j2k"}
+
+    def assert_measured(self, answer, series, peers=()):
+        """Each series by our loaders and the absent peers; the rows by series and loader."""
         self.assertEqual(set(answer), {"schema", "build", "volume_mb", "rows", "scan", "ratios"})
+        self.assertEqual(answer["schema"], "trephine.measure.import.1")
+        self.assertEqual(set(answer["ratios"]), self.RATIOS)
+        self.assertEqual(answer["ratios"]["compressed"], dict.fromkeys(self.COMPRESSED))
+        self.assertIsNone(answer["ratios"]["command_to_dcm2niix"])
+        self.assertGreater(answer["ratios"]["int16_to_floor"], 1)
+        self.assertGreater(answer["scan"][0]["seconds_median"], 0)
         rows = {(row["series"], row["loader"]): row for row in answer["rows"]}
         self.assertEqual(set(rows), {
-            (series, loader)
-            for series in ("int16", "u12", "big-endian", "deflated", "rle", "jpegls", "jpegll", "j2k")
-            for loader in ("trephine", "trephine command", "floor", "floor kept", "dcm2niix",
-                           "dicomtonifti")})
-        for (series, loader), row in rows.items():
-            with self.subTest(series=series, loader=loader):
-                self.assertEqual(set(row), {"series", "loader", "threads", "seconds_median",
-                                            "peak_rss_mb", "above_start_mb", "correct",
-                                            "skipped_reason"})
+            (name, loader) for name in series
+            for loader in ("trephine", "trephine command", "floor", "floor kept", *peers)})
+        for (name, loader), row in rows.items():
+            with self.subTest(series=name, loader=loader):
+                self.assertEqual(set(row), self.ROW)
                 if loader.startswith("floor"):
                     self.assertGreater(row["seconds_median"], 0)
                     self.assertIsNone(row["correct"])
@@ -164,19 +168,36 @@ class Import(LabTest):
         self.assertGreater(ours["above_start_mb"], 0)
         self.assertLess(ours["above_start_mb"], ours["peak_rss_mb"])
         self.assertLess(ours["seconds_median"], rows["int16", "trephine command"]["seconds_median"])
+        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()), ["import.csv"])
+
+    def test_the_import_is_measured_beside_a_plain_read(self):
+        answer = lab("measure", "import", *self.SMALL, "--out", self.folder / "out")
+        self.assert_measured(answer, ("int16", "u12"))
+        self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
+                         [("trephine", 6)])
+
+    def test_the_bench_measures_all_syntaxes_and_absent_peers(self):
+        # A PATH without programs: what is installed here does not matter.
+        done = subprocess.run(
+            [os.environ["BENCH_IMPORT"], "--peers", *map(str, self.SMALL), "--out",
+             self.folder / "out", "--lab", LAB, "--json"], capture_output=True, text=True,
+            timeout=240, env={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        answer = json.loads(done.stdout)
+        self.assert_measured(
+            answer, ("int16", "u12", "big-endian", "deflated", "rle", "jpegls", "jpegll", "j2k"),
+            ("dcm2niix", "dicomtonifti"))
         self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
                          [("trephine", 6), ("gdcmscanner", 6)])
-        self.assertGreater(answer["scan"][0]["seconds_median"], 0)
-        self.assertGreater(answer["ratios"]["int16_to_floor"], 1)
-        self.assertIsNone(answer["ratios"]["command_to_dcm2niix"])
-        self.assertEqual(sorted(f.name for f in (self.folder / "out").iterdir()), ["import.csv"])
 
     def test_an_import_measurement_of_what_is_not_there_is_refused(self):
         out = self.folder / "out"
-        answer = lab("measure", "import", "--series", "mp3", "--out", out, expect=1)
-        self.assert_error(answer, "BAD_ARGUMENT", "mp3", "jpegls")
+        answer = lab("measure", "import", "--series", "jpegls", "--out", out, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "jpegls", "int16, u12", "bench_import")
         answer = lab("measure", "import", "--size", 1, "--out", out, expect=1)
         self.assert_error(answer, "BAD_ARGUMENT", "2048")
+        answer = lab("measure", "import", "--peers", "--out", out, expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "--peers", "bench_import")
         self.assertFalse(out.exists())
 
 

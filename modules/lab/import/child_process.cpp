@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -12,10 +11,8 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <sstream>
 
 extern char** environ;
 
@@ -59,13 +56,11 @@ struct Report {
 };
 
 // In the child, between fork and exec: nothing but system calls.
-[[noreturn]] void becomeProgram(const ChildCommand& command, char* const* arguments,
-                                char* const* environment, int output, int nothing, int reports) {
+[[noreturn]] void becomeProgram(char* const* arguments, char* const* environment, int output,
+                                int nothing, int reports) {
   Report report;
-  const int isolation = command.offline ? CLONE_NEWUSER | CLONE_NEWNET : 0;
-  if ((isolation == 0 || ::unshare(isolation) == 0) && ::dup2(output, STDOUT_FILENO) >= 0 &&
-      ::dup2(nothing, STDERR_FILENO) >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 &&
-      ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0) {
+  if (::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(nothing, STDERR_FILENO) >= 0 &&
+      ::dup2(nothing, STDIN_FILENO) >= 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0) {
     report.start_ns = now_ns();
     if (::write(reports, &report, sizeof report) == sizeof report) {
       ::execve(arguments[0], arguments, environment);
@@ -111,7 +106,7 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   const pid_t child = ::fork();
   if (child < 0) return cannotRun(command, errno);
   if (child == 0) {
-    becomeProgram(command, arguments.data(), environment.data(), output.get(), nothing.get(),
+    becomeProgram(arguments.data(), environment.data(), output.get(), nothing.get(),
                   reporting.get());
   }
   reporting.close();
@@ -144,19 +139,6 @@ Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress)
   run.seconds = double(end_ns - report.start_ns) / 1e9;
   run.peak_rss_mb = double(usage.ru_maxrss) / 1024.0;
   return run;
-}
-
-std::optional<std::filesystem::path> findProgram(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path program = std::filesystem::path(folder) / name;
-    std::error_code none;
-    if (std::filesystem::is_regular_file(program, none) && ::access(program.c_str(), X_OK) == 0) {
-      return program;
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace trephine

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@ struct ChildCommand {
   std::vector<std::string> words;  // the program's path, then its arguments
   std::filesystem::path output;    // a file that gets its stdout; stderr is dropped
   std::filesystem::path home;      // its HOME, so that it leaves nothing in the user's
-  bool offline = true;             // without any network, in a namespace of its own
   double limit_s = 120.0;          // after which it is ended
 };
 
@@ -31,8 +29,5 @@ struct ChildRun {
 // Waits for the child's end; it ends with this process too. Errors: CANCELLED (the child was
 // killed), CANNOT_RUN (says what the system refused).
 Result<ChildRun> runChild(const ChildCommand& command, const Progress& progress);
-
-// Where PATH has a program of this name that may be run.
-std::optional<std::filesystem::path> findProgram(const std::string& name);
 
 }  // namespace trephine

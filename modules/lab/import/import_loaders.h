@@ -1,5 +1,5 @@
-// Programs that read a folder of CT: this one, other people's, and a plain read of the bytes. Each
-// runs as a child process on its own.
+// Programs that read a folder of CT: this one, and a plain read of the bytes. Each runs as a child
+// process on its own.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,9 @@
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "volume/volume.h"
+#include "lab/import/import_series.h"
 
 namespace trephine {
-
-// What a folder's series is known to hold.
-struct KnownVolume {
-  GridGeometry geometry;  // axes along the patient's, i to the left, j to the back, k up
-  std::string sha256;     // of its voxels (volumeSha256)
-};
 
 struct ImportSample {
   double seconds = 0.0;
@@ -33,34 +27,34 @@ struct LoaderRun {
   std::string problem;          // empty: all went well
 };
 
+struct LoaderTask {
+  const std::filesystem::path& folder;  // of the series
+  const std::filesystem::path& empty;   // a folder for what is written; goes away after the run
+  const KnownVolume* known;             // null where the volume need not be compared
+  const Progress& progress;
+};
+
 struct Loader {
   std::vector<std::string> names;  // of its figures
   int threads = 1;
   std::string missing;  // why it cannot run at all; empty: it can
-  // `known` is null where the volume need not be compared. Errors: CANCELLED, CANNOT_RUN.
-  std::function<Result<LoaderRun>(const std::filesystem::path& folder, const KnownVolume* known,
-                                  const Progress& progress)>
-      run;
+  // Errors: CANCELLED, CANNOT_RUN.
+  std::function<Result<LoaderRun>(const LoaderTask& task)> run;
 };
 
-struct LoaderPlaces {
-  std::filesystem::path program;  // trephine-lab
-  std::filesystem::path scratch;  // a folder for outputs, each removed after its run
-  double limit_s = 120.0;         // for one run
+struct OwnProgram {
+  std::filesystem::path file;  // trephine-lab
+  double limit_s = 120.0;      // for one run
 };
 
 // "trephine" (scan + read as `import --json` says), "trephine command" (its wall time without the
 // hash that only the report needs), "floor" and "floor kept" (read_floor.h).
-std::vector<Loader> ownLoaders(const LoaderPlaces& places);
-// Those that write a NIfTI volume from a folder: wall time of the whole command.
-std::vector<Loader> peerLoaders(const LoaderPlaces& places);
+std::vector<Loader> ownLoaders(const OwnProgram& program);
+// Headers alone, of all files: "trephine" (its report's scan).
+Loader ownScanner(const OwnProgram& program);
 
-// Headers alone, of all files: "trephine" (its report's scan) and "gdcmscanner" (wall time).
-Loader ownScanner(const LoaderPlaces& places);
-Loader peerScanner(const LoaderPlaces& places);
-
-// Whether a volume file holds the known voxels, each in its place in the patient: slices, rows and
-// columns may run either way.
-bool holdsKnownVoxels(const std::filesystem::path& file, const KnownVolume& known);
+// For a run's problem.
+std::string tookTooLong(double limit_s);
+LoaderRun failedRun(std::string why);
 
 }  // namespace trephine

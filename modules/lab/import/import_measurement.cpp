@@ -26,17 +26,24 @@ Error badArgument(const char* what, const char* where) {
   return {"BAD_ARGUMENT", what, where, ""};
 }
 
-Status check(const ImportOptions& options) {
-  if (Status can = checkSeriesSize(options.size); !can) return can;
+Status check(const ImportOptions& options, const std::vector<std::string>& names) {
+  const ImportSeries& series = options.series;
+  if (Status can = checkSeriesSize(series.size); !can) return can;
   if (options.repetitions < 1 || options.repetitions > 100) {
     return badArgument("There are 1 to 100 repetitions", "--repetitions");
   }
-  if (options.scan_series < 1 || options.scan_series > 1000 || options.scan_slices < 2 ||
-      options.scan_slices > 2048) {
+  if (series.scan_series < 1 || series.scan_series > 1000 || series.scan_slices < 2 ||
+      series.scan_slices > 2048) {
     return badArgument("A scan has 1 to 1000 series of 2 to 2048 files", "--scan-series");
   }
-  if (!(options.limit_s > 0.0 && options.limit_s <= 3600.0)) {
-    return badArgument("A run takes at most an hour", "limit_s");
+  for (const std::string& name : series.names) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    Error error = badArgument("There is no series", "--series");
+    error.what += " '" + name + "'";
+    for (const std::string& other : names) {
+      error.next += (error.next.empty() ? "Use one of: " : ", ") + other;
+    }
+    return error;
   }
   return {};
 }
@@ -76,9 +83,11 @@ struct Gathered {
 
 // Every loader once untimed, then `repetitions` times in turns. One that has a problem is not run
 // again and keeps no figures.
-Result<std::vector<Gathered>> takeTurns(const std::vector<Loader>& loaders, const fs::path& folder,
+Result<std::vector<Gathered>> takeTurns(const std::vector<Loader>& loaders,
+                                        const TemporaryFolder& place, const std::string& series,
                                         const KnownVolume* known, int repetitions,
-                                        const std::string& series, const ProgressShare& share) {
+                                        const Progress& progress) {
+  const fs::path folder = place / series, empty = place / "run";
   std::vector<std::vector<Gathered>> gathered;
   for (const Loader& loader : loaders) {
     std::vector<Gathered> figures;
@@ -99,10 +108,12 @@ Result<std::vector<Gathered>> takeTurns(const std::vector<Loader>& loaders, cons
       std::vector<Gathered>& figures = gathered[which];
       if (!figures.front().row.skipped_reason.empty()) continue;
       const double done = (turn + double(n) / double(count)) / (repetitions + 1);
-      share.progress.at(share.from + (share.to - share.from) * done,
-                        series + ": " + loaders[which].names.front());
+      progress.at(done, series + ": " + loaders[which].names.front());
+      if (Status made = makeFolder(empty); !made) return made.error();
       Result<LoaderRun> run =
-          loaders[which].run(folder, turn == 0 ? known : nullptr, share.progress);
+          loaders[which].run({folder, empty, turn == 0 ? known : nullptr, progress});
+      std::error_code none;
+      fs::remove_all(empty, none);
       if (!run) return run.error();
       for (std::size_t f = 0; f < figures.size(); ++f) {
         if (run->correct) figures[f].row.correct = run->correct;
@@ -126,32 +137,6 @@ const ImportRow* find(const ImportMeasurement& m, const std::string& series,
   return found == m.rows.end() ? nullptr : &*found;
 }
 
-std::optional<double> ratio(std::optional<double> ours, std::optional<double> reference) {
-  if (!ours || !reference || !(*reference > 0.0)) return std::nullopt;
-  return *ours / *reference;
-}
-
-// Only a volume that is right counts as read.
-std::optional<double> secondsOf(const ImportMeasurement& m, const std::string& series,
-                                const std::string& loader) {
-  const ImportRow* row = find(m, series, loader);
-  if (!row || row->correct == false) return std::nullopt;
-  return row->seconds_median;
-}
-
-bool isOurs(const ImportRow& row) {
-  return row.loader.starts_with("trephine");
-}
-
-std::optional<double> fastestPeer(const ImportMeasurement& m, const std::string& series) {
-  std::optional<double> fastest;
-  for (const ImportRow& row : m.rows) {
-    if (row.series != series || isOurs(row) || row.correct != true || !row.seconds_median) continue;
-    if (!fastest || *row.seconds_median < *fastest) fastest = row.seconds_median;
-  }
-  return fastest;
-}
-
 template <class T>
 Json orNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -159,6 +144,21 @@ Json orNull(const std::optional<T>& value) {
 
 Json textOrNull(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
+}
+
+// Scan and read against a plain read.
+struct FloorRatio {
+  const char *key, *series, *floor, *text;
+};
+constexpr FloorRatio kFloorRatios[] = {
+    {"int16_to_floor", "int16", "floor", "int16: scan and read / plain read"},
+    {"int16_to_floor_kept", "int16", "floor kept",
+     "int16: scan and read / plain read that keeps all"},
+    {"u12_to_floor", "u12", "floor", "u12: scan and read / plain read"},
+    {"u12_to_floor_kept", "u12", "floor kept", "u12: scan and read / plain read that keeps all"}};
+
+std::optional<double> of(const ImportMeasurement& m, const FloorRatio& ratio) {
+  return ratioOf(secondsOf(m, ratio.series, "trephine"), secondsOf(m, ratio.series, ratio.floor));
 }
 
 // "-" for nothing.
@@ -213,85 +213,56 @@ ImportRow summarizeImport(ImportRow row, const std::vector<ImportSample>& sample
   return row;
 }
 
-ImportRatios ratiosOf(const ImportMeasurement& m) {
-  ImportRatios ratios;
-  ratios.int16_to_floor = ratio(secondsOf(m, "int16", "trephine"), secondsOf(m, "int16", "floor"));
-  ratios.int16_to_floor_kept =
-      ratio(secondsOf(m, "int16", "trephine"), secondsOf(m, "int16", "floor kept"));
-  ratios.u12_to_floor = ratio(secondsOf(m, "u12", "trephine"), secondsOf(m, "u12", "floor"));
-  ratios.u12_to_floor_kept =
-      ratio(secondsOf(m, "u12", "trephine"), secondsOf(m, "u12", "floor kept"));
-  ratios.command_to_dcm2niix =
-      ratio(secondsOf(m, "int16", "trephine command"), secondsOf(m, "int16", "dcm2niix"));
-  std::optional<double> ours, peer;
-  for (const ScanRow& row : m.scan) {
-    (row.loader == "trephine" ? ours : peer) = row.seconds_median;
-  }
-  ratios.scan_to_gdcmscanner = ratio(ours, peer);
-  for (const char* series : {"deflated", "rle", "jpegls", "jpegll", "j2k"}) {
-    ratios.compressed.emplace_back(
-        series, ratio(secondsOf(m, series, "trephine command"), fastestPeer(m, series)));
-  }
-  return ratios;
+std::optional<double> ratioOf(std::optional<double> ours, std::optional<double> reference) {
+  if (!ours || !reference || !(*reference > 0.0)) return std::nullopt;
+  return *ours / *reference;
 }
 
-Result<ImportMeasurement> measureImport(const ImportOptions& options, const fs::path& out,
+std::optional<double> secondsOf(const ImportMeasurement& m, const std::string& series,
+                                const std::string& loader) {
+  const ImportRow* row = find(m, series, loader);
+  if (!row || row->correct == false) return std::nullopt;
+  return row->seconds_median;
+}
+
+ImportSubjects ownSubjects(const OwnProgram& program) {
+  return {{"int16", "u12"}, writeOwnSeries, ownLoaders(program), {ownScanner(program)}};
+}
+
+Result<ImportMeasurement> measureImport(const ImportOptions& options,
+                                        const ImportSubjects& subjects, const fs::path& out,
                                         const Progress& progress) {
-  if (Status good = check(options); !good) return good.error();
+  if (Status good = check(options, subjects.names); !good) return good.error();
   if (Status made = makeFolder(out); !made) return made.error();
   Result<TemporaryFolder> folder = TemporaryFolder::in(out);
   if (!folder) return folder.error();
-  std::vector<SeriesSyntax> syntaxes = options.syntaxes;
-  if (syntaxes.empty()) {
-    for (const auto& [name, syntax] : kSeriesSyntaxes) syntaxes.push_back(syntax);
-  }
-
-  const double part = kMakingShare / double(syntaxes.size() + 2);
-  KnownVolume known;
-  ImportMeasurement result;
-  {
-    Result<Volume> volume = makeNoisyCt(options.size, {progress, 0.0, part});
-    if (!volume) return volume.error();
-    known = {volume->geometry, volumeSha256(*volume)};
-    result.volume_mb = double(volume->hu.size() * sizeof(std::int16_t)) / kMb;
-    double from = part;
-    for (const SeriesSyntax syntax : syntaxes) {
-      const Status written = writeSeries(*volume, syntax, *folder / nameOf(kSeriesSyntaxes, syntax),
-                                         {progress, from, from + part});
-      if (!written) return written.error();
-      from += part;
-    }
-  }
-  const Status written = writeManySeries(options.scan_series, options.scan_slices, *folder / "scan",
-                                         {progress, kMakingShare - part, kMakingShare});
-  if (!written) return written.error();
+  ImportSeries series = options.series;
+  if (series.names.empty()) series.names = subjects.names;
+  const Progress making(progress, 0.0, kMakingShare);
+  const Result<std::vector<KnownVolume>> known = subjects.write(series, folder->path(), making);
+  if (!known) return known.error();
   ::sync();  // what is still on its way to the disk would be timed with the first runs
 
-  const LoaderPlaces places{options.program, *folder / "scratch", options.limit_s};
-  std::vector<Loader> loaders = ownLoaders(places), scanners{ownScanner(places)};
-  if (options.peers) {
-    std::vector<Loader> others = peerLoaders(places);
-    std::move(others.begin(), others.end(), std::back_inserter(loaders));
-    scanners.push_back(peerScanner(places));
-  }
-  const double run_part = (1.0 - kMakingShare) / double(syntaxes.size() + 1);
+  ImportMeasurement result;
+  result.volume_mb = double(known->front().geometry.voxelCount() * sizeof(std::int16_t)) / kMb;
+  const double part = (1.0 - kMakingShare) / double(series.names.size() + 1);
   double from = kMakingShare;
-  for (const SeriesSyntax syntax : syntaxes) {
-    const std::string name = nameOf(kSeriesSyntaxes, syntax);
-    Result<std::vector<Gathered>> gathered =
-        takeTurns(loaders, *folder / name, &known, options.repetitions, name,
-                  {progress, from, from + run_part});
+  for (std::size_t n = 0; n < series.names.size(); ++n) {
+    const Progress reading(progress, from, from + part);
+    Result<std::vector<Gathered>> gathered = takeTurns(subjects.loaders, *folder, series.names[n],
+                                                       &(*known)[n], options.repetitions, reading);
     if (!gathered) return gathered.error();
     for (const Gathered& g : *gathered) result.rows.push_back(summarizeImport(g.row, g.samples));
-    from += run_part;
+    from += part;
   }
-  Result<std::vector<Gathered>> scans = takeTurns(
-      scanners, *folder / "scan", nullptr, options.repetitions, "scan", {progress, from, 1.0});
+  const Progress scanning(progress, from, 1.0);
+  Result<std::vector<Gathered>> scans =
+      takeTurns(subjects.scanners, *folder, "scan", nullptr, options.repetitions, scanning);
   if (!scans) return scans.error();
   for (const Gathered& g : *scans) {
     const ImportRow row = summarizeImport(g.row, g.samples);
-    result.scan.push_back({options.scan_series * options.scan_slices, row.loader,
-                           row.seconds_median, row.peak_rss_mb, row.skipped_reason});
+    result.scan.push_back({series.scan_series * series.scan_slices, row.loader, row.seconds_median,
+                           row.peak_rss_mb, row.skipped_reason});
   }
   if (Status table = writeTextFile(out / "import.csv", toCsv(result)); !table) {
     return table.error();
@@ -301,7 +272,7 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options, const fs::
 }
 
 Json toJson(const ImportMeasurement& measurement) {
-  Json rows = Json::array(), scan = Json::array(), compressed = Json::object();
+  Json rows = Json::array(), scan = Json::array(), ratios = Json::object(), compressed;
   for (const ImportRow& row : measurement.rows) {
     rows.push_back({{"series", row.series},
                     {"loader", row.loader},
@@ -319,19 +290,13 @@ Json toJson(const ImportMeasurement& measurement) {
                     {"peak_rss_mb", orNull(row.peak_rss_mb)},
                     {"skipped_reason", textOrNull(row.skipped_reason)}});
   }
-  const ImportRatios ratios = ratiosOf(measurement);
-  for (const auto& [series, value] : ratios.compressed) compressed[series] = orNull(value);
-  return {{"volume_mb", measurement.volume_mb},
-          {"rows", rows},
-          {"scan", scan},
-          {"ratios",
-           {{"int16_to_floor", orNull(ratios.int16_to_floor)},
-            {"int16_to_floor_kept", orNull(ratios.int16_to_floor_kept)},
-            {"u12_to_floor", orNull(ratios.u12_to_floor)},
-            {"u12_to_floor_kept", orNull(ratios.u12_to_floor_kept)},
-            {"command_to_dcm2niix", orNull(ratios.command_to_dcm2niix)},
-            {"scan_to_gdcmscanner", orNull(ratios.scan_to_gdcmscanner)},
-            {"compressed", compressed}}}};
+  for (const FloorRatio& ratio : kFloorRatios) ratios[ratio.key] = orNull(of(measurement, ratio));
+  for (const char* key : {"command_to_dcm2niix", "scan_to_gdcmscanner"}) ratios[key] = nullptr;
+  for (const char* series : {"deflated", "rle", "jpegls", "jpegll", "j2k"}) {
+    compressed[series] = nullptr;
+  }
+  ratios["compressed"] = compressed;
+  return {{"volume_mb", measurement.volume_mb}, {"rows", rows}, {"scan", scan}, {"ratios", ratios}};
 }
 
 std::string toText(const ImportMeasurement& measurement) {
@@ -355,21 +320,12 @@ std::string toText(const ImportMeasurement& measurement) {
                   cell(row.peak_rss_mb, 1).c_str(), row.skipped_reason.c_str());
     text += line;
   }
-  const ImportRatios ratios = ratiosOf(measurement);
-  const auto put = [&](const std::string& name, const std::optional<double>& value) {
-    std::snprintf(line, sizeof line, "%-56s %6s\n", name.c_str(), cell(value, 2).c_str());
-    text += line;
-  };
   std::snprintf(line, sizeof line, "the volume has %.1f MB\n", measurement.volume_mb);
   text += line;
-  put("int16: scan and read / plain read", ratios.int16_to_floor);
-  put("int16: scan and read / plain read that keeps all", ratios.int16_to_floor_kept);
-  put("u12: scan and read / plain read", ratios.u12_to_floor);
-  put("u12: scan and read / plain read that keeps all", ratios.u12_to_floor_kept);
-  put("int16: command without hash / dcm2niix", ratios.command_to_dcm2niix);
-  put("scan / gdcmscanner", ratios.scan_to_gdcmscanner);
-  for (const auto& [series, value] : ratios.compressed) {
-    put(series + ": command without hash / fastest peer that is right", value);
+  for (const FloorRatio& ratio : kFloorRatios) {
+    std::snprintf(line, sizeof line, "%-56s %6s\n", ratio.text,
+                  cell(of(measurement, ratio), 2).c_str());
+    text += line;
   }
   return text;
 }

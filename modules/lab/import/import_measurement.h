@@ -1,10 +1,9 @@
-// How fast is a folder of CT read, against a plain read of its bytes and against other programs?
+// How fast is a folder of CT read, against a plain read of its bytes?
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/json.h"
@@ -18,7 +17,7 @@ namespace trephine {
 // One loader (names: import_loaders.h) on one series. Where it gave no figures, skipped_reason says
 // why: it is not installed, it refused or failed, or it took too long.
 struct ImportRow {
-  std::string series;  // a name of kSeriesSyntaxes
+  std::string series;
   std::string loader;
   int threads = 1;
   std::optional<double> seconds_median;
@@ -44,34 +43,33 @@ struct ImportMeasurement {
 };
 
 struct ImportOptions {
-  std::filesystem::path program;       // trephine-lab
-  bool peers = false;                  // other programs too, where they are installed
-  Index3 size{512, 512, 300};          // of every series (checkSeriesSize)
-  int repetitions = 5;                 // 1 to 100, after one that is not timed
-  int scan_series = 10;                // 1 to 1000
-  int scan_slices = 300;               // 2 to 2048, of each of them
-  double limit_s = 120.0;              // for one run
-  std::vector<SeriesSyntax> syntaxes;  // all where empty
+  ImportSeries series;  // all that there are where it names none
+  int repetitions = 5;  // 1 to 100, after one that is not timed
 };
 
-// Medians against medians of the same run; nothing where one of the two is missing.
-struct ImportRatios {
-  std::optional<double> int16_to_floor, int16_to_floor_kept;
-  std::optional<double> u12_to_floor, u12_to_floor_kept;
-  std::optional<double> command_to_dcm2niix;  // on int16
-  std::optional<double> scan_to_gdcmscanner;
-  // By series: "trephine command" against the fastest peer that got every voxel right.
-  std::vector<std::pair<std::string, std::optional<double>>> compressed;
+// What is measured: series, who makes them, and who reads them.
+struct ImportSubjects {
+  std::vector<std::string> names;
+  SeriesWriter write;
+  std::vector<Loader> loaders;   // of each series
+  std::vector<Loader> scanners;  // of the headers
 };
-ImportRatios ratiosOf(const ImportMeasurement& measurement);
+ImportSubjects ownSubjects(const OwnProgram& program);
+
+// Medians against medians of the same run; nothing where one of the two is missing. Only a volume
+// that is right counts as read.
+std::optional<double> secondsOf(const ImportMeasurement& measurement, const std::string& series,
+                                const std::string& loader);
+std::optional<double> ratioOf(std::optional<double> ours, std::optional<double> reference);
 
 // The median and the largest of a loader's samples, put into the row.
 ImportRow summarizeImport(ImportRow row, const std::vector<ImportSample>& samples);
 
 // Makes every series in a temporary folder in `out`, which goes away at the end; the loaders then
-// take turns. Writes import.csv into `out`. Takes up to 1.3 GB of disk. Errors: BAD_ARGUMENT,
-// CANCELLED, CANNOT_WRITE, CANNOT_RUN, OUT_OF_MEMORY.
+// take turns. Writes import.csv into `out`. Takes up to 0.4 GB of disk for our own series. Errors:
+// BAD_ARGUMENT, CANCELLED, CANNOT_WRITE, CANNOT_RUN, OUT_OF_MEMORY.
 Result<ImportMeasurement> measureImport(const ImportOptions& options,
+                                        const ImportSubjects& subjects,
                                         const std::filesystem::path& out,
                                         const Progress& progress = Progress());
 
@@ -79,7 +77,7 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options,
 //  skipped_reason}], scan:[{files, loader, seconds_median, peak_rss_mb, skipped_reason}],
 //  ratios:{int16_to_floor, int16_to_floor_kept, u12_to_floor, u12_to_floor_kept,
 //  command_to_dcm2niix, scan_to_gdcmscanner, compressed:{deflated, rle, jpegls, jpegll, j2k}}};
-// null for nothing.
+// null for nothing, as all ratios to other programs are here: tests/bench/import has those.
 Json toJson(const ImportMeasurement& measurement);
 std::string toText(const ImportMeasurement& measurement);
 

@@ -1,55 +1,46 @@
-// CT series of which every voxel is known, in each way that scanners and archives store them: what
-// the import is measured and tested on.
+// CT series of which every voxel is known, as this program writes them: what the import is measured
+// on.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
 #include "base/result.h"
-#include "scene/names.h"
 #include "volume/volume.h"
 
 namespace trephine {
 
-// int16: explicit little endian, HU as signed 16 bit words, slope 1, intercept 0. All others hold
-// unsigned words of 12 bits in 16, intercept -1024, as most scanners do: u12 in explicit little
-// endian, the rest as their names say (jpegls and j2k lossless, jpegll process 14 with selection
-// value 1).
-enum class SeriesSyntax { int16, u12, big_endian, deflated, rle, jpegls, jpegll, j2k };
-constexpr Names<SeriesSyntax, 8> kSeriesSyntaxes{{{"int16", SeriesSyntax::int16},
-                                                  {"u12", SeriesSyntax::u12},
-                                                  {"big-endian", SeriesSyntax::big_endian},
-                                                  {"deflated", SeriesSyntax::deflated},
-                                                  {"rle", SeriesSyntax::rle},
-                                                  {"jpegls", SeriesSyntax::jpegls},
-                                                  {"jpegll", SeriesSyntax::jpegll},
-                                                  {"j2k", SeriesSyntax::j2k}}};
+// What a folder's series is known to hold.
+struct KnownVolume {
+  GridGeometry geometry;  // axes along the patient's, i to the left, j to the back, k up
+  std::string sha256;     // of its voxels (volumeSha256)
+};
 
-// The part of a whole job's progress that one step of it fills.
-struct ProgressShare {
-  const Progress& progress;
-  double from = 0.0, to = 1.0;
+struct ImportSeries {
+  std::vector<std::string> names;
+  Index3 size{512, 512, 300};  // of each (checkSeriesSize)
+  int scan_series = 10;        // 1 to 1000, in one folder whose headers are read
+  int scan_slices = 300;       // 2 to 2048, of each of those; 64 x 64 voxels
 };
 
 // BAD_ARGUMENT unless edges are of 2 to 2048 voxels, and all are at most 2^28.
 Status checkSeriesSize(const Index3& size);
 
-// The head of the cranium phantom, 230 x 230 x 180 mm, with the noise of a CT: standard deviation
-// 15 HU, neighbours within a slice correlated by 0.44 (a head CT with a bone kernel: 13 HU, 0.25 to
-// 0.53). All of it comes from formulas in whole numbers, so the bits are the same everywhere.
-// HU -1024 to 3071. Errors: BAD_ARGUMENT (checkSeriesSize), CANCELLED, OUT_OF_MEMORY.
-Result<Volume> makeNoisyCt(const Index3& size, const ProgressShare& share);
+// A head's 230 x 230 x 180 mm around the origin, axes along the patient's.
+GridGeometry headGeometry(const Index3& size);
 
-// Writes the volume, one file a slice, into the folder, which is made. A header is as long as a
-// scanner's: about 110 elements with private ones and sequences. HU must lie in -1024..3071 but for
-// int16. Errors: CANNOT_WRITE, CANCELLED.
-Status writeSeries(const Volume& volume, SeriesSyntax syntax, const std::filesystem::path& folder,
-                   const ProgressShare& share);
+// Writes each series into `folder` / its name and those of the scan below `folder` / "scan";
+// returns what each named one holds, in their order. Errors: CANNOT_WRITE, CANCELLED.
+using SeriesWriter = std::function<Result<std::vector<KnownVolume>>(
+    const ImportSeries& series, const std::filesystem::path& folder, const Progress& progress)>;
 
-// `series` series of `slices` files each in one folder, int16, of small pictures (64 x 64): what a
-// scan for headers is timed on. Errors as above.
-Status writeManySeries(int series, int slices, const std::filesystem::path& folder,
-                       const ProgressShare& share);
+// The cranium phantom, explicit little endian, slope 1: "int16" in signed words with intercept 0,
+// "u12" in unsigned ones with -1024. A SeriesWriter.
+Result<std::vector<KnownVolume>> writeOwnSeries(const ImportSeries& series,
+                                                const std::filesystem::path& folder,
+                                                const Progress& progress);
 
 }  // namespace trephine

@@ -1,4 +1,4 @@
-// A simulated arm in a hand, for the knobs that need one.
+// A simulated arm in a hand, for the knob that needs one: the rate.
 #pragma once
 
 #include <cmath>

@@ -19,18 +19,12 @@ using TradeRows = Result<std::vector<TradeRow>>;
 TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const TradesOptions& options,
                       const Progress& progress);
 
-// The nearest voxel or a trilinear mean, against the known surface of a scanned shell.
-TradeRows tradeLookup(const TradesOptions& options, const Progress& progress);
-
 // At the tip or over the points, against the line integral of eq. 1 along a blade that turns, half
 // in tissue.
 TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress);
 
 // The rate of touch, against 80 kHz, on a simulated arm in a hand.
 TradeRows tradeRate(const TradesOptions& options, const Progress& progress);
-
-// Estimates of velocity from samples of an encoder, against the true one of a simulated arm.
-TradeRows tradeVelocity(const TradesOptions& options, const Progress& progress);
 
 // Every voxel the mean of `factor`^3, in the same place; edges are whole multiples of the factor.
 Volume averaged(const Volume& fine, int factor);

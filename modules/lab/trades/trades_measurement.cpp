@@ -42,7 +42,6 @@ Status check(const TradesOptions& options) {
   if (!(options.stroke_s >= 0.2 && options.stroke_s <= 20.0)) {
     return bad("A stroke takes 0.2 to 20 s", "stroke_s");
   }
-  if (options.rays < 10 || options.rays > 1'000'000) return bad("10 to 1,000,000 rays", "rays");
   return {};
 }
 
@@ -125,10 +124,8 @@ Result<TradesMeasurement> measureTrades(const TradesOptions& options,
        [&] { return tradePoints(ToolKind::blade, options.blade_points, options, progress); }},
       {"points_burr",
        [&] { return tradePoints(ToolKind::burr, options.burr_points, options, progress); }},
-      {"hu_lookup", [&] { return tradeLookup(options, progress); }},
       {"force_at", [&] { return tradeForceAt(options, progress); }},
       {"rate_hz", [&] { return tradeRate(options, progress); }},
-      {"velocity_estimate", [&] { return tradeVelocity(options, progress); }},
       {"grid", [&] { return tradeGrid(options, progress); }}};
   TradesMeasurement result;
   for (std::size_t n = 0; n < knobs.size(); ++n) {

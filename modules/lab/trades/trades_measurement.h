@@ -1,8 +1,9 @@
 // Speed against accuracy: for every knob of touch its settings, what each gets wrong and what each
 // costs, from one run, and which one is recommended on this machine.
 //
-// Of each knob exactly one setting is recommended: the cheapest of those that are good enough,
-// which is what the table of kKnobs says. Where none is, the one with the least error.
+// A knob is what a scene or an import can set. Of each exactly one setting is recommended: the
+// cheapest of those that are good enough, which is what the table of kKnobs says. Where none is,
+// the one with the least error.
 #pragma once
 
 #include <array>
@@ -43,15 +44,13 @@ struct Knob {
   std::string_view also = "";
   double also_limit = 0.0;
 };
-inline constexpr std::array<Knob, 7> kKnobs{{
+inline constexpr std::array<Knob, 5> kKnobs{{
     {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
     {"points_burr", "Points on a burr's shell", 5.0, "volume_error_percent", 5.0},
-    {"hu_lookup", "Looking up the HU of a point", 0.5},
     {"force_at", "Where the force acts", 10.0},
     // Bone by two springs (coulomb, elastic), of what the arm shows at that rate: the rest is for
     // what the hand and its delays take.
     {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0},
-    {"velocity_estimate", "Estimate of velocity", 5.0},
     {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
 }};
 
@@ -61,7 +60,6 @@ struct TradesOptions {
   std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
   int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
   double stroke_s = 2.0;  // 0.2 to 20
-  int rays = 4000;        // 10 to 1,000,000
 };
 
 struct TradesMeasurement {

@@ -22,7 +22,6 @@ class Child : public ::testing::Test {
     command.words = {"/bin/sh", "-c", script};
     command.output = folder_ / "stdout";
     command.home = folder_.path();
-    command.offline = false;
     return command;
   }
   std::string output() const {
@@ -93,26 +92,6 @@ TEST_F(Child, ThatCannotBeRunIsNamed) {
   EXPECT_EQ(run.error().code, "CANNOT_RUN");
   EXPECT_NE(run.error().sentence().find("no-such-program"), std::string::npos);
   EXPECT_NE(run.error().sentence().find("No such file"), std::string::npos);
-}
-
-TEST_F(Child, OfflineHasNoNetworkButAnUnconnectedLoopback) {
-  ChildCommand command = shell("cat /proc/net/route; cat /proc/net/dev");
-  command.offline = true;
-  const Result<ChildRun> run = runChild(command, progress_);
-  if (!run) GTEST_SKIP() << "this system grants no namespaces: " << run.error().sentence();
-  const std::string text = output();
-  EXPECT_EQ(std::count(text.begin(), text.end(), ':'), 1) << text;
-  EXPECT_NE(text.find("lo:"), std::string::npos) << text;
-}
-
-TEST_F(Child, ProgramsAreFoundInThePath) {
-  EXPECT_TRUE(findProgram("sh"));
-  EXPECT_FALSE(findProgram("no-such-program-of-anyone"));
-  std::ofstream(folder_ / "text") << "not a program";
-  const std::string path = std::getenv("PATH");
-  ::setenv("PATH", folder_.path().c_str(), 1);
-  EXPECT_FALSE(findProgram("text"));
-  ::setenv("PATH", path.c_str(), 1);
 }
 
 TEST(ReadFloor, ReadsEveryByteOfEveryFile) {

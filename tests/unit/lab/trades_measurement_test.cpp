@@ -40,7 +40,6 @@ TradesOptions small() {
   options.rates_hz = {250.0, 1000.0};
   options.grid = 128;
   options.stroke_s = 1.0;
-  options.rays = 300;
   return options;
 }
 
@@ -82,7 +81,7 @@ TEST(Recommend, HoldsPointsToTheirVolumeToo) {
 }
 
 TEST(Recommend, MarksExactlyOneOfEachKnobAndNoneOfAnUnknownOne) {
-  EXPECT_EQ(chosen({row("hu_lookup", "x", 0.1, 1.0), row("hu_lookup", "y", 0.1, 1.0),
+  EXPECT_EQ(chosen({row("points_burr", "x", 0.1, 1.0), row("points_burr", "y", 0.1, 1.0),
                     row("force_at", "z", 1.0, 1.0), row("colour", "red", 0.0, 0.0)}),
             (Chosen{"x", "z"}));
 }
@@ -110,17 +109,6 @@ TEST(PointsKnob, ErrorFallsAndCostGrowsWithTheirNumber) {
   EXPECT_LT((*rows)[0].cost, (*rows)[1].cost);
   EXPECT_LT((*rows)[1].extraOf("volume_error_percent"), 10.0);
   EXPECT_NE((*rows)[0].reference.find("256 points"), std::string::npos);
-}
-
-TEST(LookupKnob, NearestIsOffByAQuarterOfAVoxelOrSoTrilinearByLessForMore) {
-  const TradeRows rows = tradeLookup(small(), Progress());
-  ASSERT_TRUE(rows);
-  // Steps of a grid of 0.78 mm seen at all slants: evenly spread within half a voxel, the mean is a
-  // quarter, 0.195 mm.
-  EXPECT_NEAR((*rows)[0].error, 0.195, 0.05);
-  EXPECT_LT((*rows)[1].error, 0.5 * (*rows)[0].error);
-  EXPECT_GT((*rows)[1].error, 0.0);
-  EXPECT_GT((*rows)[1].cost, (*rows)[0].cost);
 }
 
 TEST(ForceAtKnob, DistributedIsNearerToTheLineIntegral) {
@@ -209,7 +197,7 @@ TEST(Trades, MeasureEveryKnobAndRecommendOneSettingEach) {
 
 TEST(Trades, RefuseWhatCannotBeBeforeTheyMakeAFolder) {
   const test::TemporaryFolder folder;
-  std::vector<TradesOptions> bad(9, small());
+  std::vector<TradesOptions> bad(8, small());
   bad[0].blade_points = {};
   bad[1].burr_points = {1};
   bad[2].blade_points = {2048};
@@ -218,7 +206,6 @@ TEST(Trades, RefuseWhatCannotBeBeforeTheyMakeAFolder) {
   bad[5].rates_hz = {std::numeric_limits<double>::quiet_NaN()};
   bad[6].grid = 130;
   bad[7].stroke_s = 0.1;
-  bad[8].rays = 0;
   for (const TradesOptions& options : bad) {
     const Result<TradesMeasurement> m = measureTrades(options, folder / "out");
     ASSERT_FALSE(m) << &options - bad.data();
@@ -247,9 +234,8 @@ TEST(Trades, EveryKnobStopsByItself) {
   progress.cancel();
   const TradesOptions options = small();
   for (const TradeRows& rows :
-       {tradePoints(ToolKind::burr, {8}, options, progress), tradeLookup(options, progress),
-        tradeForceAt(options, progress), tradeRate(options, progress),
-        tradeVelocity(options, progress), tradeGrid(options, progress)}) {
+       {tradePoints(ToolKind::burr, {8}, options, progress), tradeForceAt(options, progress),
+        tradeRate(options, progress), tradeGrid(options, progress)}) {
     ASSERT_FALSE(rows);
     EXPECT_EQ(rows.error().code, "CANCELLED");
   }

@@ -123,6 +123,19 @@ TEST(VolumeFiles, TheQformAloneGivesTheSameAffine) {
   EXPECT_EQ(read->hu, volume.hu);
 }
 
+TEST(VolumeFiles, AHalfTurnInAQformIsNotOffByWhatFloatsLeaveOfIt) {
+  const TemporaryFolder folder;
+  Volume volume = patternVolume({6, 5, 4});
+  volume.geometry.direction = Mat3(Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0, 1, 0));  // coronal
+  ASSERT_TRUE(writeVolume(volume, folder / "a.nii"));
+  std::string bytes = bytesOf(folder / "a.nii");
+  bytes[254] = bytes[255] = 0;  // no sform
+  writeBytes(folder / "q.nii", bytes);
+  const auto read = readVolume(folder / "q.nii");
+  ASSERT_TRUE(read) << read.error().sentence();
+  EXPECT_LT(affineDifference(read->geometry, volume.geometry), 1e-6);
+}
+
 TEST(VolumeFiles, AQformWithANegativeQfacIsReadWithItsSlicesReversed) {
   const TemporaryFolder folder;
   const Volume volume = obliqueVolume({6, 5, 4});
@@ -330,6 +343,8 @@ TEST(VolumeFiles, WhatCannotBeWrittenIsRefused) {
   flat.geometry.spacing_mm.z = 0.0;
   EXPECT_EQ(writeVolume(flat, folder / "a.mha").error().code, "BAD_GEOMETRY");
   EXPECT_EQ(writeVolume(Volume{}, folder / "a.mha").error().code, "BAD_SIZE");
+  EXPECT_EQ(writeVolume(patternVolume({2, 32768, 1}), folder / "a.nii").error().code,
+            "CANNOT_WRITE");
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

@@ -1,4 +1,4 @@
-#include "lab/import/j2k_encoder.h"
+#include "bench/import/j2k_encoder.h"
 
 #include <openjpeg.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <memory>
 
-namespace trephine {
+namespace trephine::bench {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::vector<std::uint8_t> encodeJ2k(const std::vector<std::uint16_t>& words, int
   return std::move(sink.bytes);
 }
 
-}  // namespace trephine
+}  // namespace trephine::bench

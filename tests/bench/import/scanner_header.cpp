@@ -1,12 +1,14 @@
-#include "lab/import/ct_header.h"
+#include "bench/import/scanner_header.h"
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 
-#include <cstdio>
+#include <string>
 #include <vector>
 
-namespace trephine {
+#include "bench/import/noisy_ct.h"
+
+namespace trephine::bench {
 
 namespace {
 
@@ -16,13 +18,11 @@ struct Element {
   const char* value;
 };
 
-// What every slice of a series says alike. The private groups are this program's own.
+// What every slice says alike. The private groups are this program's own.
 constexpr Element kElements[] = {
-    {0x0008, 0x0005, EVR_CS, "ISO_IR 100"},
     {0x0008, 0x0008, EVR_CS, "ORIGINAL\\PRIMARY\\AXIAL\\HELIX"},
     {0x0008, 0x0012, EVR_DA, "20260105"},
     {0x0008, 0x0013, EVR_TM, "101530.000"},
-    {0x0008, 0x0016, EVR_UI, UID_CTImageStorage},
     {0x0008, 0x0020, EVR_DA, "20260105"},
     {0x0008, 0x0021, EVR_DA, "20260105"},
     {0x0008, 0x0022, EVR_DA, "20260105"},
@@ -33,8 +33,6 @@ constexpr Element kElements[] = {
     {0x0008, 0x0032, EVR_TM, "101512.250"},
     {0x0008, 0x0033, EVR_TM, "101529.750"},
     {0x0008, 0x0050, EVR_SH, ""},
-    {0x0008, 0x0060, EVR_CS, "CT"},
-    {0x0008, 0x0070, EVR_LO, "Trephine"},
     {0x0008, 0x0080, EVR_LO, "None"},
     {0x0008, 0x0090, EVR_PN, ""},
     {0x0008, 0x1010, EVR_SH, "PHANTOM1"},
@@ -42,8 +40,6 @@ constexpr Element kElements[] = {
     {0x0008, 0x103e, EVR_LO, "Cranium phantom, noisy"},
     {0x0008, 0x1040, EVR_LO, "None"},
     {0x0008, 0x1090, EVR_LO, "Phantom with noise"},
-    {0x0010, 0x0010, EVR_PN, "TREPHINE^PHANTOM"},
-    {0x0010, 0x0020, EVR_LO, "PHANTOM"},
     {0x0010, 0x0030, EVR_DA, ""},
     {0x0010, 0x0040, EVR_CS, "O"},
     {0x0010, 0x1010, EVR_AS, "040Y"},
@@ -76,18 +72,14 @@ constexpr Element kElements[] = {
     {0x0018, 0x9310, EVR_FD, "20.625"},
     {0x0018, 0x9311, EVR_FD, "0.515625"},
     {0x0018, 0x9345, EVR_FD, "22.5"},
+    {0x0020, 0x000d, EVR_UI, "2.25.1"},  // one study for all
     {0x0020, 0x0010, EVR_SH, "1"},
     {0x0020, 0x0012, EVR_IS, "1"},
-    {0x0020, 0x0037, EVR_DS, "1\\0\\0\\0\\1\\0"},
+    {0x0020, 0x0052, EVR_UI, "2.25.2"},
     {0x0020, 0x1040, EVR_LO, "OM"},
     {0x0020, 0x4000, EVR_LT, "For training, not for diagnosis"},
-    {0x0028, 0x0002, EVR_US, "1"},
-    {0x0028, 0x0004, EVR_CS, "MONOCHROME2"},
-    {0x0028, 0x0100, EVR_US, "16"},
     {0x0028, 0x1050, EVR_DS, "40\\700"},
     {0x0028, 0x1051, EVR_DS, "90\\3200"},
-    {0x0028, 0x1053, EVR_DS, "1"},
-    {0x0028, 0x1054, EVR_LO, "HU"},
     {0x0028, 0x1055, EVR_LO, "BRAIN\\BONE"},
     {0x0009, 0x0010, EVR_LO, "TREPHINE SOURCE"},
     {0x0009, 0x1001, EVR_LO, "phantom"},
@@ -120,16 +112,6 @@ constexpr Element kElements[] = {
     {0x0043, 0x1040, EVR_FL, "148.96"},
     {0x0043, 0x1041, EVR_FL, "52.12"},
 };
-
-std::string uidOf(std::uint64_t n) {
-  return "2.25." + std::to_string(hashedNumber(n));
-}
-
-std::string decimalText(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return std::string(text).substr(0, 16);
-}
 
 // Keeps the first failure of many calls.
 class Filling {
@@ -177,41 +159,16 @@ OFCondition putProtocol(DcmDataset& data) {
 
 }  // namespace
 
-// splitmix64's finaliser.
-std::uint64_t hashedNumber(std::uint64_t n) {
-  std::uint64_t h = (n + 1) * 0x9e3779b97f4a7c15;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
-  return h ^ (h >> 31);
-}
-
-OFCondition putCtHeader(DcmDataset& data, const CtSliceHeader& slice) {
-  const GridGeometry& g = slice.geometry;
+OFCondition putScannerHeader(DcmDataset& data, int series_number) {
   Filling filling(data);
   for (const Element& e : kElements) filling.put(DcmTag(e.group, e.element, e.vr), e.value);
+  OFString z;
+  filling.check(data.findAndGetOFString(DCM_ImagePositionPatient, z, 2));
+  filling.put(DCM_SliceLocation, z.c_str());
+  filling.put(DCM_SeriesNumber, std::to_string(series_number));
 
-  const Vec3 at_mm = g.toPatient_mm(Vec3(0.0, 0.0, slice.k));
-  const std::uint64_t series = hashedNumber(slice.series);
-  filling.put(DCM_SOPInstanceUID, uidOf(series + 16 + std::uint64_t(slice.k)));
-  filling.put(DCM_StudyInstanceUID, uidOf(1));  // one study for all
-  filling.put(DCM_SeriesInstanceUID, uidOf(series));
-  filling.put(DCM_FrameOfReferenceUID, uidOf(2));
-  filling.put(DCM_SeriesNumber, std::to_string(slice.number));
-  filling.put(DCM_InstanceNumber, std::to_string(slice.k + 1));
-  filling.put(DCM_ImagePositionPatient,
-              decimalText(at_mm.x) + "\\" + decimalText(at_mm.y) + "\\" + decimalText(at_mm.z));
-  filling.put(DCM_SliceLocation, decimalText(at_mm.z));
-  filling.put(DCM_SliceThickness, decimalText(g.spacing_mm.z));
-  filling.put(DCM_PixelSpacing, decimalText(g.spacing_mm.y) + "\\" + decimalText(g.spacing_mm.x));
-  filling.put(DCM_Rows, std::to_string(g.size[1]));
-  filling.put(DCM_Columns, std::to_string(g.size[0]));
-  filling.put(DCM_BitsStored, std::to_string(slice.bits));
-  filling.put(DCM_HighBit, std::to_string(slice.bits - 1));
-  filling.put(DCM_PixelRepresentation, slice.is_signed ? "1" : "0");
-  filling.put(DCM_RescaleIntercept, std::to_string(slice.intercept));
-
-  filling.check(putReference(data, DCM_ReferencedImageSequence, uidOf(3)));
-  filling.check(putReference(data, DCM_SourceImageSequence, uidOf(4)));
+  filling.check(putReference(data, DCM_ReferencedImageSequence, "2.25.3"));
+  filling.check(putReference(data, DCM_SourceImageSequence, "2.25.4"));
   filling.check(putProtocol(data));
   std::vector<Uint8> block(512);
   for (std::size_t n = 0; n < block.size(); ++n) block[n] = Uint8(hashedNumber(n));
@@ -220,4 +177,4 @@ OFCondition putCtHeader(DcmDataset& data, const CtSliceHeader& slice) {
   return filling.result();
 }
 
-}  // namespace trephine
+}  // namespace trephine::bench
