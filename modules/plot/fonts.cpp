@@ -1,10 +1,9 @@
 #include "plot/fonts.h"
 
 #include <QFont>
+#include <QFontInfo>
 #include <QGuiApplication>
-#include <QList>
 #include <QPluginLoader>
-#include <QRawFont>
 #include <clocale>
 #include <mutex>
 #include <string>
@@ -46,9 +45,8 @@ Status readyFonts() {
   if (!qobject_cast<QGuiApplication*>(QCoreApplication::instance())) {
     return Error{"CANNOT_DRAW", "This program draws no pictures", "its application object", ""};
   }
-  // Without any, Qt lists families all the same and draws boxes, whose glyphs are all the first.
-  const QList<quint32> glyphs = QRawFont::fromFont(QFont()).glyphIndexesForString("A");
-  if (glyphs.isEmpty() || glyphs.front() == 0) {
+  // Without any, Qt lists families all the same and draws boxes of a family without a name.
+  if (QFontInfo(QFont()).family().isEmpty()) {
     return Error{"CANNOT_DRAW", "There is no font to write with", "fontconfig",
                  "Install the package fonts-dejavu-core"};
   }

@@ -102,7 +102,7 @@ HEADERS = {
     "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
     # Pictures and texts, no widgets and no events.
     "qt-gui": r"Q(Color|Font\w*|GuiApplication|Image|List|Painter\w*|Pen|PluginLoader|PointF|PolygonF|"
-              r"RawFont|RectF|SizeF|String)",
+              r"RectF|SizeF|String)",
     "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",
     "cli11": r"CLI/.+",
     "zlib": r"zlib\.h",

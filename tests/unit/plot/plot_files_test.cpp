@@ -92,16 +92,11 @@ TEST_F(WithoutADisplay, AMissingPlatformIsAnErrorInWords) {
 }
 
 TEST_F(WithoutADisplay, MissingFontsAreAnErrorInWords) {
-  EXPECT_EXIT(
-      {
-        const trephine::test::TemporaryFolder folder;
-        std::ofstream(folder / "fonts.conf")
-            << "<?xml version=\"1.0\"?><fontconfig><cachedir>" << folder.path().string()
-            << "</cachedir></fontconfig>";
-        ::setenv("FONTCONFIG_FILE", (folder / "fonts.conf").c_str(), 1);
-        drawAndExit("CANNOT_DRAW");
-      },
-      testing::ExitedWithCode(0), "fonts-dejavu-core");
+  const trephine::test::TemporaryFolder folder;
+  std::ofstream(folder / "fonts.conf") << "<?xml version=\"1.0\"?><fontconfig><cachedir>"
+                                       << folder.path().string() << "</cachedir></fontconfig>";
+  const trephine::test::Environment fonts("FONTCONFIG_FILE", (folder / "fonts.conf").string());
+  EXPECT_EXIT(drawAndExit("CANNOT_DRAW"), testing::ExitedWithCode(0), "fonts-dejavu-core");
 }
 
 [[noreturn]] void drawInAPlainApplication() {
