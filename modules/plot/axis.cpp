@@ -180,7 +180,7 @@ Ticks ticksOf(const Axis& axis, double room) {
   for (const double value : axis.at) {
     if (axis.holds(value)) values.push_back(value);
   }
-  if (values.empty() || values.size() < axis.at.size() || !apart(axis, values, room)) {
+  if (values.size() < 2 || values.size() < axis.at.size() || !apart(axis, values, room)) {
     values = axis.logarithmic ? logarithmicValues(axis, room)
                               : roundValues(axis, axis.low, axis.high, room);
   }

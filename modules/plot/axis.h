@@ -14,7 +14,8 @@ struct Axis {
   std::string unit;   // "ms"; empty: none
   bool logarithmic = false;
   double low = 0.0, high = 1.0;  // low < high; decades (log10 of values) where logarithmic
-  std::vector<double> at = {};   // values to stand ticks at, where these have room; else round ones
+  // Two values or more to stand ticks at, where all have room; else round ones.
+  std::vector<double> at = {};
 
   double position(double value) const;  // as low and high: the value, or its decades
   double share(double value) const;     // 0 at the low end, 1 at the high one

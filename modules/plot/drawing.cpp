@@ -216,9 +216,14 @@ class Sheet {
     return plot_.x.holds(mark.at.x) && plot_.y.holds(mark.at.y);
   }
 
+  // The strong ones first: a small one that lies on one of them stays in sight.
   void discs() {
-    for (const Mark& mark : plot_.marks) {
-      if (holds(mark)) canvas_.disc(at(mark.at), radiusOf(mark), canvas_.colour(mark.tone));
+    for (const bool strong : {true, false}) {
+      for (const Mark& mark : plot_.marks) {
+        if (mark.strong != strong || !holds(mark)) continue;
+        canvas_.disc(at(mark.at), radiusOf(mark) + 1.0, canvas_.colours().background);
+        canvas_.disc(at(mark.at), radiusOf(mark), canvas_.colour(mark.tone));
+      }
     }
   }
 
@@ -240,13 +245,36 @@ class Sheet {
                        area_.height() + 40.0);
   }
 
-  // The texts of guides and marks, which keep clear of discs and of one another.
-  void labels() {
+  // What the texts of guides and marks keep clear of.
+  std::vector<QRectF> obstacles() const {
     std::vector<QRectF> taken;
     for (const Mark& mark : plot_.marks) {
       const double r = radiusOf(mark);
       if (holds(mark)) taken.push_back({at(mark.at) - QPointF(r, r), QSizeF(2.0 * r, 2.0 * r)});
     }
+    for (const Guide& guide : plot_.guides) {
+      if (!(guide.across ? plot_.y : plot_.x).holds(guide.at)) continue;
+      taken.push_back(guide.across ? QRectF(area_.left(), y(guide.at) - 1.0, area_.width(), 2.0)
+                                   : QRectF(x(guide.at) - 1.0, area_.top(), 2.0, area_.height()));
+    }
+    for (const Line& line : plot_.lines) {
+      for (std::size_t i = 1; i < line.points.size(); ++i) {
+        for (const auto& piece : clipped({at(line.points[i - 1]), at(line.points[i])}, area_)) {
+          const QPointF way = piece.back() - piece.front();
+          const int steps = int(std::hypot(way.x(), way.y()) / 4.0) + 1;
+          for (int n = 0; n <= steps; ++n) {
+            const QPointF on = piece.front() + way * (double(n) / steps);
+            taken.push_back({on - QPointF(2.0, 2.0), QSizeF(4.0, 4.0)});
+          }
+        }
+      }
+    }
+    return taken;
+  }
+
+  void labels() {
+    if (plot_.marks.empty() && plot_.guides.empty()) return;
+    std::vector<QRectF> taken = obstacles();
     const auto put = [&](const std::vector<QRectF>& candidates, const std::string& text,
                          const Font& font, const QColor& colour) {
       const QRectF rect = placed(candidates, taken, area_);

@@ -32,8 +32,8 @@ std::vector<QRectF> around(const QPointF& centre, double radius, const QSizeF& s
   std::vector<QRectF> candidates;
   for (const double further : {0.0, 12.0, 26.0, 42.0, 60.0, 80.0}) {
     const double d = radius + 3.0 + further;
-    const double right = centre.x() + 0.7 * d, left = centre.x() - 0.7 * d - size.width();
-    const double above = centre.y() - 0.7 * d - size.height(), below = centre.y() + 0.7 * d;
+    const double right = centre.x() + 0.8 * d, left = centre.x() - 0.8 * d - size.width();
+    const double above = centre.y() - 0.8 * d - size.height(), below = centre.y() + 0.8 * d;
     const double middle_x = centre.x() - 0.5 * size.width();
     const double middle_y = centre.y() - 0.5 * size.height();
     for (const QPointF& corner :

@@ -114,6 +114,8 @@ TEST(Ticks, StandAtTheAxisOwnValuesWhereTheseHaveRoom) {
   EXPECT_EQ(textsOf(ticksOf(decades(-1.0, 1.0, {0.25, 1.0, 3.0}), 0.1)), (Texts{"0.25", "1", "3"}));
   EXPECT_EQ(textsOf(ticksOf(decades(-1.0, 1.0, {0.25, 1.0, 1.1}), 0.1)),
             (Texts{"0.1", "0.2", "0.5", "1", "2", "5", "10"}));
+  EXPECT_EQ(textsOf(ticksOf(decades(-0.2, 0.2, {1.0}), 0.3)), (Texts{"1", "1.5"}))
+      << "one alone gives no scale";
 }
 
 TEST(Ticks, AreNeverCloserThanTheirRoomOverAnyRange) {
