@@ -1,6 +1,7 @@
 #include "plot/clip.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -55,6 +56,23 @@ std::vector<std::vector<QPointF>> clipped(const std::vector<QPointF>& line, cons
     joined = part->second == line[i];
   }
   return pieces;
+}
+
+std::vector<QPointF> thinned(const std::vector<QPointF>& line) {
+  std::vector<QPointF> kept;
+  for (std::size_t first = 0, end = 0; first < line.size(); first = end) {
+    const double column = std::floor(line[first].x());
+    std::size_t low = first, high = first;
+    for (end = first; end < line.size() && std::floor(line[end].x()) == column; ++end) {
+      if (line[end].y() < line[low].y()) low = end;
+      if (line[end].y() > line[high].y()) high = end;
+    }
+    std::array<std::size_t, 4> keep{first, low, high, end - 1};
+    std::sort(keep.begin(), keep.end());
+    const auto last = std::unique(keep.begin(), keep.end());
+    for (auto i = keep.begin(); i != last; ++i) kept.push_back(line[*i]);
+  }
+  return kept;
 }
 
 }  // namespace trephine::plot

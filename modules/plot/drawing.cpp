@@ -189,23 +189,22 @@ class Sheet {
   }
 
   void lines() {
-    std::vector<std::vector<std::vector<QPointF>>> all;
     for (const Line& line : plot_.lines) {
       std::vector<QPointF> points;
       for (const Point& point : line.points) points.push_back(at(point));
-      all.push_back(clipped(points, area_));
-      seen_.push_back(!all.back().empty());
-      // Over cells, lines need an edge to be seen.
-      for (const auto& piece : all.back()) {
+      pieces_.push_back(clipped(points, area_));
+      for (std::vector<QPointF>& piece : pieces_.back()) {
+        piece = thinned(piece);
+        // Over cells, lines need an edge to be seen.
         if (plot_.heat_map) {
           canvas_.line(piece, canvas_.colours().background, line.width_px + 2.0);
         }
       }
-      ends_.push_back(seen_.back() ? all.back().back().back() : QPointF());
+      seen_.push_back(!pieces_.back().empty());
     }
-    for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const Line& line = plot_.lines[i];
-      for (const auto& piece : all[i]) {
+      for (const auto& piece : pieces_[i]) {
         canvas_.line(piece, canvas_.colour(line.tone), line.width_px, line.dashes_px);
       }
     }
@@ -257,13 +256,13 @@ class Sheet {
       taken.push_back(guide.across ? QRectF(area_.left(), y(guide.at) - 1.0, area_.width(), 2.0)
                                    : QRectF(x(guide.at) - 1.0, area_.top(), 2.0, area_.height()));
     }
-    for (const Line& line : plot_.lines) {
-      for (std::size_t i = 1; i < line.points.size(); ++i) {
-        for (const auto& piece : clipped({at(line.points[i - 1]), at(line.points[i])}, area_)) {
-          const QPointF way = piece.back() - piece.front();
+    for (const auto& line : pieces_) {
+      for (const std::vector<QPointF>& piece : line) {
+        for (std::size_t i = 1; i < piece.size(); ++i) {
+          const QPointF way = piece[i] - piece[i - 1];
           const int steps = int(std::hypot(way.x(), way.y()) / 4.0) + 1;
           for (int n = 0; n <= steps; ++n) {
-            const QPointF on = piece.front() + way * (double(n) / steps);
+            const QPointF on = piece[i - 1] + way * (double(n) / steps);
             taken.push_back({on - QPointF(2.0, 2.0), QSizeF(4.0, 4.0)});
           }
         }
@@ -340,8 +339,9 @@ class Sheet {
     };
     std::vector<Name> names;
     for (std::size_t i = 0; i < plot_.lines.size(); ++i) {
-      const bool reaches = seen_[i] && ends_[i].x() > area_.right() - 1.0;
-      if (reaches && !plot_.lines[i].name.empty()) names.push_back({&plot_.lines[i], ends_[i].y()});
+      if (!seen_[i] || plot_.lines[i].name.empty()) continue;
+      const QPointF end = pieces_[i].back().back();
+      if (end.x() > area_.right() - 1.0) names.push_back({&plot_.lines[i], end.y()});
     }
     std::stable_sort(names.begin(), names.end(),
                      [](const Name& a, const Name& b) { return a.end < b.end; });
@@ -379,8 +379,8 @@ class Sheet {
   QRectF area_;
   Ticks ticks_x_, ticks_y_;
   double name_room_ = 0.0;
-  std::vector<bool> seen_;     // of each line: any of it within the axes
-  std::vector<QPointF> ends_;  // of each line that is seen: the end of what is
+  std::vector<std::vector<std::vector<QPointF>>> pieces_;  // of each line what lies within the axes
+  std::vector<bool> seen_;                                 // whether that is anything
 };
 
 Status checked(const Plot& plot) {

@@ -45,5 +45,13 @@ TEST(Clip, LeavesNothingOfALineOutside) {
   EXPECT_TRUE(clipped({{-10, 40}, {30, 90}}, kArea).empty());  // past a corner
 }
 
+TEST(Thinning, KeepsTheFirstLowestHighestAndLastOfAColumnOfPixels) {
+  const std::vector<QPointF> line{{1.0, 5.0}, {1.1, 6.0}, {1.2, 9.0}, {1.3, 7.0},
+                                  {1.4, 2.0}, {1.5, 4.0}, {2.5, 4.0}};
+  EXPECT_EQ(thinned(line),
+            (std::vector<QPointF>{{1.0, 5.0}, {1.2, 9.0}, {1.4, 2.0}, {1.5, 4.0}, {2.5, 4.0}}));
+  EXPECT_TRUE(thinned({}).empty());
+}
+
 }  // namespace
 }  // namespace trephine::plot

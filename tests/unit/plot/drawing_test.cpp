@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -97,6 +98,19 @@ TEST(Drawing, KeepsLinesWithinTheAxesAndLeavesGaps) {
       ASSERT_GT(apart(drawing.image.pixel(x, y), ink), 40) << x << " " << y;
     }
   }
+}
+
+TEST(Drawing, OfAHundredThousandPointsReachesAllOfThemAndTakesNoMinute) {
+  Plot plot = empty();
+  plot.lines = {{{}, Tone::series_1, 1.5}};
+  for (int i = 0; i <= 100000; ++i) {
+    plot.lines[0].points.push_back({1e-4 * i, i == 70001 ? 3.9 : 1.0 + 0.01 * ((37 * i) % 101)});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const Drawing drawing = drawn(plot);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  const QRgb blue = colourOf(Tone::series_1, Theme::light).rgb();
+  EXPECT_LT(apart(pixel(drawing, at(drawing, plot, 7.0001, 3.0)), blue), 120) << "one value alone";
 }
 
 TEST(Drawing, OfABandFillsBetweenItsLines) {
