@@ -12,15 +12,14 @@
 #include "lab/import/read_floor.h"
 #include "lab/machine/jitter_measurement.h"
 #include "lab/machine/upload_measurement.h"
-#include "lab/stability/stability_maps.h"
 #include "lab/stability/stability_measurement.h"
+#include "lab/stability/stability_pictures.h"
 #include "lab/stability/stability_sets.h"
 #include "lab/touch/extremes_measurement.h"
 #include "lab/touch/haptics_measurement.h"
 #include "lab/touch/rest_measurement.h"
 #include "lab/trades/trade_charts.h"
 #include "lab/trades/trades_measurement.h"
-#include "render/display_probe.h"
 #include "scene/names.h"
 #include "session/case.h"
 #include "training/replay.h"
@@ -40,14 +39,14 @@ void printMeasured(const char* name, const Measurement& measured, bool json) {
   }
 }
 
-// The files that `draw` makes, or null where there is no display to draw on.
+// The files that `draw` makes, or null where nothing can be drawn.
 template <class Draw>
 Result<Json> drawnFiles(const char* what, Draw&& draw) {
-  if (Status display = probeDisplay(); !display) {
-    spdlog::warn("No {}: {}", what, display.error().what);
+  auto drawn = draw();
+  if (!drawn && drawn.error().code == "CANNOT_DRAW") {
+    spdlog::warn("No {}: {}", what, drawn.error().sentence());
     return Json(nullptr);
   }
-  auto drawn = draw();
   if (!drawn) return drawn.error();
   Json files = Json::array();
   for (const std::filesystem::path& file : *drawn) files.push_back(file.string());

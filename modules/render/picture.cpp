@@ -4,16 +4,11 @@
 #include <vtkCommand.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPNGReader.h>
 #include <vtkPNGWriter.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <string>
-#include <string_view>
 
 #include "base/file.h"
 
@@ -39,39 +34,6 @@ class ErrorFlag {
   bool raised_ = false;
   vtkNew<vtkCallbackCommand> command_;
 };
-
-// CRC-32 of ISO 3309, as PNG uses it.
-std::uint32_t crc32(std::string_view bytes) {
-  std::uint32_t crc = 0xffffffffu;
-  for (const char byte : bytes) {
-    crc ^= static_cast<std::uint8_t>(byte);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320u : 0u);
-  }
-  return ~crc;
-}
-
-// Every chunk is whole up to the end mark. Asked first, since VTK's reader ends the process on a
-// file that was cut short or damaged.
-bool pngIsWhole(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), {});
-  const std::string_view bytes = text;
-  const auto number = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::uint8_t(bytes[at + i]);
-    return value;
-  };
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return false;
-  for (std::size_t at = 8; bytes.size() - at >= 12;) {
-    const std::size_t length = number(at);
-    if (length > bytes.size() - at - 12) return false;
-    const std::string_view chunk = bytes.substr(at + 4, 4 + length);
-    if (crc32(chunk) != number(at + 8 + length)) return false;
-    if (chunk.starts_with("IEND")) return true;
-    at += 12 + length;
-  }
-  return false;
-}
 
 bool complete(const Picture& picture) {
   return picture.width > 0 && picture.height > 0 && picture.width <= kMaxEdge &&
@@ -117,50 +79,6 @@ Status writePng(const Picture& picture, const std::filesystem::path& file) {
     }
     return {};
   });
-}
-
-Result<Picture> readPng(const std::filesystem::path& file) {
-  const Error bad{"BAD_PICTURE", "The file is not a PNG picture that can be read", file.string(),
-                  "Give an 8-bit PNG file"};
-  std::error_code ec;
-  if (!std::filesystem::is_regular_file(file, ec)) {
-    return Error{"MISSING_FILE", "There is no such file", file.string(), "Check the path"};
-  }
-  constexpr std::uintmax_t kLargest = std::uintmax_t(1) << 28;
-  if (std::filesystem::file_size(file, ec) > kLargest || ec || !pngIsWhole(file)) return bad;
-  vtkNew<vtkPNGReader> reader;
-  const ErrorFlag error(reader);
-  if (!reader->CanReadFile(file.c_str())) return bad;
-  reader->SetFileName(file.c_str());
-  reader->UpdateInformation();
-  int extent[6];
-  reader->GetDataExtent(extent);
-  Picture picture;
-  picture.width = extent[1] + 1;
-  picture.height = extent[3] + 1;
-  if (error.raised() || picture.width < 1 || picture.height < 1 || picture.width > kMaxEdge ||
-      picture.height > kMaxEdge) {
-    return bad;
-  }
-  reader->Update();
-  vtkImageData* image = reader->GetOutput();
-  const int channels = image->GetNumberOfScalarComponents();
-  if (error.raised() || reader->GetErrorCode() != 0 || !image->GetScalarPointer() ||
-      image->GetScalarType() != VTK_UNSIGNED_CHAR ||
-      image->GetNumberOfPoints() != vtkIdType(picture.width) * picture.height) {
-    return bad;
-  }
-  picture.rgb.resize(std::size_t(picture.width) * std::size_t(picture.height) * 3);
-  const bool grey = channels < 3;
-  std::size_t to = 0;
-  for (int y = 0; y < picture.height; ++y) {
-    const auto* from =
-        static_cast<const std::uint8_t*>(image->GetScalarPointer(0, picture.height - 1 - y, 0));
-    for (int x = 0; x < picture.width; ++x, from += channels) {
-      for (int c = 0; c < 3; ++c) picture.rgb[to++] = from[grey ? 0 : c];
-    }
-  }
-  return picture;
 }
 
 }  // namespace trephine

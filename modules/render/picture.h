@@ -19,7 +19,7 @@ struct Picture {
 // Peak signal-to-noise ratio of `b` against `a` in dB; infinity where they are equal.
 double psnr_dB(const Picture& a, const Picture& b);
 
+// The file is whole or not touched. Errors: BAD_PICTURE, WRITE_FAILED, CANNOT_WRITE.
 Status writePng(const Picture& picture, const std::filesystem::path& file);
-Result<Picture> readPng(const std::filesystem::path& file);
 
 }  // namespace trephine

@@ -18,12 +18,11 @@ endif()
 
 if(TREPHINE_WINDOW)
   find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
-  find_package(VTK REQUIRED COMPONENTS ChartsCore CommonCore CommonDataModel CommonExecutionModel
+  find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel CommonExecutionModel
                CommonTransforms FiltersCore FiltersSources InteractionStyle IOGeometry IOImage
-               RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType
-               RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 vtksys)
+               RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 vtksys)
   find_package(OpenGL REQUIRED)
   find_package(GLEW REQUIRED)
   find_package(CLI11 REQUIRED)
-  find_package(Qt6 REQUIRED COMPONENTS Widgets OpenGLWidgets)
+  find_package(Qt6 REQUIRED COMPONENTS Gui Widgets OpenGLWidgets)
 endif()

@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <QImage>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "render/display_probe.h"
-#include "render/picture.h"
+#include "plot/drawing.h"
 #include "support.h"
 #include "trade_rows.h"
+#include "unit/plot/plots.h"
 
 namespace trephine {
 namespace {
@@ -17,27 +17,22 @@ namespace {
 using test::row;
 
 TEST(TradeAxis, IsLinearFromZeroOverNarrowRangesAndZeroes) {
-  for (const std::vector<double>& values :
-       {std::vector<double>{2.0, 10.0}, std::vector<double>{0.0, 1000.0},
-        std::vector<double>{0.0}}) {
-    const TradeAxis axis = tradeAxis(values);
+  for (const std::vector<double>& figures :
+       {std::vector<double>{2.0, 10.0}, std::vector<double>{0.0, 1000.0}, std::vector<double>{0.0},
+        std::vector<double>{}}) {
+    const plot::Axis axis = tradeAxis("Cost", "ns", figures);
     EXPECT_FALSE(axis.logarithmic);
-    EXPECT_EQ(axis.at(0.0), 0.0);
-    for (double value : values) EXPECT_LE(axis.at(value), 1.0);
-    EXPECT_GE(axis.ticks.size(), 2u);
+    EXPECT_EQ(axis.share(0.0), 0.0);
+    for (double figure : figures) EXPECT_TRUE(axis.holds(figure));
   }
-  EXPECT_NEAR(tradeAxis({2.0, 10.0}).at(5.6), 0.5, 1e-12);  // to 11.2
+  EXPECT_NEAR(tradeAxis("Cost", "ns", {2.0, 10.0}).share(5.6), 0.5, 1e-12);  // to 11.2
 }
 
 TEST(TradeAxis, IsLogarithmicOverWideRanges) {
-  const TradeAxis axis = tradeAxis({1.0, 100.0});
+  const plot::Axis axis = tradeAxis("Cost", "ns", {1.0, 100.0});
   EXPECT_TRUE(axis.logarithmic);
-  EXPECT_GT(axis.at(1.0), 0.0);
-  EXPECT_LT(axis.at(100.0), 1.0);
-  EXPECT_NEAR(axis.at(10.0), 0.5, 1e-12);
-  const std::vector<double> expected{1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
-  ASSERT_EQ(axis.ticks.size(), expected.size());
-  for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_NEAR(axis.ticks[n], expected[n], 1e-9);
+  EXPECT_TRUE(axis.holds(1.0) && axis.holds(100.0));
+  EXPECT_NEAR(axis.share(10.0), 0.5, 1e-12);
 }
 
 TEST(TradeCharts, RefuseWhatCannotBeDrawn) {
@@ -54,16 +49,16 @@ TEST(TradeCharts, RefuseWhatCannotBeDrawn) {
 }
 
 // Pixels of the recommended setting's green.
-std::size_t greens(const Picture& picture) {
-  std::size_t count = 0;
-  for (std::size_t n = 0; n + 2 < picture.rgb.size(); n += 3) {
-    count += picture.rgb[n] == 20 && picture.rgb[n + 1] == 140 && picture.rgb[n + 2] == 95;
+int greens(const QImage& picture) {
+  const QRgb green = plot::colourOf(plot::Tone::good, plot::Theme::light).rgb();
+  int count = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) count += picture.pixel(x, y) == green;
   }
   return count;
 }
 
 TEST(TradeCharts, AreOneAKnobWithTheRecommendedSettingInGreen) {
-  if (!probeDisplay()) GTEST_SKIP() << "no display";
   const test::TemporaryFolder folder;
   std::vector<TradeRow> rows{row("force_at", "tip", 30.0, 400.0),
                              row("force_at", "distributed", 9.0, 900.0),
@@ -74,12 +69,32 @@ TEST(TradeCharts, AreOneAKnobWithTheRecommendedSettingInGreen) {
   ASSERT_EQ(files->size(), 2u);
   EXPECT_EQ((*files)[0].filename(), "trade-force_at.png");
   EXPECT_EQ((*files)[1].filename(), "trade-rate_hz.png");
-  const auto with = readPng((*files)[0]), without = readPng((*files)[1]);
-  ASSERT_TRUE(with && without);
-  EXPECT_EQ(with->width, 1200);
-  EXPECT_EQ(with->height, 800);
-  EXPECT_GT(greens(*with), 200u);  // a disc of 10 pixels has 314
-  EXPECT_EQ(greens(*without), 0u);
+  const QImage with((*files)[0].c_str()), without((*files)[1].c_str());
+  EXPECT_EQ(with.size(), QSize(1200, 800));
+  EXPECT_GT(greens(with), 200);  // a disc of 10 pixels has 314
+  EXPECT_EQ(greens(without), 0);
+}
+
+TEST(TradeCharts, SayErrorAndCostWithTheirUnitsAndWhatIsGoodEnough) {
+  const Result<plot::Drawing> drawing =
+      plot::draw(tradeChart({row("rate_hz", "250", 30.0, 0.1), row("rate_hz", "1000", 8.0, 0.3),
+                             row("rate_hz", "20000", 0.1, 40.0)}));
+  ASSERT_TRUE(drawing);
+  plot::test::expectTextsApart(*drawing);
+  for (const std::string words :
+       {"Rate of touch: error over cost", "Error against: truth", "Cost [ns]", "Error [%]", "250",
+        "1000", "20000", "tolerance 10 %", "at most 25 ns"}) {
+    EXPECT_TRUE(std::any_of(drawing->texts.begin(), drawing->texts.end(),
+                            [&](const plot::PlacedText& t) { return t.text == words; }))
+        << words;
+  }
+}
+
+TEST(TradeCharts, JoinSettingsThatAreNumbersAndNotWords) {
+  EXPECT_EQ(tradeChart({row("rate_hz", "250", 3, 1), row("rate_hz", "500", 2, 2)}).lines.size(),
+            1u);
+  EXPECT_TRUE(
+      tradeChart({row("force_at", "tip", 3, 1), row("force_at", "all", 2, 2)}).lines.empty());
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <QImage>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "render/picture.h"
@@ -29,9 +29,13 @@ TEST(Picture, APngGivesBackEveryPixelWhereItWas) {
   const test::TemporaryFolder folder;
   const Picture picture = gradient(37, 21);
   ASSERT_TRUE(writePng(picture, folder / "a.png").ok());
-  const auto read = readPng(folder / "a.png");
-  ASSERT_TRUE(read.ok()) << read.error().sentence();
-  EXPECT_EQ(*read, picture);
+  const QImage read = QImage((folder / "a.png").c_str()).convertToFormat(QImage::Format_RGB888);
+  ASSERT_EQ(read.size(), QSize(37, 21));
+  for (int y = 0; y < 21; ++y) {
+    for (int x = 0; x < 37; ++x) {
+      EXPECT_EQ(read.pixel(x, y), qRgb(x, y, x + y)) << x << " " << y;
+    }
+  }
 }
 
 TEST(Picture, PsnrIsInfiniteForEqualPicturesAndFollowsItsFormula) {
@@ -44,41 +48,6 @@ TEST(Picture, PsnrIsInfiniteForEqualPicturesAndFollowsItsFormula) {
 
 TEST(Picture, PsnrOfPicturesOfOtherSizesIsZero) {
   EXPECT_EQ(psnr_dB(gradient(8, 4), gradient(4, 8)), 0.0);
-}
-
-TEST(Picture, AFileThatIsNoPngIsRefusedByName) {
-  const test::TemporaryFolder folder;
-  std::ofstream(folder / "no.png") << "this is text";
-  const auto read = readPng(folder / "no.png");
-  ASSERT_FALSE(read.ok());
-  EXPECT_EQ(read.error().code, "BAD_PICTURE");
-  EXPECT_NE(read.error().sentence().find("no.png"), std::string::npos);
-  EXPECT_EQ(readPng(folder / "absent.png").error().code, "MISSING_FILE");
-}
-
-TEST(Picture, APngCutShortAnywhereIsRefused) {
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(writePng(gradient(200, 200), folder / "a.png").ok());
-  for (auto size = std::filesystem::file_size(folder / "a.png"); size-- > 0;) {
-    std::filesystem::resize_file(folder / "a.png", size);
-    ASSERT_EQ(readPng(folder / "a.png").error().code, "BAD_PICTURE") << size;
-    if (size > 100) size -= 61;
-  }
-}
-
-TEST(Picture, ADamagedPngIsRefused) {
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(writePng(gradient(200, 200), folder / "a.png").ok());
-  for (int at : {3, 14, 20, 60, 300}) {
-    std::filesystem::copy_file(folder / "a.png", folder / "b.png",
-                               std::filesystem::copy_options::overwrite_existing);
-    std::fstream file(folder / "b.png", std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp(at);
-    file.put(char(0x5a));
-    file.put(char(0xa5));
-    file.close();
-    EXPECT_EQ(readPng(folder / "b.png").error().code, "BAD_PICTURE") << at;
-  }
 }
 
 TEST(Picture, WritingIntoAMissingFolderFailsAndLeavesNothing) {

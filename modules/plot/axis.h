@@ -1,0 +1,48 @@
+// An axis of a plot: where a value lies on it, where its ticks stand and what they say. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace trephine::plot {
+
+// At most `digits` significant digits, the same in every locale; 1e6, not 1e+06.
+std::string number(double value, int digits = 4);
+
+struct Axis {
+  std::string title;  // the quantity: "Sampling period T"
+  std::string unit;   // "ms"; empty: none
+  bool logarithmic = false;
+  double low = 0.0, high = 1.0;  // low < high; decades (log10 of values) where logarithmic
+  // Two values or more to stand ticks at, where all have room; else round ones.
+  std::vector<double> at = {};
+
+  double position(double value) const;  // as low and high: the value, or its decades
+  double share(double value) const;     // 0 at the low end, 1 at the high one
+  bool holds(double value) const;       // share within 0 to 1; false for what is not finite
+};
+
+struct Tick {
+  double share = 0.0;  // of the axis
+  std::string text;
+};
+
+struct Ticks {
+  std::vector<Tick> ticks;  // ascending; neighbours at least the room apart
+  std::string title;        // with the unit that the texts are in: "Force [mN]"
+};
+
+// Round numbers, at most as close as `room`, a share of the axis. On a linear axis the unit takes
+// the prefix that keeps them short (mN, kN/m), or a power of ten where it takes none (10^6 voxels
+// with a raised 6); on a logarithmic one it stays.
+Ticks ticksOf(const Axis& axis, double room);
+
+// 1, 2 or 5 times a power of ten: the least that is not below `least`.
+double roundStep(double least);
+
+// `unit` made larger by 10^exponent (a multiple of 3) with a prefix of the SI: ("N/m", 3) is
+// "kN/m",
+// ("ms", -3) is "us" with a Greek mu; empty where it takes none ("%", "kg", "mm^3").
+std::string prefixed(const std::string& unit, int exponent);
+
+}  // namespace trephine::plot

@@ -1,0 +1,57 @@
+#include "plot/clip.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace trephine::plot {
+namespace {
+
+const QRectF kArea(0.0, 0.0, 100.0, 50.0);
+
+TEST(Clip, KeepsALineThatLiesWithin) {
+  const std::vector<QPointF> line{{10, 10}, {50, 20}, {90, 40}};
+  const auto pieces = clipped(line, kArea);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_EQ(pieces[0], line);
+}
+
+TEST(Clip, CutsAtTheEdges) {
+  const auto pieces = clipped({{-50, 25}, {150, 25}}, kArea);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_EQ(pieces[0], (std::vector<QPointF>{{0, 25}, {100, 25}}));
+}
+
+TEST(Clip, MakesTwoPiecesOfALineThatLeavesAndComesBack) {
+  EXPECT_EQ(clipped({{10, 10}, {10, 90}, {20, 90}, {20, 10}}, kArea).size(), 2u);
+}
+
+TEST(Clip, LeavesAGapWhereAPointIsNotFinite) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(clipped({{1, 1}, {2, 2}, {nan, 3}, {4, 4}, {5, 5}}, kArea).size(), 2u);
+  EXPECT_TRUE(clipped({{1, 1}, {inf, 2}}, kArea).empty());
+}
+
+TEST(Clip, HoldsPointsThatNoPainterCould) {
+  const auto pieces = clipped({{50, 1e12}, {50, -1e12}}, kArea);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_NEAR(pieces[0].front().y(), 50.0, 1e-3);
+  EXPECT_NEAR(pieces[0].back().y(), 0.0, 1e-3);
+}
+
+TEST(Clip, LeavesNothingOfALineOutside) {
+  EXPECT_TRUE(clipped({{-10, -10}, {200, -10}}, kArea).empty());
+  EXPECT_TRUE(clipped({{-10, 40}, {30, 90}}, kArea).empty());  // past a corner
+}
+
+TEST(Thinning, KeepsTheFirstLowestHighestAndLastOfAColumnOfPixels) {
+  const std::vector<QPointF> line{{1.0, 5.0}, {1.1, 6.0}, {1.2, 9.0}, {1.3, 7.0},
+                                  {1.4, 2.0}, {1.5, 4.0}, {2.5, 4.0}};
+  EXPECT_EQ(thinned(line),
+            (std::vector<QPointF>{{1.0, 5.0}, {1.2, 9.0}, {1.4, 2.0}, {1.5, 4.0}, {2.5, 4.0}}));
+  EXPECT_TRUE(thinned({}).empty());
+}
+
+}  // namespace
+}  // namespace trephine::plot
