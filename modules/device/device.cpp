@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "device/arm_ranges.h"
+#include "device/arm_numbers.h"
 #include "device/library_file.h"
 
 namespace trephine {
@@ -67,30 +67,6 @@ std::string lastSentence(const TrephineDeviceApi& api, TrephineDevice* handle) {
     sentence.pop_back();
   }
   return sentence.empty() ? "The plugin gave no reason" : sentence;
-}
-
-// Empty when an arm can have these capabilities, else which of them is impossible and why.
-std::string impossibleCapability(const TrephineCapabilities& c) {
-  const struct {
-    const char* name;
-    double value;
-    Range range;
-  } rows[] = {{"workspace_m", c.workspace_m[0], kWorkspace_m},
-              {"workspace_m", c.workspace_m[1], kWorkspace_m},
-              {"workspace_m", c.workspace_m[2], kWorkspace_m},
-              {"peak_force_N", c.peak_force_N, kPeakForce_N},
-              {"continuous_force_N", c.continuous_force_N, kPeakForce_N},
-              {"apparent_mass_kg", c.apparent_mass_kg, kApparentMass_kg},
-              {"rate_hz", c.rate_hz, kDeviceRate_hz},
-              {"max_stiffness_N_per_m", c.max_stiffness_N_per_m, kMaxStiffness_N_per_m},
-              {"max_damping_Ns_per_m", c.max_damping_Ns_per_m, kMaxDamping_Ns_per_m},
-              {"encoder_step_m", c.encoder_step_m, kEncoderStep_m}};
-  for (const auto& [name, value, range] : rows) {
-    if (range.holds(value)) continue;
-    return "'" + std::string(name) + "' of " + plainNumber(value) + ", which must lie " +
-           range.words();
-  }
-  return {};
 }
 
 template <class T>

@@ -1,7 +1,9 @@
-// What an arm is to the force that it shows: the few numbers on which stability depends.
+// What an arm is to the force that it shows: the few numbers on which stability depends, with a row
+// each.
 #pragma once
 
-#include "device/arm_ranges.h"  // those of its numbers
+#include "base/number_row.h"
+#include "device/arm_ranges.h"
 #include "haptics/workspace_map.h"
 
 namespace trephine {
@@ -17,6 +19,23 @@ struct ArmDynamics {
 
 constexpr int kMaxDelayTicks = 16;
 constexpr Range kDelayTicks{0, kMaxDelayTicks, "ticks"};
+
+// Those that a recording keeps; the peak force is the scene's `max_force_N`.
+inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
+    {{"apparent_mass_kg", kApparentMass_kg, Given::always, "at the tip"},
+     &ArmDynamics::apparent_mass_kg},
+    {{"encoder_step_m", kEncoderStep_m, Given::always, "of its position"},
+     &ArmDynamics::encoder_step_m},
+    {{"delay_ticks", kDelayTicks, Given::may_be,
+      "whole periods between a sample and the force that answers it"},
+     &ArmDynamics::delay_ticks},
+};
+inline constexpr NumberRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
+                                         "no more is sent"};
+
+// IMPOSSIBLE_NUMBER. What an arm is made of is checked where it comes from (a device's answer, a
+// file, and all of it once more before the loop's first tick): nothing later asks again.
+Status validate(const ArmDynamics& arm, const std::string& of);
 
 // Damping [N s/m] and stiffness [N/m] of a tissue.
 struct Impedance {

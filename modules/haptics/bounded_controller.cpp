@@ -80,7 +80,7 @@ Impedance mostOf(const ArmDynamics& arm, double T, double lag_s, double held) {
 Renderable renderable(const ArmDynamics& arm, double rate_hz, int delay_ticks,
                       const WorkspaceMap& map) {
   ArmDynamics delayed = arm;
-  delayed.delay_ticks = std::clamp(delay_ticks, 0, kMaxDelayTicks);
+  delayed.delay_ticks = delay_ticks;
   const double T = 1.0 / rate_hz;
   const Impedance most = mostOf(delayed, T, ArmEstimator(delayed, T).lag_s(), 0.0);
   const double at_arm = map.motion_scale * map.force_scale;
@@ -111,18 +111,9 @@ void LearntScale::inAir(double period_s) {
   tried_ = std::min(1.0, tried_ * growth);
 }
 
-namespace {
-
-ArmDynamics withDelayInRange(ArmDynamics arm) {
-  arm.delay_ticks = std::clamp(arm.delay_ticks, 0, kMaxDelayTicks);
-  return arm;
-}
-
-}  // namespace
-
 BoundedController::BoundedController(const ArmDynamics& arm, double period_s)
     : T_(period_s),
-      arm_(withDelayInRange(arm)),
+      arm_(arm),
       tolerance_J_(unseenEnergy_J(arm.encoder_step_m)),
       estimator_(arm_, period_s),
       check_(arm_, estimator_, period_s),

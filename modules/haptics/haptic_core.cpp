@@ -77,9 +77,9 @@ void HapticCore::useTissues(const TissueTable& before) {
   any_cuttable_ = false;
   for (int c = 0; c < now.count; ++c) {
     const TissueClass& t = now.classes[std::size_t(c)];
-    tissues_finite_ = tissues_finite_ && isFinite(t.damping_Ns_per_m) &&
-                      isFinite(t.stiffness_N_per_m) && isFinite(t.friction_N) &&
-                      isFinite(t.rupture_N) && isFinite(t.cutting_J_per_mm3);
+    for (const TissueNumber& number : kTissueNumbers) {
+      tissues_finite_ = tissues_finite_ && isFinite(t.*number.in_tick);
+    }
     any_cuttable_ = any_cuttable_ || t.cuttable;
   }
   if (elastic_) {

@@ -9,6 +9,7 @@
 #include "haptics/contact.h"
 #include "haptics/controllers.h"
 #include "haptics/hand_work.h"
+#include "haptics/haptic_parameters.h"
 #include "haptics/haptic_types.h"
 #include "haptics/laws.h"
 #include "haptics/proxy.h"
@@ -21,27 +22,6 @@
 #include "volume/grid.h"
 
 namespace trephine {
-
-struct ArmParameters {
-  Tool tool;
-  WorkspaceMap map;
-  double max_force_N = 0.0;
-  ArmDynamics dynamics;
-};
-
-struct HapticParameters {
-  double period_s = 0.001;
-  std::vector<ArmParameters> arms;  // at most kMaxArms
-  std::vector<LawKind> laws;
-  ForceAt force_at = ForceAt::tip;
-  RemovalKind removal = RemovalKind::work;
-  ControllerKind controller = ControllerKind::bounded;
-  TissueTable tissues;
-  std::size_t journal_voxels = 8'000'000;   // in memory, 8 bytes each; the rest is spilled
-  std::size_t journal_strokes = 65'536;
-  std::size_t journal_seconds = 86'400;      // to which one can rewind
-  double stroke_gap_s = 0.3;                 // this long out of tissue ends a stroke
-};
 
 class HapticCore {
  public:

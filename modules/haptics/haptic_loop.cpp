@@ -14,6 +14,7 @@ HapticLoop::HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operat
 }
 
 Status HapticLoop::startDevices() {
+  if (Status possible = validate(core_.parameters()); !possible) return possible;
   if (operator_) {  // the hands stand at their first target before anything moves
     std::array<HandTarget, kMaxArms> hands{};
     operator_->targets(0, hands.data(), core_.parameters().arms.size());

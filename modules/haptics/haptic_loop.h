@@ -67,6 +67,7 @@ class HapticLoop {
   HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
              std::uint64_t first_tick = 0);
 
+  // Errors: those of the core's parameters and of the devices. Nothing moves before.
   Status startDevices();
   // False when this thread was left behind in it.
   bool stopDevices();

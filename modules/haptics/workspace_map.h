@@ -3,11 +3,12 @@
 #pragma once
 
 #include "base/math.h"
-#include "base/range.h"
+#include "base/number_row.h"
 
 namespace trephine {
 
 constexpr Range kMapScale{0.01, 100};  // of motion and of force
+constexpr Range kMapPlace_mm{-1e9, 1e9, "mm"};
 
 // p_patient_mm = centre_mm + 1000 s R p_device_m;  f_device = g R^T f_patient.
 // A tissue damping b is therefore g s b at the arm.
@@ -35,5 +36,17 @@ struct WorkspaceMap {
     return glm::conjugate(rotation) * (patient_mm - centre_mm) / (1000.0 * motion_scale);
   }
 };
+
+inline constexpr NumberOf<WorkspaceMap> kWorkspaceMapNumbers[] = {
+    {{"centre_mm", kMapPlace_mm, Given::always, "where the device's origin lies in the patient"},
+     &WorkspaceMap::centre_mm},
+    {{"motion_scale", kMapScale, Given::may_be, "the tool's travel by the arm's"},
+     &WorkspaceMap::motion_scale},
+    {{"force_scale", kMapScale, Given::may_be, "the arm's force by the tissue's"},
+     &WorkspaceMap::force_scale},
+};
+
+// IMPOSSIBLE_NUMBER, also for a rotation that is no unit quaternion.
+Status validate(const WorkspaceMap& map, const std::string& of);
 
 }  // namespace trephine

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "scene/names.h"
-#include "scene/scene.h"
+#include "scene/scene_numbers.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -11,45 +11,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Wider than any exercise needs, and narrow enough that all that follows from them is finite.
-constexpr Range kBoxFraction{-10, 10};
-constexpr Range kBulkRadius_mm{3, 300, "mm"};
-constexpr Range kRun_mm{0.01, 300, "mm"};
-constexpr Range kOffset_mm{-1000, 1000, "mm"};
-constexpr Range kPlace_mm{-1e9, 1e9, "mm"};
 constexpr Range kQuaternionPart{-1.001, 1.001};
-constexpr Range kRate_hz{100, 20'000, "Hz"};
-constexpr Range kViewDistance_mm{10, 5000, "mm"};
 constexpr std::size_t kMostInAList = 64;
 
 SceneMap readMap(JsonReader map) {
   SceneMap out;
-  out.motion_scale = map.number("motion_scale", kMapScale, 1.0);
-  out.force_scale = map.number("force_scale", kMapScale, 1.0);
   if (!map.has("centre_mm")) {
     out.landmark = map.text("landmark");
-    out.offset_mm = map.vec3("offset_mm", kOffset_mm, Vec3(0.0));
+    readNumbers(map, kSceneMapNumbers, out);
     return out;
   }
   WorkspaceMap fixed;
-  fixed.centre_mm = map.vec3("centre_mm", kPlace_mm);
-  fixed.motion_scale = out.motion_scale;
-  fixed.force_scale = out.force_scale;
+  readNumbers(map, kWorkspaceMapNumbers, fixed);
   const std::vector<double> q = map.numbers("rotation_wxyz", 4, kQuaternionPart);
   fixed.rotation = Quat(q[0], q[1], q[2], q[3]);
-  if (std::abs(glm::length(fixed.rotation) - 1.0) > 1e-6) {
+  if (map.ok() && !validate(fixed, "")) {  // its numbers are possible
     map.fail("rotation_wxyz", "Expected a unit quaternion, found " + Json(q).dump());
   }
+  out.motion_scale = fixed.motion_scale;
+  out.force_scale = fixed.force_scale;
   out.fixed = fixed;
   return out;
-}
-
-ArmDynamics readDynamics(JsonReader item) {
-  ArmDynamics dynamics;
-  dynamics.apparent_mass_kg = item.number("apparent_mass_kg", kApparentMass_kg);
-  dynamics.encoder_step_m = item.number("encoder_step_m", kEncoderStep_m);
-  dynamics.delay_ticks = int(item.integer("delay_ticks", kDelayTicks, 0));
-  return dynamics;
 }
 
 SceneArm readArm(JsonReader& item, const fs::path& folder) {
@@ -57,7 +39,7 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   arm.name = item.text("name");
   JsonReader device = item.object("device");
   arm.plugin = device.text("plugin");
-  arm.device_arm = std::uint32_t(device.integer("arm", {0, kMaxArmsOfAPlugin - 1}, 0));
+  readNumbers(device, kDeviceNumbers, arm);
   const std::string config = device.text("config", "");
   if (!config.empty()) {
     arm.device_config = (folder / config).lexically_normal().string();
@@ -68,8 +50,11 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   }
   arm.tool = item.text("tool");
   arm.map = readMap(item.object("map"));
-  arm.max_force_N = item.number("max_force_N", kPeakForce_N, 3.3);
-  if (item.has("dynamics")) arm.dynamics = readDynamics(item.object("dynamics"));
+  readNumbers(item, kArmNumbers, arm);
+  if (item.has("dynamics")) {
+    JsonReader dynamics = item.object("dynamics");
+    readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
+  }
   return arm;
 }
 
@@ -78,13 +63,12 @@ Landmark readLandmark(JsonReader& item) {
   landmark.id = item.text("id");
   landmark.tissue = item.text("tissue");
   if (item.has("bulk_radius_mm")) {
-    landmark.bulk_radius_mm = item.number("bulk_radius_mm", kBulkRadius_mm);
+    readNumbers(item, kBulkNumbers, landmark);
     landmark.outward = item.direction("outward");
   } else {
-    landmark.from = item.vec3("from", kBoxFraction);
-    landmark.towards = item.vec3("towards", kBoxFraction);
+    readNumbers(item, kRayNumbers, landmark);
   }
-  landmark.run_mm = item.number("run_mm", kRun_mm, 1.0);
+  readNumbers(item, kLandmarkNumbers, landmark);
   return landmark;
 }
 
@@ -187,7 +171,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   } else {
     reader.fail("controller", "Unknown controller '" + controller + "'", choices(kControllerNames));
   }
-  scene.rate_hz = reader.number("rate_hz", kRate_hz, 1000.0);
+  readNumbers(reader, kSceneNumbers, scene);
   const std::string script = reader.text("operator", "");
   if (!script.empty()) {
     scene.operator_file = (folder / script).lexically_normal().string();
@@ -199,7 +183,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   if (reader.has("view")) {
     JsonReader view = reader.object("view");
     scene.view.landmark = view.text("landmark");
-    scene.view.distance_mm = view.number("distance_mm", kViewDistance_mm, 350.0);
+    readNumbers(view, kViewNumbers, scene.view);
   }
   if (reader.ok()) checkReferences(reader, scene);
   if (Status status = reader.finish(); !status) return status.error();
@@ -218,36 +202,31 @@ Json toJson(const Scene& scene) {
   for (const Landmark& l : scene.landmarks) {
     Json landmark = {{"id", l.id}, {"tissue", l.tissue}};
     if (l.bulk_radius_mm > 0.0) {
-      landmark["bulk_radius_mm"] = l.bulk_radius_mm;
+      writeNumbers(landmark, kBulkNumbers, l);
       landmark["outward"] = vec(l.outward);
     } else {
-      landmark["from"] = vec(l.from);
-      landmark["towards"] = vec(l.towards);
+      writeNumbers(landmark, kRayNumbers, l);
     }
-    landmark["run_mm"] = l.run_mm;
+    writeNumbers(landmark, kLandmarkNumbers, l);
     landmarks.push_back(landmark);
   }
   for (const SceneTool& t : scene.tools) tools.push_back(toJson(t));
   for (const SceneArm& a : scene.arms) {
-    Json map;
+    Json map, device;
+    device["plugin"] = a.plugin;
     if (a.map.fixed) {
       const Quat& q = a.map.fixed->rotation;
-      map = {{"centre_mm", vec(a.map.fixed->centre_mm)}, {"rotation_wxyz", {q.w, q.x, q.y, q.z}}};
+      writeNumbers(map, kWorkspaceMapNumbers, *a.map.fixed);
+      map["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
     } else {
-      map = {{"landmark", a.map.landmark}, {"offset_mm", vec(a.map.offset_mm)}};
+      map["landmark"] = a.map.landmark;
+      writeNumbers(map, kSceneMapNumbers, a.map);
     }
-    map["motion_scale"] = a.map.motion_scale;
-    map["force_scale"] = a.map.force_scale;
-    arms.push_back({{"name", a.name},
-                    {"device", {{"plugin", a.plugin}, {"arm", a.device_arm}}},
-                    {"tool", a.tool},
-                    {"map", map},
-                    {"max_force_N", a.max_force_N}});
-    if (a.dynamics) {
-      arms.back()["dynamics"] = {{"apparent_mass_kg", a.dynamics->apparent_mass_kg},
-                                 {"encoder_step_m", a.dynamics->encoder_step_m},
-                                 {"delay_ticks", a.dynamics->delay_ticks}};
-    }
+    writeNumbers(device, kDeviceNumbers, a);
+    Json arm{{"name", a.name}, {"device", device}, {"tool", a.tool}, {"map", map}};
+    writeNumbers(arm, kArmNumbers, a);
+    if (a.dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *a.dynamics);
+    arms.push_back(arm);
   }
   for (LawKind law : scene.laws) laws.push_back(nameOf(kLawNames, law));
   Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", scene.name},
@@ -261,9 +240,10 @@ Json toJson(const Scene& scene) {
   json["force_at"] = nameOf(kForceAtNames, scene.force_at);
   json["removal"] = nameOf(kRemovalNames, scene.removal);
   json["controller"] = controllerName(scene.controller);
-  json["rate_hz"] = scene.rate_hz;
+  writeNumbers(json, kSceneNumbers, scene);
   if (!scene.view.landmark.empty()) {
-    json["view"] = {{"landmark", scene.view.landmark}, {"distance_mm", scene.view.distance_mm}};
+    json["view"]["landmark"] = scene.view.landmark;
+    writeNumbers(json["view"], kViewNumbers, scene.view);
   }
   return json;
 }

@@ -1,6 +1,7 @@
 #include "scene/scene_tool.h"
 
 #include "scene/names.h"
+#include "scene/scene_numbers.h"
 
 namespace trephine {
 
@@ -12,9 +13,7 @@ constexpr Names<BurrShape, 2> kShapeNames{
     {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
 // What a scene may set itself of a tool that comes from a file.
-constexpr const char* kOwnNumbers[] = {"length_mm", "points", "radius_mm", "shaft_points", "motor_W"};
-
-constexpr Range kTip_mm{-10'000, 10'000, "mm"};
+constexpr std::span<const NumberOf<ToolDescription>> kOwnNumbers[] = {kToolNumbers, kBurrNumbers};
 
 template <class Kind, std::size_t N>
 Kind readKind(JsonReader& item, const char* key, const std::string& text,
@@ -29,15 +28,12 @@ Tool readTool(JsonReader& item) {
   ToolDescription d;
   d.kind = readKind(item, "kind", item.text("kind"), kToolNames, "tool");
   const bool burr = d.kind == ToolKind::burr;
-  d.length_mm = item.number("length_mm", kToolLength_mm);
-  d.points = int(item.integer("points", kToolPoints, burr ? 64 : 1));
-  d.radius_mm = burr ? item.number("radius_mm", kToolRadius_mm)
-                     : item.number("radius_mm", kToolRadius_mm, 0.6);
-  d.motor_W = item.number("motor_W", kToolMotor_W, 0.0);
+  if (burr) d.points = 64;
+  readNumbers(item, kToolNumbers, d);
   if (burr) {
+    readNumbers(item, kBurrNumbers, d);
     d.shape = readKind(item, "shape", item.text("shape", "sphere"), kShapeNames, "shape");
-    d.shaft_points = int(item.integer("shaft_points", kToolShaftPoints, 0));
-    if (d.shape == BurrShape::cylinder) d.head_mm = item.number("head_mm", kToolLength_mm);
+    if (d.shape == BurrShape::cylinder) readNumbers(item, kCylinderNumbers, d);
   }
   if (!item.ok()) return {};
   Result<Tool> tool = makeTool(d);
@@ -51,7 +47,7 @@ ToolLook readLook(JsonReader& item, const std::filesystem::path& folder) {
   const std::string file = item.text("mesh", "");
   if (file.empty()) return look;
   look.mesh = (folder / file).lexically_normal();
-  look.tip_mm = item.vec3("tip_mm", kTip_mm, Vec3(0.0));
+  readNumbers(item, kLookNumbers, look);
   look.axis = item.direction("axis", Vec3(0.0, 0.0, 1.0));
   std::error_code ec;
   if (!std::filesystem::is_regular_file(look.mesh, ec)) {
@@ -77,9 +73,16 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
     item.fail("file", json.error().what + " (" + json.error().where + ")", json.error().next);
     return out;
   }
-  for (const char* own : kOwnNumbers) {
-    if (item.has(own) && json->is_object()) (*json)[own] = item.raw(own);
-  }
+  const auto each_own = [&](auto&& what) {
+    for (const auto& rows : kOwnNumbers) {
+      for (const NumberOf<ToolDescription>& own : rows) {
+        if (item.has(own.row.key)) what(own.row.key);
+      }
+    }
+  };
+  each_own([&](const char* own) {
+    if (json->is_object()) (*json)[own] = item.raw(own);
+  });
   JsonReader reader(*json, file.string());
   reader.format("trephine.tool", 1);
   (void)reader.text("name");
@@ -88,9 +91,9 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
   if (Status status = reader.finish(); !status) {
     const Error& error = status.error();
     const std::string wrong = error.where.substr(error.where.rfind(' ') + 1);
-    for (const char* own : kOwnNumbers) {
-      if (wrong == own && item.has(own)) item.fail(own, error.what, error.next);
-    }
+    each_own([&](const char* own) {
+      if (wrong == own) item.fail(own, error.what, error.next);
+    });
     item.fail("file", error.what + " (" + error.where + ")", error.next);
   }
   return out;
@@ -98,16 +101,12 @@ SceneTool readSceneTool(JsonReader& item, const std::filesystem::path& folder) {
 
 Json toJson(const SceneTool& tool) {
   const ToolDescription& d = tool.tool.made_from;
-  Json json = {{"id", tool.id},
-               {"kind", nameOf(kToolNames, d.kind)},
-               {"length_mm", d.length_mm},
-               {"points", d.points},
-               {"radius_mm", d.radius_mm},
-               {"motor_W", d.motor_W}};
+  Json json = {{"id", tool.id}, {"kind", nameOf(kToolNames, d.kind)}};
+  writeNumbers(json, kToolNumbers, d);
   if (d.kind != ToolKind::burr) return json;
   json["shape"] = nameOf(kShapeNames, d.shape);
-  json["shaft_points"] = d.shaft_points;
-  if (d.shape == BurrShape::cylinder) json["head_mm"] = d.head_mm;
+  writeNumbers(json, kBurrNumbers, d);
+  if (d.shape == BurrShape::cylinder) writeNumbers(json, kCylinderNumbers, d);
   return json;
 }
 

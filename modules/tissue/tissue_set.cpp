@@ -24,7 +24,8 @@ std::string shown(double value) {
   return isFinite(value) ? Json(value).dump() : std::to_string(value);  // JSON has no nan
 }
 
-Status checkNumber(const std::string& file, const std::string& field, const SourcedNumber& number) {
+Status checkSourced(const std::string& file, const std::string& field, const Range& range,
+                    const SourcedNumber& number) {
   if (!isFinite(number.value)) {
     return bad(file, field, "The value " + shown(number.value) + " is not finite");
   }
@@ -32,9 +33,9 @@ Status checkNumber(const std::string& file, const std::string& field, const Sour
     return bad(file, field, "The value " + shown(number.value) + " is negative",
                "A tissue cannot push: use 0 or more");
   }
-  if (!kMechanicsRange.holds(number.value)) {
+  if (!range.holds(number.value)) {
     return bad(file, field, "The value " + shown(number.value) + " is absurd: no tissue has it",
-               "Use one " + kMechanicsRange.words());
+               "Use one " + range.words());
   }
   if (number.source.empty()) {
     return bad(file, field, "The value " + shown(number.value) + " has no source",
@@ -43,13 +44,26 @@ Status checkNumber(const std::string& file, const std::string& field, const Sour
   return {};
 }
 
-SourcedNumber readSourced(JsonReader& mechanics, const char* key) {
-  JsonReader object = mechanics.object(key);
-  return {object.number("value", kMechanicsRange), object.text("source")};
+void readMechanics(JsonReader mechanics, Tissue& tissue) {
+  for (const TissueNumber& number : kTissueNumbers) {
+    const NumberRow row = number.row();
+    if (row.given == Given::may_be && !mechanics.has(row.key)) continue;
+    JsonReader object = mechanics.object(row.key);
+    number.set(tissue, {object.number("value", row.range), object.text("source")});
+  }
+  tissue.cuttable = mechanics.boolean("cuttable", true);
+  if (mechanics.has("solid")) tissue.solid = mechanics.boolean("solid", false);
 }
 
-Json sourced(const SourcedNumber& number) {
-  return {{"value", number.value}, {"source", number.source}};
+Json mechanicsOf(const Tissue& tissue) {
+  Json mechanics;
+  for (const TissueNumber& row : kTissueNumbers) {
+    const SourcedNumber* number = row.of(tissue);
+    if (number) mechanics[row.key] = {{"value", number->value}, {"source", number->source}};
+  }
+  mechanics["cuttable"] = tissue.cuttable;
+  if (tissue.solid) mechanics["solid"] = *tissue.solid;
+  return mechanics;
 }
 
 }  // namespace
@@ -94,13 +108,11 @@ Status validate(const TissueSet& set, const std::string& file) {
                    "The colour value " + shown(t.colour[c]) + " is not between 0 and 1");
       }
     }
-    for (auto [key, number] : {std::pair{"damping_Ns_per_m", &t.damping_Ns_per_m},
-                               {"stiffness_N_per_m", &t.stiffness_N_per_m},
-                               {"friction_N", &t.friction_N},
-                               {"rupture_N", t.rupture_N ? &*t.rupture_N : nullptr},
-                               {"cutting_J_per_mm3", &t.cutting_J_per_mm3}}) {
+    for (const TissueNumber& row : kTissueNumbers) {
+      const SourcedNumber* number = row.of(t);
       if (!number) continue;
-      if (Status s = checkNumber(file, field + ".mechanics." + key, *number); !s) return s;
+      const std::string of = field + ".mechanics." + row.key;
+      if (Status s = checkSourced(file, of, row.row().range, *number); !s) return s;
     }
     for (std::size_t j = 0; j < i; ++j) {
       const Tissue& other = set.tissues[j];
@@ -132,14 +144,7 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
     if (item.has("label")) t.label = int(item.integer("label", kLabelRange));
     t.colour = item.vec3("colour", kShareRange);
     t.opacity = item.number("opacity", kShareRange);
-    JsonReader mechanics = item.object("mechanics");
-    t.damping_Ns_per_m = readSourced(mechanics, "damping_Ns_per_m");
-    t.stiffness_N_per_m = readSourced(mechanics, "stiffness_N_per_m");
-    t.friction_N = readSourced(mechanics, "friction_N");
-    if (mechanics.has("rupture_N")) t.rupture_N = readSourced(mechanics, "rupture_N");
-    t.cutting_J_per_mm3 = readSourced(mechanics, "cutting_J_per_mm3");
-    t.cuttable = mechanics.boolean("cuttable", true);
-    if (mechanics.has("solid")) t.solid = mechanics.boolean("solid", false);
+    readMechanics(item.object("mechanics"), t);
     set.tissues.push_back(std::move(t));
   }
   if (Status status = reader.finish(); !status) return status.error();
@@ -162,14 +167,7 @@ Json toJson(const TissueSet& set) {
                  {"hu_source", t.hu_source},
                  {"colour", {t.colour.x, t.colour.y, t.colour.z}},
                  {"opacity", t.opacity},
-                 {"mechanics",
-                  {{"damping_Ns_per_m", sourced(t.damping_Ns_per_m)},
-                   {"stiffness_N_per_m", sourced(t.stiffness_N_per_m)},
-                   {"friction_N", sourced(t.friction_N)},
-                   {"cutting_J_per_mm3", sourced(t.cutting_J_per_mm3)},
-                   {"cuttable", t.cuttable}}}};
-    if (t.rupture_N) item["mechanics"]["rupture_N"] = sourced(*t.rupture_N);
-    if (t.solid) item["mechanics"]["solid"] = *t.solid;
+                 {"mechanics", mechanicsOf(t)}};
     if (t.label) item["label"] = *t.label;
     tissues.push_back(std::move(item));
   }
@@ -181,16 +179,13 @@ TissueTable tissueTable(const TissueSet& set) {
   table.count = std::int32_t(std::min(set.tissues.size(), table.classes.size()));
   for (std::size_t i = 0; i < std::size_t(table.count); ++i) {
     const Tissue& t = set.tissues[i];
-    table.classes[i] = {t.hu_min,
-                        t.hu_max,
-                        t.damping_Ns_per_m.value,
-                        t.stiffness_N_per_m.value,
-                        t.friction_N.value,
-                        t.rupture_N ? t.rupture_N->value : 0.0,
-                        t.cutting_J_per_mm3.value,
-                        t.cuttable ? 1 : 0,
-                        t.label.value_or(0),
-                        t.isSolid() ? 1 : 0};
+    TissueClass& c = table.classes[i];
+    for (const TissueNumber& number : kTissueNumbers) c.*number.in_tick = number.valueOf(t);
+    c.hu_min = t.hu_min;
+    c.hu_max = t.hu_max;
+    c.cuttable = t.cuttable ? 1 : 0;
+    c.label = t.label.value_or(0);
+    c.solid = t.isSolid() ? 1 : 0;
   }
   return table;
 }

@@ -14,6 +14,7 @@
 #include "base/math.h"
 #include "base/range.h"
 #include "base/result.h"
+#include "tissue/tissue_numbers.h"
 
 namespace trephine {
 
@@ -21,21 +22,13 @@ namespace trephine {
 constexpr Range kHuRange{-32768, 32767, "HU"};
 constexpr Range kLabelRange{1, 255};
 constexpr Range kShareRange{0, 1};  // opacity, colour
-// Of each of the mechanics. Far beyond steel; what lies below it and above the arm is bounded, and
-// felt as the arm's most.
-constexpr Range kMechanicsRange{0, 1e9};
 
 // What is as stiff as this stops a tool, unless the set says otherwise: no soft tissue comes near it,
 // and no arm lets it be told from bone.
 constexpr double kSolidFrom_N_per_m = 600.0;
 
-// A number that a person set, and where it comes from: a citation, or "tuned here, uncited".
-struct SourcedNumber {
-  double value = 0.0;
-  std::string source;
-};
-
-struct Tissue {
+// Its mechanics are the members of SetNumbers.
+struct Tissue : SetNumbers {
   std::string id;    // stable: scenes, recordings and reports name it
   std::string name;  // shown
   int hu_min = 0;    // [hu_min, hu_max], both included
@@ -44,11 +37,6 @@ struct Tissue {
   std::optional<int> label;  // 1..255: only voxels with this label of a label map; absent: any voxel
   Vec3 colour{1.0};          // r, g, b in [0, 1]
   double opacity = 0.0;      // [0, 1] per millimetre of depth; 0 hides the tissue
-  SourcedNumber damping_Ns_per_m;   // viscous law
-  SourcedNumber stiffness_N_per_m;  // elastic, coulomb and rupture laws
-  SourcedNumber friction_N;         // coulomb law: of a tool that slides in it
-  std::optional<SourcedNumber> rupture_N;  // rupture law: a capsule's; absent: none
-  SourcedNumber cutting_J_per_mm3;  // work that removes it: its specific cutting energy
   bool cuttable = true;
   // A tool stops at a solid tissue until it is cut; absent: solid from kSolidFrom_N_per_m on.
   std::optional<bool> solid;
@@ -73,14 +61,9 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file);
 Json toJson(const TissueSet& set);
 
 // What the tick needs of a set: plain data, no text.
-struct TissueClass {
+struct TissueClass : TickNumbers {
   std::int32_t hu_min = 1;
   std::int32_t hu_max = 0;
-  double damping_Ns_per_m = 0.0;
-  double stiffness_N_per_m = 0.0;
-  double friction_N = 0.0;
-  double rupture_N = 0.0;
-  double cutting_J_per_mm3 = 0.0;
   std::int32_t cuttable = 0;
   std::int32_t label = 0;  // 0: of any voxel
   std::int32_t solid = 0;  // a tool stops at it

@@ -1,6 +1,7 @@
 #include "training/recording_layout.h"
 
 #include <string>
+#include <vector>
 
 #include "base/sha256.h"
 
@@ -56,26 +57,6 @@ constexpr RecordField kCarveFields[] = {
     FIELD(CarveRecord, tissue_class, i8, 1),
 };
 
-constexpr RecordField kTissueFields[] = {
-    FIELD(TissueClass, hu_min, i32, 1),           FIELD(TissueClass, hu_max, i32, 1),
-    FIELD(TissueClass, damping_Ns_per_m, f64, 1), FIELD(TissueClass, stiffness_N_per_m, f64, 1),
-    FIELD(TissueClass, friction_N, f64, 1),       FIELD(TissueClass, rupture_N, f64, 1),
-    FIELD(TissueClass, cutting_J_per_mm3, f64, 1), FIELD(TissueClass, cuttable, i32, 1),
-    FIELD(TissueClass, label, i32, 1),           FIELD(TissueClass, solid, i32, 1),
-};
-
-constexpr RecordField kEventFields[] = {
-    {"tick", offsetof(Event, tick), Type::u64, 1},
-    {"kind", offsetof(Event, kind), Type::i32, 1},
-    {"arm", offsetof(Event, arm), Type::i32, 1},
-    {"value", offsetof(Event, value), Type::u32, 1},
-    {"command", offsetof(Event, command) + offsetof(Command, kind), Type::i32, 1},
-    {"command_value", offsetof(Event, command) + offsetof(Command, value), Type::i32, 1},
-    {"tissue_count",
-     offsetof(Event, command) + offsetof(Command, tissues) + offsetof(TissueTable, count),
-     Type::i32, 1},
-};
-
 #undef FIELD
 
 hid_t nativeType(Type type) {
@@ -89,6 +70,41 @@ hid_t nativeType(Type type) {
     case Type::i8: return H5T_NATIVE_INT8;
   }
   return -1;
+}
+
+std::size_t offsetIn(const void* whole, const void* member) {
+  return std::size_t(static_cast<const char*>(member) - static_cast<const char*>(whole));
+}
+
+std::vector<RecordField> fieldsOfEvents() {
+  const Event at{};
+  const auto field = [&](const char* name, const auto& member, Type type) {
+    return RecordField{name, offsetIn(&at, &member), type, 1};
+  };
+  return {field("tick", at.tick, Type::u64),
+          field("kind", at.kind, Type::i32),
+          field("arm", at.arm, Type::i32),
+          field("value", at.value, Type::u32),
+          field("command", at.command.kind, Type::i32),
+          field("command_value", at.command.value, Type::i32),
+          field("tissue_count", at.command.tissues.count, Type::i32)};
+}
+
+// A field for each of a tissue's numbers, and for what else the tick keeps of one. A number that an
+// older recording does not have is read as 0.
+std::vector<RecordField> fieldsOfTissues() {
+  const TissueClass at{};
+  std::vector<RecordField> fields;
+  const auto add = [&](const char* name, const auto& member, Type type) {
+    fields.push_back({name, offsetIn(&at, &member), type, 1});
+  };
+  add("hu_min", at.hu_min, Type::i32);
+  add("hu_max", at.hu_max, Type::i32);
+  for (const TissueNumber& number : kTissueNumbers) add(number.key, at.*number.in_tick, Type::f64);
+  add("cuttable", at.cuttable, Type::i32);
+  add("label", at.label, Type::i32);
+  add("solid", at.solid, Type::i32);
+  return fields;
 }
 
 }  // namespace
@@ -110,7 +126,8 @@ std::span<const RecordField> armFields() { return kArmFields; }
 std::span<const RecordField> tickFields() { return kTickFields; }
 std::span<const RecordField> carveFields() { return kCarveFields; }
 std::span<const RecordField> eventFields() {
-  return kEventFields;
+  static const std::vector<RecordField> fields = fieldsOfEvents();
+  return fields;
 }
 
 hid_t compoundType(std::span<const RecordField> fields, std::size_t size) {
@@ -129,13 +146,12 @@ hid_t compoundType(std::span<const RecordField> fields, std::size_t size) {
 }
 
 hid_t eventType() {
-  const hid_t event = compoundType(kEventFields, sizeof(Event));
-  const hid_t tissue = compoundType(kTissueFields, sizeof(TissueClass));
+  const Event at{};
+  const hid_t event = compoundType(eventFields(), sizeof(Event));
+  const hid_t tissue = compoundType(fieldsOfTissues(), sizeof(TissueClass));
   const hsize_t count = kMaxTissues;
   const hid_t tissues = H5Tarray_create2(tissue, 1, &count);
-  H5Tinsert(event, "tissues",
-            offsetof(Event, command) + offsetof(Command, tissues) + offsetof(TissueTable, classes),
-            tissues);
+  H5Tinsert(event, "tissues", offsetIn(&at, &at.command.tissues.classes), tissues);
   H5Tclose(tissues);
   H5Tclose(tissue);
   return event;

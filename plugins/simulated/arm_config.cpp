@@ -1,6 +1,5 @@
 #include "arm_config.h"
 
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -46,7 +45,7 @@ const Json& member(const Json& object, const char* key, const std::string& paren
 }
 
 void checkObject(const Json& value, const std::string& field,
-                 std::initializer_list<std::string_view> keys) {
+                 const std::vector<std::string_view>& keys) {
   if (!value.is_object()) refuse(field, "expected an object, found " + shown(value) + ".");
   for (auto it = value.begin(); it != value.end(); ++it) {
     bool known = false;
@@ -89,54 +88,46 @@ const Json& sourced(const Json& arm, const char* key, const std::string& parent)
   return member(number, "value", field);
 }
 
-double number(const Json& arm, const char* key, const std::string& parent, const Range& range) {
-  return checkNumber(sourced(arm, key, parent), joined(parent, key) + ".value", range);
-}
-
-Vector extent(const Json& arm, const char* key, const std::string& parent) {
-  const Json& value = sourced(arm, key, parent);
-  const std::string field = joined(parent, key) + ".value";
-  if (!value.is_array() || value.size() != 3) {
-    refuse(field, "expected three numbers, found " + shown(value) + ".");
+void readNumber(const Json& arm, const ArmNumber& number, const std::string& parent,
+                ArmConfig& config) {
+  const Json& value = sourced(arm, number.key, parent);
+  const std::string field = joined(parent, number.key) + ".value";
+  const Range range{number.low, number.high};
+  double values[3] = {};
+  if (number.count == 1) {
+    values[0] = checkNumber(value, field, range);
+  } else {
+    if (!value.is_array() || value.size() != 3) {
+      refuse(field, "expected three numbers, found " + shown(value) + ".");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      values[axis] = checkNumber(value[axis], field + "[" + std::to_string(axis) + "]", range);
+    }
   }
-  Vector out{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    out[axis] = checkNumber(value[axis], field + "[" + std::to_string(axis) + "]", {1e-3, 10.0});
-  }
-  return out;
+  number.set(config, values);
 }
 
 ArmConfig parseArm(const Json& arm, const std::string& field) {
-  checkObject(arm, field,
-              {"apparent_mass_kg", "plant_damping_Ns_per_m", "encoder_step_m", "workspace_m",
-               "peak_force_N", "continuous_force_N", "max_stiffness_N_per_m",
-               "max_damping_Ns_per_m", "rate_hz"});
+  std::vector<std::string_view> keys;
+  for (const ArmNumber& number : kArmNumbers) keys.push_back(number.key);
+  checkObject(arm, field, keys);
   ArmConfig config;
-  ArmParameters& p = config.parameters;
-  p.mass_kg = number(arm, "apparent_mass_kg", field, {1e-4, 100.0});
-  p.damping_Ns_per_m = number(arm, "plant_damping_Ns_per_m", field, {0.0, 1e6});
-  p.encoder_step_m = number(arm, "encoder_step_m", field, {0.0, 0.01});
-  if (p.encoder_step_m > 0.0 && p.encoder_step_m < kMinEncoderStep_m) {
-    refuse(joined(field, "encoder_step_m.value"), "the value " + shown(p.encoder_step_m) +
-                                                      " must be 0 or at least " +
-                                                      shown(kMinEncoderStep_m) + ".");
-  }
-  p.workspace_m = extent(arm, "workspace_m", field);
-  p.peak_force_N = number(arm, "peak_force_N", field, {1e-3, 1000.0});
-
   TrephineCapabilities& c = config.capabilities;
   c.size = sizeof(TrephineCapabilities);
   c.version = TREPHINE_DEVICE_ABI;
   c.input_dof = 6;
   c.output_dof = 3;
-  for (std::size_t axis = 0; axis < 3; ++axis) c.workspace_m[axis] = p.workspace_m[axis];
-  c.peak_force_N = p.peak_force_N;
-  c.continuous_force_N = number(arm, "continuous_force_N", field, {1e-3, p.peak_force_N});
-  c.max_stiffness_N_per_m = number(arm, "max_stiffness_N_per_m", field, {1e-3, 1e9});
-  c.max_damping_Ns_per_m = number(arm, "max_damping_Ns_per_m", field, {0.0, 1e9});
-  c.apparent_mass_kg = p.mass_kg;
-  c.encoder_step_m = p.encoder_step_m;
-  c.rate_hz = number(arm, "rate_hz", field, {1.0, 1e6});
+  for (const ArmNumber& number : kArmNumbers) readNumber(arm, number, field, config);
+  if (c.encoder_step_m > 0.0 && c.encoder_step_m < kMinEncoderStep_m) {
+    refuse(joined(field, "encoder_step_m.value"), "the value " + shown(c.encoder_step_m) +
+                                                      " must be 0 or at least " +
+                                                      shown(kMinEncoderStep_m) + ".");
+  }
+  if (c.continuous_force_N > c.peak_force_N) {
+    refuse(joined(field, "continuous_force_N.value"), "the value " + shown(c.continuous_force_N) +
+                                                          " must be at most the peak force of " +
+                                                          shown(c.peak_force_N) + ".");
+  }
   return config;
 }
 

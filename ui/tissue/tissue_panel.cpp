@@ -115,11 +115,9 @@ void TissuePanel::build() {
   form->addRow(tr("To"), high_row);
   form->addRow(tr("Label"), label_->withReason());
   form->addRow(tr("Opacity"), opacity_row);
-  form->addRow(tr("Damping"),
-               addNumber("damping", tr(" N\u00b7s/m"), 1e5, 0.1, &Tissue::damping_Ns_per_m));
-  form->addRow(tr("Stiffness"),
-               addNumber("stiffness", tr(" N/m"), 1e7, 10.0, &Tissue::stiffness_N_per_m));
-  form->addRow(tr("Friction"), addNumber("friction", tr(" N"), 100.0, 0.05, &Tissue::friction_N));
+  for (const TissueNumber& row : kTissueNumbers) {
+    if (row.label) form->addRow(tr(row.label), addNumber(row));
+  }
 
   auto* editor_layout = new QVBoxLayout(editor_);
   editor_layout->setContentsMargins(0, 0, 0, 0);
@@ -146,14 +144,13 @@ void TissuePanel::build() {
   });
 }
 
-QLayout* TissuePanel::addNumber(const char* name, const QString& unit, double most, double step,
-                                SourcedNumber Tissue::*field) {
-  auto* box = new DecimalField(name, editor_);
+QLayout* TissuePanel::addNumber(const TissueNumber& row) {
+  auto* box = new DecimalField(QString(row.label).toLower(), editor_);
   box->setDecimals(2);
-  box->setLimits(0.0, most);
-  box->setSingleStep(step);
-  box->setSuffix(unit);
-  const Number number{box, field};
+  box->setLimits(row.row().range.low, row.most);
+  box->setSingleStep(row.step);
+  box->setSuffix(' ' + QString::fromUtf8(row.unit));
+  const Number number{box, &row};
   box->entered = [this, number] { numberEntered(number); };
   numbers_.push_back(number);
   return box->withReason();
@@ -275,7 +272,7 @@ void TissuePanel::showSelected() {
     const QSignalBlocker quiet(opacity_);
     opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
   }
-  for (const Number& number : numbers_) number.box->show((tissue->*number.field).value);
+  for (const Number& number : numbers_) number.box->show(number.row->valueOf(*tissue));
   showOutcome();
 }
 
@@ -291,7 +288,8 @@ void TissuePanel::showOutcome() {
                                   : tr("Open the case's label map first, on the Case tab"));
   opacity_text_->setText(tr("%1 /mm").arg(tissue->opacity, 0, 'f', 3));
   for (const Number& number : numbers_) {
-    number.box->setToolTip(tr("Source: %1").arg(toQt((tissue->*number.field).source)));
+    const SourcedNumber* given = number.row->of(*tissue);
+    number.box->setToolTip(given ? tr("Source: %1").arg(toQt(given->source)) : QString());
   }
   showGaps();
   showFelt();
@@ -341,11 +339,11 @@ void TissuePanel::rangeEntered() {
 void TissuePanel::numberEntered(const Number& number) {
   if (!current()) return;
   Tissue wanted = *current();
-  const SourcedNumber& cited = declared(wanted).*number.field;
-  SourcedNumber& value = wanted.*number.field;
   const auto shown = [&](double other) { return std::abs(number.box->wanted() - other) < 0.005; };
-  if (!shown(value.value)) {
-    value = shown(cited.value) ? cited : SourcedNumber{number.box->wanted(), kOwnSource};
+  if (!shown(number.row->valueOf(wanted))) {
+    const SourcedNumber* cited = number.row->of(declared(*current()));
+    const SourcedNumber own{number.box->wanted(), kOwnSource};
+    number.row->set(wanted, cited && shown(cited->value) ? *cited : own);
   }
   if (apply(wanted)) number.box->take();
 }

@@ -42,11 +42,10 @@ class TissuePanel : public QWidget {
  private:
   struct Number {
     DecimalField* box;
-    SourcedNumber Tissue::*field;
+    const TissueNumber* row;
   };
   void build();
-  QLayout* addNumber(const char* name, const QString& unit, double most, double step,
-                     SourcedNumber Tissue::*field);
+  QLayout* addNumber(const TissueNumber& row);
   void showList();
   // Every field as the selected tissue is; what was typed and refused goes.
   void showSelected();

@@ -154,7 +154,7 @@ Volume block(const Vec3& spacing_mm, std::int16_t hu) {
 TissueTable table(double damping, double stiffness, double friction, int hu_min, int hu_max) {
   TissueTable tissues;
   tissues.count = 1;
-  tissues.classes[0] = {hu_min, hu_max, damping, stiffness, friction, 0.0, 0.0, 1, 0};
+  tissues.classes[0] = {{damping, stiffness, friction, 0.0, 0.0}, hu_min, hu_max, 1, 0};
   return tissues;
 }
 

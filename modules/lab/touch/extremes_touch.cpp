@@ -74,7 +74,7 @@ double toSurface_mm(const Grid& grid, int i, int j, int k, int hu_from) {
 TissueTable boneOnly(bool cuttable) {
   TissueTable table;
   table.count = 1;
-  table.classes[0] = {kBoneFrom_hu, 3071, 12.0, 900.0, 2.0, 0.0, 0.06, cuttable, 0, 1, 0};
+  table.classes[0] = {{12.0, 900.0, 2.0, 0.0, 0.06}, kBoneFrom_hu, 3071, cuttable, 0, 1, 0};
   return table;
 }
 

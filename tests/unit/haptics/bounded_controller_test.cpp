@@ -248,12 +248,10 @@ TEST(Renderable, IsBoundByTheCountsOfTheEncoderWhereTheArmIsHeavy) {
   }
 }
 
-TEST(Renderable, TakesItsDelayFromTheArgumentAndKeepsItWithinBounds) {
+TEST(Renderable, TakesItsDelayFromTheArgument) {
   const double none = renderable(arm(0.045, 0.0, 5), 1000.0, 0, {}).k_max;
   EXPECT_EQ(none, renderable(arm(0.045, 0.0), 1000.0, 0, {}).k_max);
-  EXPECT_EQ(none, renderable(arm(0.045, 0.0), 1000.0, -3, {}).k_max);
-  EXPECT_EQ(renderable(arm(0.045, 0.0), 1000.0, 1000, {}).k_max,
-            renderable(arm(0.045, 0.0), 1000.0, kMaxDelayTicks, {}).k_max);
+  EXPECT_GT(none, renderable(arm(0.045, 0.0), 1000.0, kMaxDelayTicks, {}).k_max);
 }
 
 TEST(Renderable, IsInThePatientsMetresAndNewtons) {
@@ -732,18 +730,6 @@ TEST(BoundedController, CountsTheEnergyOfAForceInThePeriodInWhichItActs) {
       } else {
         ASSERT_EQ(gained_J, 0.0) << "delay " << delay << ", tick " << n;
       }
-    }
-  }
-}
-
-TEST(BoundedController, KeepsADelayWithinWhatItHoldsRoomFor) {
-  for (int delay : {-5, kMaxDelayTicks + 1, 1000000}) {
-    const int kept = std::clamp(delay, 0, kMaxDelayTicks);
-    Touch given(arm(0.045, kOmniStep_m, delay), {5.0, 800.0});
-    Touch clamped(arm(0.045, kOmniStep_m, kept), {5.0, 800.0});
-    for (int i = 0; i < 400; ++i) {
-      const double x = 1e-3 - 0.01e-3 * i;
-      ASSERT_EQ(given.at(x), clamped.at(x));
     }
   }
 }

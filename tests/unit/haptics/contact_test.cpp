@@ -82,7 +82,7 @@ TEST(Contact, TheFirmestTissueTouchedCounts) {
   for (std::size_t i = 0; i < 32 * 32 * 8; ++i) volume.hu[i] = 40;  // soft below z = -8
   TissueTable table = boneTable();
   table.count = 2;
-  table.classes[1] = {0, 80, 50.0, 10.0, 0.1, 0.0, 0.0, 1, 0};
+  table.classes[1] = {{50.0, 10.0, 0.1, 0.0, 0.0}, 0, 80, 1, 0};
   Probe probe(makeBlade(0.008, 9), std::move(volume), table);
   EXPECT_EQ(probe.touch({0, 0, -12}).points, 9);
   EXPECT_EQ(probe.contact.contact().tissue_class, 0);
@@ -91,8 +91,8 @@ TEST(Contact, TheFirmestTissueTouchedCounts) {
 TEST(TissueLookup, AnswersAsClassifyDoesForEveryHu) {
   TissueTable table = boneTable();
   table.count = 3;
-  table.classes[1] = {-32768, -1000, 1, 1, 1, 0, 0, 1, 0};
-  table.classes[2] = {3072, 32767, 1, 1, 1, 0, 0, 1, 0};
+  table.classes[1] = {{1, 1, 1, 0, 0}, -32768, -1000, 1, 0};
+  table.classes[2] = {{1, 1, 1, 0, 0}, 3072, 32767, 1, 0};
   TissueLookup lookup;
   lookup.set(table);
   for (int hu = -32768; hu <= 32767; ++hu) {

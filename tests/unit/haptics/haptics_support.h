@@ -26,7 +26,7 @@ inline Volume boneSlab() {
 inline TissueTable boneTable(double damping = 10.0, double stiffness = 800.0, double friction = 2.0) {
   TissueTable table;
   table.count = 1;
-  table.classes[0] = {226, 3071, damping, stiffness, friction, 0.0, 0.05, 1, 0};
+  table.classes[0] = {{damping, stiffness, friction, 0.0, 0.05}, 226, 3071, 1, 0};
   return table;
 }
 

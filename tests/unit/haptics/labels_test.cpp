@@ -34,8 +34,8 @@ std::shared_ptr<const LabelMap> halves() {
 TissueTable liver(bool soft = false) {
   TissueTable table;
   table.count = soft ? 2 : 1;
-  table.classes[kLiver] = {-1000, 1000, 4.0, 400.0, 0.5, 0.0, 1e-5, 1, 5};
-  table.classes[kSoft] = {0, 100, 2.0, 100.0, 0.2, 0.0, 1e-5, 1, 0};
+  table.classes[kLiver] = {{4.0, 400.0, 0.5, 0.0, 1e-5}, -1000, 1000, 1, 5};
+  table.classes[kSoft] = {{2.0, 100.0, 0.2, 0.0, 1e-5}, 0, 100, 1, 0};
   return table;
 }
 
@@ -68,8 +68,8 @@ HapticParameters burring(const TissueTable& tissues) {
 TEST(Labels, ALookUpAnswersAsClassifyDoesForEveryHuAndLabel) {
   TissueTable table = liver(true);
   table.count = 4;
-  table.classes[2] = {50, 300, 1, 1, 1, 0, 0, 1, 6};
-  table.classes[3] = {-2000, -10, 1, 1, 1, 0, 0, 1, 255};
+  table.classes[2] = {{1, 1, 1, 0, 0}, 50, 300, 1, 6};
+  table.classes[3] = {{1, 1, 1, 0, 0}, -2000, -10, 1, 255};
   Volume volume;
   volume.geometry.size = {65536, 1, 1};
   for (int hu = -32768; hu <= 32767; ++hu) volume.hu.push_back(std::int16_t(hu));
@@ -153,7 +153,7 @@ TEST(Labels, WhatWasRemovedIsNoTissueAnyMore) {
 
 TEST(Labels, ALabelMapChangesNothingForTissuesWithoutLabels) {
   HapticParameters p = burring(liver(true));
-  p.tissues.classes[kLiver] = {101, 1000, 4.0, 400.0, 0.5, 0.0, 1e-5, 1, 0};
+  p.tissues.classes[kLiver] = {{4.0, 400.0, 0.5, 0.0, 1e-5}, 101, 1000, 1, 0};
   p.removal = RemovalKind::work;
   p.arms[0].tool.made_from.motor_W = 4.0;
   LabelledBench with(p, halves()), without(p, nullptr);

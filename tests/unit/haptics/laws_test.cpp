@@ -15,7 +15,7 @@ struct Case {
 
   explicit Case(const Vec3& tip_m = Vec3(0.0), std::size_t count = 1) : points(count) {
     table.count = 1;
-    table.classes[0] = {226, 3071, 10.0, 800.0, 2.0, 1.0, 0.05, 1, 0};
+    table.classes[0] = {{10.0, 800.0, 2.0, 1.0, 0.05}, 226, 3071, 1, 0};
     for (TouchPoint& p : points) {
       p.weight = 1.0 / double(count);
       p.tissue_class = 0;

@@ -32,8 +32,8 @@ Volume ball(const Mat3& direction = Mat3(1.0)) {
 TissueTable twoTissues() {
   TissueTable t;
   t.count = 2;
-  t.classes[0] = {226, 3071, 8.0, 900.0, 1.0, 0.0, 0.05, 0, 0};
-  t.classes[1] = {0, 100, 3.0, 200.0, 0.3, 0.5, 0.05, 0, 0};
+  t.classes[0] = {{8.0, 900.0, 1.0, 0.0, 0.05}, 226, 3071, 0, 0};
+  t.classes[1] = {{3.0, 200.0, 0.3, 0.5, 0.05}, 0, 100, 0, 0};
   return t;
 }
 

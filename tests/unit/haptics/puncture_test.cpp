@@ -16,7 +16,7 @@ struct Layer {
 };
 
 TissueClass tissueOf(std::int16_t hu, double b, double k, double friction, double rupture) {
-  return {hu - 10, hu + 10, b, k, friction, rupture, 1.0, 0, 0};
+  return {{b, k, friction, rupture, 1.0}, hu - 10, hu + 10, 0, 0};
 }
 
 // Skin, fat, capsule, liver; scalp, bone, dura.

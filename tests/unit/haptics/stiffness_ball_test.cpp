@@ -45,8 +45,8 @@ Volume layers(const Vec3& normal, double spacing_mm, const std::vector<Layer>& s
 TissueTable table(double soft = 200.0, double hard = 800.0) {
   TissueTable t;
   t.count = 2;
-  t.classes[0] = {0, 999, 0, soft, 0, 0, 0, 1, 0};
-  t.classes[1] = {1500, 3000, 0, hard, 0, 0, 0, 1, 0};
+  t.classes[0] = {{0, soft, 0, 0, 0}, 0, 999, 1, 0};
+  t.classes[1] = {{0, hard, 0, 0, 0}, 1500, 3000, 1, 0};
   return t;
 }
 constexpr std::int16_t kSoft = 1000 - 1, kHard = 2001;

@@ -154,10 +154,10 @@ inline Account cut(const Stroke& stroke) {
 }
 
 inline TissueClass bone() {
-  return {226, 3071, 12.0, 900.0, 2.0, 0.0, 0.06, 1, 0, 1};
+  return {{12.0, 900.0, 2.0, 0.0, 0.06}, 226, 3071, 1, 0, 1};
 }
 inline TissueClass liver() {
-  return {0, 225, 4.0, 120.0, 0.35, 0.0, 5e-6, 1, 0, 0};
+  return {{4.0, 120.0, 0.35, 0.0, 5e-6}, 0, 225, 1, 0, 0};
 }
 constexpr std::int16_t kLiverHu = 100;
 

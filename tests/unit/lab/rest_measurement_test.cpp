@@ -25,7 +25,7 @@ HapticParameters burrOnBone() {
   p.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
   p.force_at = ForceAt::distributed;
   p.tissues.count = 1;
-  p.tissues.classes[0] = {226, 3071, 12.0, 900.0, 2.0, 0.0, 0.06, 1, 0, 1, 0};
+  p.tissues.classes[0] = {{12.0, 900.0, 2.0, 0.0, 0.06}, 226, 3071, 1, 0, 1, 0};
   p.arms = {{makeBurr(0.003, 32, 8, 0.03), WorkspaceMap{}, 3.3, {0.045, 0.055e-3, 3.3, 0}}};
   p.journal_voxels = 1 << 16;
   return p;
@@ -143,7 +143,7 @@ TEST(ATissue, IsFoundAlongARayBeforeTheFirstSolidOne) {
   Volume volume = block();
   HapticParameters p = burrOnBone();
   p.tissues.count = 2;
-  p.tissues.classes[1] = {0, 100, 1.0, 40.0, 0.1, 0.0, 0.0, 1, 0, 0, 0};
+  p.tissues.classes[1] = {{1.0, 40.0, 0.1, 0.0, 0.0}, 0, 100, 1, 0, 0, 0};
   const Vec3 from_mm(0.0, 0.0, 12.0), down(0.0, 0.0, -1.0);
   EXPECT_NEAR(depthOf(volume, p.tissues, 0, from_mm, down, 40.0).value_or(0.0), 12.0, 0.11);
   EXPECT_FALSE(depthOf(volume, p.tissues, 0, from_mm, down, 10.0));

@@ -1,10 +1,10 @@
-#include "scene/scene.h"
-
 #include <sys/stat.h>
 
 #include <fstream>
 
 #include "base/system.h"
+#include "scene/scene_numbers.h"
+#include "schema_page.h"
 #include "support.h"
 
 namespace trephine {
@@ -195,6 +195,45 @@ TEST(Scene, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
     EXPECT_NE(scene.error().where.find(bad.field), std::string::npos) << scene.error().sentence();
     EXPECT_NE(scene.error().what.find(name), std::string::npos) << scene.error().sentence();
   }
+}
+
+TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
+  Json json = shipped();
+  json["rate_hz"] = 2000.0;
+  json["view"]["distance_mm"] = 123.0;
+  json["landmarks"][0]["run_mm"] = 2.5;
+  json["arms"][0]["max_force_N"] = 1.5;
+  json["arms"][0]["map"]["motion_scale"] = 2.0;
+  json["arms"][0]["map"]["force_scale"] = 0.5;
+  json["arms"][0]["map"]["offset_mm"] = {1.0, 2.0, 3.0};
+  json["arms"][0]["dynamics"] = {
+      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_ticks", 3}};
+  const Result<Scene> scene = parseScene(json, shippedFile());
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  const Json written = toJson(*scene);
+  for (const char* at :
+       {"/rate_hz", "/view/distance_mm", "/landmarks/0/run_mm", "/arms/0/max_force_N",
+        "/arms/0/map/motion_scale", "/arms/0/map/force_scale", "/arms/0/map/offset_mm",
+        "/arms/0/dynamics/apparent_mass_kg", "/arms/0/dynamics/encoder_step_m",
+        "/arms/0/dynamics/delay_ticks"}) {
+    EXPECT_EQ(written.at(Json::json_pointer(at)), json.at(Json::json_pointer(at))) << at;
+  }
+}
+
+TEST(Scene, ANumberThatIsNotGivenIsAsThePageSays) {
+  Json json = shipped();
+  for (const char* key : {"rate_hz", "view"}) json.erase(key);
+  json["arms"][0].erase("max_force_N");
+  const Scene scene = *parseScene(json, shippedFile());
+  EXPECT_EQ(scene.rate_hz, 1000.0);
+  EXPECT_EQ(scene.view.distance_mm, 350.0);
+  EXPECT_EQ(scene.arms[0].max_force_N, 3.3);
+}
+
+TEST(Scene, ThePagesAreAsTheRowsAre) {
+  const std::filesystem::path pages = resourceFolder() / "schemas";
+  test::expectNumbers(pages / "scene.md", "scene", sceneNumbersPage());
+  test::expectNumbers(pages / "tool.md", "tool", toolNumbersPage());
 }
 
 TEST(Scene, AMissingTissueFileIsNamed) {

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "schema_page.h"
 #include "support.h"
 
 namespace trephine {
@@ -133,29 +134,38 @@ TEST(TissueSet, HasOpacityAndColourBetweenZeroAndOne) {
   EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[0].colour.y = -2.5; }).what, "-2.5");
 }
 
-struct Mechanic {
-  const char* key;
-  SourcedNumber Tissue::*number;
-};
-const Mechanic kMechanics[] = {{"damping_Ns_per_m", &Tissue::damping_Ns_per_m},
-                               {"stiffness_N_per_m", &Tissue::stiffness_N_per_m},
-                               {"friction_N", &Tissue::friction_N}};
+// Each number of a tissue, given in head() or not.
+SourcedNumber given(const TissueNumber& number, const Tissue& tissue) {
+  const SourcedNumber* found = number.of(tissue);
+  return found ? *found : SourcedNumber{1.0, "a paper"};
+}
+
+void setValue(const TissueNumber& number, Tissue& tissue, double value) {
+  number.set(tissue, {value, given(number, tissue).source});
+}
+
+// A file of head() in which the second tissue has every number.
+Json wholeFile() {
+  TissueSet set = head();
+  for (const TissueNumber& m : kTissueNumbers) m.set(set.tissues[1], given(m, set.tissues[1]));
+  return toJson(set);
+}
 
 TEST(TissueSet, HasNoNegativeMechanics) {
-  for (const Mechanic& m : kMechanics) {
-    const Error error = errorAfter([&](TissueSet& s) { (s.tissues[1].*m.number).value = -0.5; });
+  for (const TissueNumber& m : kTissueNumbers) {
+    const Error error = errorAfter([&](TissueSet& s) { setValue(m, s.tissues[1], -0.5); });
     EXPECT_EQ(error.where, std::string("t.json: tissues[1].mechanics.") + m.key);
     EXPECT_PART(error.what, "-0.5");
     TissueSet zero = head();
-    (zero.tissues[1].*m.number).value = 0.0;
+    setValue(m, zero.tissues[1], 0.0);
     EXPECT_TRUE(validate(zero, "t.json").ok()) << m.key;
   }
 }
 
 TEST(TissueSet, HasNoMechanicsThatAreNotFinite) {
-  for (const Mechanic& m : kMechanics) {
+  for (const TissueNumber& m : kTissueNumbers) {
     for (double value : {kNaN, kInfinity, -kInfinity}) {
-      const Error error = errorAfter([&](TissueSet& s) { (s.tissues[1].*m.number).value = value; });
+      const Error error = errorAfter([&](TissueSet& s) { setValue(m, s.tissues[1], value); });
       EXPECT_EQ(error.where, std::string("t.json: tissues[1].mechanics.") + m.key);
       EXPECT_PART(error.what, std::isnan(value) ? "nan" : "inf");
     }
@@ -163,8 +173,8 @@ TEST(TissueSet, HasNoMechanicsThatAreNotFinite) {
 }
 
 TEST(TissueSet, CitesTheSourceOfEachNumber) {
-  for (const Mechanic& m : kMechanics) {
-    const Error error = errorAfter([&](TissueSet& s) { (s.tissues[0].*m.number).source = ""; });
+  for (const TissueNumber& m : kTissueNumbers) {
+    const Error error = errorAfter([&](TissueSet& s) { m.set(s.tissues[0], {1.0, ""}); });
     EXPECT_EQ(error.where, std::string("t.json: tissues[0].mechanics.") + m.key);
     EXPECT_PART(error.next, "uncited");
   }
@@ -184,7 +194,7 @@ TEST(TissueSet, FindsATissueByItsId) {
 // The error of head()'s file after `change`, which must make it invalid.
 template <class Change>
 Error parseErrorAfter(Change&& change) {
-  Json json = toJson(head());
+  Json json = wholeFile();
   change(json);
   const Result<TissueSet> set = parseTissueSet(json, "t.json");
   EXPECT_FALSE(set.ok());
@@ -220,6 +230,29 @@ TEST(TissueFile, ComesBackAsItWasWritten) {
   EXPECT_FALSE(read->tissues[2].cuttable);
 }
 
+TEST(TissueFile, ComesBackWithEveryNumberAndLacksNoneThatMustBeThere) {
+  const Json json = wholeFile();
+  const Result<TissueSet> set = parseTissueSet(json, "t.json");
+  ASSERT_TRUE(set.ok()) << set.error().sentence();
+  EXPECT_EQ(toJson(*set), json);
+  for (const TissueNumber& m : kTissueNumbers) {
+    EXPECT_TRUE(json["tissues"][1]["mechanics"].contains(m.key)) << m.key;
+    Json without = json;
+    without["tissues"][1]["mechanics"].erase(m.key);
+    const Result<TissueSet> read = parseTissueSet(without, "t.json");
+    ASSERT_EQ(read.ok(), m.row().given == Given::may_be) << m.key;
+    if (read) {
+      EXPECT_EQ(tissueTable(*read).classes[1].*m.in_tick, 0.0) << m.key;
+    } else {
+      EXPECT_EQ(read.error().where, std::string("t.json: tissues[1].mechanics.") + m.key);
+    }
+  }
+}
+
+TEST(TissueFile, ThePageIsAsTheRowsAre) {
+  test::expectNumbers(resourceFolder() / "schemas" / "tissues.md", "tissue", tissueNumbersPage());
+}
+
 TEST(TissueFile, NeedsEveryFieldButLabelAndCuttable) {
   for (const char* key : {"format", "version", "name", "tissues"}) {
     EXPECT_EQ(parseErrorAfter([&](Json& j) { j.erase(key); }).where, std::string("t.json: ") + key);
@@ -228,7 +261,7 @@ TEST(TissueFile, NeedsEveryFieldButLabelAndCuttable) {
     EXPECT_EQ(parseErrorAfter([&](Json& j) { j["tissues"][1].erase(key); }).where,
               std::string("t.json: tissues[1].") + key);
   }
-  for (const Mechanic& m : kMechanics) {
+  for (const TissueNumber& m : kTissueNumbers) {
     for (const char* key : {"value", "source"}) {
       EXPECT_EQ(
           parseErrorAfter([&](Json& j) { j["tissues"][1]["mechanics"][m.key].erase(key); }).where,
@@ -294,7 +327,7 @@ TEST(TissueFile, RefusesNumbersOutOfTheirRangeByFieldAndValue) {
     EXPECT_EQ(error.where, std::string("t.json: tissues[1].") + field);
     EXPECT_PART(error.what, value);
   };
-  for (const Mechanic& m : kMechanics) {
+  for (const TissueNumber& m : kTissueNumbers) {
     const std::string field = std::string("mechanics.") + m.key + ".value";
     expectRefused([&](Json& j) { j["tissues"][1]["mechanics"][m.key]["value"] = -3.0; },
                   field.c_str(), "-3.0");
@@ -341,6 +374,18 @@ TEST(TissueFile, IsValidAndComesBackForEverySetThatIsShipped) {
 }
 
 // In the tick.
+
+TEST(TissueTable, HasEveryNumberOfTheSet) {
+  TissueSet set = head();
+  double value = 0.5;
+  for (const TissueNumber& m : kTissueNumbers) setValue(m, set.tissues[2], value += 1.0);
+  const TissueTable table = tissueTable(set);
+  value = 0.5;
+  for (const TissueNumber& m : kTissueNumbers) {
+    EXPECT_EQ(table.classes[2].*m.in_tick, value += 1.0) << m.key;
+  }
+  EXPECT_EQ(table.classes[2].rupture_N, 4.5);
+}
 
 TEST(TissueTable, KeepsTheOrderAndTheNumbersOfTheSet) {
   TissueSet set = head();

@@ -100,6 +100,52 @@ TEST(Recording, ReplaysBitForBit) {
   EXPECT_FALSE(result->cut_short);
 }
 
+// The type of `from` without one member, as if it had been written before there was one.
+hid_t without(hid_t from, const std::string& name) {
+  const hid_t out = H5Tcreate(H5T_COMPOUND, H5Tget_size(from));
+  for (unsigned i = 0; i < unsigned(H5Tget_nmembers(from)); ++i) {
+    char* member = H5Tget_member_name(from, i);
+    if (member != name) {
+      const hid_t type = H5Tget_member_type(from, i);
+      H5Tinsert(out, member, H5Tget_member_offset(from, i), type);
+      H5Tclose(type);
+    }
+    H5free_memory(member);
+  }
+  return out;
+}
+
+TEST(Recording, ANumberOfATissueThatItDoesNotHaveIsNone) {
+  const test::TemporaryFolder folder;
+  Event written;
+  written.command.kind = CommandKind::tissues;
+  written.command.tissues = tissueTable(sceneWithOneArm().tissues);
+  written.command.tissues.classes[0].rupture_N = 7.0;
+
+  const hid_t whole = eventType();
+  const unsigned tissues = unsigned(H5Tget_member_index(whole, "tissues"));
+  const hid_t list = H5Tget_member_type(whole, tissues), tissue = H5Tget_super(list);
+  const hid_t older_tissue = without(tissue, "rupture_N");
+  const hsize_t most = kMaxTissues, rows = 1;
+  const hid_t older_list = H5Tarray_create2(older_tissue, 1, &most);
+  const hid_t older = without(whole, "tissues");
+  H5Tinsert(older, "tissues", H5Tget_member_offset(whole, tissues), older_list);
+
+  const hid_t file = H5Fcreate((folder / "a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(1, &rows, nullptr);
+  const hid_t events =
+      H5Dcreate2(file, "events", older, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ASSERT_GE(H5Dwrite(events, whole, H5S_ALL, H5S_ALL, H5P_DEFAULT, &written), 0);
+  Event read;
+  ASSERT_GE(H5Dread(events, whole, H5S_ALL, H5S_ALL, H5P_DEFAULT, &read), 0);
+  written.command.tissues.classes[0].rupture_N = 0.0;
+  EXPECT_EQ(read.command.tissues, written.command.tissues);
+  H5Dclose(events);
+  H5Sclose(space);
+  H5Fclose(file);
+  for (hid_t type : {older, older_list, older_tissue, tissue, list, whole}) H5Tclose(type);
+}
+
 // Rewrites one recorded number and expects the replay to find just that one.
 TEST(Recording, AReplayNamesTheFirstDifference) {
   test::TemporaryFolder folder;

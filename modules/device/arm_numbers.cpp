@@ -1,0 +1,34 @@
+#include "device/arm_numbers.h"
+
+#include <cstring>
+
+namespace trephine {
+
+double CapabilityNumber::value(const TrephineCapabilities& of, std::size_t index) const {
+  double value = 0.0;
+  std::memcpy(&value, reinterpret_cast<const char*>(&of) + offset + index * sizeof(double),
+              sizeof(double));
+  return value;
+}
+
+std::string impossibleCapability(const TrephineCapabilities& capabilities) {
+  for (const CapabilityNumber& number : kCapabilityNumbers) {
+    for (std::size_t i = 0; i < number.count; ++i) {
+      const double value = number.value(capabilities, i);
+      if (number.row.range.holds(value)) continue;
+      return "'" + std::string(number.row.key) + "' of " + plainNumber(value) +
+             ", which must lie " + number.row.range.words();
+    }
+  }
+  return {};
+}
+
+std::string capabilityPage() {
+  std::string page = schemaHead();
+  for (const CapabilityNumber& number : kCapabilityNumbers) {
+    page += schemaLine("arm", number.row, number.count == 3 ? "three numbers" : "number", "");
+  }
+  return page;
+}
+
+}  // namespace trephine

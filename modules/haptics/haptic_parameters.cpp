@@ -1,0 +1,53 @@
+#include "haptics/haptic_parameters.h"
+
+#include <cmath>
+
+namespace trephine {
+
+namespace {
+
+constexpr NumberRow kPeriod{"period_s", {1e-5, 0.1, "s"}, Given::always, "of a tick"};
+constexpr NumberRow kMaxForce{"max_force_N", kPeakForce_N, Given::always, "on the arm"};
+
+}  // namespace
+
+Status validate(const ArmDynamics& arm, const std::string& of) {
+  if (Status s = checkNumbers<ArmDynamics>(kArmDynamicsNumbers, arm, of); !s) return s;
+  return checkNumber(kArmPeakForce, arm.peak_force_N, of);
+}
+
+Status validate(const WorkspaceMap& map, const std::string& of) {
+  if (Status s = checkNumbers<WorkspaceMap>(kWorkspaceMapNumbers, map, of); !s) return s;
+  const double length = glm::length(map.rotation);
+  if (std::abs(length - 1.0) <= 1e-6) return {};
+  return Error{"IMPOSSIBLE_NUMBER",
+               "The rotation has a length of " + plainNumber(length) + ", and a rotation has 1",
+               of + ": rotation_wxyz", "Correct it"};
+}
+
+Status validate(const HapticParameters& parameters) {
+  if (Status s = checkNumber(kPeriod, parameters.period_s, "the loop"); !s) return s;
+  if (parameters.arms.size() > std::size_t(kMaxArms)) {
+    return Error{"TOO_MANY_ARMS",
+                 "There are " + std::to_string(parameters.arms.size()) + " arms, and at most " +
+                     std::to_string(kMaxArms) + " are served",
+                 "the arms", "Take the others out"};
+  }
+  for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
+    const ArmParameters& arm = parameters.arms[i];
+    const std::string of = "arm " + std::to_string(i);
+    if (Status s = validate(arm.dynamics, of); !s) return s;
+    if (Status s = validate(arm.map, of); !s) return s;
+    if (Status s = checkNumber(kMaxForce, arm.max_force_N, of); !s) return s;
+  }
+  for (int c = 0; c < parameters.tissues.count; ++c) {
+    for (const TissueNumber& number : kTissueNumbers) {
+      const double value = parameters.tissues.classes[std::size_t(c)].*number.in_tick;
+      const std::string of = "tissue " + std::to_string(c);
+      if (Status s = checkNumber(number.row(), value, of); !s) return s;
+    }
+  }
+  return {};
+}
+
+}  // namespace trephine

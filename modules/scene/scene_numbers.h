@@ -1,0 +1,102 @@
+// The numbers of scenes and tools, a row each: files both ways, their ranges and the tables of the
+// schema pages come from them.
+//
+// To add one: a member with its default in scene.h, landmark.h, scene_tool.h or a parameter type of
+// haptics, its row here or there, and what uses it. In a list of its own it also needs a line in
+// sceneNumbersPage().
+#pragma once
+
+#include <string>
+
+#include "base/number_row.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+// Wider than any exercise needs, and narrow enough that all that follows from them is finite.
+constexpr Range kBoxFraction{-10, 10};
+constexpr Range kBulkRadius_mm{3, 300, "mm"};
+constexpr Range kRun_mm{0.01, 300, "mm"};
+constexpr Range kOffset_mm{-1000, 1000, "mm"};
+constexpr Range kRate_hz{100, 20'000, "Hz"};
+constexpr Range kViewDistance_mm{10, 5000, "mm"};
+constexpr Range kTip_mm{-10'000, 10'000, "mm"};
+
+inline constexpr NumberOf<Scene> kSceneNumbers[] = {
+    {{"rate_hz", kRate_hz, Given::may_be, "of the tick; no more than the devices keep"},
+     &Scene::rate_hz},
+};
+inline constexpr NumberOf<SceneView> kViewNumbers[] = {
+    {{"distance_mm", kViewDistance_mm, Given::may_be, "of the eye from the landmark"},
+     &SceneView::distance_mm},
+};
+
+inline constexpr NumberOf<Landmark> kRayNumbers[] = {
+    {{"from", kBoxFraction, Given::always,
+      "where the ray begins, in fractions of the box that holds the tissue"},
+     &Landmark::from},
+    {{"towards", kBoxFraction, Given::always, "where it goes, likewise"}, &Landmark::towards},
+};
+inline constexpr NumberOf<Landmark> kBulkNumbers[] = {
+    {{"bulk_radius_mm", kBulkRadius_mm, Given::always,
+      "the ray goes to the place with most of the tissue within this radius"},
+     &Landmark::bulk_radius_mm},
+};
+inline constexpr NumberOf<Landmark> kLandmarkNumbers[] = {
+    {{"run_mm", kRun_mm, Given::may_be, "how long the ray must stay in the tissue"},
+     &Landmark::run_mm},
+};
+
+inline constexpr NumberOf<SceneArm> kDeviceNumbers[] = {
+    {{"arm", {0, kMaxArmsOfAPlugin - 1}, Given::may_be, "place in the plugin's list"},
+     &SceneArm::device_arm},
+};
+inline constexpr NumberOf<SceneArm> kArmNumbers[] = {
+    {{"max_force_N", kPeakForce_N, Given::may_be, "sent at most; never more than the device gives"},
+     &SceneArm::max_force_N},
+};
+// Of a map at a landmark; kWorkspaceMapNumbers are those of one that is fixed in the patient.
+inline constexpr NumberOf<SceneMap> kSceneMapNumbers[] = {
+    {{"offset_mm", kOffset_mm, Given::may_be, "of the device's origin, landmark axes"},
+     &SceneMap::offset_mm},
+    {{"motion_scale", kMapScale, Given::may_be, "the tool's travel by the arm's"},
+     &SceneMap::motion_scale},
+    {{"force_scale", kMapScale, Given::may_be, "the arm's force by the tissue's"},
+     &SceneMap::force_scale},
+};
+
+inline constexpr NumberOf<ToolDescription> kToolNumbers[] = {
+    {{"length_mm", kToolLength_mm, Given::always,
+      "from the tip to the handle; of a blade, its edge; of a burr, at least its head"},
+     &ToolDescription::length_mm},
+    {{"points", kToolPoints, Given::may_be,
+      "how many points touch: along a needle or blade (a needle of one point touches with its tip, "
+      "a blade of one point is its tip), on a burr's shell (there 64)"},
+     &ToolDescription::points},
+    {{"radius_mm", kToolRadius_mm, Given::may_be,
+      "of the solid that cuts: half the width of a slot or hole"},
+     &ToolDescription::radius_mm},
+    {{"motor_W", kToolMotor_W, Given::may_be,
+      "work that the motor does on tissue; 0: driven by hand, and a burr then cuts nothing where "
+      "the scene has a barrier"},
+     &ToolDescription::motor_W},
+};
+inline constexpr NumberOf<ToolDescription> kBurrNumbers[] = {
+    {{"radius_mm", kToolRadius_mm, Given::always, "of its head"}, &ToolDescription::radius_mm},
+    {{"shaft_points", kToolShaftPoints, Given::may_be,
+      "how many points of the shaft touch; they do not cut"},
+     &ToolDescription::shaft_points},
+};
+inline constexpr NumberOf<ToolDescription> kCylinderNumbers[] = {
+    {{"head_mm", kToolLength_mm, Given::always, "length of its head: at least twice the radius"},
+     &ToolDescription::head_mm},
+};
+inline constexpr NumberOf<ToolLook> kLookNumbers[] = {
+    {{"tip_mm", kTip_mm, Given::may_be, "the tip, in the mesh's frame"}, &ToolLook::tip_mm},
+};
+
+// The tables of resources/schemas/scene.md and tool.md.
+std::string sceneNumbersPage();
+std::string toolNumbersPage();
+
+}  // namespace trephine

@@ -1,0 +1,23 @@
+#include "tissue/tissue_numbers.h"
+
+namespace trephine {
+
+const SourcedNumber* TissueNumber::of(const SetNumbers& tissue) const {
+  if (const auto* always = std::get_if<0>(&in_set)) return &(tissue.**always);
+  const std::optional<SourcedNumber>& number = tissue.*std::get<1>(in_set);
+  return number ? &*number : nullptr;
+}
+
+void TissueNumber::set(SetNumbers& tissue, const SourcedNumber& number) const {
+  std::visit([&](auto member) { tissue.*member = number; }, in_set);
+}
+
+std::string tissueNumbersPage() {
+  std::string page = schemaHead();
+  for (const TissueNumber& number : kTissueNumbers) {
+    page += schemaLine("mechanics", number.row(), "sourced number", "none");
+  }
+  return page;
+}
+
+}  // namespace trephine

@@ -1,0 +1,62 @@
+// The numbers of an arm: what the host takes, what the simulated arms' file may say, and the tables
+// that tell people.
+#include "device/arm_numbers.h"
+
+#include "base/system.h"
+#include "device_support.h"
+#include "schema_page.h"
+#include "simulated/arm_config.h"
+
+namespace trephine {
+namespace {
+
+const std::filesystem::path kRoot = resourceFolder().parent_path();
+
+TEST(ArmNumbers, TheHostRefusesEachThatIsOutOfItsRangeByName) {
+  TrephineCapabilities possible{};
+  for (const CapabilityNumber& number : kCapabilityNumbers) {
+    for (std::size_t i = 0; i < number.count; ++i) {
+      std::memcpy(reinterpret_cast<char*>(&possible) + number.offset + 8 * i,
+                  &number.row.range.high, 8);
+    }
+  }
+  EXPECT_EQ(impossibleCapability(possible), "");
+  for (const CapabilityNumber& number : kCapabilityNumbers) {
+    TrephineCapabilities wrong = possible;
+    const double beyond = 2.0 * number.row.range.high;
+    std::memcpy(reinterpret_cast<char*>(&wrong) + number.offset + 8 * (number.count - 1), &beyond,
+                8);
+    const std::string fault = impossibleCapability(wrong);
+    EXPECT_NE(fault.find(number.row.key), std::string::npos) << fault;
+    EXPECT_NE(fault.find(plainNumber(beyond)), std::string::npos) << fault;
+  }
+}
+
+// A plugin builds without our headers, so its rows stand a second time.
+TEST(ArmNumbers, ASimulatedArmMayBeWhatTheHostTakes) {
+  int shared = 0;
+  for (const simulated::ArmNumber& own : simulated::kArmNumbers) {
+    for (const CapabilityNumber& host : kCapabilityNumbers) {
+      if (std::string(own.key) != host.row.key) continue;
+      ++shared;
+      EXPECT_EQ(own.low, host.row.range.low) << own.key;
+      EXPECT_EQ(own.high, host.row.range.high) << own.key;
+      EXPECT_STREQ(own.unit, host.row.range.unit) << own.key;
+      EXPECT_EQ(own.count, host.count) << own.key;
+    }
+  }
+  EXPECT_EQ(shared, int(std::size(kCapabilityNumbers)));
+}
+
+TEST(ArmNumbers, ThePagesAreAsTheRowsAre) {
+  test::expectNumbers(kRoot / "modules" / "device" / "README.md", "capabilities", capabilityPage());
+  std::string page = schemaHead();
+  for (const simulated::ArmNumber& n : simulated::kArmNumbers) {
+    const NumberRow row{n.key, {n.low, n.high, n.unit}, Given::always, n.meaning};
+    page += schemaLine("arm", row, n.count == 3 ? "three numbers" : "number", "");
+  }
+  test::expectNumbers(kRoot / "plugins" / "simulated" / "README.md", "simulated arm", page);
+}
+
+}  // namespace
+}  // namespace trephine
