@@ -27,7 +27,7 @@ class LiveOperator : public Operator {
   // `script` may be null.
   LiveOperator(std::unique_ptr<Operator> script, rt::ParameterSet<LiveHands>& live)
       : script_(std::move(script)), live_(live) {}
-  void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) override;
+  void setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) override;
   bool command(std::uint64_t tick, Command& out) override;
 
  private:

@@ -171,11 +171,11 @@ Result<std::unique_ptr<Session>> Session::create(Scene scene, Volume volume,
   session->core_ = std::make_unique<HapticCore>(hapticParameters(session->scene_),
                                                 *session->grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
-  const Result<std::filesystem::path> spill_folder = beside.empty() ? temporaryFolder() : beside;
-  if (!spill_folder) return spill_folder.error();
-  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*spill_folder);
-  if (!spill) return spill.error();
-  session->spill_ = *std::move(spill);
+  const Result<std::filesystem::path> journal_folder = beside.empty() ? temporaryFolder() : beside;
+  if (!journal_folder) return journal_folder.error();
+  Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*journal_folder);
+  if (!journal_file) return journal_file.error();
+  session->journal_file_ = *std::move(journal_file);
   std::unique_ptr<Operator> script;
   if (options.script) {
     script = std::make_unique<ScriptOperator>(*options.script, session->scene_,

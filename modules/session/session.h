@@ -25,7 +25,7 @@
 #include "session/run_statistics.h"
 #include "training/session_recorder.h"
 #include "volume/grid.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 
 namespace trephine {
 
@@ -133,7 +133,7 @@ class Session {
   std::shared_ptr<Engine> engine_;
   HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;
-  std::unique_ptr<JournalSpill> spill_;
+  std::unique_ptr<JournalFile> journal_file_;
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
   std::vector<RunWarning> warnings_;

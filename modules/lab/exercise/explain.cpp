@@ -98,12 +98,12 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   const Scene fixed = withFixedMaps(scene, *landmarks);
   Grid grid(*std::move(volume), *std::move(labels));
   HapticCore core(hapticParameters(fixed), *grid.takeWriter());
-  std::array<HandTarget, kMaxArms> hands{};
+  std::array<OperatorSetPoint, kMaxArms> set_points{};
   ScriptOperator(*script, fixed, armFrames(scene, *landmarks))
-      .targets(0, hands.data(), scene.arms.size());
+      .setPoints(0, set_points.data(), scene.arms.size());
   TickInput input;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    input.arms[i].position_m = hands[i].pose_m.position;
+    input.arms[i].position_m = set_points[i].pose_m.position;
   }
   TickRecord record;
   core.tick(input, nullptr, 0, record);
