@@ -263,13 +263,15 @@ bool Device::exchange(double dt_s, TrephineArmState* states, const TrephineArmCo
   return good;
 }
 
-void Device::setTarget(std::size_t arm, const Pose& pose_m, double hand_k, double hand_b) {
+void Device::setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,
+                       double damping_Ns_per_m) {
   const TrephineDeviceApi& api = plugin_->api();
   if (!api.set_target) return;
   const double position[3] = {pose_m.position.x, pose_m.position.y, pose_m.position.z};
   const double orientation[4] = {pose_m.orientation.w, pose_m.orientation.x, pose_m.orientation.y,
                                  pose_m.orientation.z};
-  api.set_target(handle_, std::uint32_t(arm), position, orientation, hand_k, hand_b);
+  api.set_target(handle_, std::uint32_t(arm), position, orientation, stiffness_N_per_m,
+                 damping_Ns_per_m);
 }
 
 }  // namespace trephine

@@ -67,7 +67,8 @@ class Device {
   // TREPHINE_ARM_LOST.
   bool exchange(double dt_s, TrephineArmState* states, const TrephineArmCommand* commands);
   // Haptic thread; nothing happens on arms that are not simulated. Position in device metres.
-  void setTarget(std::size_t arm, const Pose& pose_m, double hand_k, double hand_b);
+  void setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,
+                 double damping_Ns_per_m);
 
  private:
   Device() = default;

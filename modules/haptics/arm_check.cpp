@@ -9,17 +9,21 @@ namespace trephine {
 namespace {
 
 constexpr double kWindow_s = 0.0125;   // of a contact; later the hand's answer is in the motion
-constexpr double kPriorSpread = 0.4;   // a stated mass is trusted like this many of itself
+constexpr double kPriorSpread = 0.4;   // standard deviation of g before any sample
 constexpr double kMostLighter = 5.0;
-constexpr double kSureOfDelay = 20.0;  // variances of a surprise by which a delay must fit better
-constexpr double kMoreDelay = 0.2;     // and shares of sum a^2
-constexpr double kLessDelay = 0.5;     // a hand's damping looks like less delay
-constexpr double kUnexplained = 0.3;   // of y at most; more is a hand or a blow
-constexpr double kMassAlarm = 1.35;    // lighter by this and twice its own uncertainty,
-constexpr double kMassSure = 0.06;     // which must be no more, since counts are no white noise
-constexpr double kFaded = 1e-9;        // of the noise
-constexpr double kAirTime_s = 0.005;  // the surprise in air is averaged over this
-constexpr double kHandNoise = 8.0;    // what it is beyond the encoder's counts so many times
+// Another delay must lower the sum of squares by so many variances of a surprise, and by so much of
+// sum a^2; less delay by more of it, since a hand's damping looks like less delay.
+constexpr double kSureOfDelay = 20.0;
+constexpr double kMoreDelay = 0.2;
+constexpr double kLessDelay = 0.5;
+constexpr double kUnexplained = 0.3;  // of sum y^2 at most; more is a hand or a blow
+// The mass is not as stated where g less two standard deviations is above kMassAlarm, with a
+// standard deviation below kMassSure: the noise of an encoder's counts is not white.
+constexpr double kMassAlarm = 1.35;
+constexpr double kMassSure = 0.06;
+constexpr double kFaded = 1e-9;       // of the noise's variance: an answer this small is over
+constexpr double kAirTime_s = 0.005;  // time constant of the mean square surprise in air
+constexpr double kHandNoise = 8.0;    // factor on that mean square, beyond the encoder's noise
 constexpr int kMostShift_ticks = 1;
 
 }  // namespace
@@ -45,7 +49,7 @@ bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touc
   if (!touching) {
     const double beyond_m2 = glm::dot(surprise_m, surprise_m) - 2.0 * variance_m2_;
     in_air_m2_ += std::min(1.0, T_ / kAirTime_s) * (beyond_m2 - in_air_m2_);
-    // No force, and the last one's answer has faded: nothing to learn from.
+    // No force, and the answer to the last one is over: nothing to learn from.
     if (held_N == Vec3(0.0) && glm::dot(x_, x_) < kFaded * variance_m2_) {
       x_ = v_ = a_ = last_answer_m_ = last_y_m_ = Vec3(0.0);
       return false;
@@ -106,7 +110,7 @@ void ArmCheck::judgeDelay() {
   }
   delay_ticks_ = found;
   not_as_stated_ = true;
-  // The forces are now taken to act at other times: what was summed says nothing of them.
+  // From now on the forces act in other ticks than those in which the sums took them to act.
   aa_ = aa_before_ = yy_ = ya_ = ya_before_ = ya_after_ = noise_ = 0.0;
   x_ = v_ = a_ = last_answer_m_ = last_y_m_ = Vec3(0.0);
 }

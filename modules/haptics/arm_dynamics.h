@@ -10,7 +10,7 @@ namespace trephine {
 
 struct ArmDynamics {
   double apparent_mass_kg = 0.045;
-  double encoder_step_m = 0.0;  // 0: finer than anything else here
+  double encoder_step_m = 0.0;  // 0: samples count as exact
   double peak_force_N = 3.3;
   // Whole periods between a sample and the force that answers it, beyond the period in which that
   // force is held: 0 for an arm that takes its force at once.
@@ -43,9 +43,10 @@ struct Impedance {
   double stiffness = 0.0;
 };
 
-// The firmest tissue that `bounded` shows on this arm at this rate: what lies above is felt as this
-// much (as contact begins for a few milliseconds stiffer). In the patient's metres: the map's motion scale s and force scale g are divided out, since
-// a tissue's b and k are g s b and g s k at the arm. Source of the numbers: CONTROLLERS.md.
+// The firmest tissue that `bounded` shows on this arm at this rate: a firmer one is felt as this
+// much (k 10.6 times as high as contact begins, fading with 5.25 ms). In the patient's metres: the
+// map's motion scale s and force scale g are divided out, since a tissue's b and k are g s b and g
+// s k at the arm. Source of the numbers: CONTROLLERS.md, part 1.
 struct Renderable {
   double b_max = 0.0;  // N s/m
   double k_max = 0.0;  // N/m

@@ -68,7 +68,7 @@ void ArmEstimator::update(const Vec3& position_m, const Vec3& held_N, double lig
   x_ += T_ * v_ + (0.5 * T_ * T_) * acceleration;
   v_ += T_ * acceleration;
   surprise_m_ = position_m - x_;
-  // No hand moves an arm so: the sample jumped, and what came before says nothing.
+  // No hand moves an arm so far in a period: the sample jumped.
   if (!(glm::length(surprise_m_) < kJump_m)) return restart(position_m);
   x_ += gain_[0] * surprise_m_;
   v_ += gain_[1] * surprise_m_;

@@ -17,22 +17,21 @@ class ArmEstimator {
  public:
   ArmEstimator(const ArmDynamics& arm, double period_s);
 
-  // After a period in which `held_N` acted on the arm, the sample reads `position_m`. One that lies
-  // 20 mm from what was expected starts the filter anew, at rest. `lighter`: so many times lighter
-  // than stated is the arm taken to be.
+  // After a period in which `held_N` acted on the arm, the sample reads `position_m`. A sample 20
+  // mm from the expected one starts the filter anew, at rest. `lighter`: stated mass / mass.
   void update(const Vec3& position_m, const Vec3& held_N, double lighter = 1.0);
   void forget() { started_ = false; }
 
   const Vec3& position_m() const { return x_; }
   const Vec3& velocity_m_s() const { return v_; }
   const Vec3& handAcceleration_m_s2() const { return a_; }
-  // The last sample less what was expected of it, and the variance that this has on an arm that is
-  // as stated.
+  // The surprise: the last sample less the expected one; and its variance on an arm that is as
+  // stated.
   const Vec3& surprise_m() const { return surprise_m_; }
   double surpriseVariance_m2() const { return surprise_variance_m2_; }
   // What a surprise adds to x, v and a.
   const std::array<double, 3>& gain() const { return gain_; }
-  // How long the filter takes to believe a sample, beyond the sample itself [s].
+  // Time constant with which the position follows the samples, less a period [s].
   double lag_s() const { return T_ / gain_[0] - T_; }
 
  private:

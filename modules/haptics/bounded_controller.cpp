@@ -12,51 +12,55 @@ namespace {
 // Tuned on the stability grid and checked on cells that the tuning had not seen (CONTROLLERS.md).
 constexpr double kDampingPerMassRate = 3.5;       // b_max = this m / tau_b
 constexpr double kStiffnessPerMassRate = 0.2032;  // k_max = this m / tau_k^2
-constexpr double kCountForce_N = 0.20161;   // a count of the encoder changes the force by this
+constexpr double kCountForce_N = 0.20161;         // k_max = this / encoder step
 constexpr double kDelayInDamping = 0.4159;  // tau_b = T (1 + this d)
 constexpr double kLagInStiffness = 0.27;    // tau_k = tau_b + this lag
-// Less is rendered where, within the delay, such a hand outdoes the mass: one that anybody may be,
-// and what is added for one that holds the arm back.
+// Less is rendered where a hand of this damping or stiffness, held against the mass, moves the arm
+// more within the delay than the mass lets the force do. `Any`: of every hand; `Firm`: what a hand
+// adds that was found to hold the arm back, by the share `held`.
 constexpr double kAnyHandDamping = 5.6, kFirmHandDamping = 6.0106;          // N s/m
 constexpr double kFirmHandStiffness = 1500.0, kFirmHandInDamping = 495.62;  // N/m
-constexpr double kAnyHandShare = 0.10247;  // of a firm hand's stiffness
-constexpr double kFirmHandInCount = 0.14;
+constexpr double kAnyHandShare = 0.10247;   // of a firm hand's stiffness, of every hand
+constexpr double kFirmHandInCount = 0.14;   // how much of that lowers the encoder's bound
 constexpr double kImpact = 9.6;             // stiffness added to k_max as contact begins, of k_max
-constexpr double kImpactTime_s = 0.00525;   // it fades with this
-constexpr double kImpactAgain_s = 0.05;     // and is there again after so long in air
+constexpr double kImpactTime_s = 0.00525;   // time constant with which it fades in contact
+constexpr double kImpactAgain_s = 0.05;     // time constant with which it comes back in air
 constexpr double kCreditAbove_J = 3.5707e-4;  // credit beyond what the spring holds
-constexpr double kMostDebt_J = 1e-3;        // a pose that jumps must not silence the arm for long
-constexpr double kCreditSlack = 0.01;       // of the tolerance may be overdrawn
+// The tolerance is the energy that an encoder cannot see (unseen_energy.h).
+constexpr double kMostDebt_J = 1e-3;        // credit is never less than minus this
+constexpr double kCreditSlack = 0.01;       // tolerances by which credit may be overdrawn
 constexpr double kLossSeen = 0.39885;       // tolerances lost before stiffness is lowered
-constexpr double kLossStep = 0.94;          // by this
-constexpr double kOwed = 0.6;       // tolerances given out on credit before both scales are lowered
-constexpr double kOwedStep = 0.6;   // by this
-constexpr double kShaking_N = 0.1;  // force that comes and goes, per tick
-constexpr double kShakingTime_s = 0.062929;
-constexpr double kShakingStep = 0.95;
+constexpr double kLossStep = 0.94;          // to this share of itself
+constexpr double kOwed = 0.6;       // tolerances of overdrawn credit before both scales are lowered
+constexpr double kOwedStep = 0.6;   // to this share of themselves
+constexpr double kShaking_N = 0.1;  // mean |change of force| less |mean change|, per tick
+constexpr double kShakingTime_s = 0.062929;  // time constant of these means
+constexpr double kShakingStep = 0.95;        // to this share of itself
 constexpr double kObeyed = 1e-9;           // of the peak force: rounding of the clamp
 constexpr double kLeastDamping = 0.018;  // of sqrt(k m), always
 constexpr double kLearntDamping = 1.4433;  // of sqrt(k m), once stiffness was lowered
 constexpr double kFloorDamping = 0.008432;
 constexpr double kFloorStiffness = 0.2;
-constexpr double kForget_per_s = 0.5062;  // of the lowering, while in air
-constexpr double kForgetAtRest = 0.5;     // times as fast
-constexpr double kQuiet_s = 1.2;          // in contact, before a scale comes back
-constexpr double kBelowTried = 0.92;      // up to this share of where something happened
-constexpr double kComesBack_per_s = 2.6;
-constexpr double kCreeps_per_s = 0.01;    // and beyond it
-constexpr double kSameEvent_s = 0.3;      // what happens again so soon is one event
-constexpr double kWorthSaying_N = 1e-6;   // less than this is no difference
-constexpr double kPartOfIt_N = 1e-7;      // nor is this one part's share of it
+constexpr double kForget_per_s = 0.5062;  // growth of a scale in air, of itself
+constexpr double kForgetAtRest = 0.5;     // of that, at rest in contact
+constexpr double kQuiet_s = 1.2;          // in contact since it was lowered, before a scale grows
+constexpr double kComesBack_per_s = 2.6;  // growth then, of itself,
+constexpr double kBelowTried = 0.92;      // up to this share of where it was lowered last,
+constexpr double kCreeps_per_s = 0.01;    // and growth beyond that
+constexpr double kSameEvent_s = 0.3;      // lowerings so near each other count as one
+constexpr double kWorthSaying_N = 1e-6;   // a change of the force by less is none
+constexpr double kPartOfIt_N = 1e-7;      // nor is one by less of a single part
 
-// What a spring holds that pushes with `force_N`, no more than `peak_N` of which arrives.
+// Energy of a spring whose force is `force_N`, stretched by an arm that shows no more than
+// `peak_N`.
 double springEnergy(double force_N, double stiffness, double peak_N) {
   if (stiffness <= 0.0) return 0.0;
   const double within = std::min(force_N, peak_N);
   return (0.5 * within * within + peak_N * (force_N - within)) / stiffness;
 }
 
-// What this arm renders, at the device, to a hand of which `held` is known: CONTROLLERS.md, part 1.
+// The greatest impedance that this arm renders, at the device. `held`: share of a firm hand, 0 to
+// 1, that was found to hold the arm back. CONTROLLERS.md, part 1.
 Impedance mostOf(const ArmDynamics& arm, double T, double lag_s, double held) {
   const double m = arm.apparent_mass_kg, delay_s = T * arm.delay_ticks;
   const double tau_b = T + kDelayInDamping * delay_s;
@@ -144,13 +148,14 @@ void BoundedController::forget() {
   check_.forget();
   hold_.forget();
   sent_N_.fill(Vec3(0.0));
-  energy_J_ = stored_as_seen_J_ = dissipated_J_ = most_dissipated_J_ = 0.0;
+  credit_J_ = stored_as_seen_J_ = dissipated_J_ = most_dissipated_J_ = 0.0;
   owed_J_ = kOwed * tolerance_J_;
   last_stiffness_ = variation_N_ = 0.0;
   last_force_N_ = drift_N_ = Vec3(0.0);
 }
 
-// The force that acted since the last sample: the one sent a delay before the last.
+// The force that acted since the last sample: with a delay of d ticks the one sent d ticks before
+// the last.
 Vec3 BoundedController::heldForce(const Vec3& last_sent_N) {
   const int delay = check_.delay_ticks();
   std::copy_backward(sent_N_.begin(), sent_N_.begin() + delay + 1, sent_N_.begin() + delay + 2);
@@ -158,32 +163,33 @@ Vec3 BoundedController::heldForce(const Vec3& last_sent_N) {
   return sent_N_[std::size_t(delay)];
 }
 
-// Energy that the held force exchanged over the last period, exact for any motion in between, and
-// what of it the rendered spring neither holds nor has given back.
+// Credit: the energy that the held force took from the arm over the last period, exact for any
+// motion in between. Loss: what of it the rendered spring neither holds nor has given back.
 void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   const Vec3& x = estimator_.position_m();
   const double k = in.rendered.stiffness;
   Vec3 spring_N = in.rendered.elastic_N - k * (x - in.position_m);
   if (glm::dot(spring_N, in.rendered.elastic_N) <= 0.0) spring_N = Vec3(0.0);
-  // What the springs hold at the sample, less their one sum there, plus that sum where the arm is.
+  // Energy of all springs at the sample, less that of the one spring that is their sum, plus that
+  // of the sum where the arm is.
   const double sum_N = glm::length(in.rendered.elastic_N);
   const double beside_J =
       k > 0.0 ? std::max(0.0, in.rendered.stored_J - sum_N * sum_N / (2.0 * k)) : 0.0;
   const double stored_J = beside_J + springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
   if (started_) {
-    energy_J_ += in.turned_J - glm::dot(held_N, x - last_estimate_m_);
+    credit_J_ += in.rotation_work_J - glm::dot(held_N, x - last_estimate_m_);
   } else if (in.touching) {
-    energy_J_ = stored_J;  // whoever pressed the tool in here put it in
+    credit_J_ = stored_J;  // begins in contact: what the spring holds counts as put in
   }
-  // In a ramp the spring is there already and its force is not: what it holds counts as put in, or
-  // the hand would be asked to pay for it with a force that it does not feel.
-  if (in.touching && not_obeyed_ticks_ > 0) energy_J_ = std::max(energy_J_, stored_J);
+  // In a ramp the spring is stretched already but its force is not yet sent, so that no work
+  // against it is seen: what it holds counts as put in.
+  if (in.touching && not_obeyed_ticks_ > 0) credit_J_ = std::max(credit_J_, stored_J);
   owe();
-  energy_J_ = std::clamp(energy_J_, -kMostDebt_J, stored_J + kCreditAbove_J);
+  credit_J_ = std::clamp(credit_J_, -kMostDebt_J, stored_J + kCreditAbove_J);
 
-  // What is lost is counted on the samples. The forces follow the estimate, so that on the estimate
-  // they would lose nothing, whatever the arm does between two counts. Beside a spring, samples
-  // that go to and fro between two counts are where these meet.
+  // Losses are counted on the samples: the forces follow the estimate, so that counted on the
+  // estimate a limit cycle between two counts loses nothing. Beside a spring, samples that
+  // alternate between two counts stand for the middle of the two (count_pair.h).
   const Vec3 pair_m = counts_.look(in.position_m);
   const Vec3 seen_m = k > 0.0 ? pair_m : in.position_m;
   Vec3 seen_N = in.rendered.elastic_N - k * (seen_m - in.position_m);
@@ -192,8 +198,8 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   if (!in.touching || not_obeyed_ticks_ > 0) {
     dissipated_J_ = most_dissipated_J_ = 0.0;
   } else if (was_touching_ && k <= last_stiffness_) {
-    // A spring that turns stiffer under the hand holds energy that nobody put in.
-    const double put_in_J = in.turned_J - glm::dot(held_N, seen_m - last_seen_m_);
+    // Not where the spring became stiffer: its energy rises then without any motion.
+    const double put_in_J = in.rotation_work_J - glm::dot(held_N, seen_m - last_seen_m_);
     dissipated_J_ += put_in_J - (as_seen_J - stored_as_seen_J_);
     most_dissipated_J_ = std::max(most_dissipated_J_, dissipated_J_);
   }
@@ -205,16 +211,17 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
   started_ = true;
 }
 
-// Credit that is overdrawn again and again is an arm that shakes by more than its samples tell.
+// Both scales fall each time that credit is overdrawn by another 0.6 tolerances: late forces then
+// do work that no sample shows in time.
 void BoundedController::owe() {
-  if (energy_J_ > 0.0) owed_J_ = kOwed * tolerance_J_;
-  if (!(energy_J_ < -owed_J_) || !started_ || not_obeyed_ticks_ > 0) return;
-  owed_J_ = kOwed * tolerance_J_ - energy_J_;
+  if (credit_J_ > 0.0) owed_J_ = kOwed * tolerance_J_;
+  if (!(credit_J_ < -owed_J_) || !started_ || not_obeyed_ticks_ > 0) return;
+  owed_J_ = kOwed * tolerance_J_ - credit_J_;
   stiffness_.lower(kOwedStep, kFloorStiffness);
   damping_.lower(kOwedStep, kFloorDamping);
 }
 
-// From what the observer and the force show, never from the hand itself.
+// Lowers the scales where energy was lost or the force shakes; else lets them come back.
 void BoundedController::learn(bool touching) {
   impact_ += touching ? -impact_ * std::min(1.0, T_ / kImpactTime_s)
                       : (1.0 - impact_) * std::min(1.0, T_ / kImpactAgain_s);
@@ -242,7 +249,7 @@ void BoundedController::learn(bool touching) {
 
 BoundedController::Ahead BoundedController::ahead() const {
   Ahead at{estimator_.position_m(), estimator_.velocity_m_s(),
-           energy_J_ + kCreditSlack * tolerance_J_};
+           credit_J_ + kCreditSlack * tolerance_J_};
   const double per_kg = 1.0 / mass_kg();
   for (int i = check_.delay_ticks() - 1; i >= 0; --i) {
     const Vec3& pending_N = sent_N_[std::size_t(i)];
@@ -260,7 +267,8 @@ void BoundedController::flag(ControllerPart part, const Vec3& difference_N) {
 }
 
 // The mean force of a spring and damper over the period, solved for the motion that it causes: the
-// spring at mid-way, the damper by the rational stand-in for the exponential.
+// spring by the implicit midpoint, the damper by a rational form of the exponential
+// (CONTROLLERS.md, part 5).
 Vec3 BoundedController::render(const ControllerInput& in, const Ahead& at) {
   const double m = mass_kg(), k = in.rendered.stiffness;
   double b = in.rendered.damping;
@@ -279,18 +287,19 @@ Vec3 BoundedController::render(const ControllerInput& in, const Ahead& at) {
   if (!leaves) {
     const double beta = b * T_ / m;
     const double theta = (3.0 + beta) / (6.0 + beta);
-    force_N = (spring_N - b * at.velocity_m_s - in.rendered.damped_turning_N -
+    force_N = (spring_N - b * at.velocity_m_s - in.rendered.damped_rotation_N -
                (0.25 * k * T_ * T_ + b * theta * T_) * hand) /
               (1.0 + 0.25 * k * T_ * T_ / m + theta * beta);
   }
-  // One step after the other: as sampled, as estimated, with more damping, for when it acts.
+  // Flags each part that changed the force: from the sampled state to the estimated, to more
+  // damping, to the moment at which the force acts.
   const Vec3& v = estimator_.velocity_m_s();
   const Vec3 as_estimated_N =
       elastic_N - k * (estimator_.position_m() - in.position_m) - in.rendered.damping * v;
   const Vec3 more_N = (b - in.rendered.damping) * v;
   flag(kPartEstimate, as_estimated_N - elastic_N + in.rendered.damping * in.velocity_m_s);
   flag(kPartDamping, more_N);
-  flag(kPartPrediction, force_N - (as_estimated_N - more_N - in.rendered.damped_turning_N));
+  flag(kPartPrediction, force_N - (as_estimated_N - more_N - in.rendered.damped_rotation_N));
   return force_N;
 }
 
@@ -309,7 +318,7 @@ Vec3 BoundedController::limitToCredit(const Vec3& force_N, const Ahead& at) {
   return force_N * (std::min(size_N, std::max(0.0, most_N)) / size_N);
 }
 
-// How much the force comes and goes, for the next tick's learning.
+// The leaky means by which learn() tells shaking in the next tick.
 void BoundedController::watchForce(const Vec3& force_N, bool touching) {
   const double leak = T_ / kShakingTime_s;
   const bool both = touching && not_obeyed_ticks_ == 0 && last_force_N_ != Vec3(0.0);
@@ -328,8 +337,8 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     found.delay_ticks = check_.delay_ticks();
     most_ = mostOf(found, T_, estimator_.lag_s(), check_.handShare());
   }
-  // In a pause, a fault or a ramp other forces are sent than were computed here: what the hand does
-  // meanwhile says nothing of this controller, until forces of its own act again.
+  // In a pause, a fault or a ramp other forces are sent than were computed here. Nothing is learnt
+  // until the forces computed here act again, a delay and a tick later.
   if (glm::length(in.last_sent_N - last_force_N_) > kObeyed * arm_.peak_force_N) {
     not_obeyed_ticks_ = check_.delay_ticks() + 1;
   } else if (not_obeyed_ticks_ > 0) {
@@ -349,8 +358,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
     }
     const Vec3 affordable_N = limitToCredit(force_N, at);
     flag(kPartCredit, affordable_N - force_N);
-    // Whether it rests is seen in the tissue's own force: what is shown of it changes as it is
-    // learnt.
+    // Rest is judged by the tissue's own force: the rendered one changes as the scales change.
     const double k = in.rendered.stiffness;
     const Vec3 elastic_N = k > 0.0 ? in.rendered.elastic_N * (tissue_stiffness_ / k) : Vec3(0.0);
     force_N = hold_.hold(elastic_N, tissue_stiffness_, in.position_m, affordable_N);

@@ -16,21 +16,30 @@ namespace trephine {
 // force, and between that and the sent one, the parts that made it.
 enum ControllerPart : std::uint32_t {
   kPartArmBound = 1u << 0,    // the tissue is firmer than this arm renders
-  kPartLearned = 1u << 1,     // less is rendered than the arm could: this hand made it shake
+  kPartLearned = 1u << 1,     // a learnt scale lowers what the arm could render
   kPartDamping = 1u << 2,     // damping was added: a little beside every spring, more once learnt
   kPartCredit = 1u << 3,      // the force would have given out more energy than was put in
-  kPartEstimate = 1u << 4,    // where the arm is and how fast, estimated and not as sampled
+  kPartEstimate = 1u << 4,    // position and velocity are estimated, not as sampled
   kPartPrediction = 1u << 5,  // the force is for when it acts, and for the motion that it causes
   kPartHold = 1u << 6,        // the arm rests: the force is held
-  kPartClamp = 1u << 7,       // more than the arm gives; of the sent force set by the core
+  kPartClamp = 1u << 7,       // above the arm's greatest force; of the sent force set by the core
   kPartLimiter = 1u << 8,     // ramps, pauses and faults; set by the core
-  // Not of one tick: the arm's mass or delay is not what was stated. Stays for the session.
+  // The arm's mass or delay is not what was stated. Once set it stays for the session.
   kPartArmNotAsStated = 1u << 9,
 };
 
-// A scale that is learnt, 1 at first. What was lowered comes back: in air slowly, and in contact once
-// nothing happened for a while, quickly up to just below where it was when something happened, and
-// beyond that slowly, so that it does not run into the same again and again.
+// What a controller observed and did in a tick: fields of ArmRecord. Those of another controller
+// are 0.
+struct ControllerReport {
+  double observer_J = 0.0, alpha = 0.0;       // `seed`
+  double credit_J = 0.0, learnt_scale = 0.0;  // `bounded`
+  std::uint32_t parts = 0;                    // ControllerPart
+};
+
+// A factor on the arm's greatest stiffness or damping, 1 at first. Each loss, debt or shaking
+// lowers it. In air it comes back by 0.5 per second. In contact it comes back once there was none
+// of these for 1.2 s: by 2.6 per second up to 0.92 of the value at which it was lowered last, and
+// by 0.01 per second from there on.
 struct LearntScale {
   double value = 1.0;
 
@@ -39,8 +48,8 @@ struct LearntScale {
   void inAir(double period_s);
 
  private:
-  double tried_ = 1.0;     // where something happened last
-  double quiet_s_ = 1e9;   // in contact, since
+  double tried_ = 1.0;    // the value at which it was lowered last
+  double quiet_s_ = 1e9;  // in contact, since then
 };
 
 class BoundedController {
@@ -52,13 +61,16 @@ class BoundedController {
   Impedance limit(const Impedance& tissue);
   // The force for the next period. `in.rendered` is of the impedance that limit() gave.
   Vec3 bound(const ControllerInput& in);
-  // After an undo or reset. What was learnt of the hand and the arm stays. A controller that begins in
-  // a contact takes what the spring holds then for put in.
+  // After an undo or reset. What was learnt of the hand and the arm stays. A controller that begins
+  // in a contact counts the energy that the spring has then as put in.
   void forget();
 
-  double energy_J() const { return energy_J_; }
+  ControllerReport report() const {
+    return {.credit_J = credit_J(), .learnt_scale = learntScale(), .parts = parts()};
+  }
+  double credit_J() const { return credit_J_; }
   // The smaller of the learnt scales: 1 where nothing was learnt.
-  double alpha() const {
+  double learntScale() const {
     return stiffness_.value < damping_.value ? stiffness_.value : damping_.value;
   }
   std::uint32_t parts() const { return parts_; }
@@ -89,25 +101,25 @@ class BoundedController {
   ArmCheck check_;
   RestHold hold_;
   CountPair counts_;
-  // Forces that were sent, the newest first: as many as the longest delay that may be found, and
-  // the one that acted before them.
+  // Forces that were sent, the newest first: one for each tick of the longest delay that may be
+  // found, and two more.
   std::array<Vec3, kMaxDelayTicks + 2> sent_N_{};
 
   LearntScale damping_, stiffness_;  // of most_
-  double impact_ = 1.0;              // 1 as contact begins, fading
+  double impact_ = 1.0;  // 1 as contact begins, fading with 5.25 ms: part 1 of CONTROLLERS.md
   bool started_ = false;
   bool was_touching_ = false;
   Vec3 last_estimate_m_{0.0}, last_seen_m_{0.0};
   double last_stiffness_ = 0.0;
   double tissue_stiffness_ = 0.0;    // as demanded
-  double energy_J_ = 0.0;            // put into the environment and not given back, capped
+  double credit_J_ = 0.0;            // put into the environment and not given back, capped
   double owed_J_;                    // given out beyond what was put in, before a scale falls
-  double stored_as_seen_J_ = 0.0;    // in the rendered spring
+  double stored_as_seen_J_ = 0.0;    // in the rendered spring, at the sample
   double dissipated_J_ = 0.0, most_dissipated_J_ = 0.0;  // of this contact
   Vec3 last_force_N_{0.0};
-  double variation_N_ = 0.0;  // mean |change of force| per tick, leaky
-  Vec3 drift_N_{0.0};         // mean change of force per tick, leaky
-  int not_obeyed_ticks_ = 0;  // above 0: other forces act than this controller computed
+  double variation_N_ = 0.0;  // mean |change of force| per tick, leaky with 63 ms
+  Vec3 drift_N_{0.0};         // mean change of force per tick, leaky with 63 ms
+  int not_obeyed_ticks_ = 0;  // above 0: another force acts than this controller computed
   std::uint32_t parts_ = 0;
   std::uint32_t held_with_ = 0;  // kPartLearned where what is held was learnt
 };

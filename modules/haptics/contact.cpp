@@ -6,8 +6,8 @@ namespace trephine {
 
 namespace {
 
-constexpr std::size_t kTurns = 4;  // ticks
-constexpr double kMostAlongBody = 128.0;
+constexpr std::size_t kTurns = 4;         // ticks from one look beyond the surface to the next
+constexpr double kMostAlongBody = 128.0;  // points on the axis of a part of the body
 
 // -1 outside; written so that NaN falls out as "outside".
 std::int64_t voxelAt(const GridGeometry& geometry, const Vec3& voxel) {
@@ -125,7 +125,7 @@ const Contact& ToolContact::update(const Grid& grid, const TissueBricks& bricks,
   for (std::size_t i = 0; i < points_mm_.size(); ++i) {
     int found = voxels_[i] < 0 ? -1 : lookup.classAt(grid, std::size_t(voxels_[i]));
     if (found < 0) {
-      // A point in air among others in air looks around itself in turn with them.
+      // Points in air between points in air take turns to look beyond the surface.
       const bool among_air = i > 0 && classes_[i] < 0 && classes_[i - 1] < 0 &&
                              (i + 1 == classes_.size() || classes_[i + 1] < 0);
       if (among_air && (i + turn_) % kTurns != 0) continue;

@@ -24,10 +24,11 @@ struct Contact {
 std::int64_t nearestVoxel(const GridGeometry& geometry, const Mat4& patient_to_voxel,
                           const Vec3& patient_mm);
 
-// The contact of one tool, point by point. A point touches the tissue it lies in; else what stands
-// before the surface of the solid that cuts, half a voxel on, in any of the grid's directions, the
-// firmest of it: the walls of its own slot rub on it, and tissue is felt before it goes. (Where no
-// neighbour touches either, a point but the tip looks around itself every fourth tick.)
+// The contact of one tool, point by point. A point touches the tissue of the voxel that it lies in;
+// if that is air, the firmest tissue that lies half a voxel beyond the surface of the solid that
+// cuts, in any of the grid's six directions: so tissue is felt before it is cut, and the walls of a
+// slot rub on the blade in it. (Where no neighbour touches either, a point other than the tip looks
+// beyond the surface every fourth tick only.)
 class ToolContact {
  public:
   ToolContact(const Tool& tool, const GridGeometry& geometry);
@@ -54,8 +55,8 @@ class ToolContact {
   std::vector<std::int64_t> voxels_;  // of the points, in this tick; -1 outside
   Mat4 patient_to_voxel_;
   Vec3 low_mm_{0.0}, high_mm_{0.0};  // box of the points, tool frame
-  std::size_t turn_ = 0;
-  Vec3 reach_{0.0};  // voxels: from a point there and back along each of the grid's axes
+  std::size_t turn_ = 0;             // of the points that look beyond the surface every fourth tick
+  Vec3 reach_{0.0};  // voxels, from a point to half a voxel beyond the surface, along each axis
   Contact contact_;
 };
 

@@ -5,27 +5,28 @@
 
 namespace trephine {
 
-// The force on the arm is elastic_N - damping (v + turning), v the velocity of the tool's tip, which
-// the arm moves; around the sampled position it changes by -stiffness per metre. One frame
-// throughout: patient axes from the laws, device axes at the controller.
+// The force on the arm is elastic_N - damping v - damped_rotation_N, v the velocity of the tool's
+// tip, which the arm moves; around the sampled position it changes by -stiffness per metre. One
+// frame throughout: patient axes from the laws, device axes at the controller.
 struct ContactForce {
   Vec3 elastic_N{0.0};
   double stiffness = 0.0;        // N/m, of soft tissue: along any way
-  double solid_stiffness = 0.0;  // N/m, of what stops the tool: across it the tool goes free
+  double solid_stiffness = 0.0;  // N/m, of what stops the tool: along the surface there is none
   double damping = 0.0;          // N s/m, the sum over the tool's points
-  double stored_J = 0.0;         // that the springs behind elastic_N hold and can give back
-  Vec3 damped_turning_N{0.0};    // sum of damping_i (omega x r_i): the points' own velocities
+  double stored_J = 0.0;         // energy of the springs behind elastic_N
+  Vec3 damped_rotation_N{0.0};   // sum of damping_i (omega x r_i), of the points about the tip
   Vec3 torque_Nm{0.0};           // about the tip, at the sampled position and velocity
   Vec3 elastic_torque_Nm{0.0};   // the springs' part of it
 
-  // Along the way on which it is stiffest: where a tool is stopped, soft tissue only acts across.
+  // In the direction in which it is stiffest: where solid tissue stops a tool, soft tissue acts
+  // only across that.
   double stiffest() const { return stiffness > solid_stiffness ? stiffness : solid_stiffness; }
   void addElasticTorque(const Vec3& Nm) {
     torque_Nm += Nm;
     elastic_torque_Nm += Nm;
   }
   Vec3 at(const Vec3& velocity_m_s) const {
-    return elastic_N - damping * velocity_m_s - damped_turning_N;
+    return elastic_N - damping * velocity_m_s - damped_rotation_N;
   }
 };
 
@@ -46,7 +47,7 @@ struct ControllerInput {
   Vec3 position_m{0.0};    // sampled
   Vec3 velocity_m_s{0.0};  // backward difference
   Vec3 last_sent_N{0.0};   // by the tick before
-  double turned_J = 0.0;   // put into the springs since then by turning the tool
+  double rotation_work_J = 0.0;  // done on the springs since then by turning the tool
   double period_s = 0.001;
 };
 

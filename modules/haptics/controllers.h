@@ -4,7 +4,7 @@
 //   Impedance limit(const Impedance&)    what the laws shall render of a tissue, at the device
 //   Vec3 bound(const ControllerInput&)   the force on the arm [N]
 //   void forget()                        after an undo, a reset or a fault: no credit
-//   energy_J(), alpha(), parts()         what it observed and did in this tick, for the record
+//   ControllerReport report()            what it observed and did in this tick, for the record
 //
 // To add a controller: a type here, its line in kControllerNames and makeController, its tests.
 #pragma once
@@ -23,9 +23,7 @@ struct OffController {
   Impedance limit(const Impedance& tissue) { return tissue; }
   Vec3 bound(const ControllerInput& in) { return in.demanded_N; }
   void forget() {}
-  double energy_J() const { return 0.0; }
-  double alpha() const { return 0.0; }
-  std::uint32_t parts() const { return 0; }
+  ControllerReport report() const { return {}; }
 };
 
 // Seed paper, eqs. 7-12 verbatim. Our reading of the 3-D case, since the paper gives 7-9 for one
@@ -36,19 +34,21 @@ struct OffController {
 //   alpha = -E / (T |v_p|^2) if E < 0 and |v_p| > 0, else 0      (8)
 //   output f + alpha v_p                                         (9, 12)
 // While f is zero there is no direction to project on: v_p = 0, and no compensation.
-// Known limits, measured in the design notes: blind to the energy that sampling a damper makes, and
-// alpha grows without bound near rest. It is here to be compared with.
+// Known limits (CONTROLLERS.md): its observer does not see the energy that sampling a damper makes,
+// and alpha grows without bound near rest. It is here to be compared with.
 struct SeedController {
   Impedance limit(const Impedance& tissue) { return tissue; }
   Vec3 bound(const ControllerInput& in);
   void forget() { *this = SeedController{}; }
-  double energy_J() const { return observer_J; }
-  double alpha() const { return last_alpha; }
-  std::uint32_t parts() const { return last_alpha > 0.0 ? std::uint32_t(kPartDamping) : 0u; }
+  ControllerReport report() const {
+    return {.observer_J = observer_J,
+            .alpha = last_alpha,
+            .parts = last_alpha > 0.0 ? std::uint32_t(kPartDamping) : 0u};
+  }
 
-  double observer_J = 0.0;
+  double observer_J = 0.0;  // E
   double last_alpha = 0.0;
-  double last_vp2 = 0.0;
+  double last_vp2 = 0.0;  // |v_p|^2
 };
 
 using Controller = std::variant<OffController, SeedController, BoundedController>;
@@ -69,6 +69,9 @@ inline Impedance limitImpedance(Controller& controller, const Impedance& tissue)
 }
 inline Vec3 boundForce(Controller& controller, const ControllerInput& in) {
   return std::visit([&](auto& c) { return c.bound(in); }, controller);
+}
+inline ControllerReport reportOf(const Controller& controller) {
+  return std::visit([](const auto& c) { return c.report(); }, controller);
 }
 inline void forgetController(Controller& controller) {
   std::visit([](auto& c) { c.forget(); }, controller);

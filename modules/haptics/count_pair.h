@@ -1,6 +1,6 @@
-// Where an arm is whose samples go to and fro between two counts of an encoder: at their border, as
-// far as anybody can tell. A tool that creeps over a firm wall does so at every count that it
-// passes, by a few micrometres, and taken count by count that looks like a loss of k q^2 each time.
+// The position of an arm whose samples alternate between two neighbouring counts of an encoder: the
+// middle of the two. A tool that creeps over a firm wall alternates so at every count that it
+// passes; taken sample by sample each alternation looks like a loss of k q^2 (stiffness k, step q).
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ class CountPair {
  public:
   CountPair(double encoder_step_m, double period_s) : step_m_(encoder_step_m), T_(period_s) {}
 
-  // Every tick. On each axis the sample itself, or within 0.1 s of a step back to the count that it
-  // was at before, the middle of the two.
+  // Every tick. On each axis the sample itself; for 0.1 s after a step back to the count before,
+  // the middle of the two.
   Vec3 look(const Vec3& sample_m) {
     Vec3 at_m = sample_m;
     if (!(step_m_ > 0.0)) return at_m;

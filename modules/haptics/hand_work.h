@@ -1,4 +1,4 @@
-// The work that a hand did on a tool, in the model's units: what it can pay for.
+// The work that the operator's hand did on a tool, in the model's units: what can pay for cutting.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@ namespace trephine {
 // does against the model itself: it does not depend on the arm. What of it the springs hold comes
 // back; what went into the tissue,
 //   D = sum -F(n-1).dx(n) / (g/s) / share(n-1) + motor - stored,
-// pays for cutting, and only where it rises above all that it was before: what came back is not
-// paid twice. No more went in than the model itself takes, the same sum with its own force, the
-// mean of both ends of a period: what a controller damps away at an arm that shows a hundredth of
-// the model is no work on tissue.
+// pays for cutting, and only where D exceeds its maximum so far: what came back is not paid twice.
+// The hand's part is at most the work that the model itself takes from the same motion, with the
+// mean of its own force at both ends of each period: what a controller damps away, at an arm that
+// shows a hundredth of the model, is no work on tissue.
 class HandWork {
  public:
   // Of the period in which `sent_N` acted (device), the arm moving by `moved_m`.
@@ -27,11 +27,12 @@ class HandWork {
   void take(double model_J) {
     if (shown_) taken_J_ += model_J;
   }
-  // What the springs hold now, the share of the model that is shown for the next period, and what a
-  // motor did. Returns how much more went into the tissue than ever before: what an arm gave out,
-  // or what a spring came to hold without being pressed, comes off the motor's work too.
+  // What the springs hold now [J], the share of the model that is rendered in the next period, and
+  // the motor's work in this one. Returns by how much D now exceeds its maximum so far, or 0. What
+  // an arm gave out, or a spring came to hold without work of the hand, comes off the motor's work
+  // too.
   double hold(double stored_J, double share, double motor_J = 0.0) {
-    // What the springs hold at first, nobody put in.
+    // What the springs hold at first is no work of the hand.
     if (!started_) done_J_ = taken_J_ = most_lost_J_ - motor_J_ + stored_J;
     started_ = true;
     stored_J_ = stored_J;
@@ -41,7 +42,7 @@ class HandWork {
     most_lost_J_ += more_J;
     return more_J;
   }
-  // What has gone into the tissue by now; it falls where an arm gives out.
+  // D; it falls where an arm gives out energy.
   double lost_J() const { return std::min(done_J_, taken_J_) + motor_J_ - stored_J_; }
   // Law states were forgotten: the springs begin anew.
   void forget() { started_ = false; }

@@ -23,7 +23,7 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
     rendered_laws.push_back(makeLaw(kind, points.size()));
     if (kind == LawKind::elastic) {
       proxy.emplace(arm.tool, geometry);
-      ball.emplace(geometry, 1000.0 * arm.tool.ball_radius_m, ballDirections(arm.tool.blunt));
+      sphere.emplace(geometry, 1000.0 * arm.tool.sphere_radius_m, sphereDirections(arm.tool.blunt));
     }
   }
   for (const auto& [name, kind] : kControllerNames) {
@@ -32,10 +32,11 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
   controller = controllers[std::size_t(all.controller)];
   const bool driven = arm.tool.made_from.motor_W > 0.0;
   cutting = driven ? Cutting::driven : Cutting::by_hand;
-  // A burr cuts with its motor or not at all; without a barrier, as the seed paper's tools do.
+  // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
+  // paper's tools do.
   if (proxy && !driven && arm.tool.made_from.kind == ToolKind::burr) cutting = Cutting::nothing;
-  bites.reserve(Removal::kMostBites);
-  taken.reserve(Removal::kMostBites);
+  removed.reserve(Removal::kMostVoxels);
+  removed_indices.reserve(Removal::kMostVoxels);
 }
 
 HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
@@ -49,13 +50,14 @@ HapticCore::HapticCore(const HapticParameters& parameters, Grid::Writer writer)
     arms_.emplace_back(arm, parameters_, writer_.grid().geometry());
   }
   useTissues(TissueTable{});
-  carves_.reserve(arms_.size() * Removal::kMostBites);
+  carves_.reserve(arms_.size() * Removal::kMostVoxels);
   events_.reserve(kMaxEventsPerTick);
-  put_back_.reserve(kVoxelsPerSlice);
+  changed_.reserve(kVoxelsPerSlice);
 }
 
-// What the tick keeps of the tissues; of what it knows about the voxels, only what they change
-// goes.
+// Makes anew what the tick derives from the tissues. Other HU ranges or labels make every brick
+// unknown, and those or another `cuttable` make removal begin its pass anew; other numbers keep
+// both.
 void HapticCore::useTissues(const TissueTable& before) {
   const TissueTable& now = parameters_.tissues;
   bool same_voxels = bricks_ && before.count == now.count, same_cuts = same_voxels;
@@ -82,22 +84,26 @@ void HapticCore::useTissues(const TissueTable& before) {
     }
     any_cuttable_ = any_cuttable_ || t.cuttable;
   }
-  if (elastic_) {
-    TissueTable pushing = now;
-    // What is solid stops the proxy; a capsule pushes by a law of its own, where the scene has it.
-    const bool ruptures = names(parameters_.laws, LawKind::rupture);
-    soft_push_ = false;
-    for (int c = 0; c < pushing.count; ++c) {
-      TissueClass& tissue = pushing.classes[std::size_t(c)];
-      if (tissue.solid || (ruptures && tissue.rupture_N > 0.0)) tissue.stiffness_N_per_m = 0.0;
-      soft_push_ = soft_push_ || tissue.stiffness_N_per_m > 0.0;
-    }
-    stiffness_.set(pushing);
-  }
+  if (elastic_) setElasticTissues();
   for (Arm& arm : arms_) {
     if (!same_cuts) arm.removal.forget();
     if (arm.proxy) arm.proxy->changed();
   }
+}
+
+// The stiffness that pushes on a contact sphere: of soft tissue in which the elastic law acts. What
+// is solid stops the proxy instead.
+void HapticCore::setElasticTissues() {
+  TissueTable pushing = parameters_.tissues;
+  soft_push_ = false;
+  for (int c = 0; c < pushing.count; ++c) {
+    TissueClass& tissue = pushing.classes[std::size_t(c)];
+    if (tissue.solid || !acts(parameters_.laws, LawKind::elastic, tissue)) {
+      tissue.stiffness_N_per_m = 0.0;
+    }
+    soft_push_ = soft_push_ || tissue.stiffness_N_per_m > 0.0;
+  }
+  stiffness_.set(pushing);
 }
 
 CarveJournal::Credits HapticCore::credits() const {
@@ -108,7 +114,7 @@ CarveJournal::Credits HapticCore::credits() const {
 
 std::uint32_t HapticCore::journalState() {
   std::uint32_t state = 0;
-  if (journal_.hasRoom(arms_.size() * Removal::kMostBites)) state |= kJournalRoom;
+  if (journal_.hasRoom(arms_.size() * Removal::kMostVoxels)) state |= kJournalRoom;
   if (!journal_.busy() || journal_.canStep(kVoxelsPerSlice)) state |= kJournalReady;
   return state;
 }
@@ -118,15 +124,16 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   carves_.clear();
   events_.clear();
   if (journal_.busy() && (input.journal & kJournalReady)) {
-    put_back_.clear();
-    journal_.step(writer_, kVoxelsPerSlice, &put_back_);
-    for (std::uint32_t voxel : put_back_) bricks_->mark(writer_.grid().brickOf(voxel));
+    changed_.clear();
+    journal_.step(writer_, kVoxelsPerSlice, &changed_);
+    for (std::uint32_t voxel : changed_) bricks_->mark(writer_.grid().brickOf(voxel));
     if (!journal_.busy()) finishRestore();
   }
   if (!journal_.busy()) bricks_->recount(writer_.grid(), lookup_);
   if (!paused_ && ++ticks_ % second_ticks_ == 0) journal_.mark(credits());
-  // The journal grants what it was asked for.
-  may_remove_ = (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostBites);
+  // The journal lets as many voxels be erased in this tick as it is asked for here.
+  may_remove_ =
+      (input.journal & kJournalRoom) && journal_.hasRoom(arms_.size() * Removal::kMostVoxels);
   for (std::size_t i = 0; i < command_count; ++i) apply(commands[i], input.tick);
 
   followLateness(input);
@@ -135,7 +142,7 @@ void HapticCore::tick(const TickInput& input, const Command* commands, std::size
   record.late_ns = input.late_ns;
   record.journal = input.journal;
   for (std::size_t i = 0; i < arms_.size(); ++i) moveArm(i, input, record.arms[i]);
-  removeBites(input.tick, record);
+  removeVoxels(input.tick, record);
 
   const bool full = !(input.journal & kJournalRoom);
   if (full && !reported_full_) events_.push_back({input.tick, EventKind::journal_full, -1, 0, {}});
@@ -179,7 +186,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       parameters_.controller = ControllerKind(command.value);
       for (Arm& arm : arms_) {
         arm.controller = arm.controllers[std::size_t(parameters_.controller)];
-        arm.gate.change();
+        arm.limiter.change();
       }
       break;
     case CommandKind::tissues:
@@ -187,7 +194,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       useTissues(std::exchange(parameters_.tissues, command.tissues));
       for (Arm& arm : arms_) {
         forgetController(arm.controller);  // it may be holding the force of the tissue before
-        arm.gate.change();
+        arm.limiter.change();
       }
       break;
   }
@@ -200,8 +207,8 @@ void HapticCore::forgetLaws() {
   }
 }
 
-// The controller's credit is zero; after voxels were put back, the laws begin anew too, and force
-// waits until the tool is out of tissue.
+// The controller begins without credit. After voxels were put back (`restored`), the laws begin
+// anew too, and there is no force until the tool is out of tissue.
 void HapticCore::forgetForces(bool restored) {
   if (restored) forgetLaws();
   for (Arm& arm : arms_) {
@@ -211,11 +218,11 @@ void HapticCore::forgetForces(bool restored) {
     arm.work.forget();
     if (arm.proxy) arm.proxy->changed();
     if (restored) {
-      arm.gate.restored();
+      arm.limiter.restored();
       arm.waiting = arm.proxy.has_value();
-      arm.letting_go = arm.free_s = 0.0;
+      arm.let_go_share = arm.hooked_s = 0.0;
     } else {
-      arm.gate.change();
+      arm.limiter.change();
     }
   }
 }
@@ -237,7 +244,7 @@ void HapticCore::followLateness(const TickInput& input) {
       latch(i, kFaultLate, input.tick);
     } else if (was_away) {
       arms_[i].faults &= ~std::uint32_t(kFaultLate);
-      arms_[i].gate.rampIn();
+      arms_[i].limiter.rampIn();
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptics/contact.h"
+#include "haptics/contact_sphere.h"
 #include "haptics/controllers.h"
 #include "haptics/hand_work.h"
 #include "haptics/haptic_parameters.h"
@@ -15,7 +16,6 @@
 #include "haptics/proxy.h"
 #include "haptics/removal.h"
 #include "haptics/safety.h"
-#include "haptics/stiffness_ball.h"
 #include "haptics/tool.h"
 #include "haptics/workspace_map.h"
 #include "volume/carve_journal.h"
@@ -39,7 +39,8 @@ class HapticCore {
   void tick(const TickInput& input, const Command* commands, std::size_t command_count,
             TickRecord& record);
 
-  // Continues an arm's account of a longer session; before the first tick.
+  // Net work of the sent force on the arm in the ticks before this core's first, by axis. Called
+  // before that tick, where a session goes on that another core began.
   void setEnergyOut(std::size_t arm, const Vec3& energy_out_J) {
     arms_[arm].energy_out_J = energy_out_J;
   }
@@ -51,7 +52,7 @@ class HapticCore {
   const std::vector<Event>& events() const { return events_; }        // of the last tick
 
   const CarveJournal& journal() const { return journal_; }
-  CarveJournal& journal() { return journal_; }  // for the one that spills it
+  CarveJournal& journal() { return journal_; }  // for its file
   const Grid& grid() const { return writer_.grid(); }
   const HapticParameters& parameters() const { return parameters_; }
   bool paused() const { return paused_; }
@@ -68,35 +69,37 @@ class HapticCore {
     std::vector<Law> rendered_laws;  // of what the controller lets the arm render
     std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
     Controller controller;
-    ForceGate gate;
+    OutputLimiter limiter;
     ToolContact contact;
-    std::optional<StiffnessBall> ball;  // both only with the elastic law: without it the tool is
-    std::optional<Proxy> proxy;         // where the arm is
+    // Both only with the elastic law: without it the tool is where the arm is.
+    std::optional<ContactSphere> sphere;
+    std::optional<Proxy> proxy;
     Removal removal;
     std::vector<TouchPoint> points;
-    std::vector<Bite> bites;  // of this tick
-    Index3 bites_low{0, 0, 0}, bites_high{0, 0, 0};  // their bounds
-    std::vector<std::uint32_t> taken;                // their voxels in order, near another arm's
+    std::vector<RemovedVoxel> removed;                   // of this tick
+    Index3 removed_low{0, 0, 0}, removed_high{0, 0, 0};  // their bounds
+    // Their linear indices, sorted; filled only where another arm may have removed one of them too.
+    std::vector<std::uint32_t> removed_indices;
     std::optional<Pose> last_pose;  // device
     HandWork work;
-    Vec3 last_model_N{0.0};  // patient axes
-    Vec3 last_elastic_Nm{0.0};  // as rendered, patient axes
+    Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
+    Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes
     Cutting cutting = Cutting::by_hand;
-    bool cuts = false;     // may remove in this tick
-    bool placed = false;   // its first pose came
-    bool waiting = false;  // without force, until it is out of tissue
-    bool not_as_stated = false;  // mass or delay proved to be another, ever
-    double free_s = 0.0;   // for so long the arm's own pose has been free, and the tool far from it
-    double letting_go = 0.0;  // above 0: what of the force has faded; 1: all
+    bool cuts = false;           // may remove in this tick
+    bool placed = false;         // the proxy was placed at the arm's first pose
+    bool waiting = false;        // without force, until it is out of tissue
+    bool not_as_stated = false;  // mass or delay proved to be another, in any tick so far
+    double hooked_s = 0.0;       // for so long the arm has been in air and far from the tool
+    double let_go_share = 0.0;   // of the force of a hooked tool that has faded; 1: all of it
     Vec3 energy_out_J{0.0};
     std::uint32_t faults = 0;
     std::uint64_t air_ticks = 0;  // since the tool was last in tissue
   };
-  // How an arm moved since the last tick, patient axes; the tool is at its proxy.
+  // How an arm moved since the last tick, patient axes, and where its tool is: at its proxy.
   struct Motion {
     Pose arm_mm, pose_mm;
     Vec3 velocity_m_s{0.0};
-    Vec3 turning_rad_s{0.0};
+    Vec3 angular_velocity_rad_s{0.0};
   };
 
   void apply(const Command& command, std::uint64_t tick);
@@ -104,21 +107,52 @@ class HapticCore {
   void forgetLaws();
   void forgetForces(bool restored);
   void finishRestore();
+  void useTissues(const TissueTable& before);
+  void setElasticTissues();
+
+  // The tick of an arm, and its steps in their order (haptic_core_step.cpp).
+  struct ArmTick;
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
-  void moveTool(std::size_t index, bool may_cut, std::uint64_t tick, Motion& motion);
-  void letGoOfHook(std::size_t index, std::uint64_t tick, const Motion& motion);
+  bool sample(ArmTick& now);
+  void moveProxy(ArmTick& now);
+  void touch(ArmTick& now);
+  void demand(ArmTick& now);
+  void render(ArmTick& now);
+  void bound(ArmTick& now);
+  void checkFinite(ArmTick& now);
+  void send(ArmTick& now);
+  void giveWork(ArmTick& now);
+  void record(ArmTick& now);
+
+  // Parts of moveProxy, touch and giveWork (haptic_core_touch.cpp).
+  void startAtArm(ArmTick& now);
+  bool startsInTissue(Arm& arm, const Pose& arm_mm);
+  void followArm(ArmTick& now);
+  void letGoOfHook(ArmTick& now);
   bool wouldTouch(const Arm& arm, const Pose& pose_mm) const;
-  LawInput touch(Arm& arm, const Tool& tool, const Motion& motion);
+  void touchPoints(Arm& arm, const Tool& tool, const Motion& motion) const;
+  void pressOnElastic(const Arm& arm, const Tool& tool, const Motion& motion, LawInput& in) const;
   bool atWork(const Arm& arm, const Tool& tool) const;
-  void removeBites(std::uint64_t tick, TickRecord& record);
-  void bite(Arm& arm, const ArmRecord& moved);
-  bool takes(const Arm& arm, const Index3& voxel) const;
-  void sortBites();
+  TissueAround tissueAround() const {
+    return {writer_.grid(), *bricks_, lookup_, parameters_.tissues};
+  }
+
+  // Removal, once all arms have moved (haptic_core_removal.cpp).
+  void removeVoxels(std::uint64_t tick, TickRecord& record);
+  void sweepTools(const TickRecord& record);
+  void sweepTool(Arm& arm, const ArmRecord& moved);
+  void boundRemoved(Arm& arm) const;
+  void indexShared();
+  bool mayShare(const Arm& one, const Arm& other) const;
+  bool alsoRemoves(const Arm& arm, const Index3& voxel) const;
   std::array<std::size_t, kMaxArms> newestStrokeFirst(const CarveJournal::Credits& before,
                                                       std::uint64_t tick);
-  bool erase(std::size_t index, const Bite& bite, std::size_t voxel, std::uint32_t sharers,
-             std::uint64_t tick);
-  void useTissues(const TissueTable& before);
+  void eraseOf(std::size_t place, const std::array<std::size_t, kMaxArms>& order,
+               std::uint64_t tick, TickRecord& record);
+  void returnShares(const RemovedVoxel& removed, std::size_t owner, std::uint32_t sharers);
+  bool erase(std::size_t index, const RemovedVoxel& removed, std::size_t voxel,
+             std::uint32_t sharers, std::uint64_t tick);
+  void endStrokes();
   CarveJournal::Credits credits() const;
   void latch(std::size_t index, std::uint32_t fault, std::uint64_t tick);
 
@@ -131,15 +165,15 @@ class HapticCore {
   bool elastic_ = false;
   bool tissues_finite_ = true;
   bool any_cuttable_ = false;
-  bool soft_push_ = false;  // some soft tissue pushes by the elastic law
+  bool soft_push_ = false;  // the elastic law acts in some soft tissue
   LatenessRule lateness_;
   std::vector<Arm> arms_;
   std::vector<CarveRecord> carves_;
-  std::vector<std::uint32_t> put_back_;  // voxels of this tick's slice of an undo, redo or rewind
+  std::vector<std::uint32_t> changed_;  // voxels of this tick's slice of an undo, redo or rewind
   std::vector<Event> events_;
   std::uint64_t stroke_gap_ticks_;
   std::uint64_t second_ticks_;
-  std::uint64_t ticks_ = 0;  // outside pauses: the seconds of the exercise stand still in one
+  std::uint64_t ticks_ = 0;  // outside pauses, in which the exercise's seconds do not count on
   bool may_remove_ = false;  // in this tick
   bool paused_ = false;
   bool reported_full_ = false;

@@ -1,4 +1,4 @@
-// The part of a tick that takes voxels.
+// The part of a tick that removes voxels.
 #include <algorithm>
 #include <bit>
 #include <bitset>
@@ -12,52 +12,97 @@ namespace trephine {
 namespace {
 // What a tool would enter is looked for so far ahead of it: half a voxel, and this at least.
 constexpr double kLeastAhead_mm = 0.25;
+
+// Linear, of a voxel of the grid.
+std::uint32_t indexOf(const GridGeometry& geometry, const Index3& voxel) {
+  return std::uint32_t(geometry.indexOf(voxel[0], voxel[1], voxel[2]));
+}
 }  // namespace
 
-// All tools bite into the tissue as it was, then it goes. Arms that take the same voxel in a tick
+// All tools sweep the tissue as it was, then it goes. Arms that remove the same voxel in a tick
 // share its cost, so that the order of the arms changes no credit. Its entry goes to the newest of
-// their strokes: undo takes that first, so that what any of them took is back once it is undone.
-void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
+// their strokes: undo takes that first, so that what any of them removed is back once it is undone.
+void HapticCore::removeVoxels(std::uint64_t tick, TickRecord& record) {
   const CarveJournal::Credits before = credits();
+  sweepTools(record);
+  indexShared();
+  const std::array<std::size_t, kMaxArms> order = newestStrokeFirst(before, tick);
+  for (std::size_t place = 0; place < arms_.size(); ++place) eraseOf(place, order, tick, record);
+  endStrokes();
+}
+
+void HapticCore::sweepTools(const TickRecord& record) {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
-    arm.bites.clear();
+    arm.removed.clear();
     if (!arm.cuts || !may_remove_ || !any_cuttable_) continue;
-    bite(arm, record.arms[i]);
-    arm.bites_low.fill(std::numeric_limits<std::int32_t>::max());
-    arm.bites_high.fill(-1);
-    for (const Bite& bite : arm.bites) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        arm.bites_low[axis] = std::min(arm.bites_low[axis], bite.voxel[axis]);
-        arm.bites_high[axis] = std::max(arm.bites_high[axis], bite.voxel[axis]);
-      }
-    }
+    sweepTool(arm, record.arms[i]);
+    boundRemoved(arm);
   }
-  sortBites();
-  const std::array<std::size_t, kMaxArms> order = newestStrokeFirst(before, tick);
+}
+
+// What the tool would enter, where tissue holds it back, else what it is in. Where nothing of that
+// is left and it is held all the same, what holds it goes.
+void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
   const GridGeometry& geometry = writer_.grid().geometry();
-  for (std::size_t n = 0; n < arms_.size(); ++n) {
-    const std::size_t owner = order[n];
-    for (const Bite& bite : arms_[owner].bites) {
-      const std::size_t voxel = geometry.indexOf(bite.voxel[0], bite.voxel[1], bite.voxel[2]);
-      if (writer_.grid().hu(voxel) == kAirHu) continue;  // shared, and gone with its owner's
-      std::uint32_t sharers = 0;
-      for (std::size_t later = n + 1; later < arms_.size(); ++later) {
-        if (takes(arms_[order[later]], bite.voxel)) sharers |= 1u << order[later];
-      }
-      const bool paid = parameters_.removal == RemovalKind::work;
-      if (!erase(owner, bite, voxel, paid ? sharers : 0, tick)) {
-        arms_[owner].removal.refund(bite.cost_J);  // those after it may still take it
-        continue;
-      }
-      ++record.arms[owner].removed_voxels;
-      if (sharers == 0) continue;
-      const double share_J = bite.cost_J / (1 + std::popcount(sharers));
-      for (std::size_t i = 0; i < arms_.size(); ++i) {
-        if (i == owner || (sharers >> i & 1u)) arms_[i].removal.refund(bite.cost_J - share_J);
-      }
+  Pose front_mm{moved.proxy_position_mm, moved.proxy_orientation};
+  const bool held = arm.proxy && arm.proxy->held();
+  if (held) {
+    const Vec3& s = geometry.spacing_mm;
+    front_mm = arm.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
+  }
+  arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.removed);
+  if (!held || !arm.removed.empty()) return;
+  for (const Proxy::Blocker& blocker : arm.proxy->blockers()) {
+    arm.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
+                     arm.removed);
+  }
+}
+
+void HapticCore::boundRemoved(Arm& arm) const {
+  arm.removed_low.fill(std::numeric_limits<std::int32_t>::max());
+  arm.removed_high.fill(-1);
+  for (const RemovedVoxel& removed : arm.removed) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      arm.removed_low[axis] = std::min(arm.removed_low[axis], removed.voxel[axis]);
+      arm.removed_high[axis] = std::max(arm.removed_high[axis], removed.voxel[axis]);
     }
   }
+}
+
+// The voxels of the arm at this place of the order; one that arms after it remove too goes now.
+void HapticCore::eraseOf(std::size_t place, const std::array<std::size_t, kMaxArms>& order,
+                         std::uint64_t tick, TickRecord& record) {
+  const std::size_t owner = order[place];
+  const bool paid = parameters_.removal == RemovalKind::work;
+  for (const RemovedVoxel& removed : arms_[owner].removed) {
+    const std::size_t voxel = indexOf(writer_.grid().geometry(), removed.voxel);
+    if (writer_.grid().hu(voxel) == kAirHu) continue;  // shared, and gone with its owner's
+    std::uint32_t sharers = 0;
+    for (std::size_t later = place + 1; later < arms_.size(); ++later) {
+      if (alsoRemoves(arms_[order[later]], removed.voxel)) sharers |= 1u << order[later];
+    }
+    if (!erase(owner, removed, voxel, paid ? sharers : 0, tick)) {
+      arms_[owner].removal.returnWork(removed.cost_J);  // those after it may still remove it
+      continue;
+    }
+    ++record.arms[owner].removed_voxels;
+    if (sharers != 0) returnShares(removed, owner, sharers);
+  }
+}
+
+// Each of n arms paid all of a voxel's cost: gets back what is more than its n-th part.
+void HapticCore::returnShares(const RemovedVoxel& removed, std::size_t owner,
+                              std::uint32_t sharers) {
+  const double share_J = removed.cost_J / (1 + std::popcount(sharers));
+  for (std::size_t i = 0; i < arms_.size(); ++i) {
+    if (i == owner || (sharers >> i & 1u)) {
+      arms_[i].removal.returnWork(removed.cost_J - share_J);
+    }
+  }
+}
+
+void HapticCore::endStrokes() {
   const bool solid_went = std::any_of(carves_.begin(), carves_.end(), [&](const CarveRecord& carve) {
     return lookup_.isSolid(carve.tissue_class);
   });
@@ -73,87 +118,81 @@ void HapticCore::removeBites(std::uint64_t tick, TickRecord& record) {
   }
 }
 
-// What the tool would enter, where tissue holds it back, else what it is in. Where nothing of that is
-// left and it is held all the same, what holds it goes.
-void HapticCore::bite(Arm& arm, const ArmRecord& moved) {
-  const GridGeometry& geometry = writer_.grid().geometry();
-  Pose front_mm{moved.proxy_position_mm, moved.proxy_orientation};
-  const bool held = arm.proxy && arm.proxy->held();
-  if (held) {
-    const Vec3& s = geometry.spacing_mm;
-    front_mm = arm.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
-  }
-  arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.bites);
-  if (!held || !arm.bites.empty()) return;
-  for (const Proxy::Blocker& blocker : arm.proxy->blockers()) {
-    arm.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
-                     arm.bites);
-  }
-}
-
-bool HapticCore::takes(const Arm& arm, const Index3& voxel) const {
-  if (arm.bites.empty()) return false;
+// Of an arm that may share voxels with another; of others false.
+bool HapticCore::alsoRemoves(const Arm& arm, const Index3& voxel) const {
+  if (arm.removed.empty()) return false;
   for (std::size_t axis = 0; axis < 3; ++axis) {  // tools are mostly apart
-    if (voxel[axis] < arm.bites_low[axis] || voxel[axis] > arm.bites_high[axis]) return false;
+    if (voxel[axis] < arm.removed_low[axis] || voxel[axis] > arm.removed_high[axis]) return false;
   }
-  const auto index = std::uint32_t(writer_.grid().geometry().indexOf(voxel[0], voxel[1], voxel[2]));
-  return std::binary_search(arm.taken.begin(), arm.taken.end(), index);
+  return std::binary_search(arm.removed_indices.begin(), arm.removed_indices.end(),
+                            indexOf(writer_.grid().geometry(), voxel));
 }
 
-// Where bites of two arms may be the same, those of each in order, to be found again. Most tools
-// that are near each other still take other voxels: a filter of a bit a voxel, by the lower bits of
-// its number, tells that at little cost.
-void HapticCore::sortBites() {
+bool HapticCore::mayShare(const Arm& one, const Arm& other) const {
+  if (one.removed.empty() || other.removed.empty()) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (other.removed_low[axis] > one.removed_high[axis] ||
+        other.removed_high[axis] < one.removed_low[axis]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Sorts the voxels of the arms that may share some. Most tools that are near each other still
+// remove other voxels: a filter of 65536 bits, by the lower bits of a voxel's index, tells that at
+// little cost.
+void HapticCore::indexShared() {
   constexpr std::uint32_t kFilterBits = 1u << 16;
   const GridGeometry& geometry = writer_.grid().geometry();
-  const auto number = [&geometry](const Bite& bite) {
-    return std::uint32_t(geometry.indexOf(bite.voxel[0], bite.voxel[1], bite.voxel[2]));
+  const auto bitOf = [&geometry](const RemovedVoxel& removed) {
+    return indexOf(geometry, removed.voxel) % kFilterBits;
   };
-  std::array<bool, kMaxArms> meets{};
+  std::array<bool, kMaxArms> may_share{};
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     std::bitset<kFilterBits> filter;
     bool filled = false;
     for (std::size_t b = a + 1; b < arms_.size(); ++b) {
       const Arm &one = arms_[a], &other = arms_[b];
-      bool apart = one.bites.empty() || other.bites.empty();
-      for (std::size_t axis = 0; axis < 3 && !apart; ++axis) {
-        apart = other.bites_low[axis] > one.bites_high[axis] ||
-                other.bites_high[axis] < one.bites_low[axis];
-      }
-      if (apart) continue;
+      if (!mayShare(one, other)) continue;
       if (!filled) {
-        for (const Bite& bite : one.bites) filter.set(number(bite) % kFilterBits);
+        for (const RemovedVoxel& removed : one.removed) filter.set(bitOf(removed));
         filled = true;
       }
-      const auto hit = [&](const Bite& bite) { return filter.test(number(bite) % kFilterBits); };
-      if (std::any_of(other.bites.begin(), other.bites.end(), hit)) meets[a] = meets[b] = true;
+      const auto hit = [&](const RemovedVoxel& removed) { return filter.test(bitOf(removed)); };
+      if (std::any_of(other.removed.begin(), other.removed.end(), hit)) {
+        may_share[a] = may_share[b] = true;
+      }
     }
   }
   for (std::size_t i = 0; i < arms_.size(); ++i) {
-    Arm& arm = arms_[i];
-    arm.taken.clear();
-    if (!meets[i]) continue;
-    for (const Bite& bite : arm.bites) arm.taken.push_back(number(bite));
-    std::sort(arm.taken.begin(), arm.taken.end());
+    std::vector<std::uint32_t>& indices = arms_[i].removed_indices;
+    indices.clear();
+    if (!may_share[i]) continue;
+    for (const RemovedVoxel& removed : arms_[i].removed) {
+      indices.push_back(indexOf(geometry, removed.voxel));
+    }
+    std::sort(indices.begin(), indices.end());
   }
 }
 
-// Begins the strokes of the arms that bite and have none; then the arms, the newest stroke first.
+// Begins the strokes of the arms that remove something and have none; then the arms, the newest
+// stroke first.
 std::array<std::size_t, kMaxArms> HapticCore::newestStrokeFirst(const CarveJournal::Credits& before,
                                                                 std::uint64_t tick) {
   std::array<std::size_t, kMaxArms> order{};
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     order[i] = i;
-    // One that only shares with an arm after it would be left with an empty stroke, which an undo
-    // would seem not to undo.
-    const auto alone = [&](const Bite& bite) {
+    // An arm all of whose voxels go to arms after it would be left with an empty stroke: an undo of
+    // that would change nothing.
+    const auto alone = [&](const RemovedVoxel& removed) {
       for (std::size_t other = i + 1; other < arms_.size(); ++other) {
-        if (takes(arms_[other], bite.voxel)) return false;
+        if (alsoRemoves(arms_[other], removed.voxel)) return false;
       }
       return true;
     };
-    const std::vector<Bite>& bites = arms_[i].bites;
-    if (journal_.inStroke(int(i)) || std::none_of(bites.begin(), bites.end(), alone)) continue;
+    const std::vector<RemovedVoxel>& removed = arms_[i].removed;
+    if (journal_.inStroke(int(i)) || std::none_of(removed.begin(), removed.end(), alone)) continue;
     if (!journal_.beginStroke(int(i), before)) continue;
     events_.push_back({tick, EventKind::stroke_began, std::int32_t(i), 0, {}});
   }
@@ -169,14 +208,13 @@ std::array<std::size_t, kMaxArms> HapticCore::newestStrokeFirst(const CarveJourn
   return order;
 }
 
-bool HapticCore::erase(std::size_t index, const Bite& bite, std::size_t voxel,
+bool HapticCore::erase(std::size_t index, const RemovedVoxel& removed, std::size_t voxel,
                        std::uint32_t sharers, std::uint64_t tick) {
-  const int arm = int(index);
   const std::int16_t old_hu = writer_.grid().hu(voxel);
-  if (!journal_.erase(writer_, arm, voxel, bite.tissue_class, sharers)) return false;
-  bricks_->remove(bite.voxel, lookup_.isSolid(bite.tissue_class));
+  if (!journal_.erase(writer_, int(index), voxel, removed.tissue_class, sharers)) return false;
+  bricks_->remove(removed.voxel, lookup_.isSolid(removed.tissue_class));
   carves_.push_back(
-      {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(bite.tissue_class)});
+      {tick, std::uint32_t(voxel), old_hu, std::int8_t(index), std::int8_t(removed.tissue_class)});
   return true;
 }
 

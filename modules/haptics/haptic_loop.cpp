@@ -15,13 +15,13 @@ HapticLoop::HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operat
 
 Status HapticLoop::startDevices() {
   if (Status possible = validate(core_.parameters()); !possible) return possible;
-  if (operator_) {  // the hands stand at their first target before anything moves
-    std::array<HandTarget, kMaxArms> hands{};
-    operator_->targets(0, hands.data(), core_.parameters().arms.size());
+  if (operator_) {  // the arms stand at their first set-point before anything moves
+    std::array<OperatorSetPoint, kMaxArms> set_points{};
+    operator_->setPoints(0, set_points.data(), core_.parameters().arms.size());
     for (LoopDevice& d : devices_) {
       for (std::size_t i = 0; i < d.arms.size(); ++i) {
-        const HandTarget& hand = hands[d.arms[i]];
-        d.device->setTarget(i, hand.pose_m, hand.stiffness_N_per_m, hand.damping_Ns_per_m);
+        const OperatorSetPoint& at = set_points[d.arms[i]];
+        d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
       }
     }
   }
@@ -110,16 +110,16 @@ bool HapticLoop::step(std::int64_t late_ns) {
 bool HapticLoop::exchange(TickInput& input) {
   const std::size_t arm_count = core_.parameters().arms.size();
   const double period_s = core_.parameters().period_s;
-  std::array<HandTarget, kMaxArms> hands{};
-  if (operator_) operator_->targets(input.tick, hands.data(), arm_count);
+  std::array<OperatorSetPoint, kMaxArms> set_points{};
+  if (operator_) operator_->setPoints(input.tick, set_points.data(), arm_count);
   for (std::size_t place = 0; place < devices_.size(); ++place) {
     LoopDevice& d = devices_[place];
     in_call_ = int(place);
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       const std::size_t arm = d.arms[i];
       if (operator_) {
-        d.device->setTarget(i, hands[arm].pose_m, hands[arm].stiffness_N_per_m,
-                            hands[arm].damping_Ns_per_m);
+        const OperatorSetPoint& at = set_points[arm];
+        d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
       }
       TrephineArmCommand& command = arm_commands_[i];
       command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};

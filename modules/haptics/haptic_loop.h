@@ -20,19 +20,20 @@
 
 namespace trephine {
 
-// Where the hand that holds a simulated arm wants to be.
-struct HandTarget {
+// Where the operator of a simulated arm wants it, and the impedance with which he pulls it there.
+struct OperatorSetPoint {
   Pose pose_m;  // device frame
   double stiffness_N_per_m = 0.0;
   double damping_Ns_per_m = 0.0;
 };
 
-// Moves the simulated arms' hands and gives timed commands. Haptic thread: no allocation, no lock.
+// Gives the simulated arms their set-points, and timed commands. Haptic thread: no allocation, no
+// lock.
 class Operator {
  public:
   virtual ~Operator() = default;
-  // Fills one target an arm for the tick.
-  virtual void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) = 0;
+  // Fills one set-point an arm for the tick.
+  virtual void setPoints(std::uint64_t tick, OperatorSetPoint* of_arms, std::size_t arm_count) = 0;
   // The next command due at or before `tick`, once each; false when there is none.
   virtual bool command(std::uint64_t tick, Command& out) = 0;
 };
@@ -62,7 +63,7 @@ struct LoopState {
 
 class HapticLoop {
  public:
-  // `oper` may be null: then the hands hold where they are. It outlives the loop, and so does
+  // `oper` may be null: then no arm gets a set-point. It outlives the loop, and so does
   // `core` unless the loop's thread is left behind. Ticks count from `first_tick`.
   HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
              std::uint64_t first_tick = 0);

@@ -31,7 +31,7 @@ struct HapticParameters {
   RemovalKind removal = RemovalKind::work;
   ControllerKind controller = ControllerKind::bounded;
   TissueTable tissues;
-  std::size_t journal_voxels = 8'000'000;  // in memory, 8 bytes each; the rest is spilled
+  std::size_t journal_voxels = 8'000'000;  // in memory, 8 bytes each; the rest in a file
   std::size_t journal_strokes = 65'536;
   std::size_t journal_seconds = 86'400;  // to which one can rewind
   double stroke_gap_s = 0.3;             // this long out of tissue ends a stroke

@@ -53,11 +53,12 @@ enum Fault : std::uint32_t {
   kFaultStuck = 1u << 4,       // a call of the device did not return: its arms were left behind
 };
 
-// Where a tool stands to what is around it.
+// What keeps a tool from its arm, or from force.
 enum ToolState : std::uint32_t {
-  kToolWaits = 1u << 0,    // in tissue that it did not come into: no force, no cutting until it is out
-  kToolHeld = 1u << 1,     // by solid tissue
-  kToolLetGo = 1u << 2,    // was hooked; the force fades, then the tool goes to its arm
+  kToolWaits =
+      1u << 0,          // it started in tissue: no force and no cutting until it has been out of it
+  kToolHeld = 1u << 1,  // solid tissue keeps it from its arm
+  kToolLetGo = 1u << 2,  // was hooked; the force fades, then the tool goes to its arm
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.
@@ -66,7 +67,7 @@ struct ArmRecord {
   Quat device_orientation{1, 0, 0, 0};
   Vec3 patient_position_mm{0.0};  // the tool's tip
   Quat patient_orientation{1, 0, 0, 0};
-  // Where the tool is, and is drawn: what solid tissue keeps it from entering, it stays out of.
+  // Where the tool is, and is drawn: it stays out of solid tissue that is uncut.
   Vec3 proxy_position_mm{0.0};
   Quat proxy_orientation{1, 0, 0, 0};
   Vec3 velocity_m_s{0.0};  // of the arm, patient axes, backward difference
@@ -74,15 +75,20 @@ struct ArmRecord {
   Vec3 demanded_torque_Nm{0.0};  // about the handle, for arms that can
   Vec3 bounded_N{0.0};     // after the controller
   Vec3 clamped_N{0.0};     // within the arm's limit
-  Vec3 sent_N{0.0};        // after the gate
+  Vec3 sent_N{0.0};        // after the output limiter
   Vec3 energy_out_J{0.0};  // net work of the sent force on the arm so far, by axis: sum F(n-1) dx(n)
-  double observer_J = 0.0;  // the controller's own observer
-  double alpha = 0.0;       // the controller's gain: of `bounded`, the scale it has learnt
-  double rendered_share = 1.0;  // of the tissues' impedance, before the controller's force
+  // Of the controller `seed` (0 under another): its observed energy E and its damping [N s/m].
+  double observer_J = 0.0;
+  double alpha = 0.0;
+  // Of the controller `bounded` (0 under another): energy put in and not given back, capped; and
+  // the smaller of the scales that it has learnt, 1 where it has learnt nothing.
+  double credit_J = 0.0;
+  double learnt_scale = 0.0;
+  double rendered_share = 1.0;  // |rendered| / |demanded| force, before the controller's force
   double hand_work_J = 0.0;     // the hand's on the tool so far, in the model's units (README.md)
   double stored_J = 0.0;        // of it in springs, which can give it back
   double cutting_credit_J = 0.0;  // work on tissue, not yet spent on removal
-  std::uint32_t controller_parts = 0;  // ControllerPart: which of its parts acted
+  std::uint32_t controller_parts = 0;  // ControllerPart: which parts acted
   std::int32_t tissue_class = -1;
   std::int32_t points_in_tissue = 0;
   std::int32_t removed_voxels = 0;  // in this tick

@@ -9,8 +9,8 @@
 
 #include "base/math.h"
 #include "haptics/arm_dynamics.h"
+#include "haptics/contact_sphere.h"
 #include "haptics/proxy.h"
-#include "haptics/stiffness_ball.h"
 #include "tissue/tissue_set.h"
 
 namespace trephine {
@@ -23,9 +23,9 @@ inline constexpr std::array<std::pair<std::string_view, ForceAt>, 2> kForceAtNam
 
 // A point at which a law acts. With ForceAt::tip there is one, at the tip, with weight 1.
 struct TouchPoint {
-  Vec3 arm_m{0.0};        // r, from the tip
-  Vec3 turning_m_s{0.0};  // omega x r: its velocity beyond that of the tip
-  double weight = 1.0;    // its share of the tool
+  Vec3 lever_m{0.0};               // r, from the tip
+  Vec3 rotational_m_s{0.0};        // omega x r: its velocity beyond that of the tip
+  double weight = 1.0;             // its share of the tool
   std::int32_t tissue_class = -1;  // -1 air
 };
 
@@ -33,17 +33,20 @@ struct TouchPoint {
 struct LawInput {
   Vec3 tip_m{0.0};
   Vec3 velocity_m_s{0.0};  // of the arm, at the tip
-  Vec3 into_m{0.0};        // the way the tool points, of length 1
+  Vec3 tool_direction{0.0};  // from the handle to the tip, unit
   std::span<const TouchPoint> points;
   bool touching = false;   // any of them
   std::int32_t tip_class = -1;  // where the tip itself is
   const TissueTable* tissues = nullptr;
-  Impedance share{1.0, 1.0};  // of the tissues' damping and stiffness that is rendered
-  Pull pull;                  // of solid tissue, which the proxy does not enter; and:
-  ElasticPush push;           // of soft tissue on the tool's ball; both for the elastic law
-  Vec3 ball_m{0.0};           // the ball's centre from the tip
-  bool parts = false;         // the tool parts the tissue before it, being sharp
-  double ball_radius_m = 0.0;
+  Impedance share{1.0, 1.0};  // rendered / demanded, of the tissues' damping and stiffness
+  // For the elastic law: from the arm to the proxy that solid tissue holds; of soft tissue on the
+  // contact sphere, its centre from the tip and its radius; and whether a sharp tool cuts open the
+  // tissue before it.
+  Pull pull;
+  ElasticPush push;
+  Vec3 sphere_m{0.0};
+  double sphere_radius_m = 0.0;
+  bool parts = false;
 
   const TissueClass& tissue(const TouchPoint& p) const {
     return tissues->classes[std::size_t(p.tissue_class)];

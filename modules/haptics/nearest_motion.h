@@ -24,7 +24,8 @@ inline Vec3 smallTurn(const Quat& from, const Quat& to) {
 struct NearTouch {
   Vec3 normal{0.0}, moment{0.0};  // moment: lever x normal, mm
   double gap_mm = 0.0;
-  double load = 0.0;  // out: how much of the normal the nearest motion has, mm; 0 where it is free
+  double load =
+      0.0;  // out: the multiplier of this gap in the nearest motion, mm; 0 where it is open
 };
 
 // The motion nearest to `wanted` (|shift|^2 + turn_mm2 |turn|^2 apart) that leaves every gap at 0

@@ -7,29 +7,32 @@ namespace trephine {
 
 namespace {
 
-// All of a voxel's smallest edge.
-constexpr double kStep = 0.45;        // at most, between two looks at the gaps
-constexpr double kNear = 0.05;        // what is this near is always seen
-// Where voxels went, what stands behind them is looked for after so much; in between the tool may
-// enter it by that, and what it enters it cuts or is put back from.
+// Lengths, all in units of a voxel's smallest edge.
+constexpr double kStep = 0.45;  // the longest step between two looks at the gaps
+constexpr double kNear = 0.05;  // the shortest distance within which touches are looked for
+// After voxels went the pieces hold for so much travel only (0.05 mm at least). Until the next
+// search the tool may enter what stood behind them by that much: it cuts it or is put back from it.
 constexpr double kWorn = 0.25, kLeastWorn_mm = 0.05;
-constexpr double kKeptOff = 0.02;  // what is kept between tool and tissue, where it comes from afar
-constexpr double kTolerated = 0.002;  // what it may be inside by: what slides sinks and rises by it
-constexpr double kInside = 0.1;       // deeper it is put outside
-constexpr double kStands = 0.6;  // deeper it was there from the start: a voxel's centre is in it
-constexpr double kSame = 1.0;         // flat pieces that touch the tool so near each other are one
-constexpr double kArrived = 1e-3;     // a shorter step is none
-constexpr int kCorrections = 4;       // where the surface bends
-constexpr int kShorter = 3;           // tries, each with a shorter step
-constexpr double kShorterBy = 0.4;
-constexpr double kNearer_mm2 = 1e-9;  // or it is not nearer
-constexpr double kHeld_mm = 1e-6;
-// The next look at the surface is spread over ticks, kWorkATick rows each; it begins when at the
-// speed of now it will be done in this share of the time that is left.
+constexpr double kKeptOff = 0.02;     // gap that is kept where the tool comes from farther away
+constexpr double kTolerated = 0.002;  // depth to which a sliding tool may be inside
+constexpr double kInside = 0.1;       // a tool that is deeper is put outside
+// A tool that starts deeper is in solid tissue: the centre of a voxel may be in it.
+constexpr double kStands = 0.6;
+constexpr double kSame = 1.0;  // flat pieces that touch the tool so near each other are one touch
+constexpr double kArrived = 1e-3;  // a shorter step is none
+
+constexpr int kCorrections = 4;       // of a pose, where the surface bends
+constexpr int kShorter = 3;           // tries of a step, each shorter
+constexpr double kShorterBy = 0.4;    // by this factor
+constexpr double kNearer_mm2 = 1e-9;  // by which the squared distance to the arm must fall
+constexpr double kHeld_mm = 1e-6;     // a tool nearer to its arm is at it
+// The next search of the surface goes on kWorkATick rows a tick. It begins when, at the present
+// speed, it takes this share of the time for which the present surface still holds.
 constexpr double kEarly = 0.67;
 constexpr int kWorkATick = 256;
-// A turn costs as a shift of the mean square by which it moves a rod, tip to handle, a third of its
-// length squared; half of that, for the far end moves most. A short tool has a handle all the same.
+// The weight of turns, r^2, is a sixth of the tool's reach squared, with a reach of this at least:
+// a hand holds a short tool by a handle, too. (A rod's points move by a third of its length squared
+// on average; half of that, since its far end moves most.)
 constexpr double kHandle_mm = 60.0;
 
 SmallMotion towards(const Pose& from, const Pose& to) {
@@ -64,7 +67,7 @@ void Proxy::hold(const Pose& pose_mm) {
   pullBack();
 }
 
-// The pull from the arm to the tool. Nothing holds it any more once it is there.
+// The pull from the arm to the tool. Once the tool is at the arm, nothing holds it.
 void Proxy::pullBack() {
   const SmallMotion left = towards(arm_, pose_);
   if (!(cost(left) > kHeld_mm * kHeld_mm)) {
@@ -107,14 +110,15 @@ double Proxy::cost(const SmallMotion& motion) const {
          turn_mm2_ * glm::dot(motion.turn, motion.turn);
 }
 
-// How much of what the gathered surface is good for is used up after one more step: 1 is all.
+// Share of the travel for which the gathered surface holds that is used up after one more step.
 double Proxy::worn(double step_mm) const {
   const double worn = (usedUp_mm(travelled_) + step_mm) / surface_.margin_mm();
   if (!stale_) return worn;
   return std::max(worn, travelled_mm() / std::max(kWorn * surface_.voxel_mm(), kLeastWorn_mm));
 }
 
-// The surface around the body, good for one more step; ahead of time where there is time.
+// Sees to it that the gathered surface holds for one more step. Where it does (`ahead`), it goes on
+// with the next search, a part a tick.
 void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step_mm, double speed,
                  bool ahead) {
   const auto dropGone = [&] {
@@ -154,9 +158,9 @@ void Proxy::look(const TissueAround& tissue, const PlacedBody& body, double step
   goOn(SolidSurface::kAll);
 }
 
-// The pieces within a distance of the body, at the proxy's pose or one `moved_mm` from it: the
-// nearest, if there are too many. One from which the tool cannot have come so near is not looked
-// at.
+// The pieces within a distance of the body, at the proxy's pose or one `moved_mm` from it; the
+// nearest, if there are too many. A piece whose last gap is more than the tool has travelled since
+// is not looked at.
 std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double moved_mm) {
   std::size_t count = 0;
   const double travelled = travelled_mm();
@@ -183,8 +187,8 @@ std::size_t Proxy::nearPieces(const PlacedBody& body, double within_mm, double m
   return count;
 }
 
-// The nearest of the flat pieces that touch the tool where one of them does; they are merged with
-// it.
+// Merges the flat pieces that touch the tool within kSame of where piece `first` does; returns the
+// nearest of them.
 std::size_t Proxy::merge(std::size_t first, std::size_t count) {
   const double same2 = std::pow(kSame * surface_.voxel_mm(), 2);
   const auto together = [&](std::size_t a, std::size_t b) {
@@ -217,13 +221,13 @@ double Proxy::touches(const PlacedBody& body, double within_mm, double moved_mm,
     const Touch touch =
         flat ? blended(near.touch, *near.piece, body, surface_.pieces()) : near.touch;
     least_mm = std::min(least_mm, touch.gap_mm);
-    // What is inside is put outside; what is nearly there stays; what was moved is put just so far
-    // back that it is taken, and if that fails, clear.
+    // At the proxy's own pose a touch that is not deeper than kInside keeps the gap that it has, up
+    // to `clear_mm`; every other touch must open to `clear_mm`.
     double keep_mm = clear_mm;
     if (moved_mm == 0.0 && touch.gap_mm >= -kInside * voxel_mm) {
       keep_mm = std::min(touch.gap_mm, clear_mm);
     }
-    // No correction throws it farther than half a voxel.
+    // A depth of more than half a voxel counts as half a voxel: no correction is larger.
     const double gap_mm = std::max(touch.gap_mm, -0.5 * voxel_mm) - keep_mm;
     touches_[touch_count_] = {touch.normal, glm::cross(touch.lever_mm, touch.normal), gap_mm, 0.0};
     touched_[touch_count_++] = near.piece;
@@ -240,7 +244,7 @@ void Proxy::move(const Pose& to, const PlacedBody& body, Way& way) {
   way.body = body;
 }
 
-// Nothing is near: as far as the surface is known. True when there is more of the way.
+// Nothing is near: goes as far as the gathered surface holds. True when the arm is farther.
 bool Proxy::goFreely(Way& way) {
   way.load = way.stiff = way.most = 0.0;
   blocker_count_ = 0;
@@ -258,8 +262,8 @@ bool Proxy::goFreely(Way& way) {
   return !whole;
 }
 
-// A pose a motion from here, put back onto the surface where that bends, to a gap of at least so
-// much. False where that fails.
+// The pose after a motion, corrected where the surface bends until every gap is at least
+// `least_mm`. False where that fails. First to just that gap, then to a clear one.
 bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, PlacedBody& body,
                     bool& bent) {
   there = {pose_.position + motion.shift_mm, turned(motion.turn, pose_.orientation)};
@@ -281,8 +285,8 @@ bool Proxy::putBack(const SmallMotion& motion, double least_mm, Pose& there, Pla
   return false;
 }
 
-// A step along what it touches. True when there is more of the way. Only a pose that is nearer to
-// the arm is taken: so it neither creeps nor buzzes.
+// A step along what it touches. True when the arm is farther and another step may come nearer. Only
+// a pose that is nearer to the arm is taken, so that a tool at rest neither creeps nor alternates.
 bool Proxy::slide(const TissueAround& tissue, Way& way) {
   const SmallMotion wanted = towards(pose_, arm_);
   SmallMotion motion = nearestMotion(wanted, turn_mm2_, {touches_.data(), touch_count_});
@@ -331,7 +335,7 @@ void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutti
   }
   if (cutting != cutting_) changed();
   cutting_ = cutting;
-  // As far as it went last time it will go again, or twice as far.
+  // The first step is at most twice as long as the way of the last tick.
   const double voxel_mm = surface_.voxel_mm(), near_mm = kNear * voxel_mm;
   way.step_mm = std::clamp(2.0 * last_step_mm_ + near_mm, near_mm, kStep * voxel_mm);
   const double speed = last_step_mm_;
@@ -346,7 +350,7 @@ void Proxy::follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutti
     if (way_mm(towards(pose_, arm_mm)) < kHeld_mm && !way.inside) break;
     if (touch_count_ > 0 ? !slide(tissue, way) : !goFreely(way)) break;
   }
-  // On its way back to an arm that went fast it pulls as it did.
+  // Where nothing bears load now, the pull keeps its stiffness until the tool is at the arm.
   loaded_ = way.load > 0.0;
   if (loaded_) {
     stiffness_ = way.stiff / way.load;

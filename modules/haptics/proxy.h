@@ -15,7 +15,7 @@ namespace trephine {
 struct Pull {
   Vec3 shift_mm{0.0};  // from the arm's tip to the proxy's
   Vec3 turn{0.0};      // from the arm's orientation to the proxy's: 2 sin(angle / 2) along its axis
-  double turn_mm2 = 0.0;        // a turn of one costs as much as a shift of sqrt(this)
+  double turn_mm2 = 0.0;        // |turn|^2 times this counts as much as |shift|^2
   double stiffness = 0.0;       // N/m, of the tissue that holds; 0: nothing does
 };
 
@@ -29,12 +29,12 @@ class Proxy {
   // than half a voxel, kMostSteps of them. Voxels changed since the last tick only where changed()
   // or removed() said so.
   void follow(const TissueAround& tissue, const Pose& arm_mm, Cutting cutting);
-  // Stays where it was before follow(). What held it in the last step of that pulls on; where
-  // nothing did, nothing pulls.
+  // Back to where it was before follow(). The tissue that held it in the last step of that still
+  // pulls; where none did, nothing pulls.
   void hold(const Pose& pose_mm);
-  // Goes to the arm, whatever is there. True where its body is in solid tissue.
+  // At the arm, whatever is there. True where its body is in solid tissue.
   bool standsInSolid(const TissueAround& tissue, const Pose& arm_mm);
-  // The pull is let go: this share of its stiffness is left.
+  // Multiplies the stiffness of the pull in this tick.
   void fade(double share) { pull_.stiffness *= share; }
   // Voxels around it came back, or mean other tissue.
   void changed() {
@@ -47,7 +47,7 @@ class Proxy {
   const Pose& pose_mm() const { return pose_; }
   const Pull& pull() const { return pull_; }
   bool held() const { return held_by_ >= 0; }
-  // The class of what holds it most, -1 where nothing does.
+  // The class of the tissue that bears most of the load, -1 where nothing holds it.
   std::int8_t heldBy() const { return held_by_; }
   // The pieces of tissue that hold it back and that this tool may cut.
   struct Blocker {
@@ -61,7 +61,7 @@ class Proxy {
   static constexpr int kMostSteps = 8;
 
  private:
-  // How far the body went, bounds: as a whole and by turning.
+  // Upper bounds of how far the body went: by shifts, and by turns at a distance from the tip.
   struct Travel {
     double shift_mm = 0.0, turn = 0.0;
     double of_mm(double reach_mm) const { return shift_mm + reach_mm * turn; }
@@ -74,10 +74,12 @@ class Proxy {
   struct Way {
     PlacedBody body;
     double step_mm = 0.0;            // at most, in the next step
-    double load = 0.0, stiff = 0.0, most = 0.0;  // of the touches in the last one
-    std::int8_t tissue_class = -1;               // of the most loaded
-    double least_mm = 0.0;           // gap that the next pose may have
-    bool inside = false;
+    // Of the touches in the last step: the sum of loads, that of load times stiffness, the greatest
+    // load and the class of its tissue.
+    double load = 0.0, stiff = 0.0, most = 0.0;
+    std::int8_t tissue_class = -1;
+    double least_mm = 0.0;  // gap that the next pose must have at least
+    bool inside = false;    // deeper than kInside: it is put outside first
   };
   // A piece that is near, before flat ones are merged.
   struct Near {
@@ -86,7 +88,8 @@ class Proxy {
     bool merged = false;
   };
   void pullBack();
-  // How far the farthest point moves of what is near tissue, or what is far at a kFar'th: bounds.
+  // Upper bound of how far the points near tissue moved, or a quarter of how far the others did, if
+  // that is more: the gathered surface holds for so much of its margin.
   double usedUp_mm(const Travel& travel) const;
   double way_mm(const SmallMotion& motion) const;
   double cost(const SmallMotion& motion) const;
@@ -107,15 +110,15 @@ class Proxy {
   Pose pose_, arm_;
   Pull pull_;
   double turn_mm2_;
-  bool gathered_ = false, stale_ = false, next_stale_ = false;
-  bool gone_ = false;  // some of the pieces may be of voxels that went
+  bool gathered_ = false;                    // the surface's pieces are of around here
+  bool stale_ = false, next_stale_ = false;  // voxels went since that search, since the next began
+  bool gone_ = false;                        // some of the pieces may be of voxels that went
   Cutting cutting_ = Cutting::nothing;
-  Travel travelled_,
-      next_travelled_;  // since the surface was gathered, and since the next was begun
-  double last_step_mm_ = 0.0;
-  // Of what held it last, until it is at the arm.
-  bool loaded_ = false;  // in the last step
-  double stiffness_ = 0.0;
+  Travel travelled_, next_travelled_;  // since that search, since the next began
+  double last_step_mm_ = 0.0;          // in the last tick
+  bool loaded_ = false;                // something held it in the last step
+  // Of the tissue that held it last, until it is at the arm.
+  double stiffness_ = 0.0;  // N/m, the mean by load
   std::int8_t held_by_ = -1;
   std::array<NearTouch, kMostTouches> touches_;
   std::array<const SurfacePiece*, kMostTouches> touched_;  // by each of them

@@ -7,39 +7,29 @@ namespace trephine {
 
 namespace {
 
-// What a tick of a millisecond or less may look at, in voxels, and a slower one more; a row of the
-// solid counts as much as these many.
+// So many voxels are looked at in a tick of a millisecond or less, in proportion more in a longer
+// one, up to kMostLooks times as many. Finding a row counts as kLooksPerRow voxels.
 constexpr int kLooksPerTick = 4096;
-constexpr double kMostLooks = 4.0;  // times that
+constexpr double kMostLooks = 4.0;
 constexpr int kLooksPerRow = 26;
-constexpr int kBatch = 16;
-constexpr double kHalfVoxel = 0.505;  // and a little, for what rounding takes
-constexpr double kKept_s = 0.05;
+constexpr int kBatch = 16;            // rows
+constexpr double kHalfVoxel = 0.505;  // in voxels; 0.005 more than half for rounding
+constexpr double kKept_s = 0.05;      // time constant with which unspent work is forgotten
 
 double voxelWork_J(const TissueClass& tissue, double voxel_mm3) {
   return tissue.cutting_J_per_mm3 * voxel_mm3;
 }
 
-// What a tool pays for one.
+// What a tool pays for a voxel.
 double cost_J(RemovalKind kind, const TissueClass& tissue, double voxel_mm3) {
   return kind == RemovalKind::instant ? 0.0 : voxelWork_J(tissue, voxel_mm3);
 }
 
-// Empty where first > last.
-struct Indices {
-  int first = 0, last = -1;
-};
-
-// A row of voxels that the solid crosses, and what of it was cleared before.
-struct Row {
-  Indices all, clear;
-  int j = 0, number = 0;
-  std::size_t voxel = 0;  // the first of the grid's row
-};
+}  // namespace
 
 // The first and last whole index within an interval, cut to 0 .. count - 1. No floor() or ceil():
 // without SSE 4 these are calls.
-Indices indices(const Interval& mm, double per_spacing, int count) {
+inline Removal::Indices Removal::indices(const Interval& mm, double per_spacing, int count) {
   if (mm.empty()) return {};
   const double low = mm.low * per_spacing, high = mm.high * per_spacing;
   if (!(low < count && high >= 0.0)) return {};
@@ -47,8 +37,6 @@ Indices indices(const Interval& mm, double per_spacing, int count) {
   const int last = high < count ? int(high) : count - 1;
   return {low > below ? below + 1 : below, last};
 }
-
-}  // namespace
 
 Removal::Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s)
     : tool_(tool),
@@ -74,7 +62,7 @@ Capsule Removal::capsuleAt(const Pose& pose_mm) const {
   return {place(tool_.solid_from_m), place(tool_.solid_to_m), radius_mm_};
 }
 
-void Removal::earn(double work_J, double lost_J, const TissueTable& tissues) {
+void Removal::giveWork(double work_J, double lost_J, const TissueTable& tissues) {
   lost_J_ = lost_J;
   double dearest_J = 0.0;
   for (int c = 0; c < tissues.count; ++c) {
@@ -123,12 +111,12 @@ void Removal::end(const Capsule& now) {
 }
 
 void Removal::take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
-                   std::vector<Bite>& bites) {
+                   std::vector<RemovedVoxel>& removed) {
   const double price_J = cost_J(kind_, tissues.classes[std::size_t(tissue_class)],
                                 geometry_.voxelVolume_mm3());
-  if (!affords(price_J) || bites.size() == kMostBites) return;
+  if (!affords(price_J) || removed.size() == kMostVoxels) return;
   spend(price_J);
-  bites.push_back({voxel, tissue_class, price_J});
+  removed.push_back({voxel, tissue_class, price_J});
 }
 
 bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const {
@@ -138,7 +126,8 @@ bool Removal::mayMeetTissue(const TissueBricks& bricks, const Capsule& now) cons
 }
 
 void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-                    const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites) {
+                    const TissueTable& tissues, const Pose& pose_mm,
+                    std::vector<RemovedVoxel>& removed) {
   const Capsule now = capsuleAt(pose_mm);
   if (!isFinite(now.from) || !isFinite(now.to)) {
     forget();
@@ -148,95 +137,120 @@ void Removal::sweep(const Grid& grid, const TissueBricks& bricks, const TissueLo
   last_ = now;
   // Work ran short and the tool went on: it must not take later what it has left.
   if (passing_ && !paid_ && moved(goal_, now) > layer_mm_) end(now);
-  if (!passing_) {
-    const bool all = known_ && clear_.radius >= radius_mm_;
-    if (all && moved(clear_, now) < still_mm_) return;
-    if (all && !mayMeetTissue(bricks, now)) {
-      clear_ = now;
-      return;
-    }
-    begin(now);
-  }
-  const Vec3& s = spacing_mm_;
-  const double voxel_mm3 = geometry_.voxelVolume_mm3();
-  int looks = looks_;
-  const int row_looks = (goal_.isBall() ? kLooksPerRow : 2 * kLooksPerRow) * solid_.places();
-  for (; slice_ < slice_end_; ++slice_) {
-    const int k = backwards_ ? high_[2] - slice_ : low_[2] + slice_;
-    const double z = k * s.z;
-    if (row_ < 0) {
-      const Indices rows = indices(solid_.band(z), per_spacing_.y, geometry_.size[1]);
-      low_[1] = rows.first;
-      high_[1] = rows.last;
-      row_ = 0;
-    }
-    const int rows = high_[1] - low_[1] + 1;
-    while (row_ < rows) {
-      // A batch of rows at a time: their first voxels are on the way while the others are found.
-      std::array<Row, kBatch> batch;
-      int count = 0, next = row_;
-      for (; count < kBatch && next < rows; ++next) {
-        const int j = backwards_ ? high_[1] - next : low_[1] + next;
-        // Rows of bricks that hold no tissue are passed over together.
-        const int in_brick = j & (kBrickEdge - 1);
-        if (next == row_ || in_brick == (backwards_ ? kBrickEdge - 1 : 0)) {
-          const int more = backwards_ ? in_brick : kBrickEdge - 1 - in_brick;
-          const Vec3 first(low_[0], backwards_ ? j - more : j, k);
-          const Vec3 last(high_[0] - 1, (backwards_ ? j : j + more) - 1, k - 1);
-          if (!bricks.mayHold(first, last)) {
-            next += more;
-            looks -= kLooksPerRow;
-            continue;
-          }
-        }
-        looks -= row_looks;
-        Row& row = batch[std::size_t(count)];
-        const double y = j * s.y;
-        row.all = indices(solid_.row(y, z), per_spacing_.x, geometry_.size[0]);
-        if (row.all.first > row.all.last) continue;
-        row.clear = known_ ? indices(cleared_.row(y, z), per_spacing_.x, geometry_.size[0]) : Indices{};
-        row.j = j;
-        row.number = next;
-        row.voxel = geometry_.indexOf(0, j, k);
-        grid.prefetch(row.voxel + std::size_t(row.all.first));
-        grid.prefetch(row.voxel + std::size_t(row.all.last));
-        ++count;
-      }
-      for (int n = 0; n < count; ++n) {
-        const Row& row = batch[std::size_t(n)];
-        for (int i = row.all.first; i <= row.all.last; ++i) {
-          if (i >= row.clear.first && i <= row.clear.last) {
-            i = row.clear.last;
-            continue;
-          }
-          --looks;
-          const std::size_t voxel = row.voxel + std::size_t(i);
-          const std::int16_t hu = grid.hu(voxel);
-          const int c = hu == kAirHu ? -1 : lookup.classAt(grid, voxel, hu);
-          if (c < 0 || !tissues.classes[std::size_t(c)].cuttable) continue;
-          const double price_J = cost_J(kind_, tissues.classes[std::size_t(c)], voxel_mm3);
-          const bool pays = affords(price_J);
-          if (!pays) paid_ = false;
-          if (!pays || bites.size() == kMostBites) {
-            row_ = row.number;  // goes on here in the next tick
-            return;
-          }
-          spend(price_J);
-          bites.push_back({{i, row.j, k}, c, price_J});
-        }
-      }
-      row_ = next;
-      if (looks <= 0 && row_ < rows) return;
-    }
-    row_ = -1;
-    if (looks <= 0) {
-      ++slice_;
-      if (slice_ < slice_end_) return;
-      break;
-    }
-  }
+  if (!passing_ && !beginWhereNeeded(bricks, now)) return;
+  Tick tick{grid, bricks, lookup, tissues, removed, geometry_.voxelVolume_mm3(), looks_};
+  if (!sweepSlices(tick)) return;
   paid_ = true;  // waited for, but paid in the end
   end(now);
+}
+
+// False where the tool stands still, or where there is no tissue on its way, and nothing is left to
+// be cleared.
+bool Removal::beginWhereNeeded(const TissueBricks& bricks, const Capsule& now) {
+  const bool all = known_ && clear_.radius >= radius_mm_;
+  if (all && moved(clear_, now) < still_mm_) return false;
+  if (all && !mayMeetTissue(bricks, now)) {
+    clear_ = now;
+    return false;
+  }
+  begin(now);
+  return true;
+}
+
+// The slices of the pass that are left. False where it goes on in the next tick: work is short, or
+// this tick has looked at enough.
+bool Removal::sweepSlices(Tick& tick) {
+  while (slice_ < slice_end_) {
+    if (!sweepSlice(tick)) return false;
+    row_ = -1;
+    ++slice_;
+    if (tick.looks <= 0 && slice_ < slice_end_) return false;
+  }
+  return true;
+}
+
+bool Removal::sweepSlice(Tick& tick) {
+  const int k = backwards_ ? high_[2] - slice_ : low_[2] + slice_;
+  if (row_ < 0) {
+    const Indices rows = indices(solid_.band(k * spacing_mm_.z), per_spacing_.y, geometry_.size[1]);
+    low_[1] = rows.first;
+    high_[1] = rows.last;
+    row_ = 0;
+  }
+  const int rows = high_[1] - low_[1] + 1;
+  while (row_ < rows) {
+    // A batch of rows at a time: their first voxels are on the way while the others are found.
+    std::array<Row, kBatch> batch;
+    int next = row_;
+    const std::size_t count = findRows(tick, k, rows, next, batch);
+    for (std::size_t n = 0; n < count; ++n) {
+      if (sweepRow(tick, batch[n])) continue;
+      row_ = batch[n].number;  // goes on here in the next tick
+      return false;
+    }
+    row_ = next;
+    if (tick.looks <= 0 && row_ < rows) return false;
+  }
+  return true;
+}
+
+// The next rows of slice k that the solid crosses, from row `next` of `rows` on; returns how many
+// they are. Rows of bricks that hold no tissue are passed over together.
+std::size_t Removal::findRows(Tick& tick, int k, int rows, int& next, std::span<Row> batch) const {
+  const int row_looks = (goal_.isSphere() ? kLooksPerRow : 2 * kLooksPerRow) * solid_.places();
+  const double z = k * spacing_mm_.z;
+  std::size_t count = 0;
+  for (const int first_row = next; count < batch.size() && next < rows; ++next) {
+    const int j = backwards_ ? high_[1] - next : low_[1] + next;
+    const int in_brick = j & (kBrickEdge - 1);
+    if (next == first_row || in_brick == (backwards_ ? kBrickEdge - 1 : 0)) {
+      const int more = backwards_ ? in_brick : kBrickEdge - 1 - in_brick;
+      const Vec3 first(low_[0], backwards_ ? j - more : j, k);
+      const Vec3 last(high_[0] - 1, (backwards_ ? j : j + more) - 1, k - 1);
+      if (!tick.bricks.mayHold(first, last)) {
+        next += more;
+        tick.looks -= kLooksPerRow;
+        continue;
+      }
+    }
+    tick.looks -= row_looks;
+    Row& row = batch[count];
+    const double y = j * spacing_mm_.y;
+    row.all = indices(solid_.row(y, z), per_spacing_.x, geometry_.size[0]);
+    if (row.all.first > row.all.last) continue;
+    row.clear = known_ ? indices(cleared_.row(y, z), per_spacing_.x, geometry_.size[0]) : Indices{};
+    row.j = j;
+    row.k = k;
+    row.number = next;
+    row.voxel = geometry_.indexOf(0, j, k);
+    tick.grid.prefetch(row.voxel + std::size_t(row.all.first));
+    tick.grid.prefetch(row.voxel + std::size_t(row.all.last));
+    ++count;
+  }
+  return count;
+}
+
+// Takes what of a row may be cut and is paid for. False at the first voxel that is not paid for, or
+// that is one too many for a tick.
+bool Removal::sweepRow(Tick& tick, const Row& row) {
+  for (int i = row.all.first; i <= row.all.last; ++i) {
+    if (i >= row.clear.first && i <= row.clear.last) {
+      i = row.clear.last;
+      continue;
+    }
+    --tick.looks;
+    const std::size_t voxel = row.voxel + std::size_t(i);
+    const std::int16_t hu = tick.grid.hu(voxel);
+    const int c = hu == kAirHu ? -1 : tick.lookup.classAt(tick.grid, voxel, hu);
+    if (c < 0 || !tick.tissues.classes[std::size_t(c)].cuttable) continue;
+    const double price_J = cost_J(kind_, tick.tissues.classes[std::size_t(c)], tick.voxel_mm3);
+    const bool pays = affords(price_J);
+    if (!pays) paid_ = false;
+    if (!pays || tick.removed.size() == kMostVoxels) return false;
+    spend(price_J);
+    tick.removed.push_back({{i, row.j, row.k}, c, price_J});
+  }
+  return true;
 }
 
 }  // namespace trephine

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -22,8 +23,8 @@ enum class RemovalKind : std::int32_t { work, instant };
 inline constexpr std::array<std::pair<std::string_view, RemovalKind>, 2> kRemovalNames{
     {{"work", RemovalKind::work}, {"instant", RemovalKind::instant}}};
 
-// A voxel that an arm takes, and what it paid.
-struct Bite {
+// A voxel that a tool takes, and what it paid.
+struct RemovedVoxel {
   Index3 voxel{0, 0, 0};
   std::int32_t tissue_class = 0;
   double cost_J = 0.0;
@@ -31,7 +32,7 @@ struct Bite {
 
 // One tool's removal. It sweeps in passes over the rows of voxels that the solid crosses, a bounded
 // number a tick, so that a tick costs the same on a fine grid as on a coarse one; on the finest a
-// pass takes a few ticks. A pass looks only at what the last one did not clear.
+// pass takes a few ticks. A pass looks only at what the one before did not clear.
 //
 // Where work is short, the nearest to the tool's axis goes first: a pass reaches at most one layer
 // beyond what is clear, up to the tool's radius, so that what is cut is a smaller channel, not a
@@ -42,20 +43,20 @@ class Removal {
   // their centres: thick slices are cut one at a time, thin tools still thinly within them.
   Removal(const Tool& tool, const GridGeometry& geometry, RemovalKind kind, double period_s);
 
-  // Every tick: the work that the tool did in it on tissue that may be cut, or 0; never less. What
-  // is not spent within 50 ms or so is heat: the credit is capped by the work of that time and of
-  // two voxels. `lost_J` is all that has ever gone into tissue: no more than that is spent, though
-  // an arm may have given out since it was earned.
-  void earn(double work_J, double lost_J, const TissueTable& tissues);
+  // Every tick: the cutting work [J, 0 or more] that the tool did in it on tissue that may be cut.
+  // The credit is capped by the work of the last 50 ms (fading with that time constant) and of two
+  // voxels; the rest is heat. `lost_J` is all work that has gone into tissue so far, less what an
+  // arm has given out: no more than that is ever spent.
+  void giveWork(double work_J, double lost_J, const TissueTable& tissues);
   // Goes on with the sweep to this pose; appends what the tool takes, which the caller removes in
-  // this tick, to `bites` (room for kMostBites). No allocation.
+  // this tick, to `removed` (room for kMostVoxels). No allocation.
   void sweep(const Grid& grid, const TissueBricks& bricks, const TissueLookup& lookup,
-             const TissueTable& tissues, const Pose& pose_mm, std::vector<Bite>& bites);
+             const TissueTable& tissues, const Pose& pose_mm, std::vector<RemovedVoxel>& removed);
   // Takes this one voxel, which holds the tool back, if the credit pays for it.
   void take(const Index3& voxel, int tissue_class, const TissueTable& tissues,
-            std::vector<Bite>& bites);
-  // A voxel was shared with another tool, or could not be removed.
-  void refund(double work_J) { spend(-work_J); }
+            std::vector<RemovedVoxel>& removed);
+  // Work that was paid for a voxel, which was shared with another tool or could not be removed.
+  void returnWork(double work_J) { spend(-work_J); }
   // Tissue came back, or another is meant by a HU: nothing is known to be clear.
   void forget() {
     known_ = false;
@@ -63,15 +64,15 @@ class Removal {
   }
 
   double credit_J() const { return credit_J_; }
-  // As it was before an undo's stroke, or after a redo's: what that stroke spent was not spent, or
-  // was. It fades from there as if just earned.
+  // After an undo the credit before the stroke, after a redo no more than before the undo. It fades
+  // from there as if just given.
   void setCredit(double credit_J) {
     spend(credit_J_ - credit_J);
     recent_J_ = credit_J;
   }
 
-  static constexpr std::size_t kMostBites = 512;  // a tick
-  // No hand is as fast: a pose that jumps sweeps nothing between and does no work.
+  static constexpr std::size_t kMostVoxels = 512;  // a tick
+  // No hand is as fast: beyond this a pose has jumped, sweeps nothing on its way and does no work.
   static constexpr double kFastest_m_s = 5.0;
 
  private:
@@ -82,8 +83,34 @@ class Removal {
   bool affords(double price_J) const {
     return kind_ == RemovalKind::instant || (price_J <= credit_J_ && spent_J_ + price_J <= lost_J_);
   }
+  // Whole voxel indices; empty where first > last.
+  struct Indices {
+    int first = 0, last = -1;
+  };
+  // A row of voxels that the solid crosses, and what of it was cleared before.
+  struct Row {
+    Indices all, clear;
+    int j = 0, k = 0, number = 0;
+    std::size_t voxel = 0;  // linear index of the grid's first in this row
+  };
+  // What a sweep works on in a tick, and how many more voxels it may look at.
+  struct Tick {
+    const Grid& grid;
+    const TissueBricks& bricks;
+    const TissueLookup& lookup;
+    const TissueTable& tissues;
+    std::vector<RemovedVoxel>& removed;
+    double voxel_mm3;
+    int looks;
+  };
+  static Indices indices(const Interval& mm, double per_spacing, int count);
   void begin(const Capsule& now);
   void end(const Capsule& now);
+  bool beginWhereNeeded(const TissueBricks& bricks, const Capsule& now);
+  bool sweepSlices(Tick& tick);
+  bool sweepSlice(Tick& tick);
+  std::size_t findRows(Tick& tick, int k, int rows, int& next, std::span<Row> batch) const;
+  bool sweepRow(Tick& tick, const Row& row);
   bool mayMeetTissue(const TissueBricks& bricks, const Capsule& now) const;
   Capsule capsuleAt(const Pose& pose_mm) const;
 
@@ -92,24 +119,25 @@ class Removal {
   Mat4 patient_to_voxel_;
   RemovalKind kind_;
   Vec3 per_spacing_;  // 1 / mm
-  Vec3 spacing_mm_;  // as the sweep sees it: an axis of thick voxels is shrunk to the tool
+  Vec3
+      spacing_mm_;  // as the sweep sees it: at most the tool's diameter, so that none slips between
   double radius_mm_;
-  double layer_mm_;
-  double still_mm_;
-  int looks_;  // a tick
-  double fading_;          // of recent_J_, a tick
-  double recent_J_ = 0.0;  // work of the last 50 ms, fading
-  double credit_J_ = 0.0;
-  double lost_J_ = 0.0, spent_J_ = 0.0;
+  double layer_mm_;  // by which a pass reaches beyond what is clear: a voxel, a tenth of the radius
+  double still_mm_;  // a tool that moved less stands still: an eighth of a voxel
+  int looks_;        // voxels a tick
+  double fading_;    // factor on recent_J_, a tick
+  double recent_J_ = 0.0;                // work given, fading with a time constant of 50 ms
+  double credit_J_ = 0.0;                // given and not spent
+  double lost_J_ = 0.0, spent_J_ = 0.0;  // since the start
 
   bool known_ = false;  // `clear_` holds: all within it that can be taken has been
   Capsule clear_;
-  bool passing_ = false;
-  bool paid_ = true;    // every voxel of this pass so far
+  bool passing_ = false;    // a pass, to goal_, is not done
+  bool paid_ = true;        // every voxel of this pass so far
   bool backwards_ = false;  // every other pass, so that no side is favoured when work is short
   Capsule goal_;
   std::optional<Capsule> last_;  // in the tick before
-  double farthest_mm_;           // that a tool can go in a tick
+  double farthest_mm_;           // a tick at kFastest_m_s
   SweptSolid solid_;
   CapsuleRows cleared_;
   std::int32_t slice_ = 0, slice_end_ = 0;  // counted from the pass's first

@@ -7,11 +7,13 @@ namespace trephine {
 
 namespace {
 
-constexpr double kRest_s = 0.12;
-constexpr double kFading_s = 0.02;
-constexpr double kTurned = 0.09;        // sine: a force that turns by 5 degrees rests no more,
-constexpr double kTurnedCounts = 1.75;  // unless the diagonal of a count's cube turns it by more
-constexpr double kSlope = 2.0;          // a tissue's slope may be so many times its stiffness
+constexpr double kRest_s = 0.12;    // within one count, before the force is held
+constexpr double kFading_s = 0.02;  // time constant of the jump as a hold ends
+// A force rests while it turns by no more than 5 degrees (sine 0.09) or, where that is more, than
+// the stiffness times 1.75 counts turn it: the diagonal of a count's cube.
+constexpr double kTurned = 0.09;
+constexpr double kTurnedCounts = 1.75;
+constexpr double kSlope = 2.0;  // the slope of a tissue's force may be so many times its stiffness
 constexpr double kRounding = 1.01;
 // A count's cube, seen across some direction, is at most this wide along an axis, in counts.
 constexpr double kAcross = 1.37;

@@ -1,8 +1,8 @@
 // Holding still. A tool that rests on a wall rests between two counts of its encoder, and a force
-// that follows the counts drives it to and fro between them: too little for any observer to see,
-// and for as long as it rests. A force that does not change exchanges nothing over a cycle. So once
-// all samples of a while lie within one count, the force stays what it was on average until one
-// leaves.
+// that follows the counts drives a limit cycle of 20 to 140 um between them, with less energy a
+// cycle than an observer sees. A force that does not change exchanges nothing over a cycle. So once
+// all samples of 0.12 s lie within one count, the force is held at its mean over that time until a
+// sample leaves the count.
 //
 // Not per axis of the encoder but of the contact: along the elastic force, where "the sample" is
 // the force of the spring's own deflection (so a tool that slides over rising ground is followed),
@@ -12,8 +12,8 @@
 // stiffness, a force that changes by two counts' worth rests as well, where the position along it
 // lies within one.
 //
-// A stiffness that comes back while the force is held would make that jump as a count is left: what
-// of the jump is more than a count is worth fades over 20 ms.
+// The rendered stiffness may have risen while the force was held. Of the jump as a count is left,
+// what exceeds the force of one count fades with a time constant of 20 ms.
 #pragma once
 
 #include "base/math.h"
@@ -37,7 +37,7 @@ class RestHold {
     Vec3 sum_N{0.0};  // over the ticks, and while holding their mean
     int ticks = 0;
     bool holding = false;
-    Vec3 fading_N{0.0};  // of the force that was held
+    Vec3 fading_N{0.0};  // what is left of the jump as the hold ended
   };
   // `rests` is asked of how far the samples of the window lie apart on each axis; a count is worth
   // `count_N`.

@@ -6,10 +6,10 @@ namespace trephine {
 
 namespace {
 constexpr double kRampIn_s = 0.2;
-constexpr double kCalm_s = 1.0;
-constexpr double kStallsWithin_s = 30.0;
+constexpr double kCalm_s = 1.0;           // without a late tick, before force comes back
+constexpr double kStallsWithin_s = 30.0;  // three stalls within it keep the force away
 constexpr std::int64_t kLongStall_ns = 2'000'000'000;
-}
+}  // namespace
 
 Vec3 clampForce(const Vec3& force_N, double max_N) {
   if (!isFinite(force_N) || !(max_N > 0.0)) return Vec3(0.0);
@@ -56,8 +56,8 @@ void LatenessRule::tick(std::int64_t late_ns, bool silenced, double period_s) {
   }
 }
 
-Vec3 ForceGate::pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
-                     double period_s) {
+Vec3 OutputLimiter::limit(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
+                          double period_s) {
   if (!open) {
     change();
     return sent_N_ = Vec3(0.0);

@@ -11,25 +11,26 @@ namespace trephine {
 Vec3 clampForce(const Vec3& force_N, double max_N);
 
 // After a change (start, undo, tissue edit, controller, resume) the sent force may rise by at most
-// this until it meets the law again, and for so long at least: a law that happens to be met, since
-// it is zero at rest or dips for a tick, may ask for all of its force a tick later.
+// kSlew until it has reached what is demanded, and for kCatchUp at least: a demand that is zero at
+// rest, or dips for a tick, is reached at once and may be all of the force a tick later.
 constexpr double kSlew_N_per_s = 50.0;  // 0.05 N per ms
 constexpr double kCatchUp_s = 0.5;
 constexpr double kCatchUpAtStart_s = 0.1;  // from rest
 
-// One tick towards `target`: it may fall or turn away at once, but the part along its own direction
-// rises by at most `step_N` above what was sent along that direction before.
+// One tick towards `target_N`: the result has its direction, and is at most `step_N` longer than
+// the part of `sent_before_N` along that direction. It may fall or change its direction at once.
 Vec3 slewTowards(const Vec3& sent_before_N, const Vec3& target_N, double step_N);
 
-// How much of the last force a late tick still sends: held to 5 ms, then ramped to zero at 20 ms.
+// The share of the last force that a late tick still sends: 1 up to 5 ms, then in proportion down
+// to 0 at 20 ms.
 constexpr std::int64_t kHoldLate_ns = 5'000'000;
 constexpr std::int64_t kStallLate_ns = 20'000'000;
 double lateGain(std::int64_t late_ns);
 
-// What lateness does to the force of all arms. A tick more than 20 ms late is a stall: it takes the
-// force away, which comes back once 1 s has passed without a tick more than 5 ms late. The third
-// stall within 30 s, or one of over 2 s, keeps it away until clear(). A function of the lateness
-// and of nothing else, so that a replay does the same.
+// What lateness does to the force of all arms. A tick more than 20 ms late is a stall: the force is
+// zero until 1 s has passed without a tick more than 5 ms late. After the third stall within 30 s,
+// or one of over 2 s, it is zero until clear(). A function of recorded inputs alone, so that a
+// replay does the same.
 class LatenessRule {
  public:
   // Before the forces of a tick. `silenced`: the watchdog took the force away since the last tick,
@@ -43,16 +44,16 @@ class LatenessRule {
 
  private:
   bool away_ = false, kept_ = false;
-  double since_late_s_ = 0.0;   // since a tick was more than 5 ms late
-  double last_stall_s_ = 1e9;   // ago
-  double stall_before_s_ = 1e9; // ago
+  double since_late_s_ = 0.0;    // s since a tick was more than 5 ms late
+  double last_stall_s_ = 1e9;    // s since the last stall
+  double stall_before_s_ = 1e9;  // s since the one before
 };
 
-// Stands between the law and the arm of one hand.
-class ForceGate {
+// The last step before an arm: no force in a pause or a fault, less where a tick is late, a slow
+// rise after a change.
+class OutputLimiter {
  public:
-  // Something changed under the force: rise slowly until the law is met, and for kCatchUp_s at
-  // least.
+  // The demanded force may jump: rise by kSlew until it is reached, and for kCatchUp_s at least.
   void change() { catch_up_s_ = kCatchUp_s; }
   // Voxels were put back: no force until the tool is out of tissue, then ramp in over 0.2 s.
   void restored() {
@@ -70,7 +71,8 @@ class ForceGate {
   }
 
   // The force to send this tick. `open` is false in a pause or a fault.
-  Vec3 pass(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns, double period_s);
+  Vec3 limit(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
+             double period_s);
 
   const Vec3& sent_N() const { return sent_N_; }
   // True after restored() while the tool has not been out of tissue: it must not cut either, or an
@@ -79,8 +81,8 @@ class ForceGate {
 
  private:
   Vec3 sent_N_{0.0};
-  double gain_ = 1.0;
-  double catch_up_s_ = kCatchUpAtStart_s;  // above 0: still catching up
+  double gain_ = 1.0;                      // of a ramp in, to 1 within 0.2 s
+  double catch_up_s_ = kCatchUpAtStart_s;  // above 0: the rise is limited by kSlew
   bool waiting_for_air_ = false;
 };
 

@@ -7,25 +7,26 @@ namespace trephine {
 
 namespace {
 
-// Of a voxel's edge: how far the tool may go before the surface is looked at anew, at least.
+// The tool may travel so far before the surface is searched anew: 1.3 of a voxel's smallest edge,
+// 0.5 mm at least.
 constexpr double kMargin = 1.3;
 constexpr double kLeastMargin_mm = 0.5;
-// Rows of voxels are looked at that are no farther apart than this share of a part's radius, or
-// than this, or than a voxel.
+// Rows of voxels that are looked at lie apart by at most a seventh of a part's radius or 0.4 mm, if
+// that is more; every row, where voxels are larger.
 constexpr double kRowsPerRadius = 1.0 / 7.0;
 constexpr double kLeastRows_mm = 0.4;
-constexpr double kStretch_mm = 8.0;  // of a long part, looked at on its own
+constexpr double kStretch_mm = 8.0;  // a longer part is searched in stretches of this length
 constexpr int kMostAlong = 256, kMostDirections = 16;
 constexpr double kLeastCell_mm = 0.25;
-// Where flat disks meet, those within so many radii have a plane together, if their normals' cosine
-// is at least this; the place that it is of is found in so many rounds.
+// Flat disks within kBlended radii of a touch have a common plane, where the cosine between their
+// normals and the touch's is at least kAlike. The place of the touch follows in kSettled rounds.
 constexpr double kAlike = 0.8;
 constexpr int kSettled = 2;
 constexpr double kBlended = 1.5;
-constexpr double kDisk = 0.5;  // its radius, of the diagonal of the mesh in its plane
-constexpr double kFlatDisk = 1.0;  // where the columns around it are in a plane
-constexpr double kPlate = 0.45;    // half the thickness of one a voxel thick
-constexpr int kPieceWork = 8;      // what a piece costs, in rows
+constexpr double kDisk = 0.5;      // radius of a disk, of the diagonal of the mesh in its plane
+constexpr double kFlatDisk = 1.0;  // the same where the columns around it are in a plane
+constexpr double kPlate = 0.45;    // voxels: half the thickness of a plate as thin as a voxel
+constexpr int kPieceWork = 8;      // work to make a piece, in rows
 
 // The cell of a cube's face that a direction meets, faces of n^2 cells.
 int cellOf(const Vec3& d, int n) {
@@ -82,7 +83,8 @@ Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& b
   const double reach2 = kBlended * kBlended * piece.size_mm * piece.size_mm;
   const Vec3 centre = body.tip_mm + touch.lever_mm + radius_mm * touch.normal;
   Touch out = touch;
-  // The place is that of the plane found, whichever piece led there.
+  // From the second round on the place is that of the common plane, whichever piece the first was
+  // of.
   for (int round = 0; round < kSettled; ++round) {
     const Vec3 at = centre - (radius_mm + out.gap_mm) * out.normal;
     Vec3 normals(0.0);
@@ -310,7 +312,8 @@ int SolidSurface::searchPlane(const TissueAround& tissue, Stretch& stretch) {
   return all;
 }
 
-// Each row from where nothing solid can be outwards to the first that is.
+// Each row from its middle, where the body keeps solid tissue out, outwards to the first solid
+// voxel.
 void SolidSurface::searchRows(const TissueAround& tissue, const Stretch& stretch,
                               std::span<const Row> rows) {
   for (const Row& row : rows) {
@@ -342,7 +345,7 @@ Index3 SolidSurface::rowsApart(double radius_mm) const {
   return apart;
 }
 
-// Keeps the voxel if it is the nearest of its cell: there what is nearest is at the surface.
+// Keeps the voxel if it is the nearest of its cell, which is one at the surface.
 void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   const Vec3 centre = Vec3(voxel[0], voxel[1], voxel[2]) * spacing_mm_;
   const double on_axis =
@@ -382,7 +385,7 @@ void SolidSurface::addPiece(const TissueAround& tissue, const Found& found) {
       cutting != Cutting::nothing && tissue.classes.classes[std::size_t(c)].cuttable != 0;
   Vec3 at = Vec3(i, j, k) * spacing_mm_;
   if (piece.cuttable && cutting == Cutting::driven) {
-    // Nothing slips between balls of this size.
+    // Nothing slips between spheres of this size.
     piece.size_mm = std::max(0.0, half_diagonal_mm_ - radius);
   } else {
     const VoxelSurroundings around(tissue, found.voxel, cells_[found.part].apart, c);

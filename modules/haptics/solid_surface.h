@@ -14,18 +14,18 @@
 namespace trephine {
 
 // A disk on the surface of a voxel of solid tissue that borders on what is not solid, placed within
-// the voxel by partial volume, or a small ball where the voxel has no clear side (a plate as thin as
-// a voxel). Disks of neighbours overlap, so that nothing slips between them.
+// the voxel by partial volume, or a small sphere where the voxel has no clear side (a plate as thin
+// as a voxel). Disks of neighbours overlap, so that nothing slips between them.
 struct SurfacePiece {
   Vec3 at_mm{0.0};         // patient
-  Vec3 normal{0.0};        // out of the tissue; zero: a ball
-  double size_mm = 0.0;    // radius of the disk or ball
-  std::int32_t part = 0;   // of the tool's body, that is near
+  Vec3 normal{0.0};        // out of the tissue; zero: a sphere
+  double size_mm = 0.0;    // radius of the disk or sphere
+  std::int32_t part = 0;   // of the tool's body, to which it is near
   std::uint32_t voxel = 0;
   std::int8_t tissue_class = 0;
   bool cuttable = false;   // by this part
-  bool flat = false;       // and so is what is around it
-  // The proxy's: how near the tool was when it was last looked at, how far it had travelled then.
+  bool flat = false;       // the surface around it is a plane
+  // The proxy's: the gap when it was last looked at, and how far the tool had travelled then.
   double gap_mm = 0.0, travelled_mm = 0.0;
 };
 
@@ -41,7 +41,7 @@ struct PlacedBody {
   static constexpr std::size_t kMost = 4;
   struct Part {
     Vec3 from_mm{0.0}, along_mm{0.0};
-    double per_length2 = 0.0;  // 1 / |along|^2, 0 for a ball
+    double per_length2 = 0.0;  // 1 / |along|^2, 0 for a sphere
     double radius_mm = 0.0;
   };
   std::array<Part, kMost> parts;
@@ -50,17 +50,17 @@ struct PlacedBody {
 };
 
 Touch touchOf(const SurfacePiece& piece, const PlacedBody& body);
-// The same touch, of the plane that the flat pieces around its place have together: one alone is
-// off by a degree or two.
+// The same touch on the common plane of the flat pieces around its place, by weights that fall with
+// distance: a single piece is off by a degree or two.
 Touch blended(const Touch& touch, const SurfacePiece& piece, const PlacedBody& body,
               std::span<const SurfacePiece> pieces);
 
 // Whether a tool removes what it may, by hand or driven by its motor.
 enum class Cutting { nothing, by_hand, driven };
 
-// Gathers the pieces near a tool. Of those that a part of the tool meets from the same side one is
-// enough, the nearest; what another sees first after the tool has moved by `margin_mm` is then off
-// by a fraction of that. No allocation after it is made.
+// Gathers the pieces near a tool. Of those that a part of the tool meets from the same direction
+// only the nearest is kept: after the tool has moved by `margin_mm` another may be nearer, by a
+// fraction of that. No allocation after it is made.
 class SolidSurface {
  public:
   SolidSurface(const Tool& tool, const GridGeometry& geometry);
@@ -78,7 +78,7 @@ class SolidSurface {
   static constexpr int kAll = 1 << 30;
   bool underWay() const { return under_way_; }
   void giveUp() { under_way_ = false; }
-  int work() const { return work_; }  // that the last search took
+  int work() const { return work_; }  // of the last search, about in rows of voxels
 
   // Forgets the pieces that are solid no more.
   void drop(const Grid& grid, const TissueLookup& lookup) {

@@ -5,8 +5,10 @@
 namespace trephine {
 
 CapsuleRows::CapsuleRows(const Capsule& capsule)
-    : capsule_(capsule), ball_(capsule.isBall()), radius2_(capsule.radius > 0.0 ? capsule.radius * capsule.radius : -1.0) {
-  if (ball_) return;
+    : capsule_(capsule),
+      sphere_(capsule.isSphere()),
+      radius2_(capsule.radius > 0.0 ? capsule.radius * capsule.radius : -1.0) {
+  if (sphere_) return;
   axis_ = capsule.to - capsule.from;
   length_ = glm::length(axis_);
   axis_ /= length_;
@@ -45,7 +47,7 @@ Interval CapsuleRows::sideRow(double y, double z) const {
 Interval CapsuleRows::band(double z) const {
   const double r = capsule_.radius;
   const Vec3& from = capsule_.from;
-  if (ball_) {
+  if (sphere_) {
     const double half2 = radius2_ - (z - from.z) * (z - from.z);
     if (!(half2 >= 0.0)) return {};
     return {from.y - std::sqrt(half2), from.y + std::sqrt(half2)};
@@ -67,7 +69,7 @@ double moved(const Capsule& from, const Capsule& to) {
   return std::max(glm::length(to.from - from.from), glm::length(to.to - from.to));
 }
 
-// Two equal balls d apart leave r - sqrt(r^2 - d^2 / 4) between them, r / 30 for d = r / 2.
+// Two equal spheres d apart leave r - sqrt(r^2 - d^2 / 4) between them, r / 30 for d = r / 2.
 void SweptSolid::set(const Capsule& from, const Capsule& to) {
   const double steps = std::ceil(2.0 * moved(from, to) / std::max(to.radius, 1e-6));
   count_ = int(std::clamp(steps, 1.0, double(kMost)));

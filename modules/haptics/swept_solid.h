@@ -14,7 +14,7 @@ namespace trephine {
 struct Capsule {
   Vec3 from{0.0}, to{0.0};
   double radius = 0.0;
-  bool isBall() const { return from == to; }
+  bool isSphere() const { return from == to; }
 };
 
 // From `low` to `high`; empty where low > high.
@@ -37,16 +37,16 @@ class CapsuleRows {
 
   // Where the line along x through (y, z) lies within the capsule.
   Interval row(double y, double z) const {
-    const Interval from = ballRow(capsule_.from, y, z);
-    return ball_ ? from : joined(joined(from, ballRow(capsule_.to, y, z)), sideRow(y, z));
+    const Interval from = sphereRow(capsule_.from, y, z);
+    return sphere_ ? from : joined(joined(from, sphereRow(capsule_.to, y, z)), sideRow(y, z));
   }
   // Bounds of y for the part of the capsule that the plane z cuts; never too narrow.
   Interval band(double z) const;
   const Capsule& capsule() const { return capsule_; }
-  bool isBall() const { return ball_; }
+  bool isSphere() const { return sphere_; }
 
  private:
-  Interval ballRow(const Vec3& centre, double y, double z) const {
+  Interval sphereRow(const Vec3& centre, double y, double z) const {
     const double dy = y - centre.y, dz = z - centre.z;
     const double half2 = radius2_ - dy * dy - dz * dz;
     if (!(half2 >= 0.0)) return {};
@@ -56,16 +56,16 @@ class CapsuleRows {
   Interval sideRow(double y, double z) const;
 
   Capsule capsule_;
-  bool ball_ = true;
+  bool sphere_ = true;
   double radius2_ = -1.0;  // below 0: no radius holds nothing, not even its axis
   // The axis, its length, and what the quadratic of the side needs of it.
   Vec3 axis_{0.0};
   double length_ = 0.0, across2_ = 0.0, per_across2_ = 0.0, per_axis_x_ = 0.0;
 };
 
-// What a capsule sweeps on its way between two places: it stands at up to kMost places between,
-// close enough that what lies between them is within a 1/30 of the radius. The first place itself
-// is not part of it.
+// What a capsule sweeps on its way between two places, as the union of up to kMost capsules along
+// it, so near to each other that the union falls short of the sweep by at most 1/30 of the radius.
+// The first place itself is not part of it.
 class SweptSolid {
  public:
   SweptSolid() = default;

@@ -1,6 +1,6 @@
-// How much tissue each 16^3 brick of the grid may hold, and how much of it is solid: where that is
-// nothing, a tool needs no look at its voxels. Counted before the first tick, and down with every voxel that is removed. What is
-// not known any more is counted anew, a brick a tick.
+// How many voxels of tissue each 16^3 brick of the grid may hold, and how many of them are solid:
+// where none, a tool does not look at its voxels. Counted before the first tick, less one for every
+// voxel that is removed. A brick that became unknown is counted anew, one a tick.
 #pragma once
 
 #include <algorithm>

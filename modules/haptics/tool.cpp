@@ -10,8 +10,8 @@ namespace trephine {
 namespace {
 
 const Vec3 kAlong(0.0, 0.0, 1.0);  // from the tip towards the handle
-// A sharp tip presses with a ball of this radius at least: a normal needs more than a voxel.
-constexpr double kLeastBall_m = 1.5e-3;
+// The least radius of a sharp tip's contact sphere: a normal needs more than a voxel.
+constexpr double kLeastSphere_m = 1.5e-3;
 // Share of the shaft's points in a burr's contact, however many there are; tuned here, uncited.
 constexpr double kShaftShare = 0.1;
 // A shaft is thinner than the hole that its head cuts: by this share, and never thicker than that
@@ -43,7 +43,7 @@ Tool sharpTool(const ToolDescription& d) {
   addLine(tool, Vec3(0.0), 0.001 * d.length_mm * kAlong, d.points, 1.0);
   tool.cutting_points = tool.points_m.size();
   tool.radius_m = tool.point_inset_m = 0.001 * d.radius_mm;
-  tool.ball_radius_m = std::max(kLeastBall_m, tool.radius_m);
+  tool.sphere_radius_m = std::max(kLeastSphere_m, tool.radius_m);
   // A needle opens tissue with its point, a blade along its edge; a blade of one point is its tip.
   const bool edge = d.kind == ToolKind::blade && d.points > 1;
   tool.solid_to_m = (edge ? 0.001 * d.length_mm : 0.0) * kAlong;
@@ -56,7 +56,7 @@ Tool sharpTool(const ToolDescription& d) {
 void addShell(Tool& tool, double radius, double straight, int count, double share) {
   GoldenTurn turn;
   for (int i = 0; i < count; ++i, turn.next()) {
-    // Archimedes: a band of a ball has the area of that of its cylinder, so height measures area.
+    // Archimedes: a band of a sphere has the area of that of its cylinder, so height measures area.
     const double height = (i + 0.5) / count * (2.0 * radius + straight);
     const double level = height < radius              ? height - radius
                          : height > radius + straight ? height - radius - straight
@@ -83,7 +83,7 @@ Tool burr(const ToolDescription& d) {
   }
   tool.solid_from_m = radius * kAlong;
   tool.solid_to_m = (radius + straight) * kAlong;
-  tool.radius_m = tool.ball_radius_m = radius;
+  tool.radius_m = tool.sphere_radius_m = radius;
   tool.blunt = true;
   addBody(tool, length);
   return tool;

@@ -1,5 +1,5 @@
-// Tools: the points with which they touch, the solid with which they cut, the ball with which they
-// press. A tool points along -z of its own frame; its tip is the origin.
+// Tools: the points with which they touch, the solid with which they cut, the contact sphere with
+// which they press. A tool points along -z of its own frame; its tip is the origin.
 #pragma once
 
 #include <string>
@@ -49,13 +49,14 @@ struct Tool {
   // What it cuts: all within radius_m of this segment, tool frame.
   Vec3 solid_from_m{0.0}, solid_to_m{0.0};
   double radius_m = 0.0;
-  // What a solid tissue keeps out: the solid that cuts and, where there is one, the shaft.
+  // What cannot enter solid tissue: the solid that cuts and, where there is one, the shaft.
   std::vector<BodyPart> body;
   // From a point to the surface of the solid: 0 for points on a shell.
   double point_inset_m = 0.0;
-  // The ball with which it presses on elastic tissue touches the tip from inside.
-  double ball_radius_m = 0.0;
-  // A blunt tool is pushed out however deep it sits; a sharp one has parted the tissue.
+  // The contact sphere, with which it presses on elastic tissue, touches the tip from inside.
+  double sphere_radius_m = 0.0;
+  // Elastic tissue pushes a blunt tool out at any depth; a sharp one has cut it open, and the push
+  // fades as it goes in.
   bool blunt = false;
 };
 
@@ -68,7 +69,7 @@ Tool makeNeedle(double length_m, int count = 1);
 // of the trapezoidal rule, so that the sum of point forces goes to the line integral.
 Tool makeBlade(double length_m, int count);
 
-// A ball (or a rod with round ends) that cuts, its shell evenly covered with points, and a shaft.
+// A sphere (or a rod with round ends) that cuts, its shell evenly covered with points, and a shaft.
 Tool makeBurr(double radius_m, int shell_points, int shaft_points, double length_m);
 
 // Errors: BAD_TOOL for a number out of its range above and a burr shorter than its head; `where`

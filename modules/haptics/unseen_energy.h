@@ -1,4 +1,4 @@
-// How much energy an arm may give out before it is a fault.
+// How much energy an arm may give out unseen: the tolerance of every energy account here.
 #pragma once
 
 #include <algorithm>

@@ -82,17 +82,7 @@ Renderable renderableOn(const SceneArm& arm, double rate_hz) {
 }
 
 Impedance demandedOf(const Scene& scene, const Tissue& tissue) {
-  Impedance sum;
-  for (LawKind law : scene.laws) {
-    if (law == LawKind::viscous) sum.damping += tissue.damping_Ns_per_m.value;
-    if (law == LawKind::coulomb) sum.stiffness += tissue.stiffness_N_per_m.value;
-  }
-  // A capsule pushes by the law of rupture, where the scene has it, else as elastic tissue.
-  const bool capsule = tissue.rupture_N && tissue.rupture_N->value > 0.0;
-  const LawKind pushing =
-      capsule && names(scene.laws, LawKind::rupture) ? LawKind::rupture : LawKind::elastic;
-  if (names(scene.laws, pushing)) sum.stiffness += tissue.stiffness_N_per_m.value;
-  return sum;
+  return demandedOf(scene.laws, tissueTable({{}, {tissue}}).classes[0]);
 }
 
 std::vector<BoundedTissue> boundedTissues(const Scene& scene) {

@@ -4,8 +4,8 @@
 
 namespace trephine {
 
-void LiveOperator::targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) {
-  if (script_) script_->targets(tick, hands, arm_count);
+void LiveOperator::setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) {
+  if (script_) script_->setPoints(tick, hands, arm_count);
   live_.refresh();
   for (std::size_t arm = 0; arm < arm_count; ++arm) {
     const LiveHands::Hand& hand = live_.value().hands[arm];

@@ -28,7 +28,7 @@ class LiveOperator : public Operator {
   // the 0.2 s in which the force comes back, or it would plunge into what does not yet push.
   LiveOperator(std::unique_ptr<Operator> script, rt::ParameterSet<LiveHands>& live, double period_s)
       : script_(std::move(script)), live_(live), share_a_tick_(period_s / kComesBack_s) {}
-  void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) override;
+  void setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) override;
   bool command(std::uint64_t tick, Command& out) override;
 
  private:

@@ -164,11 +164,11 @@ ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
   }
 }
 
-void ScriptOperator::targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) {
+void ScriptOperator::setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) {
   const double t = double(tick) * period_s_;
   for (std::size_t arm = 0; arm < arm_count; ++arm) {
-    HandTarget& hand = hands[arm];
-    hand = HandTarget{Pose{}, stiffness_, damping_};
+    OperatorSetPoint& hand = hands[arm];
+    hand = OperatorSetPoint{Pose{}, stiffness_, damping_};
     const Track& track = tracks_[arm];
     if (track.time_s.empty()) continue;
     const auto after = std::upper_bound(track.time_s.begin(), track.time_s.end(), t);

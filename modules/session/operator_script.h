@@ -57,7 +57,7 @@ class ScriptOperator : public Operator {
   // `maps[i]` is arm i's map and `landmarks[i]` the frame in which its waypoints are given.
   ScriptOperator(const OperatorScript& script, const Scene& scene,
                  const std::vector<LandmarkFrame>& landmarks);
-  void targets(std::uint64_t tick, HandTarget* hands, std::size_t arm_count) override;
+  void setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::size_t arm_count) override;
   bool command(std::uint64_t tick, Command& out) override;
 
  private:

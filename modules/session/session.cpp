@@ -173,11 +173,11 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   }
   core_ = std::make_unique<HapticCore>(hapticParameters(scene_), *grid_->takeWriter());
   const std::filesystem::path beside = options.recording.parent_path();
-  const Result<std::filesystem::path> spill_folder = beside.empty() ? temporaryFolder() : beside;
-  if (!spill_folder) return spill_folder.error();
-  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*spill_folder);
-  if (!spill) return spill.error();
-  spill_ = *std::move(spill);
+  const Result<std::filesystem::path> journal_folder = beside.empty() ? temporaryFolder() : beside;
+  if (!journal_folder) return journal_folder.error();
+  Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*journal_folder);
+  if (!journal_file) return journal_file.error();
+  journal_file_ = *std::move(journal_file);
   std::unique_ptr<Operator> script;
   if (options.script) {
     script =

@@ -26,7 +26,7 @@
 #include "session/run_statistics.h"
 #include "training/session_recorder.h"
 #include "volume/grid.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 
 namespace trephine {
 
@@ -141,7 +141,7 @@ class Session {
   HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;
   bool recording_ended_ = false;
-  std::unique_ptr<JournalSpill> spill_;
+  std::unique_ptr<JournalFile> journal_file_;
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
   std::vector<RunWarning> warnings_;

@@ -34,7 +34,8 @@ void Session::record() {
 void Session::drain() {
   const auto slice = std::uint64_t(kFlushEvery_s * scene_.rate_hz);
   for (bool more = true; more;) {
-    if (Status spilled = spill_->service(core_->journal()); !spilled) noteFailure(spilled.error());
+    if (Status served = journal_file_->service(core_->journal()); !served)
+      noteFailure(served.error());
     try {
       TickRecord record;
       while (unflushed_ticks_ < slice && (more = loop_->records().pop(record))) {

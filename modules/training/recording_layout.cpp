@@ -29,6 +29,8 @@ constexpr RecordField kArmFields[] = {
     FIELD(ArmRecord, energy_out_J, f64, 3),
     FIELD(ArmRecord, observer_J, f64, 1),
     FIELD(ArmRecord, alpha, f64, 1),
+    FIELD(ArmRecord, credit_J, f64, 1),
+    FIELD(ArmRecord, learnt_scale, f64, 1),
     FIELD(ArmRecord, rendered_share, f64, 1),
     FIELD(ArmRecord, hand_work_J, f64, 1),
     FIELD(ArmRecord, stored_J, f64, 1),

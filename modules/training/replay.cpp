@@ -7,7 +7,7 @@
 #include "haptics/haptic_core.h"
 #include "scene/scene.h"
 #include "training/recording_layout.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 #include "volume/voxel_slabs.h"
 
 namespace trephine {
@@ -110,11 +110,11 @@ std::optional<ReplayDifference> whatIsLeft(std::span<const Event> events,
 }
 
 // Gets the journal to where it allows at least what it allowed when this was recorded.
-Status serveJournal(HapticCore& core, JournalSpill& spill, std::uint64_t tick,
+Status serveJournal(HapticCore& core, JournalFile& journal_file, std::uint64_t tick,
                     std::uint32_t recorded) {
   constexpr int kTries = 1000;
   for (int tries = 0; (core.journalState() & recorded) != recorded; ++tries) {
-    if (Status served = spill.service(core.journal()); !served) return served;
+    if (Status served = journal_file.service(core.journal()); !served) return served;
     if (tries == kTries) {
       return Error{"NOT_REPLAYABLE",
                    "The recording's tick " + std::to_string(tick) + " tells of a journal (" +
@@ -182,8 +182,8 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();
-  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(*temporary);
-  if (!spill) return spill.error();
+  Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(*temporary);
+  if (!journal_file) return journal_file.error();
   ReplayResult result;
   result.cut_short = !recording.end();
   std::size_t next_event = 0, next_carve = 0;
@@ -213,7 +213,8 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
         if (event.kind == EventKind::command) commands.push_back(event.command);
         if (event.kind == EventKind::silenced) input.silenced = true;
       }
-      if (Status served = serveJournal(core, **spill, recorded.tick, recorded.journal); !served) {
+      if (Status served = serveJournal(core, **journal_file, recorded.tick, recorded.journal);
+          !served) {
         return served.error();
       }
       TickRecord replayed;

@@ -33,7 +33,7 @@ struct ReplayResult {
 // here; `labels` the label map that the session had, as it
 // was read, or null. Errors: WRONG_CASE (another sha256 than recorded), WRONG_LABELS (another label
 // map, one too many, or none), those of fitTo, NOT_REPLAYABLE (the recorder dropped something),
-// BAD_RECORDING, NO_TEMPORARY_FOLDER, those of JournalSpill, CANCELLED.
+// BAD_RECORDING, NO_TEMPORARY_FOLDER, those of JournalFile, CANCELLED.
 Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
                             const LabelMap* labels = nullptr, const Progress& progress = Progress(),
                             const std::string& sha256 = "");

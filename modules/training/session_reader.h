@@ -1,4 +1,5 @@
-// Reads a recording, also one that was cut short or is still being written.
+// Reads a recording, also one that was cut short or is still being written. Older versions come out
+// as the newest has them.
 #pragma once
 
 #include <filesystem>
@@ -27,13 +28,15 @@ class SessionReader {
   // Nothing when the recording was cut short.
   const std::optional<RecordingEnd>& end() const;
 
-  // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read.
+  // Ticks [first, first + count). Errors: BAD_RECORDING, with the first tick that cannot be read,
+  // or where version 5's events cannot.
   Result<std::vector<TickRecord>> ticks(std::uint64_t first, std::uint64_t count) const;
   Result<std::vector<Event>> events() const;
   Result<std::vector<CarveRecord>> carves() const;
 
  private:
   SessionReader();
+  Status moveCredit(std::vector<TickRecord>& ticks) const;
   struct File;
   std::unique_ptr<File> file_;
 };

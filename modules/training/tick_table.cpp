@@ -53,7 +53,10 @@ Status writeTo(const SessionReader& recording, std::ofstream& out, const Progres
         add(first_tick ? Vec3(0.0) : (arm.device_position_m - before_m[i]) / (1.0 / rate_hz));
         before_m[i] = arm.device_position_m;
         add(arm.demanded_N);
-        out << ',' << arm.observer_J << ',' << arm.alpha;
+        // Of the controller in force: `bounded` alone has a learnt scale, which is above 0.
+        const bool bounded = arm.learnt_scale > 0.0;
+        out << ',' << (bounded ? arm.credit_J : arm.observer_J) << ','
+            << (bounded ? arm.learnt_scale : arm.alpha);
         add(arm.bounded_N);
         add(arm.sent_N);
         add(arm.proxy_position_mm);

@@ -10,7 +10,7 @@
 // that stands. Where no other arm's voxels came since its beginning, it is a way back to there;
 // else it becomes a branch of its own, which puts back this stroke's voxels alone.
 //
-// Used by the holder of the grid's write token only (the recorder has log() through JournalSpill).
+// Used by the holder of the grid's write token only (the recorder has log() through JournalFile).
 // After construction nothing here allocates, locks, waits or throws. What another thread decides
 // (room, entries brought back from disk) comes in through hasRoom() and canStep() alone: all else
 // is a function of the calls and of those two answers, so that a recording of them replays bit for
@@ -102,7 +102,7 @@ class CarveJournal {
   std::uint64_t entryCount() const { return log_.size(); }
   std::size_t ramBytes() const;
 
-  // For JournalSpill.
+  // For JournalFile.
   CarveLog& log() { return log_; }
 
  private:

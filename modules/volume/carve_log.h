@@ -1,5 +1,5 @@
 // The voxels that were taken, oldest first: a log that only grows. A ring in memory holds the
-// newest entries; the recorder thread saves them to disk (JournalSpill) and brings old ones back.
+// newest entries; the recorder thread saves them to disk (JournalFile) and brings old ones back.
 // Without it the log ends when the ring is full.
 //
 // Two threads, no lock. The writer (holder of the grid's write token) appends and reads; the

@@ -18,8 +18,6 @@ rm "laws/$law.h" "laws/$law.cpp"
 sed -i "s# *laws/$law.cpp##" CMakeLists.txt
 sed -i -e "\#laws/$law.h#d" -e "s/, $type//; s/$type, //" -e "s/, $law}/}/; s/$law, //" \
   -e "/{\"$law\", LawKind::$law}/s/{\"$law\", LawKind::$law},\{0,1\}//" laws.h
-# The core asks for this law alone by name.
-sed -i "s/names(parameters_.laws, LawKind::$law)/false/" haptic_core.cpp
 for kind in with without; do
   cmake -S "$work/$kind" -B "$work/build-$kind" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DTREPHINE_WINDOW=OFF >/dev/null

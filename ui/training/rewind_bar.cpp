@@ -51,7 +51,7 @@ class TimeSlider : public QSlider {
 
 }  // namespace
 
-std::uint32_t WayBack::before(std::uint32_t now, std::uint32_t by) const {
+std::uint32_t RewindHistory::before(std::uint32_t now, std::uint32_t by) const {
   std::uint32_t second = now;
   for (auto jump = jumps_.rbegin(); jump != jumps_.rend(); ++jump) {
     // Made later than where the way has come; a second that one left was before its jump.
@@ -127,7 +127,7 @@ void RewindBar::showTime(std::uint32_t now, bool going_back) {
 
 void RewindBar::showIdle() {
   now_ = 0;
-  way_back_.forget();
+  rewind_history_.forget();
   setUsable(false);
   had_focus_ = nullptr;
   follow();
@@ -182,12 +182,12 @@ void RewindBar::askChosen() {
 }
 
 void RewindBar::goBack() {
-  ask(way_back_.before(now_, kBack_s));
+  ask(rewind_history_.before(now_, kBack_s));
 }
 
 void RewindBar::ask(std::uint32_t second) {
   keys_.stop();
-  way_back_.went(now_, second);
+  rewind_history_.went(now_, second);
   emit rewindAsked(second);
 }
 

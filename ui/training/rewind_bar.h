@@ -15,7 +15,7 @@ namespace trephine {
 
 // Which second lies so many back for the person at work. Who went from 0:50 to 0:40 and asks for
 // ten more means 0:30, not the 0:41 that the clock would give a second later.
-class WayBack {
+class RewindHistory {
  public:
   void forget() { jumps_.clear(); }
   void went(std::uint32_t from, std::uint32_t to) { jumps_.push_back({from, to}); }
@@ -63,7 +63,7 @@ class RewindBar : public QWidget {
   QSlider* slider_;
   QLabel* time_;
   QTimer keys_;  // runs while more keys may come
-  WayBack way_back_;
+  RewindHistory rewind_history_;
   QWidget* had_focus_ = nullptr;  // and gets it again after going back,
   QWidget* lent_to_ = nullptr;    // unless the person went on from here
   std::uint32_t now_ = 0;

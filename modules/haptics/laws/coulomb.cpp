@@ -6,12 +6,12 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
   for (std::size_t i = 0; i < in.points.size(); ++i) {
     const TouchPoint& p = in.points[i];
     const double k =
-        p.tissue_class >= 0 ? in.share.stiffness * in.tissue(p).stiffness_N_per_m : 0.0;
+        p.tissue_class >= 0 ? in.share.stiffness * impedance(in.tissue(p)).stiffness : 0.0;
     if (!(k > 0.0)) {
       stiffness[i] = 0.0;
       continue;
     }
-    const Vec3 at_m = in.tip_m + p.arm_m;
+    const Vec3 at_m = in.tip_m + p.lever_m;
     const double before = stiffness[i];
     if (before == 0.0) anchors_m[i] = at_m;
     stiffness[i] = k;
@@ -30,7 +30,7 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
     out.elastic_N += force_N;
     out.stiffness += p.weight * k;
     out.stored_J += 0.5 * p.weight * k * glm::dot(stretch_m, stretch_m);
-    out.addElasticTorque(glm::cross(p.arm_m, force_N));
+    out.addElasticTorque(glm::cross(p.lever_m, force_N));
   }
 }
 

@@ -15,6 +15,7 @@ namespace trephine {
 // F its friction [N], both for the whole tool.
 struct CoulombLaw {
   explicit CoulombLaw(std::size_t points = 1) : anchors_m(points), stiffness(points, 0.0) {}
+  static Impedance impedance(const TissueClass& tissue) { return {0.0, tissue.stiffness_N_per_m}; }
   void add(const LawInput& in, ContactForce& out);
   void forget() { stiffness.assign(stiffness.size(), 0.0); }
 

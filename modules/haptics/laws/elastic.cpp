@@ -5,7 +5,7 @@
 namespace trephine {
 
 namespace {
-// Of K r: below this the sum is the rest of pushes from all sides, and its direction means nothing.
+// A push below this share of K r is what is left of pushes from all sides: it gives no normal.
 constexpr double kClear = 0.25;
 }  // namespace
 
@@ -28,7 +28,7 @@ void ElasticLaw::addSolid(const LawInput& in, ContactForce& out) const {
 
 void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   const double size_N = glm::length(in.push.force_N);
-  const double at_centre_N = in.push.at_centre * in.ball_radius_m;
+  const double at_centre_N = in.push.at_centre * in.sphere_radius_m;
   if (!(size_N > 0.0) && !(at_centre_N > 0.0)) {
     forget();
     return;
@@ -36,7 +36,7 @@ void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
   if (size_N > kClear * at_centre_N && stiffness == 0.0) normal = in.push.force_N / size_N;
   Vec3 force_N = in.push.force_N;
   double stored_J = in.push.stored_J;
-  const Vec3 ball_m = in.tip_m + in.ball_m;
+  const Vec3 sphere_m = in.tip_m + in.sphere_m;
   if (in.parts) {
     stiffness = 0.0;
     const bool parts = at_centre_N > size_N;
@@ -54,18 +54,18 @@ void ElasticLaw::addSoft(const LawInput& in, ContactForce& out) {
       depth_m = size_N / k;
     } else {
       if (k > stiffness) depth_m *= stiffness / k;
-      depth_m = std::max(0.0, depth_m - glm::dot(ball_m - centre_m, normal));
+      depth_m = std::max(0.0, depth_m - glm::dot(sphere_m - centre_m, normal));
     }
     stiffness = k;
     force_N = k * depth_m * normal;
     stored_J = 0.5 * k * depth_m * depth_m;
   }
-  centre_m = ball_m;
+  centre_m = sphere_m;
   force_N *= in.share.stiffness;
   out.elastic_N += force_N;
   out.stiffness += in.share.stiffness * in.push.stiffness;
   out.stored_J += in.share.stiffness * stored_J;
-  out.addElasticTorque(glm::cross(in.ball_m, force_N));
+  out.addElasticTorque(glm::cross(in.sphere_m, force_N));
 }
 
 }  // namespace trephine

@@ -4,7 +4,7 @@ namespace trephine {
 
 void RuptureLaw::add(const LawInput& in, ContactForce& out) {
   const auto whole = [this](std::int32_t c) { return !(ruptured >> c & 1u); };
-  if (!in.touching) {  // also where another tool has taken what was pressed in
+  if (!in.touching) {  // also where another tool has removed the tissue that was pressed in
     forget();
     return;
   }
@@ -14,7 +14,7 @@ void RuptureLaw::add(const LawInput& in, ContactForce& out) {
     const double speed = glm::length(in.velocity_m_s);
     stretched = c;
     entry_m = in.tip_m;
-    inwards = speed > 0.0 ? in.velocity_m_s / speed : in.into_m;
+    inwards = speed > 0.0 ? in.velocity_m_s / speed : in.tool_direction;
   }
   const TissueClass& tissue = in.tissues->classes[std::size_t(stretched)];
   const Vec3 stretch_m = in.tip_m - entry_m;
@@ -22,7 +22,8 @@ void RuptureLaw::add(const LawInput& in, ContactForce& out) {
     stretched = -1;
     return;
   }
-  // By the tissue's own stiffness, whatever of it is rendered: the arm must not decide when.
+  // By the tissue's own stiffness, not the rendered one: when it ruptures must not depend on the
+  // arm.
   if (glm::length(stretch_m) * tissue.stiffness_N_per_m >= tissue.rupture_N) {
     ruptured |= 1u << stretched;
     stretched = -1;

@@ -7,6 +7,8 @@
 
 namespace trephine {
 
+struct ElasticLaw;
+
 // A capsule before a sharp tip: elastic up to a force, then it gives way and the force drops
 // (puncture of soft tissue: Okamura, Simone and O'Leary 2004). Where the tip enters a tissue that
 // has a rupture force F_r > 0, f = -k (x - entry) while the tip is pressed further in than there;
@@ -14,13 +16,18 @@ namespace trephine {
 // tip that draws back before that leaves it whole. One capsule at a time.
 struct RuptureLaw {
   explicit RuptureLaw(std::size_t /*points*/ = 1) {}
+  // Of a capsule alone, which pushes by this law and not by the elastic one.
+  using StandsInFor = ElasticLaw;
+  static Impedance impedance(const TissueClass& tissue) {
+    return {0.0, tissue.rupture_N > 0.0 ? tissue.stiffness_N_per_m : 0.0};
+  }
   void add(const LawInput& in, ContactForce& out);
   void forget() { *this = RuptureLaw(); }
 
   std::int32_t stretched = -1;  // the tissue class that is being pressed in
   std::uint32_t ruptured = 0;   // bit c: class c has given way
   Vec3 entry_m{0.0};
-  Vec3 inwards{0.0};            // the way the tip went at the entry
+  Vec3 inwards{0.0};  // unit, the tip's direction of motion at the entry
 };
 
 }  // namespace trephine

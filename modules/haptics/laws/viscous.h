@@ -9,6 +9,7 @@ namespace trephine {
 // tool: f_i = -w_i b_i (v + omega x r_i).
 struct ViscousLaw {
   explicit ViscousLaw(std::size_t /*points*/ = 1) {}
+  static Impedance impedance(const TissueClass& tissue) { return {tissue.damping_Ns_per_m, 0.0}; }
   void add(const LawInput& in, ContactForce& out) const;
   void forget() {}
 };

@@ -95,12 +95,12 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   const Scene fixed = withFixedMaps(scene, of->landmarks);
   Grid grid(Volume(*of->volume), of->labels);
   HapticCore core(hapticParameters(fixed), *grid.takeWriter());
-  std::array<HandTarget, kMaxArms> hands{};
+  std::array<OperatorSetPoint, kMaxArms> set_points{};
   ScriptOperator(*script, fixed, armFrames(scene, of->landmarks))
-      .targets(0, hands.data(), scene.arms.size());
+      .setPoints(0, set_points.data(), scene.arms.size());
   TickInput input;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    input.arms[i].position_m = hands[i].pose_m.position;
+    input.arms[i].position_m = set_points[i].pose_m.position;
   }
   TickRecord record;
   core.tick(input, nullptr, 0, record);
@@ -204,26 +204,27 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
     for (std::size_t p = 0; p < points.size(); ++p) {
       points[p].tissue_class = contact.contact().tissue_class;
       points[p].weight = points.size() == 1 ? 1.0 : tool.weights[p];
-      points[p].arm_m = points.size() == 1 ? Vec3(0.0) : tool.points_m[p];
+      points[p].lever_m = points.size() == 1 ? Vec3(0.0) : tool.points_m[p];
     }
     LawInput input;
     input.points = points;
     input.tissues = &parameters.tissues;
     input.touching = contact.contact().touching();
     input.tip_class = contact.classes()[0];
-    input.ball_radius_m = tool.ball_radius_m;
+    input.sphere_radius_m = tool.sphere_radius_m;
     for (LawKind kind : scene.laws) {
       Law law = makeLaw(kind, points.size());
-      std::optional<StiffnessBall> ball;
+      std::optional<ContactSphere> sphere;
       StiffnessByLabel stiffness;
       if (kind == LawKind::elastic) {
-        ball.emplace(grid.geometry(), 1000.0 * tool.ball_radius_m, ballDirections(tool.blunt));
+        sphere.emplace(grid.geometry(), 1000.0 * tool.sphere_radius_m,
+                       sphereDirections(tool.blunt));
         stiffness.set(parameters.tissues);
       }
       add("law " + nameOf(kLawNames, kind), [&] {
         input.tip_m.x += 1e-6;
-        // Half of the ball in tissue.
-        if (ball) input.push = ball->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
+        // Half of the sphere in tissue.
+        if (sphere) input.push = sphere->push(grid, bricks, stiffness, Vec3(0.0, 0.0, 10.0));
         ContactForce force;
         addLaw(law, input, force);
         keep(force.elastic_N);
@@ -245,12 +246,12 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
       });
     }
     Removal removal(tool, grid.geometry(), scene.removal, parameters.period_s);
-    std::vector<Bite> bites;
-    bites.reserve(Removal::kMostBites);
+    std::vector<RemovedVoxel> removed;
+    removed.reserve(Removal::kMostVoxels);
     Pose moving;
     add("removal sweep", [&] {
       moving.position.x = moving.position.x > 5.0 ? -5.0 : moving.position.x + 0.01;
-      removal.sweep(grid, bricks, lookup, parameters.tissues, moving, bites);
+      removal.sweep(grid, bricks, lookup, parameters.tissues, moving, removed);
     });
     Controller controller =
         makeController(scene.controller, parameters.arms[i].dynamics, parameters.period_s);
@@ -267,10 +268,10 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
       to_controller.last_sent_N = boundForce(controller, to_controller);
       keep(to_controller.last_sent_N);
     });
-    ForceGate gate;
+    OutputLimiter limiter;
     add("clamp and gate", [&] {
-      keep(gate.pass(clampForce(Vec3(4.0, 0.0, 1.0), arm.max_force_N), true, true, 0,
-                     parameters.period_s));
+      keep(limiter.limit(clampForce(Vec3(4.0, 0.0, 1.0), arm.max_force_N), true, true, 0,
+                         parameters.period_s));
     });
   }
 

@@ -1,4 +1,5 @@
-// What the loop, the core, the controller and the gate do with values that no one should give them.
+// What the loop, the core, the controller and the output limiter do with values that no one should
+// give them.
 #pragma once
 
 #include <filesystem>

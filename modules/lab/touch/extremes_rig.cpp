@@ -303,7 +303,7 @@ std::string brokenBy(const std::vector<TickRecord>& trace, const std::vector<Eve
     const double size_N = glm::length(arm.sent_N);
     if (!isFinite(arm.sent_N)) return at("a force that is not finite was sent");
     if (size_N > limit_N) return at("more than the arm's limit was sent");
-    if (!isFinite(arm.energy_out_J) || !isFinite(arm.observer_J)) {
+    if (!isFinite(arm.energy_out_J) || !isFinite(arm.observer_J) || !isFinite(arm.credit_J)) {
       return at("an energy was not finite");
     }
     if (arm.faults && (size_N > 0.0 || arm.removed_voxels > 0)) {

@@ -78,8 +78,8 @@ Run run(const Setup& setup);
 
 // The first thing in a trace of arm 0 that no tick may do, as a clause; empty when there is none.
 // Sent forces are finite and at most `limit_N`, energies are finite, a fault lets nothing act, and
-// after a change the sent force rises no faster than the gate's limit until it meets the law.
-// `events`: the commands among them are the changes, besides the start.
+// after a change the sent force rises no faster than the output limiter's limit until it meets the
+// law. `events`: the commands among them are the changes, besides the start.
 std::string brokenBy(const std::vector<TickRecord>& trace, const std::vector<Event>& events,
                      double limit_N);
 

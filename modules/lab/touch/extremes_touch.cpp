@@ -162,7 +162,7 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
     result.beyond_share = beyond_mm / allowed_mm;
     result.beyond_mm = beyond_mm;
     result.push_N = push_N;
-    result.learnt = arm.alpha;
+    result.learnt = arm.learnt_scale;
   }
   return result;
 }

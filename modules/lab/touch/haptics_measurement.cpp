@@ -17,7 +17,7 @@
 #include "haptics/haptic_core.h"
 #include "lab/common/quantile.h"
 #include "lab/common/shell_phantom.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 
 namespace trephine {
 
@@ -141,7 +141,7 @@ Status check(const HapticsOptions& options) {
 
 // All rows of one box; the grids take turns, so that what else the machine does meets them alike.
 Status measureBox(const HapticsOptions& options, double box_mm,
-                  const std::filesystem::path& spill_folder, const Progress& progress,
+                  const std::filesystem::path& journal_folder, const Progress& progress,
                   HapticsMeasurement& out) {
   std::vector<std::unique_ptr<Grid>> grids;
   for (int size : options.grids) {
@@ -163,7 +163,7 @@ Status measureBox(const HapticsOptions& options, double box_mm,
           progress.at((1.0 - kSlidingShare) * double(out.rows.size()) / double(rows),
                       row.tool + " " + touchPhaseName(phase));
           Result<HapticsRow> measured =
-              measureHapticsRow(row, *grids[g], options.ticks, spill_folder, progress);
+              measureHapticsRow(row, *grids[g], options.ticks, journal_folder, progress);
           if (!measured) return measured.error();
           out.rows.push_back(*measured);
         }
@@ -222,10 +222,10 @@ Volume hapticsVolume(int grid, double box_mm) {
 }
 
 Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
-                                     const std::filesystem::path& spill_folder,
+                                     const std::filesystem::path& journal_folder,
                                      const Progress& progress) {
-  Result<std::unique_ptr<JournalSpill>> spill = JournalSpill::create(spill_folder);
-  if (!spill) return spill.error();
+  Result<std::unique_ptr<JournalFile>> journal_file = JournalFile::create(journal_folder);
+  if (!journal_file) return journal_file.error();
   const EllipsoidShell shell;
   std::vector<std::pair<std::uint32_t, std::int16_t>> changed;
   std::vector<double> ns;
@@ -259,7 +259,7 @@ Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
       for (const CarveRecord& carve : core.carves()) {
         changed.emplace_back(carve.voxel, carve.old_hu);
       }
-      if (n % kServeEvery == 0) served = (*spill)->service(core.journal());
+      if (n % kServeEvery == 0) served = (*journal_file)->service(core.journal());
       if (n < 0) continue;
       row.touched += touching;
       const bool counts = row.phase == TouchPhase::free || touching || !core.carves().empty();
@@ -324,11 +324,11 @@ Result<HapticsMeasurement> measureHaptics(const HapticsOptions& options,
   if (!out.empty()) {
     if (Status made = makeFolder(out); !made) return made.error();
   }
-  const Result<std::filesystem::path> spill_folder = out.empty() ? temporaryFolder() : out;
-  if (!spill_folder) return spill_folder.error();
+  const Result<std::filesystem::path> journal_folder = out.empty() ? temporaryFolder() : out;
+  if (!journal_folder) return journal_folder.error();
   HapticsMeasurement result;
   for (double box_mm : options.boxes_mm) {
-    const Status measured = measureBox(options, box_mm, *spill_folder, progress, result);
+    const Status measured = measureBox(options, box_mm, *journal_folder, progress, result);
     if (!measured) return measured.error();
   }
   Result<SlidingMeasurement> sliding =

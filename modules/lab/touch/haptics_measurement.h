@@ -51,9 +51,9 @@ struct HapticsMeasurement {
 };
 
 // Runs one row (its tool, arms and phase) in a grid over the top of the shell, which is as before
-// afterwards. Errors: CANCELLED, CANNOT_WRITE (the journal is spilled into `spill_folder`).
+// afterwards. Errors: CANCELLED, CANNOT_WRITE (the journal is kept in `journal_folder`).
 Result<HapticsRow> measureHapticsRow(HapticsRow row, Grid& grid, int ticks,
-                                     const std::filesystem::path& spill_folder,
+                                     const std::filesystem::path& journal_folder,
                                      const Progress& progress = Progress());
 
 // From the times of the ticks that count.

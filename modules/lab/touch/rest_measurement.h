@@ -1,5 +1,6 @@
 // The set `rest` of the stability laboratory: tools that hands hold in tissue. Not a cell in one
-// dimension but the real core with its proxy, laws, controller and gate, in two kinds of places:
+// dimension but the real core with its proxy, laws, controller and output limiter, in two kinds of
+// places:
 //   scenes   the shipped scenes that are not the seed paper's, in their built-in case, all arms at
 //            once: where the hands' devices have their origins, and pressed into each tissue that
 //            lies before the first solid one and into that, beside each other, by hands of 300, 600

@@ -161,7 +161,7 @@ TEST(BoundedController, PassesASoftTissueOnAFineEncoderNearlyUnchanged) {
       }
     }
     EXPECT_LT(worst, 0.04) << "b " << tissue.damping << ", k " << tissue.stiffness;
-    EXPECT_EQ(touch.controller.alpha(), 1.0);
+    EXPECT_EQ(touch.controller.learntScale(), 1.0);
   }
 }
 
@@ -296,9 +296,9 @@ TEST(BoundedController, NeverExceedsThePeakAndStaysFiniteWhateverThePose) {
       sent_N = controller.bound(in);
       ASSERT_TRUE(isFinite(sent_N)) << "run " << run << " tick " << i;
       ASSERT_LE(glm::length(sent_N), dynamics.peak_force_N * (1.0 + 1e-12));
-      ASSERT_TRUE(isFinite(controller.energy_J()));
-      ASSERT_GT(controller.alpha(), 0.0);
-      ASSERT_LE(controller.alpha(), 1.0);
+      ASSERT_TRUE(isFinite(controller.credit_J()));
+      ASSERT_GT(controller.learntScale(), 0.0);
+      ASSERT_LE(controller.learntScale(), 1.0);
     }
   }
 }
@@ -366,8 +366,8 @@ TEST(BoundedController, IsTheSameInEveryDirection) {
         forces += glm::length(sent_N);
       }
       EXPECT_GT(forces, 10.0) << "there was something to compare";
-      EXPECT_LT(straight.alpha(), 1.0) << "and to learn";
-      EXPECT_DOUBLE_EQ(straight.alpha(), turned.alpha());
+      EXPECT_LT(straight.learntScale(), 1.0) << "and to learn";
+      EXPECT_DOUBLE_EQ(straight.learntScale(), turned.learntScale());
     }
   }
 }
@@ -381,7 +381,7 @@ TEST(BoundedController, HoardsNoCreditInMinutesOfCutting) {
       dissipated_J += touch.tissue.damping * moved * moved / kT;
       x += moved;
       touch.at(x - 0.006);
-      most_J = std::max(most_J, touch.controller.energy_J());
+      most_J = std::max(most_J, touch.controller.credit_J());
     }
     EXPECT_GT(dissipated_J, 1.0);
     EXPECT_GT(most_J, 0.0);
@@ -408,17 +408,18 @@ TEST(BoundedController, TakesWhatTheSpringHoldsForPutInWhereItBeginsInContact) {
   Touch touch(arm(0.045, 0.0), {0.5, 500.0});
   for (int i = 0; i < 300; ++i) touch.at(-0.01e-3 * i);
   touch.controller.forget();
-  EXPECT_EQ(touch.controller.energy_J(), 0.0);
+  EXPECT_EQ(touch.controller.credit_J(), 0.0);
   touch.sent_N = Vec3(0.0);  // the core sends nothing in the tick of a resume
   touch.at(-0.003);
-  EXPECT_NEAR(touch.controller.energy_J(), 0.5 * 500.0 * 0.003 * 0.003, 1e-9);
-  EXPECT_NEAR(touch.sent_N.x, 1.5, 0.1) << "the force is there at once: the gate lets it in slowly";
+  EXPECT_NEAR(touch.controller.credit_J(), 0.5 * 500.0 * 0.003 * 0.003, 1e-9);
+  EXPECT_NEAR(touch.sent_N.x, 1.5, 0.1)
+      << "the force is there at once: the limiter lets it in slowly";
 }
 
-// An arm under a hand, with the gate that stands behind the controller in the core.
+// An arm under a hand, with the limiter that stands behind the controller in the core.
 struct GatedArm {
   Controller controller;
-  ForceGate gate;
+  OutputLimiter limiter;
   double mass_kg = 0.045, x = 0.002, v = 0.0, last_m = 0.002;
   double encoder_m, demanded_N = 0.0;
   bool open = true;
@@ -433,7 +434,7 @@ struct GatedArm {
     in.touching = sample < 0.0;
     in.position_m.x = sample;
     in.velocity_m_s.x = (sample - last_m) / kT;
-    in.last_sent_N = gate.sent_N();
+    in.last_sent_N = limiter.sent_N();
     last_m = sample;
     const Impedance tissue = in.touching ? Impedance{2.0, 650.0} : Impedance{};
     const Impedance allowed = limitImpedance(controller, tissue);
@@ -441,9 +442,9 @@ struct GatedArm {
     in.rendered = springAndDamper({-allowed.stiffness * sample, 0.0, 0.0}, allowed.stiffness,
                                   allowed.damping);
     demanded_N = in.demanded_N.x;
-    const Vec3 before_N = gate.sent_N();
+    const Vec3 before_N = limiter.sent_N();
     const Vec3 bounded_N = clampForce(boundForce(controller, in), 3.3);
-    const double sent_N = gate.pass(bounded_N, in.touching, open, 0, kT).x;
+    const double sent_N = limiter.limit(bounded_N, in.touching, open, 0, kT).x;
     for (int i = 0; i < 20; ++i) {  // the arm takes a force a sample late
       const double pull = -hand.stiffness * (x + 0.004) - hand.damping * v;
       v += kT / 20 * (before_N.x + pull) / mass_kg;
@@ -454,7 +455,7 @@ struct GatedArm {
 };
 
 void expectForceBackSoon(GatedArm& held, const char* after) {
-  double before_N = held.gate.sent_N().x, last_step_N = 0.0;
+  double before_N = held.limiter.sent_N().x, last_step_N = 0.0;
   int alternations = 0;
   for (int i = 0; i < 2000; ++i) {
     const double sent_N = held.tick(), step_N = sent_N - before_N;
@@ -478,13 +479,13 @@ TEST(BoundedController, GivesTheForceBackSoonAfterAResumeAndAfterASwitchInsideAT
     for (int i = 0; i < 1000; ++i) resumed.tick();
     resumed.open = true;
     forgetController(resumed.controller);
-    resumed.gate.change();
+    resumed.limiter.change();
     expectForceBackSoon(resumed, "a resume");
 
     GatedArm switched(ControllerKind::off, step_m);
     for (int i = 0; i < 2000; ++i) switched.tick();
     switched.controller = makeController(ControllerKind::bounded, arm(0.045, step_m, 1), kT);
-    switched.gate.change();
+    switched.limiter.change();
     expectForceBackSoon(switched, "a switch");
   }
 }
@@ -560,13 +561,14 @@ struct Turned {
       const double pull_N = kK_N_per_m * pressed_m + std::max(0.0, 0.001 * i - 1.0);
       in.velocity_m_s.x = (-pressed_m - in.position_m.x) / kT;
       in.position_m.x = -pressed_m;
-      in.turned_J = i > 1000 && told ? (pull_N * pull_N - last_N * last_N) / (2.0 * kK_N_per_m) : 0.0;
+      in.rotation_work_J =
+          i > 1000 && told ? (pull_N * pull_N - last_N * last_N) / (2.0 * kK_N_per_m) : 0.0;
       const Impedance allowed = controller.limit({0.0, kK_N_per_m});
       in.demanded_N.x = pull_N;
       in.rendered = springAndDamper(in.demanded_N * (allowed.stiffness / kK_N_per_m), allowed.stiffness, 0.0);
       in.last_sent_N = controller.bound(in);
       if (i > 1100) least_N = std::min(least_N, in.last_sent_N.x);
-      alpha = controller.alpha();
+      alpha = controller.learntScale();
       last_N = pull_N;
     }
   }
@@ -609,19 +611,19 @@ struct HeldArm {
 
 TEST(BoundedController, RendersLessOnceAHandShakesAndMoreAgainAfterTimeInAir) {
   HeldArm shaking(0.02);
-  EXPECT_EQ(shaking.touch.controller.alpha(), 1.0);
+  EXPECT_EQ(shaking.touch.controller.learntScale(), 1.0);
   shaking.hold(1500);
-  const double learnt = shaking.touch.controller.alpha();
+  const double learnt = shaking.touch.controller.learntScale();
   EXPECT_LT(learnt, 0.9);
   EXPECT_TRUE(shaking.parts_seen & kPartLearned);
   EXPECT_LT(shaking.touch.controller.limit({1e9, 0.0}).damping,
             renderable(arm(0.02, kOmniStep_m), 1000.0, 0, {}).b_max);
 
   shaking.inAir(300);
-  const double later = shaking.touch.controller.alpha();
+  const double later = shaking.touch.controller.learntScale();
   EXPECT_GT(later, learnt);
   shaking.inAir(20000);
-  EXPECT_EQ(shaking.touch.controller.alpha(), 1.0);
+  EXPECT_EQ(shaking.touch.controller.learntScale(), 1.0);
 }
 
 TEST(BoundedController, CalmsAnArmThatIsLighterThanItWasTold) {
@@ -654,11 +656,11 @@ TEST(LearntScale, ComesBackInContactToJustBelowWhereSomethingHappened) {
 TEST(BoundedController, RemembersWhatItLearntAfterAnUndo) {
   HeldArm shaking(0.02);
   shaking.hold(1500);
-  const double learnt = shaking.touch.controller.alpha();
+  const double learnt = shaking.touch.controller.learntScale();
   ASSERT_LT(learnt, 1.0);
   shaking.touch.controller.forget();
-  EXPECT_EQ(shaking.touch.controller.alpha(), learnt);
-  EXPECT_EQ(shaking.touch.controller.energy_J(), 0.0);
+  EXPECT_EQ(shaking.touch.controller.learntScale(), learnt);
+  EXPECT_EQ(shaking.touch.controller.credit_J(), 0.0);
 }
 
 TEST(BoundedController, GivesABounceBackNoMoreThanItBrought) {
@@ -722,8 +724,8 @@ TEST(BoundedController, CountsTheEnergyOfAForceInThePeriodInWhichItActs) {
       if (n == kSent + 1) in.last_sent_N.x = force_N;
       controller.limit({});
       controller.bound(in);
-      const double gained_J = controller.energy_J() - before_J;
-      before_J = controller.energy_J();
+      const double gained_J = controller.credit_J() - before_J;
+      before_J = controller.credit_J();
       if (n == kSent + 1 + delay) {
         EXPECT_NEAR(gained_J, -force_N * v * kT, 0.05 * std::abs(force_N * v * kT))
             << "delay " << delay;

@@ -26,21 +26,21 @@ TEST(SeedController, FollowsEquations7To9OnOneAxis) {
   SeedController seed;
   // Port force is the opposite of the arm's. Tick 1: f = 1, v = -0.1: E = -1e-4 J.
   Vec3 out = seed.bound(given({-1, 0, 0}, {-0.1, 0, 0}));
-  EXPECT_NEAR(seed.energy_J(), -1e-4, 1e-18);
+  EXPECT_NEAR(seed.observer_J, -1e-4, 1e-18);
   const double alpha1 = 1e-4 / (kT * 0.01);  // 10 N s/m
-  EXPECT_NEAR(seed.alpha(), alpha1, 1e-9);
+  EXPECT_NEAR(seed.last_alpha, alpha1, 1e-9);
   EXPECT_NEAR(-out.x, 1.0 + alpha1 * -0.1, 1e-9) << "f_c = f + alpha v = 0";
   // Tick 2: f = 2, v = 0.05: E = -1e-4 + (2 * 0.05 + 10 * 0.01) T = 1e-4, so alpha = 0.
   out = seed.bound(given({-2, 0, 0}, {0.05, 0, 0}));
-  EXPECT_NEAR(seed.energy_J(), 1e-4, 1e-15);
-  EXPECT_EQ(seed.alpha(), 0.0);
+  EXPECT_NEAR(seed.observer_J, 1e-4, 1e-15);
+  EXPECT_EQ(seed.last_alpha, 0.0);
   EXPECT_EQ(-out.x, 2.0);
 }
 
 TEST(SeedController, CompensatesAlongTheForceOnly) {
   SeedController seed;
   const Vec3 out = seed.bound(given({-1, 0, 0}, {-0.1, 0.3, 0}));
-  EXPECT_GT(seed.alpha(), 0.0);
+  EXPECT_GT(seed.last_alpha, 0.0);
   EXPECT_EQ(out.y, 0.0);
   EXPECT_EQ(out.z, 0.0);
 }
@@ -49,7 +49,7 @@ TEST(SeedController, AddsNothingWhileTheForceIsZero) {
   SeedController seed;
   seed.observer_J = -1.0;
   EXPECT_EQ(seed.bound(given({0, 0, 0}, {0.1, 0.1, 0})), Vec3(0.0));
-  EXPECT_EQ(seed.alpha(), 0.0);
+  EXPECT_EQ(seed.last_alpha, 0.0);
 }
 
 TEST(SeedController, IsBlindToADamper) {
@@ -59,15 +59,15 @@ TEST(SeedController, IsBlindToADamper) {
     const Vec3 demanded(-40.0 * v, 0, 0);
     EXPECT_EQ(seed.bound(given(demanded, {v, 0, 0})), demanded);
   }
-  EXPECT_GT(seed.energy_J(), 0.0);
+  EXPECT_GT(seed.observer_J, 0.0);
 }
 
 TEST(Controllers, ForgetTheirEnergy) {
   SeedController seed;
   seed.bound(given({-1, 0, 0}, {-0.1, 0, 0}));
   seed.forget();
-  EXPECT_EQ(seed.energy_J(), 0.0);
-  EXPECT_EQ(seed.alpha(), 0.0);
+  EXPECT_EQ(seed.observer_J, 0.0);
+  EXPECT_EQ(seed.last_alpha, 0.0);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(HapticCore, TheBoundedControllerLearnsNothingWhileItsForceIsNotSent) {
     bench.at({0, 0, -3}, {{stop, 0, {}}}, stop == CommandKind::none ? kTooLong_ns : 0);
     wiggle(bench);
     EXPECT_EQ(bench.record.arms[0].sent_N, Vec3(0.0));
-    EXPECT_EQ(bench.record.arms[0].alpha, 1.0);
+    EXPECT_EQ(bench.record.arms[0].learnt_scale, 1.0);
   }
 }
 

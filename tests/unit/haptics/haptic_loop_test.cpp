@@ -10,13 +10,13 @@
 namespace trephine {
 namespace {
 
-// Pushes the hand into the bone and out again, once a second.
+// Pushes the arms into the bone and out again, once a second.
 struct Pusher : Operator {
-  void targets(std::uint64_t tick, HandTarget* hands, std::size_t arms) override {
+  void setPoints(std::uint64_t tick, OperatorSetPoint* of_arms, std::size_t arms) override {
     const double t = double(tick % 1000) / 1000.0;
     const double z_mm = t < 0.5 ? 8 - 30 * t : -7 + 30 * (t - 0.5);
     for (std::size_t i = 0; i < arms; ++i) {
-      hands[i] = {Pose{Vec3(0.004 * double(i), 0, z_mm / 1000.0), Quat(1, 0, 0, 0)}, 800.0, 8.0};
+      of_arms[i] = {Pose{Vec3(0.004 * double(i), 0, z_mm / 1000.0), Quat(1, 0, 0, 0)}, 800.0, 8.0};
     }
   }
   bool command(std::uint64_t tick, Command& out) override {

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "base/rt/alloc_guard.h"
-#include "haptics/stiffness_ball.h"
+#include "haptics/contact_sphere.h"
 #include "haptics_support.h"
 
 namespace trephine {
@@ -138,7 +138,7 @@ TEST(Labels, WhatWasRemovedIsNoTissueAnyMore) {
   stiffness.set(needle.tissues);
   TissueLookup lookup;
   lookup.set(needle.tissues);
-  const ElasticPush push = StiffnessBall(hole.geometry(), 1.0, kBluntDirections)
+  const ElasticPush push = ContactSphere(hole.geometry(), 1.0, kBluntDirections)
                                .push(hole, TissueBricks(hole, lookup), stiffness, {-8, 0, 3});
   EXPECT_EQ(push.at_centre, 0.0);
   EXPECT_EQ(push.force_N, Vec3(0.0));
@@ -206,7 +206,7 @@ ElasticPush pushAt(const Vec3& centre_mm, double radius_mm, const TissueTable& t
   StiffnessByLabel stiffness;
   stiffness.set(tissues);
   static const GridGeometry geometry = block().geometry;
-  return StiffnessBall(geometry, radius_mm, kBluntDirections)
+  return ContactSphere(geometry, radius_mm, kBluntDirections)
       .push(grid, TissueBricks(grid, lookup), stiffness, centre_mm);
 }
 
@@ -235,7 +235,7 @@ TEST(Labels, ACutSurfacePushesFromWhereItIsAlsoWhenTheRangeHoldsAir) {
   lookup.set(liver());
   StiffnessByLabel stiffness;
   stiffness.set(liver());
-  const StiffnessBall ball(grid.geometry(), 4.0, kBluntDirections);
+  const ContactSphere ball(grid.geometry(), 4.0, kBluntDirections);
   for (double depth_mm : {1.0, 2.0}) {
     const Vec3 centre(0.2, 0.1, 4.0 - depth_mm);
     const ElasticPush push = ball.push(grid, TissueBricks(grid, lookup), stiffness, centre);

@@ -25,7 +25,7 @@ struct Case {
     in.tissues = &table;
     in.touching = true;
     in.tip_class = 0;
-    in.into_m = Vec3(0, 0, -1);
+    in.tool_direction = Vec3(0, 0, -1);
   }
   Case(const Case&) = delete;
 
@@ -61,9 +61,9 @@ TEST(ViscousLaw, OpposesTheVelocityWithTheTissuesDamping) {
 // the force and add in the torque, 2 x 0.5 x 10 N s/m x 0.02 m/s x 0.01 m.
 TEST(ViscousLaw, GivesEachPointItsOwnVelocityAndTheTorqueOfAll) {
   Case c(Vec3(0.0), 2);
-  c.points[0].arm_m = {0, 0, 0.01};
-  c.points[1].arm_m = {0, 0, -0.01};
-  for (TouchPoint& p : c.points) p.turning_m_s = glm::cross(Vec3(0, 2, 0), p.arm_m);
+  c.points[0].lever_m = {0, 0, 0.01};
+  c.points[1].lever_m = {0, 0, -0.01};
+  for (TouchPoint& p : c.points) p.rotational_m_s = glm::cross(Vec3(0, 2, 0), p.lever_m);
   const ContactForce turning = contactOf(ViscousLaw{}, c);
   EXPECT_NEAR(glm::length(turning.at(Vec3(0.0))), 0.0, 1e-15);
   EXPECT_NEAR(turning.torque_Nm.y, -0.002, 1e-15);
@@ -81,9 +81,9 @@ TEST(Laws, TheForceAndTorqueAtTheHandleHaveThePowerOfThePoints) {
   double power_W = 0.0;
   for (std::size_t i = 0; i < 5; ++i) {
     TouchPoint& p = c.points[i];
-    p.arm_m = Vec3(0.001 * double(i), -0.002 * double(i), 0.004 * double(i));
-    p.turning_m_s = glm::cross(omega, p.arm_m);
-    const Vec3 v = c.in.velocity_m_s + p.turning_m_s;
+    p.lever_m = Vec3(0.001 * double(i), -0.002 * double(i), 0.004 * double(i));
+    p.rotational_m_s = glm::cross(omega, p.lever_m);
+    const Vec3 v = c.in.velocity_m_s + p.rotational_m_s;
     power_W += glm::dot(-10.0 * p.weight * v, v);
   }
   const ContactForce f = contactOf(ViscousLaw{}, c);
@@ -102,6 +102,23 @@ TEST(Laws, GiveNoForceWithoutContact) {
     EXPECT_EQ(force.at(c.in.velocity_m_s), Vec3(0.0)) << name;
     EXPECT_EQ(force.stiffness, 0.0) << name;
   }
+}
+
+// A capsule pushes by the law of rupture where the scene has it, and else as elastic tissue does.
+TEST(Laws, OfWhichOneStandsInForAnotherDemandATissuesStiffnessOnce) {
+  using enum LawKind;
+  TissueClass capsule{0, 100, 3.0, 200.0, 0.3, 0.5, 0.05, 1, 0}, liver = capsule;
+  liver.rupture_N = 0.0;
+  EXPECT_FALSE(acts({elastic, rupture}, elastic, capsule));
+  EXPECT_TRUE(acts({elastic, rupture}, rupture, capsule));
+  EXPECT_TRUE(acts({elastic, rupture}, elastic, liver));
+  EXPECT_TRUE(acts({viscous, elastic}, elastic, capsule));
+  EXPECT_FALSE(acts({viscous}, elastic, capsule));
+  EXPECT_EQ(demandedOf({elastic, rupture}, capsule).stiffness, 200.0);
+  EXPECT_EQ(demandedOf({elastic, rupture}, liver).stiffness, 200.0);
+  EXPECT_EQ(demandedOf({rupture}, liver).stiffness, 0.0);
+  EXPECT_EQ(demandedOf({viscous, coulomb, elastic, rupture}, capsule).stiffness, 400.0);
+  EXPECT_EQ(demandedOf({viscous, coulomb}, capsule).damping, 3.0);
 }
 
 TEST(CoulombLaw, HoldsAtRestWithoutDrift) {
@@ -193,7 +210,7 @@ TEST(ElasticLaw, GivesThePushOfTheBall) {
 // k = 500, r = 2 mm, soft tissue below z = 0, the ball's centre at z.
 struct BallCase : Case {
   explicit BallCase(double z, double stiffness = 500.0) : Case({0, 0, z}) {
-    in.ball_radius_m = 0.002;
+    in.sphere_radius_m = 0.002;
     const double sum_N = stiffness * std::max(0.0, 0.002 - std::abs(z));
     in.push = {Vec3(0, 0, sum_N), 1e-4, stiffness, z < 0.0 ? stiffness : 0.0};
   }

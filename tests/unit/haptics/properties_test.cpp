@@ -200,7 +200,8 @@ TEST(Touch, GivesTheSameBitsInEveryBuild) {
     for (const Vec3& v : {arm.demanded_N, arm.bounded_N, arm.sent_N, arm.energy_out_J}) {
       numbers.insert(numbers.end(), {v.x, v.y, v.z});
     }
-    numbers.insert(numbers.end(), {arm.cutting_credit_J, arm.alpha, double(arm.removed_voxels)});
+    numbers.insert(numbers.end(),
+                   {arm.cutting_credit_J, arm.learnt_scale, double(arm.removed_voxels)});
   }
   EXPECT_GT(core.journal().removed(0, 0) + core.journal().removed(0, 1), 100u);
   EXPECT_EQ(sha256Hex(numbers.data(), numbers.size() * sizeof(double)),

@@ -111,20 +111,20 @@ TEST(Removal, SpendsAgainAfterAnUndoWhatTheUndoneStrokeSpent) {
   tissues.classes[0].cutting_J_per_mm3 = 0.06;
   Removal removal(burrStroke(0.0, 1.0).tool, bone.geometry, RemovalKind::work, 1e-3);
   const double price_J = 0.06 * bone.geometry.voxelVolume_mm3();
-  removal.earn(1.5 * price_J, 1.5 * price_J, tissues);
+  removal.giveWork(1.5 * price_J, 1.5 * price_J, tissues);
   const double before_J = removal.credit_J();
-  std::vector<Bite> bites;
-  removal.take({1, 1, 1}, 0, tissues, bites);
-  removal.take({1, 1, 2}, 0, tissues, bites);
-  ASSERT_EQ(bites.size(), 1u) << "it pays for one";
+  std::vector<RemovedVoxel> removed;
+  removal.take({1, 1, 1}, 0, tissues, removed);
+  removal.take({1, 1, 2}, 0, tissues, removed);
+  ASSERT_EQ(removed.size(), 1u) << "it pays for one";
   removal.setCredit(before_J);
-  removal.take({1, 1, 2}, 0, tissues, bites);
-  EXPECT_EQ(bites.size(), 2u);
+  removal.take({1, 1, 2}, 0, tissues, removed);
+  EXPECT_EQ(removed.size(), 2u);
   // And after a redo it has spent it.
   removal.setCredit(before_J - price_J);
   removal.setCredit(before_J - price_J);
-  removal.take({1, 1, 3}, 0, tissues, bites);
-  EXPECT_EQ(bites.size(), 2u);
+  removal.take({1, 1, 3}, 0, tissues, removed);
+  EXPECT_EQ(removed.size(), 2u);
 }
 
 TEST(Removal, AStrokeWithAStrongMotorTakesTheSameOnAnyGridAndAtAnyRate) {
@@ -400,16 +400,16 @@ TEST(Removal, LeavesNothingOnItsAxisWhenWorkWasShortAtFirst) {
   const TissueBricks bricks(grid, lookup);
   Removal removal(blade, grid.geometry(), RemovalKind::work, 1e-3);
   Grid::Writer writer = *grid.takeWriter();
-  std::vector<Bite> bites;
-  bites.reserve(Removal::kMostBites);
+  std::vector<RemovedVoxel> removed;
+  removed.reserve(Removal::kMostVoxels);
   const Vec3 on_a_voxel = grid.geometry().toPatient_mm({32, 32, 2});
   for (int n = 0; n < 400; ++n) {
     // It comes down along a row that it had no work for.
     const Vec3 at = on_a_voxel + Vec3(0, 0, std::max(0.0, 0.05 * (20 - n)));
-    removal.earn(n < 30 ? 0.0 : 1.0, 1e3, table);
-    bites.clear();
-    removal.sweep(grid, bricks, lookup, table, {at, {1, 0, 0, 0}}, bites);
-    for (const Bite& b : bites) writer.store(b.voxel[0], b.voxel[1], b.voxel[2], kAirHu);
+    removal.giveWork(n < 30 ? 0.0 : 1.0, 1e3, table);
+    removed.clear();
+    removal.sweep(grid, bricks, lookup, table, {at, {1, 0, 0, 0}}, removed);
+    for (const RemovedVoxel& r : removed) writer.store(r.voxel[0], r.voxel[1], r.voxel[2], kAirHu);
   }
   for (int k = 3; k < 26; ++k) EXPECT_EQ(grid.hu(32, 32, k), kAirHu) << k;
 }
@@ -421,18 +421,18 @@ TEST(Removal, SpendsNothingThatAnArmHasGivenBackSince) {
   lookup.set(table);
   const TissueBricks bricks(grid, lookup);
   Removal removal(burrStroke(3.0, 1.0).tool, grid.geometry(), RemovalKind::work, 1e-3);
-  std::vector<Bite> bites;
-  bites.reserve(Removal::kMostBites);
+  std::vector<RemovedVoxel> removed;
+  removed.reserve(Removal::kMostVoxels);
   const Pose inside{grid.geometry().toPatient_mm({32, 32, 4}), {1, 0, 0, 0}};
-  removal.earn(1.0, 1.0, table);
-  removal.earn(0.0, 0.0, table);  // all of it came back out of the springs
+  removal.giveWork(1.0, 1.0, table);
+  removal.giveWork(0.0, 0.0, table);  // all of it came back out of the springs
   EXPECT_GT(removal.credit_J(), 0.1);
-  removal.sweep(grid, bricks, lookup, table, inside, bites);
-  EXPECT_TRUE(bites.empty());
-  removal.earn(0.0, 0.5, table);
-  for (int n = 0; n < 20; ++n) removal.sweep(grid, bricks, lookup, table, inside, bites);
+  removal.sweep(grid, bricks, lookup, table, inside, removed);
+  EXPECT_TRUE(removed.empty());
+  removal.giveWork(0.0, 0.5, table);
+  for (int n = 0; n < 20; ++n) removal.sweep(grid, bricks, lookup, table, inside, removed);
   double spent_J = 0.0;
-  for (const Bite& bite : bites) spent_J += bite.cost_J;
+  for (const RemovedVoxel& voxel : removed) spent_J += voxel.cost_J;
   EXPECT_GT(spent_J, 0.0);
   EXPECT_LE(spent_J, 0.5);
 }

@@ -58,55 +58,55 @@ TEST(LateGain, HoldsToFiveMillisecondsAndIsZeroAtTwenty) {
   EXPECT_EQ(lateGain(20'000'000), 0.0);
 }
 
-TEST(ForceGate, RisesSlowlyAfterAChangeUntilTheLawIsMet) {
-  ForceGate gate;
+TEST(OutputLimiter, RisesSlowlyAfterAChangeUntilTheLawIsMet) {
+  OutputLimiter limiter;
   double last = 0.0;
   int ticks = 0;
   for (; ticks < 100 && last < 2.0; ++ticks) {
-    const double now = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+    const double now = limiter.limit({2, 0, 0}, true, true, 0, kT).x;
     ASSERT_LE(now - last, kStep + 1e-12);
     last = now;
   }
   EXPECT_EQ(ticks, 40);
-  for (int i = 0; i < 61; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  EXPECT_EQ(gate.pass({3, 0, 0}, true, true, 0, kT).x, 3.0) << "met: follows the law";
-  gate.change();
-  EXPECT_NEAR(gate.pass({3.3, 0, 0}, true, true, 0, kT).x, 3.05, 1e-12);
+  for (int i = 0; i < 61; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(limiter.limit({3, 0, 0}, true, true, 0, kT).x, 3.0) << "met: follows the law";
+  limiter.change();
+  EXPECT_NEAR(limiter.limit({3.3, 0, 0}, true, true, 0, kT).x, 3.05, 1e-12);
 }
 
-TEST(ForceGate, SendsNothingAfterARestoreUntilTheToolIsOutThenRampsIn) {
-  ForceGate gate;
-  for (int i = 0; i < 101; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  gate.restored();
-  for (int i = 0; i < 500; ++i) ASSERT_EQ(gate.pass({2, 0, 0}, true, true, 0, kT), Vec3(0.0));
-  gate.pass({0, 0, 0}, false, true, 0, kT);  // out of tissue
-  const double first = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+TEST(OutputLimiter, SendsNothingAfterARestoreUntilTheToolIsOutThenRampsIn) {
+  OutputLimiter limiter;
+  for (int i = 0; i < 101; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  limiter.restored();
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(limiter.limit({2, 0, 0}, true, true, 0, kT), Vec3(0.0));
+  limiter.limit({0, 0, 0}, false, true, 0, kT);  // out of tissue
+  const double first = limiter.limit({2, 0, 0}, true, true, 0, kT).x;
   EXPECT_GT(first, 0.0);
   EXPECT_LE(first, kStep);
   double force = first;
-  for (int i = 0; i < 200; ++i) force = gate.pass({2, 0, 0}, true, true, 0, kT).x;
+  for (int i = 0; i < 200; ++i) force = limiter.limit({2, 0, 0}, true, true, 0, kT).x;
   EXPECT_EQ(force, 2.0) << "full after 0.2 s";
 }
 
-TEST(ForceGate, IsNotMetByALawThatHappensToBeZero) {
-  ForceGate gate;
-  gate.pass({0, 0, 0}, true, true, 0, kT);  // in tissue, at rest
-  EXPECT_NEAR(gate.pass({3, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
+TEST(OutputLimiter, IsNotMetByALawThatHappensToBeZero) {
+  OutputLimiter limiter;
+  limiter.limit({0, 0, 0}, true, true, 0, kT);  // in tissue, at rest
+  EXPECT_NEAR(limiter.limit({3, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
 }
 
-TEST(ForceGate, IsClosedInAPauseAndRisesSlowlyAfterIt) {
-  ForceGate gate;
-  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  EXPECT_EQ(gate.pass({2, 0, 0}, true, false, 0, kT), Vec3(0.0));
-  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
+TEST(OutputLimiter, IsClosedInAPauseAndRisesSlowlyAfterIt) {
+  OutputLimiter limiter;
+  for (int i = 0; i < 100; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(limiter.limit({2, 0, 0}, true, false, 0, kT), Vec3(0.0));
+  EXPECT_NEAR(limiter.limit({2, 0, 0}, true, true, 0, kT).x, kStep, 1e-12);
 }
 
-TEST(ForceGate, RampsDownWhenATickIsVeryLate) {
-  ForceGate gate;
-  for (int i = 0; i < 101; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  EXPECT_EQ(gate.pass({2, 0, 0}, true, true, 4'000'000, kT).x, 2.0);
-  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 12'500'000, kT).x, 1.0, 1e-12);
-  EXPECT_NEAR(gate.pass({2, 0, 0}, true, true, 0, kT).x, 1.0 + kStep, 1e-12);
+TEST(OutputLimiter, RampsDownWhenATickIsVeryLate) {
+  OutputLimiter limiter;
+  for (int i = 0; i < 101; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(limiter.limit({2, 0, 0}, true, true, 4'000'000, kT).x, 2.0);
+  EXPECT_NEAR(limiter.limit({2, 0, 0}, true, true, 12'500'000, kT).x, 1.0, 1e-12);
+  EXPECT_NEAR(limiter.limit({2, 0, 0}, true, true, 0, kT).x, 1.0 + kStep, 1e-12);
 }
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -177,15 +177,15 @@ TEST(LatenessRule, TakesTheWatchdogsWordForAStallAndCountsItOnce) {
   EXPECT_TRUE(rule.kept());
 }
 
-TEST(ForceGate, ComesBackOverTwoTenthsOfASecond) {
-  ForceGate gate;
-  for (int i = 0; i < 200; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  gate.pass({2, 0, 0}, true, false, 0, kT);
-  gate.rampIn();
-  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  EXPECT_NEAR(gate.sent_N().x, 1.0, 0.02);
-  for (int i = 0; i < 100; ++i) gate.pass({2, 0, 0}, true, true, 0, kT);
-  EXPECT_EQ(gate.sent_N().x, 2.0);
+TEST(OutputLimiter, ComesBackOverTwoTenthsOfASecond) {
+  OutputLimiter limiter;
+  for (int i = 0; i < 200; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  limiter.limit({2, 0, 0}, true, false, 0, kT);
+  limiter.rampIn();
+  for (int i = 0; i < 100; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  EXPECT_NEAR(limiter.sent_N().x, 1.0, 0.02);
+  for (int i = 0; i < 100; ++i) limiter.limit({2, 0, 0}, true, true, 0, kT);
+  EXPECT_EQ(limiter.sent_N().x, 2.0);
 }
 
 }  // namespace

@@ -169,6 +169,8 @@ TEST(TraceOfARun, MustKeepItsEnergiesFinite) {
             "an energy was not finite in tick 9");
   EXPECT_EQ(foundAfter(9, [&](TickRecord& r) { r.arms[0].observer_J = -inf; }),
             "an energy was not finite in tick 9");
+  EXPECT_EQ(foundAfter(9, [&](TickRecord& r) { r.arms[0].credit_J = inf; }),
+            "an energy was not finite in tick 9");
 }
 
 TEST(TraceOfARun, MustRiseSlowlyAfterTheStartAndAfterEveryCommand) {

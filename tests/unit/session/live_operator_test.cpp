@@ -17,9 +17,9 @@ struct Window {
     live.write(hands);
   }
   double z() {
-    std::array<HandTarget, kMaxArms> targets{};
-    oper.targets(tick++, targets.data(), 1);
-    return targets[0].pose_m.position.z;
+    std::array<OperatorSetPoint, kMaxArms> points{};
+    oper.setPoints(tick++, points.data(), 1);
+    return points[0].pose_m.position.z;
   }
   void hold(bool held) {
     hands.hands[0].held = held;

@@ -34,10 +34,10 @@ TEST(ScriptOperator, MovesTheHandInStraightLinesBetweenWaypoints) {
   const LandmarkFrame landmark{Vec3(10, 20, 30), frameAlong({0, 0, 1})};
   scene = withFixedMaps(scene, {{"vault", landmark}});
   ScriptOperator oper(*parseOperatorScript(script(), "s", scene), scene, {landmark, landmark});
-  HandTarget hands[2];
+  OperatorSetPoint hands[2];
   const double off_m = scene.arms[1].map.offset_mm.z / 1000.0;  // the workspace stands off the bone
   for (auto [tick, z_m] : {std::pair{0, 0.010}, {1000, 0.010}, {1500, 0.0}, {2000, -0.010}, {9000, -0.010}}) {
-    oper.targets(std::uint64_t(tick), hands, 2);
+    oper.setPoints(std::uint64_t(tick), hands, 2);
     EXPECT_NEAR(hands[1].pose_m.position.z, z_m - off_m, 1e-12) << tick;
     EXPECT_EQ(hands[1].stiffness_N_per_m, 500);
     EXPECT_EQ(hands[0].pose_m.position, Vec3(0.0)) << "an arm without waypoints rests";

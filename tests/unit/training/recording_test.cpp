@@ -279,10 +279,10 @@ TEST(Recording, OfAToolWithoutAProxyIsRefusedByName) {
   recordRun(folder / "a.h5", 500);
   const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
-  for (int number : {5, 4, 1}) {
+  for (int number : {kRecordingVersion, 4, 1}) {
     ASSERT_GE(H5Awrite(version, H5T_NATIVE_INT, &number), 0);
     H5Fflush(file, H5F_SCOPE_GLOBAL);
-    if (number == 5) {
+    if (number == kRecordingVersion) {
       EXPECT_TRUE(replay(**SessionReader::open(folder / "a.h5"), slab())->identical);
     } else {
       EXPECT_EQ(SessionReader::open(folder / "a.h5").error().code, "OLDER_VERSION");
@@ -302,6 +302,52 @@ TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
   ASSERT_FALSE(reader.ok());
   EXPECT_EQ(reader.error().code, "BAD_RECORDING");
   EXPECT_NE(reader.error().what.find("its end cannot be read"), std::string::npos);
+}
+
+// data/version5.h5 was made by the last program that wrote version 5: 2000 ticks on slab(), the
+// controller `bounded`, from 700 on `seed`, from 1100 on `off`, from 1300 on `bounded`; an undo at
+// 1700.
+TEST(Recording, OfVersion5ReplaysIdentically) {
+  const auto reader = SessionReader::open(TREPHINE_TEST_TRAINING_DATA "/version5.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  ASSERT_EQ((*reader)->tickCount(), 2000u);
+  EXPECT_GT((*reader)->carves()->size(), 20u);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field
+                                                              : "");
+  EXPECT_EQ(result->ticks, 2000u);
+}
+
+TEST(Recording, OfVersion5HasCreditAndLearntScaleInFieldsOfTheirOwn) {
+  const auto reader = SessionReader::open(TREPHINE_TEST_TRAINING_DATA "/version5.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto all = (*reader)->ticks(0, 2000);
+  ASSERT_TRUE(all.ok()) << all.error().sentence();
+  double credit_J = 0.0, observed_J = 0.0, learnt = 1.0;
+  for (const TickRecord& tick : *all) {
+    const ArmRecord& arm = tick.arms[0];
+    const bool bounded = tick.tick < 700 || tick.tick >= 1300;
+    EXPECT_EQ(arm.learnt_scale > 0.0, bounded) << tick.tick;
+    if (bounded) {
+      EXPECT_EQ(arm.observer_J, 0.0) << tick.tick;
+      EXPECT_EQ(arm.alpha, 0.0) << tick.tick;
+      credit_J = std::max(credit_J, arm.credit_J);
+      learnt = std::min(learnt, arm.learnt_scale);
+    } else {
+      EXPECT_EQ(arm.credit_J, 0.0) << tick.tick;
+      observed_J = std::max(observed_J, arm.observer_J);
+    }
+  }
+  EXPECT_GT(credit_J, 1e-5);
+  EXPECT_GT(observed_J, 1e-5);
+  EXPECT_LT(learnt, 1.0);
+  // Whoever reads a part of it gets the same.
+  const auto part = (*reader)->ticks(1290, 20);
+  ASSERT_TRUE(part.ok());
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ((*part)[i].arms[0].credit_J, (*all)[1290 + i].arms[0].credit_J);
+  }
 }
 
 TEST(Recording, RefusesToReplayWhatWasDropped) {

@@ -165,8 +165,8 @@ TEST_F(RewindBarTest, BackTwiceIsTwiceAsFar) {
   EXPECT_EQ(asked_.back(), 0u) << "no further than the beginning";
 }
 
-TEST(WayBack, GoesByTheTimeOfThePersonAtWork) {
-  WayBack way;
+TEST(RewindHistory, GoesByTheTimeOfThePersonAtWork) {
+  RewindHistory way;
   EXPECT_EQ(way.before(50, 10), 40u);
   way.went(50, 40);
   EXPECT_EQ(way.before(50, 10), 30u);

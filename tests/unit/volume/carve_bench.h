@@ -1,4 +1,4 @@
-// A grid with its writer, a journal and, where wanted, a spill, for the tests of removal.
+// A grid with its writer, a journal and, where wanted, a file for it, for the tests of removal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "volume/carve_journal.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 #include "volumes.h"
 
 namespace trephine::test {
@@ -17,14 +17,14 @@ struct CarveBench {
   CarveBench(const Index3& size, std::size_t ring, std::size_t strokes, std::size_t seconds)
       : start(patternVolume(size)), journal(ring, strokes, seconds) {}
 
-  void spillTo(const std::filesystem::path& folder) {
-    auto made = JournalSpill::create(folder);
+  void keepOnDisk(const std::filesystem::path& folder) {
+    auto made = JournalFile::create(folder);
     ASSERT_TRUE(made) << made.error().sentence();
-    spill = std::move(made.value());
+    journal_file = std::move(made.value());
   }
   void service() {
-    if (!spill) return;
-    const Status status = spill->service(journal);
+    if (!journal_file) return;
+    const Status status = journal_file->service(journal);
     ASSERT_TRUE(status) << status.error().sentence();
   }
   // Erases one voxel as a tick does: asks for room first.
@@ -71,7 +71,7 @@ struct CarveBench {
   Grid::Writer writer{std::move(*grid.takeWriter())};
   CarveJournal journal;
   CarveJournal::Credits credits{};
-  std::unique_ptr<JournalSpill> spill;
+  std::unique_ptr<JournalFile> journal_file;
 };
 
 }  // namespace trephine::test

@@ -1,4 +1,4 @@
-#include "haptics/stiffness_ball.h"
+#include "haptics/contact_sphere.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,9 @@ constexpr double kMoment[kParts] = {1.0 / 18.0, 3.0 / 18.0, 9.0 / 72.0, 11.0 / 7
 constexpr std::size_t kMostRays = 128;
 constexpr double kSame = 1e-3;  // HU
 
-double mix(double a, double b, double t) { return a + t * (b - a); }
+double mix(double a, double b, double t) {
+  return a + t * (b - a);
+}
 
 // The lowest of the eight voxels around a place within the grid.
 std::size_t cornerOf(const Vec3& v, std::size_t row, std::size_t slice) {
@@ -33,7 +35,8 @@ double sampleInside(const Grid& grid, std::size_t row, std::size_t slice, const 
   const double tx = v.x - i, ty = v.y - j, tz = v.z - k;
   const std::size_t at = std::size_t(k) * slice + std::size_t(j) * row + std::size_t(i);
   const auto edge = [&](std::size_t n) { return mix(grid.hu(n), grid.hu(n + 1), tx); };
-  return mix(mix(edge(at), edge(at + row), ty), mix(edge(at + slice), edge(at + slice + row), ty), tz);
+  return mix(mix(edge(at), edge(at + row), ty), mix(edge(at + slice), edge(at + slice + row), ty),
+             tz);
 }
 
 // Trilinear anywhere: beyond the grid lies air.
@@ -47,7 +50,7 @@ double sampleAnywhere(const Grid& grid, const Vec3& v) {
              mix(mix(c[4], c[5], t.x), mix(c[6], c[7], t.x), t.y), t.z);
 }
 
-// What the sum asks of the tissue around the ball. A sample is what there is at a place.
+// What the sum asks of the tissue around the sphere. A sample is HU (and labels) at a place.
 struct FieldOfHu {
   using Sample = double;
   using Stiffness = StiffnessOfHu;
@@ -62,7 +65,7 @@ struct FieldOfHu {
   const Grid& grid;
   const Stiffness& stiffness;
   std::size_t row, slice;
-  bool inside;  // of the grid lies all that will be asked for
+  bool inside;  // all places that will be asked for lie within the grid
 };
 
 struct FieldOfLabels {
@@ -121,8 +124,7 @@ struct FieldOfLabels {
     double sum = 0.0;
     for (const Sample* s : {&a, &b}) {
       for (int n = 0; n < s->count; ++n) {
-        sum += s->share[std::size_t(n)] *
-               stiffness.ofRow(s->row[std::size_t(n)]).mean(hu_a, hu_b);
+        sum += s->share[std::size_t(n)] * stiffness.ofRow(s->row[std::size_t(n)]).mean(hu_a, hu_b);
       }
     }
     return 0.5 * sum;
@@ -134,8 +136,9 @@ struct FieldOfLabels {
   bool inside;
 };
 
-// Evenly spread opposite pairs: a spiral of equal areas over the upper half, then let repel each
-// other as equal charges do, which takes the spiral's preference for its axis away.
+// Evenly spread opposite pairs: a spiral of equal areas over the upper half, then 300 steps in
+// which the directions repel each other as equal charges on a sphere do, since the spiral is denser
+// along its axis.
 std::vector<Vec3> oppositePairs(int count) {
   const int half = (count + 1) / 2;
   std::vector<Vec3> pairs;
@@ -157,7 +160,8 @@ std::vector<Vec3> oppositePairs(int count) {
           push += away / (d2 * std::sqrt(d2));
         }
       }
-      moved[std::size_t(i)] = glm::normalize(pairs[std::size_t(i)] + 0.5 / (half * std::sqrt(half)) * push);
+      moved[std::size_t(i)] =
+          glm::normalize(pairs[std::size_t(i)] + 0.5 / (half * std::sqrt(half)) * push);
     }
     pairs = moved;
   }
@@ -202,7 +206,7 @@ double StiffnessOfHu::mean(double hu_a, double hu_b) const {
   return (integral(hu_a) - integral(hu_b)) / (hu_a - hu_b);
 }
 
-StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions)
+ContactSphere::ContactSphere(const GridGeometry& geometry, double radius_mm, int directions)
     : patient_to_voxel_(geometry.patientToVoxel()), radius_m_(radius_mm / 1000.0), reach_(0.0) {
   for (const Vec3& d : oppositePairs(std::min(directions, int(kMostRays)))) {
     const Vec3 reach = d * radius_mm / geometry.spacing_mm;
@@ -211,19 +215,19 @@ StiffnessBall::StiffnessBall(const GridGeometry& geometry, double radius_mm, int
   }
 }
 
-ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::push(const Grid& grid, const TissueBricks& bricks,
                                 const StiffnessOfHu& stiffness, const Vec3& centre_mm) const {
   return pushIn<FieldOfHu>(grid, bricks, stiffness, centre_mm);
 }
 
-ElasticPush StiffnessBall::push(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::push(const Grid& grid, const TissueBricks& bricks,
                                 const StiffnessByLabel& stiffness, const Vec3& centre_mm) const {
   if (stiffness.oneForAll()) return push(grid, bricks, stiffness.ofRow(0), centre_mm);
   return pushIn<FieldOfLabels>(grid, bricks, stiffness, centre_mm);
 }
 
 template <class Field, class Stiffness>
-ElasticPush StiffnessBall::pushIn(const Grid& grid, const TissueBricks& bricks,
+ElasticPush ContactSphere::pushIn(const Grid& grid, const TissueBricks& bricks,
                                   const Stiffness& stiffness, const Vec3& centre_mm) const {
   ElasticPush out;
   const GridGeometry& g = grid.geometry();
@@ -242,7 +246,7 @@ ElasticPush StiffnessBall::pushIn(const Grid& grid, const TissueBricks& bricks,
   Vec3 sum(0.0);
   double energy = 0.0;
   const bool air_at_centre = field.isAir(at_centre);
-  // In three rounds without branches among the look-ups, so that those of many rays overlap.
+  // In three rounds without branches among the look-ups, so that the loads of many rays overlap.
   std::array<std::array<typename Field::Sample, kParts>, kMostRays> met;
   if (inside) {
     for (const Ray& ray : rays_) {
@@ -257,7 +261,8 @@ ElasticPush StiffnessBall::pushIn(const Grid& grid, const TissueBricks& bricks,
   std::array<std::uint8_t, kMostRays> meeting;
   std::size_t count = 0;
   for (std::size_t n = 0; n < rays_.size(); ++n) {
-    // Air at the centre, midway and at the end: what could be between is thinner than half the ball.
+    // Air at the centre, at 2/3 and at 7/6 of the radius: such a ray is left out, though thinner
+    // tissue may lie between.
     const bool air = air_at_centre && field.isAir(met[n][3]) && field.isAir(met[n][1]);
     meeting[count] = std::uint8_t(n);
     count += air ? 0 : 1;

@@ -1,4 +1,4 @@
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 
 #include <fcntl.h>
 #include <stdlib.h>
@@ -47,30 +47,30 @@ int transferAll(Byte* address, std::size_t bytes, std::uint64_t offset, std::siz
 
 }  // namespace
 
-Result<std::unique_ptr<JournalSpill>> JournalSpill::create(const std::filesystem::path& folder) {
+Result<std::unique_ptr<JournalFile>> JournalFile::create(const std::filesystem::path& folder) {
   const int descriptor = openUnnamed(folder);
   if (descriptor < 0) {
     return Error{"CANNOT_WRITE",
                  "The journal of what is removed cannot be kept on disk: " + reason(errno),
                  folder.string(), afterFailedWrite(errno)};
   }
-  return std::unique_ptr<JournalSpill>(new JournalSpill(descriptor, folder));
+  return std::unique_ptr<JournalFile>(new JournalFile(descriptor, folder));
 }
 
-JournalSpill::JournalSpill(int descriptor, std::filesystem::path folder)
+JournalFile::JournalFile(int descriptor, std::filesystem::path folder)
     : descriptor_(descriptor), folder_(std::move(folder)) {}
 
-JournalSpill::~JournalSpill() {
+JournalFile::~JournalFile() {
   ::close(descriptor_);
 }
 
-Status JournalSpill::service(CarveJournal& journal) {
+Status JournalFile::service(CarveJournal& journal) {
   const Status saved = save(journal.log());
   const Status loaded = load(journal.log());
   return saved.ok() ? loaded : saved;
 }
 
-Status JournalSpill::save(CarveLog& log) {
+Status JournalFile::save(CarveLog& log) {
   // Twice: what is not saved may go over the ring's end. What comes meanwhile waits for the next
   // call, so that a fast writer cannot hold the recorder here.
   for (int part = 0; part < 2 && !write_failed_; ++part) {
@@ -94,7 +94,7 @@ Status JournalSpill::save(CarveLog& log) {
   return {};
 }
 
-Status JournalSpill::load(CarveLog& log) {
+Status JournalFile::load(CarveLog& log) {
   std::uint64_t first = 0;
   const auto bytes = std::as_writable_bytes(log.pendingLoad(first));
   if (bytes.empty()) return {};

@@ -10,13 +10,13 @@
 
 namespace trephine {
 
-class JournalSpill {
+class JournalFile {
  public:
   // Makes the file in `folder`, which must exist. Errors: CANNOT_WRITE.
-  static Result<std::unique_ptr<JournalSpill>> create(const std::filesystem::path& folder);
-  ~JournalSpill();
-  JournalSpill(const JournalSpill&) = delete;
-  JournalSpill& operator=(const JournalSpill&) = delete;
+  static Result<std::unique_ptr<JournalFile>> create(const std::filesystem::path& folder);
+  ~JournalFile();
+  JournalFile(const JournalFile&) = delete;
+  JournalFile& operator=(const JournalFile&) = delete;
 
   // Saves what is not saved yet and brings back what is asked for. Called by the recorder thread
   // every 20 ms, always with the same journal.
@@ -27,7 +27,7 @@ class JournalSpill {
   Status service(CarveJournal& journal);
 
  private:
-  JournalSpill(int descriptor, std::filesystem::path folder);
+  JournalFile(int descriptor, std::filesystem::path folder);
   Status save(CarveLog& log);
   Status load(CarveLog& log);
 

@@ -1,4 +1,4 @@
-#include "haptics/stiffness_ball.h"
+#include "haptics/contact_sphere.h"
 
 #include <gtest/gtest.h>
 
@@ -58,32 +58,37 @@ ElasticPush pushOf(const Volume& volume, const Vec3& centre_mm, double radius_mm
   stiffness.set(tissues);
   TissueLookup lookup;
   lookup.set(tissues);
-  return StiffnessBall(grid.geometry(), radius_mm, kBluntDirections)
+  return ContactSphere(grid.geometry(), radius_mm, kBluntDirections)
       .push(grid, TissueBricks(grid, lookup), stiffness, centre_mm);
 }
 
-const Vec3 kNormals[] = {{0, 0, 1}, {1, 0, 0}, glm::normalize(Vec3(1, 1, 0)),
-                         glm::normalize(Vec3(0.3, -0.5, 0.8)), glm::normalize(Vec3(-1, 1, 1))};
+const Vec3 kNormals[] = {{0, 0, 1},
+                         {1, 0, 0},
+                         glm::normalize(Vec3(1, 1, 0)),
+                         glm::normalize(Vec3(0.3, -0.5, 0.8)),
+                         glm::normalize(Vec3(-1, 1, 1))};
 
-TEST(StiffnessBall, PushesByStiffnessTimesDepthAlongTheNormal) {
+TEST(ContactSphere, PushesByStiffnessTimesDepthAlongTheNormal) {
   for (const Vec3& normal : kNormals) {
     for (double spacing : {0.25, 0.5}) {
       const Volume volume = layers(normal, spacing, {{0.0, kSoft}});
       for (double depth_mm : {0.5, 1.0, 1.5, 2.0}) {
         const ElasticPush push = pushOf(volume, normal * (2.0 - depth_mm), 2.0);
-        EXPECT_NEAR(glm::length(push.force_N), 200.0 * depth_mm * 1e-3, 0.01 + 0.05 * 200.0 * depth_mm * 1e-3)
+        EXPECT_NEAR(glm::length(push.force_N), 200.0 * depth_mm * 1e-3,
+                    0.01 + 0.05 * 200.0 * depth_mm * 1e-3)
             << spacing << " " << depth_mm;
         EXPECT_GT(glm::dot(glm::normalize(push.force_N), normal), std::cos(glm::radians(9.0)));
         EXPECT_NEAR(push.stiffness, 200.0, 1e-6);
         // k d^2 / 2, up to 0.15 mm at the surface.
-        EXPECT_NEAR(push.stored_J, 0.5 * 200.0 * std::pow(depth_mm * 1e-3, 2), 200.0 * depth_mm * 1e-3 * 1.5e-4);
+        EXPECT_NEAR(push.stored_J, 0.5 * 200.0 * std::pow(depth_mm * 1e-3, 2),
+                    200.0 * depth_mm * 1e-3 * 1.5e-4);
       }
     }
   }
 }
 
 // A layer 1 mm thick, then another: k1 d1 + (k2 - k1) d2.
-TEST(StiffnessBall, PushesByTheSumOverLayers) {
+TEST(ContactSphere, PushesByTheSumOverLayers) {
   for (const Vec3& normal : kNormals) {
     const Volume volume = layers(normal, 0.25, {{0.0, kSoft}, {1.0, kHard}});
     const double depth_mm = 2.2;
@@ -93,7 +98,7 @@ TEST(StiffnessBall, PushesByTheSumOverLayers) {
   }
 }
 
-TEST(StiffnessBall, GivesNothingInAirAndNothingDeepInOneTissue) {
+TEST(ContactSphere, GivesNothingInAirAndNothingDeepInOneTissue) {
   const Volume volume = layers({0, 0, 1}, 0.5, {{0.0, kSoft}});
   EXPECT_EQ(pushOf(volume, {0, 0, 5}, 2.0).force_N, Vec3(0.0));
   const ElasticPush deep = pushOf(volume, {0, 0, -4}, 2.0);
@@ -101,7 +106,7 @@ TEST(StiffnessBall, GivesNothingInAirAndNothingDeepInOneTissue) {
   EXPECT_EQ(deep.at_centre, 200.0);
 }
 
-TEST(StiffnessBall, AnswersOutsideTheGridAndWithWhatIsNoNumber) {
+TEST(ContactSphere, AnswersOutsideTheGridAndWithWhatIsNoNumber) {
   const Volume volume = layers({0, 0, 1}, 0.5, {{0.0, kSoft}});
   EXPECT_EQ(pushOf(volume, {0, 0, 1e300}, 2.0).force_N, Vec3(0.0));
   EXPECT_EQ(pushOf(volume, Vec3(std::nan("")), 2.0).force_N, Vec3(0.0));
@@ -109,12 +114,11 @@ TEST(StiffnessBall, AnswersOutsideTheGridAndWithWhatIsNoNumber) {
   EXPECT_LT(pushOf(volume, {0, 0, -9}, 2.0).force_N.z, -0.1);
 }
 
-TEST(StiffnessBall, TurnsWithTheGrid) {
+TEST(ContactSphere, TurnsWithTheGrid) {
   const Vec3 normal = glm::normalize(Vec3(0.3, -0.5, 0.8));
   const Mat3 turned = glm::mat3_cast(glm::angleAxis(0.6, glm::normalize(Vec3(1, 2, -1))));
   const Vec3 straight = pushOf(layers(normal, 0.4, {{0.0, kSoft}}), normal * 1.1, 2.0).force_N;
-  const Vec3 other =
-      pushOf(layers(normal, 0.4, {{0.0, kSoft}}, turned), normal * 1.1, 2.0).force_N;
+  const Vec3 other = pushOf(layers(normal, 0.4, {{0.0, kSoft}}, turned), normal * 1.1, 2.0).force_N;
   EXPECT_LT(glm::length(straight - other), 0.06 * glm::length(straight));
 }
 

@@ -1,5 +1,5 @@
-// The push of elastic tissue on a ball: depth and a smoothed normal in one sum, at a cost that does
-// not depend on the size of voxels.
+// The push of elastic tissue on a tool's contact sphere: depth and a smoothed normal in one sum, at
+// a cost that does not depend on the size of voxels.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class StiffnessOfHu {
   void set(const TissueTable& tissues, int label = 0);  // of voxels with that label; no allocation
   // HU below or above the table count as its ends.
   double mean(double hu_a, double hu_b) const;
-  // Below every tissue: air, as far as this is concerned.
+  // Below the HU of every tissue.
   bool isAir(double hu) const { return hu < first_; }
   double at(double hu) const;
 
@@ -52,37 +52,38 @@ class StiffnessByLabel {
   std::array<StiffnessOfHu, LabelRows::kMost> of_row_;
 };
 
-// Of a blunt tool's ball and of a sharp tool's, whose normal matters less; `measure haptics` has the
-// errors.
+// For blunt tools, and for sharp ones, whose normal matters less; `measure haptics` has the errors.
 constexpr int kBluntDirections = 48, kSharpDirections = 24;
-inline int ballDirections(bool blunt) { return blunt ? kBluntDirections : kSharpDirections; }
+inline int sphereDirections(bool blunt) {
+  return blunt ? kBluntDirections : kSharpDirections;
+}
 
 struct ElasticPush {
-  Vec3 force_N{0.0};        // on the tool, patient axes
-  double stored_J = 0.0;    // of which the force is the slope
-  double stiffness = 0.0;   // N/m, of the firmest tissue that pushes
-  double at_centre = 0.0;   // N/m, the tissue's at the ball's centre
+  Vec3 force_N{0.0};       // on the tool, patient axes
+  double stored_J = 0.0;   // the force is minus its gradient
+  double stiffness = 0.0;  // N/m, of the firmest tissue that pushes
+  double at_centre = 0.0;  // N/m, of the tissue at the sphere's centre
 };
 
-// For a ball of radius r and tissue of stiffness K(x):
+// For a sphere of radius r and tissue of stiffness K(x):
 //
 //   F = -(1 / 2 pi) integral over directions d of  d [ integral_0^r K(c + s d) ds + r K(c + r d) ]
 //
-// the slope of the energy (1 / 2 pi) integral over d of integral_0^r s K(c + s d) ds.
+// minus the gradient of the energy (1 / 2 pi) integral over d of integral_0^r s K(c + s d) ds.
 //
-// Over a half-space this is k times the ball's depth along the surface's normal, exactly, while the
-// centre is outside (the weights were chosen for that: derivation in README.md); over layers it is
-// the sum of (k_i - k_(i-1)) times the depth in each. The directions are a fixed set of opposite
+// Over a half-space this is k times the sphere's depth along the surface's normal, exactly, while
+// the centre is outside (the weights were chosen for that: derivation in README.md); over layers it
+// is the sum of (k_i - k_(i-1)) times the depth in each. The directions are a fixed set of opposite
 // pairs in the grid's axes, so that evenly surrounded means no push. The surface term is taken over
 // a shell of +-r/6.
 //
-// Where tissues are restricted to labels, K at a place is the sum of each label's K(HU) by its share
-// among the eight voxels around the place, so that a border between labels is smooth as one of HU
-// is. What was removed has no share there, and its HU does not count.
-class StiffnessBall {
+// Where tissues are restricted to labels, K at a place is the sum of each label's K(HU) times its
+// share of the eight voxels around the place, so that a border between labels is as smooth as one
+// of HU. Removed voxels have no share, and their HU does not count.
+class ContactSphere {
  public:
   // `directions` is rounded up to a whole number of opposite pairs.
-  StiffnessBall(const GridGeometry& geometry, double radius_mm, int directions);
+  ContactSphere(const GridGeometry& geometry, double radius_mm, int directions);
 
   ElasticPush push(const Grid& grid, const TissueBricks& bricks, const StiffnessOfHu& stiffness,
                    const Vec3& centre_mm) const;

@@ -10,7 +10,7 @@
 
 #include "carve_bench.h"
 #include "carve_model.h"
-#include "volume/journal_spill.h"
+#include "volume/journal_file.h"
 
 namespace trephine {
 namespace {
@@ -18,14 +18,14 @@ namespace {
 using test::CarveBench;
 using test::CarveModel;
 
-class JournalSpillTest : public ::testing::Test {
+class JournalFileTest : public ::testing::Test {
  protected:
-  JournalSpillTest() {
+  JournalFileTest() {
     folder =
-        std::filesystem::temp_directory_path() / ("trephine-spill-" + std::to_string(::getpid()));
+        std::filesystem::temp_directory_path() / ("trephine-journal-" + std::to_string(::getpid()));
     std::filesystem::create_directory(folder);
   }
-  ~JournalSpillTest() override { std::filesystem::remove_all(folder); }
+  ~JournalFileTest() override { std::filesystem::remove_all(folder); }
 
   std::filesystem::path folder;
 };
@@ -48,24 +48,24 @@ class SmallDisk {
   rlimit before_{};
 };
 
-TEST_F(JournalSpillTest, AFolderThatIsNotThereIsRefused) {
-  const auto spill = JournalSpill::create(folder / "none");
-  ASSERT_FALSE(spill);
-  EXPECT_EQ(spill.error().code, "CANNOT_WRITE");
-  EXPECT_FALSE(spill.error().next.empty());
+TEST_F(JournalFileTest, AFolderThatIsNotThereIsRefused) {
+  const auto journal_file = JournalFile::create(folder / "none");
+  ASSERT_FALSE(journal_file);
+  EXPECT_EQ(journal_file.error().code, "CANNOT_WRITE");
+  EXPECT_FALSE(journal_file.error().next.empty());
 }
 
-TEST_F(JournalSpillTest, NoNameAppearsInTheFolder) {
+TEST_F(JournalFileTest, NoNameAppearsInTheFolder) {
   CarveBench bench({20, 20, 20}, 16, 10, 10);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   for (std::size_t voxel = 0; voxel < 500; ++voxel) ASSERT_TRUE(bench.erase(0, voxel));
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
-TEST_F(JournalSpillTest, WhatWasSavedMakesRoomInTheRing) {
+TEST_F(JournalFileTest, WhatWasSavedMakesRoomInTheRing) {
   CarveBench bench({20, 20, 20}, 16, 10, 10);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   ASSERT_TRUE(bench.journal.hasRoom(16));
   for (std::size_t voxel = 0; voxel < 10; ++voxel) {
@@ -83,9 +83,9 @@ TEST_F(JournalSpillTest, WhatWasSavedMakesRoomInTheRing) {
   EXPECT_FALSE(bench.journal.full());
 }
 
-TEST_F(JournalSpillTest, AJobWaitsForWhatIsOnDisk) {
+TEST_F(JournalFileTest, AJobWaitsForWhatIsOnDisk) {
   CarveBench bench({20, 20, 20}, 16, 10, 10);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   for (std::size_t voxel = 0; voxel < 100; ++voxel) ASSERT_TRUE(bench.erase(0, voxel));
   ASSERT_TRUE(bench.journal.startUndo({}));
@@ -98,9 +98,9 @@ TEST_F(JournalSpillTest, AJobWaitsForWhatIsOnDisk) {
   EXPECT_EQ(bench.hash(), bench.startHash());
 }
 
-TEST_F(JournalSpillTest, AStepThatWasNotAllowedDoesNothing) {
+TEST_F(JournalFileTest, AStepThatWasNotAllowedDoesNothing) {
   CarveBench bench({20, 20, 20}, 16, 10, 10);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   for (std::size_t voxel = 0; voxel < 100; ++voxel) ASSERT_TRUE(bench.erase(0, voxel));
   ASSERT_TRUE(bench.journal.startUndo({}));
@@ -114,9 +114,9 @@ TEST_F(JournalSpillTest, AStepThatWasNotAllowedDoesNothing) {
   EXPECT_EQ(bench.hash(), bench.startHash());
 }
 
-TEST_F(JournalSpillTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
+TEST_F(JournalFileTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
   CarveBench bench({20, 20, 20}, 256, 10, 10);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   int errors = 0;
   std::size_t voxel = 0;
@@ -126,7 +126,7 @@ TEST_F(JournalSpillTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
       ASSERT_TRUE(bench.journal.erase(bench.writer, 0, voxel, 0));
       if (voxel == 300) bench.mark();
       if (voxel % 50 != 49) continue;
-      const Status status = bench.spill->service(bench.journal);
+      const Status status = bench.journal_file->service(bench.journal);
       if (status.ok()) continue;
       ++errors;
       EXPECT_EQ(status.error().code, "CANNOT_WRITE");
@@ -149,10 +149,10 @@ TEST_F(JournalSpillTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
   EXPECT_EQ(bench.hash(), when_full);
 }
 
-TEST_F(JournalSpillTest, AReadThatFailsIsSaidOnceAndTriedAgain) {
+TEST_F(JournalFileTest, AReadThatFailsIsSaidOnceAndTriedAgain) {
   CarveBench bench({20, 20, 20}, 16, 10, 10);
-  bench.spillTo(folder);
-  auto empty = JournalSpill::create(folder);
+  bench.keepOnDisk(folder);
+  auto empty = JournalFile::create(folder);
   ASSERT_TRUE(empty);
   ASSERT_TRUE(bench.journal.beginStroke(0, {}));
   for (std::size_t voxel = 0; voxel < 100; ++voxel) ASSERT_TRUE(bench.erase(0, voxel));
@@ -169,9 +169,9 @@ TEST_F(JournalSpillTest, AReadThatFailsIsSaidOnceAndTriedAgain) {
 }
 
 // Ten minutes, 600 voxels a second, in a ring of 4096 voxels: several loads for one way.
-TEST_F(JournalSpillTest, TenMinutesOfDrillingCanBeRewoundToAnySecond) {
+TEST_F(JournalFileTest, TenMinutesOfDrillingCanBeRewoundToAnySecond) {
   CarveBench bench({80, 80, 80}, 4096, 700, 600);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   const std::size_t ram = bench.journal.ramBytes();
   std::vector<std::size_t> order(bench.start.hu.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -201,7 +201,7 @@ TEST_F(JournalSpillTest, TenMinutesOfDrillingCanBeRewoundToAnySecond) {
 }
 
 // A random history of both kinds of journal against the plain model, step by step.
-class RandomHistory : public JournalSpillTest, public ::testing::WithParamInterface<int> {
+class RandomHistory : public JournalFileTest, public ::testing::WithParamInterface<int> {
  protected:
   void compare(const CarveBench& bench, const CarveModel& model) {
     ASSERT_EQ(bench.grid.snapshot().hu, model.now.hu);
@@ -243,9 +243,9 @@ class RandomHistory : public JournalSpillTest, public ::testing::WithParamInterf
 };
 
 TEST_P(RandomHistory, EverySecondComesBackExactly) {
-  const bool spills = GetParam() % 2 == 1;
-  CarveBench bench({16, 16, 16}, spills ? 64 : 1 << 20, 2000, 400);
-  if (spills) bench.spillTo(folder);
+  const bool on_disk = GetParam() % 2 == 1;
+  CarveBench bench({16, 16, 16}, on_disk ? 64 : 1 << 20, 2000, 400);
+  if (on_disk) bench.keepOnDisk(folder);
   CarveModel model(bench.start);
   for (int n = 0; n < 1500; ++n) {
     const int what = below(12);
@@ -278,16 +278,16 @@ TEST_P(RandomHistory, EverySecondComesBackExactly) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(WithAndWithoutASpill, RandomHistory, ::testing::Range(0, 8));
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutAFile, RandomHistory, ::testing::Range(0, 8));
 
-TEST_F(JournalSpillTest, TheRecorderBesideTheHapticThreadLosesNothing) {
+TEST_F(JournalFileTest, TheRecorderBesideTheHapticThreadLosesNothing) {
   CarveBench bench({40, 40, 40}, 256, 5000, 1000);
-  bench.spillTo(folder);
+  bench.keepOnDisk(folder);
   std::atomic<bool> done{false};
   bool service_failed = false;
   std::thread recorder([&] {
     while (!done) {
-      if (!bench.spill->service(bench.journal).ok()) service_failed = true;
+      if (!bench.journal_file->service(bench.journal).ok()) service_failed = true;
       std::this_thread::yield();
     }
   });
