@@ -102,17 +102,20 @@ void Canvas::plate(const QRectF& rect, const QColor& colour) {
 
 void Canvas::line(const std::vector<QPointF>& points, const QColor& colour, double width_px,
                   const std::vector<double>& dashes_px) {
-  // Segment by segment, over whose corners dashes go on: Qt takes minutes for the outline of a
-  // polyline of some thousand points.
-  QPen pen(colour, width_px, Qt::SolidLine, dashes_px.empty() ? Qt::SquareCap : Qt::FlatCap);
+  painter_.setBrush(Qt::NoBrush);
   if (!dashes_px.empty()) {
+    QPen pen(colour, width_px, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
     QList<qreal> pattern;  // Qt counts in widths of the line
     for (const double dash : dashes_px) pattern.push_back(dash / width_px);
     pen.setDashPattern(pattern);
+    painter_.setPen(pen);
+    painter_.drawPolyline(polygonOf(points));
+    return;
   }
+  // Segment by segment: Qt takes minutes for the outline of a polyline of some thousand points.
   QList<QLineF> segments;
   for (std::size_t i = 1; i < points.size(); ++i) segments.push_back({points[i - 1], points[i]});
-  painter_.setPen(pen);
+  painter_.setPen(QPen(colour, width_px, Qt::SolidLine, Qt::SquareCap));
   painter_.drawLines(segments);
 }
 

@@ -29,7 +29,12 @@ std::optional<std::pair<QPointF, QPointF>> cut(const QPointF& a, const QPointF& 
       !side(-dy, a.y() - area.top()) || !side(dy, area.bottom() - a.y())) {
     return std::nullopt;
   }
-  return std::pair(a + from * (b - a), a + to * (b - a));
+  // Points far outside leave no digits for where they cross.
+  const auto held = [&](const QPointF& p) {
+    return QPointF(std::clamp(p.x(), area.left(), area.right()),
+                   std::clamp(p.y(), area.top(), area.bottom()));
+  };
+  return std::pair(held(a + from * (b - a)), held(a + to * (b - a)));
 }
 
 bool finite(const QPointF& point) {
