@@ -74,7 +74,8 @@ class Chain {
   }
 
   bool saysNotAsStated() const {
-    return std::visit([](const auto& c) { return c.parts(); }, controller_) & kPartArmNotAsStated;
+    return std::visit([](const auto& c) { return c.report().parts; }, controller_) &
+           kPartArmNotAsStated;
   }
 
  private:

@@ -28,11 +28,13 @@ Vec3 middle_m() {
   return stroke(kMiddle).position_m;
 }
 
-// Past the validation: a table that no file and no panel can give.
+// Past the validation: a table that no file and no panel can give, in the first tick of a loop that
+// would not start with it.
 Outcome badTable(double damping, double stiffness, double friction) {
   Setup setup;
-  setup.commands = {{kClear - 1, {CommandKind::tissues, 0, setup.tissues}}, kClearFaults};
-  setup.tissues = table(damping, stiffness, friction);
+  setup.commands = {{0, {CommandKind::tissues, 0, table(damping, stiffness, friction)}},
+                    {kClear - 1, {CommandKind::tissues, 0, setup.tissues}},
+                    kClearFaults};
   return faultThenWork(setup, kFaultNonFinite, 0);
 }
 

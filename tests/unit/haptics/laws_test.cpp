@@ -107,7 +107,7 @@ TEST(Laws, GiveNoForceWithoutContact) {
 // A capsule pushes by the law of rupture where the scene has it, and else as elastic tissue does.
 TEST(Laws, OfWhichOneStandsInForAnotherDemandATissuesStiffnessOnce) {
   using enum LawKind;
-  TissueClass capsule{0, 100, 3.0, 200.0, 0.3, 0.5, 0.05, 1, 0}, liver = capsule;
+  TissueClass capsule{{3.0, 200.0, 0.3, 0.5, 0.05}, 0, 100, 1, 0}, liver = capsule;
   liver.rupture_N = 0.0;
   EXPECT_FALSE(acts({elastic, rupture}, elastic, capsule));
   EXPECT_TRUE(acts({elastic, rupture}, rupture, capsule));

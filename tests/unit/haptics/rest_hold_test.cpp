@@ -72,9 +72,13 @@ TEST(RestHold, LetsGoWithoutAJumpOfAForceThatWouldBeAnotherByNow) {
     const double shown = i < 500 ? 0.5 : 1.0;
     const Vec3 elastic_N = -kStiffness * at_m;
     const double sent_N = rest.hold(elastic_N, kStiffness, at_m, shown * elastic_N).z;
-    if (i == 999) EXPECT_NEAR(sent_N, 0.5 * elastic_N.z, 1e-9);
+    if (i == 999) {
+      EXPECT_NEAR(sent_N, 0.5 * elastic_N.z, 1e-9);
+    }
     if (i >= 1000) most_N = std::max(most_N, sent_N - last_N);
-    if (i == 1399) EXPECT_NEAR(sent_N, elastic_N.z, 1e-6);
+    if (i == 1399) {
+      EXPECT_NEAR(sent_N, elastic_N.z, 1e-6);
+    }
     last_N = sent_N;
   }
   EXPECT_LT(most_N, 2.0 * kStiffness * kStep_m);
