@@ -145,7 +145,9 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   form->addRow(quiet(tr("Touches"), frame), card.contact);
   form->addRow(quiet(tr("Tip"), frame), card.position);
   form->addRow(quiet(tr("Energy"), frame), card.energy);
-  form->addRow(quiet(tr("Changed"), frame), card.parts);
+  QLabel* changed = quiet(tr("Changed"), frame);
+  changed->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  form->addRow(changed, card.parts);
   auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(10, 8, 10, 8);
   layout->setSpacing(6);
