@@ -1,5 +1,7 @@
 #include "app/answer.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +12,12 @@
 #include "base/system.h"
 
 namespace trephine {
+
+void reportToTerminal(double fraction, const std::string& step) {
+  static const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
+  if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
+}
 
 Json errorJson(const Error& error) {
   return {{"code", error.code}, {"what", error.what}, {"where", error.where}, {"next", error.next}};

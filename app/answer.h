@@ -22,6 +22,9 @@ int printError(const std::string& name, const Error& error, bool json, const Jso
 int printOutcome(const std::string& name, const Json& answer, const std::string& text,
                  const std::optional<Error>& failure, bool json);
 
+// A Progress's report: a line on stderr that is written over, where that is a terminal.
+void reportToTerminal(double fraction, const std::string& step);
+
 Json errorJson(const Error& error);
 
 // Whether --json stands anywhere on the command line.

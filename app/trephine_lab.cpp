@@ -1,6 +1,4 @@
 // trephine-lab: the workstation's work without a window.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -13,12 +11,7 @@
 
 namespace {
 
-// Reports to a terminal only.
-trephine::Progress progress([](double fraction, const std::string& step) {
-  static const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
-  if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
-});
+trephine::Progress progress(trephine::reportToTerminal);
 
 int run(int argc, char** argv) {
   using namespace trephine;

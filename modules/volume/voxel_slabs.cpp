@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/sha256.h"
+#include "volume/file_format.h"
 
 namespace trephine {
 
@@ -34,9 +35,7 @@ VoxelSlabs slabsOf(const Grid& grid) {
 VoxelSlabs reversedSlices(VoxelSlabs slabs) {
   VoxelSlabs out;
   out.geometry = slabs.geometry;
-  GridGeometry& g = out.geometry;
-  g.origin_mm = g.toPatient_mm({0, 0, g.size[2] - 1});
-  g.direction[2] = -g.direction[2];
+  file_format::turnSliceAxis(out.geometry);
   out.read = [slabs = std::move(slabs)](std::size_t first, std::span<std::int16_t> into) {
     const GridGeometry& from = slabs.geometry;
     const std::size_t slice = std::size_t(from.size[0]) * std::size_t(from.size[1]);

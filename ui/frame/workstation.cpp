@@ -318,31 +318,30 @@ void Workstation::saveOnceStill(const std::filesystem::path& file, std::function
                        [this, file, then = std::move(then)] { saveOnceStill(file, then); });
     return;
   }
-  const auto thaw = [this] {
-    if (session()) session_->thaw();
-  };
-  const bool begun = saving_.run([grid = session_->carved(), file](
-                                     const Progress&) { return writeVolume(slabsOf(*grid), file); },
-                                 [this, thaw, then = std::move(then)](Status status) {
-                                   thaw();
-                                   if (!status) return fail(status.error());
-                                   emit saved(tr("The volume is saved."));
-                                   if (then) then();
-                                 });
-  if (begun) return;
-  thaw();
-  fail(busySaving());
+  save(
+      tr("The volume is saved."),
+      [grid = session_->carved(), file] { return writeVolume(slabsOf(*grid), file); },
+      std::move(then),
+      [this] {
+        if (session()) session_->thaw();
+      });
 }
 
 void Workstation::save(const QString& what, std::function<Status()> write,
-                       std::function<void()> then) {
+                       std::function<void()> then, std::function<void()> afterwards) {
+  const auto ended = [afterwards = std::move(afterwards)] {
+    if (afterwards) afterwards();
+  };
   const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
-                                 [this, what, then = std::move(then)](Status status) {
+                                 [this, what, then = std::move(then), ended](Status status) {
+                                   ended();
                                    if (!status) return fail(status.error());
                                    emit saved(what);
                                    if (then) then();
                                  });
-  if (!begun) fail(busySaving());
+  if (begun) return;
+  ended();
+  fail(busySaving());
 }
 
 }  // namespace trephine

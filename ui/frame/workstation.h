@@ -79,8 +79,10 @@ class Workstation : public QObject {
   const std::shared_ptr<const Grid>& carved() const { return carved_; }
   void makeWhole() { carved_.reset(); }
 
-  // Runs `write` in the background; `what` names the outcome in saved().
-  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {});
+  // Runs `write` in the background; `what` names the outcome in saved(). `then` follows where it
+  // was written, `afterwards` in any case.
+  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {},
+            std::function<void()> afterwards = {});
   bool isSaving() const { return saving_.busy(); }
 
  signals:

@@ -1,7 +1,5 @@
 // bench_import: how fast CT is read, in eight transfer syntaxes, against a plain read of the bytes
 // and against other programs. `trephine-lab measure import` is its short form.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -16,12 +14,7 @@ namespace {
 
 constexpr const char* kName = "measure.import";
 
-// Reports to a terminal only.
-trephine::Progress progress([](double fraction, const std::string& step) {
-  static const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  if (terminal) std::fprintf(stderr, "\r%-12s %3.0f %%\033[K", step.c_str(), 100.0 * fraction);
-  if (terminal && fraction >= 1.0) std::fprintf(stderr, "\r\033[K");
-});
+trephine::Progress progress(trephine::reportToTerminal);
 
 int run(int argc, char** argv) {
   using namespace trephine;
