@@ -145,6 +145,11 @@ void saveWhatWasAsked(const RunArguments& arguments, const fs::path& recording, 
   }
 }
 
+// What a machine cannot draw is no fault of the run.
+bool isOfThisMachine(const Error& error) {
+  return error.code == "NO_DISPLAY" || error.code == "NO_OPENGL" || error.code == "OUT_OF_MEMORY";
+}
+
 // Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
 Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& progress) {
   Result<Scene> scene = readScene(arguments.scene);
@@ -195,7 +200,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   const Status drawn = writeExercisePicture(**session, picture);
   if (drawn) {
     outcome.report.picture = picture.string();
-  } else if (drawn.error().code == "NO_DISPLAY" || drawn.error().code == "NO_OPENGL") {
+  } else if (isOfThisMachine(drawn.error())) {
     spdlog::info("No picture is drawn: {}", drawn.error().what);
   } else {
     outcome.failure = drawn.error();

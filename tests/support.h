@@ -2,10 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -49,6 +51,28 @@ class Environment {
  private:
   const char* name_;
   std::optional<std::string> before_;
+};
+
+// No more than so many MB of data of the process's own, beyond what it has, for as long as this
+// lives.
+class DataLimit {
+ public:
+  explicit DataLimit(double more_mb) {
+    std::ifstream status("/proc/self/status");
+    double used_kb = 0.0;
+    for (std::string name; status >> name;) {
+      if (name == "VmData:") status >> used_kb;
+    }
+    ::getrlimit(RLIMIT_DATA, &before_);
+    const rlimit limit{rlim_t((used_kb / 1024.0 + more_mb) * 1048576.0), before_.rlim_max};
+    ::setrlimit(RLIMIT_DATA, &limit);
+  }
+  ~DataLimit() { ::setrlimit(RLIMIT_DATA, &before_); }
+  DataLimit(const DataLimit&) = delete;
+  DataLimit& operator=(const DataLimit&) = delete;
+
+ private:
+  rlimit before_{};
 };
 
 }  // namespace trephine::test

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/system.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
@@ -152,8 +153,7 @@ struct CtFolder::Contents {
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
                                              const Progress& progress, int& slices_used) {
-  constexpr double kSpare_mb = 64.0;  // left to everything else
-  const double most_mb = request.most_memory_mb.value_or(availableMemoryMb() - kSpare_mb);
+  const double most_mb = request.most_memory_mb.value_or(availableMemoryMb());
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
@@ -300,6 +300,11 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   if (!source->file.empty()) {
     series = assessFile(source->file, series.description);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
+    if (Status enough = enoughMemory(series.reading_mb, "Reading the volume", "",
+                                     request.most_memory_mb.value_or(availableMemoryMb()));
+        !enough) {
+      return fail(enough.error());
+    }
   }
   Result<Volume> volume =
       source->file.empty()

@@ -4,7 +4,9 @@
 #include <new>
 #include <utility>
 
+#include "base/memory.h"
 #include "imaging/importer.h"
+#include "volume/case_memory.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -78,6 +80,12 @@ Result<Case> withLabels(Case of, const std::string& file) {
   try {
     const Result<LabelMap> map = readLabelMap(file);
     if (!map) return map.error();
+    // As many labels, a byte each, here and in the view.
+    if (Status enough =
+            enoughMemory(voxelsMb(of.volume->geometry.voxelCount()), "The label map", file);
+        !enough) {
+      return enough.error();
+    }
     Result<LabelMap> fitted = fitTo(*map, of.volume->geometry);
     if (!fitted) return fitted.error();
     of.labels = std::make_shared<const LabelMap>(*std::move(fitted));

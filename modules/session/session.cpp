@@ -9,10 +9,12 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
 #include "haptics/watchdog.h"
 #include "session/hand_start.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -162,6 +164,8 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   std::vector<LoopDevice> devices;
   if (Status opened = openDevices(scene_, devices, capabilities_); !opened) return opened;
 
+  const double needed_mb = exerciseMb(volume.geometry.voxelCount());
+  if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
   sha256_before_ = of.sha256;
   grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
   warnOfAbsentLabels(scene.tissues, of.labels.get());

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
 #include "base/sha256.h"
+#include "volume/case_memory.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -36,6 +38,10 @@ Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
     return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label", file);
   }
   const Voxels& values = read->volume.hu;
+  if (Status enough = enoughMemory(voxelsMb(values.size()) / 2.0, "The label map", file.string());
+      !enough) {
+    return enough.error();
+  }
   return LabelMap{read->volume.geometry, {values.begin(), values.end()}};
 }
 

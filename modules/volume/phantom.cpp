@@ -8,6 +8,8 @@
 #include <system_error>
 #include <thread>
 
+#include "base/memory.h"
+#include "volume/case_memory.h"
 #include "volume/phantom_shapes.h"
 
 namespace trephine {
@@ -240,7 +242,11 @@ Result<Volume> makePhantom(const std::string& name, const Progress& progress) {
   const auto phantom = findPhantom(name);
   if (!phantom) return phantom.error();
   Volume volume{geometryOf(*phantom.value()), {}};
-  volume.hu.resize(volume.geometry.voxelCount());
+  const std::size_t count = volume.geometry.voxelCount();
+  if (Status enough = enoughMemory(voxelsMb(count), "Making the built-in case", name); !enough) {
+    return enough.error();
+  }
+  volume.hu.resize(count);
   if (!Painter(phantom.value()->truth, kPhantomNoiseHu, progress, volume).paint()) {
     return Error{"CANCELLED", "Making the built-in case was cancelled", name, ""};
   }

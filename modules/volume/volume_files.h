@@ -46,7 +46,6 @@ struct VolumeFileHeader {
 
   std::uint64_t storedBytes() const { return geometry.voxelCount() * std::uint64_t(bytesOf(type)); }
   // What reading takes, but for some fixed buffers.
-  std::uint64_t memoryBytes() const { return geometry.voxelCount() * sizeof(std::int16_t); }
 };
 
 // A volume and what was done to its values. Values are HU as the file's slope and intercept give

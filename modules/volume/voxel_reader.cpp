@@ -8,6 +8,8 @@
 #include <fstream>
 #include <limits>
 
+#include "base/memory.h"
+#include "volume/case_memory.h"
 #include "volume/file_format.h"
 
 namespace trephine::file_format {
@@ -151,6 +153,9 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
                                      const Progress& progress) {
   const std::size_t count = header.geometry.voxelCount();
   const auto& [name, voxel_bytes, convertVoxels] = rowOf(header.type);
+  if (Status enough = enoughMemory(voxelsMb(count), "Reading the volume", file.string()); !enough) {
+    return enough.error();
+  }
   VolumeFileReading reading{std::move(header), {}};
   reading.hu_min = std::numeric_limits<double>::infinity();
   reading.hu_max = -reading.hu_min;

@@ -6,6 +6,7 @@
 #include <QShowEvent>
 #include <algorithm>
 
+#include "base/memory.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
@@ -184,7 +185,9 @@ void ImportDialog::seriesSelected() {
 void ImportDialog::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
-  card_->showSeries(*series, answers(), availableMemory_mb());
+  const ImportRequest request{{}, size_->crop(), size_->reduction(), {}};
+  const double needed_mb = series->memory_mb > 0.0 ? memoryMb(*series, request) : 0.0;
+  card_->showSeries(*series, answers(), needed_mb, availableMemoryMb());
   listSelected();
   showImportButton();
 }

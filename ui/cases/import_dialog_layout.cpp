@@ -172,7 +172,7 @@ void ImportDialog::connectParts() {
   connect(preview_, &SlicePreview::sliceWanted, this, &ImportDialog::sliceWanted);
   connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportDialog::boxDrawn);
   connect(size_, &SizePanel::changed, this, &ImportDialog::showKept);
-  connect(size_, &SizePanel::changed, this, &ImportDialog::showImportButton);
+  connect(size_, &SizePanel::changed, this, &ImportDialog::showSelected);
   connect(choices_, &ChoicePanel::answered, this, [this] {
     for (const auto& [code, option] : choices_->answers()) answers()[code] = option;
     showSelected();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
 #include "ui/common/words.h"
 #include "ui/views/slice_image.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -20,6 +22,14 @@ bool asks(const ImportReport& report, const std::string& uid, const char* code) 
   const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
   return series != report.series.end() &&
          std::ranges::find(series->choices, code, &Choice::code) != series->choices.end();
+}
+
+// What was promised of it is asked for before it is read.
+Status roomFor(const ImportReport& report, const std::string& uid, const ImportRequest& request) {
+  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
+  if (series == report.series.end()) return {};
+  return enoughMemory(memoryMb(*series, request) - kWindow_mb,
+                      "Opening the case and practising on it", "");
 }
 
 }  // namespace
@@ -80,6 +90,9 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request) {
   begin([this, uid, request] {
     task_.run(
         [folder = folder_, uid, request](const Progress& progress) -> Result<ReadSeries> {
+          if (Status enough = roomFor(folder->report(), uid, request); !enough) {
+            return enough.error();
+          }
           Result<Volume> volume = folder->read(uid, request, progress);
           if (!volume) return volume.error();
           ReadSeries read{std::make_shared<const Volume>(*std::move(volume)), {}};

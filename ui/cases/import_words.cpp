@@ -3,7 +3,6 @@
 #include <QCoreApplication>
 #include <QStringList>
 #include <algorithm>
-#include <fstream>
 
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
@@ -213,8 +212,7 @@ QString megabytes(double mb) {
 
 QString memoryWords(double needed_mb, double free_mb) {
   if (needed_mb <= 0.0) return {};
-  if (free_mb <= 0.0) return tr("Reading it needs %1 of memory.").arg(megabytes(needed_mb));
-  const QString both = tr("Reading it needs %1 of memory; %2 are free.")
+  const QString both = tr("Opening it and practising on it needs %1 of memory; %2 are free.")
                            .arg(megabytes(needed_mb), megabytes(free_mb));
   return needed_mb < free_mb
              ? both
@@ -259,17 +257,6 @@ QString folderWords(const ImportReport& report) {
     lines << tr("%1 left out: %2").arg(files.count).arg(toQt(files.reason));
   }
   return lines.join('\n');
-}
-
-double availableMemory_mb() {
-  std::ifstream file("/proc/meminfo");
-  std::string name, unit;
-  double kb = 0.0;
-  while (file >> name >> kb) {
-    if (name == "MemAvailable:") return kb / 1024.0;
-    std::getline(file, unit);
-  }
-  return 0.0;
 }
 
 }  // namespace trephine

@@ -34,7 +34,7 @@ std::vector<Choice> newChoices(const SeriesReport& before, const SeriesReport& a
 QString slicesWords(const std::vector<std::string>& slices);
 // "850 MB", "1.4 GB", of 2^20 and 2^30 bytes.
 QString megabytes(double mb);
-// What reading the series needs against what is free; `free_mb` 0: not known.
+// What a case needs of memory against what is free.
 QString memoryWords(double needed_mb, double free_mb);
 QString lossWords(const MeasuredLoss& loss);
 // "512 x 512 x 140 voxels of 0.45 x 0.45 x 1.00 mm", in one line.
@@ -44,8 +44,5 @@ QString gridWords(const GridGeometry& geometry);
 QString reportHtml(const SeriesReport& series);
 // What the folder holds beside its series: files seen, and what was left out and why.
 QString folderWords(const ImportReport& report);
-
-// Memory that the system can still give, in MB of 2^20 bytes; 0 where it does not say.
-double availableMemory_mb();
 
 }  // namespace trephine

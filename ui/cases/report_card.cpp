@@ -44,16 +44,16 @@ ReportCard::ReportCard(QWidget* questions, QWidget* parent) : QWidget(parent) {
   layout->addWidget(memory_, 4, 0, 1, 2);
 }
 
-void ReportCard::showSeries(const SeriesReport& series, const Answers& answers,
-                            double free_memory_mb) {
+void ReportCard::showSeries(const SeriesReport& series, const Answers& answers, double needed_mb,
+                            double free_mb) {
   const SeriesState state = seriesState(series, answers);
   mark_->setPixmap(stateIcon(state).pixmap(QSize(kMark, kMark), devicePixelRatioF()));
   word_->setText(stateWord(state));
   sentence_->setText(verdictSentence(series, answers));
   report_->setText(reportHtml(series));
-  memory_->setText(memoryWords(series.memory_mb, free_memory_mb));
+  memory_->setText(memoryWords(needed_mb, free_mb));
   memory_->setVisible(!memory_->text().isEmpty() && state != SeriesState::refused);
-  const bool short_of = series.memory_mb >= free_memory_mb && free_memory_mb > 0.0;
+  const bool short_of = needed_mb >= free_mb;
   QPalette palette = this->palette();
   palette.setColor(QPalette::WindowText, short_of ? colours::kCaution : colours::kText);
   memory_->setPalette(palette);

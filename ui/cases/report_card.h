@@ -14,7 +14,8 @@ class ReportCard : public QWidget {
   // `questions` stand between the verdict and its reasons.
   explicit ReportCard(QWidget* questions = nullptr, QWidget* parent = nullptr);
 
-  void showSeries(const SeriesReport& series, const Answers& answers, double free_memory_mb);
+  void showSeries(const SeriesReport& series, const Answers& answers, double needed_mb,
+                  double free_mb);
 
  private:
   QLabel *mark_, *word_, *sentence_, *report_, *memory_;

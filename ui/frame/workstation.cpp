@@ -5,9 +5,11 @@
 #include <new>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/system.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
+#include "volume/case_memory.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -165,8 +167,13 @@ void Workstation::openInBackground(Opened opening) {
                                          : openCase(opening.scene, progress);
         if (!placed) return placed.error();
         opening.of = *std::move(placed);
+        if (opening.of->volume == shown) return std::move(opening);
+        const double needed_mb = shownMb(opening.of->volume->geometry.voxelCount());
+        if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
+          return enough.error();
+        }
         try {
-          if (opening.of->volume != shown) opening.mirror = *opening.of->volume;
+          opening.mirror = *opening.of->volume;
         } catch (const std::bad_alloc&) {
           return Error{"OUT_OF_MEMORY", "There is not enough memory to show the case", "the case",
                        "Close other programs, or import it cropped or at a lower resolution"};

@@ -5,6 +5,7 @@
 
 #include "imaging/common/text.h"
 #include "imaging/series/series.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -52,7 +53,8 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
   report.source = header->format;
   report.geometry = header->geometry;
   report.slices = header->geometry.size[2];
-  report.memory_mb = double(header->memoryBytes()) / 1048576.0;
+  report.reading_mb = voxelsMb(header->geometry.voxelCount());
+  report.memory_mb = memoryMb(report, {});
   if (bytesOf(header->type) == 1) {
     refuseLabelMap(report, "The voxels have 8 bits: a label map or a picture, not a CT");
     return report;

@@ -1,7 +1,10 @@
 #include "imaging/report/report.h"
 
+#include <algorithm>
+
 #include "imaging/common/text.h"
 #include "imaging/report/provenance.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -77,6 +80,18 @@ const char* verdictName(Verdict verdict) {
       return "refused";
   }
   return "refused";
+}
+
+double memoryMb(const SeriesReport& series, const ImportRequest& request) {
+  const Index3& size = series.geometry.size;
+  const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, size});
+  std::size_t voxels = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int kept = std::max(0, box.high[axis] - box.low[axis]);
+    voxels *= std::size_t((kept + request.reduction - 1) / request.reduction);
+  }
+  const double reduced_mb = request.reduction > 1 ? voxelsMb(voxels) : 0.0;
+  return kWindow_mb + std::max(series.reading_mb + reduced_mb, openedMb(voxels));
 }
 
 Json toJson(const ImportReport& report) {

@@ -45,7 +45,7 @@ struct ImportRequest {
   Answers answers;                       // a code that the series does not ask for is no error
   std::optional<VoxelBox> crop;          // of the grid that the report states; before the reduction
   int reduction = 1;                     // 1, 2 (half resolution) or 4 (a quarter)
-  std::optional<double> most_memory_mb;  // to be used for it; absent: what is free
+  std::optional<double> most_memory_mb;  // that reading it may take; absent: what is free
 };
 
 // What a reduction cost, measured against the full resolution (volume/reduce.h).
@@ -87,10 +87,16 @@ struct SeriesReport {
   bool lossy = false;
   int slices = 0;  // frames or slices found, usable or not
   int phases = 1;
-  double memory_mb = 0.0;  // at the peak of reading it
+  // What Trephine takes as a whole with the case open and an exercise running on it, or at the peak
+  // of reading it where that is more (volume/case_memory.h).
+  double memory_mb = 0.0;
+  double reading_mb = 0.0;  // of that, at the peak of reading it
   std::vector<Finding> findings;
   std::vector<Choice> choices;  // still open or answered: all that the series asks
 };
+
+// The same with its crop and reduction.
+double memoryMb(const SeriesReport& series, const ImportRequest& request);
 
 struct SkippedFiles {
   std::string reason;

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <new>
 
+#include "base/memory.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
@@ -114,11 +115,8 @@ class Assembler {
 }  // namespace
 
 std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb) {
-  if (needed_mb > most_mb) {
-    return Error{"OUT_OF_MEMORY",
-                 "Reading the series needs " + fixedText(needed_mb, 0) + " MB of memory, and " +
-                     fixedText(most_mb, 0) + " MB can be had",
-                 "", "Close other programs, or use a computer with more memory"};
+  if (Status enough = enoughMemory(needed_mb, "Reading the series", "", most_mb); !enough) {
+    return enough.error();
   }
   const std::size_t count = volume.geometry.voxelCount();
   try {
@@ -134,7 +132,7 @@ Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double m
                           const Progress& progress) {
   Assembly assembly;
   assembly.volume.geometry = plan.stack.geometry;
-  if (auto error = allocate(assembly.volume, series.report.memory_mb, most_memory_mb))
+  if (auto error = allocate(assembly.volume, series.report.reading_mb, most_memory_mb))
     return *error;
   Assembler assembler(series, plan, assembly);
   const bool mixed = !plan.stack.oneToOne();

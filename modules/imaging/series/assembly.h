@@ -27,7 +27,7 @@ struct Assembly {
 Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
                           const Progress& progress);
 
-// Voxels for `volume.geometry`; refuses, in words, what does not fit.
+// Voxels for `volume.geometry`; refuses, in words, what needs more than can be had.
 std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb);
 
 }  // namespace trephine

@@ -10,6 +10,7 @@
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
 #include "imaging/series/series_repeats.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -308,12 +309,13 @@ void orderSlices(std::vector<DicomHeader>& slices) {
   });
 }
 
-double memoryMb(const SeriesPlan& plan, const SeriesReport& report) {
-  double voxels = double(report.geometry.voxelCount());
+double readingMb(const SeriesPlan& plan, const SeriesReport& report) {
+  std::size_t voxels = report.geometry.voxelCount();
   if (!plan.stack.oneToOne()) {
-    voxels += double(plan.sources.size()) * report.geometry.size[0] * report.geometry.size[1];
+    voxels += plan.sources.size() * std::size_t(report.geometry.size[0]) *
+              std::size_t(report.geometry.size[1]);
   }
-  return voxels * sizeof(std::int16_t) / 1048576.0;
+  return voxelsMb(voxels);
 }
 
 }  // namespace
@@ -351,7 +353,8 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
       findings.refuse(size.error().code == "TOO_LARGE" ? "TOO_LARGE" : "PIXEL_FORMAT",
                       size.error().what, size.error().next);
     }
-    report.memory_mb = memoryMb(plan, report);
+    report.reading_mb = readingMb(plan, report);
+    report.memory_mb = memoryMb(report, {});
   }
   // Answers that cannot save the series are not asked for.
   const auto asked = [&](const Finding& finding) {

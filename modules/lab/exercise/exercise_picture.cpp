@@ -1,7 +1,9 @@
 #include "lab/exercise/exercise_picture.h"
 
+#include "base/memory.h"
 #include "render/scene_renderer.h"
 #include "render/tool_view.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -10,6 +12,8 @@ constexpr int kWidth = 1280, kHeight = 800;
 }
 
 Status writeExercisePicture(Session& session, const std::filesystem::path& file) {
+  const double needed_mb = shownMb(session.grid().geometry().voxelCount());
+  if (Status enough = enoughMemory(needed_mb, "A picture", file.string()); !enough) return enough;
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
   if (!made) return made.error();
   SceneRenderer& renderer = **made;

@@ -210,6 +210,8 @@ class ImportGuiTest : public QObject {
     find<QRadioButton>("reduction2")->click();
     const QString outcome = find<QLabel>("sizeOutcome")->text();
     QVERIFY2(outcome.contains(QString::fromUtf8("32 \u00d7 24 \u00d7 10")), qPrintable(outcome));
+    const QString memory = find<QLabel>("memoryNeeded")->text();
+    QVERIFY2(memory.contains("practising on it needs 360 MB"), qPrintable(memory));
     keepGrab("import-cropped.png");
     find<QPushButton>("cropReset")->click();
     find<QRadioButton>("reduction1")->click();

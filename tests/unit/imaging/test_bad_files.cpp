@@ -4,7 +4,7 @@
 #include <fstream>
 #include <random>
 
-#include "base/system.h"
+#include "base/memory.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

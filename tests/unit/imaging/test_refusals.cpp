@@ -1,4 +1,4 @@
-#include "base/system.h"
+#include "base/memory.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

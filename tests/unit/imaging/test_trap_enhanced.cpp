@@ -1,5 +1,5 @@
 // Enhanced multi-frame CT: what a frame says overrides what all share, and frames are slices.
-#include "base/system.h"
+#include "base/memory.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

@@ -1,7 +1,7 @@
 // Every transfer syntax that can be written, lossless and lossy, whole and damaged.
 #include <cmath>
 
-#include "base/system.h"
+#include "base/memory.h"
 #include "series_fixture.h"
 
 namespace trephine::test {

@@ -1,6 +1,7 @@
 #include "imaging/report/provenance.h"
 #include "imaging/report/report_page.h"
 #include "series_fixture.h"
+#include "volume/case_memory.h"
 
 namespace trephine::test {
 
@@ -65,10 +66,25 @@ TEST_F(VolumeSteps, HalfResolutionStatesWhatItCost) {
   EXPECT_EQ(series.hu_max, 300);
 }
 
+TEST(ImportMemory, IsThatOfWhatComesOutUnlessReadingItTakesMore) {
+  SeriesReport series;
+  series.geometry.size = {512, 512, 400};
+  series.reading_mb = 200.0;
+  EXPECT_NEAR(memoryMb(series, {}), kWindow_mb + kExercise_mb + 4 * 200.0, 5.0);
+  ImportRequest half;
+  half.reduction = 2;
+  EXPECT_NEAR(memoryMb(series, half), kWindow_mb + kExercise_mb + 4 * 25.0, 1.0);
+  ImportRequest cropped;
+  cropped.crop = VoxelBox{{0, 0, 0}, {256, 512, 400}};
+  EXPECT_NEAR(memoryMb(series, cropped), kWindow_mb + kExercise_mb + 4 * 100.0, 3.0);
+  series.reading_mb = 2000.0;
+  EXPECT_NEAR(memoryMb(series, half), kWindow_mb + 2025.0, 1e-6) << "and the half itself";
+}
+
 TEST_F(VolumeSteps, WhatDoesNotFitTheMemoryIsRefusedInWordsBeforeItIsRead) {
   write(rampVolume({64, 64, 40}));
   CtFolder ct = scan();
-  EXPECT_NEAR(ct.report().series.front().memory_mb, 64 * 64 * 40 * 2 / 1048576.0, 1e-9);
+  EXPECT_NEAR(ct.report().series.front().reading_mb, 64 * 64 * 40 * 2 / 1048576.0, 1e-9);
   ImportRequest request;
   request.most_memory_mb = 0.1;
   const auto volume = readWith(ct, request);

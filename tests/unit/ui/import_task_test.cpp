@@ -8,8 +8,10 @@
 
 #include "imaging/dicom/ct_writer.h"
 #include "qt_support.h"
+#include "support.h"
 #include "ui/cases/import_dialog.h"
 #include "ui/common/words.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 namespace {
@@ -71,6 +73,22 @@ TEST_F(ImportTaskTest, AScanListsTheSeriesAndARreadGivesTheVoxels) {
   EXPECT_EQ(task_.volume()->hu, stack(40, 0).hu);
   EXPECT_EQ(task_.report().chosen, task_.bestSeries());
   EXPECT_FALSE(task_.isWorking());
+}
+
+TEST_F(ImportTaskTest, WhatCouldBeReadButNotPractisedOnIsRefusedBeforeItIsRead) {
+  scan();
+  const std::string uid = *task_.bestSeries();
+  const double promised_mb = task_.report().series.front().memory_mb;
+  {
+    const test::DataLimit limit(0.9 * promised_mb - kWindow_mb);
+    task_.read(uid, {});
+    ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
+    EXPECT_EQ(error_->code, "OUT_OF_MEMORY");
+    EXPECT_NE(error_->what.find("practising"), std::string::npos) << error_->what;
+    EXPECT_FALSE(task_.volume());
+  }
+  task_.read(uid, {});
+  ASSERT_TRUE(waitFor([&] { return read_ == 1; })) << "it is there for another try";
 }
 
 TEST_F(ImportTaskTest, OfManySlicesWantedInARushTheLastIsShownAndMostAreNeverRead) {

@@ -371,12 +371,11 @@ TEST_F(SlicePreviewTest, ASliceOfAVolumeIsItsVoxelsInOrder) {
 TEST_F(ImportWidgetsTest, TheCardSaysTheVerdictAndTheMemoryThatIsNeeded) {
   ReportCard card;
   SeriesReport series = fakeSeries("1", Verdict::pass);
-  series.memory_mb = 5000.0;
-  card.showSeries(series, {}, 2000.0);
+  card.showSeries(series, {}, 5000.0, 2000.0);
   EXPECT_EQ(find<QLabel>(card, "verdictWord").text(), "Pass");
   EXPECT_TRUE(find<QLabel>(card, "verdictSentence").text().startsWith("Ready to use"));
   EXPECT_TRUE(find<QLabel>(card, "memoryNeeded").text().contains("lower resolution"));
-  card.showSeries(askingSeries("2"), {}, 2000.0);
+  card.showSeries(askingSeries("2"), {}, 5000.0, 2000.0);
   EXPECT_EQ(find<QLabel>(card, "verdictWord").text(), "Has a question");
   EXPECT_TRUE(find<QLabel>(card, "reportCard").text().contains("Two slices are missing"));
 }

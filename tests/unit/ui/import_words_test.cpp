@@ -80,12 +80,7 @@ TEST_F(ImportWordsTest, TooLittleMemoryIsSaidWithWhatToDo) {
   EXPECT_TRUE(memoryWords(100.0, 2048.0).contains("100 MB"));
   EXPECT_TRUE(memoryWords(100.0, 2048.0).contains("2.0 GB"));
   EXPECT_TRUE(memoryWords(3000.0, 2048.0).contains("Close other programs"));
-  EXPECT_FALSE(memoryWords(3000.0, 0.0).contains("free")) << "what is not known is not said";
   EXPECT_EQ(memoryWords(0.0, 2048.0), "");
-}
-
-TEST_F(ImportWordsTest, ThisMachineSaysWhatIsFree) {
-  EXPECT_GT(availableMemory_mb(), 10.0);
 }
 
 TEST_F(ImportWordsTest, ALossIsToldInNumbersWithTheirSign) {

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "base/system.h"
+#include "base/memory.h"
 #include "file_bytes.h"
 #include "support.h"
 #include "volumes.h"

@@ -1,0 +1,38 @@
+// What a case takes in memory: four copies of its voxels, by whom, and what comes with them. An
+// import promises it, and who takes a part of it asks for that part first (base/memory.h). In MB of
+// 2^20 bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace trephine {
+
+// The window before a case is opened, where no graphics card draws; measured on Debian 12.
+constexpr double kWindow_mb = 110.0;
+// An exercise beside its voxels: the journal's ring (82 MB), the rings to the recorder, HDF5, a
+// slab to hash (16 MB), and the stacks of all threads, which are held in memory. Measured on two
+// cores.
+constexpr double kExercise_mb = 250.0;
+// What the view knows of each 8^3 voxels: their range, two bytes each, and how far to leap.
+constexpr double kLeapShare = 6.0 / (8 * 8 * 8) / sizeof(std::int16_t);
+
+// A copy of so many voxels. The case's own; the grid that is cut; the view's mirror of that grid;
+// and the texture that the mirror is sent to.
+constexpr double voxelsMb(std::size_t voxels) {
+  return double(voxels) * sizeof(std::int16_t) / 1048576.0;
+}
+// To show it, in the window or for a picture.
+constexpr double shownMb(std::size_t voxels) {
+  return (2.0 + kLeapShare) * voxelsMb(voxels);
+}
+// To practise on it.
+constexpr double exerciseMb(std::size_t voxels) {
+  return voxelsMb(voxels) + kExercise_mb;
+}
+// To open it, show it and practise on it, beyond the window.
+constexpr double openedMb(std::size_t voxels) {
+  return voxelsMb(voxels) + shownMb(voxels) + exerciseMb(voxels);
+}
+
+}  // namespace trephine

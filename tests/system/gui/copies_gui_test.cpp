@@ -1,0 +1,159 @@
+// How often a case's voxels are in memory in the real window: what their owners count, against what
+// the process has written to.
+#include <QApplication>
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "gui_support.h"
+#include "memory_probe.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
+#include "volume/case_memory.h"
+#include "volume/volume_files.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 120000;
+
+// A ball of bone around brain, 180 mm across, in a box of so many voxels a side and 200 mm.
+Volume head(int edge, double voxel_mm) {
+  Volume v;
+  GridGeometry& g = v.geometry;
+  g.size = {edge, edge, edge};
+  g.spacing_mm = Vec3(voxel_mm);
+  g.origin_mm = Vec3(-voxel_mm * (edge - 1) / 2.0);
+  v.hu.assign(g.voxelCount(), kAirHu);
+  std::size_t at = 0;
+  for (int k = 0; k < edge; ++k) {
+    for (int j = 0; j < edge; ++j) {
+      for (int i = 0; i < edge; ++i, ++at) {
+        const double r = glm::length(g.origin_mm + voxel_mm * Vec3(i, j, k));
+        if (r < 90) v.hu[at] = r < 70 ? 35 : r < 80 ? 1200 : -20;
+      }
+    }
+  }
+  return v;
+}
+
+std::size_t bytesOf(const Volume& volume) {
+  return volume.hu.size() * sizeof(std::int16_t);
+}
+
+}  // namespace
+
+class CopiesGuiTest : public QObject {
+  Q_OBJECT
+
+ private:
+  QTemporaryDir temporary_;
+  std::unique_ptr<MainWindow> window_;
+
+  Workstation& workstation() { return window_->workstation(); }
+
+  // A scene of the built-in cranium's kind on that case.
+  std::filesystem::path sceneOn(const Volume& volume, const char* name) {
+    const std::filesystem::path folder = toPath(temporary_.path());
+    const std::filesystem::path file = folder / (std::string(name) + ".mha");
+    [&] { QVERIFY(writeVolume(volume, file).ok()); }();
+    Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
+    scene["case"] = file.string();
+    const auto absolute = [](Json& path) {
+      path = (resourceFolder() / "scenes" / path.get<std::string>()).lexically_normal().string();
+    };
+    absolute(scene["tissues"]);
+    absolute(scene["operator"]);
+    for (Json& tool : scene["tools"]) absolute(tool["file"]);
+    for (Json& arm : scene["arms"]) absolute(arm["device"]["config"]);
+    const std::filesystem::path of = folder / (std::string(name) + ".json");
+    [&] { QVERIFY(writeTextFile(of, scene.dump())); }();
+    return of;
+  }
+
+  // Opened, drawn and everything written that comes with it.
+  void open(const std::filesystem::path& scene) {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPath(scene);
+    QVERIFY(opened.wait(kLong_ms));
+    settle();
+  }
+  void settle() {
+    bool whole = false;
+    for (int i = 0; i < 2; ++i) {
+      QSignalSpy painted(&window_->view(), &ViewWidget::framePainted);
+      window_->view().update();
+      QVERIFY(painted.wait(kLong_ms));
+      whole = painted.back().at(1).toBool();
+    }
+    QVERIFY(whole);
+    QTest::qWait(1000);
+  }
+  double exercise_mb() {
+    const double before_mb = test::privateDirtyMb();
+    window_->startExercise();
+    [&] { QTRY_VERIFY_WITH_TIMEOUT(workstation().session(), kLong_ms); }();
+    QTest::qWait(1500);
+    return test::privateDirtyMb() - before_mb;
+  }
+  void stop() {
+    workstation().stop();
+    QTRY_COMPARE_WITH_TIMEOUT(workstation().phase(), Workstation::Phase::ready, kLong_ms);
+  }
+
+ private slots:
+  void areTwoOfACaseThatIsOpenAndThreeOfOneThatIsPractisedOn() {
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    // What an exercise takes beside its voxels, once the stacks of all threads were held.
+    const int small_edge = 64, edge = 400;
+    open(sceneOn(head(small_edge, 200.0 / small_edge), "small"));
+    exercise_mb();
+    stop();
+    const double beside_mb = exercise_mb();
+    stop();
+
+    // The same texture and no case: pages that nobody wrote are nobody's.
+    const auto scene = sceneOn(head(edge, 200.0 / edge), "large");
+    const std::size_t count = std::size_t(edge) * edge * edge;
+    const double copy_mb = voxelsMb(count);
+    Volume blank;
+    blank.geometry.size = {edge, edge, edge};
+    blank.geometry.spacing_mm = Vec3(200.0 / edge);
+    blank.hu.resize(count);
+    window_->view().showVolume(std::move(blank), nullptr);
+    settle();
+    const double baseline_mb = test::privateDirtyMb();
+
+    test::hashed_bytes = 0;
+    open(scene);
+    const double opened_mb = test::privateDirtyMb() - baseline_mb;
+    const std::size_t owned =
+        bytesOf(*workstation().currentCase()->volume) + bytesOf(window_->view().shownVolume());
+    QCOMPARE(owned, 2 * sizeof(std::int16_t) * count);
+    std::printf("a copy has %.1f MB; opened: %.2f copies\n", copy_mb, opened_mb / copy_mb);
+    QVERIFY(std::abs(opened_mb / copy_mb - 2.0) < 0.2);
+    QCOMPARE(std::size_t(test::hashed_bytes), 2 * count);
+
+    const double running_mb = exercise_mb();
+    const double copies = (opened_mb + running_mb - beside_mb) / copy_mb;
+    std::printf("practised on: %.2f copies, and %.0f MB beside them\n", copies, beside_mb);
+    QCOMPARE(workstation().session()->grid().geometry().voxelCount(), count);
+    QVERIFY(std::abs(copies - 3.0) < 0.3);
+    stop();
+    QCOMPARE(std::size_t(test::hashed_bytes), 2 * 2 * count);
+    const double ended_mb = test::privateDirtyMb() - baseline_mb;
+    std::printf("ended: %.2f copies\n", ended_mb / copy_mb);
+    QVERIFY(ended_mb / copy_mb < 3.5);
+  }
+};
+
+int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  return test::runInWindow<CopiesGuiTest>(argc, argv);
+}
+
+#include "copies_gui_test.moc"
