@@ -41,7 +41,8 @@ std::map<std::string, double> table(const fs::path& file) {
 
 // What one group leaves [bytes].
 std::optional<double> leftIn(const fs::path& group) {
-  const bool first = fs::exists(group / "memory.limit_in_bytes");
+  std::error_code ec;
+  const bool first = fs::exists(group / "memory.limit_in_bytes", ec);
   const auto limit = numberIn(group / (first ? "memory.limit_in_bytes" : "memory.max"));
   const auto used = numberIn(group / (first ? "memory.usage_in_bytes" : "memory.current"));
   if (!limit || !used || *limit > kNoLimit_bytes) return {};
