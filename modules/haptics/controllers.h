@@ -6,7 +6,7 @@
 //   void forget()                        after an undo, a reset or a fault: no credit
 //   ControllerReport report()            what it observed and did in this tick, for the record
 //
-// To add a controller: a type here, its line in kControllerNames and makeController, its tests.
+// To add a controller: README.md.
 #pragma once
 
 #include <array>

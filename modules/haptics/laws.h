@@ -3,13 +3,11 @@
 //
 //   explicit Law(points)                       room for a tool of so many points
 //   void add(const LawInput&, ContactForce&)   adds its force on the arm; nothing without contact
-//   void forget()                              after an undo or reset: back to the state of a new
-//   law static Impedance impedance(tissue)         what it demands of a tissue; none: it does not
-//   act there using StandsInFor = Other                  if it does: where both are named and it
-//   acts, the
-//                                              other law does not
+//   void forget()                              after an undo or reset: it begins anew
+//   static Impedance impedance(tissue)         what it demands of a tissue; zero: not its own
+//   using StandsInFor = Other                  where both are named and it acts, Other does not
 //
-// To add a law: its file, its lines here, its tests.
+// To add a law: its file, its lines here, its tests (README.md).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// How true is the push of elastic tissue? A ball slides over a surface that is known exactly.
+// How true is the push of elastic tissue? A burr's ball slides over a surface that is known
+// exactly.
 #pragma once
 
 #include <vector>

@@ -207,7 +207,7 @@ TEST(ElasticLaw, GivesThePushOfTheBall) {
   EXPECT_DOUBLE_EQ(f.stiffness, 250.0);
 }
 
-// k = 500, r = 2 mm, soft tissue below z = 0, the ball's centre at z.
+// k = 500, r = 2 mm, soft tissue below z = 0, the contact sphere's centre at z.
 struct BallCase : Case {
   explicit BallCase(double z, double stiffness = 500.0) : Case({0, 0, z}) {
     in.sphere_radius_m = 0.002;
@@ -231,7 +231,7 @@ TEST(ElasticLaw, ForgetsTheDepthOnceTheBallsCentreIsOut) {
   EXPECT_NEAR(forceOf(law, BallCase(0.001)).z, 0.5, 1e-9);
 }
 
-// What a voxel at the ball's centre is must not flip the push up and down again.
+// What a voxel at the sphere's centre is must not flip the push up and down again.
 TEST(ElasticLaw, MakesNoEnergyWhereTheTissueAtTheCentreChanges) {
   ElasticLaw law;
   for (double z = 0.0025; z > -0.004; z -= 1e-5) forceOf(law, BallCase(z));

@@ -125,7 +125,7 @@ TEST(Touch, AMirroredWayGivesTheMirroredForce) {
     apart += glm::dot(one.force_N[n] - mirrored, one.force_N[n] - mirrored);
     size += glm::dot(one.force_N[n], one.force_N[n]);
   }
-  // The shell's points and the ball's directions have no such symmetry themselves.
+  // The shell's points and the contact sphere's directions have no such symmetry themselves.
   EXPECT_LT(std::sqrt(apart / size), 0.08);
 }
 
