@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "lab/exercise/exercise_picture.h"
 #include "scene/names.h"
+#include "scene/scene_numbers.h"
 #include "session/case.h"
 #include "session/session.h"
 #include "training/tick_table.h"
