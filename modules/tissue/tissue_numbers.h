@@ -33,7 +33,6 @@ struct TissueNumbers {
   Number friction_N{};
   MaybeNumber rupture_N{};
   Number cutting_J_per_mm3{};
-  MaybeNumber stick_N{};
 
   friend bool operator==(const TissueNumbers&, const TissueNumbers&) = default;
 };
@@ -76,8 +75,6 @@ inline constexpr TissueNumber kTissueNumbers[] = {
      &SetNumbers::rupture_N, &TickNumbers::rupture_N},
     {"cutting_J_per_mm3", "J/mm\u00b3", "work that removes it: its specific cutting energy",
      &SetNumbers::cutting_J_per_mm3, &TickNumbers::cutting_J_per_mm3},
-    {"stick_N", "N", "coulomb law: what it holds beyond its friction", &SetNumbers::stick_N,
-     &TickNumbers::stick_N, "Stick", 100.0, 0.05},
 };
 static_assert(sizeof(TickNumbers) == sizeof(double) * std::size(kTissueNumbers),
               "each number has one row");

@@ -21,7 +21,7 @@ void CoulombLaw::add(const LawInput& in, ContactForce& out) {
       anchors_m[i] = at_m - stretch_m;
     }
     const double length_m = glm::length(stretch_m);
-    const double limit_m = (in.tissue(p).friction_N + in.tissue(p).stick_N) / k;
+    const double limit_m = in.tissue(p).friction_N / k;
     if (length_m > limit_m) {
       stretch_m *= limit_m / length_m;
       anchors_m[i] = at_m - stretch_m;

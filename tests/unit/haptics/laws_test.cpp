@@ -148,15 +148,6 @@ TEST(CoulombLaw, SlidesAtTheTissuesFrictionAndNeverAboveIt) {
   EXPECT_NEAR(forceOf(law, Case({0, 0, -0.009})).z, 1.2, 1e-12);
 }
 
-TEST(CoulombLaw, HoldsWhatSticksBeyondItsFriction) {
-  CoulombLaw law;
-  Case c;
-  c.table.classes[0].stick_N = 0.75;
-  forceOf(law, c);
-  c.in.tip_m.x = 0.05;
-  EXPECT_NEAR(glm::length(forceOf(law, c)), 2.75, 1e-9);
-}
-
 TEST(CoulombLaw, NeverGivesBackMoreEnergyThanItTook) {
   CoulombLaw law;
   double given_J = 0.0;
