@@ -25,7 +25,6 @@ constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread doe
 // stop() answers within 0.5 s: so long it waits for the force to go, and then for the thread.
 constexpr auto kSilencePatience = 100ms;
 constexpr auto kStopPatience = 250ms;
-constexpr std::uint64_t kAnswerTicks = 2;  // within which a command is answered
 // How the mouse holds a simulated arm: a firm but not a rigid hand.
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;
