@@ -38,10 +38,6 @@ struct SessionOptions {
   bool hands_outside = false;
 };
 
-// Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
-// arms' dynamics and their force limits. Errors: those of the devices.
-Status readArmDynamics(Scene& scene);
-
 class Session {
  public:
   // Takes a copy of the voxels of a case that was placed in the scene, opens the devices, starts

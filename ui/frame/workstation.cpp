@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 #include "volume/phantom.h"
