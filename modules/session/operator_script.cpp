@@ -52,14 +52,11 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
     }
     tissue->hu_min = int(change.integer("hu_min", kHuRange, tissue->hu_min));
     tissue->hu_max = int(change.integer("hu_max", kHuRange, tissue->hu_max));
-    const auto mechanics = [&](const char* key, SourcedNumber& number) {
-      number.value = change.number(key, kMechanicsRange, number.value);
-    };
-    mechanics("damping_Ns_per_m", tissue->damping_Ns_per_m);
-    mechanics("stiffness_N_per_m", tissue->stiffness_N_per_m);
-    mechanics("friction_N", tissue->friction_N);
-    if (tissue->rupture_N) mechanics("rupture_N", *tissue->rupture_N);
-    mechanics("cutting_J_per_mm3", tissue->cutting_J_per_mm3);
+    for (const TissueNumber& number : kTissueNumbers) {
+      const SourcedNumber* was = number.of(*tissue);
+      if (!was) continue;  // one that the tissue does not have cannot change
+      number.set(*tissue, {change.number(number.key, kMechanicsRange, was->value), was->source});
+    }
     tissue->cuttable = change.boolean("cuttable", tissue->cuttable);
   }
 }

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <limits>
-#include <map>
 #include <new>
 
 #include "base/file.h"
@@ -13,6 +12,7 @@
 #include "base/rt/thread.h"
 #include "base/system.h"
 #include "haptics/watchdog.h"
+#include "session/arm_devices.h"
 #include "session/hand_start.h"
 #include "volume/case_memory.h"
 
@@ -27,69 +27,9 @@ constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread doe
 // stop() answers within 0.5 s: so long it waits for the force to go, and then for the thread.
 constexpr auto kSilencePatience = 100ms;
 constexpr auto kStopPatience = 250ms;
-constexpr std::uint64_t kAnswerTicks = 2;  // within which a command is answered
 // How the mouse holds a simulated arm: a firm but not a rigid hand.
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;
-
-// Held to the rules of every JSON file before the plugin sees it.
-Result<std::string> readDeviceFile(const std::string& file) {
-  if (file.empty()) return std::string("{}");
-  Result<Json> json = readJsonFile(file);
-  if (!json) return json.error();
-  return json->dump();
-}
-
-// One device a plugin, holding all of the scene's arms that it moves.
-Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
-                   std::vector<TrephineCapabilities>& capabilities) {
-  std::map<std::string, std::vector<std::size_t>> arms_by_plugin;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    arms_by_plugin[scene.arms[i].plugin].push_back(i);
-  }
-  capabilities.resize(scene.arms.size());
-  for (const auto& [name, arms] : arms_by_plugin) {
-    Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
-    if (!plugin) return plugin.error();
-    std::vector<std::uint32_t> device_arms;
-    const std::string& config = scene.arms[arms.front()].device_config;
-    for (std::size_t arm : arms) {
-      device_arms.push_back(scene.arms[arm].device_arm);
-      if (scene.arms[arm].device_config != config) {
-        return Error{"BAD_SCENE", "The arms of the plugin '" + name + "' name different files",
-                     "arms: device.config", "One file configures all arms of a plugin"};
-      }
-    }
-    Result<std::string> text = readDeviceFile(config);
-    if (!text) return text.error();
-    Result<std::unique_ptr<Device>> device = Device::open(*plugin, device_arms, *text);
-    if (!device) {
-      Error error = device.error();
-      if (error.code == "BAD_DEVICE_CONFIG" && !config.empty()) error.where = config;
-      return error;
-    }
-    for (std::size_t i = 0; i < arms.size(); ++i) {
-      capabilities[arms[i]] = (*device)->capabilities(i);
-      if (scene.rate_hz > capabilities[arms[i]].rate_hz) {
-        return Error{"BAD_SCENE",
-                     "The scene asks for " + plainNumber(scene.rate_hz) + " Hz, and the " +
-                         scene.arms[arms[i]].name + " arm's device '" + name + "' keeps at most " +
-                         plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
-                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
-      }
-      double& limit_N = scene.arms[arms[i]].max_force_N;
-      limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
-      // A simulated arm moves on with the force that answers its sample. A real one gets that force
-      // with the next exchange, a period later.
-      const int delay_ticks = (*device)->takesTargets() ? 0 : 1;
-      scene.arms[arms[i]].dynamics =
-          ArmDynamics{capabilities[arms[i]].apparent_mass_kg,
-                      capabilities[arms[i]].encoder_step_m, limit_N, delay_ticks};
-    }
-    devices.push_back({*std::move(device), arms});
-  }
-  return {};
-}
 
 // Such a tissue is nowhere: a wrong number, or another label map.
 void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
@@ -211,12 +151,6 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
 Session::~Session() {
   if (running_) (void)stop();
   if (recorder_ && !recording_ended_) (void)finishRecording();  // it never came to a tick
-}
-
-Status readArmDynamics(Scene& scene) {
-  std::vector<LoopDevice> devices;
-  std::vector<TrephineCapabilities> capabilities;
-  return openDevices(scene, devices, capabilities);
 }
 
 Status Session::start(double seconds) {

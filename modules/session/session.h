@@ -38,10 +38,6 @@ struct SessionOptions {
   bool hands_outside = false;
 };
 
-// Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
-// arms' dynamics and their force limits. Errors: those of the devices.
-Status readArmDynamics(Scene& scene);
-
 class Session {
  public:
   // Takes a copy of the voxels of a case that was placed in the scene, opens the devices, starts
@@ -86,6 +82,9 @@ class Session {
   // From a pause to a resume the hands of simulated arms rest where their arms are: a hand that
   // was pressing would sink into tissue that no longer pushes back. Then it presses as before.
   bool send(CommandKind kind);
+  // So many ticks later a command has been taken up, unless the state is `busy`: its own takes a
+  // tick or two, and the others are for a few that were sent before it, of which each takes one.
+  static constexpr std::uint64_t kAnswerTicks = 20;
   // From the answer true to thaw() no voxel changes, so that the grid can be read: pauses, and
   // refuses what would bring tissue back or go on. To be asked again until it is true.
   bool freeze();

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lab_support import (
     LAB, SCENES, SHIPPED, SOURCE, WINDOW, LabTest, first_ten_seconds, lab, small_head,
-    without_display)
+    small_scene, without_display)
 
 IMPORT_KEYS = {
     "schema", "build", "path", "files_seen", "files_read", "skipped", "series", "chosen",
@@ -329,19 +329,6 @@ class OwnScript(LabTest):
         self.assertEqual(run["removed_voxels"], 0)
         self.assertEqual(run["volume_sha256"], run["volume_sha256_before"])
         self.assertTrue(lab("replay", run["recording"])["identical"])
-
-
-def small_scene(folder, tool=None):
-    """The shipped scene of one arm in a small head, in a file of its own, with a tool of its own."""
-    scene = json.loads((SCENES / "cranium-one-arm.json").read_text())
-    for part, where in (("tissues", "tissues"), ("operator", "operators")):
-        scene[part] = str(SCENES.parent / where / Path(scene[part]).name)
-    arm = scene["arms"][0]
-    arm["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
-    scene["tools"] = [{"id": arm["tool"], **(tool or {"file": str(SCENES.parent / "tools" / "blade.json")})}]
-    scene["case"] = str(small_head(folder / "head.nii.gz"))
-    (folder / "scene.json").write_text(json.dumps(scene))
-    return folder / "scene.json"
 
 
 class Explain(LabTest):

@@ -78,6 +78,19 @@ def small_head(file):
     return file
 
 
+def small_scene(folder, tool=None):
+    """The shipped scene of one arm in a small head, in a file of its own, with a tool of its own."""
+    scene = json.loads((SCENES / "cranium-one-arm.json").read_text())
+    for part, where in (("tissues", "tissues"), ("operator", "operators")):
+        scene[part] = str(SCENES.parent / where / Path(scene[part]).name)
+    arm = scene["arms"][0]
+    arm["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
+    scene["tools"] = [{"id": arm["tool"], **(tool or {"file": str(SCENES.parent / "tools" / "blade.json")})}]
+    scene["case"] = str(small_head(folder / "head.nii.gz"))
+    (folder / "scene.json").write_text(json.dumps(scene))
+    return folder / "scene.json"
+
+
 def without_display():
     environment = dict(os.environ)
     environment.pop("DISPLAY", None)

@@ -25,7 +25,6 @@ constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kMessage_ms = 15000;
 constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
-constexpr std::uint64_t kAnswerTicks = 20;  // by then a command has been taken up, with room
 
 std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
   std::vector<ToolView> tools;
@@ -347,7 +346,7 @@ void MainWindow::rewind(std::uint32_t second) {
 }
 
 void MainWindow::showRewind(const LoopState& state) {
-  if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + kAnswerTicks) {
+  if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
     say(backWords(going_back_->second, state, *workstation_.scene()));
     going_back_.reset();
   }

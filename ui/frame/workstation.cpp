@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/system.h"
+#include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"

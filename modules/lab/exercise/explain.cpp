@@ -12,8 +12,10 @@
 #include "haptics/haptic_core.h"
 #include "lab/trades/recommended.h"
 #include "scene/names.h"
+#include "session/arm_devices.h"
 #include "session/case.h"
-#include "session/session.h"
+#include "session/operator_script.h"
+#include "session/run_statistics.h"
 #include "volume/grid.h"
 #include "volume/phantom.h"
 

@@ -43,9 +43,8 @@ TissueSet validSet() {
   bone.id = bone.name = "bone";
   bone.hu_min = 226;
   bone.hu_max = 3071;
-  bone.hu_source = bone.damping_Ns_per_m.source = "made up";
-  bone.stiffness_N_per_m.source = bone.friction_N.source = "made up";
-  bone.cutting_J_per_mm3.source = "made up";
+  bone.hu_source = "made up";
+  for (const TissueNumber& number : kTissueNumbers) number.set(bone, {0.0, "made up"});
   return {"made up", {bone}};
 }
 
@@ -66,21 +65,18 @@ Outcome refusedTissues() {
   if (auto set = parseTissueSet(valid, "file"); !set) return {set.error().sentence(), false};
   Refusals refusals;
   for (double value : kNotFinite) {
-    for (auto number : {&Tissue::damping_Ns_per_m, &Tissue::stiffness_N_per_m, &Tissue::friction_N,
-                        &Tissue::cutting_J_per_mm3}) {
+    for (const TissueNumber& number : kTissueNumbers) {
       TissueSet set = validSet();
-      (set.tissues[0].*number).value = value;
+      number.set(set.tissues[0], {value, "made up"});
       refusals.add(validate(set, "set"));
+      Json json = valid;
+      json["tissues"][0]["mechanics"][number.key]["value"] = value;
+      refusals.add(parseTissueSet(json, "file"));
     }
     TissueSet opaque = validSet(), coloured = validSet();
     opaque.tissues[0].opacity = coloured.tissues[0].colour.y = value;
     refusals.add(validate(opaque, "set"));
     refusals.add(validate(coloured, "set"));
-    for (const char* key : {"damping_Ns_per_m", "stiffness_N_per_m", "friction_N"}) {
-      Json json = valid;
-      json["tissues"][0]["mechanics"][key]["value"] = value;
-      refusals.add(parseTissueSet(json, "file"));
-    }
   }
   refusals.add(parseJson(R"({"value": 1e999})", "file"));
   return refusals.outcome();

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "base/system.h"
+#include "session/arm_devices.h"
 #include "session/case.h"
-#include "session/session.h"
 
 namespace trephine {
 

@@ -1,5 +1,6 @@
 // The window as a person uses it: drop a folder of CT on it, move a threshold, cut with the mouse,
-// undo, reset, save. Voxels and pixels are both looked at. The steps build on each other, in order.
+// undo, reset, save. Voxels and pixels are both looked at. The steps build on each other, in order:
+// one course of one window, so they stand in one file, of over 500 lines.
 #include <QApplication>
 #include <QCoreApplication>
 #include <QDir>

@@ -64,6 +64,34 @@ TEST(ScriptOperator, GivesEachCommandOnceAtItsTime) {
   EXPECT_EQ(given, expected);
 }
 
+TEST(OperatorScript, ChangesEachNumberThatATissueHasAndNoOther) {
+  const Scene plain = cranium();
+  Scene whole = plain;
+  for (const TissueNumber& number : kTissueNumbers) {
+    Tissue& bone = whole.tissues.tissues[3];
+    if (!number.of(bone)) number.set(bone, {1.0, "made up"});
+  }
+  const TissueTable before = tissueTable(whole.tissues);
+  for (const TissueNumber& number : kTissueNumbers) {
+    Json json = script();
+    json["commands"][2]["tissues"] = {{"bone", {{number.key, 77.0}}}};
+    const auto read = parseOperatorScript(json, "script.json", whole);
+    ASSERT_TRUE(read.ok()) << read.error().sentence();
+    TissueTable expected = before;
+    expected.classes[3].*number.in_tick = 77.0;
+    EXPECT_EQ(read->commands[2].command.tissues, expected) << number.key;
+
+    const auto plainly = parseOperatorScript(json, "script.json", plain);
+    const bool has = number.of(plain.tissues.tissues[3]);
+    ASSERT_EQ(plainly.ok(), has) << number.key;
+    if (has) continue;
+    const std::string sentence = plainly.error().sentence();
+    EXPECT_NE(sentence.find(std::string("commands[2].tissues.bone.") + number.key),
+              std::string::npos)
+        << sentence;
+  }
+}
+
 TEST(OperatorScript, NamesWhatIsWrong) {
   const Scene scene = cranium();
   struct Bad {

@@ -1,89 +1,22 @@
+// What is recorded, and what of it replays.
 #include <hdf5.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
-#include <functional>
-#include <iterator>
-#include <random>
 
-#include "scene/scene.h"
+#include "recording_support.h"
 #include "support.h"
 #include "training/recording_layout.h"
 #include "training/replay.h"
 #include "training/session_reader.h"
-#include "training/session_recorder.h"
 
 namespace trephine {
 namespace {
 
-Volume slab() {
-  Volume v;
-  v.geometry.size = {24, 24, 24};
-  v.geometry.origin_mm = Vec3(-12.0);
-  v.hu.assign(v.geometry.voxelCount(), kAirHu);
-  for (std::size_t i = 0; i < v.hu.size() / 2; ++i) v.hu[i] = 900;
-  return v;
-}
-
-Scene sceneWithOneArm() {
-  Scene scene;
-  scene.name = "test";
-  scene.anatomy = "cranium";
-  Tissue bone;
-  bone.id = bone.name = "bone";
-  bone.hu_min = 226;
-  bone.hu_max = 3071;
-  bone.hu_source = bone.damping_Ns_per_m.source = bone.stiffness_N_per_m.source =
-      bone.friction_N.source = bone.cutting_J_per_mm3.source = "test";
-  bone.damping_Ns_per_m.value = 10;
-  bone.stiffness_N_per_m.value = 800;
-  bone.friction_N.value = 2;
-  bone.cutting_J_per_mm3.value = 1e-4;
-  scene.tissues = {"test", {bone}};
-  scene.tools.push_back({"blade", makeBlade(0.008, 17), {}});
-  SceneArm arm;
-  arm.name = "right";
-  arm.plugin = "simulated";
-  arm.tool = "blade";
-  arm.map.fixed = WorkspaceMap{};
-  scene.arms.push_back(arm);
-  scene.laws = {LawKind::viscous, LawKind::coulomb, LawKind::elastic};
-  return scene;
-}
-
-// Runs the core and records it, as a session does; `ticks` of a cut with an undo in it.
-void recordRun(const std::filesystem::path& file, std::uint64_t ticks, bool finish = true,
-               std::uint64_t dropped = 0) {
-  const Scene scene = sceneWithOneArm();
-  Grid grid(slab());
-  HapticCore core(hapticParameters(scene), *grid.takeWriter());
-  auto recorder = SessionRecorder::create(
-      file, {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
-  ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
-  for (std::uint64_t t = 0; t < ticks; ++t) {
-    TickInput input;
-    input.tick = t;
-    input.journal = core.journalState();
-    input.arms[0].position_m = Vec3(4e-6 * double(t % 2000) - 4e-3, 1e-3, 2e-3 - 3e-6 * double(t % 2000));
-    std::vector<Command> commands;
-    if (t == 2500) commands.push_back({CommandKind::undo, 0, {}});
-    if (t == 2600) commands.push_back({CommandKind::controller, 0, {}});
-    TickRecord record;
-    core.tick(input, commands.data(), commands.size(), record);
-    (*recorder)->add(record);
-    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
-    for (const Event& e : core.events()) (*recorder)->add(e);
-    if (t % 500 == 499) {
-      ASSERT_TRUE((*recorder)->flush().ok());
-    }
-  }
-  if (finish) {
-    ASSERT_TRUE((*recorder)->finish({ticks, dropped, 0, volumeSha256(grid.snapshot())}).ok());
-  }
-}
+using test::recordRun;
+using test::sceneWithOneArm;
+using test::slab;
 
 TEST(Recording, ReplaysBitForBit) {
   test::TemporaryFolder folder;
@@ -292,18 +225,6 @@ TEST(Recording, OfAToolWithoutAProxyIsRefusedByName) {
   H5Fclose(file);
 }
 
-TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 500);
-  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Ldelete(file, "end", H5P_DEFAULT), 0);
-  H5Fclose(file);
-  const auto reader = SessionReader::open(folder / "a.h5");
-  ASSERT_FALSE(reader.ok());
-  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
-  EXPECT_NE(reader.error().what.find("its end cannot be read"), std::string::npos);
-}
-
 // data/version5.h5 was made by the last program that wrote version 5: 2000 ticks on slab(), the
 // controller `bounded`, from 700 on `seed`, from 1100 on `off`, from 1300 on `bounded`; an undo at
 // 1700.
@@ -365,197 +286,6 @@ TEST(Recording, IsNeverWrittenOverAnotherFile) {
   EXPECT_EQ(text, "precious");
 }
 
-TEST(Recording, AFileThatIsMissingForeignOrCutShortIsNamed) {
-  test::TemporaryFolder folder;
-  EXPECT_EQ(SessionReader::open(folder / "none.h5").error().code, "MISSING_FILE");
-  std::ofstream(folder / "text.h5") << "not a recording";
-  EXPECT_EQ(SessionReader::open(folder / "text.h5").error().code, "BAD_RECORDING");
-  recordRun(folder / "a.h5", 3000);
-  const auto size = std::filesystem::file_size(folder / "a.h5");
-  for (double part : {0.001, 0.02, 0.3, 0.9}) {
-    const auto cut = folder / "cut.h5";
-    std::filesystem::copy_file(folder / "a.h5", cut, std::filesystem::copy_options::overwrite_existing);
-    std::filesystem::resize_file(cut, std::uintmax_t(double(size) * part));
-    auto reader = SessionReader::open(cut);
-    if (!reader.ok()) {
-      EXPECT_EQ(reader.error().code, "BAD_RECORDING");
-      EXPECT_NE(reader.error().where.find("cut.h5"), std::string::npos);
-      continue;
-    }
-    const auto result = replay(**reader, slab());
-    EXPECT_TRUE(!result.ok() || result->identical) << "what is left must still be true";
-  }
-}
-
-std::string bytesOf(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// How a replay ends: "identical", "differs", an error's code, or "never" when a signal had to end
-// it. In a process of its own, which is given 5 s.
-std::string endOfReplay(const std::filesystem::path& file) {
-  int ends[2];
-  if (::pipe(ends) != 0) return "no pipe";
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::alarm(5);
-    const auto reader = SessionReader::open(file);
-    std::string end = reader ? "" : reader.error().code;
-    if (reader) {
-      const auto result = replay(**reader, slab());
-      end = !result ? result.error().code : result->identical ? "identical" : "differs";
-    }
-    static_cast<void>(!::write(ends[1], end.data(), end.size()));
-    ::_exit(0);
-  }
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  char text[64] = "never";
-  if (WIFEXITED(status)) text[::read(ends[0], text, sizeof(text) - 1)] = '\0';
-  for (int end : ends) ::close(end);
-  return text;
-}
-
-TEST(Recording, AnyByteThatChangedIsFoundWithinSecondsOrDoesNotMatter) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 600);
-  const std::string whole = bytesOf(folder / "a.h5");
-  std::mt19937 random(17);
-  int damaged = 0;
-  for (int i = 0; i < 100; ++i) {
-    std::string changed = whole;
-    const std::size_t at = random() % whole.size();
-    changed[at] = char(changed[at] ^ char(1 + random() % 255));
-    std::ofstream(folder / "b.h5", std::ios::binary) << changed;
-    const std::string end = endOfReplay(folder / "b.h5");
-    EXPECT_TRUE(end == "BAD_RECORDING" || end == "differs" || end == "identical")
-        << "byte " << at << ": " << end;
-    damaged += end != "identical";
-  }
-  EXPECT_GT(damaged, 20);
-}
-
-TEST(Recording, AHeadOfWhichALetterChangedIsDamagedAndNotAnotherScene) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 100);
-  std::string bytes = bytesOf(folder / "a.h5");
-  const std::size_t at = bytes.find("226");  // HU at which bone begins
-  ASSERT_NE(at, std::string::npos);
-  bytes.replace(at, 3, "227");
-  std::ofstream(folder / "b.h5", std::ios::binary) << bytes;
-  const auto reader = SessionReader::open(folder / "b.h5");
-  ASSERT_FALSE(reader.ok());
-  EXPECT_EQ(reader.error().code, "BAD_RECORDING");
-}
-
-TEST(Recording, WhoseHeadIsNoLongerGuardedIsDamaged) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 100);
-  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Ldelete(file, "head_sha256", H5P_DEFAULT), 0);
-  H5Fclose(file);
-  EXPECT_EQ(endOfReplay(folder / "a.h5"), "BAD_RECORDING");
-}
-
-// Reads the rows of a table, lets them be changed, and writes them back, as many as are left.
-template <class Row>
-void edit(const std::filesystem::path& file, const char* table, hid_t type,
-          const std::function<void(std::vector<Row>&)>& change) {
-  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t dataset = H5Dopen2(opened, table, H5P_DEFAULT);
-  const hid_t space = H5Dget_space(dataset);
-  hsize_t size = 0;
-  H5Sget_simple_extent_dims(space, &size, nullptr);
-  H5Sclose(space);
-  std::vector<Row> rows(size);
-  ASSERT_GE(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()), 0);
-  change(rows);
-  size = rows.size();
-  ASSERT_GE(H5Dset_extent(dataset, &size), 0);
-  if (size > 0) {
-    ASSERT_GE(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()), 0);
-  }
-  H5Tclose(type);
-  H5Dclose(dataset);
-  H5Fclose(opened);
-}
-
-// How the replay of a run ends whose table was edited.
-template <class Row>
-std::string endOfEdited(const char* table, hid_t type,
-                        const std::function<void(std::vector<Row>&)>& change) {
-  static const test::TemporaryFolder folder;
-  if (!std::filesystem::exists(folder / "whole.h5")) recordRun(folder / "whole.h5", 1000);
-  std::filesystem::copy_file(folder / "whole.h5", folder / "edited.h5",
-                             std::filesystem::copy_options::overwrite_existing);
-  edit(folder / "edited.h5", table, type, change);
-  return endOfReplay(folder / "edited.h5");
-}
-
-TEST(Recording, WhoseEventsWereEmptiedOrEditedDiffers) {
-  const auto edited = [](const std::function<void(std::vector<Event>&)>& change) {
-    return endOfEdited<Event>("events", eventType(), change);
-  };
-  EXPECT_EQ(edited([](auto&) {}), "identical");
-  EXPECT_EQ(edited([](auto& e) { e.clear(); }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e.pop_back(); }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].kind = EventKind(99); }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].tick += 1; }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e[0].arm = 3; }), "differs");
-  EXPECT_EQ(edited([](auto& e) { e.back().tick = std::uint64_t(-1); }), "differs");
-  EXPECT_EQ(edited([](auto& e) {
-              e.push_back({std::uint64_t(-1), EventKind(99), 0, 0, {}});
-            }),
-            "differs");
-  EXPECT_EQ(edited([](auto& e) {
-              e.insert(e.begin(), Event{0, EventKind::starts_in_tissue, 0, 0, {}});
-            }),
-            "differs");
-}
-
-// An arm that was left behind is told of in the tick that did not come.
-TEST(Recording, OfAnArmThatWasLeftBehindReplays) {
-  EXPECT_EQ(endOfEdited<Event>("events", eventType(),
-                               [](auto& e) {
-                                 e.push_back({1000, EventKind::silenced, -1, 0, {}});
-                                 e.push_back({1000, EventKind::fault, 0, kFaultStuck, {}});
-                               }),
-            "identical");
-}
-
-TEST(Recording, OfVoxelsRemovedAfterItsEndDiffers) {
-  EXPECT_EQ(
-      endOfEdited<CarveRecord>("removed_voxels", compoundType(carveFields(), sizeof(CarveRecord)),
-                               [](auto& carves) {
-                                 carves.push_back(carves.back());
-                                 carves.back().tick = 5000;
-                               }),
-      "differs");
-}
-
-TEST(Recording, WhoseEndAndTablesCountOtherTicksIsDamaged) {
-  EXPECT_EQ(endOfEdited<EndRow>("end", endType(), [](auto& end) { end[0].ticks = 10; }),
-            "BAD_RECORDING");
-  EXPECT_EQ(endOfEdited<TickRow>("ticks", compoundType(tickFields(), sizeof(TickRow)),
-                                 [](auto& ticks) { ticks.resize(ticks.size() + 100); }),
-            "BAD_RECORDING");
-}
-
-TEST(Recording, OfAJournalThatCannotBeSaysSoAndAsksForNoSpace) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 1000);
-  edit<TickRow>(folder / "a.h5", "ticks", compoundType(tickFields(), sizeof(TickRow)),
-                [](auto& ticks) { ticks[700].journal = 255; });
-  const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "NOT_REPLAYABLE");
-  const std::string sentence = result.error().sentence();
-  EXPECT_NE(sentence.find("tick 700 "), std::string::npos) << sentence;
-  EXPECT_NE(sentence.find("255"), std::string::npos) << sentence;
-  EXPECT_EQ(sentence.find("space"), std::string::npos) << sentence;
-}
-
 TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   test::TemporaryFolder folder;
   const Scene scene = sceneWithOneArm();
@@ -600,35 +330,6 @@ TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   const auto result = replay(**reader, slab());
   ASSERT_TRUE(result.ok()) << result.error().sentence();
   EXPECT_TRUE(result->identical);
-}
-
-// Where in the file the chunk with row `row` of a table lies.
-std::pair<std::uint64_t, std::uint64_t> chunkWith(const std::filesystem::path& file,
-                                                  const char* table, hsize_t row) {
-  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  const hid_t dataset = H5Dopen2(opened, table, H5P_DEFAULT);
-  haddr_t address = 0;
-  hsize_t bytes = 0;
-  unsigned filters = 0;
-  EXPECT_GE(H5Dget_chunk_info_by_coord(dataset, &row, &filters, &address, &bytes), 0);
-  H5Dclose(dataset);
-  H5Fclose(opened);
-  return {address, bytes};
-}
-
-TEST(Recording, ThatIsDamagedInTheMiddleNamesTheTick) {
-  test::TemporaryFolder folder;
-  recordRun(folder / "a.h5", 3000);
-  const auto [address, bytes] = chunkWith(folder / "a.h5", "arm0", 1024);  // chunks of 512 ticks
-  std::fstream file(folder / "a.h5", std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(std::streamoff(address));
-  file << std::string(std::size_t(bytes), '\x5a');
-  file.close();
-  const auto result = replay(**SessionReader::open(folder / "a.h5"), slab());
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "BAD_RECORDING");
-  EXPECT_NE(result.error().what.find("from tick 1024 on"), std::string::npos)
-      << result.error().what;
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// The devices that move a scene's arms, and what they say of those arms.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "haptics/haptic_loop.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+// Opens one device a plugin, holding all of the scene's arms that it moves, without starting it.
+// `capabilities` has one an arm afterwards; the arms' dynamics and their force limits [N] are those
+// of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
+// asks of it. Owner thread.
+Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
+                   std::vector<TrephineCapabilities>& capabilities);
+
+// Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
+// arms' dynamics and their force limits. Errors: as above.
+Status readArmDynamics(Scene& scene);
+
+}  // namespace trephine

@@ -1,0 +1,73 @@
+// The devices that a scene names, and their files.
+#include <sys/stat.h>
+
+#include <functional>
+
+#include "base/file.h"
+#include "cases.h"
+#include "session_support.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+using test::cranium;
+using test::smallHead;
+
+// The one-arm scene with a device file of its own.
+Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_hz = 1000.0) {
+  test::TemporaryFolder folder;
+  Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
+  change(device);
+  EXPECT_TRUE(writeTextFile(folder / "device.json", device.dump()));
+  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  scene.arms[0].device_config = (folder / "device.json").string();
+  scene.rate_hz = rate_hz;
+  const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+  return session ? Error{} : session.error();
+}
+
+TEST(Session, NamesFileFieldAndValueOfAWrongDeviceFile) {
+  const Error error =
+      errorWithDeviceFile([](Json& d) { d["arm"]["peak_force_N"]["value"] = 1e300; });
+  EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG");
+  for (const char* part : {"device.json", "arm.peak_force_N.value", "1e+300"}) {
+    EXPECT_NE(error.sentence().find(part), std::string::npos) << error.sentence();
+  }
+}
+
+TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
+  test::TemporaryFolder folder;
+  Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
+  const std::size_t depth = 100'000;
+  ASSERT_TRUE(writeTextFile(folder / "deep.json", R"({"format": )" + std::string(depth, '[') +
+                                                      std::string(depth, ']') + "}"));
+  ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+  for (const char* name : {"deep.json", "pipe.json"}) {
+    scene.arms[0].device_config = (folder / name).string();
+    const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+    ASSERT_FALSE(session.ok()) << name;
+    EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
+  }
+}
+
+TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
+  const auto slow = [](Json& d) { d["arm"]["rate_hz"]["value"] = 500; };
+  const Error error = errorWithDeviceFile(slow, 1000.0);
+  EXPECT_EQ(error.code, "BAD_SCENE");
+  EXPECT_EQ(error.where, "rate_hz");
+  EXPECT_NE(error.what.find("1000 Hz"), std::string::npos) << error.what;
+  EXPECT_NE(error.what.find("at most 500 Hz"), std::string::npos) << error.what;
+  EXPECT_EQ(errorWithDeviceFile(slow, 500.0).code, "");
+}
+
+TEST(Session, SaysWhenAPluginIsMissing) {
+  Scene scene = cranium();
+  scene.arms[0].plugin = scene.arms[1].plugin = "nosuch";
+  auto session = Session::create(scene, test::placed(scene, smallHead()), {});
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().code, "NO_PLUGIN");
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,175 @@
+// A case in a scene: its voxels, its label map, and what is said where it does not fit.
+#include <algorithm>
+
+#include "cases.h"
+#include "session_support.h"
+#include "support.h"
+#include "training/replay.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+namespace {
+
+using test::cranium;
+using test::scripted;
+using test::smallHead;
+
+TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
+  Progress* running = nullptr;
+  Progress progress([&](double, const std::string&) { running->cancel(); });
+  running = &progress;
+  const Case of = caseOf(std::make_shared<const Volume>(smallHead()));
+  const auto placed = placedIn(cranium(), of, progress);
+  ASSERT_FALSE(placed.ok());
+  EXPECT_EQ(placed.error().code, "CANCELLED");
+}
+
+// Bone is label 7, and a strip of it in every 8 voxels has another label.
+std::shared_ptr<const LabelMap> strips() {
+  const GridGeometry geometry = smallHead().geometry;
+  LabelMap map{geometry, std::vector<std::uint8_t>(geometry.voxelCount())};
+  for (std::size_t i = 0; i < map.labels.size(); ++i) {
+    map.labels[i] = geometry.indicesOf(i)[1] % 8 == 5 ? 8 : 7;
+  }
+  return std::make_shared<const LabelMap>(std::move(map));
+}
+
+Scene craniumOfLabels() {
+  Scene scene = cranium();
+  scene.tissues.tissues.back().label = 7;
+  return scene;
+}
+
+TEST(Session, CutsATissueOnlyWhereItsLabelIsAndReplaysWithThatLabelMapAlone) {
+  test::TemporaryFolder folder;
+  const auto labels = strips();
+  auto session =
+      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead(), labels),
+                      scripted(folder / "s.h5"));
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  ASSERT_TRUE((*session)->freewheel(10.0).ok());
+  const RunReport report = (*session)->report();
+  EXPECT_GT(report.removed_mm3.back().second, 100.0);
+  const Volume before = smallHead(), after = (*session)->grid().snapshot();
+  for (std::size_t i = 0; i < before.hu.size(); ++i) {
+    if (before.hu[i] == 1200 && labels->labels[i] == 8) {
+      ASSERT_EQ(after.hu[i], 1200);
+    }
+  }
+
+  const auto reader = *SessionReader::open(folder / "s.h5");
+  const auto result = replay(*reader, smallHead(), labels.get());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+  EXPECT_EQ(result->volume_sha256, report.volume_sha256);
+
+  LabelMap other = *labels;
+  other.labels[0] = 9;
+  for (const LabelMap* given : {static_cast<const LabelMap*>(nullptr), &std::as_const(other)}) {
+    const auto refused = replay(*reader, smallHead(), given);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "WRONG_LABELS");
+  }
+}
+
+// As a file may have it: the axes in another order.
+TEST(Case, FitsALabelMapToItsVoxels) {
+  test::TemporaryFolder folder;
+  const auto straight = strips();
+  LabelMap turned = *straight;
+  const GridGeometry& g = straight->geometry;
+  turned.geometry.origin_mm = g.toPatient_mm(Vec3(0, 0, g.size[2] - 1));
+  turned.geometry.direction[2] = -g.direction[2];
+  const std::size_t slice = g.voxelCount() / std::size_t(g.size[2]);
+  for (std::size_t i = 0; i < turned.labels.size(); ++i) {
+    turned.labels[i] =
+        straight->labels[i % slice + slice * (std::size_t(g.size[2]) - 1 - i / slice)];
+  }
+  const Case head = caseOf(std::make_shared<const Volume>(smallHead()));
+  const auto file = [&](const char* name) {
+    const Volume voxels{turned.geometry, Voxels(turned.labels.begin(), turned.labels.end())};
+    EXPECT_TRUE(writeVolume(voxels, folder / name).ok());
+    return (folder / name).string();
+  };
+  const auto labelled = withLabels(head, file("turned.mha"));
+  ASSERT_TRUE(labelled.ok()) << labelled.error().sentence();
+  EXPECT_EQ(labelled->labels->labels, straight->labels);
+  const Case of = *placedIn(craniumOfLabels(), *labelled);
+  auto session = Session::create(craniumOfLabels(), of, scripted(folder / "s.h5"));
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  ASSERT_TRUE((*session)->freewheel(0.5).ok());
+  EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
+  turned.geometry.origin_mm.x += 1000.0;
+  EXPECT_EQ(withLabels(head, file("elsewhere.mha")).error().code, "LABELS_ELSEWHERE");
+}
+
+TEST(Session, ATissueOfALabelWithoutALabelMapIsRefused) {
+  const auto refused =
+      Session::create(craniumOfLabels(), test::placed(craniumOfLabels(), smallHead()), {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, "NO_LABELS");
+  EXPECT_NE(refused.error().what.find("'bone' is restricted to label 7"), std::string::npos);
+
+  const auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), {});
+  EXPECT_EQ(session->setTissues(craniumOfLabels().tissues).error().code, "NO_LABELS");
+}
+
+TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
+  Volume air = smallHead();
+  std::fill(air.hu.begin(), air.hu.end(), kAirHu);
+  auto session = Session::create(cranium(), test::placed(cranium(), air), {});
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
+}
+
+TEST(Case, ThatIsMissingIsNamed) {
+  EXPECT_EQ(readCase("").error().code, "NO_CASE");
+  EXPECT_EQ(readCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
+  const auto missing = readCase("/no/such/folder");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_NE(missing.error().where.find("/no/such/folder"), std::string::npos);
+}
+
+TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
+  const Case head = caseOf(std::make_shared<const Volume>(smallHead()));
+  EXPECT_EQ(withLabels(head, "")->labels, nullptr);
+  const auto missing = withLabels(head, "/no/such/seg.nii");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, "MISSING_FILE");
+  EXPECT_NE(missing.error().where.find("/no/such/seg.nii"), std::string::npos);
+  Scene scene = cranium();
+  scene.labels_file = "/no/such/seg.nii";
+  const Case of = *placedIn(scene, head);
+  ASSERT_TRUE(of.misfit);
+  EXPECT_EQ(Session::create(scene, of, {}).error().code, "MISSING_FILE");
+}
+
+TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
+  const auto voxels = std::make_shared<const Volume>(smallHead());
+  const Case of = *placedIn(cranium(), caseOf(voxels));
+  EXPECT_EQ(of.sha256, volumeSha256(smallHead()));
+  EXPECT_EQ(caseOf(voxels, "known").sha256, "known");
+  auto session = *Session::create(cranium(), of, scripted());
+  ASSERT_TRUE(session->freewheel(10.0).ok());
+  EXPECT_EQ(session->report().volume_sha256_before, of.sha256);
+  EXPECT_EQ(session->report().volume_sha256, volumeSha256(session->grid().snapshot()));
+  EXPECT_NE(session->report().volume_sha256, of.sha256);
+  EXPECT_EQ(voxels->hu, smallHead().hu);
+}
+
+TEST(Scene, OnAnotherCaseHasNoLabelMapOfItsOwn) {
+  Scene scene = cranium();
+  scene.case_source = "phantom:cranium";
+  scene.labels_file = "labels.nii";
+  useCase(scene, "phantom:cranium");
+  EXPECT_EQ(scene.labels_file, "labels.nii");
+  useCase(scene, "");
+  EXPECT_EQ(scene.labels_file, "");
+  EXPECT_FALSE(toJson(scene).contains("case")) << "a recording must not name another case";
+  scene.labels_file = "of the case that is given.nii";
+  useCase(scene, "head.mha");
+  EXPECT_EQ(scene.labels_file, "of the case that is given.nii");
+}
+
+}  // namespace
+}  // namespace trephine
