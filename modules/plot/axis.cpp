@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -35,8 +36,9 @@ bool apart(const Axis& axis, const std::vector<double>& values, double room) {
 
 std::vector<double> multiples(const Axis& axis, double low, double high, double step) {
   std::vector<double> values;
-  for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) {
-    const double value = n == 0.0 ? 0.0 : n * step;
+  const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
+  for (int i = 0; i <= last - first; ++i) {
+    const double value = first + i == 0.0 ? 0.0 : (first + i) * step;
     if (std::isfinite(axis.position(value))) values.push_back(value);
   }
   return values;
@@ -134,7 +136,8 @@ std::string number(double value, int digits) {
 }
 
 double Axis::position(double value) const {
-  return logarithmic ? std::log10(value) : value;
+  if (!logarithmic) return value;
+  return value <= 0.0 ? -std::numeric_limits<double>::infinity() : std::log10(value);
 }
 
 double Axis::share(double value) const {
