@@ -30,12 +30,14 @@ std::optional<std::pair<QPointF, QPointF>> cut(const QPointF& a, const QPointF& 
       !side(-dy, a.y() - area.top()) || !side(dy, area.bottom() - a.y())) {
     return std::nullopt;
   }
-  // Points far outside leave no digits for where they cross.
-  const auto held = [&](const QPointF& p) {
-    return QPointF(std::clamp(p.x(), area.left(), area.right()),
-                   std::clamp(p.y(), area.top(), area.bottom()));
-  };
-  return std::pair(held(a + from * (b - a)), held(a + to * (b - a)));
+  return std::pair(a + from * (b - a), a + to * (b - a));
+}
+
+// Far enough outside for a slope to stay what it is, near enough to leave digits for where it
+// crosses an edge: a ten thousandth of a pixel.
+QPointF held(const QPointF& point) {
+  constexpr double kFar = 1e12;
+  return {std::clamp(point.x(), -kFar, kFar), std::clamp(point.y(), -kFar, kFar)};
 }
 
 bool finite(const QPointF& point) {
@@ -54,7 +56,7 @@ std::vector<std::vector<QPointF>> clipped(const std::vector<QPointF>& line, cons
       if (!gap(i) && gap(i + 1) && area.contains(line[i])) pieces.push_back({line[i]});
       continue;
     }
-    const auto part = gap(i) ? std::nullopt : cut(line[i - 1], line[i], area);
+    const auto part = gap(i) ? std::nullopt : cut(held(line[i - 1]), held(line[i]), area);
     if (!part) {
       joined = false;
       continue;
@@ -116,6 +118,7 @@ std::vector<std::vector<QPointF>> dashed(const std::vector<QPointF>& line,
 
 // Sutherland and Hodgman 1974: cut at one edge after the other.
 std::vector<QPointF> clippedArea(std::vector<QPointF> outline, const QRectF& area) {
+  std::transform(outline.begin(), outline.end(), outline.begin(), held);
   struct Edge {
     QPointF outwards;
     double at;

@@ -21,7 +21,8 @@ std::vector<QPointF> thinned(const std::vector<QPointF>& line);
 std::vector<std::vector<QPointF>> dashed(const std::vector<QPointF>& line,
                                          const std::vector<double>& dashes);
 
-// The part of a closed outline that lies in `area`; empty: none. Its coordinates are finite.
+// The part of a closed outline that lies in `area`; empty: none. Coordinates may be infinite, not
+// NaN.
 std::vector<QPointF> clippedArea(std::vector<QPointF> outline, const QRectF& area);
 
 }  // namespace trephine::plot

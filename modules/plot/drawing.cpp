@@ -116,11 +116,6 @@ class Sheet {
   }
 
   void bands() {
-    // Far enough outside for a slope to stay what it is, near enough to be counted with.
-    const auto held = [&](double x_value, double y_value) {
-      constexpr double kFar = 1e12;
-      return QPointF(std::clamp(x(x_value), -kFar, kFar), std::clamp(y(y_value), -kFar, kFar));
-    };
     for (const Band& band : plot_.bands) {
       const QColor fill = bandFill(canvas_.colour(band.tone));
       bool seen = false;
@@ -140,8 +135,8 @@ class Sheet {
       };
       for (const Band::Span& span : band.spans) {
         if (std::isfinite(span.x) && std::isfinite(span.low) && std::isfinite(span.high)) {
-          low.push_back(held(span.x, span.low));
-          high.push_back(held(span.x, span.high));
+          low.push_back(at({span.x, span.low}));
+          high.push_back(at({span.x, span.high}));
         } else {
           fillSpans();
         }

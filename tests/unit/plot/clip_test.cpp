@@ -81,8 +81,9 @@ TEST(ClippedArea, IsThePartWithin) {
   EXPECT_EQ(clippedArea(within, kArea), within);
   EXPECT_TRUE(clippedArea({{-20, 0}, {-10, 0}, {-10, 90}}, kArea).empty());
   EXPECT_TRUE(clippedArea({}, kArea).empty());
+  const double inf = std::numeric_limits<double>::infinity();
   QRectF around;
-  for (const QPointF& p : clippedArea({{50, -1e12}, {1e12, 25}, {50, 1e12}, {-1e12, 25}}, kArea)) {
+  for (const QPointF& p : clippedArea({{50, -1e12}, {1e300, 25}, {50, inf}, {-inf, 25}}, kArea)) {
     EXPECT_TRUE(kArea.adjusted(-1e-3, -1e-3, 1e-3, 1e-3).contains(p)) << p.x() << " " << p.y();
     around = around.united(QRectF(p, QSizeF(1e-3, 1e-3)));
   }
