@@ -25,6 +25,7 @@ TEST(Clip, CutsAtTheEdges) {
 
 TEST(Clip, MakesTwoPiecesOfALineThatLeavesAndComesBack) {
   EXPECT_EQ(clipped({{10, 10}, {10, 90}, {20, 90}, {20, 10}}, kArea).size(), 2u);
+  EXPECT_EQ(clipped({{10, 10}, {10, 90}, {20, 10}}, kArea).size(), 2u) << "by one point outside";
 }
 
 TEST(Clip, LeavesAGapWhereAPointIsNotFinite) {
