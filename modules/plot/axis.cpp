@@ -69,7 +69,9 @@ std::vector<double> inDecades(const Axis& axis, const std::vector<double>& digit
 }
 
 std::vector<double> logarithmicValues(const Axis& axis, double room) {
-  for (const std::vector<double>& digits : {std::vector<double>{1, 2, 5}, std::vector<double>{1}}) {
+  // The last ones where a decade of its own would be the only tick, which is no scale.
+  for (const std::vector<double>& digits :
+       std::vector<std::vector<double>>{{1, 2, 5}, {1}, {1, 3}, {2, 5}}) {
     const std::vector<double> values = inDecades(axis, digits, 1);
     if (values.size() > 1 && double(values.size()) <= 2.0 * kMostTicks &&
         apart(axis, values, room)) {

@@ -104,6 +104,11 @@ TEST(LogarithmicTicks, AreOneTwoAndFiveOrDecadesByTheirRoom) {
             (Texts{"1e-6", "0.001", "1", "1000", "1e6"}));
 }
 
+TEST(LogarithmicTicks, AreTwoAtLeastWhereOneDecadeAloneWouldBeNoScale) {
+  EXPECT_EQ(textsOf(ticksOf(decades(-2.96, -1.45), 0.2)), (Texts{"0.003", "0.01", "0.03"}));
+  EXPECT_EQ(textsOf(ticksOf(decades(0.1, 1.75), 0.2)), (Texts{"3", "10", "30"}));
+}
+
 TEST(LogarithmicTicks, OverLessThanADecadeAreRoundValues) {
   const Ticks ticks = ticksOf(decades(std::log10(1.0), std::log10(1.001)), 0.3);
   EXPECT_EQ(textsOf(ticks), (Texts{"1", "1.0005", "1.001"}));
