@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kMargin = 24.0;
 constexpr double kTickText = 26.0, kAxisTitle = 34.0;  // the heights below the axes
+constexpr double kTickRow = 20.0;  // to a row of ticks, clear of the lowest one beside the axes
 constexpr double kLeader = 22.0;                       // from a line's end to its name
 constexpr double kNameRow = 21.0;
 constexpr double kLeastWidth = 100.0, kLeastHeight = 60.0;  // of the axes
@@ -258,7 +259,7 @@ class Sheet {
   void axisTexts() {
     const QColor ink = canvas_.colour(Tone::ink);
     for (const Tick& tick : ticks_x_.ticks) {
-      canvas_.text({area_.left() + tick.share * area_.width(), area_.bottom() + 0.6 * kTickText},
+      canvas_.text({area_.left() + tick.share * area_.width(), area_.bottom() + kTickRow},
                    Side::centre, tick.text, kTick, ink);
     }
     for (const Tick& tick : ticks_y_.ticks) {
