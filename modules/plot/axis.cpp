@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -35,8 +36,9 @@ bool apart(const Axis& axis, const std::vector<double>& values, double room) {
 
 std::vector<double> multiples(const Axis& axis, double low, double high, double step) {
   std::vector<double> values;
-  for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) {
-    const double value = n == 0.0 ? 0.0 : n * step;
+  const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
+  for (int i = 0; i <= last - first; ++i) {
+    const double value = first + i == 0.0 ? 0.0 : (first + i) * step;
     if (std::isfinite(axis.position(value))) values.push_back(value);
   }
   return values;
@@ -67,7 +69,9 @@ std::vector<double> inDecades(const Axis& axis, const std::vector<double>& digit
 }
 
 std::vector<double> logarithmicValues(const Axis& axis, double room) {
-  for (const std::vector<double>& digits : {std::vector<double>{1, 2, 5}, std::vector<double>{1}}) {
+  // The last ones where a decade of its own would be the only tick, which is no scale.
+  for (const std::vector<double>& digits :
+       std::vector<std::vector<double>>{{1, 2, 5}, {1}, {1, 3}, {2, 5}}) {
     const std::vector<double> values = inDecades(axis, digits, 1);
     if (values.size() > 1 && double(values.size()) <= 2.0 * kMostTicks &&
         apart(axis, values, room)) {
@@ -134,7 +138,8 @@ std::string number(double value, int digits) {
 }
 
 double Axis::position(double value) const {
-  return logarithmic ? std::log10(value) : value;
+  if (!logarithmic) return value;
+  return value <= 0.0 ? -std::numeric_limits<double>::infinity() : std::log10(value);
 }
 
 double Axis::share(double value) const {

@@ -17,7 +17,8 @@ struct Axis {
   // Two values or more to stand ticks at, where all have room; else round ones.
   std::vector<double> at = {};
 
-  double position(double value) const;  // as low and high: the value, or its decades
+  // As low and high: the value, or its decades; on a logarithmic axis 0 and less lie at -infinity.
+  double position(double value) const;
   double share(double value) const;     // 0 at the low end, 1 at the high one
   bool holds(double value) const;       // share within 0 to 1; false for what is not finite
 };
@@ -40,9 +41,8 @@ Ticks ticksOf(const Axis& axis, double room);
 // 1, 2 or 5 times a power of ten: the least that is not below `least`.
 double roundStep(double least);
 
-// `unit` made larger by 10^exponent (a multiple of 3) with a prefix of the SI: ("N/m", 3) is
-// "kN/m",
-// ("ms", -3) is "us" with a Greek mu; empty where it takes none ("%", "kg", "mm^3").
+// `unit` made larger by 10^exponent (a multiple of 3) with a prefix of the SI: "N/m" by 10^3 is
+// "kN/m", "ms" by 10^-3 is "us" with a Greek mu; empty where it takes none ("%", "kg", "mm^3").
 std::string prefixed(const std::string& unit, int exponent);
 
 }  // namespace trephine::plot

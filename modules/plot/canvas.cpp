@@ -9,6 +9,8 @@
 #include <QString>
 #include <algorithm>
 
+#include "plot/clip.h"
+
 namespace trephine::plot {
 
 namespace {
@@ -102,17 +104,18 @@ void Canvas::plate(const QRectF& rect, const QColor& colour) {
 
 void Canvas::line(const std::vector<QPointF>& points, const QColor& colour, double width_px,
                   const std::vector<double>& dashes_px) {
-  painter_.setBrush(Qt::NoBrush);
-  if (!dashes_px.empty()) {
-    QPen pen(colour, width_px, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
-    QList<qreal> pattern;  // Qt counts in widths of the line
-    for (const double dash : dashes_px) pattern.push_back(dash / width_px);
-    pen.setDashPattern(pattern);
-    painter_.setPen(pen);
-    painter_.drawPolyline(polygonOf(points));
+  if (points.size() == 1) {
+    disc(points[0], 0.5 * width_px + 1.0, colour);
     return;
   }
-  // Segment by segment: Qt takes minutes for the outline of a polyline of some thousand points.
+  painter_.setBrush(Qt::NoBrush);
+  // Dash by dash and segment by segment: Qt takes seconds to minutes for the outline of a polyline
+  // of some thousand points.
+  if (!dashes_px.empty()) {
+    painter_.setPen(QPen(colour, width_px, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin));
+    for (const auto& dash : dashed(points, dashes_px)) painter_.drawPolyline(polygonOf(dash));
+    return;
+  }
   QList<QLineF> segments;
   for (std::size_t i = 1; i < points.size(); ++i) segments.push_back({points[i - 1], points[i]});
   painter_.setPen(QPen(colour, width_px, Qt::SolidLine, Qt::SquareCap));

@@ -43,7 +43,7 @@ class Canvas {
                   const QColor& colour, double room);
   void plate(const QRectF& rect, const QColor& colour);
 
-  // Dashes in pixels, ink and gap in turn.
+  // Dashes in pixels, ink and gap in turn. One point is a dot.
   void line(const std::vector<QPointF>& points, const QColor& colour, double width_px,
             const std::vector<double>& dashes_px = {});
   void cell(const QRectF& rect, Shape shape, const QColor& fill);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -29,12 +30,14 @@ std::optional<std::pair<QPointF, QPointF>> cut(const QPointF& a, const QPointF& 
       !side(-dy, a.y() - area.top()) || !side(dy, area.bottom() - a.y())) {
     return std::nullopt;
   }
-  // Points far outside leave no digits for where they cross.
-  const auto held = [&](const QPointF& p) {
-    return QPointF(std::clamp(p.x(), area.left(), area.right()),
-                   std::clamp(p.y(), area.top(), area.bottom()));
-  };
-  return std::pair(held(a + from * (b - a)), held(a + to * (b - a)));
+  return std::pair(a + from * (b - a), a + to * (b - a));
+}
+
+// Far enough outside for a slope to stay what it is, near enough to leave digits for where it
+// crosses an edge: a ten thousandth of a pixel.
+QPointF held(const QPointF& point) {
+  constexpr double kFar = 1e12;
+  return {std::clamp(point.x(), -kFar, kFar), std::clamp(point.y(), -kFar, kFar)};
 }
 
 bool finite(const QPointF& point) {
@@ -46,9 +49,14 @@ bool finite(const QPointF& point) {
 std::vector<std::vector<QPointF>> clipped(const std::vector<QPointF>& line, const QRectF& area) {
   std::vector<std::vector<QPointF>> pieces;
   bool joined = false;  // the last piece goes on from line[i - 1]
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const auto part =
-        finite(line[i - 1]) && finite(line[i]) ? cut(line[i - 1], line[i], area) : std::nullopt;
+  const auto gap = [&](std::size_t i) { return i >= line.size() || !finite(line[i]); };
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (i == 0 || gap(i - 1)) {
+      joined = false;
+      if (!gap(i) && gap(i + 1) && area.contains(line[i])) pieces.push_back({line[i]});
+      continue;
+    }
+    const auto part = gap(i) ? std::nullopt : cut(held(line[i - 1]), held(line[i]), area);
     if (!part) {
       joined = false;
       continue;
@@ -78,6 +86,58 @@ std::vector<QPointF> thinned(const std::vector<QPointF>& line) {
     for (auto i = keep.begin(); i != last; ++i) kept.push_back(line[*i]);
   }
   return kept;
+}
+
+std::vector<std::vector<QPointF>> dashed(const std::vector<QPointF>& line,
+                                         const std::vector<double>& dashes) {
+  std::vector<std::vector<QPointF>> pieces;
+  std::size_t dash = 0;
+  double left = dashes[0];  // of this dash
+  bool joined = false;      // the last piece goes on
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const QPointF way = line[i] - line[i - 1];
+    const double length = std::hypot(way.x(), way.y());
+    for (double from = 0.0; from < length;) {
+      const bool ends = from + left <= length;
+      const double to = ends ? from + left : length;
+      if (dash % 2 == 0) {
+        if (!joined) pieces.push_back({line[i - 1] + way * (from / length)});
+        pieces.back().push_back(line[i - 1] + way * (to / length));
+      }
+      joined = !ends && dash % 2 == 0;
+      left -= to - from;
+      if (ends) {
+        dash = (dash + 1) % dashes.size();
+        left = dashes[dash];
+      }
+      from = to;
+    }
+  }
+  return pieces;
+}
+
+// Sutherland and Hodgman 1974: cut at one edge after the other.
+std::vector<QPointF> clippedArea(std::vector<QPointF> outline, const QRectF& area) {
+  std::transform(outline.begin(), outline.end(), outline.begin(), held);
+  struct Edge {
+    QPointF outwards;
+    double at;
+  };
+  for (const Edge& edge : {Edge{{-1.0, 0.0}, -area.left()}, Edge{{1.0, 0.0}, area.right()},
+                           Edge{{0.0, -1.0}, -area.top()}, Edge{{0.0, 1.0}, area.bottom()}}) {
+    std::vector<QPointF> kept;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const QPointF &a = outline[i], &b = outline[(i + 1) % outline.size()];
+      const double within_a = edge.at - QPointF::dotProduct(edge.outwards, a);
+      const double within_b = edge.at - QPointF::dotProduct(edge.outwards, b);
+      if (within_a >= 0.0) kept.push_back(a);
+      if ((within_a >= 0.0) != (within_b >= 0.0)) {
+        kept.push_back(a + (b - a) * (within_a / (within_a - within_b)));
+      }
+    }
+    outline = std::move(kept);
+  }
+  return outline;
 }
 
 }  // namespace trephine::plot

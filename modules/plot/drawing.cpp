@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "plot/canvas.h"
+#include "plot/checks.h"
 #include "plot/clip.h"
 #include "plot/fonts.h"
 #include "plot/label_placing.h"
@@ -19,15 +20,18 @@ namespace {
 
 constexpr double kMargin = 24.0;
 constexpr double kTickText = 26.0, kAxisTitle = 34.0;  // the heights below the axes
+constexpr double kTickRow = 20.0;  // to a row of ticks, clear of the lowest one beside the axes
 constexpr double kLeader = 22.0;                       // from a line's end to its name
+constexpr double kNameRow = 21.0;
+constexpr double kLeastWidth = 100.0, kLeastHeight = 60.0;  // of the axes
 constexpr Font kTitle{26.0, true}, kNote{16.0}, kAxis{18.0}, kTick{16.0}, kLabel{16.0};
 
 class Sheet {
  public:
   Sheet(const Plot& plot, QImage& image, Theme theme) : plot_(plot), canvas_(image, theme) {}
 
-  Drawing drawn(QImage& image) {
-    layOut();
+  Result<Drawing> drawn(QImage& image) {
+    if (Status has_room = layOut(); !has_room) return has_room.error();
     grid();
     bands();
     cells();
@@ -42,7 +46,7 @@ class Sheet {
     headings();
     drawLegend(canvas_, plot_, area_.bottom() + kTickText + kAxisTitle + 22.0, plot_.width_px,
                cells_bear, seen_);
-    return {image, area_, canvas_.texts()};
+    return Drawing{image, area_, canvas_.texts()};
   }
 
  private:
@@ -53,33 +57,37 @@ class Sheet {
 
   // From the top and bottom, which texts of fixed height take, to left and right, which are as wide
   // as theirs.
-  void layOut() {
+  Status layOut() {
     double top = kMargin;
     if (!plot_.title.empty()) top += 30.0;
     for (const std::string& note : plot_.notes) top += note.empty() ? 0.0 : 23.0;
     top += 14.0;
     const double legend = legendHeight(plot_);
     const double below = kTickText + kAxisTitle + (legend > 0.0 ? legend + kMargin : 0.0);
-    const double bottom = std::max(top + 60.0, plot_.height_px - 12.0 - below);
+    const double bottom = plot_.height_px - 12.0 - below;
+    const auto names = std::count_if(plot_.lines.begin(), plot_.lines.end(),
+                                     [](const Line& line) { return !line.name.empty(); });
+    const double least = std::max(kLeastHeight, kNameRow * double(names - 1));
+    if (bottom - top < least) return tooSmall("high", top + least + 12.0 + below);
 
     ticks_y_ = ticksOf(plot_.y, std::min(0.5, 22.0 / (bottom - top)));
     double widest = 0.0;
     for (const Tick& tick : ticks_y_.ticks) {
       widest = std::max(widest, canvas_.sizeOf(tick.text, kTick).width());
     }
-    const double most = 0.4 * plot_.width_px;  // for what stands left or right of the axes
-    const double left = std::min(most, std::ceil(kMargin + 30.0 + widest + 10.0));
+    const double left = std::ceil(kMargin + 30.0 + widest + 10.0);
     double name = 0.0;
     for (const Line& line : plot_.lines) {
       name = std::max(name, canvas_.sizeOf(line.name, kLabel).width());
     }
-    name_room_ = std::min(name, most - kLeader - 29.0);
+    name_room_ = std::min(name, 0.4 * plot_.width_px - kLeader - 29.0);
     const double right = name > 0.0 ? std::ceil(kLeader + 5.0 + name_room_ + kMargin) : 40.0;
     area_ = {left, std::floor(top), plot_.width_px - right - left, std::floor(bottom - top)};
+    if (area_.width() < kLeastWidth) return tooSmall("wide", left + kLeastWidth + right);
 
     double room = 44.0;  // pixels that the text of a tick needs
     for (int attempt = 0; attempt < 5; ++attempt) {
-      ticks_x_ = ticksOf(plot_.x, std::min(0.5, room / area_.width()));
+      ticks_x_ = ticksOf(plot_.x, std::min(1.0, room / area_.width()));
       double wide = 0.0;
       for (const Tick& tick : ticks_x_.ticks) {
         wide = std::max(wide, canvas_.sizeOf(tick.text, kTick).width());
@@ -87,6 +95,14 @@ class Sheet {
       if (wide + 16.0 <= room) break;
       room = wide + 16.0;
     }
+    return {};
+  }
+
+  static Error tooSmall(const char* how, double least_px) {
+    return {"BAD_ARGUMENT",
+            "The picture has no room for its texts and axes: it must be " +
+                number(std::ceil(least_px)) + " pixels " + how,
+            "the plot", ""};
   }
 
   void grid() {
@@ -101,19 +117,33 @@ class Sheet {
   }
 
   void bands() {
-    // Far enough outside to be hidden, near enough for a painter to hold.
-    const auto held = [&](const Point& point) {
-      const QPointF p = at(point);
-      return QPointF(std::clamp(p.x(), area_.left(), area_.right()),
-                     std::clamp(p.y(), area_.top(), area_.bottom()));
-    };
     for (const Band& band : plot_.bands) {
-      std::vector<QPointF> outline;
-      for (const Point& point : band.low) outline.push_back(held(point));
-      for (auto p = band.high.rbegin(); p != band.high.rend(); ++p) outline.push_back(held(*p));
-      std::erase_if(outline,
-                    [](const QPointF& p) { return std::isnan(p.x()) || std::isnan(p.y()); });
-      canvas_.area(outline, bandFill(canvas_.colour(band.tone)));
+      const QColor fill = bandFill(canvas_.colour(band.tone));
+      bool seen = false;
+      std::vector<QPointF> low, high;  // of the spans since the last gap
+      const auto fillSpans = [&] {
+        if (low.size() == 1) {  // alone, it is as wide as can be seen
+          const QPointF pixel(1.0, 0.0);
+          low = {low[0] - pixel, low[0] + pixel};
+          high = {high[0] - pixel, high[0] + pixel};
+        }
+        low.insert(low.end(), high.rbegin(), high.rend());
+        const std::vector<QPointF> outline = clippedArea(std::move(low), area_);
+        seen = seen || !outline.empty();
+        canvas_.area(outline, fill);
+        low.clear();
+        high.clear();
+      };
+      for (const Band::Span& span : band.spans) {
+        if (std::isfinite(span.x) && std::isfinite(span.low) && std::isfinite(span.high)) {
+          low.push_back(at({span.x, span.low}));
+          high.push_back(at({span.x, span.high}));
+        } else {
+          fillSpans();
+        }
+      }
+      fillSpans();
+      seen_.bands.push_back(seen);
     }
   }
 
@@ -195,12 +225,12 @@ class Sheet {
       pieces_.push_back(clipped(points, area_));
       for (std::vector<QPointF>& piece : pieces_.back()) {
         piece = thinned(piece);
-        // Over cells, lines need an edge to be seen.
+        // Over cells, lines need an edge to be seen; between dashes the cells go on.
         if (plot_.heat_map) {
-          canvas_.line(piece, canvas_.colours().background, line.width_px + 2.0);
+          canvas_.line(piece, canvas_.colours().background, line.width_px + 2.0, line.dashes_px);
         }
       }
-      seen_.push_back(!pieces_.back().empty());
+      seen_.lines.push_back(!pieces_.back().empty());
     }
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const Line& line = plot_.lines[i];
@@ -229,12 +259,12 @@ class Sheet {
   void axisTexts() {
     const QColor ink = canvas_.colour(Tone::ink);
     for (const Tick& tick : ticks_x_.ticks) {
-      canvas_.text({area_.left() + tick.share * area_.width(), area_.bottom() + 0.6 * kTickText},
+      canvas_.text({area_.left() + tick.share * area_.width(), area_.bottom() + kTickRow},
                    Side::centre, tick.text, kTick, ink);
     }
     for (const Tick& tick : ticks_y_.ticks) {
       canvas_.text({area_.left() - 8.0, area_.bottom() - tick.share * area_.height()}, Side::right,
-                   tick.text, kTick, ink, area_.left() - kMargin - 38.0);
+                   tick.text, kTick, ink);
     }
     canvas_.text({area_.center().x(), area_.bottom() + kTickText + 0.5 * kAxisTitle}, Side::centre,
                  ticks_x_.title, canvas_.fitting(ticks_x_.title, kAxis, area_.width()), ink,
@@ -339,7 +369,7 @@ class Sheet {
     };
     std::vector<Name> names;
     for (std::size_t i = 0; i < plot_.lines.size(); ++i) {
-      if (!seen_[i] || plot_.lines[i].name.empty()) continue;
+      if (!seen_.lines[i] || plot_.lines[i].name.empty()) continue;
       const QPointF end = pieces_[i].back().back();
       if (end.x() > area_.right() - 1.0) names.push_back({&plot_.lines[i], end.y()});
     }
@@ -347,7 +377,7 @@ class Sheet {
                      [](const Name& a, const Name& b) { return a.end < b.end; });
     std::vector<double> rows;
     for (const Name& name : names) rows.push_back(name.end);
-    spread(rows, 21.0, area_.bottom());
+    spread(rows, kNameRow, area_.bottom());
     for (std::size_t i = 0; i < names.size(); ++i) {
       const QColor colour = canvas_.colour(names[i].line->tone);
       canvas_.line({{area_.right(), names[i].end}, {area_.right() + kLeader, rows[i]}}, colour,
@@ -366,10 +396,11 @@ class Sheet {
                    canvas_.fitting(plot_.title, kTitle, room), canvas_.colour(Tone::ink), room);
       row += 30.0;
     }
+    Font font = kNote;
+    for (const std::string& note : plot_.notes) font = canvas_.fitting(note, font, room);
     for (const std::string& note : plot_.notes) {
       if (note.empty()) continue;
-      canvas_.text({kMargin, row}, Side::left, note, canvas_.fitting(note, kNote, room),
-                   canvas_.colour(Tone::quiet), room);
+      canvas_.text({kMargin, row}, Side::left, note, font, canvas_.colour(Tone::quiet), room);
       row += 23.0;
     }
   }
@@ -380,31 +411,8 @@ class Sheet {
   Ticks ticks_x_, ticks_y_;
   double name_room_ = 0.0;
   std::vector<std::vector<std::vector<QPointF>>> pieces_;  // of each line what lies within the axes
-  std::vector<bool> seen_;                                 // whether that is anything
+  Seen seen_;
 };
-
-Status checked(const Plot& plot) {
-  const auto bad = [](const std::string& what) {
-    return Error{"BAD_ARGUMENT", what, "the plot", ""};
-  };
-  if (std::min(plot.width_px, plot.height_px) < 200 ||
-      std::max(plot.width_px, plot.height_px) > 8192) {
-    return bad("The picture's edges must have 200 to 8192 pixels");
-  }
-  for (const Axis& axis : {plot.x, plot.y}) {
-    if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low >= axis.high) {
-      return bad("An axis must go from a lower to a higher number");
-    }
-  }
-  if (!plot.heat_map) return {};
-  for (const HeatMap::Cell& cell : plot.heat_map->cells) {
-    if (cell.level >= plot.heat_map->levels.size()) return bad("A cell has a level of its own");
-    if (!plot.x.holds(cell.at.x) || !plot.y.holds(cell.at.y)) {
-      return bad("A cell lies outside of the axes");
-    }
-  }
-  return {};
-}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "plot/legend.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trephine::plot {
 
@@ -15,54 +16,84 @@ struct Item {
   std::string text;
 };
 
-std::vector<Item> itemsOf(const Plot& plot, const std::vector<bool>& seen) {
+std::size_t itemCount(const Plot& plot) {
+  const auto named = [](const auto& one) { return !one.legend.empty(); };
+  return std::size_t(std::count_if(plot.lines.begin(), plot.lines.end(), named) +
+                     std::count_if(plot.bands.begin(), plot.bands.end(), named));
+}
+
+bool hasValues(const Line& line) {
+  return std::any_of(line.points.begin(), line.points.end(),
+                     [](const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+}
+
+bool hasValues(const Band& band) {
+  return std::any_of(band.spans.begin(), band.spans.end(), [](const Band::Span& s) {
+    return std::isfinite(s.x) && std::isfinite(s.low) && std::isfinite(s.high);
+  });
+}
+
+std::vector<Item> itemsOf(const Plot& plot, const Seen& seen) {
+  const auto textOf = [](const auto& one, bool is_seen) {
+    if (is_seen) return one.legend;
+    return one.legend + (hasValues(one) ? ": outside of these axes" : ": no values");
+  };
   std::vector<Item> items;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const Line& line = plot.lines[i];
-    if (line.legend.empty()) continue;
-    const bool outside = i < seen.size() && !seen[i];
-    items.push_back({&line, nullptr, line.legend + (outside ? ": outside of these axes" : "")});
+    if (!line.legend.empty()) items.push_back({&line, nullptr, textOf(line, seen.lines[i])});
   }
-  for (const Band& band : plot.bands) {
-    if (!band.legend.empty()) items.push_back({nullptr, &band, band.legend});
+  for (std::size_t i = 0; i < plot.bands.size(); ++i) {
+    const Band& band = plot.bands[i];
+    if (!band.legend.empty()) items.push_back({nullptr, &band, textOf(band, seen.bands[i])});
   }
   return items;
+}
+
+// The first row: what stands over the levels, over lines and bands.
+bool headed(const Plot& plot) {
+  const bool over_levels = plot.heat_map && !(plot.heat_map->heading.full.empty() &&
+                                              plot.heat_map->heading.brief.empty());
+  return over_levels || (!plot.legend_heading.empty() && itemCount(plot) > 0);
 }
 
 }  // namespace
 
 double legendHeight(const Plot& plot) {
   const std::size_t levels = plot.heat_map ? plot.heat_map->levels.size() : 0;
-  const std::size_t rows = std::max(levels, itemsOf(plot, {}).size());
-  return rows == 0 ? 0.0 : kRow * double(rows + 1);
+  const std::size_t rows = std::max(levels, itemCount(plot));
+  return rows == 0 ? 0.0 : kRow * double(rows + (headed(plot) ? 1 : 0));
 }
 
 void drawLegend(Canvas& canvas, const Plot& plot, double top, double width,
-                const std::string& cells_bear, const std::vector<bool>& seen) {
+                const std::string& cells_bear, const Seen& seen) {
   const QColor ink = canvas.colour(Tone::ink);
+  const std::vector<Item> items = itemsOf(plot, seen);
+  const double first = headed(plot) ? top : top - kRow;
   double left = kMargin;
   if (plot.heat_map) {
-    double widest = canvas.sizeOf(cells_bear, {16.0, true}).width();
-    canvas.text({left, top}, Side::left, cells_bear, {16.0, true}, ink);
-    double row = top;
+    const double most = (items.empty() ? 1.0 : 0.5) * width - 2.0 * kMargin;
+    double widest = std::min(most, canvas.sizeOf(cells_bear, {16.0, true}).width());
+    canvas.text({left, top}, Side::left, cells_bear, {16.0, true}, ink, most + 1.0);
+    double row = first;
     for (const HeatMap::Level& level : plot.heat_map->levels) {
       row += kRow;
       canvas.cell({left, row - 0.5 * kCellHeight, kCellWidth, kCellHeight}, level.shape,
                   canvas.colour(level.tone));
-      canvas.text({left + kCellWidth + kText, row}, Side::left, level.legend, {}, ink);
-      widest = std::max(widest, kCellWidth + kText + canvas.sizeOf(level.legend, {}).width());
+      const double before = kCellWidth + kText;
+      canvas.text({left + before, row}, Side::left, level.legend, {}, ink, most - before + 1.0);
+      widest = std::max(widest, std::min(most, before + canvas.sizeOf(level.legend, {}).width()));
     }
     left += widest + kGap;
   }
   const double room = width - kMargin - left - kLineWidth - kText;
-  const std::vector<Item> items = itemsOf(plot, seen);
   Font font;
   for (const Item& item : items) font = canvas.fitting(item.text, font, room);
   if (!items.empty()) {
     canvas.text({left, top}, Side::left, plot.legend_heading, {16.0, true}, ink,
                 width - kMargin - left);
   }
-  double row = top;
+  double row = first;
   for (const Item& item : items) {
     row += kRow;
     if (item.line) {

@@ -8,12 +8,17 @@
 
 namespace trephine::plot {
 
+// For each whether any of it lies within the axes.
+struct Seen {
+  std::vector<bool> lines, bands;
+};
+
 // 0 where there is nothing to explain.
 double legendHeight(const Plot& plot);
 
 // Its first row at `top`. `cells_bear`: what the texts in the cells are, empty where they bear
-// none. `seen`: for each line whether any of it lies within the axes.
+// none.
 void drawLegend(Canvas& canvas, const Plot& plot, double top, double width,
-                const std::string& cells_bear, const std::vector<bool>& seen);
+                const std::string& cells_bear, const Seen& seen);
 
 }  // namespace trephine::plot

@@ -29,7 +29,7 @@ enum class Tone : std::uint8_t {
   heat_5,
 };
 
-// Values, in the axes' units. One that is not finite leaves a gap.
+// Values, in the axes' units. One that is not finite leaves a gap; one between two gaps is a dot.
 struct Point {
   double x = 0.0, y = 0.0;
 };
@@ -37,15 +37,18 @@ struct Point {
 struct Line {
   std::vector<Point> points;
   Tone tone = Tone::series_1;
-  double width_px = 1.5;
-  std::vector<double> dashes_px = {};  // ink and gap in turn; empty: solid
+  double width_px = 1.5;               // above 0
+  std::vector<double> dashes_px = {};  // ink and gap in turn, 1 at least; empty: solid
   std::string name = {};               // beside its right end; empty: none
   std::string legend = {};             // empty: not in the legend
 };
 
-// What lies between two lines, from point to point of both.
+// What lies between two lines. A value that is not finite leaves a gap.
 struct Band {
-  std::vector<Point> low, high;
+  struct Span {
+    double x = 0.0, low = 0.0, high = 0.0;
+  };
+  std::vector<Span> spans;
   Tone tone = Tone::series_1;
   std::string legend = {};
 };
@@ -84,7 +87,8 @@ struct HeatMap {
     std::size_t level = 0;
     Words text = {};
   };
-  std::vector<double> columns, rows;  // ascending: where cells may lie; says how large they are
+  // Where cells may lie, no two the same and ascending: the closest say how large the cells are.
+  std::vector<double> columns, rows;
   std::vector<Cell> cells;
   std::vector<Level> levels;
   Words heading = {};  // over the levels in the legend: what the cells' texts are

@@ -293,7 +293,8 @@ bool Session::freeze() {
     frozen_at_tick_ = now.ticks;
     return false;
   }
-  // What was asked for before has begun by then.
+  // What was asked for before is taken up first, and has begun some ticks later.
+  if (loop_->commands().size() > 0) frozen_at_tick_ = now.ticks;
   return now.paused && !now.busy && now.ticks > frozen_at_tick_ + kAnswerTicks;
 }
 

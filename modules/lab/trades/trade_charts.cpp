@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "base/file.h"
 #include "plot/drawing.h"
@@ -22,16 +24,22 @@ const Knob* knobOf(const TradeRow& row) {
   return knob == kKnobs.end() ? nullptr : &*knob;
 }
 
-std::string rule(const Knob* knob) {
-  std::string text = "Green, large and bold: recommended, the cheapest that is good enough";
-  if (!knob) return text;
-  text += " (error at most " + number(knob->tolerance);
-  if (!knob->limited.empty()) {
-    std::string name(knob->limited);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    text += ", " + name + " at most " + number(knob->limit);
+// An extra figure's name ends in its unit.
+std::string limitText(std::string_view figure, double limit, const std::string& cost_unit) {
+  if (figure == "cost") return "cost at most " + number(limit) + " " + cost_unit;
+  const std::size_t end = figure.rfind('_');
+  std::string name(figure.substr(0, end)), unit(figure.substr(end + 1));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + " at most " + number(limit) + " " + (unit == "percent" ? "%" : unit);
+}
+
+std::string goodEnough(const Knob& knob, const TradeRow& row) {
+  std::string text = "Good enough: error at most " + number(knob.tolerance) + " " + row.error_unit;
+  for (const auto& [figure, limit] :
+       {std::pair(knob.limited, knob.limit), std::pair(knob.also, knob.also_limit)}) {
+    if (!figure.empty()) text += "; " + limitText(figure, limit, row.cost_unit);
   }
-  return text + "), else the one with the least error";
+  return text;
 }
 
 // By knob, in the order of their first rows.
@@ -78,7 +86,12 @@ plot::Plot tradeChart(const std::vector<TradeRow>& rows) {
   const Knob* knob = knobOf(first);
   plot::Plot chart;
   chart.title = (knob ? std::string(knob->title) : first.knob) + ": error over cost";
-  chart.notes = {"Error against: " + first.reference, rule(knob)};
+  chart.notes = {
+      "Error against: " + first.reference,
+      "Green, large and bold: recommended, the cheapest that is good enough, else the one with the "
+      "least error",
+      knob ? goodEnough(*knob, first) : ""};
+  const std::string unit = knob && !knob->unit.empty() ? " " + std::string(knob->unit) : "";
   std::vector<double> costs, errors;
   plot::Line line;
   bool numbers = true;  // settings that are numbers follow one another; words do not
@@ -88,7 +101,7 @@ plot::Plot tradeChart(const std::vector<TradeRow>& rows) {
     line.points.push_back({row.cost, row.error});
     numbers = numbers && !row.setting.empty() && row.setting[0] >= '0' && row.setting[0] <= '9';
     chart.marks.push_back({{row.cost, row.error},
-                           row.setting,
+                           row.setting + unit,
                            row.recommended ? Tone::good : Tone::series_1,
                            row.recommended});
   }

@@ -43,6 +43,7 @@ struct Knob {
   double limit = 0.0;
   std::string_view also = "";
   double also_limit = 0.0;
+  std::string_view unit = "";  // of the settings
 };
 inline constexpr std::array<Knob, 5> kKnobs{{
     {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
@@ -50,7 +51,7 @@ inline constexpr std::array<Knob, 5> kKnobs{{
     {"force_at", "Where the force acts", 10.0},
     // Bone by two springs (coulomb, elastic), of what the arm shows at that rate: the rest is for
     // what the hand and its delays take.
-    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0},
+    {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
     {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
 }};
 

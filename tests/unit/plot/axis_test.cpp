@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace trephine::plot {
 namespace {
@@ -90,12 +91,22 @@ TEST(LinearTicks, FarFromZeroHaveAllTheDigitsThatTellThemApart) {
   EXPECT_EQ(textsOf(ticks), (Texts{"100000", "100000.1", "100000.2"}));
 }
 
+TEST(LinearTicks, OfEndsThatADoubleCannotPartComeToAnEnd) {
+  EXPECT_LE(ticksOf(linear("N", 1.0, std::nextafter(1.0, 2.0)), 0.1).ticks.size(), 12u);
+  EXPECT_LE(ticksOf(linear("N", 1e17, 1e17 + 64.0), 0.1).ticks.size(), 12u);
+}
+
 TEST(LogarithmicTicks, AreOneTwoAndFiveOrDecadesByTheirRoom) {
   EXPECT_EQ(textsOf(ticksOf(decades(-0.1, 2.1), 0.05)),
             (Texts{"1", "2", "5", "10", "20", "50", "100"}));
   EXPECT_EQ(textsOf(ticksOf(decades(-0.1, 2.1), 0.2)), (Texts{"1", "10", "100"}));
   EXPECT_EQ(textsOf(ticksOf(decades(-6.1, 6.1), 0.2)),
             (Texts{"1e-6", "0.001", "1", "1000", "1e6"}));
+}
+
+TEST(LogarithmicTicks, AreTwoAtLeastWhereOneDecadeAloneWouldBeNoScale) {
+  EXPECT_EQ(textsOf(ticksOf(decades(-2.96, -1.45), 0.2)), (Texts{"0.003", "0.01", "0.03"}));
+  EXPECT_EQ(textsOf(ticksOf(decades(0.1, 1.75), 0.2)), (Texts{"3", "10", "30"}));
 }
 
 TEST(LogarithmicTicks, OverLessThanADecadeAreRoundValues) {
@@ -143,6 +154,9 @@ TEST(Axis, HoldsNoZeroWhereItIsLogarithmic) {
   EXPECT_FALSE(decades(-300.0, 2.0).holds(std::nan("")));
   EXPECT_TRUE(decades(-1.0, 1.0).holds(10.0));
   EXPECT_DOUBLE_EQ(decades(-1.0, 1.0).share(1.0), 0.5);
+  for (const double value : {0.0, -5.0}) {
+    EXPECT_EQ(decades(-1.0, 1.0).share(value), -std::numeric_limits<double>::infinity());
+  }
 }
 
 }  // namespace

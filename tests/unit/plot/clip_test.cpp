@@ -25,16 +25,24 @@ TEST(Clip, CutsAtTheEdges) {
 
 TEST(Clip, MakesTwoPiecesOfALineThatLeavesAndComesBack) {
   EXPECT_EQ(clipped({{10, 10}, {10, 90}, {20, 90}, {20, 10}}, kArea).size(), 2u);
+  EXPECT_EQ(clipped({{10, 10}, {10, 90}, {20, 10}}, kArea).size(), 2u) << "by one point outside";
 }
 
 TEST(Clip, LeavesAGapWhereAPointIsNotFinite) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(clipped({{1, 1}, {2, 2}, {nan, 3}, {4, 4}, {5, 5}}, kArea).size(), 2u);
-  EXPECT_TRUE(clipped({{1, 1}, {inf, 2}}, kArea).empty());
+  EXPECT_TRUE(clipped({{-1, 1}, {inf, 2}}, kArea).empty());
+}
+
+TEST(Clip, KeepsAPointThatStandsAlone) {
+  const double nan = std::nan("");
+  const auto pieces = clipped({{1, 1}, {nan, 1}, {3, 3}, {4, nan}, {-5, 5}, {nan, 5}}, kArea);
+  EXPECT_EQ(pieces, (std::vector<std::vector<QPointF>>{{{1, 1}}, {{3, 3}}}));
+  EXPECT_EQ(clipped({{5, 5}}, kArea).size(), 1u);
 }
 
 TEST(Clip, HoldsPointsThatNoPainterCould) {
-  const auto pieces = clipped({{50, 1e12}, {50, -1e12}}, kArea);
+  const auto pieces = clipped({{50, 1e300}, {50, -1e300}}, kArea);
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_NEAR(pieces[0].front().y(), 50.0, 1e-3);
   EXPECT_NEAR(pieces[0].back().y(), 0.0, 1e-3);
@@ -51,6 +59,37 @@ TEST(Thinning, KeepsTheFirstLowestHighestAndLastOfAColumnOfPixels) {
   EXPECT_EQ(thinned(line),
             (std::vector<QPointF>{{1.0, 5.0}, {1.2, 9.0}, {1.4, 2.0}, {1.5, 4.0}, {2.5, 4.0}}));
   EXPECT_TRUE(thinned({}).empty());
+}
+
+TEST(Dashes, RunOnAroundCorners) {
+  const std::vector<QPointF> line{{0, 0}, {5, 0}, {5, 5}, {15, 5}};
+  EXPECT_EQ(dashed(line, {4, 4}),
+            (std::vector<std::vector<QPointF>>{
+                {{0, 0}, {4, 0}}, {{5, 3}, {5, 5}, {7, 5}}, {{11, 5}, {15, 5}}}));
+  EXPECT_EQ(dashed(line, {2, 1, 5, 100}),
+            (std::vector<std::vector<QPointF>>{{{0, 0}, {2, 0}}, {{3, 0}, {5, 0}, {5, 3}}}));
+  EXPECT_EQ(dashed(line, {5, 3})[0], (std::vector<QPointF>{{0, 0}, {5, 0}}));
+  EXPECT_EQ(dashed(line, {5, 3})[1].front(), QPointF(5, 3)) << "a gap that starts at a corner";
+}
+
+TEST(Dashes, OfALineWithoutLengthAreNone) {
+  EXPECT_TRUE(dashed({}, {4, 4}).empty());
+  EXPECT_TRUE(dashed({{1, 1}, {1, 1}}, {4, 4}).empty());
+}
+
+TEST(ClippedArea, IsThePartWithin) {
+  const std::vector<QPointF> within{{10, 10}, {20, 10}, {20, 20}};
+  EXPECT_EQ(clippedArea(within, kArea), within);
+  EXPECT_TRUE(clippedArea({{-20, 0}, {-10, 0}, {-10, 90}}, kArea).empty());
+  EXPECT_TRUE(clippedArea({}, kArea).empty());
+  const double inf = std::numeric_limits<double>::infinity();
+  QRectF around;
+  for (const QPointF& p : clippedArea({{50, -1e12}, {1e300, 25}, {50, inf}, {-inf, 25}}, kArea)) {
+    EXPECT_TRUE(kArea.adjusted(-1e-3, -1e-3, 1e-3, 1e-3).contains(p)) << p.x() << " " << p.y();
+    around = around.united(QRectF(p, QSizeF(1e-3, 1e-3)));
+  }
+  EXPECT_GT(around.width(), 99.0);
+  EXPECT_GT(around.height(), 49.0);
 }
 
 }  // namespace

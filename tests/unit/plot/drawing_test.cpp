@@ -102,20 +102,93 @@ TEST(Drawing, KeepsLinesWithinTheAxesAndLeavesGaps) {
 
 TEST(Drawing, OfAHundredThousandPointsReachesAllOfThemAndTakesNoMinute) {
   Plot plot = empty();
+  plot.width_px = 1200;
+  plot.height_px = 800;
   plot.lines = {{{}, Tone::series_1, 1.5}};
   for (int i = 0; i <= 100000; ++i) {
-    plot.lines[0].points.push_back({1e-4 * i, i == 70001 ? 3.9 : 1.0 + 0.01 * ((37 * i) % 101)});
+    plot.lines[0].points.push_back({1e-4 * i, i == 70001 ? 3.9 : 0.5 + 0.024 * ((37 * i) % 101)});
   }
+  plot.marks = {{{4.0, 2.0}, "a mark"}, {{6.0, 2.0}, "another"}};  // in the thick of it
   const auto start = std::chrono::steady_clock::now();
   const Drawing drawing = drawn(plot);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
   const QRgb blue = colourOf(Tone::series_1, Theme::light).rgb();
-  EXPECT_LT(apart(pixel(drawing, at(drawing, plot, 7.0001, 3.0)), blue), 120) << "one value alone";
+  EXPECT_LT(apart(pixel(drawing, at(drawing, plot, 7.0001, 3.4)), blue), 120) << "one value alone";
+}
+
+TEST(Drawing, OfADashedLineOfThousandsOfTurnsTakesNoMinute) {
+  Plot plot = empty();
+  plot.width_px = 1200;
+  plot.height_px = 800;
+  plot.lines = {{{}, Tone::series_1, 1.5, {6.0, 4.0}}};
+  for (int i = 0; i < 10000; ++i) plot.lines[0].points.push_back({1e-3 * i, i % 2 ? 3.5 : 0.5});
+  const auto start = std::chrono::steady_clock::now();
+  drawn(plot);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+}
+
+TEST(Drawing, OfADashedLineHasGaps) {
+  Plot plot = empty();
+  plot.lines = {{{{0.0, 2.25}, {10.0, 2.25}}, Tone::series_1, 3.0, {6.0, 10.0}}};
+  const Drawing drawing = drawn(plot);
+  const QRgb blue = colourOf(Tone::series_1, Theme::light).rgb();
+  const QPointF start = at(drawing, plot, 0.0, 2.25);
+  EXPECT_LT(apart(pixel(drawing, start + QPointF(3.0, 0.0)), blue), 60);
+  EXPECT_GT(apart(pixel(drawing, start + QPointF(11.0, 0.0)), blue), 100);
+  EXPECT_LT(apart(pixel(drawing, start + QPointF(19.0, 0.0)), blue), 60);
+}
+
+TEST(Drawing, OfAPointThatStandsAloneIsADot) {
+  Plot plot = empty();
+  const double nan = std::nan("");
+  plot.lines = {{{{5.3, 2.2}}, Tone::series_1, 1.5, {}, "", "alone"},
+                {{{1.0, nan}, {2.3, 2.2}, {nan, 2.0}}, Tone::series_2, 1.5, {4, 4}, "", "gaps"}};
+  const Drawing drawing = drawn(plot);
+  for (const auto& [x, tone] : {std::pair{5.3, Tone::series_1}, {2.3, Tone::series_2}}) {
+    EXPECT_LT(apart(pixel(drawing, at(drawing, plot, x, 2.2)), colourOf(tone, Theme::light).rgb()),
+              80);
+  }
+  EXPECT_TRUE(says(drawing, "alone") && says(drawing, "gaps"));
+}
+
+Plot banded(std::vector<Band::Span> spans) {
+  Plot plot = empty();
+  plot.bands = {{std::move(spans), Tone::good, "allowed"}};
+  return plot;
+}
+
+bool filled(const Drawing& drawing, const Plot& plot, double x, double y) {
+  return apart(pixel(drawing, at(drawing, plot, x, y)), qRgb(255, 255, 255)) > 20;
+}
+
+TEST(Drawing, OfABandLeavesAGapWhereAValueIsNotFinite) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const Plot plot = banded({{0, 1, 3}, {2, 1, 3}, {4, nan, 3}, {5, 1, 3}, {7, 1, inf}, {9, 1, 3}});
+  const Drawing drawing = drawn(plot);
+  for (const double x : {0.7, 1.7, 5.0, 9.0}) EXPECT_TRUE(filled(drawing, plot, x, 1.9)) << x;
+  for (const double x : {2.7, 3.7, 4.7, 6.3, 7.7}) {
+    EXPECT_FALSE(filled(drawing, plot, x, 1.9)) << x;
+  }
+}
+
+TEST(Drawing, OfABandKeepsItsSlopeBeyondTheAxes) {
+  const Plot plot = banded({{0, 0, 4}, {10, 0, -36}});  // meets the axis at 1
+  const Drawing drawing = drawn(plot);
+  EXPECT_TRUE(filled(drawing, plot, 0.4, 1.3));
+  EXPECT_FALSE(filled(drawing, plot, 0.8, 1.3));
+  EXPECT_FALSE(filled(drawing, plot, 5.3, 0.7));
+}
+
+TEST(Drawing, OfABandFromZeroReachesTheLowEndOfALogarithmicAxis) {
+  Plot plot = banded({{0, 0, 10}, {10, -1, 10}});
+  plot.y = {"k", "N/m", true, -1.0, 2.0};
+  const Drawing drawing = drawn(plot);
+  EXPECT_TRUE(filled(drawing, plot, 5.3, 0.15));
+  EXPECT_FALSE(filled(drawing, plot, 5.3, 15.0));
 }
 
 TEST(Drawing, OfABandFillsBetweenItsLines) {
-  Plot plot = empty();
-  plot.bands = {{{{0.0, 1.0}, {10.0, 1.0}}, {{0.0, 3.0}, {10.0, 3.0}}, Tone::good, "allowed"}};
+  const Plot plot = banded({{0.0, 1.0, 3.0}, {10.0, 1.0, 3.0}});
   const Drawing drawing = drawn(plot);
   const QRgb inside = pixel(drawing, at(drawing, plot, 5.3, 1.9));
   const QRgb below = pixel(drawing, at(drawing, plot, 5.3, 0.7));
@@ -172,6 +245,21 @@ TEST(Drawing, OfAHeatMapLiesWhereItsValuesAre) {
     const QPointF off = text->rect.center() - at(drawing, plot, cell.at.x, cell.at.y);
     EXPECT_LT(std::hypot(off.x(), off.y()), 1.0);
   }
+}
+
+TEST(Drawing, OfADashedLineOverACellLeavesTheCellWholeBetweenItsDashes) {
+  Plot plot = heat();
+  plot.lines = {{{{0.0, 1.15}, {10.0, 1.15}}, Tone::series_1, 2.5, {6.0, 10.0}}};
+  const Drawing drawing = drawn(plot);
+  const QRgb fill = colourOf(Tone::heat_3, Theme::light).rgb();
+  const QPointF start = at(drawing, plot, 0.0, 1.15), cell = at(drawing, plot, 5.0, 1.15);
+  int gaps = 0;
+  for (double x = start.x() + 11.0; x < drawing.area.right(); x += 16.0) {
+    if (std::abs(x - cell.x()) > 36.0) continue;
+    ++gaps;
+    EXPECT_EQ(pixel(drawing, {x, start.y()}), fill) << x - cell.x();
+  }
+  EXPECT_GE(gaps, 3);
 }
 
 TEST(Drawing, OfAHeatMapWithNarrowCellsBearsTheBriefTextsAndSaysSo) {
@@ -239,8 +327,12 @@ TEST(Drawing, NamesLinesBesideTheirEndsOneOverTheOther) {
 TEST(Drawing, SaysOfALineOutsideOfTheAxesThatItIsThere) {
   Plot plot = empty();
   plot.lines = {{{{0.0, 50.0}, {10.0, 50.0}}, Tone::series_1, 2.0, {}, "far", "far away"}};
+  plot.lines.push_back({{{std::nan(""), 1.0}}, Tone::series_2, 2.0, {}, "", "nothing"});
+  plot.bands = {{{{0.0, 50.0, 60.0}}, Tone::good, "far band"}, {{}, Tone::good, "no band"}};
   const Drawing drawing = drawn(plot);
   EXPECT_TRUE(says(drawing, "far away: outside of these axes"));
+  EXPECT_TRUE(says(drawing, "far band: outside of these axes"));
+  EXPECT_TRUE(says(drawing, "nothing: no values") && says(drawing, "no band: no values"));
   EXPECT_FALSE(says(drawing, "far"));
 }
 
@@ -260,6 +352,66 @@ TEST(Drawing, OfTextsOfAnyLengthKeepsThemWithinThePicture) {
   }
 }
 
+TEST(Drawing, OfAnySizeKeepsItsTextsWithinAndWholeOrRefuses) {
+  Plot plot = empty();
+  plot.notes = {"a note", "a note that is longer"};
+  plot.y = {"Force", "HU", false, 1234.5, 1237.5};
+  for (int i = 0; i < 5; ++i) {
+    const std::string text = "line " + std::to_string(i);
+    plot.lines.push_back(
+        {{{0.0, 1235.0}, {10.0, 1236.0}}, Tone::series_1, 2.0, {}, text, "of arm " + text});
+  }
+  int drawn = 0, refused = 0;
+  for (plot.width_px = 200; plot.width_px < 2000; plot.width_px = plot.width_px * 5 / 4) {
+    for (plot.height_px = 200; plot.height_px < 2000; plot.height_px = plot.height_px * 5 / 4) {
+      const Result<Drawing> drawing = draw(plot);
+      if (drawing) {
+        ++drawn;
+        expectTextsApart(*drawing);
+        for (const char* text : {"1235", "1236", "of arm line 4"}) {
+          EXPECT_TRUE(says(*drawing, text)) << plot.width_px << " x " << plot.height_px << text;
+        }
+      } else {
+        ++refused;
+        EXPECT_EQ(drawing.error().code, "BAD_ARGUMENT");
+        EXPECT_NE(drawing.error().what.find("no room"), std::string::npos);
+      }
+    }
+  }
+  EXPECT_GT(drawn, 20);
+  EXPECT_GT(refused, 10);
+}
+
+TEST(Drawing, GivesTheAxesTheRowOfALegendThatHasNoHeading) {
+  Plot plot = empty();
+  plot.lines = {{{{0.0, 1.0}, {10.0, 1.0}}, Tone::series_1, 2.0, {}, "", "a line"}};
+  const double without = drawn(plot).area.height();
+  plot.legend_heading = "A heading";
+  EXPECT_EQ(drawn(plot).area.height(), without - 25.0);
+}
+
+TEST(Drawing, WritesItsNotesInOneSize) {
+  Plot plot = empty();
+  plot.notes = {std::string(90, 'w'), "short"};
+  const Drawing drawing = drawn(plot);
+  ASSERT_TRUE(says(drawing, "short"));
+  std::vector<double> heights;
+  for (const PlacedText& placed : drawing.texts) {
+    if (placed.text == "short" || placed.text[0] == 'w') heights.push_back(placed.rect.height());
+  }
+  ASSERT_EQ(heights.size(), 2u);
+  EXPECT_EQ(heights[0], heights[1]);
+}
+
+TEST(Drawing, LeavesLinesTheirPlaceBesideLongLevelsInTheLegend) {
+  Plot plot = heat();
+  for (auto& level : plot.heat_map->levels) level.legend = std::string(200, 'W');
+  plot.lines = {{{{0.0, 1.0}, {10.0, 1.0}}, Tone::series_1, 2.0, {}, "", "a published limit"}};
+  const Drawing drawing = drawn(plot);
+  EXPECT_TRUE(says(drawing, "a published limit"));
+  expectTextsApart(drawing);
+}
+
 TEST(Drawing, OfEveryRangeKeepsItsTextsApart) {
   for (const bool logarithmic : {false, true}) {
     for (int e = -6; e <= 6; ++e) {
@@ -271,6 +423,9 @@ TEST(Drawing, OfEveryRangeKeepsItsTextsApart) {
       expectTextsApart(drawn(plot));
     }
   }
+  Plot far = empty();
+  far.x = {"CT number", "HU", false, 1e5, 1e5 + 2.0};
+  expectTextsApart(drawn(far));
 }
 
 TEST(Drawing, IsTheSameEachTimeAndInAnyThread) {
@@ -287,7 +442,11 @@ TEST(Drawing, IsDarkInTheDarkTheme) {
 
 TEST(Drawing, RefusesWhatIsNoPlot) {
   const double inf = std::numeric_limits<double>::infinity();
-  for (int which = 0; which < 6; ++which) {
+  const auto linear = [](double low, double high) { return Axis{"Force", "N", false, low, high}; };
+  const char* const words[] = {"edges",   "edges",   "axis",  "axis",   "level",
+                               "outside", "columns", "rows",  "axis",   "axis",
+                               "axis",    "axis",    "width", "dashes", "dashes"};
+  for (int which = 0; which < 15; ++which) {
     Plot plot = heat();
     if (which == 0) plot.width_px = 100;
     if (which == 1) plot.height_px = 10000;
@@ -295,9 +454,19 @@ TEST(Drawing, RefusesWhatIsNoPlot) {
     if (which == 3) plot.y.high = inf;
     if (which == 4) plot.heat_map->cells[0].level = 9;
     if (which == 5) plot.heat_map->cells[0].at.x = 99.0;
+    if (which == 6) plot.heat_map->columns = {2.0, 2.0};
+    if (which == 7) plot.heat_map->rows = {3.0, 1.0};
+    if (which == 8) plot.y = linear(4.0, std::nextafter(4.0, 5.0));
+    if (which == 9) plot.y = linear(-1.7e308, 1.7e308);
+    if (which == 10) plot.y = linear(0.0, 5e-324);
+    if (which == 11) plot.y = linear(std::nan(""), 4.0);
+    if (which == 12) plot.lines = {{{}, Tone::ink, 0.0}};
+    if (which == 13) plot.lines = {{{}, Tone::ink, 1.0, {5.0, 0.0}}};
+    if (which == 14) plot.lines = {{{}, Tone::ink, 1.0, {5.0, 3.0, 2.0}}};
     const Result<Drawing> drawing = draw(plot);
     ASSERT_FALSE(drawing) << which;
     EXPECT_EQ(drawing.error().code, "BAD_ARGUMENT") << which;
+    EXPECT_NE(drawing.error().what.find(words[which]), std::string::npos) << which;
   }
 }
 

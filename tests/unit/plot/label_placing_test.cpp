@@ -30,7 +30,7 @@ TEST(LabelPlacing, AroundADiscLeavesTheDiscFree) {
 }
 
 TEST(LabelPlacing, SpreadsRowsUpFromTheLastAndKeepsTheirOrder) {
-  std::vector<double> rows{10.0, 12.0, 80.0, 99.0};
+  std::vector<double> rows{10.0, 12.0, 90.0, 99.0};
   spread(rows, 20.0, 100.0);
   EXPECT_EQ(rows, (std::vector<double>{10.0, 30.0, 80.0, 100.0}));
 }
