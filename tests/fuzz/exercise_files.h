@@ -6,6 +6,7 @@
 
 #include "scene/scene.h"
 #include "session/operator_script.h"
+#include "shells.h"
 #include "volume/volume.h"
 
 namespace trephine::fuzz {
@@ -19,20 +20,7 @@ constexpr std::uint64_t kTicks = 200;
 // Shells of what the shipped tissue sets call scalp, bone and brain or fat, bone and liver, 48^3
 // voxels: every shipped scene finds its landmarks there.
 inline Volume smallHead() {
-  Volume v;
-  GridGeometry& g = v.geometry;
-  g.size = {48, 48, 48};
-  g.spacing_mm = Vec3(2.0);
-  g.origin_mm = Vec3(-47.0);
-  v.hu.assign(g.voxelCount(), kAirHu);
-  for (std::size_t i = 0; i < v.hu.size(); ++i) {
-    const Index3 at = g.indicesOf(i);
-    const double r = glm::length(g.toPatient_mm(Vec3(at[0], at[1], at[2])));
-    if (r < 46) v.hu[i] = -80;
-    if (r < 44) v.hu[i] = 1200;
-    if (r < 40) v.hu[i] = 45;
-  }
-  return v;
+  return test::shells(48, 2.0, {{46, -80}, {44, 1200}, {40, 45}});
 }
 
 // Every arm of the scene begins in tissue and moves on through it.

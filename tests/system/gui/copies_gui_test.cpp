@@ -8,6 +8,7 @@
 #include "base/system.h"
 #include "gui_support.h"
 #include "memory_probe.h"
+#include "shells.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "volume/case_memory.h"
@@ -21,22 +22,7 @@ constexpr int kLong_ms = 120000;
 
 // A ball of bone around brain, 180 mm across, in a box of so many voxels a side and 200 mm.
 Volume head(int edge, double voxel_mm) {
-  Volume v;
-  GridGeometry& g = v.geometry;
-  g.size = {edge, edge, edge};
-  g.spacing_mm = Vec3(voxel_mm);
-  g.origin_mm = Vec3(-voxel_mm * (edge - 1) / 2.0);
-  v.hu.assign(g.voxelCount(), kAirHu);
-  std::size_t at = 0;
-  for (int k = 0; k < edge; ++k) {
-    for (int j = 0; j < edge; ++j) {
-      for (int i = 0; i < edge; ++i, ++at) {
-        const double r = glm::length(g.origin_mm + voxel_mm * Vec3(i, j, k));
-        if (r < 90) v.hu[at] = r < 70 ? 35 : r < 80 ? 1200 : -20;
-      }
-    }
-  }
-  return v;
+  return test::shells(edge, voxel_mm, {{90, -20}, {80, 1200}, {70, 35}});
 }
 
 std::size_t bytesOf(const Volume& volume) {

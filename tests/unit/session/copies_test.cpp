@@ -5,6 +5,7 @@
 #include "base/system.h"
 #include "memory_probe.h"
 #include "session/session.h"
+#include "shells.h"
 #include "support.h"
 #include "volume/case_memory.h"
 #include "volume/volume_files.h"
@@ -34,22 +35,7 @@ namespace {
 
 // A ball of bone in scalp, 96 mm across, on voxels of 0.3 mm: 62.5 MB.
 Volume largeHead() {
-  Volume v;
-  GridGeometry& g = v.geometry;
-  g.size = {320, 320, 320};
-  g.spacing_mm = Vec3(0.3);
-  g.origin_mm = Vec3(-47.85);
-  v.hu.assign(g.voxelCount(), kAirHu);
-  std::size_t at = 0;
-  for (int k = 0; k < 320; ++k) {
-    for (int j = 0; j < 320; ++j) {
-      for (int i = 0; i < 320; ++i, ++at) {
-        const double r = glm::length(g.origin_mm + 0.3 * Vec3(i, j, k));
-        if (r < 44) v.hu[at] = r < 32 ? 35 : r < 39 ? 1200 : -20;
-      }
-    }
-  }
-  return v;
+  return test::shells(320, 0.3, {{44, -20}, {39, 1200}, {32, 35}});
 }
 
 TEST(Copies, AreOneOfACaseAndAnotherOfTheGridThatIsCutAndTheyAreHashedAndSearchedOnce) {

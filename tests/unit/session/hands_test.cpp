@@ -6,6 +6,7 @@
 #include "cases.h"
 #include "session/hand_start.h"
 #include "session/session.h"
+#include "shells.h"
 #include "support.h"
 
 namespace trephine {
@@ -71,19 +72,7 @@ Scene liver() {
 
 // Liver within muscle within skin: enough for the shipped scene.
 Volume smallBelly() {
-  Volume v;
-  GridGeometry& g = v.geometry;
-  g.size = {80, 80, 80};
-  g.spacing_mm = Vec3(1.5);
-  g.origin_mm = Vec3(-59.25);
-  v.hu.assign(g.voxelCount(), kAirHu);
-  for (std::size_t i = 0; i < v.hu.size(); ++i) {
-    const Index3 ijk = g.indicesOf(i);
-    const double r = glm::length(g.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2])));
-    if (r < 44) v.hu[i] = 75;
-    if (r < 30) v.hu[i] = 50;
-  }
-  return v;
+  return test::shells(80, 1.5, {{44, 75}, {30, 50}});
 }
 
 // A freewheeling session that is spoken to every 256 ticks, as a window would.

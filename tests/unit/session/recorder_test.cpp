@@ -8,37 +8,20 @@
 #include <fstream>
 #include <thread>
 
-#include "base/system.h"
 #include "cases.h"
-#include "session/session.h"
+#include "session_support.h"
 #include "support.h"
 #include "training/replay.h"
 
 namespace trephine {
 namespace {
 
+using test::cranium;
+using test::scripted;
+
 // A ball of bone: enough of a cranium for the shipped scene.
 Volume ball() {
-  Volume v;
-  v.geometry.size = {64, 64, 64};
-  v.geometry.spacing_mm = Vec3(1.5);
-  v.geometry.origin_mm = Vec3(-47.25);
-  v.hu.assign(v.geometry.voxelCount(), kAirHu);
-  for (std::size_t i = 0; i < v.hu.size(); ++i) {
-    const Index3 ijk = v.geometry.indicesOf(i);
-    const Vec3 at = v.geometry.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2]));
-    if (glm::length(at) < 40.0) v.hu[i] = 1200;
-  }
-  return v;
-}
-
-Scene cranium() {
-  return *readScene(resourceFolder() / "scenes" / "cranium.json");
-}
-
-SessionOptions scripted(const std::filesystem::path& recording) {
-  const Scene scene = cranium();
-  return {recording, *readOperatorScript(scene.operator_file, scene)};
+  return test::shells(64, 1.5, {{40, 1200}});
 }
 
 // A slow session is drained as often in its own time as a fast one.

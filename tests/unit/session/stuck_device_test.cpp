@@ -7,6 +7,7 @@
 #include "base/system.h"
 #include "cases.h"
 #include "session/session.h"
+#include "shells.h"
 #include "support.h"
 #include "training/replay.h"
 
@@ -16,17 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 Volume block() {
-  Volume v;
-  v.geometry.size = {64, 64, 64};
-  v.geometry.spacing_mm = Vec3(1.5);
-  v.geometry.origin_mm = Vec3(-47.25);
-  v.hu.assign(v.geometry.voxelCount(), 1200);
-  for (std::size_t i = 0; i < v.hu.size(); ++i) {
-    const Index3 ijk = v.geometry.indicesOf(i);
-    const Vec3 at = v.geometry.toPatient_mm(Vec3(ijk[0], ijk[1], ijk[2]));
-    if (glm::length(at) > 40.0) v.hu[i] = kAirHu;
-  }
-  return v;
+  return test::shells(64, 1.5, {{40, 1200}});
 }
 
 // Arms whose exchange blocks at 0.3 s for `block_s`.

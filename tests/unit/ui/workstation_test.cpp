@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "qt_support.h"
+#include "shells.h"
 #include "support.h"
 #include "tissue/tissue_edits.h"
 #include "training/session_reader.h"
@@ -23,17 +24,7 @@ using test::waitFor;
 
 // A ball of bone: enough for the landmark of the default scene.
 Volume ball() {
-  Volume v;
-  GridGeometry& g = v.geometry;
-  g.size = {60, 60, 60};
-  g.spacing_mm = Vec3(1.5);
-  g.origin_mm = Vec3(-44.25);
-  for (std::size_t i = 0; i < g.voxelCount(); ++i) {
-    const Index3 at = g.indicesOf(i);
-    const double r = glm::length(g.toPatient_mm(Vec3(at[0], at[1], at[2])));
-    v.hu.push_back(std::int16_t(r < 40.0 ? 1200 : kAirHu));
-  }
-  return v;
+  return test::shells(60, 1.5, {{40, 1200}});
 }
 
 class WorkstationTest : public ::testing::Test {
@@ -208,12 +199,7 @@ TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
 
 // What the scene finds is deep in soft tissue, and so is where it puts the tools.
 TEST_F(WorkstationTest, HandsThatTheMouseWillMoveBeginOutsideOfTissue) {
-  Volume deep = ball();
-  for (std::size_t i = 0; i < deep.hu.size(); ++i) {
-    const Index3 at = deep.geometry.indicesOf(i);
-    const double r = glm::length(deep.geometry.toPatient_mm(Vec3(at[0], at[1], at[2])));
-    deep.hu[i] = std::int16_t(r < 15.0 ? 1200 : r < 42.0 ? -20 : kAirHu);
-  }
+  const Volume deep = test::shells(60, 1.5, {{42, -20}, {15, 1200}});
   workstation_.openImported(caseOf(std::make_shared<const Volume>(deep)));
   ASSERT_TRUE(wait());
   workstation_.start(folder_.path(), {}, 1e9);
