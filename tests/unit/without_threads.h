@@ -3,6 +3,8 @@
 
 #include <pthread.h>
 
+#include <cstddef>
+
 namespace trephine::test {
 
 class WithoutThreads {
