@@ -296,6 +296,36 @@ TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
   ASSERT_TRUE(session->stop().ok());
 }
 
+TEST(Session, IsReplayedOnlyWhereThereIsMemoryForIt) {
+  test::TemporaryFolder folder;
+  const Volume head = smallHead();
+  {
+    auto session =
+        *Session::create(cranium(), test::placed(cranium(), head), scripted(folder / "s.h5"));
+    ASSERT_TRUE(session->freewheel(0.1).ok());
+  }
+  const auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  {
+    const test::DataLimit limit(200.0);
+    const auto refused = replay(**reader, head);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "OUT_OF_MEMORY");
+    EXPECT_NE(refused.error().what.find("needs"), std::string::npos) << refused.error().what;
+  }
+  EXPECT_TRUE(replay(**reader, head)->identical);
+}
+
+TEST(Session, ThatNeverCameToATickHasTheVoxelsThatItBeganWith) {
+  test::TemporaryFolder folder;
+  const Case of = test::placed(cranium(), smallHead());
+  { ASSERT_TRUE(Session::create(cranium(), of, scripted(folder / "s.h5")).ok()); }
+  const auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  ASSERT_TRUE((*reader)->end());
+  EXPECT_EQ((*reader)->end()->volume_sha256, of.sha256);
+}
+
 TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
   SessionOptions options = scripted();
   Command back{CommandKind::reset, 0, {}};

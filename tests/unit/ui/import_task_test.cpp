@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <QLabel>
 #include <QPushButton>
+#include <QRadioButton>
 #include <QTemporaryDir>
 #include <QThread>
 
@@ -161,6 +163,54 @@ TEST_F(ImportTaskTest, AnotherFolderTakesThePlaceOfTheOneBeingScanned) {
   EXPECT_EQ(scanned_, 1);
   EXPECT_EQ(task_.report().series.size(), 1u);
   EXPECT_EQ(stopped_, 0);
+}
+
+TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
+  ImportDialog dialog(task_);
+  task_.scan(path());
+  auto* import = dialog.findChild<QPushButton*>("import");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  auto* half = dialog.findChild<QRadioButton*>("reduction2");
+  half->click();
+  {
+    const test::DataLimit limit(200.0);
+    import->click();
+    ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
+    EXPECT_EQ(error_->code, "OUT_OF_MEMORY");
+  }
+  EXPECT_TRUE(half->isChecked());
+}
+
+TEST_F(ImportTaskTest, WhatTheOpenCaseGivesBackCountsForTheNext) {
+  scan();
+  const test::DataLimit limit(100.0);
+  task_.setGivenBack(1000.0);
+  task_.read(*task_.bestSeries(), {}, 500.0);
+  ASSERT_TRUE(waitFor([&] { return read_ == 1 || error_.has_value(); }));
+  EXPECT_FALSE(error_ && error_->what.find("practising") != std::string::npos)
+      << error_->sentence();
+}
+
+TEST_F(ImportTaskTest, ThePromiseAfterBackIsThatOfTheWholeSeries) {
+  Volume large;
+  large.geometry.size = {256, 256, 40};
+  large.hu.assign(large.geometry.voxelCount(), 100);
+  write(large, "large");
+  ImportDialog dialog(task_);
+  task_.scan(path() / "large");
+  auto* import = dialog.findChild<QPushButton*>("import");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  auto* memory = dialog.findChild<QLabel*>("memoryNeeded");
+  auto* outcome = dialog.findChild<QLabel*>("sizeOutcome");
+  const QString whole = outcome->text(), promised = memory->text().section(';', 0, 0);
+  dialog.findChild<QRadioButton*>("reduction2")->click();
+  import->click();
+  auto* open = dialog.findChild<QPushButton*>("openCase");
+  ASSERT_TRUE(waitFor([&] { return open->isVisible(); }));
+  dialog.findChild<QPushButton*>("importBack")->click();
+  dialog.findChild<QRadioButton*>("reduction1")->click();
+  EXPECT_EQ(outcome->text(), whole);
+  EXPECT_EQ(memory->text().section(';', 0, 0), promised);
 }
 
 TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
