@@ -123,6 +123,11 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
   return provenance;
 }
 
+Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
+  return enoughToRead(readingMb(series, request), "Reading the series", "",
+                      request.most_memory_mb.value_or(usableMemoryMb()));
+}
+
 // A series of DICOM slices, or a volume file.
 struct Source {
   Series series;
@@ -148,11 +153,6 @@ struct CtFolder::Contents {
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
                            int& slices_used);
 };
-
-Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
-  return enoughToRead(readingMb(series, request), "Reading the series", "",
-                      request.most_memory_mb.value_or(usableMemoryMb()));
-}
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.

@@ -228,7 +228,8 @@ void Workstation::start(const std::filesystem::path& recordings,
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   carved_.reset();  // its memory is the next one's
   // What was found in tissues that have been edited since lies elsewhere now, or is found now.
-  const bool again = case_->misfit || !(placed_with_ == tissueTable(scene_->tissues));
+  const TissueTable tissues = tissueTable(scene_->tissues);
+  const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
       [scene = *scene_, of = *case_, again, recordings, stem,
        script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
@@ -237,8 +238,11 @@ void Workstation::start(const std::filesystem::path& recordings,
         if (!placed) return placed.error();
         return Session::create(scene, *placed, {freshFile(recordings, stem, ".h5"), script, true});
       },
-      [this, seconds](Result<std::unique_ptr<Session>> created) {
+      [this, seconds, tissues](Result<std::unique_ptr<Session>> created) {
         if (!created) return notStarted(created.error());
+        case_->landmarks = (*created)->landmarks();
+        case_->misfit.reset();
+        placed_with_ = tissues;
         started(*std::move(created), seconds);
       });
 }
@@ -251,8 +255,6 @@ void Workstation::started(std::unique_ptr<Session> session, double seconds) {
   }
   Status started = told ? session->start(seconds) : told;
   if (!started) return notStarted(started.error());
-  case_->landmarks = session->landmarks();
-  case_->misfit.reset();
   session_ = std::move(session);
   recording_failure_.reset();
   setPhase(Phase::running);

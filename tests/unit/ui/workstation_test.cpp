@@ -228,6 +228,9 @@ TEST_F(PlacedTest, ALandmarkLiesWhereTheTissueIsThatAnEditMadeOfIt) {
   startAndStop();
   EXPECT_NEAR(before_mm - started_mm_, 20.0, 3.0);
   EXPECT_EQ(vault_mm(), started_mm_) << "where the view looks, too";
+  workstation_.setTissues(workstation_.declaredTissues());
+  startAndStop();
+  EXPECT_EQ(started_mm_, before_mm) << "and where it lay before, once the edit is taken back";
 }
 
 TEST_F(PlacedTest, ASceneThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
