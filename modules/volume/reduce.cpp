@@ -267,4 +267,14 @@ ReductionLoss reductionLoss(const Volume& original, const Volume& small, int fac
   return loss;
 }
 
+GridGeometry outcomeOf(const GridGeometry& grid, const VoxelBox& box, int factor) {
+  GridGeometry out = grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int size = std::max(0, box.high[axis] - box.low[axis]);
+    out.size[axis] = (size + factor - 1) / factor;
+  }
+  out.spacing_mm *= double(factor);
+  return out;
+}
+
 }  // namespace trephine

@@ -22,6 +22,9 @@ Result<Volume> crop(Volume&& volume, const VoxelBox& box);
 // BAD_FACTOR, BAD_SIZE, OUT_OF_MEMORY.
 Result<Volume> reduced(const Volume& volume, int factor);
 
+// Size and spacing of what the two leave of `grid`; origin and direction stay those of `grid`.
+GridGeometry outcomeOf(const GridGeometry& grid, const VoxelBox& box, int factor);
+
 // What `reduced` lost: the reduced volume, read back trilinearly at the original's voxels, against
 // those voxels. Up to four million are asked, every `stride`-th along i, j and k; strides are odd,
 // so that all places within a block are met alike, and grow in turn, i first.

@@ -5,18 +5,9 @@
 #include <algorithm>
 
 #include "ui/cases/import_words.h"
+#include "volume/reduce.h"
 
 namespace trephine {
-
-GridGeometry outcomeOf(const GridGeometry& grid, const VoxelBox& box, int reduction) {
-  GridGeometry out = grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int size = std::max(0, box.high[axis] - box.low[axis]);
-    out.size[axis] = (size + reduction - 1) / reduction;
-  }
-  out.spacing_mm *= double(reduction);
-  return out;
-}
 
 SizePanel::SizePanel(QWidget* parent) : QWidget(parent) {
   reductions_ = new QButtonGroup(this);

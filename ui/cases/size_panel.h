@@ -46,7 +46,4 @@ class SizePanel : public QWidget {
   QLabel* outcome_;
 };
 
-// Size and spacing of what is read of `grid`; origin and direction stay those of `grid`.
-GridGeometry outcomeOf(const GridGeometry& grid, const VoxelBox& box, int reduction);
-
 }  // namespace trephine

@@ -5,6 +5,7 @@
 #include "imaging/common/text.h"
 #include "imaging/report/provenance.h"
 #include "volume/case_memory.h"
+#include "volume/reduce.h"
 
 namespace trephine {
 
@@ -21,14 +22,9 @@ Json orNull(const std::optional<T>& value) {
 
 // How many voxels come out of it.
 std::size_t voxelsOf(const SeriesReport& series, const ImportRequest& request) {
-  const Index3& size = series.geometry.size;
-  const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, size});
-  std::size_t voxels = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int kept = std::max(0, box.high[axis] - box.low[axis]);
-    voxels *= std::size_t((kept + request.reduction - 1) / request.reduction);
-  }
-  return voxels;
+  const GridGeometry& grid = series.geometry;
+  const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, grid.size});
+  return outcomeOf(grid, box, request.reduction).voxelCount();
 }
 
 Json findingJson(const Finding& finding) {

@@ -17,6 +17,7 @@
 #include "ui/cases/size_panel.h"
 #include "ui/cases/state_mark.h"
 #include "ui/views/slice_preview.h"
+#include "volume/reduce.h"
 
 namespace trephine {
 namespace {
