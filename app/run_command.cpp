@@ -5,6 +5,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "app/out_folder.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "lab/exercise/exercise_picture.h"
@@ -20,30 +21,6 @@ namespace trephine {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The folder of a run. What was made of it goes again if nothing came to lie in it.
-class OutFolder {
- public:
-  explicit OutFolder(fs::path folder) : folder_(std::move(folder)) {
-    std::error_code ec;
-    for (fs::path at = fs::absolute(folder_, ec);
-         !at.empty() && fs::symlink_status(at, ec).type() == fs::file_type::not_found;
-         at = at.parent_path()) {
-      made_.push_back(at);
-    }
-  }
-  ~OutFolder() {
-    std::error_code ec;
-    for (const fs::path& at : made_) fs::remove(at, ec);  // only an empty folder goes
-  }
-  OutFolder(const OutFolder&) = delete;
-  OutFolder& operator=(const OutFolder&) = delete;
-  Status make() const { return makeFolder(folder_); }
-
- private:
-  fs::path folder_;
-  std::vector<fs::path> made_;  // the deepest first
-};
 
 // Puts the command line's choices into the scene.
 Status applyChoices(const RunArguments& arguments, Scene& scene) {
@@ -167,7 +144,9 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   const double seconds =
       arguments.seconds.value_or(options.script ? options.script->duration_s() : 10.0);
   if (!(seconds > 0.0 && seconds <= 86400.0)) {
-    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day", "--seconds", ""};
+    return Error{"BAD_ARGUMENT", "The time must lie above 0 and at most a day",
+                 arguments.seconds ? "--seconds" : script_file,
+                 arguments.seconds ? "" : "The script has no length: give --seconds"};
   }
   if (!arguments.save_volume.empty()) {
     if (Status can = checkVolumeFileName(arguments.save_volume); !can) return can.error();

@@ -4,6 +4,7 @@
 #include <QTimer>
 
 #include "app/answer.h"
+#include "app/out_folder.h"
 #include "app/signals.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -24,6 +25,7 @@ constexpr int kSignalPoll_ms = 50;
 Progress progress;  // cancelled by a signal
 
 int exercise(const ExerciseOptions& options, bool json) {
+  const OutFolder folder(options.out);
   Result<ExerciseOutcome> outcome = runExercise(options, progress);
   if (!outcome) return printError("exercise", outcome.error(), json);
   return printOutcome("exercise", toJson(*outcome), toText(*outcome), outcome->failure, json);

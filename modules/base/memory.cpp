@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr double kMb = 1024.0 * 1024.0;
 constexpr double kSpare_mb = 64.0;  // left to everything else
+constexpr const char* kLess =
+    "Close other programs, or import the case cropped or at a lower resolution";
 // Groups of version 1 without a limit have the largest number of pages there is.
 constexpr double kNoLimit_bytes = 1e18;
 
@@ -108,15 +110,32 @@ double availableMemoryMb() {
   return least_mb;
 }
 
+double usableMemoryMb() {
+  return std::max(0.0, availableMemoryMb() - kSpare_mb);
+}
+
 Status enoughMemory(double needed_mb, const std::string& what, const std::string& where,
-                    double available_mb) {
-  const double most_mb = std::max(0.0, available_mb - kSpare_mb);
-  if (needed_mb <= most_mb) return {};
+                    double usable_mb) {
+  if (needed_mb <= usable_mb) return {};
   const auto figure = [](double mb) { return std::to_string(std::llround(mb)) + " MB"; };
   return Error{
       "OUT_OF_MEMORY",
-      what + " needs " + figure(needed_mb) + " of memory, and " + figure(most_mb) + " can be had",
-      where, "Close other programs, or import the case cropped or at a lower resolution"};
+      what + " needs " + figure(needed_mb) + " of memory, and " + figure(usable_mb) + " can be had",
+      where, kLess};
+}
+
+Status enoughToRead(double needed_mb, const std::string& what, const std::string& where,
+                    double usable_mb) {
+  Status enough = enoughMemory(needed_mb, what, where, usable_mb);
+  if (enough) return enough;
+  Error error = enough.error();
+  error.next =
+      "Close other programs, use a computer with more memory, or have a smaller part exported";
+  return error;
+}
+
+Error outOfMemory(const std::string& what, const std::string& where) {
+  return {"OUT_OF_MEMORY", "There is not enough memory " + what, where, kLess};
 }
 
 }  // namespace trephine

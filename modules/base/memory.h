@@ -24,10 +24,19 @@ double availableMemoryMb();
 std::optional<double> controlGroupMemoryMb(const std::filesystem::path& membership,
                                            const std::filesystem::path& mounted);
 
-// Whether that much can be taken of `available_mb`, with some left to everything else. To be asked
-// before it is: beyond a control group's limit no allocation fails, the process is killed. `what`
-// needs it ("Reading the series"), `where` as in an Error. Error: OUT_OF_MEMORY, with both figures.
+// Of that, what one program may take: some is left to everything else.
+double usableMemoryMb();
+
+// Whether that much can be taken. To be asked before it is: beyond a control group's limit no
+// allocation fails, the process is killed. `what` needs it ("Reading the series"), `where` as in an
+// Error. Error: OUT_OF_MEMORY, with both figures.
 Status enoughMemory(double needed_mb, const std::string& what, const std::string& where,
-                    double available_mb = availableMemoryMb());
+                    double usable_mb = usableMemoryMb());
+// Of what is read whole before it can be cropped.
+Status enoughToRead(double needed_mb, const std::string& what, const std::string& where,
+                    double usable_mb = usableMemoryMb());
+
+// The same of an allocation that failed: "There is not enough memory " + `what` ("for the case").
+Error outOfMemory(const std::string& what, const std::string& where);
 
 }  // namespace trephine

@@ -154,7 +154,7 @@ struct CtFolder::Contents {
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
                                              const Progress& progress, int& slices_used) {
-  const double most_mb = request.most_memory_mb.value_or(availableMemoryMb());
+  const double most_mb = request.most_memory_mb.value_or(usableMemoryMb());
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
@@ -301,11 +301,11 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   if (!source->file.empty()) {
     series = assessFile(source->file, series.description);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
-    if (Status enough = enoughMemory(series.reading_mb, "Reading the volume", "",
-                                     request.most_memory_mb.value_or(availableMemoryMb()));
-        !enough) {
-      return fail(enough.error());
-    }
+  }
+  const double most_mb = request.most_memory_mb.value_or(usableMemoryMb());
+  if (Status enough = enoughToRead(readingMb(series, request), "Reading the series", "", most_mb);
+      !enough) {
+    return fail(enough.error());
   }
   Result<Volume> volume =
       source->file.empty()

@@ -12,7 +12,7 @@ namespace trephine {
 // Opens one device a plugin, holding all of the scene's arms that it moves, without starting it.
 // `capabilities` has one an arm afterwards; the arms' dynamics and their force limits [N] are those
 // of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
-// asks of it. Owner thread.
+// asks of it. Any thread that has them alone.
 Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities);
 

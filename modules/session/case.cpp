@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "imaging/importer.h"
-#include "volume/case_memory.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -48,11 +47,6 @@ Result<Case> read(const std::string& source, const Progress& progress) {
   return read;
 }
 
-Error outOfMemory() {
-  return {"OUT_OF_MEMORY", "There is not enough memory for the case", "the case",
-          "Close other programs, or import it cropped or at a lower resolution"};
-}
-
 }  // namespace
 
 Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256) {
@@ -70,7 +64,7 @@ Result<Case> readCase(const std::string& source, const Progress& progress) {
   try {
     return read(source, progress);
   } catch (const std::bad_alloc&) {
-    return outOfMemory();
+    return outOfMemory("for the case", "the case");
   }
 }
 
@@ -80,17 +74,11 @@ Result<Case> withLabels(Case of, const std::string& file) {
   try {
     const Result<LabelMap> map = readLabelMap(file);
     if (!map) return map.error();
-    // As many labels, a byte each, here and in the view.
-    if (Status enough =
-            enoughMemory(voxelsMb(of.volume->geometry.voxelCount()), "The label map", file);
-        !enough) {
-      return enough.error();
-    }
     Result<LabelMap> fitted = fitTo(*map, of.volume->geometry);
     if (!fitted) return fitted.error();
     of.labels = std::make_shared<const LabelMap>(*std::move(fitted));
   } catch (const std::bad_alloc&) {
-    return outOfMemory();
+    return outOfMemory("for the label map", file);
   }
   return of;
 }

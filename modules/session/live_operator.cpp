@@ -25,7 +25,7 @@ void LiveOperator::setPoints(std::uint64_t tick, OperatorSetPoint* hands, std::s
 }
 
 bool LiveOperator::command(std::uint64_t tick, Command& out) {
-  return script_ && script_->command(tick, out);
+  return script_ && !live_.value().script_waits && script_->command(tick, out);
 }
 
 }  // namespace trephine

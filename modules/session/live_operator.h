@@ -20,6 +20,7 @@ struct LiveHands {
     Vec3 held_m{0.0};
   };
   std::array<Hand, kMaxArms> hands{};
+  bool script_waits = false;  // its commands come later
 };
 
 class LiveOperator : public Operator {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <limits>
 #include <new>
+#include <system_error>
 
 #include "base/file.h"
 #include "base/log.h"
@@ -83,8 +84,7 @@ Result<std::unique_ptr<Session>> Session::create(const Scene& scene, const Case&
   try {
     if (Status set = session->set(scene, of, options); !set) return set.error();
   } catch (const std::bad_alloc&) {
-    return Error{"OUT_OF_MEMORY", "There is not enough memory for the exercise", "the case",
-                 "Close other programs, or import the case cropped or at a lower resolution"};
+    return outOfMemory("for the exercise", "the case");
   }
   return session;
 }
@@ -104,7 +104,7 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   std::vector<LoopDevice> devices;
   if (Status opened = openDevices(scene_, devices, capabilities_); !opened) return opened;
 
-  const double needed_mb = exerciseMb(volume.geometry.voxelCount());
+  const double needed_mb = exerciseMb(volume.geometry.voxelCount(), rt::LockedMemory::wasHeld());
   if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
   sha256_before_ = of.sha256;
   grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
@@ -155,7 +155,21 @@ Session::~Session() {
 
 Status Session::start(double seconds) {
   if (Status started = loop_->startDevices(); !started) return started;
+  try {
+    startThreads(seconds);
+  } catch (const std::system_error&) {
+    loop_->stopDevices();
+    stop_recorder_ = true;
+    engine_->watchdog.end();
+    if (recorder_thread_.joinable()) recorder_thread_.join();
+    if (watchdog_thread_.joinable()) watchdog_thread_.join();
+    return outOfMemory("for the threads of the exercise", "the system");
+  }
   running_ = true;
+  return {};
+}
+
+void Session::startThreads(double seconds) {
   const auto last_tick = std::uint64_t(std::llround(seconds * scene_.rate_hz));
   recorder_thread_ = std::thread([this] { record(); });
   watchdog_thread_ = std::thread([engine = engine_] {
@@ -183,7 +197,6 @@ Status Session::start(double seconds) {
     engine->ended = true;
     engine->changed.notify_all();
   });
-  return {};
 }
 
 bool Session::finished() const {
@@ -286,26 +299,42 @@ Status Session::freewheel(double seconds, const Progress& progress) {
 
 bool Session::freeze() {
   const LoopState& now = state();
-  if (!frozen_) {
+  if (freeze_ == Freeze::none) {
+    freeze_ = Freeze::settling;
+    hands_.script_waits = true;
+    engine_->live_hands.write(hands_);
+    unsettled_tick_ = now.ticks;
+  }
+  // What was asked for before is taken up first, and shows in the state some ticks later.
+  if (loop_->commands().size() > 0 || now.busy) unsettled_tick_ = now.ticks;
+  if (now.ticks <= unsettled_tick_ + kAnswerTicks) return false;
+  if (freeze_ == Freeze::settling) {
     paused_before_ = now.paused;
-    if (!paused_before_ && !send(CommandKind::pause)) return false;
-    frozen_ = true;
-    frozen_at_tick_ = now.ticks;
+    if (!now.paused && !push(CommandKind::pause)) return false;
+    freeze_ = Freeze::pausing;
+    unsettled_tick_ = now.ticks;
     return false;
   }
-  // What was asked for before is taken up first, and has begun some ticks later.
-  if (loop_->commands().size() > 0) frozen_at_tick_ = now.ticks;
-  return now.paused && !now.busy && now.ticks > frozen_at_tick_ + kAnswerTicks;
+  return now.paused;
 }
 
 void Session::thaw() {
-  if (!frozen_) return;
-  frozen_ = false;
-  if (!paused_before_) (void)send(CommandKind::resume);
+  if (freeze_ == Freeze::none) return;
+  const bool goes_on = freeze_ == Freeze::pausing && !paused_before_;
+  freeze_ = Freeze::none;
+  hands_.script_waits = false;
+  engine_->live_hands.write(hands_);
+  if (goes_on) (void)push(CommandKind::resume);
 }
 
 bool Session::send(CommandKind kind) {
-  if (frozen_ && kind != CommandKind::pause) return false;
+  if (freeze_ == Freeze::none) return push(kind);
+  // A pause that is asked for meanwhile stays.
+  if (kind == CommandKind::pause && freeze_ == Freeze::pausing) paused_before_ = true;
+  return kind == CommandKind::pause && freeze_ == Freeze::pausing;
+}
+
+bool Session::push(CommandKind kind) {
   const bool held = hands_.hands[0].held;
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
   const bool sent = loop_->commands().push({kind, 0, {}});
@@ -350,7 +379,7 @@ void Session::holdHands(bool hold) {
 }
 
 bool Session::rewind(std::uint32_t second) {
-  if (frozen_) return false;
+  if (freeze_ != Freeze::none) return false;
   return loop_->commands().push({CommandKind::rewind, std::int32_t(second), {}});
 }
 

@@ -85,8 +85,9 @@ class Session {
   // So many ticks later a command has been taken up, unless the state is `busy`: its own takes a
   // tick or two, and the others are for a few that were sent before it, of which each takes one.
   static constexpr std::uint64_t kAnswerTicks = 20;
-  // From the answer true to thaw() no voxel changes, so that the grid can be read: pauses, and
-  // refuses what would bring tissue back or go on. To be asked again until it is true.
+  // From the answer true to thaw() no voxel changes, so that the grid can be read: waits for what
+  // was asked for before, pauses, refuses what would bring tissue back or go on, and keeps a
+  // script's commands for later. To be asked again until it is true.
   bool freeze();
   void thaw();  // goes on, unless it was paused before
   // Tissue, counts and law states as they were in that second of the session.
@@ -114,6 +115,8 @@ class Session {
 
   Session() = default;
   Status set(const Scene& scene, const Case& of, const SessionOptions& options);
+  void startThreads(double seconds);
+  bool push(CommandKind kind);
   void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
   void holdHands(bool hold);
@@ -149,8 +152,10 @@ class Session {
   std::atomic<std::uint64_t> flushed_ticks_{0};
 
   bool running_ = false;
-  bool frozen_ = false, paused_before_ = false;
-  std::uint64_t frozen_at_tick_ = 0;
+  // freeze(): first all that waits is let happen, then comes a pause of its own.
+  enum class Freeze { none, settling, pausing } freeze_ = Freeze::none;
+  bool paused_before_ = false;
+  std::uint64_t unsettled_tick_ = 0;  // the last at which a command waited or a job ran
   std::atomic<bool> stop_recorder_{false};
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/rt/thread.h"
 #include "session/session.h"
 #include "volume/voxel_slabs.h"
@@ -116,13 +118,22 @@ Status Session::recordingStatus() const {
 double Session::recorderBehind_s() {
   if (!recorder_ || !recordingStatus()) return 0.0;
   const std::uint64_t flushed = flushed_ticks_;  // before the ticks, which go on
-  return double(state().ticks - std::min(flushed, state().ticks)) / scene_.rate_hz;
+  // What was dropped is never written.
+  const std::uint64_t settled = flushed + loop_->records().dropped();
+  return double(state().ticks - std::min(settled, state().ticks)) / scene_.rate_hz;
 }
 
 Status Session::finishRecording() {
-  sha256_after_ = slabsSha256(slabsOf(*grid_));
   recording_ended_ = true;
-  if (recorder_) {
+  try {
+    // Where no tick came the voxels are what they were.
+    sha256_after_ = loop_->ticks() == 0 ? sha256_before_ : slabsSha256(slabsOf(*grid_));
+  } catch (const std::bad_alloc&) {
+    const Error error = outOfMemory("to end the recording", "the recording");
+    if (recorder_) recorder_->abandon(error);
+    noteFailure(error);
+  }
+  if (recorder_ && !sha256_after_.empty()) {
     const RecordingEnd end{loop_->ticks(), loop_->dropped(), loop_->missed(), sha256_after_};
     if (Status status = recorder_->finish(end); !status) noteFailure(status.error());
   }

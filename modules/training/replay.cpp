@@ -4,9 +4,11 @@
 #include <cstring>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "haptics/haptic_core.h"
 #include "scene/scene.h"
 #include "training/recording_layout.h"
+#include "volume/case_memory.h"
 #include "volume/journal_file.h"
 #include "volume/voxel_slabs.h"
 
@@ -152,8 +154,9 @@ Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& he
 
 }  // namespace
 
-Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const LabelMap* labels,
-                            const Progress& progress, const std::string& sha256) {
+Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume,
+                            const LabelMap* labels, const Progress& progress,
+                            const std::string& sha256) {
   const RecordingHeader& header = recording.header();
   if (volume.geometry.size != header.geometry.size ||
       (sha256.empty() ? volumeSha256(volume) : sha256) != header.volume_sha256) {
@@ -176,9 +179,12 @@ Result<ReplayResult> replay(const SessionReader& recording, Volume volume, const
   Result<std::shared_ptr<const LabelMap>> fitted = recordedLabels(header, labels);
   if (!fitted) return fitted.error();
 
+  const double needed_mb = exerciseMb(volume.geometry.voxelCount());
+  if (Status enough = enoughMemory(needed_mb, "The replay", "the case"); !enough) {
+    return enough.error();
+  }
   // The same voxels may come from a file that rounds their place.
-  volume.geometry = header.geometry;
-  Grid grid(std::move(volume), *std::move(fitted));
+  Grid grid(Volume{header.geometry, volume.hu}, *std::move(fitted));
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();

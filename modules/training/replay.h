@@ -29,12 +29,12 @@ struct ReplayResult {
   bool cut_short = false;     // the recording has no end: it was killed
 };
 
-// `volume` is the case before the first tick; `sha256` is of its voxels, or empty: then it is taken
-// here; `labels` the label map that the session had, as it
-// was read, or null. Errors: WRONG_CASE (another sha256 than recorded), WRONG_LABELS (another label
-// map, one too many, or none), those of fitTo, NOT_REPLAYABLE (the recorder dropped something),
-// BAD_RECORDING, NO_TEMPORARY_FOLDER, those of JournalFile, CANCELLED.
-Result<ReplayResult> replay(const SessionReader& recording, Volume volume,
+// `volume` is the case before the first tick, of which a copy is cut; `sha256` is of its voxels, or
+// empty: then it is taken here; `labels` the label map that the session had, as it was read, or
+// null. Errors: OUT_OF_MEMORY, WRONG_CASE (another sha256 than recorded), WRONG_LABELS (another
+// label map, one too many, or none), those of fitTo, NOT_REPLAYABLE (the recorder dropped
+// something), BAD_RECORDING, NO_TEMPORARY_FOLDER, those of JournalFile, CANCELLED.
+Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume,
                             const LabelMap* labels = nullptr, const Progress& progress = Progress(),
                             const std::string& sha256 = "");
 

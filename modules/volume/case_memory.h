@@ -3,17 +3,23 @@
 // 2^20 bytes.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <thread>
 
 namespace trephine {
 
 // The window before a case is opened, where no graphics card draws; measured on Debian 12.
 constexpr double kWindow_mb = 110.0;
-// An exercise beside its voxels: the journal's ring (82 MB), the rings to the recorder, HDF5, a
-// slab to hash (16 MB), and the stacks of all threads, which are held in memory. Measured on two
-// cores.
-constexpr double kExercise_mb = 250.0;
+// An exercise beside its voxels: the journal's ring (82 MB), the rings to the recorder, HDF5 and a
+// slab to hash (16 MB).
+constexpr double kExercise_mb = 115.0;
+// The stacks of all threads and what else nobody had touched, which the first exercise holds in
+// memory and the process keeps. Measured on two cores; every further one may bring a thread of the
+// graphics driver.
+inline const double kHeld_mb =
+    145.0 + 8.0 * std::max(0, int(std::thread::hardware_concurrency()) - 2);
 // What the view knows of each 8^3 voxels: their range, two bytes each, and how far to leap.
 constexpr double kLeapShare = 6.0 / (8 * 8 * 8) / sizeof(std::int16_t);
 
@@ -26,12 +32,16 @@ constexpr double voxelsMb(std::size_t voxels) {
 constexpr double shownMb(std::size_t voxels) {
   return (2.0 + kLeapShare) * voxelsMb(voxels);
 }
-// To practise on it.
-constexpr double exerciseMb(std::size_t voxels) {
-  return voxelsMb(voxels) + kExercise_mb;
+// Labels, a byte each: a case's, or those in the view's texture.
+constexpr double labelsMb(std::size_t voxels) {
+  return 0.5 * voxelsMb(voxels);
 }
-// To open it, show it and practise on it, beyond the window.
-constexpr double openedMb(std::size_t voxels) {
+// To practise on it, for the first time or once more.
+inline double exerciseMb(std::size_t voxels, bool held_before = false) {
+  return voxelsMb(voxels) + kExercise_mb + (held_before ? 0.0 : kHeld_mb);
+}
+// To open it, show it and practise on it, beyond the window; labels come on top (labelsMb, twice).
+inline double openedMb(std::size_t voxels) {
   return voxelsMb(voxels) + shownMb(voxels) + exerciseMb(voxels);
 }
 

@@ -2,8 +2,9 @@
 //
 // Protocol (architecture.md): the holder of the write token stores int16 with relaxed atomics, then
 // marks the 16^3 brick with a store(release). The one reader takes marks with exchange(acquire)
-// and copies those bricks with relaxed loads into its own Volume. Drawing, slices, saving and
-// hashing see only such copies. Labels never change, so any thread may read them.
+// and copies those bricks with relaxed loads into its own Volume. Drawing and slices see only such
+// copies; saving and hashing read the grid itself, while its writer stands still (voxel_slabs.h).
+// Labels never change, so any thread may read them.
 #pragma once
 
 #include <atomic>

@@ -38,7 +38,7 @@ Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
     return notLabels("The value " + std::to_string(std::int64_t(value)) + " is no label", file);
   }
   const Voxels& values = read->volume.hu;
-  if (Status enough = enoughMemory(voxelsMb(values.size()) / 2.0, "The label map", file.string());
+  if (Status enough = enoughMemory(labelsMb(values.size()), "The label map", file.string());
       !enough) {
     return enough.error();
   }
@@ -49,6 +49,9 @@ Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {
   const GridGeometry& from = map.geometry;
   const Mat4 to_map = from.patientToVoxel() * ct.voxelToPatient();
   const Vec3 step(to_map[0]), size(from.size[0], from.size[1], from.size[2]);
+  if (Status enough = enoughMemory(labelsMb(ct.voxelCount()), "The label map", ""); !enough) {
+    return enough.error();
+  }
   LabelMap fitted{ct, std::vector<std::uint8_t>(ct.voxelCount())};
   std::uint8_t* label = fitted.labels.data();
   bool met = false;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "volume/file_format.h"
 #include "volume/voxel_reader.h"
 
@@ -114,6 +115,8 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
                                                     : writeNifti(told, temporary, file);
       if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
       return written;
+    } catch (const std::bad_alloc&) {
+      return outOfMemory("to save the volume", file.string());
     } catch (const std::exception&) {
       return cannotWrite(file);
     }

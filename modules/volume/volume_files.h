@@ -45,7 +45,6 @@ struct VolumeFileHeader {
   } data;
 
   std::uint64_t storedBytes() const { return geometry.voxelCount() * std::uint64_t(bytesOf(type)); }
-  // What reading takes, but for some fixed buffers.
 };
 
 // A volume and what was done to its values. Values are HU as the file's slope and intercept give

@@ -153,7 +153,7 @@ Result<VolumeFileReading> readVoxels(VolumeFileHeader header, const std::filesys
                                      const Progress& progress) {
   const std::size_t count = header.geometry.voxelCount();
   const auto& [name, voxel_bytes, convertVoxels] = rowOf(header.type);
-  if (Status enough = enoughMemory(voxelsMb(count), "Reading the volume", file.string()); !enough) {
+  if (Status enough = enoughToRead(voxelsMb(count), "Reading the volume", file.string()); !enough) {
     return enough.error();
   }
   VolumeFileReading reading{std::move(header), {}};

@@ -6,10 +6,10 @@
 #include <QShowEvent>
 #include <algorithm>
 
-#include "base/memory.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
+#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -41,6 +41,12 @@ const SeriesReport* ImportDialog::selected() const {
 SeriesReport* ImportDialog::before() {
   const auto found = std::ranges::find(before_, list_->selectedUid(), &SeriesReport::uid);
   return found == before_.end() ? nullptr : &*found;
+}
+
+// Of the window's own nothing is asked for again. 0: not known before it is read.
+double ImportDialog::neededMb(const ImportRequest& request) {
+  const SeriesReport& series = *before();
+  return series.memory_mb > 0.0 ? memoryMb(series, request) - kWindow_mb : 0.0;
 }
 
 // The list says what the series is, not how much of it was read last.
@@ -102,8 +108,18 @@ void ImportDialog::stopped() {
   showStep(Step::choosing);
   if (!isVisible()) return;
   if (was_scanning) return showFolder();  // the one before
-  before_ = task_.report().series;        // what could not be read may ask more now
-  seriesSelected();
+  // What could not be read may ask more now; what was chosen of it stays.
+  if (const SeriesReport* now = selected()) {
+    const GridGeometry grid = before()->geometry;
+    const VoxelBox box = size_->box();
+    const int reduction = size_->reduction();
+    *before() = *now;
+    if (now->verdict != Verdict::refused) before()->geometry = grid;
+    seriesSelected();
+    if (before()->geometry == grid) size_->restore(box, reduction);
+  } else {
+    seriesSelected();
+  }
 }
 
 void ImportDialog::dragEnterEvent(QDragEnterEvent* event) {
@@ -185,9 +201,8 @@ void ImportDialog::seriesSelected() {
 void ImportDialog::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
-  const ImportRequest request{{}, size_->crop(), size_->reduction(), {}};
-  const double needed_mb = series->memory_mb > 0.0 ? memoryMb(*series, request) : 0.0;
-  card_->showSeries(*series, answers(), needed_mb, availableMemoryMb());
+  card_->showSeries(*series, answers(), neededMb({{}, size_->crop(), size_->reduction(), {}}),
+                    task_.roomMb());
   listSelected();
   showImportButton();
 }
@@ -262,7 +277,7 @@ void ImportDialog::import() {
   request_ = {answers(), size_->crop(), size_->reduction(), {}};
   loss_told_ = false;
   showStep(Step::reading);
-  task_.read(list_->selectedUid(), request_);
+  task_.read(list_->selectedUid(), request_, neededMb(request_));
 }
 
 void ImportDialog::readDone() {
@@ -313,7 +328,7 @@ void ImportDialog::answered() {
   if (as_read) return openCase();
   request_.answers = answers();
   showStep(Step::reading);
-  task_.read(list_->selectedUid(), request_);
+  task_.read(list_->selectedUid(), request_, neededMb(request_));
 }
 
 void ImportDialog::openCase() {

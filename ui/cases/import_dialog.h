@@ -78,6 +78,7 @@ class ImportDialog : public QDialog {
   void back();
   const SeriesReport* selected() const;  // as the last read left it
   SeriesReport* before();                // the same before it was read
+  double neededMb(const ImportRequest& request);  // of memory, by the selected series
   void listSelected();
   Answers& answers() { return answers_[list_->selectedUid()]; }
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 
-#include "base/memory.h"
 #include "ui/common/words.h"
 #include "ui/views/slice_image.h"
-#include "volume/case_memory.h"
 
 namespace trephine {
 
@@ -22,14 +20,6 @@ bool asks(const ImportReport& report, const std::string& uid, const char* code) 
   const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
   return series != report.series.end() &&
          std::ranges::find(series->choices, code, &Choice::code) != series->choices.end();
-}
-
-// What was promised of it is asked for before it is read.
-Status roomFor(const ImportReport& report, const std::string& uid, const ImportRequest& request) {
-  const auto series = std::ranges::find(report.series, uid, &SeriesReport::uid);
-  if (series == report.series.end()) return {};
-  return enoughMemory(memoryMb(*series, request) - kWindow_mb,
-                      "Opening the case and practising on it", "");
 }
 
 }  // namespace
@@ -82,15 +72,18 @@ void ImportTask::scan(const std::filesystem::path& path) {
   });
 }
 
-void ImportTask::read(const std::string& uid, const ImportRequest& request) {
+void ImportTask::read(const std::string& uid, const ImportRequest& request, double needed_mb) {
   if (!folder_) return;
   wanted_.reset();
   volume_.reset();  // there is room for one
   couch_ = {};
-  begin([this, uid, request] {
+  begin([this, uid, request, needed_mb] {
     task_.run(
-        [folder = folder_, uid, request](const Progress& progress) -> Result<ReadSeries> {
-          if (Status enough = roomFor(folder->report(), uid, request); !enough) {
+        [folder = folder_, uid, request, needed_mb,
+         room_mb = roomMb()](const Progress& progress) -> Result<ReadSeries> {
+          if (Status enough =
+                  enoughMemory(needed_mb, "Opening the case and practising on it", "", room_mb);
+              !enough) {
             return enough.error();
           }
           Result<Volume> volume = folder->read(uid, request, progress);

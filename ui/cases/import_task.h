@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "base/memory.h"
 #include "imaging/importer.h"
 #include "imaging/steps/couch.h"
 #include "ui/common/background_task.h"
@@ -25,8 +26,12 @@ class ImportTask : public QObject {
 
   // Finds the series of a folder or file. The folder scanned before stays until this one is there.
   void scan(const std::filesystem::path& path);
-  // Reads a series of the folder; volume() has it after readDone().
-  void read(const std::string& uid, const ImportRequest& request);
+  // Reads a series of the folder; volume() has it after readDone(). What it will need of memory, as
+  // the open window counts it, is asked for before.
+  void read(const std::string& uid, const ImportRequest& request, double needed_mb = 0.0);
+  // What may be had for that, with what the case that is open leaves to the next.
+  double roomMb() const { return usableMemoryMb() + given_back_mb_; }
+  void setGivenBack(double mb) { given_back_mb_ = mb; }
   // Ends the scan or read; stopped() follows.
   void cancel();
   bool isWorking() const { return working_; }
@@ -75,6 +80,7 @@ class ImportTask : public QObject {
   ImportReport report_;
   std::optional<std::string> best_;
   std::shared_ptr<const Volume> volume_;
+  double given_back_mb_ = 0.0;
   CouchFinding couch_;
   bool cancelled_ = false;      // even where the work came to its end first
   bool working_ = false;        // a scan or read is under way or waits for a slice to end

@@ -88,6 +88,11 @@ void SizePanel::setGrid(const GridGeometry& grid) {
   reset();
 }
 
+void SizePanel::restore(const VoxelBox& box, int reduction) {
+  reductions_->button(reduction)->setChecked(true);
+  setBox(box);
+}
+
 void SizePanel::reset() {
   setBox({{0, 0, 0}, grid_.size});
 }

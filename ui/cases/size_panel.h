@@ -22,6 +22,8 @@ class SizePanel : public QWidget {
   void setGrid(const GridGeometry& grid);
   // Sets the first two axes, [low, high) in voxels; cut to the grid.
   void setBox(const VoxelBox& box);
+  // As they were chosen before, of the same grid.
+  void restore(const VoxelBox& box, int reduction);
   VoxelBox box() const;
   std::optional<VoxelBox> crop() const;  // nothing where the whole grid is taken
   int reduction() const;

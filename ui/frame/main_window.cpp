@@ -250,7 +250,8 @@ void MainWindow::sessionStarted() {
   ticks_shown_ = 0;
   rate_clock_.restart();
   // The view has the case already, unless an earlier exercise left its cuts there.
-  if (carved_) view_->refill(slabsOf(session.grid()), workstation_.currentCase()->labels);
+  const Case& of = *workstation_.currentCase();
+  if (carved_) view_->refill(slabsOf(*of.volume), of.labels);
   carved_ = true;
   unsaved_cuts_ = false;
   placeHandPoints();
@@ -399,16 +400,16 @@ void MainWindow::askWhereToSave(const QString& title, const QString& suggestion,
 void MainWindow::savePicture(const QString& file) {
   Result<Picture> picture = view_->picture();
   if (!picture) return report(picture.error());
-  workstation_.save(
-      tr("The picture is saved."),
-      [picture = *std::move(picture), path = toPath(file)] { return writePng(picture, path); });
+  workstation_.save(tr("The picture is saved."),
+                    [picture = *std::move(picture), path = toPath(file)](const Progress&) {
+                      return writePng(picture, path);
+                    });
 }
 
 void MainWindow::saveReport(const QString& file) {
   workstation_.save(tr("The report is saved."),
-                    [report = workstation_.import().report(), path = toPath(file)] {
-                      return writeReport(report, path);
-                    });
+                    [report = workstation_.import().report(),
+                     path = toPath(file)](const Progress&) { return writeReport(report, path); });
 }
 
 void MainWindow::say(const QString& text) {

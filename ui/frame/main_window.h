@@ -140,6 +140,7 @@ class MainWindow : public QMainWindow {
   std::uint64_t ticks_shown_ = 0;
   bool carved_ = false;                             // the view shows what an ended exercise left
   bool unsaved_cuts_ = false;                       // and some of it is in no file
+  bool close_when_saved_ = false;
   bool may_close_ = false;                          // nothing unsaved is left to ask about
   std::optional<ControllerKind> controller_shown_;  // of which the tissue panel speaks
 };

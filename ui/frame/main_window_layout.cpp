@@ -252,6 +252,19 @@ void MainWindow::connectParts() {
   connect(&workstation_, &Workstation::phaseChanged, this, &MainWindow::showPhase);
   connect(&workstation_, &Workstation::sessionStarted, this, &MainWindow::sessionStarted);
   connect(&workstation_, &Workstation::sessionEnded, this, &MainWindow::sessionEnded);
+  connect(&workstation_, &Workstation::startFailed, this, [this] {
+    if (carved_) showWholeCase();
+  });
+  connect(&workstation_, &Workstation::savingProgressed, this,
+          [this](double fraction, const QString& step) {
+            say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
+          });
+  connect(
+      &workstation_, &Workstation::savingEnded, this,
+      [this] {
+        if (std::exchange(close_when_saved_, false)) close();
+      },
+      Qt::QueuedConnection);  // what follows a save first
   connect(&workstation_, &Workstation::saved, this, &MainWindow::say);
   connect(&workstation_, &Workstation::failed, this, &MainWindow::report);
   connect(&workstation_, &Workstation::recordingFailed, this, &MainWindow::askToGoOn);

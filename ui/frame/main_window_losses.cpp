@@ -76,6 +76,11 @@ void MainWindow::showWholeCase() {
 void MainWindow::closeEvent(QCloseEvent* event) {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
+  if (workstation_.isWriting()) {
+    event->ignore();
+    close_when_saved_ = true;
+    return say(tr("A file is being saved; the window closes when it is written."));
+  }
   const bool running = phase != Phase::empty && phase != Phase::ready;
   if (may_close_ || !(running || unsaved_cuts_ || workstation_.tissuesEdited())) {
     return QMainWindow::closeEvent(event);

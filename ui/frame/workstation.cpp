@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/rt/thread.h"
 #include "base/system.h"
 #include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
@@ -46,6 +47,8 @@ Workstation::Workstation(QObject* parent) : QObject(parent) {
   connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::phaseChanged);
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
+  connect(&saving_, &BackgroundTask::progressed, this, &Workstation::savingProgressed);
+  connect(&saving_, &BackgroundTask::ended, this, &Workstation::savingEnded);
 }
 
 Workstation::~Workstation() = default;
@@ -133,6 +136,10 @@ void Workstation::useLabels(const std::filesystem::path& file) {
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
                              const std::string& source, bool same_scene) {
+  if (source.empty() && case_) {  // the open one, with what this scene looks for in it
+    useCase(scene, scene_->case_source);
+    return openInBackground({std::move(scene), scene_file, case_, same_scene});
+  }
   if (source.empty()) {  // the scene waits for a case of the user's
     scene_ = std::move(scene);
     scene_file_ = scene_file;
@@ -169,15 +176,15 @@ void Workstation::openInBackground(Opened opening) {
         if (!placed) return placed.error();
         opening.of = *std::move(placed);
         if (opening.of->volume == shown) return std::move(opening);
-        const double needed_mb = shownMb(opening.of->volume->geometry.voxelCount());
+        const std::size_t voxels = opening.of->volume->geometry.voxelCount();
+        const double needed_mb = shownMb(voxels) + (opening.of->labels ? labelsMb(voxels) : 0.0);
         if (Status enough = enoughMemory(needed_mb, "Showing the case", "the case"); !enough) {
           return enough.error();
         }
         try {
           opening.mirror = *opening.of->volume;
         } catch (const std::bad_alloc&) {
-          return Error{"OUT_OF_MEMORY", "There is not enough memory to show the case", "the case",
-                       "Close other programs, or import it cropped or at a lower resolution"};
+          return outOfMemory("to show the case", "the case");
         }
         return std::move(opening);
       },
@@ -186,6 +193,7 @@ void Workstation::openInBackground(Opened opening) {
 
 void Workstation::opened(Result<Opened> outcome) {
   if (!outcome) return fail(outcome.error());
+  placed_with_ = tissueTable(outcome->scene.tissues);
   if (outcome->same_scene) {
     outcome->scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
   } else {
@@ -196,6 +204,7 @@ void Workstation::opened(Result<Opened> outcome) {
   case_ = std::move(outcome->of);
   mirror_ = std::move(outcome->mirror);
   carved_.reset();
+  tellGivenBack();
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);
@@ -218,20 +227,18 @@ void Workstation::start(const std::filesystem::path& recordings,
   const std::string stem =
       QDateTime::currentDateTime().toString("'session'-yyyyMMdd-HHmmss").toStdString();
   carved_.reset();  // its memory is the next one's
+  // What was found in tissues that have been edited since lies elsewhere now, or is found now.
+  const bool again = case_->misfit || !(placed_with_ == tissueTable(scene_->tissues));
   running_.run(
-      [scene = *scene_, of = *case_, recordings, stem,
+      [scene = *scene_, of = *case_, again, recordings, stem,
        script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
-        // Tissues may have been edited since the case did not fit.
-        const Result<Case> placed = of.misfit ? placedIn(scene, of, progress) : of;
+        const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
         if (!placed) return placed.error();
         return Session::create(scene, *placed, {freshFile(recordings, stem, ".h5"), script, true});
       },
       [this, seconds](Result<std::unique_ptr<Session>> created) {
-        if (!created) {
-          setPhase(Phase::ready);
-          return fail(created.error());
-        }
+        if (!created) return notStarted(created.error());
         started(*std::move(created), seconds);
       });
 }
@@ -243,14 +250,28 @@ void Workstation::started(std::unique_ptr<Session> session, double seconds) {
     (void)session->setController(scene_->controller);  // nothing else waits yet
   }
   Status started = told ? session->start(seconds) : told;
-  if (!started) {
-    setPhase(Phase::ready);
-    return fail(started.error());
-  }
+  if (!started) return notStarted(started.error());
+  case_->landmarks = session->landmarks();
+  case_->misfit.reset();
   session_ = std::move(session);
   recording_failure_.reset();
   setPhase(Phase::running);
   emit sessionStarted();
+}
+
+void Workstation::notStarted(const Error& error) {
+  setPhase(Phase::ready);
+  tellGivenBack();
+  emit startFailed();
+  fail(error);
+}
+
+// What the case that is open leaves to the next, and what need not be taken again.
+void Workstation::tellGivenBack() {
+  if (!case_) return;
+  const std::size_t voxels = case_->volume->geometry.voxelCount();
+  import_.setGivenBack(voxelsMb(voxels) * (carved_ ? 2.0 : 1.0) + shownMb(voxels) +
+                       (rt::LockedMemory::wasHeld() ? kHeld_mb : 0.0));
 }
 
 void Workstation::checkRecording() {
@@ -267,6 +288,7 @@ void Workstation::stop() {
   running_.run([session = session_.get()](const Progress&) { return session->stop(); },
                [this](Status stopped) {
                  carved_ = session_->carved();
+                 tellGivenBack();
                  emit sessionEnded(*session_);
                  const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
@@ -300,7 +322,9 @@ bool Workstation::tissuesEdited() const {
 void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {
   save(
       tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
-      [text = toJson(scene_->tissues).dump(1) + '\n', file] { return writeTextFile(file, text); },
+      [text = toJson(scene_->tissues).dump(1) + '\n', file](const Progress&) {
+        return writeTextFile(file, text);
+      },
       [this, tissues = scene_->tissues, then = std::move(then)] {
         declared_tissues_ = tissues;
         then();
@@ -309,47 +333,48 @@ void Workstation::saveTissues(const std::filesystem::path& file, std::function<v
 
 void Workstation::saveVolume(const std::filesystem::path& file, std::function<void()> then) {
   if (isSaving()) return fail(busySaving());
-  if (session()) return saveOnceStill(file, std::move(then));
+  if (phase_ == Phase::starting) {  // the view still shows the cuts before, which are gone
+    return fail({"BUSY", "An exercise is being started", "", "Save once it runs, or has ended"});
+  }
+  if (session_) return saveOnceStill(file, std::move(then));
   save(
       tr("The volume is saved."),
-      [carved = carved_, whole = case_->volume, file] {
-        return writeVolume(carved ? slabsOf(*carved) : slabsOf(*whole), file);
+      [carved = carved_, whole = case_->volume, file](const Progress& progress) {
+        return writeVolume(carved ? slabsOf(*carved) : slabsOf(*whole), file, progress);
       },
       std::move(then));
 }
 
 // The grid is read where its writer stands still: in a pause, or once the exercise has ended.
 void Workstation::saveOnceStill(const std::filesystem::path& file, std::function<void()> then) {
+  save_waits_ = false;
   if (!session_) return saveVolume(file, std::move(then));
-  if (!session_->freeze()) {
+  if (phase_ == Phase::ending || !session_->freeze()) {
+    save_waits_ = true;
     QTimer::singleShot(kLookAgain_ms, this,
                        [this, file, then = std::move(then)] { saveOnceStill(file, then); });
     return;
   }
   save(
       tr("The volume is saved."),
-      [grid = session_->carved(), file] { return writeVolume(slabsOf(*grid), file); },
+      [grid = session_->carved(), file](const Progress& progress) {
+        return writeVolume(slabsOf(*grid), file, progress);
+      },
       std::move(then),
       [this] {
         if (session()) session_->thaw();
       });
 }
 
-void Workstation::save(const QString& what, std::function<Status()> write,
+void Workstation::save(const QString& what, std::function<Status(const Progress&)> write,
                        std::function<void()> then, std::function<void()> afterwards) {
-  const auto ended = [afterwards = std::move(afterwards)] {
+  const bool begun = !save_waits_ && saving_.run(std::move(write), [=, this](Status status) {
     if (afterwards) afterwards();
-  };
-  const bool begun = saving_.run([write = std::move(write)](const Progress&) { return write(); },
-                                 [this, what, then = std::move(then), ended](Status status) {
-                                   ended();
-                                   if (!status) return fail(status.error());
-                                   emit saved(what);
-                                   if (then) then();
-                                 });
-  if (begun) return;
-  ended();
-  fail(busySaving());
+    if (!status) return fail(status.error());
+    emit saved(what);
+    if (then) then();
+  });
+  if (!begun) fail(busySaving());
 }
 
 }  // namespace trephine

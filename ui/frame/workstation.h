@@ -81,9 +81,11 @@ class Workstation : public QObject {
 
   // Runs `write` in the background; `what` names the outcome in saved(). `then` follows where it
   // was written, `afterwards` in any case.
-  void save(const QString& what, std::function<Status()> write, std::function<void()> then = {},
-            std::function<void()> afterwards = {});
-  bool isSaving() const { return saving_.busy(); }
+  void save(const QString& what, std::function<Status(const Progress&)> write,
+            std::function<void()> then = {}, std::function<void()> afterwards = {});
+  bool isWriting() const { return saving_.busy(); }
+  // Or waits until the exercise stands still.
+  bool isSaving() const { return saving_.busy() || save_waits_; }
 
  signals:
   void openingProgressed(double fraction, const QString& step);
@@ -98,6 +100,10 @@ class Workstation : public QObject {
   void recordingFailed(const trephine::Error& error);
   // The exercise's last state; `session` goes away after it.
   void sessionEnded(trephine::Session& session);
+  // What the view shows of an exercise before is gone; failed() says why none runs.
+  void startFailed();
+  void savingProgressed(double fraction, const QString& step);
+  void savingEnded();
   void saved(const QString& what);
   void failed(const trephine::Error& error);
 
@@ -110,6 +116,8 @@ class Workstation : public QObject {
   void openInBackground(Opened opening);
   void opened(Result<Opened> outcome);
   void started(std::unique_ptr<Session> session, double seconds);
+  void notStarted(const Error& error);
+  void tellGivenBack();
   void saveOnceStill(const std::filesystem::path& file, std::function<void()> then);
   void setPhase(Phase phase);
   void fail(const Error& error);
@@ -119,10 +127,12 @@ class Workstation : public QObject {
   std::filesystem::path scene_file_;
   TissueSet declared_tissues_;
   std::optional<Case> case_;
+  TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<const Grid> carved_;
   std::optional<Error> recording_failure_;  // said of this exercise
+  bool save_waits_ = false;                 // until the haptic thread stands still
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
   BackgroundTask opening_, running_, saving_;

@@ -5,6 +5,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -25,8 +26,20 @@ void touchStack() {
   for (std::size_t at = 0; at < kStack; at += kPage) stack[at] = 0;
 }
 
+namespace {
+std::atomic<bool> was_held{false};
+}
+
 LockedMemory::LockedMemory() {
-  if (::mlockall(MCL_CURRENT) != 0) error_ = errno;
+  if (::mlockall(MCL_CURRENT) != 0) {
+    error_ = errno;
+  } else {
+    was_held = true;
+  }
+}
+
+bool LockedMemory::wasHeld() {
+  return was_held;
 }
 
 void LockedMemory::release() {

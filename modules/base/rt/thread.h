@@ -21,6 +21,9 @@ class LockedMemory {
   void release();
 
   bool whole() const { return error_ == 0; }
+  // Whether this process held memory before: what nobody had touched, the stacks of all threads
+  // above all, it has taken since and keeps. Any thread.
+  static bool wasHeld();
   std::string reason() const;  // why not, with the limit where that is why
 
  private:

@@ -19,6 +19,18 @@ Json orNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+// How many voxels come out of it.
+std::size_t voxelsOf(const SeriesReport& series, const ImportRequest& request) {
+  const Index3& size = series.geometry.size;
+  const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, size});
+  std::size_t voxels = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int kept = std::max(0, box.high[axis] - box.low[axis]);
+    voxels *= std::size_t((kept + request.reduction - 1) / request.reduction);
+  }
+  return voxels;
+}
+
 Json findingJson(const Finding& finding) {
   Json slices = Json::array();
   for (const std::string& slice : finding.slices) slices.push_back(cleanUtf8(slice));
@@ -82,16 +94,12 @@ const char* verdictName(Verdict verdict) {
   return "refused";
 }
 
+double readingMb(const SeriesReport& series, const ImportRequest& request) {
+  return series.reading_mb + (request.reduction > 1 ? voxelsMb(voxelsOf(series, request)) : 0.0);
+}
+
 double memoryMb(const SeriesReport& series, const ImportRequest& request) {
-  const Index3& size = series.geometry.size;
-  const VoxelBox box = request.crop.value_or(VoxelBox{{0, 0, 0}, size});
-  std::size_t voxels = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int kept = std::max(0, box.high[axis] - box.low[axis]);
-    voxels *= std::size_t((kept + request.reduction - 1) / request.reduction);
-  }
-  const double reduced_mb = request.reduction > 1 ? voxelsMb(voxels) : 0.0;
-  return kWindow_mb + std::max(series.reading_mb + reduced_mb, openedMb(voxels));
+  return kWindow_mb + std::max(readingMb(series, request), openedMb(voxelsOf(series, request)));
 }
 
 Json toJson(const ImportReport& report) {

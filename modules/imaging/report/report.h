@@ -99,8 +99,9 @@ struct SeriesReport {
   std::vector<Choice> choices;  // still open or answered: all that the series asks
 };
 
-// The same with its crop and reduction.
+// The same with its crop and reduction; `series` is as it was before it was read.
 double memoryMb(const SeriesReport& series, const ImportRequest& request);
+double readingMb(const SeriesReport& series, const ImportRequest& request);
 
 struct SkippedFiles {
   std::string reason;

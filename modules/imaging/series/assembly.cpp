@@ -115,7 +115,7 @@ class Assembler {
 }  // namespace
 
 std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb) {
-  if (Status enough = enoughMemory(needed_mb, "Reading the series", "", most_mb); !enough) {
+  if (Status enough = enoughToRead(needed_mb, "Reading the series", "", most_mb); !enough) {
     return enough.error();
   }
   const std::size_t count = volume.geometry.voxelCount();

@@ -8,6 +8,7 @@
 #include <memory>
 #include <sstream>
 
+#include "base/memory.h"
 #include "base/system.h"
 #include "haptics/haptic_core.h"
 #include "lab/trades/recommended.h"
@@ -16,6 +17,7 @@
 #include "session/case.h"
 #include "session/operator_script.h"
 #include "session/run_statistics.h"
+#include "volume/case_memory.h"
 #include "volume/grid.h"
 #include "volume/phantom.h"
 
@@ -95,6 +97,10 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   if (!of) return of.error();
   if (of->misfit) return *of->misfit;
   const Scene fixed = withFixedMaps(scene, of->landmarks);
+  const double needed_mb = exerciseMb(of->volume->geometry.voxelCount());
+  if (Status enough = enoughMemory(needed_mb, "The first tick", "the case"); !enough) {
+    return enough.error();
+  }
   Grid grid(Volume(*of->volume), of->labels);
   HapticCore core(hapticParameters(fixed), *grid.takeWriter());
   std::array<OperatorSetPoint, kMaxArms> set_points{};

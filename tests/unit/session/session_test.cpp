@@ -283,12 +283,34 @@ TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
   while (session->state().paused) wait();
   EXPECT_TRUE(session->send(CommandKind::reset));
   ASSERT_TRUE(session->send(CommandKind::pause));
-  while (!session->state().paused) wait();
-  while (!session->freeze()) wait();
+  while (!session->freeze()) wait();  // with all that still waits
+  const std::string whole = slabsSha256(slabsOf(session->grid()));
+  EXPECT_NE(whole, before) << "put back before";
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(slabsSha256(slabsOf(session->grid())), whole);
+  EXPECT_TRUE(session->send(CommandKind::pause)) << "one that is asked for meanwhile stays";
   session->thaw();
   const std::uint64_t later = session->state().ticks;
   while (session->state().ticks < later + 50) wait();
   EXPECT_TRUE(session->state().paused) << "a pause that was there before stays";
+  ASSERT_TRUE(session->stop().ok());
+}
+
+TEST(Session, KeepsAScriptsCommandsWhileItsVoxelsAreRead) {
+  SessionOptions options = scripted();
+  Command back{CommandKind::reset, 0, {}};
+  options.script->commands = {{2.2, back}};
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
+  ASSERT_TRUE(session->start(30.0).ok());
+  const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); };
+  while (session->state().ticks < 2000) wait();
+  while (!session->freeze()) wait();
+  const std::string before = slabsSha256(slabsOf(session->grid()));
+  ASSERT_NE(before, slabsSha256(slabsOf(smallHead())));
+  while (session->state().ticks < 2600) wait();
+  EXPECT_EQ(slabsSha256(slabsOf(session->grid())), before);
+  session->thaw();
+  while (session->state().paused || session->state().busy || session->state().can_undo) wait();
   ASSERT_TRUE(session->stop().ok());
 }
 

@@ -81,13 +81,13 @@ TEST_F(ImportTaskTest, WhatCouldBeReadButNotPractisedOnIsRefusedBeforeItIsRead) 
   const double promised_mb = task_.report().series.front().memory_mb;
   {
     const test::DataLimit limit(0.9 * promised_mb - kWindow_mb);
-    task_.read(uid, {});
+    task_.read(uid, {}, promised_mb - kWindow_mb);
     ASSERT_TRUE(waitFor([&] { return error_.has_value(); }));
     EXPECT_EQ(error_->code, "OUT_OF_MEMORY");
     EXPECT_NE(error_->what.find("practising"), std::string::npos) << error_->what;
     EXPECT_FALSE(task_.volume());
   }
-  task_.read(uid, {});
+  task_.read(uid, {}, promised_mb - kWindow_mb);
   ASSERT_TRUE(waitFor([&] { return read_ == 1; })) << "it is there for another try";
 }
 

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/file.h"
+#include "base/system.h"
 #include "qt_support.h"
 #include "shells.h"
 #include "support.h"
@@ -195,6 +197,114 @@ TEST_F(WorkstationTest, WhatIsEditedWhileAnExerciseStartsIsFeltInIt) {
   ASSERT_NE(told, events->end());
   EXPECT_EQ(told->tick, 0u);
   EXPECT_EQ(told->command.tissues.classes[tissues.tissues.size() - 1].damping_Ns_per_m, 20.0);
+}
+
+class PlacedTest : public WorkstationTest {
+ protected:
+  double vault_mm() { return workstation_.currentCase()->landmarks.at(0).frame.position_mm.z; }
+  void startAndStop() {
+    workstation_.start(folder_.path(), {}, 1e9);
+    ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
+    started_mm_ = workstation_.session()->landmarks().at(0).frame.position_mm.z;
+    workstation_.stop();
+    ASSERT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+  }
+  double started_mm_ = 0.0;
+};
+
+// Bone of 1200 HU around a kernel of 2000.
+TEST_F(PlacedTest, ALandmarkLiesWhereTheTissueIsThatAnEditMadeOfIt) {
+  workstation_.openImported(
+      caseOf(std::make_shared<const Volume>(test::shells(60, 1.5, {{40, 1200}, {20, 2000}}))));
+  ASSERT_TRUE(wait());
+  const double before_mm = vault_mm();
+  startAndStop();
+  EXPECT_EQ(started_mm_, before_mm);
+  TissueSet tissues = workstation_.scene()->tissues;
+  for (Tissue& tissue : tissues.tissues) {
+    if (tissue.id == "bone") tissue.hu_min = 1500;
+  }
+  workstation_.setTissues(tissues);
+  startAndStop();
+  EXPECT_NEAR(before_mm - started_mm_, 20.0, 3.0);
+  EXPECT_EQ(vault_mm(), started_mm_) << "where the view looks, too";
+}
+
+TEST_F(PlacedTest, ASceneThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
+  ASSERT_TRUE(wait());
+  const double top_mm = vault_mm();
+  Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
+  scene.erase("case");
+  scene["landmarks"][0]["from"] = {0.5, 0.5, -0.2};  // from below
+  for (Json* name :
+       {&scene["tissues"], &scene["operator"], &scene["tools"][0]["file"],
+        &scene["arms"][0]["device"]["config"], &scene["arms"][1]["device"]["config"]}) {
+    *name = (resourceFolder() / "scenes" / name->get<std::string>()).lexically_normal().string();
+  }
+  ASSERT_TRUE(writeTextFile(folder_ / "below.json", scene.dump()));
+  workstation_.openPath(folder_ / "below.json");
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  EXPECT_LT(vault_mm(), top_mm - 50.0);
+  startAndStop();
+  EXPECT_LT(started_mm_, top_mm - 50.0);
+}
+
+class SavedVolumeTest : public WorkstationTest {
+ protected:
+  void start() {
+    workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
+    ASSERT_TRUE(wait());
+    const Scene& scene = *workstation_.scene();
+    workstation_.start(folder_.path(), *readOperatorScript(scene.operator_file, scene), 1e9);
+    ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
+    ASSERT_TRUE(waitFor([&] { return workstation_.session()->state().can_undo; }));
+  }
+  void stop() {
+    workstation_.stop();
+    ASSERT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+  }
+  bool isWhole(const char* name) { return readVolume(folder_ / name)->hu == ball().hu; }
+};
+
+TEST_F(SavedVolumeTest, WhileAnExerciseEndsIsThatOfTheExercise) {
+  start();
+  workstation_.stop();
+  ASSERT_EQ(workstation_.phase(), Workstation::Phase::ending);
+  bool saved = false;
+  workstation_.saveVolume(folder_ / "carved.mha", [&] { saved = true; });
+  ASSERT_TRUE(waitFor([&] { return saved; }));
+  EXPECT_FALSE(isWhole("carved.mha"));
+}
+
+TEST_F(SavedVolumeTest, WhileAnExerciseStartsIsRefusedAndOneThatDoesNotStartIsSaid) {
+  start();
+  stop();
+  int told = 0;
+  QObject::connect(&workstation_, &Workstation::startFailed, &workstation_, [&] { ++told; });
+  ASSERT_TRUE(writeTextFile(folder_ / "file", "no folder"));
+  workstation_.start(folder_ / "file" / "nowhere", {}, 1e9);
+  workstation_.saveVolume(folder_ / "carved.mha");
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "BUSY");
+  failed_.reset();
+  ASSERT_TRUE(waitFor([&] { return workstation_.phase() == Workstation::Phase::ready; }));
+  ASSERT_TRUE(failed_) << "there is no such folder";
+  EXPECT_EQ(told, 1) << "the view shows cuts that are gone";
+}
+
+TEST_F(SavedVolumeTest, AskedForTwiceIsWrittenOnceAndTheExerciseStandsStillMeanwhile) {
+  start();
+  std::vector<std::string> saved;
+  workstation_.saveVolume(folder_ / "a.mha", [&] { saved.push_back("a"); });
+  workstation_.saveVolume(folder_ / "b.mha", [&] { saved.push_back("b"); });
+  ASSERT_TRUE(failed_) << "the second while the first waits";
+  EXPECT_EQ(failed_->code, "BUSY");
+  ASSERT_TRUE(waitFor([&] { return saved == std::vector<std::string>{"a"}; }));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b.mha"));
+  EXPECT_TRUE(waitFor([&] { return !workstation_.session()->state().paused; }));
+  stop();
 }
 
 // What the scene finds is deep in soft tissue, and so is where it puts the tools.
