@@ -276,7 +276,8 @@ double roundedTo_mm(const std::vector<Vec3>& positions_mm) {
 // the least squares over whole numbers of steps, with as few slices missing as any line explains.
 // Nothing where no line does. Rounding moves a place by `most_mm` at most, and a step by less than
 // twice that.
-std::optional<Slices> onTheirLine(const Slices& slices, double most_mm) {
+std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
+                                  const std::optional<double>& known_mm) {
   const double n = double(slices.size());
   const double first = slices.front().place_mm, extent = slices.back().place_mm - first;
   const auto most_missing = std::int64_t(slices.size() / 2);
@@ -298,7 +299,8 @@ std::optional<Slices> onTheirLine(const Slices& slices, double most_mm) {
     const double step = (n * products - sum * places) / (n * sum_squares - sum * sum);
     const double start = first + (places - step * sum) / n;
     Slices fitted = slices;
-    bool fits = true;
+    // What the header says tells a gap from a step that was rounded.
+    bool fits = !known_mm || std::abs(step - *known_mm) <= 0.01 * *known_mm;
     for (std::size_t i = 0; i < slices.size() && fits; ++i) {
       fitted[i].place_mm = start + step * numbers[i];
       fits = std::abs(fitted[i].place_mm - slices[i].place_mm) <= most_mm * (1.0 + 1.0 / std::sqrt(n));
@@ -318,10 +320,12 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   const std::string& lost_text = input.lost_text;
   Steps steps = stepsOf(slices);
   const double grid_mm = roundedTo_mm(input.positions_mm);
-  if (!steps.even && grid_mm > 0.0) {
+  // Whole steps with gaps may be rounded ones, too: only the header can tell.
+  const std::optional<double>& known_mm = input.known_step_mm;
+  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
     const double most_mm =
         0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-    if (std::optional<Slices> fitted = onTheirLine(slices, most_mm)) {
+    if (std::optional<Slices> fitted = onTheirLine(slices, most_mm, known_mm)) {
       slices = *std::move(fitted);
       steps = stepsOf(slices);
       stack.findings.push_back(

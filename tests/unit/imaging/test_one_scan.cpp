@@ -12,6 +12,10 @@ class OneScan : public SeriesFixture {
   static constexpr int kSlices = 6;
 
   void SetUp() override { write(rampVolume()); }
+  void anew(Index3 size = {7, 5, kSlices}) {
+    fs::remove_all(folder());
+    write(rampVolume(size));
+  }
   void editSome(const std::vector<int>& slices, const Change& change) {
     for (int n : slices) edit(slice(n), change);
   }
@@ -47,7 +51,7 @@ TEST_F(OneScan, IsOfOnePatient) {
   for (const auto& [tag, value] :
        {std::pair(DCM_PatientID, "4711"), std::pair(DCM_PatientName, "MUSTERMANN^ERIKA"),
         std::pair(DCM_PatientBirthDate, "19700101")}) {
-    write(rampVolume());
+    anew();
     editSome({4, 5, 6}, set(tag, value));
     const CtFolder folder = scan();
     ASSERT_EQ(folder.report().series.size(), 2u) << value;
@@ -76,7 +80,7 @@ TEST_F(OneScan, IsMadeInOneWay) {
         std::tuple(DCM_SliceThickness, "3", "slice thickness"),
         std::tuple(DCM_ImageType, "DERIVED\\SECONDARY\\MPR", "image type"),
         std::tuple(DCM_SeriesDescription, "Mueller", "series description")}) {
-    write(rampVolume());
+    anew();
     editAll([](DcmDataset& data) {
       put(data, DCM_ConvolutionKernel, "B30f");
       put(data, DCM_KVP, "120");
@@ -151,7 +155,7 @@ TEST_F(OneScan, ThatNothingTellsFromAnotherOffersNoChoice) {
 // As public archives have them.
 TEST_F(OneScan, WhoseSlicesEachNameAFrameOfReferenceOrStudyIsJoinedOnConsent) {
   for (const DcmTagKey& tag : {DCM_FrameOfReferenceUID, DCM_StudyInstanceUID}) {
-    write(rampVolume());
+    anew();
     for (int n = 1; n <= kSlices; ++n) edit(slice(n), set(tag, "1.2.3.99." + std::to_string(n)));
     expectRefused("PARTS");
     ASSERT_EQ(report_.series.size(), 1u);
@@ -184,7 +188,7 @@ TEST_F(OneScan, WhoseOrientationIsNoisyIsJoinedOnConsent) {
 }
 
 TEST_F(OneScan, CanBeAPartAndWhatWasLeftOutIsSaid) {
-  write(rampVolume({7, 5, 10}));
+  anew({7, 5, 10});
   editSome({1, 2, 3, 4}, set(DCM_FrameOfReferenceUID, "1.2.3.99"));
   expectRefused("PARTS");
   EXPECT_EQ(optionsOf(report_.series.front(), "PARTS"),
