@@ -539,8 +539,8 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
         taken, [&](const DicomHeader* h) { return h->part != taken.front()->part; });
     takeOrientation(taken, joined, input);
     const DicomHeader& typical = *taken[taken.size() / 2];
-    input.known_step_mm =
-        typical.spacing_between_mm ? typical.spacing_between_mm : typical.thickness_mm;
+    input.spacing_between_mm = typical.spacing_between_mm;
+    input.thickness_mm = typical.thickness_mm;
     input.lost_text = lostText(lost);
     plan.stack = stackSlices(input, answers);
     report.geometry = plan.stack.geometry;

@@ -321,7 +321,8 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   Steps steps = stepsOf(slices);
   const double grid_mm = roundedTo_mm(input.positions_mm);
   // Whole steps with gaps may be rounded ones, too: only the header can tell.
-  const std::optional<double>& known_mm = input.known_step_mm;
+  const std::optional<double> known_mm =
+      input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
   if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
     const double most_mm =
         0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));

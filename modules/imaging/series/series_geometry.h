@@ -18,8 +18,9 @@ struct StackInput {
   std::array<double, 6> orientation{};               // row's cosines, then column's, in LPS
   std::vector<Vec3> positions_mm;                    // ImagePositionPatient of each slice
   std::vector<bool> usable;  // false: the place is known, the pixels are lost; empty: all usable
-  std::optional<double> known_step_mm;  // as headers say it, in words other than positions
   std::string lost_text;     // which pixels are lost and why: ends the sentence on missing slices
+  // As headers say it beside the positions; none: they do not.
+  std::optional<double> spacing_between_mm{}, thickness_mm{};
 };
 
 // A slice of the volume: a mixture of two slices of the stack, mostly one of them alone.
