@@ -133,7 +133,7 @@ class Trades(LabTest):
 
 
 class Import(LabTest):
-    SMALL = ("--size", 64, "--slices", 4, "--repetitions", 1, "--scan-series", 2, "--scan-slices", 3)
+    SMALL = ("--size", 64, "--slices", 4, "--repetitions", 1, "--scan-series", 2, "--scan-slices", 4)
     ROW = {"series", "loader", "threads", "seconds_median", "peak_rss_mb", "above_start_mb",
            "correct", "skipped_reason"}
     RATIOS = {"int16_to_floor", "int16_to_floor_kept", "u12_to_floor", "u12_to_floor_kept",
