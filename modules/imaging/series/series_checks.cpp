@@ -382,7 +382,7 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
                   SeriesReport& report, Findings& findings) {
   constexpr std::size_t kFewest = 4;
   constexpr double kWidestStep_mm = 20.0, kMostThicknesses = 5.0;
-  if (stack.geometry.size[2] < 2) return;  // said already
+  if (used.empty() || stack.geometry.size[2] < 2) return;  // said already
   const double step_mm = stack.geometry.spacing_mm.z;
   double thickness_mm = 0.0;
   for (const DicomHeader* header : used) {

@@ -51,16 +51,17 @@ TEST_F(OneScan, IsOfOnePatient) {
   for (const auto& [tag, value] :
        {std::pair(DCM_PatientID, "4711"), std::pair(DCM_PatientName, "MUSTERMANN^ERIKA"),
         std::pair(DCM_PatientBirthDate, "19700101")}) {
-    anew();
-    editSome({4, 5, 6}, set(tag, value));
+    anew({7, 5, 10});
+    editSome({6, 7, 8, 9, 10}, set(tag, value));
     const CtFolder folder = scan();
     ASSERT_EQ(folder.report().series.size(), 2u) << value;
     for (const SeriesReport& part : folder.report().series) {
-      EXPECT_EQ(part.slices, 3);
+      EXPECT_EQ(part.slices, 5);
+      EXPECT_EQ(part.verdict, Verdict::repaired) << codes(part);
       EXPECT_TRUE(optionsOf(part, "PARTS").empty()) << "two patients are never joined";
       const Finding* split = find(part, "SERIES_SPLIT");
       ASSERT_NE(split, nullptr);
-      EXPECT_NE(split->text.find("3 of its 6 images"), std::string::npos) << split->text;
+      EXPECT_NE(split->text.find("5 of its 10 images"), std::string::npos) << split->text;
       EXPECT_NE(split->text.find("patient"), std::string::npos) << split->text;
     }
     const std::string json = toJson(folder.report()).dump();
@@ -273,6 +274,11 @@ TEST_F(Contradiction, OfAVolumeAndThreeSlicesOrStepsOf25Millimetres) {
   fs::remove_all(folder());
   write(rampVolume({7, 5, 3}));
   expectAsked("SPARSE_SLICES", "accept");
+  write(rampVolume({7, 5, 4}));
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+  for (int n = 1; n <= 4; ++n) fs::resize_file(slice(n), fs::file_size(slice(n)) - 8);
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(find(report_.series.front(), "SPARSE_SLICES"), nullptr) << "none can be read at all";
   fs::remove_all(folder());
   Volume volume = rampVolume();
   volume.geometry.spacing_mm.z = 25.0;
