@@ -156,7 +156,7 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     spdlog::warn("The series did not ask {}: that answer changed nothing", code);
   }
   if (!arguments.write.empty()) {
-    Status written = writeVolume(*volume, arguments.write);
+    Status written = writeVolume(slabsOf(*volume), arguments.write, progress);
     if (written) written = writeProvenance(*folder->report().provenance, arguments.write);
     if (!written) return fail(written.error(), &folder->report());
     warnOfFace(*folder->report().provenance);

@@ -150,17 +150,22 @@ struct CtFolder::Contents {
                            int& slices_used);
 };
 
+Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
+  return enoughToRead(readingMb(series, request), "Reading the series", "",
+                      request.most_memory_mb.value_or(usableMemoryMb()));
+}
+
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
                                              const Progress& progress, int& slices_used) {
-  const double most_mb = request.most_memory_mb.value_or(usableMemoryMb());
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
     if (const Status valid = checkAnswers(series.report, answers); !valid) return valid.error();
     if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
-    Result<Assembly> assembly = assemble(series, plan, most_mb, progress);
+    if (Status enough = roomToRead(series.report, request); !enough) return enough.error();
+    Result<Assembly> assembly = assemble(series, plan, progress);
     if (!assembly) return assembly.error();
     for (const Assembly::Unreadable& lost : assembly->unreadable) {
       series.slices[lost.slice].defect = Defect::cut;
@@ -301,11 +306,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   if (!source->file.empty()) {
     series = assessFile(source->file, series.description);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
-  }
-  const double most_mb = request.most_memory_mb.value_or(usableMemoryMb());
-  if (Status enough = enoughToRead(readingMb(series, request), "Reading the series", "", most_mb);
-      !enough) {
-    return fail(enough.error());
+    if (Status enough = roomToRead(series, request); !enough) return fail(enough.error());
   }
   Result<Volume> volume =
       source->file.empty()

@@ -21,11 +21,12 @@ Result<VolumeFileHeader> readRawHeader(const std::filesystem::path& file);
 std::optional<std::filesystem::path> sibling(const std::filesystem::path& file,
                                              const std::string& ending);
 
-// To `temporary`, for a right-handed grid that was checked; errors name `target`.
+// To `temporary`, for a right-handed grid that was checked; errors name `target`. A NIfTI that is
+// cancelled ends early with any answer.
 Status writeMetaImage(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
                       const std::filesystem::path& target);
 Status writeNifti(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
-                  const std::filesystem::path& target);
+                  const std::filesystem::path& target, const Progress& progress);
 
 // ---- Errors, by code.
 Error unreadable(const std::string& what, const std::filesystem::path& file);

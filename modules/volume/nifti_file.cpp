@@ -3,15 +3,16 @@
 //
 // NIfTI is RAS, we are LPS: x and y change sign here and nowhere else. The sform counts where there
 // is one, else the qform; its unit of length, slope and intercept are honoured.
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <map>
+#include <memory>
 
 #include "volume/file_format.h"
+#include "volume/gzip_writer.h"
 #include "volume/voxel_reader.h"
 
 namespace trephine::file_format {
@@ -223,27 +224,34 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   return header;
 }
 
-Status writeNifti(const VoxelSlabs& voxels, const fs::path& temporary, const fs::path& target) {
+Status writeNifti(const VoxelSlabs& voxels, const fs::path& temporary, const fs::path& target,
+                  const Progress& progress) {
   for (const std::int32_t edge : voxels.geometry.size) {
     if (edge > kMostAlongEdge) {
       return Error{"CANNOT_WRITE", "NIfTI holds at most 32767 voxels along an edge",
                    target.string(), "Save it as .mha"};
     }
   }
-  // T: without gzip's format; e: not for programs that are started meanwhile.
-  const gzFile file = gzopen(temporary.c_str(), endsWith(target, ".gz") ? "wbe" : "wbTe");
+  // e: not for programs that are started meanwhile.
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wbe"),
+                                                       std::fclose);
   if (!file) return cannotWrite(target);
-  const auto write = [file](const void* from, std::size_t count) {
-    return gzwrite(file, from, unsigned(count)) == int(count);
+  std::optional<GzipWriter> gzip;
+  if (endsWith(target, ".gz")) gzip.emplace(file.get());
+  const auto write = [&](std::span<const std::byte> bytes) {
+    return gzip ? gzip->write(bytes)
+                : std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   };
   const std::string header = headerFor(voxels.geometry);
-  const bool written =
-      write(header.data(), header.size()) &&
-      voxels.forEach([&](std::span<const std::int16_t> slab) {
-        return write(slab.data(), slab.size_bytes());
-      });
+  const bool written = write(std::as_bytes(std::span(header))) &&
+                       voxels.forEach(
+                           [&](std::span<const std::int16_t> slab) {
+                             return !progress.cancelled() && write(std::as_bytes(slab));
+                           },
+                           GzipWriter::kAtOnce / sizeof(std::int16_t)) &&
+                       (!gzip || gzip->finish());
   // The last bytes go out here, so a full disk may show only now.
-  return gzclose(file) == Z_OK && written ? Status() : cannotWrite(target);
+  return std::fclose(file.release()) == 0 && written ? Status() : cannotWrite(target);
 }
 
 }  // namespace trephine::file_format

@@ -109,10 +109,10 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
     progress.at(double(first) / double(voxels.geometry.voxelCount()), "Saving the volume");
     voxels.read(first, into);
   };
-  return replaceFile(file, [&](const fs::path& temporary) -> Status {
+  Status saved = replaceFile(file, [&](const fs::path& temporary) -> Status {
     try {
       const Status written = endsWith(file, ".mha") ? writeMetaImage(told, temporary, file)
-                                                    : writeNifti(told, temporary, file);
+                                                    : writeNifti(told, temporary, file, progress);
       if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
       return written;
     } catch (const std::bad_alloc&) {
@@ -121,6 +121,8 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
       return cannotWrite(file);
     }
   });
+  if (saved) progress.at(1.0, "Saving the volume");
+  return saved;
 }
 
 Status writeVolume(const Volume& volume, const fs::path& file) {

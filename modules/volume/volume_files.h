@@ -83,11 +83,12 @@ Result<VolumeFileReading> readVolumeFile(const std::filesystem::path& file,
 Result<Volume> readVolume(const std::filesystem::path& file, const Progress& progress = Progress());
 
 // .mha (uncompressed), .nii or .nii.gz by extension; written beside the target and renamed, so a
-// full disk loses nothing. NIfTI keeps the affine as float. Errors: UNKNOWN_FORMAT, BAD_GEOMETRY,
-// BAD_SIZE, TOO_LARGE, CANNOT_WRITE.
+// full disk loses nothing. NIfTI keeps the affine as float; .nii.gz is packed on two threads, the
+// same bytes for the same volume. Errors: UNKNOWN_FORMAT, BAD_GEOMETRY, BAD_SIZE, TOO_LARGE,
+// CANNOT_WRITE.
 // checkVolumeFileName says before a long run whether the name can be written at all.
 Status checkVolumeFileName(const std::filesystem::path& file);
-// Cancelled in between, nothing was written: CANCELLED.
+// Cancelled in between, nothing was written: CANCELLED; a NIfTI ends at once, the rest at its end.
 Status writeVolume(const VoxelSlabs& voxels, const std::filesystem::path& file,
                    const Progress& progress = Progress());
 Status writeVolume(const Volume& volume, const std::filesystem::path& file);

@@ -9,9 +9,10 @@
 
 namespace trephine {
 
-bool VoxelSlabs::forEach(const std::function<bool(std::span<const std::int16_t>)>& take) const {
+bool VoxelSlabs::forEach(const std::function<bool(std::span<const std::int16_t>)>& take,
+                         std::size_t most) const {
   const std::size_t count = geometry.voxelCount();
-  std::vector<std::int16_t> slab(std::min(count, kMostVoxels));
+  std::vector<std::int16_t> slab(std::min(count, most));
   for (std::size_t first = 0; first < count; first += slab.size()) {
     const std::span<std::int16_t> part(slab.data(), std::min(slab.size(), count - first));
     read(first, part);

@@ -20,9 +20,10 @@ struct VoxelSlabs {
   std::function<void(std::size_t first, std::span<std::int16_t> into)> read;
 
   static constexpr std::size_t kMostVoxels = (std::size_t(16) << 20) / sizeof(std::int16_t);
-  // All voxels in order, at most 16 MB at a time, until `take` answers false. Allocates one slab.
-  // False where it was told so.
-  bool forEach(const std::function<bool(std::span<const std::int16_t>)>& take) const;
+  // All voxels in order, at most 16 MB or `most` voxels at a time, until `take` answers false.
+  // Allocates one slab. False where it was told so.
+  bool forEach(const std::function<bool(std::span<const std::int16_t>)>& take,
+               std::size_t most = kMostVoxels) const;
 };
 
 VoxelSlabs slabsOf(const Volume& volume);

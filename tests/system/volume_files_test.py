@@ -1,10 +1,13 @@
 """Volume files against other people's readers and writers: libnifti (nifti_tool) and Teem (unu)."""
 
+import gzip
 import math
+import random
 import shutil
 import struct
 import subprocess
 import unittest
+import zlib
 
 from lab_support import LabTest, lab
 
@@ -119,10 +122,7 @@ class Nifti(Places, LabTest):
         columns = [[-m[axis], -m[4 + axis], m[8 + axis]] for axis in range(4)]
         dim = [int(n) for n in run(NIFTI_TOOL, "-disp_hdr", "-quiet", "-field", "dim", "-infiles",
                                    file).split()[-8:]]
-        for part in self.folder.glob("pair.*"):
-            part.unlink()
-        run(NIFTI_TOOL, "-copy_im", "-infiles", file, "-prefix", self.folder / "pair.img")
-        voxels = (self.folder / "pair.img").read_bytes()
+        voxels = self.voxels_seen_by_libnifti(file)
         return Placed(tuple(dim[1:4]), columns[:3], columns[3],
                       struct.unpack(f"<{len(voxels) // 2}h", voxels))
 
@@ -136,6 +136,44 @@ class Nifti(Places, LabTest):
                     run(NIFTI_TOOL, "-check_hdr", "-infiles", file)
                     for matrix in ("sto_xyz", "qto_xyz"):
                         self.assert_same_places(self.seen_by_libnifti(file, matrix), volume)
+
+    def voxels_seen_by_libnifti(self, file):
+        for part in self.folder.glob("pair.*"):
+            part.unlink()
+        run(NIFTI_TOOL, "-copy_im", "-infiles", file, "-prefix", self.folder / "pair.img")
+        return (self.folder / "pair.img").read_bytes()
+
+    def test_one_that_is_packed_in_pieces_is_read_whole(self):
+        """9 MB: three slabs of 4 MB, 18 pieces of 512 KB."""
+        noise = random.Random(1).randbytes(256 * 256 * 72)
+        values = [byte % 64 - 1000 for byte in noise]
+        volume = Placed((256, 256, 72), WAYS["axial"].columns, WAYS["axial"].origin, values)
+        file = self.folder / "large.nii.gz"
+        lab("import", write_mha(volume, self.folder / "large.mha"), "--write", file)
+        self.assertEqual(self.voxels_seen_by_libnifti(file), packed(values))
+        with gzip.open(file) as unpacked:
+            self.assertEqual(unpacked.read()[352:], packed(values))
+        one = zlib.decompressobj(31)  # takes one member and leaves what follows it
+        self.assertEqual(len(one.decompress(file.read_bytes())), 352 + 2 * len(values))
+        self.assertTrue(one.eof)
+        self.assertEqual(one.unused_data, b"")
+
+    def test_one_of_several_gzip_members_is_read_as_libnifti_reads_it(self):
+        volume = WAYS["oblique"]
+        plain = self.folder / "plain.nii"
+        lab("import", write_mha(volume, self.folder / "a.mha"), "--write", plain)
+        plain = plain.read_bytes()
+        file = self.folder / "members.nii.gz"
+        members = [gzip.compress(plain[a:b]) for a, b in ((0, 352), (352, 901), (901, len(plain)))]
+        file.write_bytes(b"".join(members))
+        self.assertEqual(self.voxels_seen_by_libnifti(file), packed(volume.values))
+        self.assert_same_places(self.read(file), volume)
+        spoilt = bytearray(b"".join(members))
+        spoilt[len(members[0]) + len(members[1]) - 5] ^= 1  # the second member's checksum
+        file.write_bytes(spoilt)
+        refused = lab("import", file, "--write", self.folder / "b.mha", expect=2)
+        self.assertEqual(refused["error"]["code"], "UNREADABLE")
+        self.assertFalse((self.folder / "b.mha").exists())
 
     def test_a_qform_is_read_with_either_hand(self):
         for name, volume in WAYS.items():

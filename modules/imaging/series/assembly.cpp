@@ -114,26 +114,14 @@ class Assembler {
 
 }  // namespace
 
-std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb) {
-  if (Status enough = enoughToRead(needed_mb, "Reading the series", "", most_mb); !enough) {
-    return enough.error();
-  }
-  const std::size_t count = volume.geometry.voxelCount();
-  try {
-    volume.hu.resize(count);
-  } catch (const std::bad_alloc&) {
-    return Error{"OUT_OF_MEMORY", "There is not enough memory for the volume", "",
-                 "Close other programs and try again"};
-  }
-  return std::nullopt;
-}
-
-Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
-                          const Progress& progress) {
+Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Progress& progress) {
   Assembly assembly;
   assembly.volume.geometry = plan.stack.geometry;
-  if (auto error = allocate(assembly.volume, series.report.reading_mb, most_memory_mb))
-    return *error;
+  try {
+    assembly.volume.hu.resize(assembly.volume.geometry.voxelCount());
+  } catch (const std::bad_alloc&) {
+    return outOfMemory("for the volume", "");
+  }
   Assembler assembler(series, plan, assembly);
   const bool mixed = !plan.stack.oneToOne();
   const Status status = mixed ? assembler.readAndMix(progress) : assembler.readOneToOne(progress);

@@ -24,10 +24,6 @@ struct Assembly {
 
 // Reads the plan's slices on several threads, straight into the volume where nothing is to be
 // interpolated. Errors: OUT_OF_MEMORY, CANCELLED.
-Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, double most_memory_mb,
-                          const Progress& progress);
-
-// Voxels for `volume.geometry`; refuses, in words, what needs more than can be had.
-std::optional<Error> allocate(Volume& volume, double needed_mb, double most_mb);
+Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Progress& progress);
 
 }  // namespace trephine

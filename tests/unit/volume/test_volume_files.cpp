@@ -61,7 +61,7 @@ TEST(VolumeFiles, ALeftHandedVolumeKeepsEveryVoxelsPlace) {
   const TemporaryFolder folder;
   Volume volume = obliqueVolume({5, 4, 6});
   volume.geometry.direction[2] = -volume.geometry.direction[2];
-  for (const char* name : {"a.mha", "a.nii"}) {
+  for (const char* name : {"a.mha", "a.nii", "a.nii.gz"}) {
     ASSERT_TRUE(writeVolume(volume, folder / name));
     const auto read = readVolume(folder / name);
     ASSERT_TRUE(read) << read.error().sentence();
