@@ -78,9 +78,10 @@ Error noSuchSeries(const std::string& uid, std::size_t listed) {
 
 // Answers to questions that the series asks must be among the options.
 Status checkAnswers(const SeriesReport& series, const Answers& answers) {
-  static const std::set<std::string> known = {"PHASES",   "MISSING_SLICES", "UNEVEN_SPACING",
-                                              "FACE",     "LOSSY_SOURCE",   "DUPLICATE_POSITIONS",
-                                              "COUCH"};
+  static const std::set<std::string> known = {
+      "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
+      "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
+      "UNEVEN_SPACING"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
       std::string codes;

@@ -44,13 +44,21 @@ inline const Answers kAnswers{{"MISSING_SLICES", "fill"},
                               {"PHASES", "1"},
                               {"DUPLICATE_POSITIONS", "first"},
                               {"LOSSY_SOURCE", "accept"},
+                              {"LOCATION_MISMATCH", "positions"},
+                              {"MIXED_SLICES", "accept"},
+                              {"PARTS", "join"},
+                              {"SPARSE_SLICES", "accept"},
                               {"COUCH", "remove"},
                               {"FACE", "deface"}};
 inline const Answers kOther{{"MISSING_SLICES", "part"},
                             {"UNEVEN_SPACING", "part"},
                             {"PHASES", "2"},
                             {"DUPLICATE_POSITIONS", "last"},
-                            {"LOSSY_SOURCE", "accept"}};
+                            {"LOSSY_SOURCE", "accept"},
+                            {"LOCATION_MISMATCH", "positions"},
+                            {"MIXED_SLICES", "accept"},
+                            {"PARTS", "1"},
+                            {"SPARSE_SLICES", "accept"}};
 
 struct File {
   std::string name;

@@ -74,7 +74,7 @@ void addSyntaxes(const Seeds& seeds, const Series& plain, const fs::path& codest
   // DCMTK 3.6.7 does not know HTJ2K, so that its UID replaces one as long in the finished file.
   const Bytes known = UID_HEVCMainProfileLevel5_1TransferSyntax;
   const Bytes high_throughput = "1.2.840.10008.1.2.4.203";
-  const Series large = seriesOf(ramp({64, 48, 2}));
+  const Series large = seriesOf(ramp({64, 48, 4}));
   for (const auto& entry : fs::directory_iterator(codestreams)) {
     if (entry.path().extension() != ".j2c") continue;
     const auto encode = [&](DcmDataset& data, int) {
@@ -157,7 +157,7 @@ void addWide(const Seeds& seeds, const Series& plain) {
 
 // An enhanced CT of one file, and the same compressed.
 void addEnhanced(const Seeds& seeds) {
-  const Volume volume = ramp({8, 8, 3});
+  const Volume volume = ramp({8, 8, 4});
   const Series one = seriesOf(volume);
   const auto change = [&](DcmDataset& data, int) {
     put(data, DCM_SOPClassUID, UID_EnhancedCTImageStorage);
@@ -300,9 +300,9 @@ int main(int count, char** arguments) {
   DJEncoderRegistration::registerCodecs();
   DJLSEncoderRegistration::registerCodecs();
   const Seeds seeds(arguments[1]);
-  const Series plain = seriesOf(ramp({8, 8, 3}));
+  const Series plain = seriesOf(ramp({8, 8, 4}));
   addSyntaxes(seeds, plain, arguments[2]);
-  addShapes(seeds, seriesOf(ramp({7, 5, 5})));
+  addShapes(seeds, seriesOf(ramp({7, 5, 10})));
   addCuts(seeds, seriesOf(ramp({7, 5, 6})));
   addWide(seeds, plain);
   addEnhanced(seeds);

@@ -133,7 +133,8 @@ class Trades(LabTest):
 
 
 class Import(LabTest):
-    SMALL = ("--size", 64, "--slices", 4, "--repetitions", 1, "--scan-series", 2, "--scan-slices", 3)
+    SMALL = ("--size", 64, "--slices", 10, "--repetitions", 1, "--scan-series", 2,
+             "--scan-slices", 10)
     ROW = {"series", "loader", "threads", "seconds_median", "peak_rss_mb", "above_start_mb",
            "correct", "skipped_reason"}
     RATIOS = {"int16_to_floor", "int16_to_floor_kept", "u12_to_floor", "u12_to_floor_kept",
@@ -176,7 +177,7 @@ class Import(LabTest):
         answer = lab("measure", "import", *self.SMALL, "--out", self.folder / "out")
         self.assert_measured(answer, ("int16", "u12"))
         self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
-                         [("trephine", 6)])
+                         [("trephine", 20)])
 
     def test_the_bench_measures_all_syntaxes_and_absent_peers(self):
         # A PATH without programs: what is installed here does not matter.
@@ -190,7 +191,7 @@ class Import(LabTest):
             answer, ("int16", "u12", "big-endian", "deflated", "rle", "jpegls", "jpegll", "j2k"),
             ("dcm2niix", "dicomtonifti"))
         self.assertEqual([(row["loader"], row["files"]) for row in answer["scan"]],
-                         [("trephine", 6), ("gdcmscanner", 6)])
+                         [("trephine", 20), ("gdcmscanner", 20)])
 
     def test_an_import_measurement_of_what_is_not_there_is_refused(self):
         out = self.folder / "out"

@@ -89,6 +89,15 @@ std::string guessUtf8(std::string_view text) {
   return cleanUtf8(latin);
 }
 
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t n = 0; n < words.size(); ++n) {
+    if (n > 0) text += n + 1 == words.size() ? " and " : ", ";
+    text += words[n];
+  }
+  return text;
+}
+
 std::vector<std::string> splitValues(std::string_view text) {
   std::vector<std::string> values;
   while (true) {

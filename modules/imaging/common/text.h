@@ -28,6 +28,9 @@ std::optional<int> parseInteger(std::string_view text);
 // "12.50" for (12.5, 2), whatever the locale.
 std::string fixedText(double value, int digits);
 
+// "size", "size and kernel", "size, kernel and kVp"
+std::string listed(const std::vector<std::string>& words);
+
 std::vector<std::string> splitValues(std::string_view text);  // at backslashes, trimmed
 
 }  // namespace trephine

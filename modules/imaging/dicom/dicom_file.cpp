@@ -3,7 +3,9 @@
 #include <cctype>
 #include <cstring>
 #include <functional>
+#include <random>
 
+#include "base/sha256.h"
 #include "imaging/dicom/codecs.h"
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/dicom_stream.h"
@@ -112,6 +114,39 @@ void readPhase(const DicomItem& data, DicomHeader& header) {
   header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
 }
 
+// A person's name means the same with and without empty parts at its end.
+std::string bareName(std::string name) {
+  while (!name.empty() && (name.back() == '^' || name.back() == '=' || name.back() == ' ')) {
+    name.pop_back();
+  }
+  return name;
+}
+
+// Nobody can be found by it outside of this process: what is hashed along differs in each.
+std::string patientOf(const DicomItem& data) {
+  static const std::string salt = std::to_string(std::random_device{}()) +
+                                  std::to_string(std::random_device{}());
+  const std::string who = bareName(valueText(data, DCM_PatientName)) + '\0' +
+                          trimmedText(data, DCM_PatientID) + '\0' +
+                          trimmedText(data, DCM_PatientBirthDate);
+  const std::string salted = salt + who;
+  return sha256Hex(salted.data(), salted.size());
+}
+
+std::optional<double> notZero(std::optional<double> value) {
+  return value && *value != 0.0 ? value : std::nullopt;
+}
+
+// What tells one way of scanning from another, and what says in other words where slices lie.
+void readAcquisition(const DicomItem& data, DicomHeader& header) {
+  header.kernel = trimmedText(data, DCM_ConvolutionKernel);
+  header.kvp = notZero(number(data, DCM_KVP));
+  header.thickness_mm = notZero(number(data, DCM_SliceThickness));
+  header.spacing_between_mm = notZero(number(data, DCM_SpacingBetweenSlices));
+  header.tilt_deg = notZero(number(data, DCM_GantryDetectorTilt));
+  header.location_mm = number(data, DCM_SliceLocation);
+}
+
 // The first item of a sequence.
 DicomItem firstItem(const DicomItem& item, const DcmTagKey& sequence) {
   const std::vector<DcmItem*> items = item.items(sequence);
@@ -127,7 +162,19 @@ void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHe
   const auto read = [&](const DcmTagKey& macro, const auto& values) {
     if (const DicomItem item = group(macro); !item.empty()) values(item);
   };
-  read(DCM_PixelMeasuresSequence, [&](const DicomItem& item) { readSpacing(item, header); });
+  read(DCM_PixelMeasuresSequence, [&](const DicomItem& item) {
+    readSpacing(item, header);
+    header.thickness_mm = notZero(number(item, DCM_SliceThickness));
+    header.spacing_between_mm = notZero(number(item, DCM_SpacingBetweenSlices));
+  });
+  read(DCM_CTReconstructionSequence, [&](const DicomItem& item) {
+    header.kernel = trimmedText(item, DCM_ConvolutionKernel);
+  });
+  read(DCM_CTXRayDetailsSequence,
+       [&](const DicomItem& item) { header.kvp = notZero(number(item, DCM_KVP)); });
+  read(DCM_CTAcquisitionDetailsSequence, [&](const DicomItem& item) {
+    header.tilt_deg = notZero(number(item, DCM_GantryDetectorTilt));
+  });
   read(DCM_PlanePositionSequence, [&](const DicomItem& item) { readPosition(item, header); });
   read(DCM_PlaneOrientationSequence, [&](const DicomItem& item) {
     header.orientation = decimals<6>(item, DCM_ImageOrientationPatient);
@@ -347,6 +394,8 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   readPosition(data, header);
   readSpacing(data, header);
   readPhase(data, header);
+  readAcquisition(data, header);
+  header.patient = patientOf(data);
   header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
 
   if (cut) {

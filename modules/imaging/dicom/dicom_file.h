@@ -62,6 +62,16 @@ struct DicomHeader {
   std::string rescale_type;
   std::vector<std::string> image_type;
   std::string instance_number;
+  // Who it is of: equal for equal patients, and nothing else can be told from it. Compared, never
+  // written anywhere.
+  std::string patient;
+  // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
+  // it belongs to; 0 is the largest.
+  int part = 0;
+  std::string kernel;  // of the reconstruction, one line; empty where absent
+  // What the header says beside positions; none where absent or zero.
+  std::optional<double> kvp, thickness_mm, spacing_between_mm, tilt_deg;
+  std::optional<double> location_mm;  // along the patient's axis, in its writer's own sense
   std::array<std::optional<double>, kPhaseKeys> phase;
 
   bool has_pixels = false;

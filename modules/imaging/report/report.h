@@ -36,6 +36,10 @@ struct Choice {
   std::string question;
   std::vector<std::string> options;
   std::vector<std::string> words;
+  // Of each option, where they say more of it: a text for the screen alone, since it may name people,
+  // and the slice to show, as CtFolder::slice() numbers them; -1: none.
+  std::vector<std::string> on_screen{};
+  std::vector<int> shown{};
 };
 
 // What was answered: code -> option.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -25,18 +26,62 @@ bool near(const std::optional<std::array<double, kCount>>& a,
   return true;
 }
 
-// Why two slices of one Series UID cannot lie in one stack; null where they can. The tolerances
-// allow for cosines and spacings that a writer rounded differently from slice to slice.
+// Why two slices of one Series UID cannot lie in one stack; null where they can. Spacings and
+// cosines may differ by what a writer makes of one scan; parts() has the finer look.
 const char* difference(const DicomHeader& a, const DicomHeader& b) {
+  if (a.patient != b.patient) return "patient";
+  if (a.modality != b.modality) return "modality";
   if (a.sop_class != b.sop_class) return "kind of image";
   if (isLocalizer(a) != isLocalizer(b)) return "localizer";
   if (a.rows != b.rows || a.columns != b.columns) return "size";
-  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) return "pixel spacing";
-  if (!near(a.orientation, b.orientation, 1e-4)) return "orientation";
+  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-3)) return "pixel spacing";
+  if (!near(a.orientation, b.orientation, 2.1e-3)) return "orientation";
   if (a.photometric != b.photometric) return "photometric interpretation";
   if (a.samples != b.samples) return "samples";
-  if (a.frame_of_reference != b.frame_of_reference) return "frame of reference";
   return nullptr;
+}
+
+// What two slices that could lie in one stack differ in, beyond what rounding explains.
+std::vector<std::string> smallDifferences(const DicomHeader& a, const DicomHeader& b) {
+  std::vector<std::string> all;
+  if (a.study_uid != b.study_uid) all.push_back("study");
+  if (a.frame_of_reference != b.frame_of_reference) all.push_back("frame of reference");
+  if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4)) all.push_back("pixel spacing");
+  if (!near(a.orientation, b.orientation, 1e-4)) all.push_back("orientation");
+  return all;
+}
+
+// Numbers the parts of what could be one stack, from the largest down.
+void markParts(Series& series) {
+  std::vector<const DicomHeader*> firsts;
+  std::vector<int> counts;
+  std::vector<int> of(series.slices.size());
+  for (std::size_t n = 0; n < series.slices.size(); ++n) {
+    const DicomHeader& header = series.slices[n];
+    std::size_t part = 0;
+    while (part < firsts.size() && !smallDifferences(*firsts[part], header).empty()) ++part;
+    if (part == firsts.size()) {
+      firsts.push_back(&header);
+      counts.push_back(0);
+    }
+    of[n] = int(part);
+    ++counts[part];
+  }
+  for (std::size_t part = 1; part < firsts.size(); ++part) {
+    for (std::string& what : smallDifferences(*firsts.front(), *firsts[part])) {
+      if (std::ranges::find(series.parted_by, what) == series.parted_by.end()) {
+        series.parted_by.push_back(std::move(what));
+      }
+    }
+  }
+  std::vector<int> by_size(counts.size());
+  std::iota(by_size.begin(), by_size.end(), 0);
+  std::ranges::stable_sort(by_size, std::greater(), [&](int part) { return counts[std::size_t(part)]; });
+  std::vector<int> number(counts.size());
+  for (std::size_t n = 0; n < by_size.size(); ++n) number[std::size_t(by_size[n])] = int(n);
+  for (std::size_t n = 0; n < of.size(); ++n) {
+    series.slices[n].part = number[std::size_t(of[n])];
+  }
 }
 
 bool sameBytes(const DicomHeader& a, const DicomHeader& b) {
@@ -123,21 +168,20 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
   }
   if (parts.empty()) parts.emplace_back();
   std::ranges::stable_sort(parts, std::greater(), [](const Series& s) { return s.slices.size(); });
+  for (Series& part : parts) markParts(part);
+  std::size_t images = headless.size();
+  for (const Series& part : parts) images += part.slices.size();
   for (DicomHeader& header : headless) parts.front().slices.push_back(std::move(header));
-
-  std::string text;
-  for (const std::string& reason : reasons) {
-    if (!text.empty()) text += ", ";
-    text += reason;
-  }
   if (parts.size() == 1) return parts;
   for (Series& part : parts) {
-    part.report.findings.push_back({"SERIES_SPLIT",
-                                    "notice",
-                                    "The series was split into " + std::to_string(parts.size()) +
-                                        " parts that differ in " + text,
-                                    {},
-                                    "Each part is listed on its own"});
+    part.report.findings.push_back(
+        {"SERIES_SPLIT",
+         "repair",
+         "This is a part of a series: " + std::to_string(part.slices.size()) + " of its " +
+             std::to_string(images) + " images. Its " + std::to_string(parts.size()) +
+             " parts differ in " + listed(reasons),
+         {},
+         "The others were left out of it; each part is listed on its own"});
   }
   return parts;
 }
@@ -168,18 +212,18 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
 
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
   // Numbered in order of UIDs, which no file name or folder order can change.
-  std::map<std::array<std::string, 3>, std::vector<DicomHeader>> groups;
+  std::map<std::array<std::string, 2>, std::vector<DicomHeader>> groups;
   for (DicomHeader& header : headers) {
-    groups[{header.series_uid, header.study_uid, header.series_key}].push_back(std::move(header));
+    groups[{header.series_uid, header.series_key}].push_back(std::move(header));
   }
   std::vector<Series> all;
-  std::map<std::string, int> parts_of_uid;  // a Series UID may occur in two studies
+  std::map<std::string, int> parts_of_uid;  // of an emptied one there may be several series
   for (auto& [uids, group] : groups) {
     for (Series& series : splitSeries(std::move(group))) {
       const int number = ++parts_of_uid[uids[0]];
       series.report.uid = uids[0];
       if (number > 1) series.report.uid += "#" + std::to_string(number);
-      if (!uids[2].empty()) {
+      if (!uids[1].empty()) {
         series.report.findings.push_back(
             {"NO_SERIES_UID",
              "notice",

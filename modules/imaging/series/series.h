@@ -13,6 +13,7 @@ namespace trephine {
 struct Series {
   SeriesReport report;              // of the last assessment; grouping's own findings come first
   std::size_t findings_kept = 0;    // how many those are
+  std::vector<std::string> parted_by;  // what its parts (DicomHeader::part) differ in; empty: it is one
   std::vector<DicomHeader> slices;  // in increasing place along the stack's k axis
 };
 
@@ -22,8 +23,10 @@ struct SeriesPlan {
   std::vector<std::size_t> sources;
 };
 
-// Groups by Study and Series UID and splits what cannot be one stack: different size, spacing,
-// orientation, photometric interpretation, samples, frame of reference, kind, or a localizer.
+// Groups by Series UID and splits what cannot be one stack: another patient, modality, size,
+// spacing, orientation, photometric interpretation, samples or kind, or a localizer. What a writer
+// may have made differ within one scan (study, frame of reference, the last digits of spacing and
+// orientation) makes parts of one series, which are joined on consent.
 // `headers` are sorted by SOP Instance UID; the result does not depend on names or order of files.
 // Files are opened only to compare those that claim to be the same image or lie at one place.
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers);

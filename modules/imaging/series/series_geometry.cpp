@@ -258,10 +258,86 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                             "Export the series with even spacing, or choose how to use it"});
 }
 
+// The coarsest grid that a writer rounds to and that all positions lie on [mm]; 0: none.
+double roundedTo_mm(const std::vector<Vec3>& positions_mm) {
+  for (const double grid_mm : {1.0, 0.1}) {
+    const bool all = std::ranges::all_of(positions_mm, [&](const Vec3& p) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(p[axis] / grid_mm - std::round(p[axis] / grid_mm)) > 1e-5) return false;
+      }
+      return true;
+    });
+    if (all) return grid_mm;
+  }
+  return 0.0;
+}
+
+// Places that were rounded, put back on the line that they were rounded from: the step is that of
+// the least squares over whole numbers of steps, with as few slices missing as any line explains.
+// Nothing where no line does. Rounding moves a place by `most_mm` at most, and a step by less than
+// twice that.
+std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
+                                  const std::optional<double>& known_mm) {
+  const double n = double(slices.size());
+  const double first = slices.front().place_mm, extent = slices.back().place_mm - first;
+  const auto most_missing = std::int64_t(slices.size() / 2);
+  for (std::int64_t missing = 0; missing <= most_missing; ++missing) {
+    const double guess = extent / (n - 1.0 + double(missing));
+    std::vector<double> numbers;
+    double sum = 0.0, sum_squares = 0.0, places = 0.0, products = 0.0;
+    bool rising = true;
+    for (const Slice& slice : slices) {
+      const double number = std::round((slice.place_mm - first) / guess);
+      rising &= numbers.empty() || number > numbers.back();
+      numbers.push_back(number);
+      sum += number;
+      sum_squares += number * number;
+      places += slice.place_mm - first;
+      products += number * (slice.place_mm - first);
+    }
+    if (!rising) continue;
+    const double step = (n * products - sum * places) / (n * sum_squares - sum * sum);
+    const double start = first + (places - step * sum) / n;
+    Slices fitted = slices;
+    // What the header says tells a gap from a step that was rounded.
+    bool fits = !known_mm || std::abs(step - *known_mm) <= 0.01 * *known_mm;
+    for (std::size_t i = 0; i < slices.size() && fits; ++i) {
+      fitted[i].place_mm = start + step * numbers[i];
+      fits = std::abs(fitted[i].place_mm - slices[i].place_mm) <= most_mm * (1.0 + 1.0 / std::sqrt(n));
+      if (i == 0) continue;
+      const double steps = (numbers[i] - numbers[i - 1]) * step;
+      const double is = slices[i].place_mm - slices[i - 1].place_mm;
+      fits &= std::abs(is - steps) < 2.0 * most_mm * (1.0 - 1e-6);
+    }
+    if (fits) return fitted;
+  }
+  return {};
+}
+
 // Sets the slices of the volume and its spacing along k.
-void planAlongNormal(const Slices& slices, const Answers& answers, const std::string& lost_text,
-                     Stack& stack) {
-  const Steps steps = stepsOf(slices);
+void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
+                     const Answers& answers, Stack& stack) {
+  const std::string& lost_text = input.lost_text;
+  Steps steps = stepsOf(slices);
+  const double grid_mm = roundedTo_mm(input.positions_mm);
+  // Whole steps with gaps may be rounded ones, too: only the header can tell.
+  const std::optional<double> known_mm =
+      input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
+  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
+    const double most_mm =
+        0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    if (std::optional<Slices> fitted = onTheirLine(slices, most_mm, known_mm)) {
+      slices = *std::move(fitted);
+      steps = stepsOf(slices);
+      stack.findings.push_back(
+          {"ROUNDED_POSITIONS",
+           "repair",
+           "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
+           {},
+           "They were put back on the line that explains them all, with a step of " +
+               fixedText(steps.median_mm, 3) + " mm"});
+    }
+  }
   stack.geometry.spacing_mm.z = steps.median_mm;
   const auto usable = std::ranges::count(slices, true, &Slice::usable);
   const bool lost = std::size_t(usable) < slices.size();
@@ -461,7 +537,7 @@ Stack stackSlices(const StackInput& input, const Answers& answers) {
                     : "Choose a series that covers the anatomy"});
     return stack;
   }
-  planAlongNormal(places, answers, input.lost_text, stack);
+  planAlongNormal(places, input, (*axes)[2], answers, stack);
   if (stack.order.empty()) return stack;
   geometry.origin_mm = input.positions_mm[stack.order.front()];
   planSideways(input, *axes, stack);

@@ -19,6 +19,8 @@ struct StackInput {
   std::vector<Vec3> positions_mm;                    // ImagePositionPatient of each slice
   std::vector<bool> usable;  // false: the place is known, the pixels are lost; empty: all usable
   std::string lost_text;     // which pixels are lost and why: ends the sentence on missing slices
+  // As headers say it beside the positions; none: they do not.
+  std::optional<double> spacing_between_mm{}, thickness_mm{};
 };
 
 // A slice of the volume: a mixture of two slices of the stack, mostly one of them alone.
@@ -39,8 +41,8 @@ struct Stack {
   std::vector<std::array<double, 2>> shifts;
   std::vector<SliceMixture> slices;  // of the volume
   double tilt_deg = 0.0;             // between the line of positions and k
-  // NOT_ORTHONORMAL, ONE_LOCATION, MISSING_SLICES, UNEVEN_SPACING, RESAMPLED_SPACING, GANTRY_TILT,
-  // SHIFTED_SLICES
+  // NOT_ORTHONORMAL, ONE_LOCATION, MISSING_SLICES, UNEVEN_SPACING, RESAMPLED_SPACING, ROUNDED_POSITIONS,
+  // GANTRY_TILT, SHIFTED_SLICES
   std::vector<Finding> findings;
   std::vector<Choice> choices;
 

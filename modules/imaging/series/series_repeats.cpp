@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <optional>
@@ -36,8 +37,30 @@ std::vector<Place> placesOf(const std::vector<double>& places_mm) {
   return places;
 }
 
-const char* const kKeyNames[kPhaseKeys] = {"temporal position", "cardiac phase",    "acquisition",
-                                           "trigger time",      "acquisition time", "content time"};
+// What may tell the scans of a series apart, in the order in which it is asked.
+struct Key {
+  const char* name;
+  std::function<std::optional<double>(const DicomHeader&)> of;
+};
+
+// Two reconstructions of one scan share all their times.
+std::vector<Key> keysOf(const std::vector<const DicomHeader*>& slices) {
+  std::map<std::string, double> kernels;  // by name, numbered
+  for (const DicomHeader* slice : slices) kernels[slice->kernel];
+  double number = 0.0;
+  for (auto& [kernel, its] : kernels) its = number++;
+  std::vector<Key> keys{{"convolution kernel", [kernels](const DicomHeader& h) {
+                           return h.kernel.empty() ? std::nullopt
+                                                   : std::optional(kernels.at(h.kernel));
+                         }}};
+  constexpr const char* kNames[kPhaseKeys] = {"temporal position", "cardiac phase",
+                                              "acquisition",       "trigger time",
+                                              "acquisition time",  "content time"};
+  for (std::size_t key = 0; key < kPhaseKeys; ++key) {
+    keys.push_back({kNames[key], [key](const DicomHeader& h) { return h.phase[key]; }});
+  }
+  return keys;
+}
 
 // Whether the series was scanned more than once, rather than that some slices repeat others.
 bool areMostRepeated(const std::vector<Place>& places) {
@@ -48,13 +71,16 @@ bool areMostRepeated(const std::vector<Place>& places) {
 
 // A slice's phase by each key's value, if the values make phases: at most one slice of each value
 // at a place, and each value at half of the places at least.
-std::optional<std::vector<int>> phasesBy(PhaseKey key,
+std::optional<std::vector<int>> phasesBy(const Key& key,
                                          const std::vector<const DicomHeader*>& slices,
                                          const std::vector<Place>& places) {
   std::map<double, std::size_t> counts;
+  std::vector<double> values;
   for (const DicomHeader* slice : slices) {
-    if (!slice->phase[key]) return std::nullopt;
-    ++counts[*slice->phase[key]];
+    const std::optional<double> value = key.of(*slice);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+    ++counts[*value];
   }
   if (counts.size() < 2 || counts.size() > kMostPhases) return std::nullopt;
   for (const auto& [value, count] : counts) {
@@ -64,9 +90,9 @@ std::optional<std::vector<int>> phasesBy(PhaseKey key,
   for (const Place& place : places) {
     for (std::size_t n = place.first; n < place.last; ++n) {
       for (std::size_t m = place.first; m < n; ++m) {
-        if (*slices[m]->phase[key] == *slices[n]->phase[key]) return std::nullopt;
+        if (values[m] == values[n]) return std::nullopt;
       }
-      phases[n] = int(std::distance(counts.begin(), counts.find(*slices[n]->phase[key])));
+      phases[n] = int(std::distance(counts.begin(), counts.find(values[n])));
     }
   }
   return phases;
@@ -107,14 +133,19 @@ std::optional<std::vector<int>> phasesInTurn(
   return phases;
 }
 
-// The slices' rank at their place by the first key that tells them apart everywhere, else by
-// instance number.
-std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
-                       const std::vector<Place>& places) {
+// The slices' rank at their place, and the key that tells them apart everywhere; where none does,
+// by instance number.
+struct Ranks {
+  std::vector<int> of;
+  const char* key = nullptr;
+};
+
+Ranks ranks(const std::vector<const DicomHeader*>& slices, const std::vector<Place>& places,
+            const std::vector<Key>& keys) {
   const auto instance = [](const DicomHeader& h) {
     return double(parseInteger(h.instance_number).value_or(0));
   };
-  const auto tells = [&](auto key) {
+  const auto tells = [&](const auto& key) {
     return std::ranges::all_of(places, [&](const Place& place) {
       std::vector<double> values;
       for (std::size_t n = place.first; n < place.last; ++n) {
@@ -127,7 +158,7 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
     });
   };
   std::vector<int> result(slices.size(), 0);
-  const auto rankBy = [&](auto key) {
+  const auto rankBy = [&](const auto& key) {
     for (const Place& place : places) {
       std::vector<std::pair<double, std::size_t>> order;
       for (std::size_t n = place.first; n < place.last; ++n) {
@@ -139,14 +170,25 @@ std::vector<int> ranks(const std::vector<const DicomHeader*>& slices,
       }
     }
   };
-  for (int key = 0; key < kPhaseKeys; ++key) {
-    const auto value = [key](const DicomHeader& h) { return h.phase[std::size_t(key)]; };
-    if (!tells(value)) continue;
-    rankBy(value);
-    return result;
+  for (const Key& key : keys) {
+    if (!tells(key.of)) continue;
+    rankBy(key.of);
+    return {std::move(result), key.name};
   }
   rankBy([&](const DicomHeader& h) { return std::optional(instance(h)); });
-  return result;
+  return {std::move(result), nullptr};
+}
+
+// ", 10:15:00", of the day; empty where nobody wrote it down.
+std::string timeText(const DicomHeader& slice) {
+  const std::optional<double>& taken =
+      slice.phase[kAcquisitionTime] ? slice.phase[kAcquisitionTime] : slice.phase[kContentTime];
+  if (!taken || *taken < 0.0 || *taken > 1e15) return "";
+  const auto second = std::int64_t(std::fmod(*taken, 1e6));  // HHMMSS, after a date or alone
+  char text[16];
+  std::snprintf(text, sizeof text, ", %02d:%02d:%02d", int(second / 10000), int(second / 100 % 100),
+                int(second % 100));
+  return text;
 }
 
 // What slices with equal HU share; nothing where the pixels cannot be read.
@@ -225,7 +267,7 @@ void dropEqualRepeats(Series& series) {
 
 std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& slices,
                                        const std::vector<double>& places_mm, const Answers& answers,
-                                       SeriesReport& report) {
+                                       const std::vector<DicomHeader>& all, SeriesReport& report) {
   const std::vector<Place> places = placesOf(places_mm);
   const auto [least, most] = std::ranges::minmax(places, {}, &Place::count);
   std::vector<std::size_t> chosen;
@@ -233,24 +275,30 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     for (std::size_t n = 0; n < slices.size(); ++n) chosen.push_back(n);
     return chosen;
   }
+  const std::vector<Key> keys = keysOf(slices);
   std::optional<std::vector<int>> phases;
-  std::string told_apart_by = "order";
+  std::string told_apart_by;
+  const auto found = [&](std::optional<std::vector<int>> some, const char* by) {
+    if (phases || !some) return;
+    phases = std::move(some);
+    told_apart_by = by;
+  };
   const bool scanned_again = areMostRepeated(places);
-  for (int key = 0; scanned_again && key < kPhaseKeys && !phases; ++key) {
-    phases = phasesBy(PhaseKey(key), slices, places);
-    if (phases) told_apart_by = kKeyNames[key];
+  for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
+    found(phasesBy(keys[key], slices, places), keys[key].name);
   }
-  if (!phases && least.count() == most.count() && most.count() <= kMostPhases) {
-    phases = ranks(slices, places);
+  const Ranks rank = ranks(slices, places, keys);
+  if (rank.key && least.count() == most.count() && most.count() <= kMostPhases) {
+    found(rank.of, rank.key);
   }
-  for (int key = kAcquisitionTime; scanned_again && key < kPhaseKeys && !phases; ++key) {
-    phases = phasesInTurn([key](const DicomHeader& h) { return h.phase[std::size_t(key)]; }, slices,
-                          places);
-    if (phases) told_apart_by = kKeyNames[key];
+  for (std::size_t key = 0; scanned_again && key < keys.size() && !phases; ++key) {
+    const bool is_time = std::string_view(keys[key].name).ends_with(" time");
+    if (is_time) found(phasesInTurn(keys[key].of, slices, places), keys[key].name);
   }
   if (!phases && scanned_again) {
-    phases = phasesInTurn([](const DicomHeader& h) { return parseDecimal(h.instance_number); },
-                          slices, places);
+    found(phasesInTurn([](const DicomHeader& h) { return parseDecimal(h.instance_number); }, slices,
+                       places),
+          "instance number");
   }
   const auto take = [&](const std::vector<int>& of, int wanted) {
     for (const Place& place : places) {
@@ -263,10 +311,20 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
   if (phases) {
     report.phases = 1 + std::ranges::max(*phases);
     Choice choice{"PHASES", "Which phase shall be used?", {"refuse"}, {"Do not use the series"}};
+    choice.on_screen.emplace_back();
+    choice.shown.push_back(-1);
     for (int phase = 0; phase < report.phases; ++phase) {
+      std::vector<const DicomHeader*> its;
+      for (std::size_t n = 0; n < slices.size(); ++n) {
+        if ((*phases)[n] == phase) its.push_back(slices[n]);
+      }
+      const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
-      choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by + ", " +
-                             std::to_string(std::ranges::count(*phases, phase)) + " slices");
+      choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by +
+                             (middle.kernel.empty() ? "" : ", kernel " + middle.kernel) +
+                             timeText(middle) + ", " + std::to_string(its.size()) + " slices");
+      choice.on_screen.push_back(middle.description);
+      choice.shown.push_back(int(&middle - all.data()));
     }
     const std::string answer = ask(std::move(choice), answers, report.choices);
     const std::string text = "The series holds " + std::to_string(report.phases) +
@@ -298,11 +356,11 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
                    "The one that was acquired last"}},
                  answers, report.choices);
   }
-  std::vector<int> rank = ranks(slices, places);
+  std::vector<int> wanted = rank.of;
   if (answer == "last") {
     for (const Place& place : places) {
       for (std::size_t n = place.first; n < place.last; ++n) {
-        rank[n] = int(place.count()) - 1 - rank[n];
+        wanted[n] = int(place.count()) - 1 - wanted[n];
       }
     }
   }
@@ -313,7 +371,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     finding.action = "Of each place the " + answer + " was taken, the others left out";
   }
   report.findings.push_back(std::move(finding));
-  take(rank, 0);
+  take(wanted, 0);
   return chosen;
 }
 

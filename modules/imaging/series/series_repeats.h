@@ -13,9 +13,9 @@ void dropEqualRepeats(Series& series);
 
 // Of slices sorted by place (`places_mm` along the normal): those that one volume is made of, in
 // that order. Adds PHASES or DUPLICATE_POSITIONS and what is to choose to `report`; while that is
-// open the first of each place are taken.
+// open the first of each place are taken. `all` is Series::slices, in which they lie.
 std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& slices,
                                        const std::vector<double>& places_mm, const Answers& answers,
-                                       SeriesReport& report);
+                                       const std::vector<DicomHeader>& all, SeriesReport& report);
 
 }  // namespace trephine

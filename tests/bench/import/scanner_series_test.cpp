@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(Series, EverySyntax,
 
 TEST(ScannerSeries, IsReadByTheImporterAsItWasMade) {
   const TemporaryFolder folder;
-  const Volume volume = noisyCt({40, 32, 6});
+  const Volume volume = noisyCt({40, 32, 10});
   for (const auto& [name, syntax] : kSeriesSyntaxes) {
     SCOPED_TRACE(name);
     const fs::path path = folder / std::string(name);
@@ -234,14 +234,14 @@ TEST(ScannerSeries, HasTheLongHeadersOfAScanner) {
 
 TEST(ManySeries, AreAsManyAsAsked) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(writeManySeries(3, 4, folder / "many", kQuiet));
-  EXPECT_EQ(filesOf(folder / "many").size(), 12u);
+  ASSERT_TRUE(writeManySeries(3, 10, folder / "many", kQuiet));
+  EXPECT_EQ(filesOf(folder / "many").size(), 30u);
   const Result<CtFolder> read = CtFolder::scan(folder / "many", kQuiet);
   ASSERT_TRUE(read);
   ASSERT_EQ(read->report().series.size(), 3u);
   for (const SeriesReport& series : read->report().series) {
     EXPECT_EQ(series.verdict, Verdict::pass);
-    EXPECT_EQ(series.geometry.size, (Index3{64, 64, 4}));
+    EXPECT_EQ(series.geometry.size, (Index3{64, 64, 10}));
   }
 }
 

@@ -352,7 +352,7 @@ TEST_F(BadFiles, DeepSequencesOfDeflatedSlicesAtOnePlaceDoNotExhaustTheStack) {
 }
 
 TEST_F(BadFiles, NoSpoiltByteCrashesTheImport) {
-  const Volume volume = rampVolume({4, 4, 2});
+  const Volume volume = rampVolume({4, 4, 4});
   write(volume);
   const std::string whole = readBytes(slice(2));
   std::mt19937 random(7);

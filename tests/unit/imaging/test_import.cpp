@@ -42,7 +42,7 @@ TEST_F(Import, EveryUncompressedTransferSyntaxGivesTheSameVoxels) {
 }
 
 TEST_F(Import, SlopeAndInterceptAreTakenPerSlice) {
-  Volume volume = rampVolume({7, 5, 3});
+  Volume volume = rampVolume({7, 5, 4});
   write(volume);
   edit(slice(2), [](DcmDataset& data) {
     put(data, DCM_RescaleSlope, "2");
@@ -51,12 +51,12 @@ TEST_F(Import, SlopeAndInterceptAreTakenPerSlice) {
   const Volume back = import();
   EXPECT_EQ(back.at(3, 3, 0), volume.at(3, 3, 0));
   EXPECT_EQ(back.at(3, 3, 1), 2 * (volume.at(3, 3, 1) + 1024) - 2000);
-  EXPECT_EQ(back.at(3, 3, 2), volume.at(3, 3, 2));
+  for (const int k : {2, 3}) EXPECT_EQ(back.at(3, 3, k), volume.at(3, 3, k));
   EXPECT_EQ(chosen().verdict, Verdict::pass);
 }
 
 TEST_F(Import, AnAbsentOrZeroSlopeIsOne) {
-  const Volume volume = rampVolume({7, 5, 3});
+  const Volume volume = rampVolume({7, 5, 4});
   write(volume);
   edit(slice(1), [](DcmDataset& data) { put(data, DCM_RescaleSlope, "0"); });
   edit(slice(2), [](DcmDataset& data) { data.findAndDeleteElement(DCM_RescaleSlope); });
@@ -68,7 +68,7 @@ TEST_F(Import, AnAbsentOrZeroSlopeIsOne) {
 }
 
 TEST_F(Import, ValuesThatAreNotWholeAreRoundedAndSaidToBe) {
-  write(rampVolume({7, 5, 3}));
+  write(rampVolume({7, 5, 4}));
   edit(slice(2), [](DcmDataset& data) { put(data, DCM_RescaleSlope, "0.3"); });
   import();
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
@@ -76,7 +76,7 @@ TEST_F(Import, ValuesThatAreNotWholeAreRoundedAndSaidToBe) {
 }
 
 TEST_F(Import, ValuesOutsideInt16AreClampedAndSaidToBe) {
-  write(rampVolume({7, 5, 3}));
+  write(rampVolume({7, 5, 4}));
   edit(slice(2), [](DcmDataset& data) { put(data, DCM_RescaleSlope, "1000"); });
   import();
   EXPECT_EQ(chosen().verdict, Verdict::repaired);
@@ -85,7 +85,7 @@ TEST_F(Import, ValuesOutsideInt16AreClampedAndSaidToBe) {
 }
 
 TEST_F(Import, GarbageAboveTwelveStoredBitsDoesNotReachTheVolume) {
-  const Volume volume = rampVolume({7, 5, 3});
+  const Volume volume = rampVolume({7, 5, 4});
   write(volume);
   editAll([](DcmDataset& data) {
     const Uint16* words = nullptr;
@@ -101,7 +101,7 @@ TEST_F(Import, GarbageAboveTwelveStoredBitsDoesNotReachTheVolume) {
 }
 
 TEST_F(Import, SignedTwelveBitPixelsAreSignExtended) {
-  write(rampVolume({4, 4, 2}));
+  write(rampVolume({4, 4, 4}));
   editAll([](DcmDataset& data) {
     std::vector<Uint16> words(16, 0x0FFF);  // -1 in 12 bits
     words[0] = 0x0800;
@@ -117,7 +117,7 @@ TEST_F(Import, SignedTwelveBitPixelsAreSignExtended) {
 }
 
 TEST_F(Import, PaddingBecomesAirAndThePassStays) {
-  Volume volume = rampVolume({4, 4, 3});
+  Volume volume = rampVolume({4, 4, 4});
   for (std::size_t n = 0; n < volume.hu.size(); n += 5) volume.hu[n] = -2000;  // stored signed
   write(volume);
   editAll([](DcmDataset& data) { data.putAndInsertUint16(DCM_PixelPaddingValue, Uint16(-2000)); });

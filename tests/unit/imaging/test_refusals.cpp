@@ -41,17 +41,23 @@ TEST_F(Refusal, TwoSlicesAtOnePlace) {
   expectRefused("DUPLICATE_POSITIONS");
 }
 
-TEST_F(Refusal, TwoPhases) {
+TEST_F(Refusal, TwoScansOfOnePlaceAreAChoiceWhereSomethingTellsThemApart) {
   const Volume volume = rampVolume();
   write(volume);
+  const auto second = [&](int n) { return folder() / ("phase2-" + std::to_string(n)); };
   for (int n = 1; n <= 6; ++n) {
-    const fs::path second = folder() / ("phase2-" + std::to_string(n));
-    fs::copy_file(slice(n), second);
-    edit(second,
-         [&](DcmDataset& data) {
-           put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
-           put(data, DCM_RescaleIntercept, "-1000");
-         });
+    fs::copy_file(slice(n), second(n));
+    edit(second(n), [&](DcmDataset& data) {
+      put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+      put(data, DCM_RescaleIntercept, "-1000");
+    });
+  }
+  // Their instance numbers are the same.
+  EXPECT_EQ(expectRefused("DUPLICATE_POSITIONS").slices.size(), 6u);
+  EXPECT_TRUE(report_.series.front().choices.empty());
+  for (int n = 1; n <= 6; ++n) {
+    edit(slice(n), [](DcmDataset& data) { put(data, DCM_AcquisitionNumber, "1"); });
+    edit(second(n), [](DcmDataset& data) { put(data, DCM_AcquisitionNumber, "2"); });
   }
   EXPECT_NE(expectRefused("PHASES").text.find("2 phases"), std::string::npos);
   EXPECT_EQ(report_.series.front().phases, 2);
@@ -136,9 +142,9 @@ TEST_F(Refusal, ObjectsWithoutPixels) {
 TEST_F(Refusal, FramesThatDoNotSayWhereTheyLie) {
   write(rampVolume({7, 5, 1}));
   editAll([](DcmDataset& data) {
-    const std::vector<Uint16> frames(7 * 5 * 3, 1024);
+    const std::vector<Uint16> frames(7 * 5 * 4, 1024);
     data.putAndInsertUint16Array(DCM_PixelData, frames.data(), frames.size());
-    put(data, DCM_NumberOfFrames, "3");
+    put(data, DCM_NumberOfFrames, "4");
   });
   expectRefused("MULTIFRAME");
 }
@@ -189,7 +195,7 @@ TEST_F(Refusal, MorePixelsThanRowsAndColumnsSay) {
 }
 
 TEST_F(Refusal, AHeaderOfFourGigavoxelsWithFewPixelsAllocatesNothing) {
-  write(rampVolume({16, 16, 3}));
+  write(rampVolume({16, 16, 4}));
   editAll([](DcmDataset& data) {
     data.putAndInsertUint16(DCM_Rows, 65535);
     data.putAndInsertUint16(DCM_Columns, 65535);

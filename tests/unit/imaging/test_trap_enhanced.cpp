@@ -55,21 +55,21 @@ TEST_F(TrapEnhanced, AFramesOwnRescaleOverridesTheSharedOne) {
 }
 
 TEST_F(TrapEnhanced, AFramesOwnPositionOverridesTheSharedOne) {
-  DcmDataset data = makeEnhanced(frames(3), {at(100), at(101), at(102)});
+  DcmDataset data = makeEnhanced(frames(4), {at(100), at(101), at(102), at(103)});
   put(functionalGroup(data, DCM_PlanePositionSequence, -1), DCM_ImagePositionPatient,
       positionText(at(500)));
   add(data);
   const Volume volume = import();
   EXPECT_EQ(volume.geometry.origin_mm, at(100));
-  for (int frame = 0; frame < 3; ++frame) expectFrame(volume, frame, frame);
+  for (int frame = 0; frame < 4; ++frame) expectFrame(volume, frame, frame);
 }
 
 TEST_F(TrapEnhanced, TwoOrientationsInOneFileAreTwoStacks) {
   std::vector<Vec3> positions;
   for (int n = 0; n < 5; ++n) positions.push_back(at(100 + n));
-  for (int n = 0; n < 3; ++n) positions.push_back({-20.0, 10.5 + n, 100.0});
-  DcmDataset data = makeEnhanced(frames(8), positions);
-  for (int frame = 5; frame < 8; ++frame) {
+  for (int n = 0; n < 4; ++n) positions.push_back({-20.0, 10.5 + n, 100.0});
+  DcmDataset data = makeEnhanced(frames(9), positions);
+  for (int frame = 5; frame < 9; ++frame) {
     put(functionalGroup(data, DCM_PlaneOrientationSequence, frame), DCM_ImageOrientationPatient,
         "1\\0\\0\\0\\0\\-1");
   }
@@ -82,8 +82,8 @@ TEST_F(TrapEnhanced, TwoOrientationsInOneFileAreTwoStacks) {
   for (int frame = 0; frame < 5; ++frame) expectFrame(*axial, frame, frame);
   const auto coronal = ct.read("1.2.3.4#2", {}, Progress());
   ASSERT_TRUE(coronal.ok()) << coronal.error().sentence();
-  ASSERT_EQ(coronal->geometry.size[2], 3);
-  for (int k = 0; k < 3; ++k) expectFrame(*coronal, k, 5 + k);
+  ASSERT_EQ(coronal->geometry.size[2], 4);
+  for (int k = 0; k < 4; ++k) expectFrame(*coronal, k, 5 + k);
   EXPECT_EQ(coronal->geometry.direction[2], Vec3(0, 1, 0));
 }
 
@@ -156,17 +156,17 @@ TEST_F(TrapEnhanced, EveryUncompressedSyntaxGivesEveryFrame) {
       SCOPED_TRACE(std::string(DcmXfer(syntax).getXferName()) + std::to_string(bits));
       std::filesystem::remove_all(folder());
       Image image;
-      image.frames = 3;  // of 35 pixels: at 8 bits frames start at odd bytes
+      image.frames = 5;  // of 35 pixels: at 8 bits frames start at odd bytes
       image.bits_stored = bits;
       image.high_bit = bits - 1;
       image.bits_allocated = bits == 8 ? 8 : 16;
       fillPattern(image, 0);
-      add(makeEnhanced(image, {at(102), at(101), at(100)}), {syntax});
+      add(makeEnhanced(image, {at(104), at(103), at(102), at(101), at(100)}), {syntax});
       const Volume volume = import();
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 5; ++k) {
         for (int n = 0; n < 35; ++n) {
           ASSERT_EQ(volume.hu[std::size_t(k * 35 + n)],
-                    patternValue(n % 7, n / 7, 2 - k, bits) - 1024);
+                    patternValue(n % 7, n / 7, 4 - k, bits) - 1024);
         }
       }
     }
@@ -202,7 +202,7 @@ TEST_F(TrapEnhanced, ACutFileKeepsTheCompressedFramesThatAreWhole) {
 }
 
 TEST_F(TrapEnhanced, AClaimOfAHundredThousandFramesCostsLittle) {
-  DcmDataset data = makeEnhanced(frames(3), {at(100), at(101), at(102)});
+  DcmDataset data = makeEnhanced(frames(4), {at(100), at(101), at(102), at(103)});
   put(data, DCM_NumberOfFrames, "100000");
   add(data);
   const double before_mb = peakResidentMb();

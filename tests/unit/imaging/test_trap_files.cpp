@@ -30,12 +30,12 @@ class TrapFiles : public SeriesFixture {
     save(data, file, packing);
   }
 
-  // Three slices, in the given files.
+  // Slices one above the other, in the given files.
   void saveSlices(const std::vector<fs::path>& files) {
     for (std::size_t k = 0; k < files.size(); ++k) saveAs(slice(int(k)), files[k]);
   }
 
-  static void expectSlices(const Volume& volume, int count = 3) {
+  static void expectSlices(const Volume& volume, int count = 4) {
     ASSERT_EQ(volume.geometry.size, (Index3{7, 5, count}));
     for (std::size_t v = 0; v < volume.hu.size(); ++v) {
       const int n = int(v % 35);
@@ -86,7 +86,7 @@ TEST_F(TrapFiles, DataSetsWithoutAnyMetaHeader) {
   for (const E_TransferSyntax syntax :
        {EXS_LittleEndianImplicit, EXS_LittleEndianExplicit, EXS_BigEndianExplicit}) {
     SCOPED_TRACE(DcmXfer(syntax).getXferName());
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
       writeBytes(folder() / std::to_string(k), bareBytes(slice(k), syntax, temporary_ / "scratch"));
     }
     expectSlices(import());
@@ -95,7 +95,7 @@ TEST_F(TrapFiles, DataSetsWithoutAnyMetaHeader) {
 }
 
 TEST_F(TrapFiles, AMetaHeaderWithoutTransferSyntax) {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     const fs::path file = folder() / std::to_string(k);
     saveAs(slice(k), file);
     std::string bytes = readBytes(file);
@@ -111,23 +111,29 @@ TEST_F(TrapFiles, AMetaHeaderWithoutTransferSyntax) {
 }
 
 TEST_F(TrapFiles, HeadersThatAreCutAnywhereNeverLoseTheOtherSlices) {
-  const std::string whole = bareBytes(slice(1), EXS_LittleEndianExplicit, temporary_ / "scratch");
-  for (std::size_t length = 0; length < whole.size(); length += 13) {
-    SCOPED_TRACE(length);
-    fs::remove_all(folder());
-    saveSlices({folder() / "a", folder() / "b", folder() / "c"});
-    writeBytes(folder() / "b", whole.substr(0, length));
-    CtFolder ct = scan();
-    ASSERT_EQ(ct.report().series.size(), 1u);
-    // Cut before it says what it is, it is skipped and a single step is left: two slices are even.
-    const auto volume = ct.read("1.2.3.4", {}, Progress());
-    if (volume.ok()) {
-      int skipped = 0;
-      for (const SkippedFiles& files : ct.report().skipped) skipped += files.count;
-      ASSERT_EQ(skipped, 1);
-      ASSERT_EQ(volume->geometry.size[2], 2);
-    } else {
-      ASSERT_EQ(volume.error().code, "MISSING_SLICES");
+  const std::vector<fs::path> files = {folder() / "a", folder() / "b", folder() / "c",
+                                       folder() / "d", folder() / "e"};
+  for (const int cut : {1, 4}) {
+    const std::string whole =
+        bareBytes(slice(cut), EXS_LittleEndianExplicit, temporary_ / "scratch");
+    for (std::size_t length = 0; length < whole.size(); length += 13) {
+      SCOPED_TRACE(std::to_string(length) + " bytes of slice " + std::to_string(cut + 1));
+      fs::remove_all(folder());
+      saveSlices(files);
+      writeBytes(files[std::size_t(cut)], whole.substr(0, length));
+      CtFolder ct = scan();
+      ASSERT_EQ(ct.report().series.size(), 1u);
+      // Cut before it says what it is, it is skipped: at the end, an even stack is left.
+      const auto volume = ct.read("1.2.3.4", {}, Progress());
+      if (volume.ok()) {
+        int skipped = 0;
+        for (const SkippedFiles& some : ct.report().skipped) skipped += some.count;
+        ASSERT_EQ(skipped, 1);
+        ASSERT_EQ(cut, 4);
+        ASSERT_EQ(volume->geometry.size[2], 4);
+      } else {
+        ASSERT_EQ(volume.error().code, "MISSING_SLICES");
+      }
     }
   }
 }
@@ -165,51 +171,52 @@ TEST_F(TrapFiles, NamesOutsideOfAscii) {
                          "berpr\xC3\xBC"
                          "fung \xE9\xA0\xAD\xE9\x83\xA8" /
                          "\xFF\xFE bytes";
-  saveSlices({below / "\xD0\x9B\xD1\x8E\xD0\xBA", below / "a b\nc", below / "\x80"});
+  saveSlices({below / "\xD0\x9B\xD1\x8E\xD0\xBA", below / "a b\nc", below / "\x80", below / "1"});
   expectSlices(import());
   expectSlices(importOf(below));
   EXPECT_NO_THROW(toJson(report_).dump());
 }
 
 TEST_F(TrapFiles, OneInodeUnderManyNamesIsOneFile) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
   fs::create_hard_link(folder() / "a", folder() / "again");
   fs::create_symlink(folder() / "b", folder() / "link");
   fs::create_symlink(folder() / "gone", folder() / "broken");
   fs::create_directory_symlink(folder(), folder() / "loop");
   expectSlices(import());
-  EXPECT_EQ(report_.files_read, 3);
+  EXPECT_EQ(report_.files_read, 4);
   EXPECT_EQ(chosen().findings.size(), 0u);
 }
 
 TEST_F(TrapFiles, ADicomDirNamesItsFilesInWhateverCase) {
-  saveSlices({folder() / "sub/Im1", folder() / "sub/im2", folder() / "SUB2/IM3"});
+  saveSlices(
+      {folder() / "sub/Im1", folder() / "sub/im2", folder() / "SUB2/IM3", folder() / "SUB2/im4"});
   saveAs(slice(9, "1.2.3.5"), folder() / "not in the directory");
-  saveDicomDir(folder() / "DICOMDIR", {"SUB\\IM1", "Sub\\IM2", "sub2\\im3"});
+  saveDicomDir(folder() / "DICOMDIR", {"SUB\\IM1", "Sub\\IM2", "sub2\\im3", "SUB2\\IM4"});
   expectSlices(importOf(folder() / "DICOMDIR"));
-  EXPECT_EQ(report_.files_seen, 3);
+  EXPECT_EQ(report_.files_seen, 4);
   EXPECT_EQ(report_.series.size(), 1u);
   // Inside a folder it is a file that is skipped.
   expectSlices(import());
-  EXPECT_EQ(report_.files_seen, 5);
+  EXPECT_EQ(report_.files_seen, 6);
   EXPECT_EQ(report_.series.size(), 2u);
 }
 
 TEST_F(TrapFiles, ADicomDirNeverLeadsOutOfItsFolder) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
   saveAs(slice(9, "1.2.3.5"), temporary_ / "outside" / "secret");
   const std::string absolute = (temporary_ / "outside" / "secret").string();
   for (const std::string& reference :
        {std::string("..\\OUTSIDE\\SECRET"), std::string("../outside/secret"), absolute}) {
-    saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C", reference});
+    saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C", "D", reference});
     expectSlices(importOf(folder() / "DICOMDIR"));
     EXPECT_EQ(report_.series.size(), 1u) << reference;
   }
 }
 
 TEST_F(TrapFiles, AStaleDicomDirIsAReasonToLookAtTheFolder) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
-  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "D"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
+  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C", "E"});
   expectSlices(importOf(folder() / "DICOMDIR"));
   saveDicomDir(folder() / "DICOMDIR", {});
   expectSlices(importOf(folder() / "DICOMDIR"));
@@ -217,21 +224,21 @@ TEST_F(TrapFiles, AStaleDicomDirIsAReasonToLookAtTheFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder());
   expectSlices(importOf("DICOMDIR"));
-  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C"});
+  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C", "D"});
   expectSlices(importOf("DICOMDIR"));
   fs::current_path(before);
 }
 
 TEST_F(TrapFiles, ADicomDirWhoseFilesAreCutIsStillUsed) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
-  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
+  saveDicomDir(folder() / "DICOMDIR", {"A", "B", "C", "D"});
   const std::string bytes = readBytes(folder() / "DICOMDIR");
   writeBytes(folder() / "DICOMDIR", bytes.substr(0, bytes.size() - 7));
   expectSlices(importOf(folder() / "DICOMDIR"));
 }
 
 TEST_F(TrapFiles, ASeriesWhoseUidWasEmptiedIsToldByStudyNumberAndTime) {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     for (const int number : {1, 2}) {
       DcmDataset data = slice(k);
       put(data, DCM_SeriesInstanceUID, "");
@@ -244,7 +251,7 @@ TEST_F(TrapFiles, ASeriesWhoseUidWasEmptiedIsToldByStudyNumberAndTime) {
   CtFolder ct = scan();
   ASSERT_EQ(ct.report().series.size(), 2u);
   for (const SeriesReport& series : ImportReport(ct.report()).series) {
-    EXPECT_EQ(series.slices, 3);
+    EXPECT_EQ(series.slices, 4);
     ASSERT_NE(find(series, "NO_SERIES_UID"), nullptr);
     const auto volume = ct.read(series.uid, {}, Progress());
     ASSERT_TRUE(volume.ok());
@@ -254,7 +261,7 @@ TEST_F(TrapFiles, ASeriesWhoseUidWasEmptiedIsToldByStudyNumberAndTime) {
 }
 
 TEST_F(TrapFiles, ObjectsOfOtherKindsAreListedAndNeverStacked) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
   const std::pair<const char*, const char*> kinds[] = {
       {UID_ComprehensiveSRStorage, "SR"},
       {UID_RTStructureSetStorage, "RTSTRUCT"},
@@ -296,7 +303,7 @@ TEST_F(TrapFiles, ObjectsOfOtherKindsAreListedAndNeverStacked) {
 }
 
 TEST_F(TrapFiles, ALocalizerInTheSeriesWithTheSlicesGeometryIsSplitOff) {
-  saveSlices({folder() / "a", folder() / "b", folder() / "c"});
+  saveSlices({folder() / "a", folder() / "b", folder() / "c", folder() / "d"});
   DcmDataset scout = slice(5);
   put(scout, DCM_ImageType, "ORIGINAL\\PRIMARY\\LOCALIZER\\CT_SOM5 TOP");
   saveAs(scout, folder() / "scout");
@@ -310,7 +317,7 @@ TEST_F(TrapFiles, ALocalizerInTheSeriesWithTheSlicesGeometryIsSplitOff) {
 TEST_F(TrapFiles, ColourOfAnyKindIsRefused) {
   for (const char* photometric : {"RGB", "YBR_FULL", "PALETTE COLOR"}) {
     fs::remove_all(folder());
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
       DcmDataset data = slice(k);
       put(data, DCM_PhotometricInterpretation, photometric);
       if (std::string(photometric) != "PALETTE COLOR") {

@@ -5,7 +5,7 @@ namespace trephine::test {
 
 class TrapRepeats : public SeriesFixture {
  protected:
-  static constexpr int kSlices = 6;
+  static constexpr int kSlices = 7;
 
   // Slice k of a phase; its pixels differ from phase to phase.
   static Image image(int phase, int k, int instance) {
@@ -134,7 +134,7 @@ TEST_F(TrapRepeats, OfAPhaseWithAMissingSliceOnlyThatPhaseIsIncomplete) {
   expectRefused("PHASES");
   expectPhase(import({{"PHASES", "1"}}), 0);
   EXPECT_EQ(refusal({{"PHASES", "2"}}).code, "MISSING_SLICES");
-  expectPhase(import({{"PHASES", "2"}, {"MISSING_SLICES", "part"}}), 1, 3, 6);
+  expectPhase(import({{"PHASES", "2"}, {"MISSING_SLICES", "part"}}), 1, 3, kSlices);
   const Volume filled = import({{"PHASES", "2"}, {"MISSING_SLICES", "fill"}});
   ASSERT_EQ(filled.geometry.size[2], kSlices);
   for (int j = 0; j < 5; ++j) {
@@ -176,7 +176,7 @@ TEST_F(TrapRepeats, AnIncompletePhaseIsNeverMixedFromTheOther) {
 }
 
 TEST_F(TrapRepeats, PhasesWithJitteredSteps) {
-  const double zs[] = {100, 102.1, 104, 106, 108.1, 110};
+  const double zs[] = {100, 102.1, 104, 106, 108.1, 110, 112};
   for (int phase = 0; phase < 2; ++phase) {
     for (int k = 0; k < kSlices; ++k) {
       Image slice = image(phase, k, phase * kSlices + k + 1);
@@ -265,7 +265,7 @@ TEST_F(TrapRepeats, ADifferentSliceAtOnePlaceAsksWhich) {
 TEST_F(TrapRepeats, AWholeSliceIsTakenRatherThanACutOneAtItsPlace) {
   for (int k = 0; k < kSlices; ++k) addSlice(image(0, k, k + 1));
   addSlice(image(0, 3, 20));
-  const auto name = folder() / std::to_string(7 * 7919 % 1000).append("_7");
+  const auto name = folder() / std::to_string(8 * 7919 % 1000).append("_8");
   ASSERT_TRUE(std::filesystem::exists(name));
   std::filesystem::resize_file(name, std::filesystem::file_size(name) - 8);
   const SeriesReport series = scan().report().series.front();

@@ -60,8 +60,8 @@ class TrapSyntaxes : public SeriesFixture {
   void expectLossless(const Form& form, const Packing& packing) {
     SCOPED_TRACE(nameOf(packing, form));
     fs::remove_all(folder());
-    addStack(form, packing, 3);
-    expectStack(import(), form, 3);
+    addStack(form, packing, 4);
+    expectStack(import(), form, 4);
     EXPECT_EQ(chosen().verdict, Verdict::pass);
     EXPECT_EQ(chosen().transfer_syntax, DcmXfer(packing.syntax).getXferID());
     EXPECT_FALSE(chosen().lossy);
@@ -116,16 +116,16 @@ TEST_F(TrapSyntaxes, FramesOfOneCompressedFile) {
                        std::to_string(fragments));
           fs::remove_all(folder());
           Image frames = image(form);
-          frames.frames = 3;
+          frames.frames = 5;
           fillPattern(frames, 0);
           Packing packing{syntax};
           packing.offset_table = table;
           packing.fragments = fragments;
-          add(makeEnhanced(frames, {at(100), at(101), at(102)}), packing);
+          add(makeEnhanced(frames, {at(100), at(101), at(102), at(103), at(104)}), packing);
           if (!table && fragments > 1) {  // nothing tells the frames apart, and that is said
             expectRefused("SIZE_MISMATCH");
           } else {
-            expectStack(import(), form, 3);
+            expectStack(import(), form, 5);
           }
         }
       }
@@ -152,7 +152,7 @@ TEST_F(TrapSyntaxes, CompressedPixelsOfAnotherSizeThanTheHeaderSays) {
       SCOPED_TRACE(nameOf({syntax}, kForms[1]) + " " + std::to_string(columns) + "x" +
                    std::to_string(rows));
       fs::remove_all(folder());
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 4; ++k) {
         Image slice = image(kForms[1]);
         slice.position_mm.z = 100.0 + k;
         slice.instance = k + 1;
@@ -174,7 +174,7 @@ TEST_F(TrapSyntaxes, CompressedPixelsOfAnotherSizeThanTheHeaderSays) {
 TEST_F(TrapSyntaxes, PixelsThatAreClaimedToBeFourGigavoxelsAllocateNothing) {
   for (const E_TransferSyntax syntax : kCompressed) {
     fs::remove_all(folder());
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
       Image slice = image(kForms[1]);
       slice.position_mm.z = 100.0 + k;
       slice.instance = k + 1;
@@ -231,7 +231,7 @@ TEST_F(TrapSyntaxes, ACodestreamThatIsCutInsideAWholeFileIsAMissingSlice) {
     for (const bool zeros : {false, true}) {
       SCOPED_TRACE(nameOf({syntax}, kForms[1]) + (zeros ? ", zeros behind" : ", shorter"));
       fs::remove_all(folder());
-      addStack(kForms[1], {syntax}, 5);
+      addStack(kForms[1], {syntax}, 7);
       Image slice = image(kForms[1]);
       slice.position_mm.z = 102.0;
       slice.instance = 3;
@@ -249,7 +249,7 @@ TEST_F(TrapSyntaxes, ACodestreamThatIsCutInsideAWholeFileIsAMissingSlice) {
       EXPECT_EQ(find(report_.series.front(), "MISSING_SLICES")->slices,
                 std::vector<std::string>{"102.00 mm"});
       const Volume part = import({{"MISSING_SLICES", "part"}});
-      EXPECT_EQ(part.geometry.size[2], 2);
+      EXPECT_EQ(part.geometry.size[2], 4);
     }
   }
 }
@@ -282,7 +282,7 @@ class TrapLossy : public TrapSyntaxes {
   }
 
   void addSmooth(const Form& form, const Packing& packing, int missing = -1) {
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 5; ++k) {
       if (k == missing) continue;
       Image slice = image(form, 32, 32);
       slice.position_mm.z = 100.0 + k;
@@ -305,12 +305,12 @@ class TrapLossy : public TrapSyntaxes {
     EXPECT_TRUE(report_.series.front().lossy);
     EXPECT_EQ(refusal({{"LOSSY_SOURCE", "refuse"}}).code, "LOSSY_SOURCE");
     const Volume volume = import({{"LOSSY_SOURCE", "accept"}});
-    ASSERT_EQ(volume.geometry.size, (Index3{32, 32, 4}));
+    ASSERT_EQ(volume.geometry.size, (Index3{32, 32, 5}));
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     EXPECT_TRUE(chosen().lossy);
     EXPECT_TRUE(report_.provenance->lossy);
     const int low = (form.is_signed ? -(1 << (form.stored - 1)) : 0) - 24;
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 5; ++k) {
       for (int j = 0; j < 32; ++j) {
         for (int i = 0; i < 32; ++i) {
           ASSERT_NEAR(volume.at(i, j, k), low + smooth(i, j, k, (1 << form.stored) - 1), most)
@@ -361,7 +361,7 @@ TEST_F(TrapLossy, LossAndAMissingSliceAreAskedForBoth) {
   EXPECT_EQ(refusal({{"LOSSY_SOURCE", "accept"}}).code, "MISSING_SLICES");
   EXPECT_EQ(refusal({{"MISSING_SLICES", "fill"}}).code, "LOSSY_SOURCE");
   const Volume volume = import({{"LOSSY_SOURCE", "accept"}, {"MISSING_SLICES", "fill"}});
-  ASSERT_EQ(volume.geometry.size[2], 4);
+  ASSERT_EQ(volume.geometry.size[2], 5);
   for (int i = 0; i < 32; ++i) {
     ASSERT_NEAR(volume.at(i, 5, 2), smooth(i, 5, 2, 4095) - 24, 4);
   }
@@ -370,10 +370,10 @@ TEST_F(TrapLossy, LossAndAMissingSliceAreAskedForBoth) {
 }
 
 TEST_F(TrapLossy, AnOldLossIsRememberedByItsAttribute) {
-  addStack(kForms[1], {EXS_LittleEndianExplicit}, 3);
+  addStack(kForms[1], {EXS_LittleEndianExplicit}, 4);
   editAll([](DcmDataset& data) { put(data, DCM_LossyImageCompression, "01"); });
   expectRefused("LOSSY_SOURCE");
-  expectStack(import({{"LOSSY_SOURCE", "accept"}}), kForms[1], 3);
+  expectStack(import({{"LOSSY_SOURCE", "accept"}}), kForms[1], 4);
 }
 
 }  // namespace trephine::test

@@ -40,7 +40,7 @@ TEST_F(TrapValues, EveryWidthAndSignWithAnythingInTheOtherBits) {
                    DcmXfer(syntax).getXferName());
       std::filesystem::remove_all(folder());
       const std::string intercept = form.stored == 16 && !form.is_signed ? "-32768" : "-24";
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 4; ++k) {
         Image image = imageAt(k);
         image.bits_allocated = form.allocated;
         image.bits_stored = form.stored;
@@ -61,8 +61,8 @@ TEST_F(TrapValues, EveryWidthAndSignWithAnythingInTheOtherBits) {
         add(data, {syntax});
       }
       const Volume volume = import();
-      ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 3}));
-      for (int k = 0; k < 3; ++k) {
+      ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 4}));
+      for (int k = 0; k < 4; ++k) {
         for (int j = 0; j < 5; ++j) {
           for (int i = 0; i < 7; ++i) {
             const int stored = patternValue(i, j, k, form.stored, form.is_signed);
@@ -81,7 +81,7 @@ TEST_F(TrapValues, EightBitPixelsInWordsOfEitherOrder) {
     for (const DcmEVR vr : {EVR_OB, EVR_OW}) {
       SCOPED_TRACE(std::string(DcmXfer(syntax).getXferName()) + (vr == EVR_OB ? " OB" : " OW"));
       std::filesystem::remove_all(folder());
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 4; ++k) {
         Image image = imageAt(k);
         image.bits_allocated = image.bits_stored = 8;
         image.high_bit = 7;
@@ -161,7 +161,7 @@ TEST_F(TrapValues, PaddingIsComparedWithWhatIsStored) {
          {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit}) {
       SCOPED_TRACE(std::to_string(c.value) + ".." + std::to_string(c.limit));
       std::filesystem::remove_all(folder());
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 4; ++k) {
         Image image = imageAt(k);
         image.is_signed = c.is_signed;
         image.slope = "2";
@@ -188,7 +188,7 @@ TEST_F(TrapValues, PaddingIsComparedWithWhatIsStored) {
       const Volume volume = import();
       const int low = std::min(c.value, c.limit), high = std::max(c.value, c.limit);
       int padding = 0;
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 4; ++k) {
         for (int n = 0; n < 35; ++n) {
           int stored = patternValue(n % 7, n / 7, k, 12, c.is_signed);
           if (n == 5) stored = c.value;
@@ -229,7 +229,7 @@ TEST_F(TrapValues, PaddingIsNotMixedIntoFilledSlices) {
 }
 
 TEST_F(TrapValues, DisplayAttributesNeverChangeHu) {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Image image = imageAt(k);
     fillPattern(image, k);
     DcmDataset data = makeImage(image);
@@ -250,7 +250,7 @@ TEST_F(TrapValues, DisplayAttributesNeverChangeHu) {
 }
 
 TEST_F(TrapValues, AnIconBesideThePixelsIsNotThePixels) {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Image image = imageAt(k);
     fillPattern(image, k);
     DcmDataset data = makeImage(image);
@@ -264,7 +264,7 @@ TEST_F(TrapValues, AnIconBesideThePixelsIsNotThePixels) {
     add(data, {k == 0 ? EXS_LittleEndianImplicit : EXS_LittleEndianExplicit});
   }
   const Volume volume = import();
-  ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 3}));
+  ASSERT_EQ(volume.geometry.size, (Index3{7, 5, 4}));
   for (std::size_t v = 0; v < volume.hu.size(); ++v) {
     const int n = int(v % 35);
     ASSERT_EQ(volume.hu[v], patternValue(n % 7, n / 7, int(v / 35)) - 1024);

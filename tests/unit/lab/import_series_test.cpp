@@ -14,9 +14,9 @@ namespace {
 ImportSeries tiny() {
   ImportSeries series;
   series.names = {"u12", "int16"};
-  series.size = {41, 32, 6};
+  series.size = {41, 32, 10};
   series.scan_series = 3;
-  series.scan_slices = 4;
+  series.scan_slices = 10;
   return series;
 }
 
@@ -68,7 +68,7 @@ TEST(OwnSeries, OfTheScanAreAsManyAsAsked) {
   ASSERT_EQ(read->report().series.size(), 3u);
   for (const SeriesReport& series : read->report().series) {
     EXPECT_EQ(series.verdict, Verdict::pass);
-    EXPECT_EQ(series.geometry.size, (Index3{64, 64, 4}));
+    EXPECT_EQ(series.geometry.size, (Index3{64, 64, 10}));
   }
 }
 
