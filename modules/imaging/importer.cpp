@@ -34,11 +34,13 @@ std::optional<Error> folderError(const ImportReport& report) {
     return Error{"EMPTY_FOLDER", "The folder holds no files", report.path, "Choose another folder"};
   }
   if (std::ranges::none_of(report.series, is_ct)) {
-    std::string what =
-        "There is no CT series among the " + std::to_string(report.files_seen) + " files";
+    std::string what = report.files_seen == 1 ? "The only file is no CT series"
+                                              : "There is no CT series among the " +
+                                                    counted(report.files_seen, "file");
     const auto most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
     if (most != report.skipped.end()) {
-      what += "; skipped were " + std::to_string(most->count) + ": " + most->reason;
+      what += "; " + std::to_string(most->count) +
+              (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
     }
     return Error{"NO_CT", what, report.path, "Choose the folder that holds the CT"};
   }
@@ -57,13 +59,13 @@ void addValueFindings(const HuCounts& counts, SeriesReport& report) {
   const auto add = [&](const char* code, const char* severity, std::uint64_t voxels,
                        const char* what, const char* action) {
     if (voxels == 0) return;
-    report.findings.push_back({code, severity, std::to_string(voxels) + what, {}, action});
+    report.findings.push_back({code, severity, counted(voxels, "voxel") + what, {}, action});
   };
-  add("PADDING_TO_AIR", "notice", counts.padding, " voxels are padding", "They became air");
-  add("HU_ROUNDED", "repair", counts.rounded, " voxels had HU that are not whole numbers",
-      "They were rounded to the nearest");
-  add("HU_CLAMPED", "repair", counts.clamped, " voxels had HU outside -32768..32767",
-      "They were set to the nearest limit");
+  add("PADDING_TO_AIR", "notice", counts.padding, " of padding", "Padding became air");
+  add("HU_ROUNDED", "repair", counts.rounded, " had HU that are not whole numbers",
+      "Rounded to the nearest");
+  add("HU_CLAMPED", "repair", counts.clamped, " had HU outside -32768..32767",
+      "Set to the nearest limit");
 }
 
 Error refusalOf(const SeriesReport& series) {
@@ -73,29 +75,34 @@ Error refusalOf(const SeriesReport& series) {
 
 Error noSuchSeries(const std::string& uid, std::size_t listed) {
   return Error{"NO_SUCH_SERIES", "There is no such series in the folder", cleanUtf8(uid),
-               "Choose one of the " + std::to_string(listed) + " listed"};
+               listed == 0 ? "Choose another folder" : "Choose one that the report lists"};
 }
 
-// Answers to questions that the series asks must be among the options.
-Status checkAnswers(const SeriesReport& series, const Answers& answers) {
+// The options of each question that is asked.
+using Options = std::map<std::string, std::vector<std::string>>;
+
+Options optionsOf(const SeriesReport& series) {
+  Options options;
+  for (const Choice& choice : series.choices) options[choice.code] = choice.options;
+  return options;
+}
+
+// Answers to questions that are asked must be among the options.
+Status checkAnswers(const Options& asked, const Answers& answers) {
   static const std::set<std::string> known = {
       "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
       "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
       "UNEVEN_SPACING"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
-      std::string codes;
-      for (const std::string& one : known) codes += (codes.empty() ? "" : ", ") + one;
       return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
-                   "Choose among " + codes};
+                   "Choose among " + listed({known.begin(), known.end()})};
     }
-    const auto choice = std::ranges::find(series.choices, code, &Choice::code);
-    if (choice == series.choices.end()) continue;
-    if (std::ranges::find(choice->options, option) != choice->options.end()) continue;
-    std::string options;
-    for (const std::string& one : choice->options) options += (options.empty() ? "" : ", ") + one;
+    const auto question = asked.find(code);
+    if (question == asked.end()) continue;
+    if (std::ranges::find(question->second, option) != question->second.end()) continue;
     return Error{"BAD_CHOICE", "The choice " + code + " has no option '" + cleanUtf8(option) + "'",
-                 series.uid, "Choose one of " + options};
+                 "", "Choose " + listed(question->second, "or")};
   }
   return {};
 }
@@ -143,7 +150,9 @@ struct CtFolder::Contents {
   std::vector<Source> sources;  // of report.series
 
   Source* find(const std::string& uid) {
-    const auto it = std::ranges::find(report.series, uid, &SeriesReport::uid);
+    const auto it = std::ranges::find_if(report.series, [&](const SeriesReport& series) {
+      return series.uid == uid || seriesHash(series.uid) == uid;
+    });
     return it == report.series.end() ? nullptr : &sources[std::size_t(it - report.series.begin())];
   }
   // The report's copy of what the source says of itself.
@@ -162,7 +171,9 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
-    if (const Status valid = checkAnswers(series.report, answers); !valid) return valid.error();
+    if (const Status valid = trephine::checkAnswers(optionsOf(series.report), answers); !valid) {
+      return valid.error();
+    }
     if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
     if (Status enough = roomToRead(series.report, request); !enough) return enough.error();
     Result<Assembly> assembly = assemble(series, plan, progress);
@@ -247,6 +258,26 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   return best->uid;
 }
 
+Status CtFolder::checkAnswers(const Answers& answers) const {
+  Options asked;
+  for (const Source& source : contents_->sources) {
+    if (source.series.report.choices.empty()) continue;
+    Series answered = source.series;
+    assessSeries(answered, answers);
+    for (const SeriesReport* report :
+         std::initializer_list<const SeriesReport*>{&source.series.report, &answered.report}) {
+      for (const auto& [code, options] : optionsOf(*report)) {
+        for (const std::string& option : options) {
+          if (std::ranges::find(asked[code], option) == asked[code].end()) {
+            asked[code].push_back(option);
+          }
+        }
+      }
+    }
+  }
+  return trephine::checkAnswers(asked, answers);
+}
+
 bool CtFolder::cameUpon(const std::filesystem::path& file) const {
   const std::optional<FileId> id = fileId(file);
   return id && contents_->came_upon.contains(*id);
@@ -296,6 +327,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   report.chosen.reset();
   report.provenance.reset();
   const auto fail = [&](const Error& error) {
+    conclude(source->series);
     contents_->publish(*source);
     if (error.code != "CANCELLED") report.error = error;
     return error;
@@ -318,10 +350,10 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
   if (!stepped) return fail(stepped.error());
   report.seconds.read = secondsSince(start);
-  if (const Status valid = checkAnswers(series, request.answers); !valid) {
+  if (const Status valid = trephine::checkAnswers(optionsOf(series), request.answers); !valid) {
     return fail(valid.error());
   }
-  series.verdict = verdictOf(series.findings);
+  conclude(source->series);
   series.geometry = volume->geometry;
 
   progress.at(0.95, "Checking");
@@ -335,7 +367,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   provenance.volume_sha256 = *series.volume_sha256;
   contents_->publish(*source);
   report.provenance = std::move(provenance);
-  report.chosen = uid;
+  report.chosen = series.uid;
   report.error.reset();
   report.peak_rss_mb = std::max(peakResidentMb(), report.start_rss_mb);  // read at other moments
   progress.at(1.0, "Done");

@@ -30,12 +30,15 @@ class CtFolder {
   // The CT series with most slices that is not refused once `answers` are given; nothing where none
   // can be read.
   std::optional<std::string> bestSeries(const Answers& answers = {}) const;
+  // Whether each answer is one that a series of the folder takes where it asks. Errors: BAD_CHOICE.
+  Status checkAnswers(const Answers& answers) const;
   // Whether the file, under any name, is one of those that the scan came upon: nothing may be
   // written there.
   bool cameUpon(const std::filesystem::path& file) const;
-  // Reads one series into a volume and completes its entry in report(). Errors: NO_SUCH_SERIES,
-  // BAD_CHOICE, BAD_CROP, the refusal's own code, CANCELLED, or OUT_OF_MEMORY. The report then
-  // tells what else could be chosen (COUCH, FACE); reading again with the answers does it.
+  // Reads one series, by its UID or its hash, into a volume and completes its entry in report().
+  // Errors: NO_SUCH_SERIES, BAD_CHOICE, BAD_CROP, the refusal's own code, CANCELLED, or
+  // OUT_OF_MEMORY. The report then tells what else could be chosen (COUCH, FACE); reading again
+  // with the answers does it.
   Result<Volume> read(const std::string& uid, const ImportRequest& request,
                       const Progress& progress);
   // One slice as it is stored, in HU, for thumbnails and previews: of any grey series, refused or

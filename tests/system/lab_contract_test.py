@@ -81,7 +81,7 @@ class Phantom(LabTest):
 
     def test_a_question_that_nobody_answered_is_recorded_as_such(self):
         lab("phantom", "cranium", "--out", self.folder / "ct")
-        made = lab("import", self.folder / "ct", "--phase", 2)["provenance"]
+        made = lab("import", self.folder / "ct", "--phase", 2, expect=3)["provenance"]
         self.assertEqual(made["choices"], {"FACE": "keep"})
         self.assertEqual(made["unanswered"], ["FACE"])
         self.assertEqual(made["unused_answers"], ["PHASES"])

@@ -191,6 +191,7 @@ void ImportDialog::seriesSelected() {
   const bool grid_known = before()->verdict != Verdict::refused;
   size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
   choices_->ask(before()->choices, answers());
+  task_.wantPictures(list_->selectedUid(), choices_->slicesShown());
   showSelected();
   const GridGeometry& grid = before()->geometry;
   preview_->showStack(series->slices,

@@ -199,6 +199,10 @@ void ImportDialog::connectParts() {
   connect(&task_, &ImportTask::stopped, this, &ImportDialog::stopped);
   connect(&task_, &ImportTask::sliceReady, this, &ImportDialog::showSlice);
   connect(&task_, &ImportTask::thumbnailReady, list_, &SeriesList::setThumbnail);
+  connect(&task_, &ImportTask::pictureReady, this,
+          [this](const QString& uid, int slice, const QImage& picture) {
+            if (uid == toQt(list_->selectedUid())) choices_->setPicture(slice, picture);
+          });
 }
 
 }  // namespace trephine

@@ -119,13 +119,20 @@ void ImportTask::wantSlice(const std::string& uid, int index) {
 }
 
 void ImportTask::wantThumbnails(const std::vector<std::string>& uids) {
-  thumbnails_.assign(uids.begin(), uids.end());
+  std::erase_if(pictures_, [](const Wanted& wanted) { return wanted.index < 0; });
+  for (const std::string& uid : uids) pictures_.push_back({uid, -1});
+  step();
+}
+
+void ImportTask::wantPictures(const std::string& uid, const std::vector<int>& slices) {
+  std::erase_if(pictures_, [](const Wanted& wanted) { return wanted.index >= 0; });
+  for (const int slice : slices) pictures_.push_front({uid, slice});
   step();
 }
 
 void ImportTask::wantNothing() {
   wanted_.reset();
-  thumbnails_.clear();
+  pictures_.clear();
 }
 
 void ImportTask::step() {
@@ -134,10 +141,10 @@ void ImportTask::step() {
     std::exchange(next_, {})();
   } else if (folder_ && wanted_) {
     readSlice(*std::exchange(wanted_, {}));
-  } else if (folder_ && !thumbnails_.empty()) {
-    const std::string uid = std::move(thumbnails_.front());
-    thumbnails_.pop_front();
-    makeThumbnail(uid);
+  } else if (folder_ && !pictures_.empty()) {
+    const Wanted wanted = std::move(pictures_.front());
+    pictures_.pop_front();
+    makePicture(wanted);
   }
 }
 
@@ -150,13 +157,15 @@ void ImportTask::readSlice(const Wanted& wanted) {
             });
 }
 
-void ImportTask::makeThumbnail(const std::string& uid) {
-  const auto series = std::ranges::find(report_.series, uid, &SeriesReport::uid);
+void ImportTask::makePicture(const Wanted& wanted) {
+  const auto series = std::ranges::find(report_.series, wanted.uid, &SeriesReport::uid);
   if (series == report_.series.end()) return step();
   task_.run(
-      [folder = folder_, uid, middle = series->slices / 2, is_ct = series->modality == "CT",
+      [folder = folder_, uid = wanted.uid,
+       index = wanted.index < 0 ? series->slices / 2 : wanted.index,
+       is_ct = series->modality == "CT",
        turned = mirroringOf(series->geometry.direction)](const Progress&) -> Result<QImage> {
-        const Result<SlicePicture> slice = folder->slice(uid, middle);
+        const Result<SlicePicture> slice = folder->slice(uid, index);
         if (!slice) return slice.error();
         const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);
         const double tall = double(slice->rows) * slice->spacing_mm.y;
@@ -167,8 +176,13 @@ void ImportTask::makeThumbnail(const std::string& uid) {
             .scaled(std::max(1, int(wide * scale)), std::max(1, int(tall * scale)),
                     Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
       },
-      [this, uid](const Result<QImage>& picture) {
-        emit thumbnailReady(toQt(uid), picture ? *picture : QImage());
+      [this, wanted](const Result<QImage>& made) {
+        const QImage picture = made ? *made : QImage();
+        if (wanted.index < 0) {
+          emit thumbnailReady(toQt(wanted.uid), picture);
+        } else {
+          emit pictureReady(toQt(wanted.uid), wanted.index, picture);
+        }
         step();
       });
 }

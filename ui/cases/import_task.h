@@ -48,6 +48,8 @@ class ImportTask : public QObject {
   void wantSlice(const std::string& uid, int index);
   // The middle slices of these series as small pictures, in this order, while nothing else waits.
   void wantThumbnails(const std::vector<std::string>& uids);
+  // These slices of a series as small pictures, before any thumbnail that waits.
+  void wantPictures(const std::string& uid, const std::vector<int>& slices);
   // No slices and thumbnails any more.
   void wantNothing();
 
@@ -62,6 +64,7 @@ class ImportTask : public QObject {
   void sliceReady(const QString& uid, int index,
                   const trephine::Result<trephine::SlicePicture>& picture);
   void thumbnailReady(const QString& uid, const QImage& picture);  // null: there is none
+  void pictureReady(const QString& uid, int slice, const QImage& picture);
 
  private:
   struct Wanted {
@@ -74,7 +77,7 @@ class ImportTask : public QObject {
   template <class Outcome>
   void endWithout(const Outcome& outcome);
   void readSlice(const Wanted& wanted);
-  void makeThumbnail(const std::string& uid);
+  void makePicture(const Wanted& wanted);
 
   std::shared_ptr<CtFolder> folder_;
   ImportReport report_;
@@ -86,7 +89,7 @@ class ImportTask : public QObject {
   bool working_ = false;        // a scan or read is under way or waits for a slice to end
   std::function<void()> next_;  // starts it
   std::optional<Wanted> wanted_;
-  std::deque<std::string> thumbnails_;
+  std::deque<Wanted> pictures_;  // of an index below 0, the middle one
   BackgroundTask task_;  // last, so that it is joined before what it works on goes
 };
 

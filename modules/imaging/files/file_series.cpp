@@ -85,7 +85,7 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
                               SeriesReport& report) {
   Result<VolumeFileReading> reading = readVolumeFile(file, progress);
   if (!reading) return reading.error();
-  const auto voxels = [](std::uint64_t count) { return std::to_string(count) + " voxels"; };
+  const auto voxels = [](std::uint64_t count) { return counted(count, "voxel"); };
   if (reading->rounded > 0) {
     add(report, "HU_ROUNDED", "repair",
         voxels(reading->rounded) + " had HU that are not whole numbers",

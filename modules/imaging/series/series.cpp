@@ -129,13 +129,12 @@ void dropDuplicates(Series& series) {
   series.slices = std::move(kept);
   if (!dropped.slices.empty()) {
     const std::size_t count = dropped.slices.size();
-    dropped.text = count == 1 ? "1 file is a copy of another"
-                              : std::to_string(count) + " files are copies of others";
+    dropped.text = counted(count, "file", "is a copy of another", "are copies of others");
     series.report.findings.push_back(std::move(dropped));
   }
   if (!different.slices.empty()) {
     const std::size_t count = different.slices.size();
-    different.text = std::to_string(count) + (count == 1 ? " file claims" : " files claim") +
+    different.text = counted(count, "file", "claims", "claim") +
                      " to be another file's image but " + (count == 1 ? "differs" : "differ") +
                      " from it";
     series.report.findings.push_back(std::move(different));
@@ -208,6 +207,15 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
     return std::ranges::any_of(findings, [&](const Finding& f) { return f.severity == severity; });
   };
   return any("refusal") ? Verdict::refused : any("repair") ? Verdict::repaired : Verdict::pass;
+}
+
+void conclude(Series& series) {
+  std::vector<Finding>& findings = series.report.findings;
+  series.report.verdict = verdictOf(findings);
+  if (series.report.verdict != Verdict::refused) return;
+  for (std::size_t n = series.findings_kept; n < findings.size(); ++n) {
+    if (findings[n].severity == "repair") findings[n].action.clear();
+  }
 }
 
 std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {

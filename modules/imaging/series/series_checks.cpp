@@ -50,8 +50,9 @@ class Findings {
   Series& series_;
 };
 
-std::string countOfSlices(const std::vector<std::string>& slices) {
-  return std::to_string(slices.size()) + (slices.size() == 1 ? " slice" : " slices");
+std::string countOfSlices(const std::vector<std::string>& slices, std::string_view one_does = "",
+                          std::string_view many_do = "") {
+  return counted(slices.size(), "slice", one_does, many_do);
 }
 
 // The slice that speaks for all: one with pixels where there is one, so with a whole header.
@@ -100,7 +101,7 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
     if (findTransferSyntax(uid)) continue;
     findings.refuse("UNSUPPORTED_TRANSFER_SYNTAX",
                     "The transfer syntax " + transferSyntaxName(uid) + " (" + cleanUtf8(uid) +
-                        ") of " + std::to_string(count) + " slices cannot be read",
+                        ") of " + counted(std::uint64_t(count), "slice") + " cannot be read",
                     "Export the series uncompressed (Explicit VR Little Endian)");
   }
 }
@@ -108,7 +109,7 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
 void checkLoss(Series& series, const Answers& answers, Findings& findings) {
   const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
   if (lossy.empty()) return;
-  const std::string text = countOfSlices(lossy) + " were compressed with loss";
+  const std::string text = countOfSlices(lossy, "was", "were") + " compressed with loss";
   const std::string answer =
       ask({"LOSSY_SOURCE",
            "The series was compressed with loss: its HU are not those of the scanner. Use it?",
@@ -137,12 +138,11 @@ void checkValues(const Series& series, Findings& findings) {
            (!h.holdsGreyWords() || h.ambiguous_order || h.photometric.empty());
   });
   if (!odd_format.empty()) {
-    findings.refuse(
-        "PIXEL_FORMAT",
-        countOfSlices(odd_format) +
-            " do not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
-            "columns up to 8192 and photometric interpretation as CT must",
-        "Export the series again as CT with 16-bit pixels", odd_format);
+    findings.refuse("PIXEL_FORMAT",
+                    countOfSlices(odd_format, "does", "do") +
+                        " not say 8 or 16 allocated bits, as many stored bits or fewer, rows and "
+                        "columns up to 8192 and photometric interpretation as CT must",
+                    "Export the series again as CT with 16-bit pixels", odd_format);
   }
   const auto not_hu = findings.slicesWhere([](const DicomHeader& h) {
     return h.has_pixels && !h.rescale_type.empty() && h.rescale_type != "HU" &&
@@ -164,16 +164,18 @@ void checkValues(const Series& series, Findings& findings) {
   const auto scaled =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.intercept_given; });
   if (!raw.empty() && !scaled.empty()) {
-    findings.refuse("BAD_RESCALE",
-                    countOfSlices(raw) + " lack the rescale intercept that the others have",
-                    "Export the series again", raw);
+    findings.refuse(
+        "BAD_RESCALE",
+        countOfSlices(raw, "lacks", "lack") + " the rescale intercept that the others have",
+        "Export the series again", raw);
   }
   const auto unscaled = findings.slicesWhere(
       [](const DicomHeader& h) { return h.has_pixels && !h.rescale_given && !h.rescale_bad; });
   if (!unscaled.empty()) {
-    findings.notice("RESCALE_DEFAULT",
-                    countOfSlices(unscaled) + " lack a rescale slope (or have 0) or intercept",
-                    "Slope 1 and intercept 0 were taken where absent", unscaled);
+    findings.notice(
+        "RESCALE_DEFAULT",
+        countOfSlices(unscaled, "lacks", "lack") + " a rescale slope (or have 0) or intercept",
+        "Slope 1 and intercept 0 were taken where absent", unscaled);
   }
   if (first.photometric == "MONOCHROME1") {
     findings.notice("MONOCHROME1", "The series is meant to be shown with white for low values",
@@ -190,9 +192,11 @@ void checkSizes(const Series& series, Findings& findings) {
     text = header.defect_text;
   }
   if (mismatched.empty()) return;
-  findings.refuse("SIZE_MISMATCH",
-                  countOfSlices(mismatched) + " contradict themselves (the last: " + text + ")",
-                  "Export the series again", mismatched);
+  findings.refuse(
+      "SIZE_MISMATCH",
+      countOfSlices(mismatched, "contradicts itself (", "contradict themselves (the last: ") +
+          text + ")",
+      "Export the series again", mismatched);
 }
 
 bool isLost(const DicomHeader& header) {
@@ -227,8 +231,9 @@ void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_
   std::vector<std::string> names;
   for (const DicomHeader* header : lost) names.push_back(sliceName(*header));
   const std::string& why = lost.back()->defect_text;
-  const std::string text = countOfSlices(names) + " cannot be read, nor where they belong (" +
-                           (why.empty() ? "it has no pixels" : why) + ")";
+  const std::string text = countOfSlices(names) + " cannot be read, and " +
+                           (names.size() == 1 ? "its place is" : "their places are") +
+                           " not known (" + (why.empty() ? "it has no pixels" : why) + ")";
   const auto given = answers.find("MISSING_SLICES");
   const bool agreed = others_are_placed && given != answers.end() && given->second != "refuse";
   const bool asked =
@@ -279,8 +284,8 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   const std::string differing = listed(series.parted_by);
   if (joinable) {
     choice.options.push_back("join");
-    choice.words.push_back("Join all " + std::to_string(placed.size()) +
-                           " slices: it is assumed that they are one scan of one patient who lay "
+    choice.words.push_back("Join all " + counted(placed.size(), "slice") +
+                           ": it is assumed that they are one scan of one patient who lay "
                            "still, whatever the " +
                            differing + " say");
   }
@@ -288,8 +293,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
     if (part >= kMostOffered || count < 2) continue;
     choice.options.push_back(std::to_string(part + 1));
     choice.words.push_back("Use only part " + std::to_string(part + 1) + ": " +
-                           std::to_string(count) + " of " + std::to_string(placed.size()) +
-                           " slices");
+                           std::to_string(count) + " of " + counted(placed.size(), "slice"));
   }
   const std::string text = "The series falls into " + std::to_string(counts.size()) +
                            " parts that differ in " + differing;
@@ -311,7 +315,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   if (answer != "refuse") {
     findings.repaired("PARTS", text,
                       "Part " + answer + " was taken, " + std::to_string(placed.size()) + " of " +
-                          std::to_string(whole) + " slices; the others were left out");
+                          counted(whole, "slice") + "; the others were left out");
   }
   return placed;
 }
@@ -502,10 +506,10 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
   const auto nowhere =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && !isPlaced(h); });
   if (!nowhere.empty()) {
-    findings.refuse(
-        "NO_GEOMETRY",
-        countOfSlices(nowhere) + " lack a usable position, orientation or pixel spacing",
-        "Export the series again with its geometry", nowhere);
+    findings.refuse("NO_GEOMETRY",
+                    countOfSlices(nowhere, "lacks", "lack") +
+                        " a usable position, orientation or pixel spacing",
+                    "Export the series again with its geometry", nowhere);
     return plan;
   }
   Headers placed, unplaced, lost;
@@ -628,7 +632,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
            std::ranges::find(report.choices, finding.code, &Choice::code) != report.choices.end();
   };
   if (!std::ranges::all_of(report.findings, asked)) report.choices.clear();
-  report.verdict = verdictOf(report.findings);
+  conclude(series);
   return plan;
 }
 

@@ -99,8 +99,8 @@ std::vector<std::string> missingPlaces(const Slices& slices, const Steps& steps,
     missing += gap;
     std::string text = placeText(slices[i].place_mm + step);
     if (gap > 1) {
-      text += " to " + placeText(slices[i + 1].place_mm - step) + " (" + std::to_string(gap) +
-              " slices)";
+      text += " to " + placeText(slices[i + 1].place_mm - step) + " (" +
+              counted(std::uint64_t(gap), "slice") + ")";
     }
     places.push_back(std::move(text));
   }
@@ -163,7 +163,7 @@ void keepPart(const Slices& part, const char* code, const std::string& text, Sta
                             text,
                             {},
                             "Only the longest even part was taken, " + rangeText(part) + ", " +
-                                std::to_string(part.size()) + " slices; the rest is not there"});
+                                counted(part.size(), "slice") + "; the rest is not there"});
   planSlices(part, std::int64_t(part.size()), stack);
 }
 
@@ -172,14 +172,17 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
               const std::string& lost_text, Stack& stack) {
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
-  const std::string text = std::to_string(missing) + (missing == 1 ? " slice is" : " slices are") +
+  const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
                            " missing from a stack with a step of " + placeText(steps.median_mm) +
                            lost_text;
   const Slices part =
       longestPart(slices, steps.median_mm,
                   steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
   Choice choice{
-      "MISSING_SLICES", "What shall become of the gap?", {"refuse"}, {"Do not use the series"}};
+      "MISSING_SLICES",
+      places.size() == 1 ? "What shall become of the gap?" : "What shall become of the gaps?",
+      {"refuse"},
+      {"Do not use the series"}};
   // From the first usable slice to the last.
   std::int64_t filled = steps.total + 1;
   for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) filled -= steps.multiples[i];
@@ -190,12 +193,12 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const bool fillable = filled <= 2 * std::ranges::count(slices, true, &Slice::usable);
   if (fillable) {
     choice.options.push_back("fill");
-    choice.words.push_back("Fill it by interpolation between the slices beside it, marked as such");
+    choice.words.push_back("Fill in by interpolation between the slices beside, marked as such");
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
     choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
-                           std::to_string(part.size()) + " slices");
+                           counted(part.size(), "slice"));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
@@ -203,13 +206,13 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
     trimUnusableEnds(slices);
     planSlices(slices, filled, stack);
     stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
-                              "The gap was filled by interpolation: what lies there was not "
-                              "scanned, and a lesion in it cannot be seen. Ends were cut off"});
+                              "Filled in by interpolation: what lies there was not scanned, and a "
+                              "lesion in it cannot be seen. Ends were cut off"});
     return;
   }
   planAsTheyAre(slices, stack);
   stack.findings.push_back({"MISSING_SLICES", "refusal", text, places,
-                            fillable ? "Copy or export the series again, or choose to fill the gap"
+                            fillable ? "Copy or export the series again, or choose to fill in"
                                      : "Copy or export the series again"});
 }
 
@@ -229,13 +232,13 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                 {"Do not use the series"}};
   if (count > 1 && count <= kMostSlices) {
     choice.options.push_back("resample");
-    choice.words.push_back("Interpolate " + std::to_string(count) +
-                           " slices at even steps of about " + placeText(steps.median_mm));
+    choice.words.push_back("Interpolate " + counted(std::uint64_t(count), "slice") +
+                           " at even steps of about " + placeText(steps.median_mm));
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
     choice.words.push_back("Use only the longest even part: " + rangeText(part) + ", " +
-                           std::to_string(part.size()) + " slices");
+                           counted(part.size(), "slice"));
   }
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, "UNEVEN_SPACING", text, stack);
@@ -346,7 +349,7 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
     stack.findings.push_back({"MISSING_SLICES",
                               "refusal",
                               std::to_string(slices.size() - std::size_t(usable)) + " of " +
-                                  std::to_string(slices.size()) + " slices are missing" + lost_text,
+                                  counted(slices.size(), "slice") + " cannot be used" + lost_text,
                               {},
                               "Copy these files again from their source"});
   } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {
@@ -401,12 +404,16 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
     stack.shifts.assign(stack.order.size(), {0.0, 0.0});
     return;
   }
-  const bool tilted = worst_off_line <= tolerance_mm;
+  const bool on_a_line = worst_off_line <= tolerance_mm;
+  // A gantry tilts about the images' rows: its shear runs along their columns.
+  const bool tilted = std::abs(glm::dot(drift, axes[0])) <= 0.1 * glm::length(drift);
+  const std::string angle = fixedText(stack.tilt_deg, 1) + " degrees";
   const std::string text =
-      tilted ? "The slices are sheared: the gantry was tilted by " + fixedText(stack.tilt_deg, 1) +
-                   " degrees"
-             : "Slices lie up to " + fixedText(worst_off_line, 2) + " mm aside of the stack's line";
-  const char* code = tilted ? "GANTRY_TILT" : "SHIFTED_SLICES";
+      !on_a_line
+          ? "Slices lie up to " + fixedText(worst_off_line, 2) + " mm aside of the stack's line"
+      : tilted ? "The slices are sheared: the gantry was tilted by " + angle
+               : "The slices are sheared sideways, by " + angle + ", as no gantry tilts";
+  const char* code = !on_a_line ? "SHIFTED_SLICES" : tilted ? "GANTRY_TILT" : "SHEARED_SIDEWAYS";
   const double widest =
       std::max((high[0] - low[0]) / input.columns, (high[1] - low[1]) / input.rows);
   if (!(widest <= kWidestShift)) {
@@ -431,7 +438,7 @@ void planSideways(const StackInput& input, const Mat3& axes, Stack& stack) {
        "repair",
        text,
        {},
-       std::string(tilted ? "They were straightened" : "They were moved to where they belong") +
+       std::string(on_a_line ? "They were straightened" : "They were moved to where they belong") +
            ", each slice shifted as its position says; new corners are air, and fine detail is "
            "slightly blurred within slices"});
 }

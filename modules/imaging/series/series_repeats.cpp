@@ -254,8 +254,7 @@ void dropEqualRepeats(Series& series) {
     if (different && repeats > kMostCompared) break;  // too many to read them all
   }
   if (finding.slices.empty()) return;
-  finding.text = std::to_string(finding.slices.size()) +
-                 (finding.slices.size() == 1 ? " slice repeats" : " slices repeat") +
+  finding.text = counted(finding.slices.size(), "slice", "repeats", "repeat") +
                  " another at the same place, pixel by pixel";
   series.report.findings.push_back(std::move(finding));
   std::vector<DicomHeader> kept;
@@ -322,7 +321,7 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       choice.options.push_back(std::to_string(phase + 1));
       choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by +
                              (middle.kernel.empty() ? "" : ", kernel " + middle.kernel) +
-                             timeText(middle) + ", " + std::to_string(its.size()) + " slices");
+                             timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }

@@ -113,6 +113,23 @@ TEST_F(ImportTaskTest, EverySeriesGetsItsThumbnail) {
   for (const auto& [uid, picture] : thumbnails) EXPECT_FALSE(picture.isNull());
 }
 
+TEST_F(ImportTaskTest, SlicesThatTellPhasesApartComeBeforeTheThumbnails) {
+  scan();
+  std::vector<int> order;
+  QObject::connect(&task_, &ImportTask::thumbnailReady, &task_,
+                   [&](const QString&, const QImage&) { order.push_back(-1); });
+  QObject::connect(&task_, &ImportTask::pictureReady, &task_,
+                   [&](const QString&, int slice, const QImage& picture) {
+                     EXPECT_FALSE(picture.isNull());
+                     order.push_back(slice);
+                   });
+  const std::string uid = *task_.bestSeries();
+  task_.wantThumbnails({uid, uid});
+  task_.wantPictures(uid, {3, 4});
+  ASSERT_TRUE(waitFor([&] { return order.size() == 4; }));
+  EXPECT_EQ(order, (std::vector{-1, 4, 3, -1})) << "one was under way";
+}
+
 TEST_F(ImportTaskTest, AReadGoesBeforeTheThumbnailsThatWait) {
   scan();
   std::vector<QString> order;
@@ -172,6 +189,9 @@ TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
   auto* half = dialog.findChild<QRadioButton*>("reduction2");
   half->click();
+  // Whoever reads a picture reserves a stack that would count as room once he is done.
+  auto* list = dialog.findChild<SeriesList*>();
+  ASSERT_TRUE(waitFor([&] { return list->withoutThumbnail().empty(); }));
   {
     const test::DataLimit limit(200.0);
     import->click();

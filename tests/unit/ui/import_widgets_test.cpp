@@ -101,6 +101,30 @@ class ChoicePanelTest : public ImportWidgetsTest {
   ChoicePanel panel_;
 };
 
+TEST_F(ChoicePanelTest, AnOptionShowsItsSliceAndWhatIsForTheScreenAlone) {
+  const Choice phases{"PHASES",
+                      "Which phase?",
+                      {"refuse", "1", "2"},
+                      {"None", "One", "Two"},
+                      {"", "arterial", "venous"},
+                      {-1, 7, 9}};
+  panel_.ask({phases}, {});
+  EXPECT_EQ(panel_.slicesShown(), (std::vector{7, 9}));
+  QStringList words;
+  for (const QLabel* label : panel_.findChildren<QLabel*>()) words << label->text();
+  EXPECT_TRUE(words.contains("arterial") && words.contains("venous"))
+      << words.join(", ").toStdString();
+  QImage slice(160, 80, QImage::Format_Grayscale8);
+  slice.fill(Qt::gray);
+  panel_.setPicture(9, slice);
+  EXPECT_EQ(find<QLabel>(panel_, "picture_PHASES_2").pixmap().size(), QSize(72, 36));
+  EXPECT_TRUE(find<QLabel>(panel_, "picture_PHASES_1").pixmap().isNull());
+  EXPECT_EQ(panel_.findChild<QLabel*>("picture_PHASES_refuse"), nullptr);
+  panel_.ask({}, {});
+  panel_.setPicture(9, slice);  // of a series that is not shown any more
+  EXPECT_TRUE(panel_.slicesShown().empty());
+}
+
 TEST_F(ChoicePanelTest, NothingIsAnsweredForThePerson) {
   panel_.ask({test::missingSlices(), test::couch()}, {});
   for (QRadioButton* button : panel_.findChildren<QRadioButton*>()) {
