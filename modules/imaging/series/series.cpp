@@ -173,6 +173,7 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
   for (DicomHeader& header : headless) parts.front().slices.push_back(std::move(header));
   if (parts.size() == 1) return parts;
   for (Series& part : parts) {
+    if (!isCt(part.slices.front())) continue;
     part.report.findings.push_back(
         {"SERIES_SPLIT",
          "repair",

@@ -386,7 +386,7 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
                   SeriesReport& report, Findings& findings) {
   constexpr std::size_t kFewest = 4;
   constexpr double kWidestStep_mm = 20.0, kMostThicknesses = 5.0;
-  if (used.empty() || stack.geometry.size[2] < 2) return;  // said already
+  if (used.empty()) return;
   const double step_mm = stack.geometry.spacing_mm.z;
   double thickness_mm = 0.0;
   for (const DicomHeader* header : used) {
@@ -556,9 +556,11 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
       in_order.push_back(taken[n]);
       plan.sources.push_back(std::size_t(taken[n] - series.slices.data()));
     }
-    checkAcquisition(in_order, answers, report, findings);
-    checkDensity(in_order, plan.stack, answers, report, findings);
-    checkContradictions(in_order, plan.stack, answers, report, findings);
+    if (plan.stack.geometry.size[2] > 1) {  // else it is no stack, as is said already
+      checkAcquisition(in_order, answers, report, findings);
+      checkDensity(in_order, plan.stack, answers, report, findings);
+      checkContradictions(in_order, plan.stack, answers, report, findings);
+    }
   }
   checkUnplaced(unplaced, !placed.empty(), answers, report, findings);
   return plan;
