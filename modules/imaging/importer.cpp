@@ -88,7 +88,7 @@ Options optionsOf(const SeriesReport& series) {
 }
 
 // Answers to questions that are asked must be among the options.
-Status checkAnswers(const Options& asked, const Answers& answers) {
+Status fits(const Options& asked, const Answers& answers) {
   static const std::set<std::string> known = {
       "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
       "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
@@ -171,7 +171,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
-    if (const Status valid = trephine::checkAnswers(optionsOf(series.report), answers); !valid) {
+    if (const Status valid = fits(optionsOf(series.report), answers); !valid) {
       return valid.error();
     }
     if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
@@ -275,7 +275,7 @@ Status CtFolder::checkAnswers(const Answers& answers) const {
       }
     }
   }
-  return trephine::checkAnswers(asked, answers);
+  return fits(asked, answers);
 }
 
 bool CtFolder::cameUpon(const std::filesystem::path& file) const {
@@ -350,7 +350,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
   if (!stepped) return fail(stepped.error());
   report.seconds.read = secondsSince(start);
-  if (const Status valid = trephine::checkAnswers(optionsOf(series), request.answers); !valid) {
+  if (const Status valid = fits(optionsOf(series), request.answers); !valid) {
     return fail(valid.error());
   }
   conclude(source->series);

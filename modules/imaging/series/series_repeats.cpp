@@ -183,8 +183,9 @@ Ranks ranks(const std::vector<const DicomHeader*>& slices, const std::vector<Pla
 std::string timeText(const DicomHeader& slice) {
   const std::optional<double>& taken =
       slice.phase[kAcquisitionTime] ? slice.phase[kAcquisitionTime] : slice.phase[kContentTime];
-  if (!taken || *taken < 0.0 || *taken > 1e15) return "";
-  const auto second = std::int64_t(std::fmod(*taken, 1e6));  // HHMMSS, after a date or alone
+  // HHMMSS alone, or after a date of eight digits.
+  if (!taken || *taken < 0.0 || *taken > 1e15 || (*taken >= 1e6 && *taken < 1e13)) return "";
+  const auto second = std::int64_t(std::fmod(*taken, 1e6));
   char text[16];
   std::snprintf(text, sizeof text, ", %02d:%02d:%02d", int(second / 10000), int(second / 100 % 100),
                 int(second % 100));
@@ -319,7 +320,9 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       }
       const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
-      choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by +
+      const bool by_kernel = told_apart_by == "convolution kernel";
+      choice.words.push_back("Phase " + std::to_string(phase + 1) +
+                             (by_kernel ? "" : " by " + told_apart_by) +
                              (middle.kernel.empty() ? "" : ", kernel " + middle.kernel) +
                              timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);

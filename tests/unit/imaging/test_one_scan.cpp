@@ -69,6 +69,17 @@ TEST_F(OneScan, IsOfOnePatient) {
   }
 }
 
+TEST_F(OneScan, IsOfOneModality) {
+  anew({7, 5, 10});
+  editSome({6, 7, 8, 9, 10}, set(DCM_Modality, "PT"));
+  const ImportReport report = scan().report();
+  ASSERT_EQ(report.series.size(), 2u);
+  for (const SeriesReport& part : report.series) {
+    EXPECT_EQ(part.slices, 5);
+    EXPECT_NE(part.verdict, Verdict::pass);
+  }
+}
+
 TEST_F(OneScan, IsOfOnePatientHoweverTheNameEnds) {
   editSome({1, 2}, set(DCM_PatientName, "TREPHINE^PHANTOM^^^"));
   EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
