@@ -203,11 +203,20 @@ TEST_F(ReportWords, AnOptionThatNoSeriesOffersIsNamedWhereverItIsAsked) {
 }
 
 TEST_F(ReportWords, AnOptionOfAQuestionThatComesWithAnAnswerIsChecked) {
-  // Which part of the stack is only asked once the loss is agreed to.
-  fs::remove(slice(3));
-  editAll([](DcmDataset& data) { put(data, DCM_LossyImageCompression, "01"); });
-  const Status wrong =
-      scan().checkAnswers({{"LOSSY_SOURCE", "accept"}, {"MISSING_SLICES", "guess"}});
+  // The second scan has a gap, which is only asked about once that scan is chosen.
+  editAll([](DcmDataset& data) { put(data, DCM_ConvolutionKernel, "B30f"); });
+  for (int n : {1, 2, 4, 5, 6}) {
+    const fs::path sharp = folder() / ("sharp-" + std::to_string(n));
+    fs::copy_file(slice(n), sharp);
+    edit(sharp, [&](DcmDataset& data) {
+      put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+      put(data, DCM_ConvolutionKernel, "B70f");
+      put(data, DCM_RescaleIntercept, "-1000");
+    });
+  }
+  EXPECT_TRUE(scan().checkAnswers({{"PHASES", "1"}, {"MISSING_SLICES", "guess"}}).ok());
+  EXPECT_TRUE(scan().checkAnswers({{"PHASES", "2"}, {"MISSING_SLICES", "fill"}}).ok());
+  const Status wrong = scan().checkAnswers({{"PHASES", "2"}, {"MISSING_SLICES", "guess"}});
   ASSERT_FALSE(wrong.ok());
   EXPECT_EQ(wrong.error().code, "BAD_CHOICE");
 }
