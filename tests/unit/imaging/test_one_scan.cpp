@@ -337,6 +337,16 @@ TEST_F(Rounded, PositionsWithASliceMissingHaveAGapThere) {
   }
 }
 
+// Five places 0, 1, 2, 4, 5 mm: one slice in six missing, or 1.25 mm rounded. The header tells.
+TEST_F(Rounded, PositionsOrAGapIsToldByTheStepThatTheHeaderStates) {
+  place(6, 1.0, 1.0, {4});
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(find(report_.series.front(), "ROUNDED_POSITIONS"), nullptr);
+  place(5, 1.25, 1.0);
+  import();
+  EXPECT_NE(find(chosen(), "ROUNDED_POSITIONS"), nullptr) << codes(chosen());
+}
+
 TEST_F(Rounded, PositionsThatNoLineExplainsStayUneven) {
   fs::remove_all(folder());
   write(rampVolume({7, 5, 12}));
