@@ -8,10 +8,11 @@
 #include "app/signals.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "base/time_left.h"
 
 namespace {
 
-trephine::Progress progress(trephine::reportToTerminal);
+trephine::Progress progress(trephine::withTimeLeft(trephine::reportToTerminal));
 
 int run(int argc, char** argv) {
   using namespace trephine;

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/system.h"
+#include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
@@ -37,12 +38,17 @@ std::optional<Error> folderError(const ImportReport& report) {
     std::string what = report.files_seen == 1 ? "The only file is no CT series"
                                               : "There is no CT series among the " +
                                                     counted(report.files_seen, "file");
-    const auto most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
+    const auto isPacked = [](const SkippedFiles& s) { return s.reason.ends_with(kUnpackFirst); };
+    auto most = std::ranges::find_if(report.skipped, isPacked);
+    const bool packed = most != report.skipped.end();
+    if (!packed) most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
     if (most != report.skipped.end()) {
       what += "; " + std::to_string(most->count) +
               (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
     }
-    return Error{"NO_CT", what, report.path, "Choose the folder that holds the CT"};
+    return Error{"NO_CT", what, report.path,
+                 packed ? "Unpack it, and choose the folder that then holds the CT"
+                        : "Choose the folder that holds the CT"};
   }
   const SeriesReport* largest = nullptr;
   for (const SeriesReport& series : report.series) {
@@ -131,6 +137,48 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
   return provenance;
 }
 
+bool hasFinding(const SeriesReport& series, const char* code) {
+  return std::ranges::find(series.findings, code, &Finding::code) != series.findings.end();
+}
+
+bool looksLikeLabels(const SeriesReport& series) {
+  return hasFinding(series, "LABEL_MAP") || hasFinding(series, "NAMED_AS_LABELS");
+}
+
+// Beside a CT a label map is no wrong choice but a part of the case.
+void sayWhatLabelsAreFor(SeriesReport& series) {
+  for (Finding& finding : series.findings) {
+    if (finding.code != "LABEL_MAP" && finding.code != "NAMED_AS_LABELS") continue;
+    finding.action = "Import the CT beside it: this file can be opened with it, as its label map";
+  }
+}
+
+// Its slices may lie among what was not looked at.
+void addStoppedScan(int files, Series& series) {
+  SeriesReport& report = series.report;
+  const std::string count = files == 1 ? "1 file was" : std::to_string(files) + " files were";
+  report.findings.insert(report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
+                         {"SCAN_STOPPED",
+                          "repair",
+                          count + " not looked at, since the search was ended early: slices of "
+                                  "this series may be among them",
+                          {},
+                          "Open the folder again and let the search come to its end"});
+  report.verdict = verdictOf(report.findings);
+}
+
+// Refused as a whole, rather than with a question about every slice that is not there any more.
+Error refuseVanished(SeriesReport& series) {
+  series.findings.push_back({"SOURCE_VANISHED",
+                             "refusal",
+                             "The source vanished while it was read",
+                             {},
+                             "Plug it in or connect it again, then open the folder again"});
+  series.verdict = Verdict::refused;
+  const Finding& finding = series.findings.back();
+  return Error{finding.code, finding.text, series.uid, finding.action};
+}
+
 Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
   return enoughToRead(readingMb(series, request), "Reading the series", "",
                       request.most_memory_mb.value_or(usableMemoryMb()));
@@ -155,6 +203,14 @@ struct CtFolder::Contents {
     });
     return it == report.series.end() ? nullptr : &sources[std::size_t(it - report.series.begin())];
   }
+  // That can be read, or could be with answers.
+  bool hasDicomCt() const {
+    return std::ranges::any_of(sources, [](const Source& source) {
+      const SeriesReport& s = source.series.report;
+      return source.file.empty() && s.modality == "CT" &&
+             (s.verdict != Verdict::refused || !s.choices.empty());
+    });
+  }
   // The report's copy of what the source says of itself.
   void publish(const Source& source) {
     report.series[std::size_t(&source - sources.data())] = source.series.report;
@@ -178,6 +234,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     if (Status enough = roomToRead(series.report, request); !enough) return enough.error();
     Result<Assembly> assembly = assemble(series, plan, progress);
     if (!assembly) return assembly.error();
+    if (assembly->vanished) return refuseVanished(series.report);
     for (const Assembly::Unreadable& lost : assembly->unreadable) {
       series.slices[lost.slice].defect = Defect::cut;
       series.slices[lost.slice].defect_text = lost.why;
@@ -200,13 +257,14 @@ const ImportReport& CtFolder::report() const {
   return contents_->report;
 }
 
-Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progress& progress) {
+Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progress& progress,
+                                ScanGuide* guide) {
   CtFolder folder;
   Contents& contents = *folder.contents_;
   ImportReport& report = contents.report;
   report.start_rss_mb = residentMb();
   const auto start = Clock::now();
-  Result<ScannedFiles> files = scanFiles(path, progress);
+  Result<ScannedFiles> files = scanFiles(path, progress, guide);
   if (!files) return files.error();
 
   report.path = cleanUtf8(path.string());
@@ -214,9 +272,15 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   report.files_seen = files->files_seen;
   report.files_read = files->dicom_files + int(files->volume_files.size());
   for (const auto& [reason, count] : files->skipped) report.skipped.push_back({reason, count});
-  for (Series& series : groupSeries(std::move(files->headers))) {
+  if (files->not_looked_at > 0) {
+    report.skipped.push_back(
+        {"not looked at, since the search was ended early", files->not_looked_at});
+  }
+  for (Series& series : groupSeries(std::move(files->headers), progress)) {
+    if (files->not_looked_at > 0) addStoppedScan(files->not_looked_at, series);
     contents.sources.push_back({std::move(series), {}});
   }
+  if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
   std::error_code error;
   const bool one_file = std::filesystem::is_regular_file(path, error);
   for (const std::filesystem::path& file : files->volume_files) {
@@ -224,6 +288,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     const auto name = one_file ? file.filename() : file.lexically_relative(path);
     Source source;
     source.series.report = assessFile(file, name.string());
+    if (contents.hasDicomCt()) sayWhatLabelsAreFor(source.series.report);
     source.file = file;
     contents.sources.push_back(std::move(source));
   }
@@ -236,11 +301,9 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
 
 std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   const SeriesReport* best = nullptr;
-  // A file that is named like a label map comes last; of two alike, DICOM says that it is CT.
+  // DICOM says that it is CT; a file that is named like a label map comes last.
   const auto rank = [](const SeriesReport& s) {
-    const bool labels =
-        std::ranges::find(s.findings, "NAMED_AS_LABELS", &Finding::code) != s.findings.end();
-    return std::tuple(!labels, s.geometry.size[2], s.source == "DICOM");
+    return std::tuple(s.source == "DICOM", !hasFinding(s, "NAMED_AS_LABELS"), s.geometry.size[2]);
   };
   for (const Source& source : contents_->sources) {
     const SeriesReport& listed =
@@ -278,16 +341,38 @@ Status CtFolder::checkAnswers(const Answers& answers) const {
   return fits(asked, answers);
 }
 
+std::vector<ScreenNames> CtFolder::screenNames() const {
+  std::vector<ScreenNames> names;
+  for (const Source& source : contents_->sources) {
+    const std::vector<DicomHeader>& slices = source.series.slices;
+    names.push_back(slices.empty() ? ScreenNames{} : trephine::screenNames(slices.front()));
+  }
+  return names;
+}
+
+std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
+  std::vector<LabelFile> files;
+  if (!contents_->hasDicomCt()) return files;
+  for (const Source& source : contents_->sources) {
+    const SeriesReport& series = source.series.report;
+    if (!source.file.empty() && looksLikeLabels(series)) {
+      files.push_back({series.description, source.file});
+    }
+  }
+  return files;
+}
+
 bool CtFolder::cameUpon(const std::filesystem::path& file) const {
   const std::optional<FileId> id = fileId(file);
   return id && contents_->came_upon.contains(*id);
 }
 
-Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
+Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
+                                     const Progress& progress) const {
   Source* source = contents_->find(uid);
   if (!source) return noSuchSeries(uid, contents_->report.series.size());
   const Error no_slice{"NO_SUCH_SLICE", "There is no such slice", std::to_string(index), ""};
-  if (!source->file.empty()) return fileSlice(source->file, index);
+  if (!source->file.empty()) return fileSlice(source->file, index, progress);
   const std::vector<DicomHeader>& slices = source->series.slices;
   if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
   const DicomHeader& header = slices[std::size_t(index)];
@@ -308,7 +393,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
   picture.hu.resize(header.pixelCount());
   Status read;
   const Status done = forEachFile(1, Progress(), {}, [&](std::size_t) {
-    read = PixelReader().read(header, picture.hu.data());
+    read = PixelReader(progress).read(header, picture.hu.data());
     if (read) HuConverter().convert(picture.hu.data(), picture.hu.size(), format);
   });
   if (!done) return done.error();
@@ -335,8 +420,13 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
 
   const auto start = Clock::now();
   int slices_used = 0;
+  std::uintmax_t bytes = 0;  // of a volume file
   if (!source->file.empty()) {
+    std::error_code error;
+    bytes = std::filesystem::file_size(source->file, error);
+    if (isGone(source->file, 0)) return fail(refuseVanished(series));
     series = assessFile(source->file, series.description);
+    if (contents_->hasDicomCt()) sayWhatLabelsAreFor(series);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
     if (Status enough = roomToRead(series, request); !enough) return fail(enough.error());
   }
@@ -344,6 +434,14 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
       source->file.empty()
           ? contents_->readDicom(source->series, request, progress, slices_used)
           : readFileSeries(source->file, progress, series);
+  if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
+      isGone(source->file, bytes)) {
+    return fail(refuseVanished(series));
+  }
+  if (!volume && volume.error().code == "LABEL_MAP" && contents_->hasDicomCt()) {
+    sayWhatLabelsAreFor(series);
+    return fail(refusalOf(series));
+  }
   if (!volume) return fail(volume.error());
 
   Provenance provenance;

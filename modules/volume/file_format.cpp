@@ -1,5 +1,7 @@
 #include "volume/file_format.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -127,6 +129,20 @@ Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
   return header.parent_path() / name;
 }
 
+namespace {
+
+// A large file of which next to nothing lies on the disk: made at its full length and never filled,
+// or not copied to its end. 0 blocks mean that the file system does not say.
+bool isMostlyHoles(const fs::path& file) {
+  constexpr std::uint64_t kLarge = std::uint64_t(1) << 30;
+  struct stat status;
+  if (::stat(file.c_str(), &status) != 0 || status.st_blocks <= 0) return false;
+  const auto bytes = std::uint64_t(status.st_size);
+  return bytes > kLarge && std::uint64_t(status.st_blocks) * 512 < bytes / 100;
+}
+
+}  // namespace
+
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
                    const fs::path& file) {
   std::error_code ec;
@@ -138,6 +154,10 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
   const double most = double(bytes) * (header.data.packed ? kMostCompression : 1.0);
   if (most < double(stored) + double(header.data.skip)) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
+  }
+  if (isMostlyHoles(header.data.file)) {
+    return unreadable("The file is empty but for its beginning: it was not copied to its end",
+                      file);
   }
   header.data.offset = start;
   header.data.bytes = bytes;

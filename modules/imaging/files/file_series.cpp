@@ -114,8 +114,9 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
   return std::move(reading->volume);
 }
 
-Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index) {
-  const Result<Volume> volume = readVolume(file);
+Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
+                               const Progress& progress) {
+  const Result<Volume> volume = readVolume(file, progress);
   if (!volume) return volume.error();
   const GridGeometry& g = volume->geometry;
   if (index < 0 || index >= g.size[2]) {

@@ -22,6 +22,7 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
                               SeriesReport& report);
 
 // One slice, for a preview: the whole file is read. Errors: NO_SUCH_SLICE, the reader's.
-Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index);
+Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
+                               const Progress& progress);
 
 }  // namespace trephine

@@ -20,6 +20,7 @@ struct Assembly {
     std::string why;
   };
   std::vector<Unreadable> unreadable;  // where there are any, the volume is not complete
+  bool vanished = false;  // the whole source, rather than one slice or the other, while it was read
 };
 
 // Reads the plan's slices on several threads, straight into the volume where nothing is to be

@@ -20,6 +20,7 @@ namespace trephine {
 namespace {
 
 constexpr int kMostPhases = 100;
+const ProgressPart kComparing{0.99, 0.99, "Comparing slices"};  // of the scan's
 constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
 
 // [first, last) of the slices at each place.
@@ -207,7 +208,7 @@ std::optional<Pixels> pixelsOf(PixelReader& reader, const DicomHeader& slice) {
 
 }  // namespace
 
-void dropEqualRepeats(Series& series) {
+void dropEqualRepeats(Series& series, const Progress& progress) {
   struct Placed {
     double place_mm;
     std::size_t slice;
@@ -229,14 +230,14 @@ void dropEqualRepeats(Series& series) {
   const std::size_t repeats = placed.size() - places.size();
   const bool scanned_again = areMostRepeated(places);
 
-  PixelReader reader;
+  PixelReader reader(progress);
   std::vector<bool> dropped(series.slices.size(), false);
   Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
   for (const Place& place : places) {
     if (place.count() < 2) continue;
     std::vector<std::optional<Pixels>> pixels(place.count());
     // On workers, for the reader's sake.
-    const Status read = forEachFile(place.count(), Progress(), {}, [&](std::size_t n) {
+    const Status read = forEachFile(place.count(), progress, kComparing, [&](std::size_t n) {
       pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
     });
     if (!read) return;

@@ -24,6 +24,7 @@
 
 #include "gui_support.h"
 #include "imaging/dicom/ct_writer.h"
+#include "slow_source/slow_source.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "volume/case_memory.h"
@@ -440,6 +441,55 @@ class ImportGuiTest : public QObject {
       QTest::qWait(300);
       keepGrab(qPrintable(QString("import-%1.png").arg(folder)));
     }
+  }
+
+  // 5 MB/s. A series that was found is used before the rest has been looked at.
+  void aSeriesOnASlowStickIsUsedBeforeTheSearchEnds() {
+    write(block({512, 512, 30}, 0), "Head 1.0", temporary_.filePath("stick/a"));
+    write(block({32, 32, 2000}, 1), "Whole body", temporary_.filePath("stick/b"));
+    const test::SlowSource slow(qPrintable(temporary_.filePath("stick")), 5e6);
+    workstation().openPath(toPath(temporary_.filePath("stick")));
+    auto* take = find<QPushButton>("takeFound");
+    auto* status = find<QLabel>("importStatus");
+    QTRY_COMPARE_WITH_TIMEOUT(list()->count(), 2, kLong_ms);
+    QVERIFY(workstation().import().isWorking());
+    QVERIFY(!take->isEnabled());
+    list()->setCurrentRow(0);
+    QVERIFY(take->isEnabled());
+    QTRY_VERIFY_WITH_TIMEOUT(status->text().contains(" left"), kLong_ms);
+    QVERIFY(workstation().import().isWorking());
+    keepGrab("import-slow.png");
+    QTest::mouseClick(take, Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QCOMPARE(list()->currentItem()->text(), QString("Head 1.0"));
+    QVERIFY(find<QLabel>("folderWords")->text().contains("not looked at"));
+    QVERIFY(find<QPushButton>("import")->isEnabled());
+    QVERIFY(find<QPushButton>("scanOn")->isVisible());
+    keepGrab("import-stopped.png");
+  }
+
+  void ASeriesThatVanishesIsRefusedAndTheWindowLivesOn() {
+    const auto before = workstation().currentCase();
+    {
+      const test::SlowSource slow(qPrintable(temporary_.filePath("stick")), 1e9, 6e6);
+      find<QPushButton>("import")->click();
+      QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>("errorDialog"), kLong_ms);
+      auto* error = window_->findChild<QMessageBox*>("errorDialog");
+      QVERIFY2(error->text().contains("vanished") || error->informativeText().contains("vanished"),
+               qPrintable(error->text()));
+      closeError();
+      QVERIFY(dialog()->isVisible());
+      QVERIFY(!find<QPushButton>("import")->isEnabled());
+      QVERIFY(find<QLabel>("verdictSentence")->text().startsWith("Cannot be used"));
+      keepGrab("import-vanished.png");
+    }
+    QCOMPARE(workstation().currentCase().has_value(), before.has_value());
+    if (before) QVERIFY(workstation().currentCase()->volume == before->volume);
+    find<QPushButton>("scanOn")->click();  // it is plugged in again
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QVERIFY(!find<QPushButton>("scanOn")->isVisible());
+    QCOMPARE(list()->currentItem()->text(), QString("Whole body"));
+    QVERIFY(std::filesystem::remove_all(toPath(temporary_.filePath("stick"))) > 0);
   }
 
   void nothingIsWritten() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QRadioButton>
@@ -14,6 +15,7 @@
 #include "ui/cases/import_dialog.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 namespace {
@@ -254,6 +256,35 @@ TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
 
   dialog.open();
   EXPECT_TRUE(import->isEnabled()) << "another series of the same folder";
+}
+
+TEST_F(ImportTaskTest, ALabelMapBesideTheCtIsOfferedWithItAndLeftUnlessItIsChosen) {
+  write(stack(40, 0), "labelled/ct");
+  ASSERT_TRUE(writeVolume(stack(60, 0), path() / "labelled" / "organs_seg.nii.gz"));
+  ImportDialog dialog(task_);
+  std::vector<std::filesystem::path> labels;
+  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog,
+                   [&](const Case&, const std::filesystem::path& file) { labels.push_back(file); });
+  auto* import = dialog.findChild<QPushButton*>("import");
+  auto* offered = dialog.findChild<QComboBox*>("labelFile");
+  task_.scan(path() / "labelled");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  EXPECT_TRUE(offered->isVisible());
+  EXPECT_EQ(offered->currentText(), "None");
+  import->click();
+  ASSERT_TRUE(waitFor([&] { return labels.size() == 1; }));
+  EXPECT_TRUE(labels.back().empty());
+
+  dialog.open();
+  offered->setCurrentIndex(1);
+  EXPECT_EQ(offered->currentText(), "organs_seg.nii.gz");
+  import->click();
+  ASSERT_TRUE(waitFor([&] { return labels.size() == 2; }));
+  EXPECT_EQ(labels.back(), path() / "labelled" / "organs_seg.nii.gz");
+
+  task_.scan(path() / "ten");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  EXPECT_FALSE(offered->isVisible());
 }
 
 TEST_F(ImportTaskTest, ADialogThatIsClosedStopsItsWork) {
