@@ -78,10 +78,19 @@ Error noSuchSeries(const std::string& uid, std::size_t listed) {
 
 // Answers to questions that the series asks must be among the options.
 Status checkAnswers(const SeriesReport& series, const Answers& answers) {
-  static const std::set<std::string> known = {
-      "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
-      "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
-      "UNEVEN_SPACING"};
+  static const std::set<std::string> known = {"COUCH",
+                                              "DUPLICATE_POSITIONS",
+                                              "FACE",
+                                              "FACE_REMAINS",
+                                              "FACE_TAKES_MORE",
+                                              "LOCATION_MISMATCH",
+                                              "LOSSY_SOURCE",
+                                              "MISSING_SLICES",
+                                              "MIXED_SLICES",
+                                              "PARTS",
+                                              "PHASES",
+                                              "SPARSE_SLICES",
+                                              "UNEVEN_SPACING"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
       std::string codes;
@@ -316,11 +325,11 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
-  if (!stepped) return fail(stepped.error());
-  report.seconds.read = secondsSince(start);
   if (const Status valid = checkAnswers(series, request.answers); !valid) {
     return fail(valid.error());
   }
+  if (!stepped) return fail(stepped.error());
+  report.seconds.read = secondsSince(start);
   series.verdict = verdictOf(series.findings);
   series.geometry = volume->geometry;
 
