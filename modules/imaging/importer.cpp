@@ -96,7 +96,7 @@ Options optionsOf(const SeriesReport& series) {
 // Answers to questions that are asked must be among the options.
 Status fits(const Options& asked, const Answers& answers) {
   static const std::set<std::string> known = {
-      "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
+      "COUCH",        "DUPLICATE_POSITIONS", "FACE", "FACE_REMAINS", "FACE_TAKES_MORE", "LOCATION_MISMATCH", "LOSSY_SOURCE",
       "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
       "UNEVEN_SPACING"};
   for (const auto& [code, option] : answers) {
@@ -446,11 +446,11 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
-  if (!stepped) return fail(stepped.error());
-  report.seconds.read = secondsSince(start);
   if (const Status valid = fits(optionsOf(series), request.answers); !valid) {
     return fail(valid.error());
   }
+  if (!stepped) return fail(stepped.error());
+  report.seconds.read = secondsSince(start);
   conclude(source->series);
   series.geometry = volume->geometry;
 

@@ -49,7 +49,9 @@ inline const Answers kAnswers{{"MISSING_SLICES", "fill"},
                               {"PARTS", "join"},
                               {"SPARSE_SLICES", "accept"},
                               {"COUCH", "remove"},
-                              {"FACE", "deface"}};
+                              {"FACE", "deface"},
+                              {"FACE_TAKES_MORE", "accept"},
+                              {"FACE_REMAINS", "keep"}};
 inline const Answers kOther{{"MISSING_SLICES", "part"},
                             {"UNEVEN_SPACING", "part"},
                             {"PHASES", "2"},

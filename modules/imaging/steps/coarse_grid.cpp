@@ -10,8 +10,6 @@ namespace trephine {
 
 namespace {
 
-constexpr double kAcross_mm = 3.0, kAlong_mm = 5.0;
-constexpr std::size_t kMostCells = 1'000'000;
 constexpr int kSolidHu = -400, kMatterHu = -500, kBoneHu = 600;
 
 int alongBody(const GridGeometry& geometry) {
@@ -43,7 +41,23 @@ void addRow(const std::int16_t* from, Stride stride, std::size_t n, RowBuffers& 
 
 }  // namespace
 
-CoarseGrid coarseGrid(const Volume& volume) {
+Vec3 CoarseGrid::place_mm(double a, double b, double s) const {
+  const double cell[3] = {a, b, s};
+  Vec3 voxel(0.0);
+  for (std::size_t n = 0; n < 3; ++n) voxel[axis[n]] = cell[n] * step[n] + 0.5 * (step[n] - 1);
+  return voxels.toPatient_mm(voxel);
+}
+
+Index3 CoarseGrid::cellAt(const Vec3& mm) const {
+  const Vec3 from_first = glm::transpose(voxels.direction) * (mm - place_mm(0, 0, 0));
+  Index3 cell;
+  for (std::size_t n = 0; n < 3; ++n) {
+    cell[n] = int(std::lround(from_first[axis[n]] / cell_mm[int(n)]));
+  }
+  return cell;
+}
+
+CoarseGrid coarseGrid(const Volume& volume, const CellSize& cells) {
   const GridGeometry& g = volume.geometry;
   CoarseGrid grid;
   grid.voxels = g;
@@ -53,14 +67,14 @@ CoarseGrid coarseGrid(const Volume& volume) {
   // Too many cells: longer ones first, since what is looked for is long.
   for (double scale = 1.0;; scale *= 1.1) {
     for (int n = 0; n < 3; ++n) {
-      const double target =
-          n == 2 ? kAlong_mm * std::min(scale, 3.0) : kAcross_mm * std::max(1.0, scale / 3.0);
+      const double target = n == 2 ? cells.along_mm * std::min(scale, 3.0)
+                                   : cells.across_mm * std::max(1.0, scale / 3.0);
       const double spacing = g.spacing_mm[grid.axis[n]];
       grid.step[n] = std::clamp(int(target / spacing + 0.5), 1, std::max(1, g.size[grid.axis[n]]));
       grid.size[n] = (g.size[grid.axis[n]] + grid.step[n] - 1) / grid.step[n];
       grid.cell_mm[n] = spacing * grid.step[n];
     }
-    if (grid.count() <= kMostCells) break;
+    if (grid.count() <= cells.most) break;
   }
   grid.mean.resize(grid.count());
   grid.marks.resize(grid.count());

@@ -39,9 +39,22 @@ struct CoarseGrid {
     return indexOf(voxel[std::size_t(axis[0])] / step[0], voxel[std::size_t(axis[1])] / step[1],
                    voxel[std::size_t(axis[2])] / step[2]);
   }
+  bool holds(int a, int b, int s) const {
+    return a >= 0 && b >= 0 && s >= 0 && a < size[0] && b < size[1] && s < size[2];
+  }
+  // The middle of cell (a, b, s), LPS mm.
+  Vec3 place_mm(double a, double b, double s) const;
+  // The cell that a place lies in, which may be beyond the grid.
+  Index3 cellAt(const Vec3& mm) const;
 };
 
-// Cells of about 3 x 3 x 5 mm, larger where there would be over a million (3 MB). Two threads.
-CoarseGrid coarseGrid(const Volume& volume);
+// What cells to aim at: larger ones where there would be more than `most` (3 bytes each).
+struct CellSize {
+  double across_mm = 3.0, along_mm = 5.0;
+  std::size_t most = 1'000'000;
+};
+
+// Two threads.
+CoarseGrid coarseGrid(const Volume& volume, const CellSize& cells = {});
 
 }  // namespace trephine

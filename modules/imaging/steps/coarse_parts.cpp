@@ -115,6 +115,30 @@ CoarseParts coarseParts(const Index3& size, const CoarseCells& kind) {
   return found;
 }
 
+CoarseCells enclosedAir(const CoarseGrid& grid, int matter_hu) {
+  CoarseCells sides(grid.count());
+  const std::ptrdiff_t strides[3] = {1, grid.size[0], std::ptrdiff_t(grid.size[0]) * grid.size[1]};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    const int reach = int(50.0 / grid.cell_mm[int(axis)]), count = grid.size[axis];
+    for (int j = 0; j < grid.size[v]; ++j) {
+      for (int i = 0; i < grid.size[u]; ++i) {
+        const std::ptrdiff_t first = i * strides[u] + j * strides[v];
+        for (const int way : {1, -1}) {
+          int since = reach;  // cells since matter was met
+          for (int n = way > 0 ? 0 : count - 1; n >= 0 && n < count; n += way) {
+            const auto cell = std::size_t(first + n * strides[axis]);
+            since = grid.mean[cell] > matter_hu ? 0 : since + 1;
+            sides[cell] = std::uint8_t(sides[cell] + (since > 0 && since <= reach));
+          }
+        }
+      }
+    }
+  }
+  for (std::uint8_t& cell : sides) cell = cell >= 5;
+  return sides;
+}
+
 // Plain loops over bytes are done 16 at a time, once the compiler sees that no store can change
 // their bounds: hence pointers and counts by value.
 static void orInto(std::uint8_t* to, const std::uint8_t* from, std::size_t count) {

@@ -41,6 +41,10 @@ struct CoarseParts {
 // Cells of the same kind that touch, if only by a corner, are one part; kind 0 is none.
 CoarseParts coarseParts(const Index3& size, const CoarseCells& kind);
 
+// Air with matter (means over `matter_hu`) on five of its six sides, within 50 mm: what nose,
+// sinuses, mouth and throat hold, open or not.
+CoarseCells enclosedAir(const CoarseGrid& grid, int matter_hu);
+
 // Each cell becomes the OR of itself and its eight neighbours across, and of theirs along s too.
 void dilateAcross(const Index3& size, CoarseCells& cells);
 void dilate(const Index3& size, CoarseCells& cells);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,13 @@ namespace {
 constexpr int kBoneMeanHu = 150;    // noise in brain does not reach it, nor 600 HU in a voxel
 constexpr int kSkinHu = -500;       // half way from air to skin
 constexpr double kMargin_mm = 8.0;  // from the braincase's inside to the cut: its bone
-constexpr double kChin_mm = 160.0;  // the chin is nearer below the brow than this
+// From the middle of the braincase: the chin is nearer than kBottom_mm, and the air of the face
+// than kNose_mm; without air, where the face's middle is taken to be.
+constexpr double kBottom_mm = 175.0, kNose_mm = 110.0;
+const Vec3 kNoAir_mm(0.0, -55.0, -55.0);
+constexpr double kLeastAir_mL = 6.0;
+constexpr double kWholeBraincase_mm = 70.0;  // as high as all of it is seen, a child's too
+constexpr double kFace_mm = 90.0;   // from the face's middle to the last of chin, cheeks and brow
 constexpr double kFront_mm = 70.0;  // without a braincase: how deep the cut goes
 constexpr double kLeastSkin_cm2 = 15.0;
 
@@ -45,15 +52,9 @@ class Upright {
     }
     // Cell (0, 0, 0) and the steps from it, in patient mm.
     const auto placeOf = [&](std::size_t n) {
-      Vec3 voxel(0.0);
       const auto slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
-      const std::size_t cell[3] = {n % std::size_t(grid.size[0]),
-                                   n % slice / std::size_t(grid.size[0]), n / slice};
-      for (int axis = 0; axis < 3; ++axis) {
-        voxel[grid.axis[std::size_t(axis)]] = double(cell[axis]) * grid.step[std::size_t(axis)] +
-                                              0.5 * (grid.step[std::size_t(axis)] - 1);
-      }
-      return g.toPatient_mm(voxel);
+      const auto row = std::size_t(grid.size[0]);
+      return grid.place_mm(double(n % slice % row), double(n % slice / row), double(n / slice));
     };
     origin_ = placeOf(at(0, 0, 0));
     for (int axis = 0; axis < 3; ++axis) {
@@ -159,44 +160,50 @@ class FaceSearch {
   // A cut that touches the braincase from below and in front.
   FaceFinding belowBraincase(const CoarseCells& inside) {
     Vec3 low(1e9), high(-1e9);
-    std::vector<Vec3> outline;  // the lowest cell of each column, and the foremost of each row
+    std::vector<Vec3> outline;  // the lowest and the highest cell of each column
     for (int x = 0; x < head_.size[0]; ++x) {
       for (int y = 0; y < head_.size[1]; ++y) {
-        bool below = false;
+        int bottom = -1, top = -1;
         for (int z = 0; z < head_.size[2]; ++z) {
           if (!inside[head_.at(x, y, z)]) continue;
-          const Vec3 p = head_.place_mm(x, y, z);
-          low = glm::min(low, p);
-          high = glm::max(high, p);
-          if (!below) outline.push_back(p);
-          below = true;
+          if (bottom < 0) bottom = z;
+          top = z;
+        }
+        if (bottom < 0) continue;
+        for (const int z : {bottom, top}) {
+          outline.push_back(head_.place_mm(x, y, z));
+          low = glm::min(low, outline.back());
+          high = glm::max(high, outline.back());
         }
       }
     }
+    const Vec3 middle = 0.5 * (low + high);
     FaceFinding finding;
     finding.braincase = true;
-    finding.back_mm = 0.5 * (low.y + high.y) + 10.0;
-    // Of all cuts that touch it, the one that takes most of what lies below and in front of its
-    // middle. 0 degrees looks forwards, 90 down.
-    double most = -1.0;
-    for (int degrees = 35; degrees <= 70; degrees += 5) {
-      const double turn = degrees * 3.14159265358979 / 180.0;
-      const Vec3 normal(0.0, -std::cos(turn), -std::sin(turn));
-      double offset = -1e9;
-      for (const Vec3& p : outline) offset = std::max(offset, glm::dot(normal, p));
-      FaceFinding cut = finding;
-      cut.normal = normal;
-      cut.offset_mm = offset + kMargin_mm;
-      cut.bottom_mm = brow_mm(cut, low.y) - kChin_mm;
-      const double taken = matterTaken(cut);
-      if (taken <= most) continue;
-      most = taken;
-      finding = cut;
+    finding.back_mm = middle.y + 10.0;
+    finding.bottom_mm = middle.z - kBottom_mm;
+    finding.offset_mm = -1e9;
+    // From the middle of the braincase to that of the air of the face, whichever way the head is
+    // turned and the neck bent.
+    const auto near = [&](std::size_t n, const Vec3& p) {
+      return !inside[n] && glm::distance(p, middle) < kNose_mm;
+    };
+    const std::optional<Vec3> air = middleOfAir(
+        [&](std::size_t n, const Vec3& p) { return near(n, p) && p.y < finding.back_mm; });
+    finding.middle_mm = air.value_or(middle + kNoAir_mm);
+    finding.normal = glm::normalize(finding.middle_mm - middle);
+    if (high.z - low.z < kWholeBraincase_mm) finding.normal = asIfUpright(finding.normal);
+    for (const Vec3& p : outline) {
+      finding.offset_mm = std::max(finding.offset_mm, glm::dot(finding.normal, p) + kMargin_mm);
     }
-    const Vec3 middle = 0.5 * (low + high);
     const Seen seen = look(finding, middle.x);
     finding.skin_cm2 = seen.skin_cm2;
     finding.found = isFace(seen);
+    if (!air && !finding.found) {
+      // The air of a face behind the ears: the scan says wrongly which side is the front.
+      const std::optional<Vec3> behind = middleOfAir(near);
+      finding.found = behind && glm::normalize(*behind - middle).y > 0.5;
+    }
     return finding;
   }
 
@@ -217,6 +224,10 @@ class FaceSearch {
     finding.offset_mm = -(front + kFront_mm);
     finding.back_mm = front + kFront_mm;
     finding.bottom_mm = std::max(bottom - 10.0, top - 300.0);
+    const Vec3 front_middle(middle / double(cells), front + 0.5 * kFront_mm, 0.5 * (top + bottom));
+    finding.middle_mm = middleOfAir([&](std::size_t, const Vec3& p) {
+                          return finding.clears(p);
+                        }).value_or(front_middle);
     const Seen seen = look(finding, middle / double(cells));
     finding.skin_cm2 = seen.skin_cm2;
     finding.found = isFace(seen);
@@ -270,15 +281,36 @@ class FaceSearch {
     }
   }
 
-  // Height of the cut above a place on the front of the braincase.
-  static double brow_mm(const FaceFinding& cut, double y) {
-    return (cut.normal.y * y - cut.offset_mm) / -cut.normal.z;
+  // Part of a braincase does not say where its middle is: 35 to 70 degrees below the horizon, where
+  // upright heads have the face.
+  static Vec3 asIfUpright(const Vec3& towards_face) {
+    const double across = std::hypot(towards_face.x, towards_face.y);
+    const double below = std::clamp(std::atan2(-towards_face.z, across), 0.61, 1.22);
+    const Vec3 level =
+        across > 0.1 ? Vec3(towards_face.x, towards_face.y, 0.0) / across : Vec3(0, -1, 0);
+    return level * std::cos(below) - Vec3(0, 0, std::sin(below));
   }
 
-  double matterTaken(const FaceFinding& cut) const {
-    double taken = 0.0;
-    forMatter([&](int x, int y, int z) { taken += cut.clears(head_.place_mm(x, y, z)); });
-    return taken;
+  // The middle of the air in nose, sinuses, mouth and throat that `counts`; nothing of a few cells.
+  template <class Counts>
+  std::optional<Vec3> middleOfAir(const Counts& counts) const {
+    const CoarseCells enclosed = enclosedAir(grid_, kSkinHu);
+    Vec3 sum(0.0);
+    double cells = 0.0;
+    for (int z = 0; z < head_.size[2]; ++z) {
+      for (int y = 0; y < head_.size[1]; ++y) {
+        for (int x = 0; x < head_.size[0]; ++x) {
+          const std::size_t n = head_.at(x, y, z);
+          const Vec3 p = head_.place_mm(x, y, z);
+          if (!enclosed[n] || !counts(n, p)) continue;
+          sum += p;
+          ++cells;
+        }
+      }
+    }
+    const double cell_mL = head_.cell_mm.x * head_.cell_mm.y * head_.cell_mm.z / 1000.0;
+    if (cells * cell_mL < kLeastAir_mL) return std::nullopt;
+    return sum / cells;
   }
 
   // What someone in front of the patient sees of what the cut takes, 70 mm to both sides.
@@ -348,11 +380,31 @@ FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined
   return inside.empty() ? search.frontOnly() : search.belowBraincase(inside);
 }
 
-std::uint64_t deface(Volume& volume, const FaceFinding& finding) {
+BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding) {
+  BeyondFace beyond;
+  const double cell_mL = grid.cell_mm[0] * grid.cell_mm[1] * grid.cell_mm[2] / 1000.0;
+  for (int s = 0; s < grid.size[2]; ++s) {
+    for (int b = 0; b < grid.size[1]; ++b) {
+      for (int a = 0; a < grid.size[0]; ++a) {
+        const std::size_t n = grid.indexOf(a, b, s);
+        if (grid.mean[n] < kSkinHu) continue;
+        const Vec3 p = grid.place_mm(a, b, s), from = p - finding.middle_mm;
+        if (!finding.clears(p) || glm::length(from) < kFace_mm) continue;
+        const bool below = from.z < 0.0 && std::abs(from.x) < kFace_mm;
+        (below ? beyond.throat_mL : beyond.beside_mL) += cell_mL;
+        if (isBone(grid, n)) beyond.bone_mL += cell_mL;
+      }
+    }
+  }
+  return beyond;
+}
+
+std::uint64_t deface(Volume& volume, const FaceFinding& finding, TakenVoxels* taken) {
   if (!finding.found) return 0;
   const GridGeometry& g = volume.geometry;
   const Vec3 step = g.direction[0] * g.spacing_mm[0];
   std::atomic<std::uint64_t> gone{0};
+  if (taken) taken->assign(std::size_t(g.size[2]), {});
   onTwoThreads(g.size[2], [&](int k) {
     std::uint64_t in_slice = 0;
     for (int j = 0; j < g.size[1]; ++j) {
@@ -361,6 +413,7 @@ std::uint64_t deface(Volume& volume, const FaceFinding& finding) {
       for (int i = 0; i < g.size[0]; ++i) {
         if (!finding.clears(first + step * double(i))) continue;
         in_slice += row[i] > -900;
+        if (taken) (*taken)[std::size_t(k)].emplace_back(g.indexOf(i, j, k), row[i]);
         row[i] = kAirHu;
       }
     }

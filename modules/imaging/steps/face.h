@@ -10,6 +10,8 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "imaging/steps/coarse_grid.h"
 #include "volume/volume.h"
@@ -25,10 +27,11 @@ struct FaceFinding {
   double skin_cm2 = 0.0;  // facial skin in view, seen from in front
 
   // What deface() clears, LPS mm: dot(normal, p) > offset_mm, p.y < back_mm and p.z > bottom_mm.
-  Vec3 normal{0.0, -1.0, 0.0};  // unit, forwards and down
+  Vec3 normal{0.0, -1.0, 0.0};  // unit; out of the braincase towards the face
   double offset_mm = 0.0;
   double back_mm = 0.0;    // middle of the braincase: about the ears
   double bottom_mm = 0.0;  // below the chin: a chest in the same scan stays
+  Vec3 middle_mm{0.0};     // of the face: the air of nose, sinuses and mouth
 
   bool clears(const Vec3& p) const {
     return p.y < back_mm && p.z > bottom_mm && glm::dot(normal, p) > offset_mm;
@@ -39,11 +42,21 @@ struct FaceFinding {
 FaceFinding findFace(const Volume& volume, std::string_view body_part_examined = {});
 FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined = {});
 
-// Sets all in front of and below a flat cut to kAirHu; returns how many voxels that were not air
-// (over -900 HU) went. The cut touches the underside of the braincase 8 mm outside it, after
-// Quickshear (Schimke and Hale, "Quickshear defacing for neuroimages", 2011): brain, vault and ears
-// stay, orbits, nose and jaws go, bone included. Being flat, the cut says nothing of what was in
-// front of it. A scan of the facial bones has no use after this.
-std::uint64_t deface(Volume& volume, const FaceFinding& finding);
+// What the cut takes that is none of the face: over 90 mm from its middle.
+struct BeyondFace {
+  double throat_mL = 0.0;  // below the face
+  double beside_mL = 0.0;  // beside and above it: arms, hands, shoulders
+  double bone_mL = 0.0;    // of both
+};
+BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding);
+
+// Sets all beyond a flat cut to kAirHu; returns how many voxels that were not air (over -900 HU)
+// went. The cut touches the braincase 8 mm outside it on the side of the face, after Quickshear
+// (Schimke and Hale, "Quickshear defacing for neuroimages", 2011): brain, vault and ears stay,
+// orbits, nose and jaws go, bone included. Being flat, the cut says nothing of what was in front of
+// it. A scan of the facial bones has no use after this. Whether the face is gone: face_check.h.
+// `taken`: each voxel that went and its HU, to put it back.
+using TakenVoxels = std::vector<std::vector<std::pair<std::size_t, std::int16_t>>>;
+std::uint64_t deface(Volume& volume, const FaceFinding& finding, TakenVoxels* taken = nullptr);
 
 }  // namespace trephine

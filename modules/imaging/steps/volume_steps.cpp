@@ -7,6 +7,7 @@
 #include "imaging/steps/coarse_grid.h"
 #include "imaging/steps/couch.h"
 #include "imaging/steps/face.h"
+#include "imaging/steps/face_check.h"
 #include "volume/reduce.h"
 
 namespace trephine {
@@ -41,34 +42,143 @@ bool stepCouch(const CoarseGrid& grid, const Answers& answers, SeriesReport& ser
   return true;
 }
 
-bool stepFace(const CoarseGrid& grid, const Answers& answers, SeriesReport& series,
-              Volume& volume) {
+// Of a mark's surroundings as they were: from this share on it is still there.
+constexpr double kStillThere = 0.25;
+// Flesh and bone beyond the face that go without a question.
+constexpr double kLittle_mL = 20.0;
+
+const char* const kFaceText = "The patient's face can be reconstructed from this scan";
+
+// A face that the crop leaves out needs no cut.
+bool showsFace(const CoarseGrid& grid, const FaceFinding& face, const VoxelBox& box) {
+  for (int s = 0; s < grid.size[2]; ++s) {
+    for (int b = 0; b < grid.size[1]; ++b) {
+      for (int a = 0; a < grid.size[0]; ++a) {
+        const std::array<int, 3> cell{a, b, s};
+        bool inside = grid.mean[grid.indexOf(a, b, s)] > -500;
+        for (std::size_t n = 0; n < 3 && inside; ++n) {
+          const auto axis = std::size_t(grid.axis[n]);
+          const int from = cell[n] * grid.step[n];
+          inside = from + grid.step[n] > box.low[axis] && from < box.high[axis];
+        }
+        if (inside && face.clears(grid.place_mm(a, b, s))) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// What is wrong after the cut, in words; empty where the face is gone for sure.
+std::string faceDoubt(const FaceMarks& marks, const CoarseGrid& before, const CoarseGrid& after) {
+  if (marks.eyes.empty() && !marks.nose) {
+    return "neither eyes nor nose can be recognised in this scan, so that nothing tells whether "
+           "the "
+           "cut took them";
+  }
+  const FaceLeft left = faceLeft(marks, before, after);
+  std::vector<std::string> there;
+  if (left.eyes >= kStillThere) there.emplace_back("eyes");
+  if (left.nose >= kStillThere) there.emplace_back("nose");
+  if (left.mouth >= kStillThere) there.emplace_back("mouth");
+  if (there.empty()) return "";
+  std::string words = there.front();
+  for (std::size_t n = 1; n < there.size(); ++n) {
+    words += (n + 1 == there.size() ? " and " : ", ") + there[n];
+  }
+  return words + " can still be seen after the cut";
+}
+
+std::string beyondText(const BeyondFace& beyond) {
+  std::string text;
+  if (beyond.throat_mL >= 1.0) text += fixedText(beyond.throat_mL, 0) + " mL of the throat";
+  if (beyond.beside_mL >= 1.0) {
+    text += (text.empty() ? "" : " and ") + fixedText(beyond.beside_mL, 0) +
+            " mL beside and above the face, such as arms or hands";
+  }
+  if (beyond.bone_mL >= 1.0) text += ", bone included";
+  return text;
+}
+
+Error refuse(const char* code, const std::string& text, const std::string& action,
+             SeriesReport& series) {
+  series.findings.push_back({code, "refusal", text, {}, action});
+  series.verdict = Verdict::refused;
+  return Error{code, text, "", action};
+}
+
+// Whether voxels changed. Errors: FACE_TAKES_MORE, FACE_REMAINS; the voxels are of no use then.
+Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, SeriesReport& series,
+                      Volume& volume) {
   const FaceFinding face = findFace(grid, series.body_part);
-  if (!face.found) return false;
+  if (!face.found || (request.crop && !showsFace(grid, face, *request.crop))) return false;
+  const auto kept = [&](const std::string& why) {
+    series.findings.push_back(
+        {"FACE",
+         "notice",
+         kFaceText,
+         {},
+         why + "It was kept: the case must stay on this computer until the face is cut away"});
+    return false;
+  };
   const std::string answer =
       ask({"FACE",
            "The patient's face can be reconstructed from this scan. Cut it away?",
            {"keep", "deface"},
            {"Keep it; the case must then stay on this computer",
             "Cut the face away below the brow, bone included; vault, brain and ears stay"}},
-          answers, series.choices);
-  const std::string text = "The patient's face can be reconstructed from this scan";
-  if (answer != "deface") {
-    series.findings.push_back(
-        {"FACE",
-         "notice",
-         text,
-         {},
-         "It was kept: the case must stay on this computer until the face is cut away"});
-    return false;
+          request.answers, series.choices);
+  if (answer != "deface") return kept("");
+
+  const BeyondFace beyond = beyondFace(grid, face);
+  const std::string more = beyondText(beyond);
+  if (beyond.throat_mL + beyond.beside_mL >= kLittle_mL) {
+    const std::string agreed = ask(
+        {"FACE_TAKES_MORE",
+         "The cut that takes the face away takes more than the face: " + more + ". Cut it away?",
+         {"refuse", "accept", "keep"},
+         {"Do not read this series so", "Cut all of it away",
+          "Keep face and all; the case must then stay on this computer"}},
+        request.answers, series.choices);
+    if (agreed == "keep") return kept("The cut would have taken more: " + more + ". ");
+    if (agreed != "accept") {
+      return refuse("FACE_TAKES_MORE", "The cut that takes the face away takes more: " + more,
+                    "Accept it, keep the face, or crop the scan to the head first", series);
+    }
   }
-  const std::uint64_t voxels = deface(volume, face);
-  series.findings.push_back(
-      {"FACE",
-       "repair",
-       text,
-       {},
-       "The face was cut away as was agreed: " + std::to_string(voxels) + " voxels became air"});
+
+  const bool may_keep =
+      request.answers.contains("FACE_REMAINS") && request.answers.at("FACE_REMAINS") == "keep";
+  CoarseGrid before = faceGrid(volume);
+  const FaceMarks marks = findFaceMarks(before);
+  TakenVoxels taken;
+  const std::uint64_t voxels = deface(volume, face, may_keep ? &taken : nullptr);
+  const std::string doubt = faceDoubt(marks, before, faceGrid(volume));
+  if (!doubt.empty()) {
+    const std::string text = "It could not be made sure that the face is gone: " + doubt;
+    ask({"FACE_REMAINS",
+         text + ". Keep the face?",
+         {"refuse", "keep"},
+         {"Do not read this series so",
+          "Keep the whole face; the case must then stay on this computer"}},
+        request.answers, series.choices);
+    if (!may_keep) {
+      return refuse(
+          "FACE_REMAINS", text,
+          "Crop the head away, or keep the face; the case must then stay on this computer", series);
+    }
+    for (const auto& slice : taken) {
+      for (const auto& [n, hu] : slice) volume.hu[n] = hu;
+    }
+    return kept(text + ". ");
+  }
+  series.findings.push_back({"FACE",
+                             "repair",
+                             kFaceText,
+                             {},
+                             "The face was cut away as was agreed: " + std::to_string(voxels) +
+                                 " voxels became air" +
+                                 (more.empty() ? "" : ", with them " + more) +
+                                 ". Eyes, nose and mouth were looked for again: none is left"});
   return true;
 }
 
@@ -82,7 +192,9 @@ Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, S
   bool changed = stepCouch(grid, request.answers, series, volume);
   if (progress.cancelled()) return cancelled();
   if (changed) grid = coarseGrid(volume);
-  changed |= stepFace(grid, request.answers, series, volume);
+  const Result<bool> faced = stepFace(grid, request, series, volume);
+  if (!faced) return faced.error();
+  changed |= *faced;
   if (progress.cancelled()) return cancelled();
 
   if (request.crop) {

@@ -11,7 +11,8 @@ namespace trephine {
 
 // Looks for couch and face, offers them as choices in `series`, and does what `request` asks, in
 // this order: couch, face, crop, reduction. Takes the HU range anew where voxels changed. Errors:
-// BAD_CROP, BAD_REDUCTION, OUT_OF_MEMORY, CANCELLED.
+// BAD_CROP, BAD_REDUCTION, OUT_OF_MEMORY, CANCELLED; FACE_TAKES_MORE and FACE_REMAINS, where a face
+// was to be cut away: the series is refused then, and asks.
 Status takeVolumeSteps(const ImportRequest& request, const Progress& progress, SeriesReport& series,
                        Volume& volume, std::optional<MeasuredLoss>& loss);
 
