@@ -13,6 +13,7 @@
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/files/file_series.h"
 #include "imaging/series/assembly.h"
+#include "imaging/series/hu_checks.h"
 #include "imaging/series/scan.h"
 #include "imaging/series/series.h"
 #include "imaging/steps/volume_steps.h"
@@ -79,9 +80,11 @@ Error noSuchSeries(const std::string& uid, std::size_t listed) {
 // Answers to questions that the series asks must be among the options.
 Status checkAnswers(const SeriesReport& series, const Answers& answers) {
   static const std::set<std::string> known = {
-      "COUCH",        "DUPLICATE_POSITIONS", "FACE",          "LOCATION_MISMATCH", "LOSSY_SOURCE",
-      "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
-      "UNEVEN_SPACING"};
+      "COUCH",          "DERIVED_IMAGES", "DUPLICATE_POSITIONS",
+      "FACE",           "IMPLAUSIBLE_HU", "LOCATION_MISMATCH",
+      "LOSSY_SOURCE",   "MISSING_SLICES", "MIXED_SLICES",
+      "PARTS",          "PHASES",         "SPARSE_SLICES",
+      "UNEVEN_SPACING", "VALUE_MAP"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
       std::string codes;
@@ -152,13 +155,14 @@ struct CtFolder::Contents {
   }
 
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
-                           int& slices_used);
+                           int& slices_used, HuLook& look);
 };
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
-                                             const Progress& progress, int& slices_used) {
+                                             const Progress& progress, int& slices_used,
+                                             HuLook& look) {
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
@@ -176,6 +180,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
     slices_used = int(plan.sources.size());
+    look = std::move(assembly->look);
     return std::move(assembly->volume);
   }
 }
@@ -238,8 +243,10 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
     bool usable = listed.verdict != Verdict::refused;
     if (!usable && !listed.choices.empty() && !answers.empty()) {
       Series answered = source.series;
-      assessSeries(answered, answers);
-      usable = answered.report.verdict != Verdict::refused;
+      // A file asks of its voxels alone.
+      if (source.file.empty()) assessSeries(answered, answers);
+      usable = (!source.file.empty() || answered.report.verdict != Verdict::refused) &&
+               !refusedByHu(listed, answers);
     }
     if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
   }
@@ -303,6 +310,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
 
   const auto start = Clock::now();
   int slices_used = 0;
+  HuLook look;
   if (!source->file.empty()) {
     series = assessFile(source->file, series.description);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
@@ -310,9 +318,15 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   }
   Result<Volume> volume =
       source->file.empty()
-          ? contents_->readDicom(source->series, request, progress, slices_used)
-          : readFileSeries(source->file, progress, series);
+          ? contents_->readDicom(source->series, request, progress, slices_used, look)
+          : readFileSeries(source->file, progress, series, look);
   if (!volume) return fail(volume.error());
+  checkHu(look, request.answers, series);
+  series.verdict = verdictOf(series.findings);
+  if (series.verdict == Verdict::refused) {
+    const Status valid = checkAnswers(series, request.answers);
+    return fail(valid ? refusalOf(series) : valid.error());
+  }
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
