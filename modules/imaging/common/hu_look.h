@@ -10,8 +10,8 @@
 
 namespace trephine {
 
-// Calls visit(index) for a sample of `count` voxels: all of a small block, about one in 64 of a
-// large one. The steps are uneven, so that no width of a slice gives the same columns again.
+// Calls visit(index) for a sample of `count` voxels: all of a small block, about one in 128 of
+// a large one. The steps are uneven, so that no width of a slice gives the same columns again.
 template <class Visit>
 void visitSample(std::size_t count, const Visit& visit) {
   constexpr std::size_t kSmall = 16384;
@@ -21,7 +21,7 @@ void visitSample(std::size_t count, const Visit& visit) {
   for (std::size_t i = 0; i < count;) {
     visit(i);
     state = state * kFactor + kTerm;
-    i += all ? 1 : 1 + (state >> 25);
+    i += all ? 1 : 1 + (state >> 24);
   }
 }
 

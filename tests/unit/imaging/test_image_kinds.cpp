@@ -39,11 +39,14 @@ class ImageKinds : public SeriesFixture {
     EXPECT_EQ(ct.report().series.size(), 1u);
     return ct.report().series.front();
   }
-  void expectAsked(const char* code) {
+  // Refused unasked; the finding that is left where it is agreed to.
+  Finding expectAsked(const char* code) {
     expectRefused(code);
     import({{ code, "accept" }});
     EXPECT_EQ(chosen().verdict, Verdict::repaired) << codes(chosen());
-    EXPECT_NE(find(chosen(), code), nullptr);
+    const Finding* finding = find(chosen(), code);
+    EXPECT_NE(finding, nullptr);
+    return finding ? *finding : Finding{};
   }
   static DcmItem& itemOf(DcmItem& data, const DcmTagKey& sequence) {
     DcmItem* item = nullptr;
@@ -163,8 +166,7 @@ TEST_F(ImageKinds, ValuesThatNeedATableAreRefused) {
 
 TEST_F(ImageKinds, ValuesWithAnotherScaleBesideHuAreAsked) {
   editAll([](DcmDataset& data) { mapValues(data, "mg/mL", 0.1, 0.0); });
-  expectAsked("VALUE_MAP");
-  EXPECT_NE(find(chosen(), "VALUE_MAP")->text.find("'mg/mL'"), std::string::npos);
+  EXPECT_NE(expectAsked("VALUE_MAP").text.find("'mg/mL'"), std::string::npos);
   anew();
   editAll([](DcmDataset& data) { mapValues(data, "[hnsf'U]", 2.0, -1000.0); });
   expectAsked("VALUE_MAP");
