@@ -1,6 +1,7 @@
 #include "imaging/common/hu_look.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "volume/volume.h"
@@ -23,14 +24,20 @@ struct Mode {
   double most_air;
   const char* words;
 };
+constexpr const char* kStored =
+    "stored values without their intercept, or a background that was set to 0";
 constexpr Mode kModes[] = {
-    {0, 0.001, "stored values without their intercept, or a background that was set to 0"},
-    {1000, 0.05, "values that are inverted or shifted by 1000"},
-    {1024, 0.05, "values that are inverted or shifted by 1024"},
-    {kHighest, 0.05, "values that did not fit their range"},
+    {0, 0.001, kStored},
+    {1000, 0.1, "values that are inverted or shifted by 1000"},
+    {1024, 0.1, "values that are inverted or shifted by 1024"},
+    {kHighest, 0.1, "values that did not fit their range"},
 };
-// Stored values of air and of soft tissue where the intercept is the usual -1024.
-constexpr int kStoredAir = 24, kStoredTissue[] = {900, 1200};
+// Where air lies without the usual intercept of -1024: also a place for brain, so that more has to
+// tell the two apart.
+constexpr int kStoredAir[] = {24, 32, 40};
+constexpr double kClamped = 0.001;  // share of voxels at 0 where values were cut there
+constexpr double kTissue = 0.03;    // share of voxels where soft tissue then lies,
+constexpr double kFat = 0.005;      // and the most where fat does in HU
 
 std::string percent(double share) {
   return std::to_string(int(100.0 * share)) + " %";
@@ -74,20 +81,36 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
   if (scanned == 0.0) return doubts;
   const auto share = [&](int from, int to) { return double(count(from, to)) / scanned; };
   const double air = share(kLowestOfAir, kHighestOfAir - 1);
-  const auto said = [&](double part, int hu, const char* words) {
-    doubts.push_back(percent(part) + " of the voxels lie at " + std::to_string(hu) +
+  // The corners beyond the field of view are padding that no file names: of one value, at an end.
+  int first = kLowestOfAir, last = kHighest;
+  while (count(first, first) == 0) ++first;
+  while (count(last, last) == 0) --last;
+  const auto around = [&](int hu) {
+    double most = share(hu - kNear, hu + kNear);
+    for (const int end : {first, last}) {
+      const double corners = share(end, end);
+      const double inside = std::abs(end - hu) <= kNear ? corners : 0.0;
+      if (corners < 1.0) {
+        most = std::max(most, (share(hu - kNear, hu + kNear) - inside) / (1.0 - corners));
+      }
+    }
+    return most;
+  };
+  const auto said = [&](int hu, const char* words) {
+    doubts.push_back(percent(around(hu)) + " of the voxels lie near " + std::to_string(hu) +
                      " HU and hardly any where air does, as of " + words);
   };
   for (const Mode& mode : kModes) {
-    const double part = share(mode.hu - kNear, mode.hu + kNear);
-    if (3.0 * part <= 1.0 || air > mode.most_air) continue;
-    said(part, mode.hu, mode.words);
+    if (air > mode.most_air || 3.0 * around(mode.hu) <= 1.0) continue;
+    said(mode.hu, mode.words);
     return doubts;
   }
-  const double part = share(kStoredAir - kNear, kStoredAir + kNear);
-  if (3.0 * part > 1.0 && air <= kModes[0].most_air &&
-      share(kStoredTissue[0], kStoredTissue[1]) > 0.1) {
-    said(part, kStoredAir, kModes[0].words);
+  const bool clamped = first == 0 && share(0, 0) > kClamped;
+  const bool tissue = share(700, 1300) > kTissue && share(kHighestOfAir, -kNear - 1) < kFat;
+  for (const int hu : kStoredAir) {
+    if (air > kModes[0].most_air || !(clamped || tissue) || 3.0 * around(hu) <= 1.0) continue;
+    said(hu, kStored);
+    break;
   }
   return doubts;
 }

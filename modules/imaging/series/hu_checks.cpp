@@ -39,7 +39,7 @@ void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report) {
     report.findings.push_back(
         {"NO_AIR",
          "notice",
-         "There is no air in it; the smallest value is " +
+         "Hardly anything in it lies where air does; the smallest value is " +
              std::to_string(report.hu_min.value_or(0)) +
              ". It is small or cropped, or these are stored values and not HU",
          {},
