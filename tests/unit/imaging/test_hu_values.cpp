@@ -212,6 +212,42 @@ TEST_F(HuValues, OfAVolumeFileAreJudgedWithoutWhatIsNoNumber) {
   EXPECT_EQ(refusal().code, "IMPLAUSIBLE_HU");
 }
 
+// `count` values, spread evenly over a range.
+void spread(HuLook& look, int count, int from, int to) {
+  std::vector<std::int16_t> hu;
+  for (int n = 0; n < count; ++n) hu.push_back(std::int16_t(from + n * (to - from + 1) / count));
+  look.add(hu);
+}
+
+TEST(HuLook, FindsAModeBesideCornersOfOneValue) {
+  HuLook look;
+  spread(look, 200, 0, 0);
+  spread(look, 320, 10, 49);  // a third of what the corners leave, not of all
+  spread(look, 480, 950, 1400);
+  EXPECT_EQ(look.doubts(0, 1400).size(), 1u);
+}
+
+TEST(HuLook, KnowsStoredAirByTheCutAtZero) {
+  for (const bool cut : {true, false}) {
+    HuLook look;
+    spread(look, 500, 10, 49);
+    spread(look, 490, 1500, 3000);
+    if (cut) spread(look, 10, 0, 0);
+    EXPECT_EQ(look.doubts(0, 3000).empty(), !cut);
+  }
+}
+
+TEST(HuLook, KnowsStoredAirByTheTissueAboveItWhereNothingIsLikeFat) {
+  for (const auto& [tissue, fat] : {std::pair(true, false), {false, false}, {true, true}}) {
+    HuLook look;
+    spread(look, 500, -2, 49);
+    spread(look, 400, tissue ? 1000 : 1400, tissue ? 1100 : 1500);
+    spread(look, 100, fat ? -120 : 1600, fat ? -80 : 1700);
+    EXPECT_EQ(look.doubts(-120, 1700).empty(), !tissue || fat);
+    EXPECT_FALSE(look.hasAir());
+  }
+}
+
 TEST(HuLook, SeesEveryVoxelOfASmallBlockAndAFewOfALargeOne) {
   std::vector<int> seen(16000);
   visitSample(seen.size(), [&](std::size_t n) { ++seen[n]; });
