@@ -14,6 +14,7 @@
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/files/file_series.h"
 #include "imaging/series/assembly.h"
+#include "imaging/series/hu_checks.h"
 #include "imaging/series/scan.h"
 #include "imaging/series/series.h"
 #include "imaging/steps/volume_steps.h"
@@ -96,9 +97,9 @@ Options optionsOf(const SeriesReport& series) {
 // Answers to questions that are asked must be among the options.
 Status fits(const Options& asked, const Answers& answers) {
   static const std::set<std::string> known = {
-      "COUCH",        "DUPLICATE_POSITIONS", "FACE", "FACE_REMAINS", "FACE_TAKES_MORE", "LOCATION_MISMATCH", "LOSSY_SOURCE",
-      "MISSING_SLICES", "MIXED_SLICES",        "PARTS",         "PHASES",            "SPARSE_SLICES",
-      "UNEVEN_SPACING"};
+      "COUCH", "DERIVED_IMAGES", "DUPLICATE_POSITIONS", "FACE", "FACE_REMAINS", "FACE_TAKES_MORE",
+      "IMPLAUSIBLE_HU", "LOCATION_MISMATCH", "LOSSY_SOURCE", "MISSING_SLICES", "MIXED_SLICES", "PARTS",
+      "PHASES", "SPARSE_SLICES", "UNEVEN_SPACING", "VALUE_MAP"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
       return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
@@ -217,13 +218,14 @@ struct CtFolder::Contents {
   }
 
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
-                           int& slices_used);
+                           int& slices_used, HuLook& look);
 };
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
-                                             const Progress& progress, int& slices_used) {
+                                             const Progress& progress, int& slices_used,
+                                             HuLook& look) {
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
@@ -244,6 +246,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
     slices_used = int(plan.sources.size());
+    look = std::move(assembly->look);
     return std::move(assembly->volume);
   }
 }
@@ -312,8 +315,10 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
     bool usable = listed.verdict != Verdict::refused;
     if (!usable && !listed.choices.empty() && !answers.empty()) {
       Series answered = source.series;
-      assessSeries(answered, answers);
-      usable = answered.report.verdict != Verdict::refused;
+      // A file asks of its voxels alone.
+      if (source.file.empty()) assessSeries(answered, answers);
+      usable = (!source.file.empty() || answered.report.verdict != Verdict::refused) &&
+               !refusedByHu(listed, answers);
     }
     if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
   }
@@ -421,6 +426,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   const auto start = Clock::now();
   int slices_used = 0;
   std::uintmax_t bytes = 0;  // of a volume file
+  HuLook look;
   if (!source->file.empty()) {
     std::error_code error;
     bytes = std::filesystem::file_size(source->file, error);
@@ -432,8 +438,8 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   }
   Result<Volume> volume =
       source->file.empty()
-          ? contents_->readDicom(source->series, request, progress, slices_used)
-          : readFileSeries(source->file, progress, series);
+          ? contents_->readDicom(source->series, request, progress, slices_used, look)
+          : readFileSeries(source->file, progress, series, look);
   if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
       isGone(source->file, bytes)) {
     return fail(refuseVanished(series));
@@ -443,6 +449,12 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
     return fail(refusalOf(series));
   }
   if (!volume) return fail(volume.error());
+  checkHu(look, request.answers, series);
+  series.verdict = verdictOf(series.findings);
+  if (series.verdict == Verdict::refused) {
+    const Status valid = fits(optionsOf(series), request.answers);
+    return fail(valid ? refusalOf(series) : valid.error());
+  }
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);

@@ -197,6 +197,30 @@ DicomItem firstItem(const DicomItem& item, const DcmTagKey& sequence) {
   return DicomItem(items.empty() ? nullptr : items.front());
 }
 
+// Of the whole image, or of a frame, which overrides it where it says anything.
+void readKind(const DicomItem& item, const DcmTagKey& type, DicomHeader& header) {
+  const auto take = [&](const DcmTagKey& tag, std::string& value) {
+    if (std::string text = trimmedText(item, tag); !text.empty()) value = std::move(text);
+  };
+  std::string values;
+  take(type, values);
+  if (!values.empty()) header.image_type = splitValues(values);
+  take(DCM_VolumetricProperties, header.volumetric);
+  take(DCM_VolumeBasedCalculationTechnique, header.technique);
+  take(DCM_PixelPresentation, header.presentation);
+}
+
+void readValueMaps(const DicomItem& item, DicomHeader& header) {
+  const std::vector<DcmItem*> maps = item.items(DCM_RealWorldValueMappingSequence);
+  if (!maps.empty()) header.value_maps.clear();
+  for (DcmItem* map : maps) {
+    const DicomItem values(map);
+    header.value_maps.push_back(
+        {trimmedText(firstItem(values, DCM_MeasurementUnitsCodeSequence), DCM_CodeValue),
+         number(values, DCM_RealWorldValueSlope), number(values, DCM_RealWorldValueIntercept)});
+  }
+}
+
 // Enhanced CT: what a frame says of itself overrides what all share (PS3.3 C.7.6.16).
 void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHeader& header) {
   const auto group = [&](const DcmTagKey& macro) {
@@ -225,9 +249,10 @@ void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHe
   });
   read(DCM_PixelValueTransformationSequence,
        [&](const DicomItem& item) { readRescale(item, header); });
-  read(DCM_CTImageFrameTypeSequence, [&](const DicomItem& item) {
-    header.image_type = splitValues(trimmedText(item, DCM_FrameType));
-  });
+  read(DCM_CTImageFrameTypeSequence,
+       [&](const DicomItem& item) { readKind(item, DCM_FrameType, header); });
+  readValueMaps(shared, header);
+  readValueMaps(own, header);
   read(DCM_CardiacSynchronizationSequence, [&](const DicomItem& item) {
     header.phase[kCardiacPercent] = number(item, DCM_NominalPercentageOfCardiacPhase);
   });
@@ -429,7 +454,9 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   header.modality = trimmedText(data, DCM_Modality);
   header.description = decodedText(data, DCM_SeriesDescription);
   header.body_part = trimmedText(data, DCM_BodyPartExamined);
-  header.image_type = splitValues(trimmedText(data, DCM_ImageType));
+  readKind(data, DCM_ImageType, header);
+  readValueMaps(data, header);
+  header.modality_lut = !data.items(DCM_ModalityLUTSequence).empty();
   header.instance_number = trimmedText(data, DCM_InstanceNumber);
   header.photometric = trimmedText(data, DCM_PhotometricInterpretation);
   header.transfer_syntax = uidText(meta, DCM_TransferSyntaxUID);

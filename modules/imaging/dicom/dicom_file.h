@@ -71,6 +71,14 @@ struct DicomHeader {
   // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
   // it belongs to; 0 is the largest.
   int part = 0;
+  // What was made of what was scanned, as the standard's terms say; empty where absent.
+  std::string volumetric, technique, presentation;
+  bool modality_lut = false;  // stored values become others by a table
+  struct ValueMap {
+    std::string unit;  // as UCUM; empty where it is not said
+    std::optional<double> slope, intercept;
+  };
+  std::vector<ValueMap> value_maps;  // real-world values, beside slope and intercept
   std::string kernel;  // of the reconstruction, one line; empty where absent
   // What the header says beside positions; none where absent or zero.
   std::optional<double> kvp, thickness_mm, spacing_between_mm, tilt_deg;

@@ -97,15 +97,18 @@ class Assembler {
  private:
   void read(std::size_t n, std::int16_t* words, std::int16_t padding_hu) {
     thread_local HuConverter converter;
+    thread_local std::vector<std::int16_t> sample;
+    sample.clear();
     const std::size_t slice = plan_.sources[n];
     const DicomHeader& header = series_.slices[slice];
     const std::size_t number = watch_.begin();
     const Status read = reader_.read(header, words);
     watch_.end(number, header.file, header.file_bytes, read.ok());
     HuCounts counts;
-    if (read) counts = converter.convert(words, source_voxels_, header.format, padding_hu);
+    if (read) counts = converter.convert(words, source_voxels_, header.format, padding_hu, &sample);
     const std::lock_guard lock(mutex_);
     assembly_.counts.add(counts);
+    assembly_.look.add(sample);
     if (!read) assembly_.unreadable.push_back({slice, read.error().what});
   }
 

@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "imaging/common/hu_look.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/series/series.h"
 #include "volume/volume.h"
@@ -15,6 +16,7 @@ namespace trephine {
 struct Assembly {
   Volume volume;
   HuCounts counts;
+  HuLook look;  // at the slices before anything was interpolated
   struct Unreadable {
     std::size_t slice;  // in Series::slices
     std::string why;

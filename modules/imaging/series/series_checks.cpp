@@ -10,6 +10,7 @@
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/series/series.h"
 #include "imaging/series/series_geometry.h"
+#include "imaging/series/series_kind.h"
 #include "imaging/series/series_repeats.h"
 #include "volume/case_memory.h"
 
@@ -75,7 +76,7 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   } else if (secondary) {
     findings.refuse("SECONDARY_CAPTURE", "The series holds captured pictures, not slices",
                     kChooseCt);
-  } else if (!isCt(first)) {
+  } else if (!isCt(first) || (!first.modality.empty() && first.modality != "CT")) {
     findings.refuse("NOT_CT",
                     "The series is " + (first.modality.empty() ? "no CT" : first.modality) +
                         ": its values are not HU",
@@ -618,6 +619,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
   if (!refusedByKind(first, findings)) {
     checkTransferSyntax(series, findings);
     checkValues(series, findings);
+    checkKind(series, answers);
     checkLoss(series, answers, findings);
     checkSizes(series, findings);
     plan = checkGeometry(series, answers, findings);

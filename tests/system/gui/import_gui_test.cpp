@@ -268,6 +268,31 @@ class ImportGuiTest : public QObject {
     dialog()->reject();
   }
 
+  void valuesThatCannotBeHuAreAskedForOnceTheyWereRead() {
+    const QString folder = temporary_.filePath("stored");
+    Volume stored = block({64, 48, 40}, 3);
+    for (std::int16_t& hu : stored.hu) hu = std::int16_t(hu + 1000);  // its intercept is lost
+    write(stored, "Stored values", folder);
+    open(folder);
+    auto* import = find<QPushButton>("import");
+    QVERIFY(import->isEnabled());
+    QSignalSpy stopped(&workstation().import(), &ImportTask::stopped);
+    QTest::mouseClick(import, Qt::LeftButton);
+    QVERIFY(stopped.wait(kLong_ms));
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("errorDialog"));
+    closeError();
+    QCOMPARE(find<QLabel>("verdictWord")->text(), stateWord(SeriesState::asks));
+    QVERIFY(!import->isEnabled());
+    find<QRadioButton>("choice_IMPLAUSIBLE_HU_accept")->click();
+    QVERIFY(import->isEnabled());
+    keepGrab("import-implausible.png");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    QTest::mouseClick(import, Qt::LeftButton);
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(workstation().currentCase()->volume->hu == stored.hu);
+    closeError();
+  }
+
   void couchAndFaceAreAskedForBeforeTheCaseOpens() {
     const QString folder = temporary_.filePath("head");
     write(headOnACouch(), "Head", folder);
@@ -500,7 +525,7 @@ class ImportGuiTest : public QObject {
       files << toQt(entry.path().filename());
     }
     files.sort();
-    QCOMPARE(files, QStringList({"empty", "gap", "head", "many", "two"}));
+    QCOMPARE(files, QStringList({"empty", "gap", "head", "many", "stored", "two"}));
   }
 
   void cleanupTestCase() { window_.reset(); }

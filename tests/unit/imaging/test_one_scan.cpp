@@ -90,7 +90,7 @@ TEST_F(OneScan, IsMadeInOneWay) {
        {std::tuple(DCM_ConvolutionKernel, "B70f", "convolution kernel"),
         std::tuple(DCM_KVP, "80", "tube voltage (80.00 to 120.00 kV)"),
         std::tuple(DCM_SliceThickness, "3", "slice thickness"),
-        std::tuple(DCM_ImageType, "DERIVED\\SECONDARY\\MPR", "image type"),
+        std::tuple(DCM_ImageType, "DERIVED\\SECONDARY\\AXIAL", "image type"),
         std::tuple(DCM_SeriesDescription, "Mueller", "series description")}) {
     anew();
     editAll([](DcmDataset& data) {
