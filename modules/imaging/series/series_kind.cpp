@@ -128,8 +128,7 @@ std::string otherScale(const DicomHeader& header) {
 
 // "1 slice holds " or "3 slices hold ".
 std::string countText(const std::vector<std::string>& slices, const char* one, const char* many) {
-  return slices.size() == 1 ? "1 slice " + std::string(one) + " "
-                            : std::to_string(slices.size()) + " slices " + many + " ";
+  return counted(slices.size(), "slice", one, many) + " ";
 }
 
 }  // namespace
