@@ -154,15 +154,21 @@ void sayWhatLabelsAreFor(SeriesReport& series) {
   }
 }
 
-// Its slices may lie among what was not looked at.
-void addStoppedScan(int files, Series& series) {
+// Its slices may lie among what was not looked at; where some of that lies beside them, they most
+// probably do.
+void addStoppedScan(const ScannedFiles& files, Series& series) {
   SeriesReport& report = series.report;
-  const std::string count = files == 1 ? "1 file was" : std::to_string(files) + " files were";
+  const int left = files.not_looked_at;
+  const bool beside = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
+    return files.folders_left.contains(slice.file.parent_path());
+  });
   report.findings.insert(report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
                          {"SCAN_STOPPED",
-                          "repair",
-                          count + " not looked at, since the search was ended early: slices of "
-                                  "this series may be among them",
+                          beside ? "refusal" : "repair",
+                          (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
+                              " not looked at, since the search was ended early: " +
+                              (beside ? "the rest of this series is probably among them"
+                                      : "slices of this series may be among them"),
                           {},
                           "Open the folder again and let the search come to its end"});
   report.verdict = verdictOf(report.findings);
@@ -280,7 +286,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
         {"not looked at, since the search was ended early", files->not_looked_at});
   }
   for (Series& series : groupSeries(std::move(files->headers), progress)) {
-    if (files->not_looked_at > 0) addStoppedScan(files->not_looked_at, series);
+    if (files->not_looked_at > 0) addStoppedScan(*files, series);
     contents.sources.push_back({std::move(series), {}});
   }
   if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};

@@ -1,8 +1,11 @@
 #include "volume/file_format.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -132,13 +135,26 @@ Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
 namespace {
 
 // A large file of which next to nothing lies on the disk: made at its full length and never filled,
-// or not copied to its end. 0 blocks mean that the file system does not say.
+// or not copied to its end. A file system that knows no holes says that all of it is data.
 bool isMostlyHoles(const fs::path& file) {
-  constexpr std::uint64_t kLarge = std::uint64_t(1) << 30;
-  struct stat status;
-  if (::stat(file.c_str(), &status) != 0 || status.st_blocks <= 0) return false;
-  const auto bytes = std::uint64_t(status.st_size);
-  return bytes > kLarge && std::uint64_t(status.st_blocks) * 512 < bytes / 100;
+  constexpr off_t kLarge = off_t(1) << 30;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  bool holes = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && status.st_size > kLarge;
+  const off_t enough = status.st_size / 100;
+  off_t held = 0;
+  for (off_t at = 0; holes && held < enough;) {
+    const off_t data = ::lseek(descriptor, at, SEEK_DATA);
+    if (data < 0) {
+      holes = errno == ENXIO;  // none any more
+      break;
+    }
+    at = ::lseek(descriptor, data, SEEK_HOLE);
+    if (at <= data) holes = false;
+    held += at - data;
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  return holes && held < enough;
 }
 
 }  // namespace

@@ -19,11 +19,12 @@ AT_ONCE_S = 0.5
 
 
 class SlowSource(unittest.TestCase):
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name) / "stick"
-        subprocess.run([LAB, "phantom", "cranium", "--out", self.folder], check=True,
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = Path(temporary.name) / "stick"
+        subprocess.run([LAB, "phantom", "cranium", "--out", cls.folder], check=True,
                        capture_output=True)
 
     def environment(self, **more):

@@ -187,6 +187,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, S
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!headers[i]) {
       ++result.not_looked_at;
+      result.folders_left.insert(files[i].path.parent_path());
       continue;
     }
     auto& frames = *headers[i];

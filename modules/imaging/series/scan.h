@@ -28,6 +28,7 @@ struct ScannedFiles {
   int dicom_files = 0;                              // that were read
   int files_seen = 0;                               // everything that is not a folder
   int not_looked_at = 0;                            // since a series was chosen before the end
+  std::set<std::filesystem::path> folders_left;     // in which those files lie
   std::map<std::string, int> skipped;               // by reason; none names a file
   FileIds came_upon;                                // files and folders, read or not
 };

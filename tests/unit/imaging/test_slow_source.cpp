@@ -96,6 +96,7 @@ std::vector<std::string> timesTold(Work work) {
 
 TEST_F(SlowSourceTest, ScanningTellsHowLongItStillTakes) {
   writeSlices("many", {64, 64, 2047});
+  writeSlices("more", {64, 64, 1000});
   const SlowSource slow(folder().c_str(), kStick);
   const auto told = timesTold([&](const Progress& p) { ASSERT_TRUE(CtFolder::scan(folder(), p)); });
   ASSERT_FALSE(told.empty()) << bytesOfSlowSource() << " bytes were read";
@@ -264,6 +265,12 @@ TEST_F(SlowSourceTest, AFoundSeriesCanBeHadBeforeTheScanEnds) {
   for (const SkippedFiles& skipped : ct->report().skipped) left += skipped.count;
   EXPECT_GT(left, 500);
   EXPECT_EQ(ct->report().files_read + left, 1600);
+  const auto other = std::ranges::find(ct->report().series, "b", &SeriesReport::description);
+  if (other != ct->report().series.end()) {
+    EXPECT_EQ(other->verdict, Verdict::refused) << "half of a series is none";
+    EXPECT_EQ(find(*other, "SCAN_STOPPED")->severity, "refusal");
+  }
+  EXPECT_EQ(ct->bestSeries(), series->uid);
   const auto volume = ct->read(series->uid, {}, Progress());
   ASSERT_TRUE(volume) << volume.error().sentence();
   EXPECT_NE(find(ct->report().series[0], "SCAN_STOPPED"), nullptr) << "reading keeps it";
