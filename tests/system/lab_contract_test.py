@@ -417,15 +417,19 @@ class BadInput(LabTest):
         self.run_scene(negative, "BAD_FIELD", "damping_Ns_per_m", "-2")
 
     def test_folders_that_are_missing_empty_or_without_ct(self):
-        answer = lab("import", self.folder / "nowhere", expect=2)
+        named = ("--with-identity",)
+        answer = lab("import", self.folder / "nowhere", *named, expect=2)
         self.assert_error(answer, "MISSING_FOLDER", "nowhere")
+        answer = lab("import", self.folder / "nowhere", expect=2)
+        self.assertEqual(answer["error"]["where"], "")
         self.assertIsNone(answer["chosen"])
         self.assertEqual(set(answer), IMPORT_KEYS | {"error"})
         (self.folder / "empty").mkdir()
-        self.assert_error(lab("import", self.folder / "empty", expect=2), "EMPTY_FOLDER", "empty")
+        self.assert_error(lab("import", self.folder / "empty", *named, expect=2), "EMPTY_FOLDER",
+                          "empty")
         (self.folder / "texts").mkdir()
         (self.folder / "texts" / "a.txt").write_text("not an image")
-        answer = lab("import", self.folder / "texts", expect=2)
+        answer = lab("import", self.folder / "texts", *named, expect=2)
         self.assert_error(answer, "NO_CT", "texts")
         self.assertEqual(answer["files_seen"], 1)
         self.assertEqual(answer["skipped"][0]["count"], 1)
