@@ -382,14 +382,14 @@ FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined
   return inside.empty() ? search.frontOnly() : search.belowBraincase(inside);
 }
 
-BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding) {
+BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding, const VoxelBox& kept) {
   BeyondFace beyond;
   const double cell_mL = grid.cell_mm[0] * grid.cell_mm[1] * grid.cell_mm[2] / 1000.0;
   for (int s = 0; s < grid.size[2]; ++s) {
     for (int b = 0; b < grid.size[1]; ++b) {
       for (int a = 0; a < grid.size[0]; ++a) {
         const std::size_t n = grid.indexOf(a, b, s);
-        if (grid.mean[n] < kSkinHu) continue;
+        if (grid.mean[n] < kSkinHu || !grid.isIn(kept, a, b, s)) continue;
         const Vec3 p = grid.place_mm(a, b, s), from = p - finding.middle_mm;
         if (!finding.clears(p) || glm::length(from) < kFace_mm) continue;
         const bool below = from.z < 0.0 && std::abs(from.x) < kFace_mm;
