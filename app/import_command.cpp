@@ -27,7 +27,7 @@ void printReport(const ImportReport& report) {
       const char* mark = "";
       if (report.chosen && s.verdict != Verdict::refused) mark = "  (not read)";
       if (report.chosen == s.uid) mark = "  (this one was read)";
-      std::printf("          --series %s%s\n", s.uid.c_str(), mark);
+      std::printf("          --series %s%s\n", seriesHash(s.uid).c_str(), mark);
     }
     for (const Finding& f : s.findings) {
       std::printf("          %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
@@ -119,11 +119,13 @@ Status checkSourcesAreSpared(const CtFolder& folder, const ImportArguments& argu
 }  // namespace
 
 int importCommand(const ImportArguments& arguments, bool json, const Progress& progress) {
-  const auto fail = [&](const Error& error, const ImportReport* report) {
+  const Identity identity = arguments.with_identity ? Identity::shown : Identity::hidden;
+  const auto fail = [&](Error error, const ImportReport* report) {
     ImportReport nothing;
     nothing.path = arguments.path;
-    Json extra = toJson(report ? *report : nothing);
+    Json extra = toJson(report ? *report : nothing, identity);
     extra["chosen"] = nullptr;
+    if (json && identity == Identity::hidden) error.where.clear();
     if (!json && report) printReport(*report);
     printError("import", error, json, extra);
     return 2;
@@ -140,6 +142,9 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     if (arguments.report.empty()) return {};
     return writeTextFile(arguments.report, reportPage(folder->report()));
   };
+  if (Status fit = folder->checkAnswers(request->answers); !fit) {
+    return fail(fit.error(), &folder->report());
+  }
   const std::optional<std::string> uid = arguments.series.empty()
                                              ? folder->bestSeries(request->answers)
                                              : std::optional<std::string>(arguments.series);
@@ -152,7 +157,8 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
   Result<Volume> volume = folder->read(*uid, *request, progress);
   if (Status saved = saveReport(); !saved) return fail(saved.error(), &folder->report());
   if (!volume) return fail(volume.error(), &folder->report());
-  for (const std::string& code : folder->report().provenance->unused_answers) {
+  const std::vector<std::string> unused = folder->report().provenance->unused_answers;
+  for (const std::string& code : unused) {
     spdlog::warn("The series did not ask {}: that answer changed nothing", code);
   }
   if (!arguments.write.empty()) {
@@ -162,11 +168,11 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress& p
     warnOfFace(*folder->report().provenance);
   }
   if (json) {
-    printAnswer("import", toJson(folder->report()));
+    printAnswer("import", toJson(folder->report(), identity));
   } else {
     printReport(folder->report());
   }
-  return 0;
+  return unused.empty() ? 0 : 3;
 }
 
 }  // namespace trephine

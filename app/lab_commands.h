@@ -37,6 +37,7 @@ struct ImportArguments {
   std::vector<std::string> choices;  // CODE=OPTION
   std::optional<int> phase;          // from 1
   bool half = false, quarter = false;
+  bool with_identity = false;  // in the answer as JSON
   std::string crop;    // "I0:I1,J0:J1,K0:K1"
   std::string write;   // a volume file
   std::string report;  // an HTML file

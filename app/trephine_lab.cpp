@@ -8,10 +8,11 @@
 #include "app/signals.h"
 #include "base/log.h"
 #include "base/system.h"
+#include "base/time_left.h"
 
 namespace {
 
-trephine::Progress progress(trephine::reportToTerminal);
+trephine::Progress progress(trephine::withTimeLeft(trephine::reportToTerminal));
 
 int run(int argc, char** argv) {
   using namespace trephine;
@@ -41,13 +42,16 @@ int run(int argc, char** argv) {
   auto* import_command = with_json(app.add_subcommand("import", "Read a folder of CT, with a report"));
   ImportArguments wanted;
   import_command->add_option("path", wanted.path, "A folder or a file")->required();
-  import_command->add_option("--series", wanted.series, "The series to read, by its UID in the report");
+  import_command->add_option("--series", wanted.series,
+                             "The series to read, by its hash in the report or by its UID");
   import_command->add_option("--choice", wanted.choices,
                              "CODE=OPTION: the answer to a question of the report; may be repeated");
   import_command->add_option("--phase", wanted.phase, "Which phase, from 1: as --choice PHASES=N")
       ->check(CLI::Range(1, 100000));
   auto* half = import_command->add_flag("--half", wanted.half, "Half the resolution along each axis");
   import_command->add_flag("--quarter", wanted.quarter, "A quarter of the resolution")->excludes(half);
+  import_command->add_flag("--with-identity", wanted.with_identity,
+                           "Path, UIDs and descriptions in the JSON, too: not for logs");
   import_command->add_option("--crop", wanted.crop,
                              "I0:I1,J0:J1,K0:K1: keep voxels I0 to I1 - 1 and so on, before --half");
   import_command->add_option("--write", wanted.write, "Save the volume as .mha, .nii or .nii.gz");

@@ -7,12 +7,14 @@
 
 #include "base/memory.h"
 #include "base/system.h"
+#include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/files/file_series.h"
 #include "imaging/series/assembly.h"
+#include "imaging/series/hu_checks.h"
 #include "imaging/series/scan.h"
 #include "imaging/series/series.h"
 #include "imaging/steps/volume_steps.h"
@@ -34,13 +36,20 @@ std::optional<Error> folderError(const ImportReport& report) {
     return Error{"EMPTY_FOLDER", "The folder holds no files", report.path, "Choose another folder"};
   }
   if (std::ranges::none_of(report.series, is_ct)) {
-    std::string what =
-        "There is no CT series among the " + std::to_string(report.files_seen) + " files";
-    const auto most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
+    std::string what = report.files_seen == 1 ? "The only file is no CT series"
+                                              : "There is no CT series among the " +
+                                                    counted(report.files_seen, "file");
+    const auto isPacked = [](const SkippedFiles& s) { return s.reason.ends_with(kUnpackFirst); };
+    auto most = std::ranges::find_if(report.skipped, isPacked);
+    const bool packed = most != report.skipped.end();
+    if (!packed) most = std::ranges::max_element(report.skipped, {}, &SkippedFiles::count);
     if (most != report.skipped.end()) {
-      what += "; skipped were " + std::to_string(most->count) + ": " + most->reason;
+      what += "; " + std::to_string(most->count) +
+              (most->count == 1 ? " was skipped: " : " were skipped: ") + most->reason;
     }
-    return Error{"NO_CT", what, report.path, "Choose the folder that holds the CT"};
+    return Error{"NO_CT", what, report.path,
+                 packed ? "Unpack it, and choose the folder that then holds the CT"
+                        : "Choose the folder that holds the CT"};
   }
   const SeriesReport* largest = nullptr;
   for (const SeriesReport& series : report.series) {
@@ -57,13 +66,13 @@ void addValueFindings(const HuCounts& counts, SeriesReport& report) {
   const auto add = [&](const char* code, const char* severity, std::uint64_t voxels,
                        const char* what, const char* action) {
     if (voxels == 0) return;
-    report.findings.push_back({code, severity, std::to_string(voxels) + what, {}, action});
+    report.findings.push_back({code, severity, counted(voxels, "voxel") + what, {}, action});
   };
-  add("PADDING_TO_AIR", "notice", counts.padding, " voxels are padding", "They became air");
-  add("HU_ROUNDED", "repair", counts.rounded, " voxels had HU that are not whole numbers",
-      "They were rounded to the nearest");
-  add("HU_CLAMPED", "repair", counts.clamped, " voxels had HU outside -32768..32767",
-      "They were set to the nearest limit");
+  add("PADDING_TO_AIR", "notice", counts.padding, " of padding", "Padding became air");
+  add("HU_ROUNDED", "repair", counts.rounded, " had HU that are not whole numbers",
+      "Rounded to the nearest");
+  add("HU_CLAMPED", "repair", counts.clamped, " had HU outside -32768..32767",
+      "Set to the nearest limit");
 }
 
 Error refusalOf(const SeriesReport& series) {
@@ -73,38 +82,34 @@ Error refusalOf(const SeriesReport& series) {
 
 Error noSuchSeries(const std::string& uid, std::size_t listed) {
   return Error{"NO_SUCH_SERIES", "There is no such series in the folder", cleanUtf8(uid),
-               "Choose one of the " + std::to_string(listed) + " listed"};
+               listed == 0 ? "Choose another folder" : "Choose one that the report lists"};
 }
 
-// Answers to questions that the series asks must be among the options.
-Status checkAnswers(const SeriesReport& series, const Answers& answers) {
-  static const std::set<std::string> known = {"COUCH",
-                                              "DUPLICATE_POSITIONS",
-                                              "FACE",
-                                              "FACE_REMAINS",
-                                              "FACE_TAKES_MORE",
-                                              "LOCATION_MISMATCH",
-                                              "LOSSY_SOURCE",
-                                              "MISSING_SLICES",
-                                              "MIXED_SLICES",
-                                              "PARTS",
-                                              "PHASES",
-                                              "SPARSE_SLICES",
-                                              "UNEVEN_SPACING"};
+// The options of each question that is asked.
+using Options = std::map<std::string, std::vector<std::string>>;
+
+Options optionsOf(const SeriesReport& series) {
+  Options options;
+  for (const Choice& choice : series.choices) options[choice.code] = choice.options;
+  return options;
+}
+
+// Answers to questions that are asked must be among the options.
+Status fits(const Options& asked, const Answers& answers) {
+  static const std::set<std::string> known = {
+      "COUCH", "DERIVED_IMAGES", "DUPLICATE_POSITIONS", "FACE", "FACE_REMAINS", "FACE_TAKES_MORE",
+      "IMPLAUSIBLE_HU", "LOCATION_MISMATCH", "LOSSY_SOURCE", "MISSING_SLICES", "MIXED_SLICES", "PARTS",
+      "PHASES", "SPARSE_SLICES", "UNEVEN_SPACING", "VALUE_MAP"};
   for (const auto& [code, option] : answers) {
     if (!known.contains(code)) {
-      std::string codes;
-      for (const std::string& one : known) codes += (codes.empty() ? "" : ", ") + one;
       return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
-                   "Choose among " + codes};
+                   "Choose among " + listed({known.begin(), known.end()})};
     }
-    const auto choice = std::ranges::find(series.choices, code, &Choice::code);
-    if (choice == series.choices.end()) continue;
-    if (std::ranges::find(choice->options, option) != choice->options.end()) continue;
-    std::string options;
-    for (const std::string& one : choice->options) options += (options.empty() ? "" : ", ") + one;
+    const auto question = asked.find(code);
+    if (question == asked.end()) continue;
+    if (std::ranges::find(question->second, option) != question->second.end()) continue;
     return Error{"BAD_CHOICE", "The choice " + code + " has no option '" + cleanUtf8(option) + "'",
-                 series.uid, "Choose one of " + options};
+                 "", "Choose " + listed(question->second, "or")};
   }
   return {};
 }
@@ -133,6 +138,54 @@ Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request
   return provenance;
 }
 
+bool hasFinding(const SeriesReport& series, const char* code) {
+  return std::ranges::find(series.findings, code, &Finding::code) != series.findings.end();
+}
+
+bool looksLikeLabels(const SeriesReport& series) {
+  return hasFinding(series, "LABEL_MAP") || hasFinding(series, "NAMED_AS_LABELS");
+}
+
+// Beside a CT a label map is no wrong choice but a part of the case.
+void sayWhatLabelsAreFor(SeriesReport& series) {
+  for (Finding& finding : series.findings) {
+    if (finding.code != "LABEL_MAP" && finding.code != "NAMED_AS_LABELS") continue;
+    finding.action = "Import the CT beside it: this file can be opened with it, as its label map";
+  }
+}
+
+// Its slices may lie among what was not looked at; where some of that lies beside them, they most
+// probably do.
+void addStoppedScan(const ScannedFiles& files, Series& series) {
+  SeriesReport& report = series.report;
+  const int left = files.not_looked_at;
+  const bool beside = std::ranges::any_of(series.slices, [&](const DicomHeader& slice) {
+    return files.folders_left.contains(slice.file.parent_path());
+  });
+  report.findings.insert(report.findings.begin() + std::ptrdiff_t(series.findings_kept++),
+                         {"SCAN_STOPPED",
+                          beside ? "refusal" : "repair",
+                          (left == 1 ? "1 file was" : std::to_string(left) + " files were") +
+                              " not looked at, since the search was ended early: " +
+                              (beside ? "the rest of this series is probably among them"
+                                      : "slices of this series may be among them"),
+                          {},
+                          "Open the folder again and let the search come to its end"});
+  report.verdict = verdictOf(report.findings);
+}
+
+// Refused as a whole, rather than with a question about every slice that is not there any more.
+Error refuseVanished(SeriesReport& series) {
+  series.findings.push_back({"SOURCE_VANISHED",
+                             "refusal",
+                             "The source vanished while it was read",
+                             {},
+                             "Plug it in or connect it again, then open the folder again"});
+  series.verdict = Verdict::refused;
+  const Finding& finding = series.findings.back();
+  return Error{finding.code, finding.text, series.uid, finding.action};
+}
+
 Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
   return enoughToRead(readingMb(series, request), "Reading the series", "",
                       request.most_memory_mb.value_or(usableMemoryMb()));
@@ -152,8 +205,18 @@ struct CtFolder::Contents {
   std::vector<Source> sources;  // of report.series
 
   Source* find(const std::string& uid) {
-    const auto it = std::ranges::find(report.series, uid, &SeriesReport::uid);
+    const auto it = std::ranges::find_if(report.series, [&](const SeriesReport& series) {
+      return series.uid == uid || seriesHash(series.uid) == uid;
+    });
     return it == report.series.end() ? nullptr : &sources[std::size_t(it - report.series.begin())];
+  }
+  // That can be read, or could be with answers.
+  bool hasDicomCt() const {
+    return std::ranges::any_of(sources, [](const Source& source) {
+      const SeriesReport& s = source.series.report;
+      return source.file.empty() && s.modality == "CT" &&
+             (s.verdict != Verdict::refused || !s.choices.empty());
+    });
   }
   // The report's copy of what the source says of itself.
   void publish(const Source& source) {
@@ -161,21 +224,25 @@ struct CtFolder::Contents {
   }
 
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
-                           int& slices_used);
+                           int& slices_used, HuLook& look);
 };
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
-                                             const Progress& progress, int& slices_used) {
+                                             const Progress& progress, int& slices_used,
+                                             HuLook& look) {
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
-    if (const Status valid = checkAnswers(series.report, answers); !valid) return valid.error();
+    if (const Status valid = fits(optionsOf(series.report), answers); !valid) {
+      return valid.error();
+    }
     if (series.report.verdict == Verdict::refused) return refusalOf(series.report);
     if (Status enough = roomToRead(series.report, request); !enough) return enough.error();
     Result<Assembly> assembly = assemble(series, plan, progress);
     if (!assembly) return assembly.error();
+    if (assembly->vanished) return refuseVanished(series.report);
     for (const Assembly::Unreadable& lost : assembly->unreadable) {
       series.slices[lost.slice].defect = Defect::cut;
       series.slices[lost.slice].defect_text = lost.why;
@@ -185,6 +252,7 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
     slices_used = int(plan.sources.size());
+    look = std::move(assembly->look);
     return std::move(assembly->volume);
   }
 }
@@ -198,13 +266,14 @@ const ImportReport& CtFolder::report() const {
   return contents_->report;
 }
 
-Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progress& progress) {
+Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progress& progress,
+                                ScanGuide* guide) {
   CtFolder folder;
   Contents& contents = *folder.contents_;
   ImportReport& report = contents.report;
   report.start_rss_mb = residentMb();
   const auto start = Clock::now();
-  Result<ScannedFiles> files = scanFiles(path, progress);
+  Result<ScannedFiles> files = scanFiles(path, progress, guide);
   if (!files) return files.error();
 
   report.path = cleanUtf8(path.string());
@@ -212,9 +281,15 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
   report.files_seen = files->files_seen;
   report.files_read = files->dicom_files + int(files->volume_files.size());
   for (const auto& [reason, count] : files->skipped) report.skipped.push_back({reason, count});
-  for (Series& series : groupSeries(std::move(files->headers))) {
+  if (files->not_looked_at > 0) {
+    report.skipped.push_back(
+        {"not looked at, since the search was ended early", files->not_looked_at});
+  }
+  for (Series& series : groupSeries(std::move(files->headers), progress)) {
+    if (files->not_looked_at > 0) addStoppedScan(*files, series);
     contents.sources.push_back({std::move(series), {}});
   }
+  if (progress.cancelled()) return Error{"CANCELLED", "The import was cancelled", "", ""};
   std::error_code error;
   const bool one_file = std::filesystem::is_regular_file(path, error);
   for (const std::filesystem::path& file : files->volume_files) {
@@ -222,6 +297,7 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
     const auto name = one_file ? file.filename() : file.lexically_relative(path);
     Source source;
     source.series.report = assessFile(file, name.string());
+    if (contents.hasDicomCt()) sayWhatLabelsAreFor(source.series.report);
     source.file = file;
     contents.sources.push_back(std::move(source));
   }
@@ -234,11 +310,9 @@ Result<CtFolder> CtFolder::scan(const std::filesystem::path& path, const Progres
 
 std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   const SeriesReport* best = nullptr;
-  // A file that is named like a label map comes last; of two alike, DICOM says that it is CT.
+  // DICOM says that it is CT; a file that is named like a label map comes last.
   const auto rank = [](const SeriesReport& s) {
-    const bool labels =
-        std::ranges::find(s.findings, "NAMED_AS_LABELS", &Finding::code) != s.findings.end();
-    return std::tuple(!labels, s.geometry.size[2], s.source == "DICOM");
+    return std::tuple(s.source == "DICOM", !hasFinding(s, "NAMED_AS_LABELS"), s.geometry.size[2]);
   };
   for (const Source& source : contents_->sources) {
     const SeriesReport& listed =
@@ -247,8 +321,10 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
     bool usable = listed.verdict != Verdict::refused;
     if (!usable && !listed.choices.empty() && !answers.empty()) {
       Series answered = source.series;
-      assessSeries(answered, answers);
-      usable = answered.report.verdict != Verdict::refused;
+      // A file asks of its voxels alone.
+      if (source.file.empty()) assessSeries(answered, answers);
+      usable = (!source.file.empty() || answered.report.verdict != Verdict::refused) &&
+               !refusedByHu(listed, answers);
     }
     if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
   }
@@ -256,16 +332,58 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
   return best->uid;
 }
 
+Status CtFolder::checkAnswers(const Answers& answers) const {
+  Options asked;
+  for (const Source& source : contents_->sources) {
+    if (source.series.report.choices.empty()) continue;
+    Series answered = source.series;
+    assessSeries(answered, answers);
+    for (const SeriesReport* report :
+         std::initializer_list<const SeriesReport*>{&source.series.report, &answered.report}) {
+      for (const auto& [code, options] : optionsOf(*report)) {
+        for (const std::string& option : options) {
+          if (std::ranges::find(asked[code], option) == asked[code].end()) {
+            asked[code].push_back(option);
+          }
+        }
+      }
+    }
+  }
+  return fits(asked, answers);
+}
+
+std::vector<ScreenNames> CtFolder::screenNames() const {
+  std::vector<ScreenNames> names;
+  for (const Source& source : contents_->sources) {
+    const std::vector<DicomHeader>& slices = source.series.slices;
+    names.push_back(slices.empty() ? ScreenNames{} : trephine::screenNames(slices.front()));
+  }
+  return names;
+}
+
+std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
+  std::vector<LabelFile> files;
+  if (!contents_->hasDicomCt()) return files;
+  for (const Source& source : contents_->sources) {
+    const SeriesReport& series = source.series.report;
+    if (!source.file.empty() && looksLikeLabels(series)) {
+      files.push_back({series.description, source.file});
+    }
+  }
+  return files;
+}
+
 bool CtFolder::cameUpon(const std::filesystem::path& file) const {
   const std::optional<FileId> id = fileId(file);
   return id && contents_->came_upon.contains(*id);
 }
 
-Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
+Result<SlicePicture> CtFolder::slice(const std::string& uid, int index,
+                                     const Progress& progress) const {
   Source* source = contents_->find(uid);
   if (!source) return noSuchSeries(uid, contents_->report.series.size());
   const Error no_slice{"NO_SUCH_SLICE", "There is no such slice", std::to_string(index), ""};
-  if (!source->file.empty()) return fileSlice(source->file, index);
+  if (!source->file.empty()) return fileSlice(source->file, index, progress);
   const std::vector<DicomHeader>& slices = source->series.slices;
   if (index < 0 || std::size_t(index) >= slices.size()) return no_slice;
   const DicomHeader& header = slices[std::size_t(index)];
@@ -286,7 +404,7 @@ Result<SlicePicture> CtFolder::slice(const std::string& uid, int index) const {
   picture.hu.resize(header.pixelCount());
   Status read;
   const Status done = forEachFile(1, Progress(), {}, [&](std::size_t) {
-    read = PixelReader().read(header, picture.hu.data());
+    read = PixelReader(progress).read(header, picture.hu.data());
     if (read) HuConverter().convert(picture.hu.data(), picture.hu.size(), format);
   });
   if (!done) return done.error();
@@ -305,6 +423,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   report.chosen.reset();
   report.provenance.reset();
   const auto fail = [&](const Error& error) {
+    conclude(source->series);
     contents_->publish(*source);
     if (error.code != "CANCELLED") report.error = error;
     return error;
@@ -312,25 +431,45 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
 
   const auto start = Clock::now();
   int slices_used = 0;
+  std::uintmax_t bytes = 0;  // of a volume file
+  HuLook look;
   if (!source->file.empty()) {
+    std::error_code error;
+    bytes = std::filesystem::file_size(source->file, error);
+    if (isGone(source->file, 0)) return fail(refuseVanished(series));
     series = assessFile(source->file, series.description);
+    if (contents_->hasDicomCt()) sayWhatLabelsAreFor(series);
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
     if (Status enough = roomToRead(series, request); !enough) return fail(enough.error());
   }
   Result<Volume> volume =
       source->file.empty()
-          ? contents_->readDicom(source->series, request, progress, slices_used)
-          : readFileSeries(source->file, progress, series);
+          ? contents_->readDicom(source->series, request, progress, slices_used, look)
+          : readFileSeries(source->file, progress, series, look);
+  if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
+      isGone(source->file, bytes)) {
+    return fail(refuseVanished(series));
+  }
+  if (!volume && volume.error().code == "LABEL_MAP" && contents_->hasDicomCt()) {
+    sayWhatLabelsAreFor(series);
+    return fail(refusalOf(series));
+  }
   if (!volume) return fail(volume.error());
+  checkHu(look, request.answers, series);
+  series.verdict = verdictOf(series.findings);
+  if (series.verdict == Verdict::refused) {
+    const Status valid = fits(optionsOf(series), request.answers);
+    return fail(valid ? refusalOf(series) : valid.error());
+  }
 
   Provenance provenance;
   const Status stepped = takeVolumeSteps(request, progress, series, *volume, provenance.loss);
-  if (const Status valid = checkAnswers(series, request.answers); !valid) {
+  if (const Status valid = fits(optionsOf(series), request.answers); !valid) {
     return fail(valid.error());
   }
   if (!stepped) return fail(stepped.error());
   report.seconds.read = secondsSince(start);
-  series.verdict = verdictOf(series.findings);
+  conclude(source->series);
   series.geometry = volume->geometry;
 
   progress.at(0.95, "Checking");
@@ -344,7 +483,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   provenance.volume_sha256 = *series.volume_sha256;
   contents_->publish(*source);
   report.provenance = std::move(provenance);
-  report.chosen = uid;
+  report.chosen = series.uid;
   report.error.reset();
   report.peak_rss_mb = std::max(peakResidentMb(), report.start_rss_mb);  // read at other moments
   progress.at(1.0, "Done");

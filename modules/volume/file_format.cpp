@@ -1,6 +1,11 @@
 #include "volume/file_format.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -127,6 +132,33 @@ Result<fs::path> fileBeside(const fs::path& header, const std::string& name) {
   return header.parent_path() / name;
 }
 
+namespace {
+
+// A large file of which next to nothing lies on the disk: made at its full length and never filled,
+// or not copied to its end. A file system that knows no holes says that all of it is data.
+bool isMostlyHoles(const fs::path& file) {
+  constexpr off_t kLarge = off_t(1) << 30;
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status {};
+  bool holes = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && status.st_size > kLarge;
+  const off_t enough = status.st_size / 100;
+  off_t held = 0;
+  for (off_t at = 0; holes && held < enough;) {
+    const off_t data = ::lseek(descriptor, at, SEEK_DATA);
+    if (data < 0) {
+      holes = errno == ENXIO;  // none any more
+      break;
+    }
+    at = ::lseek(descriptor, data, SEEK_HOLE);
+    if (at <= data) holes = false;
+    held += at - data;
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  return holes && held < enough;
+}
+
+}  // namespace
+
 Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset,
                    const fs::path& file) {
   std::error_code ec;
@@ -138,6 +170,10 @@ Status placeVoxels(VolumeFileHeader& header, std::optional<std::uint64_t> offset
   const double most = double(bytes) * (header.data.packed ? kMostCompression : 1.0);
   if (most < double(stored) + double(header.data.skip)) {
     return unreadable("The file is cut short: its header promises more voxels than it holds", file);
+  }
+  if (isMostlyHoles(header.data.file)) {
+    return unreadable("The file is empty but for its beginning: it was not copied to its end",
+                      file);
   }
   header.data.offset = start;
   header.data.bytes = bytes;

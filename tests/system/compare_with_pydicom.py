@@ -115,7 +115,7 @@ def expect_near(what, found, expected):
 
 def run_import(lab, folder, target):
     process = subprocess.run(
-        [lab, "import", folder, "--json", "--write", target], capture_output=True, text=True
+        [lab, "import", folder, "--json", "--with-identity", "--write", target], capture_output=True, text=True
     )
     try:
         answer = json.loads(process.stdout)

@@ -81,10 +81,20 @@ class Phantom(LabTest):
 
     def test_a_question_that_nobody_answered_is_recorded_as_such(self):
         lab("phantom", "cranium", "--out", self.folder / "ct")
-        made = lab("import", self.folder / "ct", "--phase", 2)["provenance"]
+        made = lab("import", self.folder / "ct", "--phase", 2, expect=3)["provenance"]
         self.assertEqual(made["choices"], {"FACE": "keep"})
         self.assertEqual(made["unanswered"], ["FACE"])
         self.assertEqual(made["unused_answers"], ["PHASES"])
+
+    def test_an_option_that_nobody_offers_is_named_wherever_it_is_asked(self):
+        lab("phantom", "cranium", "--out", self.folder / "ct")
+        answer = lab("import", self.folder / "ct", "--choice", "FACE=remove", expect=2)
+        self.assert_error(answer, "BAD_CHOICE", "keep or deface")
+        sorted((self.folder / "ct").iterdir())[40].unlink()  # a gap, so nothing can be read as it is
+        answer = lab("import", self.folder / "ct", "--choice", "MISSING_SLICES=guess", expect=2)
+        self.assert_error(answer, "BAD_CHOICE", "refuse, fill or part")
+        answer = lab("import", self.folder / "ct", "--choice", "NO_SUCH=1", expect=2)
+        self.assert_error(answer, "BAD_CHOICE", "MISSING_SLICES")
 
     def test_an_unknown_phantom_is_named(self):
         answer = lab("phantom", "foot", "--out", self.folder, expect=1)

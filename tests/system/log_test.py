@@ -3,9 +3,11 @@
 import gzip
 import json
 import os
+import re
+import subprocess
 import unittest
 
-from lab_support import SCENES, PatientsScanTest
+from lab_support import LAB, SCENES, PatientsScanTest, lab
 
 
 class Import(PatientsScanTest):
@@ -51,6 +53,45 @@ class Import(PatientsScanTest):
                 spoilt = self.scan / f"{self.FILE}-spoilt{suffix}"
                 spoilt.write_bytes(bytes_)
                 self.log("import", spoilt)
+
+    def answer(self, *arguments):
+        """What an import prints as JSON, which must name nothing of the source."""
+        done = subprocess.run([LAB, "import", *map(str, arguments), "--json"],
+                              capture_output=True, text=True, timeout=240)
+        for said in (done.stdout, done.stderr):
+            for name in (self.FOLDER, self.FILE, *self.IDENTITY):
+                self.assertNotIn(name, said)
+        return json.loads(done.stdout)
+
+    def test_the_answer_names_neither_path_nor_uid_nor_description(self):
+        header = self.slices[0].read_bytes()
+        # The writer's own UIDs: each begins with its root, and stands in every file.
+        self.IDENTITY = {match.decode() for match in re.findall(rb"2\.25\.[0-9]{20,}", header)}
+        self.assertGreater(len(self.IDENTITY), 2)
+        shown = lab("import", self.scan, "--with-identity")
+        uid, description = shown["chosen"], shown["series"][0]["description"]
+        self.assertIn(uid, self.IDENTITY)
+        self.assertEqual(shown["path"], str(self.scan))
+        self.assertTrue(description)
+        self.IDENTITY.add(description)
+        read = self.answer(self.scan)
+        chosen = read["chosen"]
+        self.assertRegex(chosen, "^[0-9a-f]{32}$")
+        self.assertEqual(read["series"][0]["uid"], chosen)
+        self.assertEqual(self.answer(self.scan, "--series", chosen)["chosen"], chosen)
+        self.assertEqual(self.answer(self.scan, "--series", uid)["chosen"], chosen)
+        self.assertEqual(self.answer(self.scan, "--series", "1.2.3")["error"]["code"],
+                         "NO_SUCH_SERIES")
+        self.answer(self.scan, "--write", self.slices[0])
+        self.answer(self.scan / "gone")
+        volume = self.scan / f"{self.FILE}.nii.gz"
+        self.answer(self.scan, "--quarter", "--write", volume)
+        self.answer(volume)
+        volume.write_bytes(b"")
+        self.answer(volume)
+        self.slices[7].write_bytes(header)
+        self.slices[9].write_bytes(header[:300])
+        self.answer(self.scan)
 
     def test_a_full_disk_names_no_file(self):
         for target in (".nii", ".nii.gz", ".mha"):

@@ -13,6 +13,8 @@ namespace trephine {
 
 namespace {
 
+constexpr int kPicture = 72;
+
 // A radio button whose words may take several lines: the words are a label that chooses it.
 class OptionLabel : public QLabel {
  public:
@@ -45,6 +47,7 @@ void ChoicePanel::ask(const std::vector<Choice>& choices, const Answers& answers
   }
   choices_ = choices;
   answers_.clear();
+  pictures_.clear();
   for (const Choice& choice : choices_) {
     if (const auto known = answers.find(choice.code); known != answers.end()) {
       answers_.insert(*known);
@@ -63,7 +66,7 @@ void ChoicePanel::addChoice(const Choice& choice) {
   question->setTextFormat(Qt::PlainText);
   question->setProperty("title", true);
   question->setWordWrap(true);
-  grid->addWidget(question, 0, 0, 1, 2);
+  grid->addWidget(question, 0, 0, 1, 3);
 
   auto* group = new QButtonGroup(card);
   for (std::size_t i = 0; i < choice.options.size(); ++i) {
@@ -75,9 +78,22 @@ void ChoicePanel::addChoice(const Choice& choice) {
     const auto known = answers_.find(choice.code);
     button->setChecked(known != answers_.end() && known->second == option);
     group->addButton(button);
-    const int row = int(i) + 1;
+    const int row = 2 * int(i) + 1;
     grid->addWidget(button, row, 0, Qt::AlignTop);
-    grid->addWidget(new OptionLabel(words, button), row, 1);
+    grid->addWidget(new OptionLabel(words, button), row, 1, Qt::AlignTop);
+    if (i < choice.on_screen.size() && !choice.on_screen[i].empty()) {
+      auto* more = new OptionLabel(toQt(choice.on_screen[i]), button);
+      more->setProperty("quiet", true);
+      grid->addWidget(more, row + 1, 1, Qt::AlignTop);
+    }
+    if (i < choice.shown.size() && choice.shown[i] >= 0) {
+      auto* picture = new OptionLabel({}, button);
+      picture->setObjectName(toQt("picture_" + choice.code + "_" + option));
+      picture->setFixedSize(kPicture, kPicture);
+      picture->setAlignment(Qt::AlignCenter);
+      grid->addWidget(picture, row, 2, 2, 1, Qt::AlignTop);
+      pictures_.emplace(choice.shown[i], picture);
+    }
     connect(button, &QRadioButton::toggled, this, [this, code = choice.code, option](bool on) {
       if (!on) return;
       answers_[code] = option;
@@ -85,6 +101,22 @@ void ChoicePanel::addChoice(const Choice& choice) {
     });
   }
   layout()->addWidget(card);
+}
+
+std::vector<int> ChoicePanel::slicesShown() const {
+  std::vector<int> slices;
+  for (const auto& [slice, label] : pictures_) slices.push_back(slice);
+  return slices;
+}
+
+void ChoicePanel::setPicture(int slice, const QImage& picture) {
+  if (picture.isNull()) return;
+  const double ratio = devicePixelRatioF();
+  QPixmap shown = QPixmap::fromImage(picture).scaled(QSize(kPicture, kPicture) * ratio,
+                                                     Qt::KeepAspectRatio, Qt::SmoothTransformation);
+  shown.setDevicePixelRatio(ratio);
+  const auto [first, last] = pictures_.equal_range(slice);
+  for (auto it = first; it != last; ++it) it->second->setPixmap(shown);
 }
 
 bool ChoicePanel::allAnswered() const {

@@ -1,7 +1,11 @@
-// Questions that only a person can answer, each with its options.
+// Questions that only a person can answer, each with its options, and a slice where that tells them
+// apart.
 #pragma once
 
+#include <QLabel>
 #include <QWidget>
+#include <map>
+#include <vector>
 
 #include "imaging/importer.h"
 
@@ -16,6 +20,9 @@ class ChoicePanel : public QWidget {
   void ask(const std::vector<Choice>& choices, const Answers& answers);
   const Answers& answers() const { return answers_; }
   bool allAnswered() const;
+  // The slices that options show, and one of them.
+  std::vector<int> slicesShown() const;
+  void setPicture(int slice, const QImage& picture);
 
  signals:
   void answered();
@@ -25,6 +32,7 @@ class ChoicePanel : public QWidget {
 
   std::vector<Choice> choices_;
   Answers answers_;
+  std::multimap<int, QLabel*> pictures_;  // by slice
 };
 
 }  // namespace trephine

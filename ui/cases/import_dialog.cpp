@@ -35,10 +35,12 @@ ImportDialog::ImportDialog(ImportTask& task, QWidget* parent) : QDialog(parent),
 }
 
 const SeriesReport* ImportDialog::selected() const {
+  if (step_ == Step::scanning) return nullptr;  // the report is of the folder before
   return findSeries(task_.report().series, list_->selectedUid());
 }
 
 SeriesReport* ImportDialog::before() {
+  if (step_ == Step::scanning) return nullptr;
   const auto found = std::ranges::find(before_, list_->selectedUid(), &SeriesReport::uid);
   return found == before_.end() ? nullptr : &*found;
 }
@@ -67,6 +69,25 @@ void ImportDialog::open() {
   QDialog::open();
 }
 
+// The label maps that lie beside the CT of the folder; none is taken until it is chosen.
+void ImportDialog::showLabelFiles() {
+  labels_->clear();
+  labels_->addItem(tr("None"));
+  for (const CtFolder::LabelFile& one : task_.labelFiles()) {
+    labels_->addItem(toQt(one.name), toQt(one.file));
+  }
+}
+
+// Enough was found: what is selected is wanted, and the scan comes to its end.
+void ImportDialog::takeFound() {
+  const std::string uid = list_->selectedUid();
+  if (uid.empty() || found_taken_) return;
+  found_taken_ = true;
+  task_.takeFound(uid);
+  list_->setEnabled(false);
+  showImportButton();
+}
+
 // Qt's own guess of the place is off by the frame that it expects.
 void ImportDialog::showEvent(QShowEvent* event) {
   QDialog::showEvent(event);
@@ -89,7 +110,8 @@ void ImportDialog::scanned() {
 void ImportDialog::showFolder() {
   folder_->setText(folderWords(task_.report()));
   showStep(Step::choosing);
-  list_->showSeries(task_.report().series, answers_);
+  showLabelFiles();
+  list_->showSeries(task_.report().series, answers_, task_.names());
   if (const std::optional<std::string>& best = task_.bestSeries()) {
     list_->select(*best);
   } else {
@@ -148,8 +170,14 @@ void ImportDialog::showStep(Step step) {
   step_ = step;
   const bool working = step == Step::scanning || step == Step::reading;
   const bool choosing = step == Step::choosing;
-  for (QWidget* part : {static_cast<QWidget*>(list_), static_cast<QWidget*>(open_folder_),
-                        static_cast<QWidget*>(open_file_), static_cast<QWidget*>(series_page_)}) {
+  list_->setEnabled(choosing || step == Step::scanning);
+  take_found_->setVisible(step == Step::scanning);
+  scan_on_->setVisible(choosing && std::ranges::any_of(task_.report().series, [](const auto& one) {
+                         return std::ranges::find(one.findings, "SCAN_STOPPED", &Finding::code) !=
+                                one.findings.end();
+                       }));
+  for (QWidget* part : {static_cast<QWidget*>(open_folder_), static_cast<QWidget*>(open_file_),
+                        static_cast<QWidget*>(series_page_)}) {
     part->setEnabled(choosing);
   }
   preview_->setEnabled(!working);
@@ -160,7 +188,7 @@ void ImportDialog::showStep(Step step) {
   }
   purpose_->setVisible(!working);
   close_->setVisible(!working && step != Step::asking);
-  import_->setVisible(step != Step::asking);
+  import_->setVisible(step != Step::asking && step != Step::scanning);
   report_->setVisible(choosing && task_.hasFolder());
   back_->setVisible(step == Step::asking);
   open_case_->setVisible(step == Step::asking);
@@ -170,6 +198,7 @@ void ImportDialog::showStep(Step step) {
     progress_->setValue(0);
     folder_->clear();
     list_->showSeries({}, {});
+    found_taken_ = false;
   }
   showImportButton();
 }
@@ -179,6 +208,9 @@ void ImportDialog::showStep(Step step) {
 void ImportDialog::seriesSelected() {
   const SeriesReport* series = selected();
   card_->setVisible(series);
+  labels_box_->setVisible(series && series->source == "DICOM" && series->modality == "CT" &&
+                          labels_->count() > 1 &&
+                          seriesState(*series, answers()) != SeriesState::refused);
   size_box_->setVisible(series && seriesState(*series, answers()) != SeriesState::refused);
   if (!series) {
     const std::optional<Error>& error = task_.report().error;
@@ -191,6 +223,7 @@ void ImportDialog::seriesSelected() {
   const bool grid_known = before()->verdict != Verdict::refused;
   size_->setGrid(grid_known ? before()->geometry : GridGeometry{});
   choices_->ask(before()->choices, answers());
+  task_.wantPictures(list_->selectedUid(), choices_->slicesShown());
   showSelected();
   const GridGeometry& grid = before()->geometry;
   preview_->showStack(series->slices,
@@ -208,6 +241,7 @@ void ImportDialog::showSelected() {
 }
 
 void ImportDialog::showImportButton() {
+  take_found_->setEnabled(step_ == Step::scanning && !found_taken_ && list_->currentItem());
   const SeriesReport* series = selected();
   const bool usable = series && mayBeRead(seriesState(*series, answers()));
   const bool refused = size_->isRefused();
@@ -339,7 +373,9 @@ void ImportDialog::openCase() {
   task_.wantNothing();
   showStep(Step::choosing);
   accept();
-  emit caseRead(read);
+  const bool with_labels = series->source == "DICOM" && labels_->currentIndex() > 0;
+  emit caseRead(read,
+                with_labels ? toPath(labels_->currentData().toString()) : std::filesystem::path());
 }
 
 void ImportDialog::back() {

@@ -3,6 +3,7 @@
 // It shows what ImportTask knows and asks it for work; it decides nothing about images.
 #pragma once
 
+#include <QComboBox>
 #include <QDialog>
 #include <QLabel>
 #include <QProgressBar>
@@ -38,7 +39,8 @@ class ImportDialog : public QDialog {
   void fileWanted();
   void pathDropped(const QString& path);
   void reportWanted();
-  void caseRead(const trephine::Case& read);
+  // `labels`: the file to take as its label map; empty for none.
+  void caseRead(const trephine::Case& read, const std::filesystem::path& labels);
 
  protected:
   void dragEnterEvent(QDragEnterEvent* event) override;
@@ -66,6 +68,8 @@ class ImportDialog : public QDialog {
   void seriesSelected();
   void showSelected();
   void showImportButton();
+  void showLabelFiles();
+  void takeFound();
   void showSlice(const QString& uid, int index, const Result<SlicePicture>& picture);
   void showKept();
   void sliceWanted(int index);
@@ -89,6 +93,7 @@ class ImportDialog : public QDialog {
   std::map<std::string, Answers> answers_;  // by uid, as long as the folder is open
   ImportRequest request_;                   // what is being read
   bool loss_told_ = false;                  // of it
+  bool found_taken_ = false;                // the scan ends with the series that was selected
 
   SeriesList* list_;
   QLabel* folder_;
@@ -98,12 +103,13 @@ class ImportDialog : public QDialog {
   ReportCard* card_;
   ChoicePanel *choices_, *late_choices_;
   SizePanel* size_;
-  QWidget* size_box_;
+  QWidget *size_box_, *labels_box_;
+  QComboBox* labels_;
   QLabel *size_note_, *loss_, *couch_, *face_;
   QLabel *status_, *purpose_;
   QProgressBar* progress_;
-  QPushButton *open_folder_, *open_file_, *report_, *cancel_, *close_, *back_, *import_,
-      *open_case_;
+  QPushButton *open_folder_, *open_file_, *scan_on_, *report_, *cancel_, *close_, *back_, *import_,
+      *take_found_, *open_case_;
 };
 
 }  // namespace trephine

@@ -80,7 +80,10 @@ QWidget* ImportDialog::buildFolderColumn() {
   auto* layout = new QVBoxLayout(column);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addLayout(open_row);
+  scan_on_ = button("scanOn", tr("Look at &all files"));
+  scan_on_->setToolTip(tr("The search was ended early: look through the files that were left out"));
   layout->addWidget(list_, 1);
+  layout->addWidget(scan_on_);
   folder_->setAlignment(Qt::AlignTop);
   auto* folder_area = scrolled(folder_, "folderArea");
   folder_area->setMaximumHeight(6 * fontMetrics().lineSpacing());
@@ -100,11 +103,21 @@ QWidget* ImportDialog::buildSeriesPage() {
   size_layout->addWidget(heading(tr("How much of it, and how finely")));
   size_layout->addWidget(size_);
   size_layout->addWidget(size_note_);
+  labels_ = new QComboBox;
+  labels_->setObjectName("labelFile");
+  labels_->setAccessibleName(tr("Label map that is opened with the CT"));
+  labels_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  labels_box_ = new QWidget;
+  auto* labels_layout = new QVBoxLayout(labels_box_);
+  labels_layout->setContentsMargins(0, 0, 0, 0);
+  labels_layout->addWidget(heading(tr("Label map beside this CT")));
+  labels_layout->addWidget(labels_);
   auto* page = new QWidget;
   auto* layout = new QVBoxLayout(page);
   layout->setContentsMargins(8, 0, 8, 0);
   layout->setSpacing(10);
   layout->addWidget(card_);
+  layout->addWidget(labels_box_);
   layout->addStretch(1);
   layout->addWidget(size_box_);
   return page;
@@ -149,6 +162,9 @@ QLayout* ImportDialog::buildBottomRow() {
   back_ = button("importBack", tr("&Back"));
   import_ = button("import", tr("&Import"));
   import_->setDefault(true);
+  take_found_ = button("takeFound", tr("Use this &series"));
+  take_found_->setToolTip(
+      tr("Look only at the files beside those of this series, and at no others"));
   open_case_ = button("openCase", tr("&Open the case"));
   purpose_ = new ElidedLabel(purposeText());
   purpose_->setProperty("quiet", true);
@@ -157,7 +173,7 @@ QLayout* ImportDialog::buildBottomRow() {
   row->addWidget(status_);
   row->addWidget(progress_, 1);
   row->addStretch(1);
-  for (QPushButton* each : {report_, back_, close_, cancel_, import_, open_case_}) {
+  for (QPushButton* each : {report_, back_, close_, take_found_, cancel_, import_, open_case_}) {
     each->setMinimumWidth(110);
     row->addWidget(each);
   }
@@ -168,7 +184,15 @@ void ImportDialog::connectParts() {
   connect(open_folder_, &QPushButton::clicked, this, &ImportDialog::folderWanted);
   connect(open_file_, &QPushButton::clicked, this, &ImportDialog::fileWanted);
   connect(list_, &SeriesList::seriesSelected, this, &ImportDialog::seriesSelected);
-  connect(list_, &SeriesList::seriesActivated, this, &ImportDialog::import);
+  connect(list_, &SeriesList::seriesActivated, this,
+          [this] { step_ == Step::scanning ? takeFound() : import(); });
+  connect(take_found_, &QPushButton::clicked, this, &ImportDialog::takeFound);
+  connect(scan_on_, &QPushButton::clicked, this, [this] { task_.scan(task_.source()); });
+  connect(&task_, &ImportTask::found, this, [this](const std::vector<FoundSeries>& series) {
+    if (step_ != Step::scanning) return;
+    list_->showFound(series);
+    showImportButton();
+  });
   connect(preview_, &SlicePreview::sliceWanted, this, &ImportDialog::sliceWanted);
   connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportDialog::boxDrawn);
   connect(size_, &SizePanel::changed, this, &ImportDialog::showKept);
@@ -199,6 +223,10 @@ void ImportDialog::connectParts() {
   connect(&task_, &ImportTask::stopped, this, &ImportDialog::stopped);
   connect(&task_, &ImportTask::sliceReady, this, &ImportDialog::showSlice);
   connect(&task_, &ImportTask::thumbnailReady, list_, &SeriesList::setThumbnail);
+  connect(&task_, &ImportTask::pictureReady, this,
+          [this](const QString& uid, int slice, const QImage& picture) {
+            if (uid == toQt(list_->selectedUid())) choices_->setPicture(slice, picture);
+          });
 }
 
 }  // namespace trephine

@@ -59,17 +59,39 @@ void ImportTask::endWithout(const Outcome& outcome) {
 void ImportTask::scan(const std::filesystem::path& path) {
   wantNothing();
   emit scanBegan();
-  begin([this, path] {
-    task_.run([path](const Progress& progress) { return CtFolder::scan(path, progress); },
-              [this](Result<CtFolder> scanned) {
+  const int number = ++scans_;
+  guide_ = std::make_shared<ScanGuide>([this, number](const std::vector<FoundSeries>& series) {
+    QMetaObject::invokeMethod(
+        this,
+        [this, number, series] {
+          if (guide_ && number == scans_) emit found(series);
+        },
+        Qt::QueuedConnection);
+  });
+  begin([this, path, guide = guide_] {
+    task_.run([path, guide](
+                  const Progress& progress) { return CtFolder::scan(path, progress, guide.get()); },
+              [this, path, guide](Result<CtFolder> scanned) {
+                if (guide == guide_) guide_.reset();
                 if (!scanned || cancelled_) return endWithout(scanned);
                 folder_ = std::make_shared<CtFolder>(*std::move(scanned));
+                source_ = path;
                 report_ = folder_->report();
-                best_ = folder_->bestSeries();
+                label_files_ = folder_->labelFiles();
+                names_.clear();
+                const std::vector<ScreenNames> names = folder_->screenNames();
+                for (std::size_t n = 0; n < names.size(); ++n)
+                  names_[report_.series[n].uid] = names[n];
+                best_ = guide->chosen();
+                if (!best_ || !names_.contains(*best_)) best_ = folder_->bestSeries();
                 volume_.reset();
                 end(&ImportTask::scanned);
               });
   });
+}
+
+void ImportTask::takeFound(const std::string& uid) {
+  if (guide_) guide_->choose(uid);
 }
 
 void ImportTask::read(const std::string& uid, const ImportRequest& request, double needed_mb) {
@@ -96,6 +118,7 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
         },
         [this](Result<ReadSeries> read) {
           report_ = folder_->report();  // a refusal is told there too
+          label_files_ = folder_->labelFiles();
           if (!read || cancelled_) return endWithout(read);
           volume_ = std::move(read->volume);
           couch_ = std::move(read->couch);
@@ -119,13 +142,20 @@ void ImportTask::wantSlice(const std::string& uid, int index) {
 }
 
 void ImportTask::wantThumbnails(const std::vector<std::string>& uids) {
-  thumbnails_.assign(uids.begin(), uids.end());
+  std::erase_if(pictures_, [](const Wanted& wanted) { return wanted.index < 0; });
+  for (const std::string& uid : uids) pictures_.push_back({uid, -1});
+  step();
+}
+
+void ImportTask::wantPictures(const std::string& uid, const std::vector<int>& slices) {
+  std::erase_if(pictures_, [](const Wanted& wanted) { return wanted.index >= 0; });
+  for (const int slice : slices) pictures_.push_front({uid, slice});
   step();
 }
 
 void ImportTask::wantNothing() {
   wanted_.reset();
-  thumbnails_.clear();
+  pictures_.clear();
 }
 
 void ImportTask::step() {
@@ -134,29 +164,33 @@ void ImportTask::step() {
     std::exchange(next_, {})();
   } else if (folder_ && wanted_) {
     readSlice(*std::exchange(wanted_, {}));
-  } else if (folder_ && !thumbnails_.empty()) {
-    const std::string uid = std::move(thumbnails_.front());
-    thumbnails_.pop_front();
-    makeThumbnail(uid);
+  } else if (folder_ && !pictures_.empty()) {
+    const Wanted wanted = std::move(pictures_.front());
+    pictures_.pop_front();
+    makePicture(wanted);
   }
 }
 
 void ImportTask::readSlice(const Wanted& wanted) {
-  task_.run([folder = folder_,
-             wanted](const Progress&) { return folder->slice(wanted.uid, wanted.index); },
-            [this, wanted](const Result<SlicePicture>& picture) {
-              emit sliceReady(toQt(wanted.uid), wanted.index, picture);
-              step();
-            });
+  task_.run(
+      [folder = folder_, wanted](const Progress& progress) {
+        return folder->slice(wanted.uid, wanted.index, progress);
+      },
+      [this, wanted](const Result<SlicePicture>& picture) {
+        emit sliceReady(toQt(wanted.uid), wanted.index, picture);
+        step();
+      });
 }
 
-void ImportTask::makeThumbnail(const std::string& uid) {
-  const auto series = std::ranges::find(report_.series, uid, &SeriesReport::uid);
+void ImportTask::makePicture(const Wanted& wanted) {
+  const auto series = std::ranges::find(report_.series, wanted.uid, &SeriesReport::uid);
   if (series == report_.series.end()) return step();
   task_.run(
-      [folder = folder_, uid, middle = series->slices / 2, is_ct = series->modality == "CT",
-       turned = mirroringOf(series->geometry.direction)](const Progress&) -> Result<QImage> {
-        const Result<SlicePicture> slice = folder->slice(uid, middle);
+      [folder = folder_, uid = wanted.uid,
+       index = wanted.index < 0 ? series->slices / 2 : wanted.index,
+       is_ct = series->modality == "CT",
+       turned = mirroringOf(series->geometry.direction)](const Progress& progress) -> Result<QImage> {
+        const Result<SlicePicture> slice = folder->slice(uid, index, progress);
         if (!slice) return slice.error();
         const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);
         const double tall = double(slice->rows) * slice->spacing_mm.y;
@@ -167,8 +201,13 @@ void ImportTask::makeThumbnail(const std::string& uid) {
             .scaled(std::max(1, int(wide * scale)), std::max(1, int(tall * scale)),
                     Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
       },
-      [this, uid](const Result<QImage>& picture) {
-        emit thumbnailReady(toQt(uid), picture ? *picture : QImage());
+      [this, wanted](const Result<QImage>& made) {
+        const QImage picture = made ? *made : QImage();
+        if (wanted.index < 0) {
+          emit thumbnailReady(toQt(wanted.uid), picture);
+        } else {
+          emit pictureReady(toQt(wanted.uid), wanted.index, picture);
+        }
         step();
       });
 }

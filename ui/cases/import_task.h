@@ -7,6 +7,7 @@
 #include <QObject>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class ImportTask : public QObject {
   // What may be had for that, with what the case that is open leaves to the next.
   double roomMb() const { return usableMemoryMb() + given_back_mb_; }
   void setGivenBack(double mb) { given_back_mb_ = mb; }
+  // While it scans: one of the series that were found so far is enough. scanned() follows once the
+  // files of its folders are looked at; bestSeries() is then this one.
+  void takeFound(const std::string& uid);
   // Ends the scan or read; stopped() follows.
   void cancel();
   bool isWorking() const { return working_; }
@@ -39,6 +43,10 @@ class ImportTask : public QObject {
   bool hasFolder() const { return folder_ != nullptr; }
   const ImportReport& report() const { return report_; }  // as scan or the last read left it
   const std::optional<std::string>& bestSeries() const { return best_; }
+  const std::filesystem::path& source() const { return source_; }  // of the folder
+  // Whom and what its series are of, by uid. For the screen alone.
+  const std::map<std::string, ScreenNames>& names() const { return names_; }
+  const std::vector<CtFolder::LabelFile>& labelFiles() const { return label_files_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
   // The couch in volume(), where the series asks about it and that is not answered yet.
   const CouchFinding& couch() const { return couch_; }
@@ -48,12 +56,15 @@ class ImportTask : public QObject {
   void wantSlice(const std::string& uid, int index);
   // The middle slices of these series as small pictures, in this order, while nothing else waits.
   void wantThumbnails(const std::vector<std::string>& uids);
+  // These slices of a series as small pictures, before any thumbnail that waits.
+  void wantPictures(const std::string& uid, const std::vector<int>& slices);
   // No slices and thumbnails any more.
   void wantNothing();
 
  signals:
   void scanBegan();
   void progressed(double fraction, const QString& step);
+  void found(const std::vector<trephine::FoundSeries>& series);  // so far; the scan goes on
   void scanned();
   void readDone();
   void stopped();  // scan or read failed or was cancelled
@@ -62,6 +73,7 @@ class ImportTask : public QObject {
   void sliceReady(const QString& uid, int index,
                   const trephine::Result<trephine::SlicePicture>& picture);
   void thumbnailReady(const QString& uid, const QImage& picture);  // null: there is none
+  void pictureReady(const QString& uid, int slice, const QImage& picture);
 
  private:
   struct Wanted {
@@ -74,11 +86,16 @@ class ImportTask : public QObject {
   template <class Outcome>
   void endWithout(const Outcome& outcome);
   void readSlice(const Wanted& wanted);
-  void makeThumbnail(const std::string& uid);
+  void makePicture(const Wanted& wanted);
 
   std::shared_ptr<CtFolder> folder_;
   ImportReport report_;
   std::optional<std::string> best_;
+  std::filesystem::path source_;
+  std::map<std::string, ScreenNames> names_;
+  std::vector<CtFolder::LabelFile> label_files_;
+  std::shared_ptr<ScanGuide> guide_;  // of the scan that was asked for last, while it runs
+  int scans_ = 0;
   std::shared_ptr<const Volume> volume_;
   double given_back_mb_ = 0.0;
   CouchFinding couch_;
@@ -86,7 +103,7 @@ class ImportTask : public QObject {
   bool working_ = false;        // a scan or read is under way or waits for a slice to end
   std::function<void()> next_;  // starts it
   std::optional<Wanted> wanted_;
-  std::deque<std::string> thumbnails_;
+  std::deque<Wanted> pictures_;  // of an index below 0, the middle one
   BackgroundTask task_;  // last, so that it is joined before what it works on goes
 };
 

@@ -40,6 +40,9 @@ struct SeverityWords {
   const char* meaning;
   const QColor& colour;
 };
+const SeverityWords kRefusedRepairs{
+    "repair", QT_TRANSLATE_NOOP("ImportWords", "What would be put right"),
+    QT_TRANSLATE_NOOP("ImportWords", "Nothing was changed so far."), colours::kCaution};
 const SeverityWords kSeverities[] = {
     {"refusal", QT_TRANSLATE_NOOP("ImportWords", "Why it cannot be used as it is"),
      QT_TRANSLATE_NOOP("ImportWords", "A volume made of it as it is could be wrong."),
@@ -85,7 +88,10 @@ QString factsHtml(const SeriesReport& series) {
   if (!series.body_part.empty()) add(tr("Body part"), toQt(series.body_part));
   if (series.phases > 1) add(tr("Phases"), QString::number(series.phases));
   if (series.tilt_deg != 0.0) {
-    add(tr("Gantry tilt"), tr("%1\u00b0").arg(series.tilt_deg, 0, 'f', 1));
+    const bool tilted = std::ranges::find(series.findings, "SHEARED_SIDEWAYS", &Finding::code) ==
+                        series.findings.end();
+    add(tilted ? tr("Gantry tilt") : tr("Sheared by"),
+        tr("%1\u00b0").arg(series.tilt_deg, 0, 'f', 1));
   }
   if (series.hu_min && series.hu_max) {
     add(tr("HU"), tr("%1 to %2").arg(*series.hu_min).arg(*series.hu_max));
@@ -234,8 +240,11 @@ QString gridWords(const GridGeometry& g) {
 
 QString reportHtml(const SeriesReport& series) {
   QString html = factsHtml(series);
-  for (const SeverityWords& words : kSeverities) {
-    if (countOf(series, words.severity) == 0) continue;
+  for (const SeverityWords& severity : kSeverities) {
+    if (countOf(series, severity.severity) == 0) continue;
+    const bool undone =
+        series.verdict == Verdict::refused && severity.severity == std::string_view("repair");
+    const SeverityWords& words = undone ? kRefusedRepairs : severity;
     html += QString(
                 "<p style='margin-top:12px; margin-bottom:0px; line-height:115%;'>"
                 "<b style='color:%1'>%2</b><br><span style='color:%3'>%4</span></p>")

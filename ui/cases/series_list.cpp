@@ -15,6 +15,9 @@ namespace trephine {
 namespace {
 
 constexpr int kUid = Qt::UserRole, kState = Qt::UserRole + 1, kLine = Qt::UserRole + 2;
+constexpr int kPatientKey = Qt::UserRole + 3, kStudyKey = Qt::UserRole + 4;
+constexpr int kPatient = Qt::UserRole + 5, kStudy = Qt::UserRole + 6;
+constexpr int kStillFound = -1;  // a state: its scan goes on
 constexpr int kPicture = 72, kMargin = 8, kMark = 16;
 
 const Answers& answersOf(const std::map<std::string, Answers>& answers, const std::string& uid) {
@@ -28,13 +31,16 @@ class SeriesDelegate : public QStyledItemDelegate {
  public:
   using QStyledItemDelegate::QStyledItemDelegate;
 
-  QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex&) const override {
-    return {180, std::max(kPicture, 3 * option.fontMetrics.height() + 10) + 2 * kMargin};
+  QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+    return {180, std::max(kPicture, 3 * option.fontMetrics.height() + 10) + 2 * kMargin +
+                     headingHeight(option, index)};
   }
 
   void paint(QPainter* p, const QStyleOptionViewItem& option,
              const QModelIndex& index) const override {
     p->save();
+    paintHeading(*p, option, index);
+    const QRect body = option.rect.adjusted(0, headingHeight(option, index), 0, 0);
     const bool selected = option.state & QStyle::State_Selected;
     const bool focused = option.state & QStyle::State_HasFocus;
     if (selected || option.state & QStyle::State_MouseOver) {
@@ -42,9 +48,9 @@ class SeriesDelegate : public QStyledItemDelegate {
       p->setPen(selected ? QPen(focused ? colours::kAccent : colours::kLine, 1.5)
                          : QPen(Qt::NoPen));
       p->setBrush(colours::kRaised);
-      p->drawRoundedRect(QRectF(option.rect).adjusted(1, 1, -1, -1), 5, 5);
+      p->drawRoundedRect(QRectF(body).adjusted(1, 1, -1, -1), 5, 5);
     }
-    const QRect inner = option.rect.adjusted(kMargin, kMargin, -kMargin, -kMargin);
+    const QRect inner = body.adjusted(kMargin, kMargin, -kMargin, -kMargin);
     const QRect picture(inner.left(), inner.top() + (inner.height() - kPicture) / 2, kPicture,
                         kPicture);
     paintPicture(*p, picture, index.data(Qt::DecorationRole));
@@ -55,6 +61,26 @@ class SeriesDelegate : public QStyledItemDelegate {
   }
 
  private:
+  static int headingHeight(const QStyleOptionViewItem& option, const QModelIndex& index) {
+    const auto lines = index.data(kHeadingRole).toStringList().size();
+    return lines == 0 ? 0 : int(lines) * (option.fontMetrics.height() + 2) + kMargin;
+  }
+
+  // Whose the series below are, and of which study.
+  static void paintHeading(QPainter& p, const QStyleOptionViewItem& option,
+                           const QModelIndex& index) {
+    const QStringList lines = index.data(kHeadingRole).toStringList();
+    QRect row(option.rect.left() + kMargin, option.rect.top() + kMargin / 2,
+              option.rect.width() - 2 * kMargin, option.fontMetrics.height() + 2);
+    for (const QString& line : lines) {
+      p.setFont(option.font);
+      p.setPen(colours::kText);
+      p.drawText(row, Qt::AlignVCenter,
+                 option.fontMetrics.elidedText(line, Qt::ElideRight, row.width()));
+      row.translate(0, row.height());
+    }
+  }
+
   // `thumbnail` is invalid until it has been made, and a null image where there is none.
   static void paintPicture(QPainter& p, const QRect& box, const QVariant& thumbnail) {
     p.fillRect(box, Qt::black);
@@ -90,6 +116,10 @@ class SeriesDelegate : public QStyledItemDelegate {
     p.drawText(row, Qt::AlignVCenter,
                metrics.elidedText(index.data(kLine).toString(), Qt::ElideRight, row.width()));
     row.translate(0, line);
+    if (index.data(kState).toInt() == kStillFound) {
+      p.drawText(row, Qt::AlignVCenter, SeriesList::tr("Still looking"));
+      return;
+    }
     const auto state = SeriesState(index.data(kState).toInt());
     paintStateMark(p, QRectF(row.left(), row.center().y() - kMark / 2 + 1, kMark, kMark), state);
     p.setPen(stateColour(state));
@@ -129,7 +159,6 @@ std::vector<std::size_t> seriesOrder(const std::vector<SeriesReport>& series,
 SeriesList::SeriesList(QWidget* parent) : QListWidget(parent) {
   setItemDelegate(new SeriesDelegate(this));
   setMouseTracking(true);
-  setUniformItemSizes(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
   setAccessibleName(tr("Series of the folder"));
@@ -138,17 +167,80 @@ SeriesList::SeriesList(QWidget* parent) : QListWidget(parent) {
 }
 
 void SeriesList::showSeries(const std::vector<SeriesReport>& series,
-                            const std::map<std::string, Answers>& answers) {
+                            const std::map<std::string, Answers>& answers,
+                            const std::map<std::string, ScreenNames>& names) {
   const std::string selected = selectedUid();
   {
     const QSignalBlocker quiet(this);
     clear();
     for (std::size_t i : seriesOrder(series, answers)) {
-      fill(*new QListWidgetItem(this), series[i], answersOf(answers, series[i].uid));
+      const auto named = names.find(series[i].uid);
+      fill(*addItem(named == names.end() ? ScreenNames{} : named->second), series[i],
+           answersOf(answers, series[i].uid));
     }
+    nameGroups();
     if (QListWidgetItem* same = itemOf(toQt(selected))) setCurrentItem(same);
   }
   emit seriesSelected();
+}
+
+void SeriesList::showFound(const std::vector<FoundSeries>& found) {
+  for (const FoundSeries& one : found) {
+    QListWidgetItem* item = itemOf(toQt(one.uid));
+    if (!item) item = addItem(one.names);
+    SeriesReport series;
+    series.uid = one.uid;
+    series.description = one.description;
+    series.modality = one.modality;
+    series.slices = one.slices;
+    fill(*item, series, {});
+    const QString state = tr("Still looking");
+    item->setData(kState, kStillFound);
+    item->setData(Qt::AccessibleTextRole,
+                  QStringList{item->text(), item->data(kLine).toString(), state}.join(", "));
+    item->setToolTip({});
+  }
+  nameGroups();
+}
+
+// After the last of the same study, of the same patient, or of all.
+QListWidgetItem* SeriesList::addItem(const ScreenNames& names) {
+  const auto rowAfter = [&](int key, const std::string& value) {
+    int row = count();
+    while (row > 0 && item(row - 1)->data(key).toString() != toQt(value)) --row;
+    return row;
+  };
+  int row = rowAfter(kStudyKey, names.patient_key + names.study_key);
+  if (row == 0) row = rowAfter(kPatientKey, names.patient_key);
+  auto* added = new QListWidgetItem;
+  added->setData(kPatientKey, toQt(names.patient_key));
+  added->setData(kStudyKey, toQt(names.patient_key + names.study_key));
+  added->setData(kPatient, toQt(names.patient));
+  added->setData(kStudy, toQt(names.study));
+  insertItem(row == 0 ? count() : row, added);
+  return added;
+}
+
+// Who is named once over all that is theirs. One patient or study that is not named needs no
+// heading.
+void SeriesList::nameGroups() {
+  const auto same = [&](int a, int b, int key) { return item(a)->data(key) == item(b)->data(key); };
+  const int last = count() - 1;
+  for (int row = 0; row <= last; ++row) {
+    QListWidgetItem& here = *item(row);
+    const bool no_patient = here.data(kPatientKey).toString().isEmpty();
+    QString who = here.data(kPatient).toString(), what = here.data(kStudy).toString();
+    if (!same(0, last, kStudyKey)) {
+      if (who.isEmpty())
+        who = no_patient ? tr("Files of no patient") : tr("A patient without a name");
+      if (what.isEmpty() && !no_patient) what = tr("A study without a description");
+    }
+    QStringList lines;
+    if (row == 0 || !same(row - 1, row, kPatientKey)) lines << who;
+    if (row == 0 || !same(row - 1, row, kStudyKey)) lines << what;
+    lines.removeAll(QString());
+    here.setData(kHeadingRole, lines);
+  }
 }
 
 void SeriesList::updateSeries(const SeriesReport& series, const Answers& answers) {

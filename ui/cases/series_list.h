@@ -1,5 +1,5 @@
 // The series of a folder: a picture, the description, what it is, and its state in shape, colour
-// and word. Usable CT comes first.
+// and word; grouped by patient and study. Usable CT comes first.
 #pragma once
 
 #include <QListWidget>
@@ -9,14 +9,21 @@
 
 namespace trephine {
 
+// Of an item: the lines over it, where a patient or study begins.
+constexpr int kHeadingRole = Qt::UserRole + 7;
+
 class SeriesList : public QListWidget {
   Q_OBJECT
  public:
   explicit SeriesList(QWidget* parent = nullptr);
 
-  // Shows these in the order of seriesOrder(); `answers` are those given so far, by uid.
+  // Shows these in the order of seriesOrder(), those of one patient and study together under their
+  // names; `answers` are those given so far, by uid, as `names` are.
   void showSeries(const std::vector<SeriesReport>& series,
-                  const std::map<std::string, Answers>& answers);
+                  const std::map<std::string, Answers>& answers,
+                  const std::map<std::string, ScreenNames>& names = {});
+  // What a scan has found so far: what is there stays where it is and grows.
+  void showFound(const std::vector<FoundSeries>& found);
   // What reading or answering has changed about one of them; the order stays.
   void updateSeries(const SeriesReport& series, const Answers& answers);
   void setThumbnail(const QString& uid, const QImage& picture);
@@ -30,6 +37,8 @@ class SeriesList : public QListWidget {
 
  private:
   QListWidgetItem* itemOf(const QString& uid) const;
+  QListWidgetItem* addItem(const ScreenNames& names);
+  void nameGroups();
 };
 
 // Positions in `series` as they are listed: what can be read, then what asks, then the rest; CT

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "base/time_left.h"
+
 namespace trephine {
 
 namespace {
@@ -23,7 +25,8 @@ void BackgroundTask::cancel() {
 void BackgroundTask::prepare() {
   // Several threads of the work may report at once, so the time of the last report is atomic.
   auto last = std::make_shared<std::atomic<std::chrono::steady_clock::rep>>(0);
-  progress_ = std::make_shared<Progress>([this, last](double fraction, const std::string& step) {
+  progress_ = std::make_shared<Progress>(withTimeLeft([this, last](double fraction,
+                                                                   const std::string& step) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     auto before = last->load();
     if (now - std::chrono::steady_clock::duration(before) < kReportEvery) return;
@@ -34,7 +37,7 @@ void BackgroundTask::prepare() {
           if (busy()) emit progressed(fraction, text);
         },
         Qt::QueuedConnection);
-  });
+  }));
 }
 
 void BackgroundTask::end() {

@@ -208,9 +208,10 @@ void MainWindow::connectParts() {
   });
   connect(import_, &ImportDialog::pathDropped, this,
           [this](const QString& path) { open(toPath(path)); });
-  connect(import_, &ImportDialog::caseRead, this, [this](const Case& read) {
-    unlessCutsAreLost([this, read] { workstation_.openImported(read); });
-  });
+  connect(import_, &ImportDialog::caseRead, this,
+          [this](const Case& read, const std::filesystem::path& labels) {
+            unlessCutsAreLost([this, read, labels] { workstation_.openImported(read, labels); });
+          });
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { case_->setSeriesAtHand(true); });
   connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);

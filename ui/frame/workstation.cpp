@@ -23,6 +23,7 @@ struct Workstation::Opened {
   std::optional<Case> of;   // none: the scene's own is read
   bool same_scene = false;  // its tissues stay as they are edited
   std::string labels_file{};  // instead of what the case has; empty: that stays
+  std::optional<Error> no_labels{};  // why the case opened without them
   Volume mirror{};
 };
 
@@ -151,14 +152,14 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
   openInBackground({std::move(scene), scene_file, {}, same_scene});
 }
 
-void Workstation::openImported(const Case& read) {
+void Workstation::openImported(const Case& read, const std::filesystem::path& labels) {
   if (!mayOpen()) return;
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   if (scene_) scene->tissues = scene_->tissues;
   useCase(*scene, "");
-  openInBackground({*std::move(scene), file, read, scene_.has_value()});
+  openInBackground({*std::move(scene), file, read, scene_.has_value(), labels.string()});
 }
 
 void Workstation::openInBackground(Opened opening) {
@@ -168,8 +169,12 @@ void Workstation::openInBackground(Opened opening) {
       [opening = std::move(opening), shown](const Progress& progress) mutable -> Result<Opened> {
         if (opening.of && !opening.labels_file.empty()) {
           Result<Case> labelled = withLabels(*opening.of, opening.labels_file);
-          if (!labelled) return labelled.error();
-          opening.of = *std::move(labelled);
+          if (!labelled && opening.of->volume == shown) return labelled.error();
+          if (labelled) {
+            opening.of = *std::move(labelled);
+          } else {
+            opening.no_labels = labelled.error();
+          }
         }
         Result<Case> placed = opening.of ? placedIn(opening.scene, *opening.of, progress)
                                          : openCase(opening.scene, progress);
@@ -208,6 +213,7 @@ void Workstation::opened(Result<Opened> outcome) {
   emit sceneChanged();
   emit caseOpened();
   setPhase(Phase::ready);
+  if (outcome->no_labels) fail(*outcome->no_labels);
   if (case_->misfit) fail(*case_->misfit);
 }
 

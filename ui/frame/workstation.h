@@ -29,8 +29,9 @@ class Workstation : public QObject {
   // One of the built-in cases, with the scene in use where that fits the anatomy.
   void openPhantom(const std::string& name);
   bool sceneFits(const std::string& anatomy) const { return scene_ && scene_->anatomy == anatomy; }
-  // What an import has read.
-  void openImported(const Case& read);
+  // What an import has read, with the label map of this file where there is one. A label map that
+  // cannot be had is said; the case opens without it.
+  void openImported(const Case& read, const std::filesystem::path& labels = {});
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   // The label map of the open case. Another case has none until it is given.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "imaging/common/hu_look.h"
+
 namespace trephine {
 
 namespace {
@@ -100,14 +102,23 @@ void HuConverter::buildTable(const StoredFormat& format, std::int16_t padding_hu
 }
 
 HuCounts HuConverter::convert(std::int16_t* words, std::size_t count, const StoredFormat& format,
-                              std::int16_t padding_hu) {
+                              std::int16_t padding_hu, std::vector<std::int16_t>* sample) {
+  if (sample) sample->clear();
   const bool whole_shift = format.slope == 1.0 && std::abs(format.intercept) < 1e6 &&
                            format.intercept == std::floor(format.intercept);
   if (whole_shift && !format.padding) {
-    return format.is_signed ? shiftValues<true>(words, count, format)
-                            : shiftValues<false>(words, count, format);
+    const HuCounts counts = format.is_signed ? shiftValues<true>(words, count, format)
+                                             : shiftValues<false>(words, count, format);
+    if (sample) visitSample(count, [&](std::size_t i) { sample->push_back(words[i]); });
+    return counts;
   }
   buildTable(format, padding_hu);
+  if (sample) {
+    visitSample(count, [&](std::size_t i) {
+      const auto word = static_cast<std::uint16_t>(words[i]);
+      if (events_[word] != kPadding) sample->push_back(hu_[word]);
+    });
+  }
   HuCounts counts;
   int low = 32767, high = -32768;
   for (std::size_t i = 0; i < count; ++i) {

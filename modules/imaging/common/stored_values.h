@@ -51,8 +51,9 @@ struct HuCounts {
 class HuConverter {
  public:
   // `padding_hu` is what padding becomes: kLostHu where the words are yet to be interpolated.
+  // `sample`, where given, is filled with the HU of some of the voxels that are not padding.
   HuCounts convert(std::int16_t* words, std::size_t count, const StoredFormat& format,
-                   std::int16_t padding_hu = kAirHu);
+                   std::int16_t padding_hu = kAirHu, std::vector<std::int16_t>* sample = nullptr);
 
  private:
   void buildTable(const StoredFormat& format, std::int16_t padding_hu);

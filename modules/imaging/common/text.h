@@ -28,8 +28,12 @@ std::optional<int> parseInteger(std::string_view text);
 // "12.50" for (12.5, 2), whatever the locale.
 std::string fixedText(double value, int digits);
 
+// "1 slice", "3 slices"; with what they do: "1 slice lacks", "3 slices lack".
+std::string counted(std::uint64_t count, std::string_view thing, std::string_view one_does = "",
+                    std::string_view many_do = "");
+
 // "size", "size and kernel", "size, kernel and kVp"
-std::string listed(const std::vector<std::string>& words);
+std::string listed(const std::vector<std::string>& words, std::string_view last = "and");
 
 std::vector<std::string> splitValues(std::string_view text);  // at backslashes, trimmed
 

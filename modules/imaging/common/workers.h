@@ -10,6 +10,10 @@
 
 namespace trephine {
 
+// Files are read in pieces of this size, and between two of them it is asked whether the work was
+// cancelled: a stick of 5 MB/s, read by eight threads, gives one to each in 0.2 s.
+constexpr std::size_t kPieceBytes = std::size_t(128) << 10;
+
 // The part of a whole job's progress bar that one loop fills.
 struct ProgressPart {
   double from = 0.0;

@@ -1,5 +1,6 @@
 #include "imaging/dicom/dicom_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <functional>
@@ -38,6 +39,25 @@ bool looksLikeDicom(std::string_view head) {
   if (std::isupper(byte(4)) && std::isupper(byte(5))) return true;
   return little && byte(5) < 2 && byte(6) == 0 && byte(7) == 0;  // implicit: a short first value
 }
+
+// What holds files, or a file, in packed form: told by its first bytes, whatever its name.
+struct Packed {
+  std::size_t at;
+  std::string_view mark;
+  const char* name;
+};
+using namespace std::string_view_literals;
+constexpr Packed kPacked[] = {{0, "PK\3\4"sv, "a ZIP archive"},
+                              {0, "\x1F\x8B\x08"sv, "a gzip file"},
+                              {0, "7z\xBC\xAF\x27\x1C"sv, "a 7z archive"},
+                              {0, "Rar!\x1A\x07"sv, "a RAR archive"},
+                              {0,
+                               "\xFD"
+                               "7zXZ\0"sv,
+                               "an xz file"},
+                              {0, "\x28\xB5\x2F\xFD"sv, "a Zstandard file"},
+                              {4, "1AY&SY"sv, "a bzip2 file"},
+                              {257, "ustar"sv, "a tar archive"}};
 
 // Whether DCMTK came to the element's end. Its transfer state does not tell: values of odd length
 // never become ready.
@@ -122,6 +142,30 @@ std::string bareName(std::string name) {
   return name;
 }
 
+// "FAMILY^GIVEN^MIDDLE=..." as one reads it: "FAMILY, GIVEN MIDDLE". Of several ways of writing it
+// the first.
+std::string personName(std::string name) {
+  name = bareName(name.substr(0, name.find('=')));
+  std::string text;
+  for (std::size_t at = 0, parts = 0; at < name.size(); ++parts) {
+    const std::size_t end = std::min(name.find('^', at), name.size());
+    if (end > at) text += (parts == 0 ? "" : parts == 1 ? ", " : " ") + name.substr(at, end - at);
+    at = end + 1;
+  }
+  return cleanUtf8(text);
+}
+
+// "Head, 2024-05-03": what a study is called, and its day.
+std::string studyText(const DicomItem& data) {
+  std::string text = decodedText(data, DCM_StudyDescription);
+  const std::string day = trimmedText(data, DCM_StudyDate);
+  if (day.size() == 8 && parseInteger(day)) {
+    if (!text.empty()) text += ", ";
+    text += day.substr(0, 4) + '-' + day.substr(4, 2) + '-' + day.substr(6);
+  }
+  return text;
+}
+
 // Nobody can be found by it outside of this process: what is hashed along differs in each.
 std::string patientOf(const DicomItem& data) {
   static const std::string salt = std::to_string(std::random_device{}()) +
@@ -153,6 +197,30 @@ DicomItem firstItem(const DicomItem& item, const DcmTagKey& sequence) {
   return DicomItem(items.empty() ? nullptr : items.front());
 }
 
+// Of the whole image, or of a frame, which overrides it where it says anything.
+void readKind(const DicomItem& item, const DcmTagKey& type, DicomHeader& header) {
+  const auto take = [&](const DcmTagKey& tag, std::string& value) {
+    if (std::string text = trimmedText(item, tag); !text.empty()) value = std::move(text);
+  };
+  std::string values;
+  take(type, values);
+  if (!values.empty()) header.image_type = splitValues(values);
+  take(DCM_VolumetricProperties, header.volumetric);
+  take(DCM_VolumeBasedCalculationTechnique, header.technique);
+  take(DCM_PixelPresentation, header.presentation);
+}
+
+void readValueMaps(const DicomItem& item, DicomHeader& header) {
+  const std::vector<DcmItem*> maps = item.items(DCM_RealWorldValueMappingSequence);
+  if (!maps.empty()) header.value_maps.clear();
+  for (DcmItem* map : maps) {
+    const DicomItem values(map);
+    header.value_maps.push_back(
+        {trimmedText(firstItem(values, DCM_MeasurementUnitsCodeSequence), DCM_CodeValue),
+         number(values, DCM_RealWorldValueSlope), number(values, DCM_RealWorldValueIntercept)});
+  }
+}
+
 // Enhanced CT: what a frame says of itself overrides what all share (PS3.3 C.7.6.16).
 void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHeader& header) {
   const auto group = [&](const DcmTagKey& macro) {
@@ -181,9 +249,10 @@ void readFunctionalGroups(const DicomItem& shared, const DicomItem& own, DicomHe
   });
   read(DCM_PixelValueTransformationSequence,
        [&](const DicomItem& item) { readRescale(item, header); });
-  read(DCM_CTImageFrameTypeSequence, [&](const DicomItem& item) {
-    header.image_type = splitValues(trimmedText(item, DCM_FrameType));
-  });
+  read(DCM_CTImageFrameTypeSequence,
+       [&](const DicomItem& item) { readKind(item, DCM_FrameType, header); });
+  readValueMaps(shared, header);
+  readValueMaps(own, header);
   read(DCM_CardiacSynchronizationSequence, [&](const DicomItem& item) {
     header.phase[kCardiacPercent] = number(item, DCM_NominalPercentageOfCardiacPhase);
   });
@@ -324,17 +393,24 @@ void findPixelsOf(const DcmXfer& xfer, DicomStream& stream, DicomHeader& header)
 }  // namespace
 
 Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& file,
-                                                  std::uint64_t file_bytes) {
+                                                  std::uint64_t file_bytes,
+                                                  const Progress& progress) {
   setUpDcmtk();
   if (file_bytes == 0) return skip("the file is empty");
   DicomStream stream(file);
   const std::string_view head = stream.beginning(1024);
   if (head.empty()) return Error{kUnreadableFile, "the file may not be read", "", ""};
-  if (!looksLikeDicom(head)) return skip("not a DICOM file");
+  if (!looksLikeDicom(head)) {
+    const auto packed = std::ranges::find_if(kPacked, [&](const Packed& kind) {
+      return head.size() > kind.at && head.substr(kind.at).starts_with(kind.mark);
+    });
+    return skip(packed == std::end(kPacked) ? "not a DICOM file"
+                                            : std::string(packed->name) + kUnpackFirst);
+  }
   if (head.find(kDicomDir) != head.npos) {
     return skip("a DICOMDIR: the files themselves are read instead");
   }
-  if (nestsTooDeeply(file, file_bytes)) return skip("nested too deeply");
+  if (nestsTooDeeply(file, file_bytes, progress)) return skip("nested too deeply");
 
   DcmFileFormat dicom;
   dicom.transferInit();
@@ -378,7 +454,9 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   header.modality = trimmedText(data, DCM_Modality);
   header.description = decodedText(data, DCM_SeriesDescription);
   header.body_part = trimmedText(data, DCM_BodyPartExamined);
-  header.image_type = splitValues(trimmedText(data, DCM_ImageType));
+  readKind(data, DCM_ImageType, header);
+  readValueMaps(data, header);
+  header.modality_lut = !data.items(DCM_ModalityLUTSequence).empty();
   header.instance_number = trimmedText(data, DCM_InstanceNumber);
   header.photometric = trimmedText(data, DCM_PhotometricInterpretation);
   header.transfer_syntax = uidText(meta, DCM_TransferSyntaxUID);
@@ -396,6 +474,8 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   readPhase(data, header);
   readAcquisition(data, header);
   header.patient = patientOf(data);
+  header.patient_name = personName(decodedText(data, DCM_PatientName));
+  header.study_text = studyText(data);
   header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
 
   if (cut) {

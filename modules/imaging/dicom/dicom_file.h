@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/progress.h"
 #include "base/result.h"
 #include "imaging/common/stored_values.h"
 
@@ -65,9 +66,19 @@ struct DicomHeader {
   // Who it is of: equal for equal patients, and nothing else can be told from it. Compared, never
   // written anywhere.
   std::string patient;
+  // For the screen alone, as ScreenNames has them.
+  std::string patient_name, study_text;
   // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
   // it belongs to; 0 is the largest.
   int part = 0;
+  // What was made of what was scanned, as the standard's terms say; empty where absent.
+  std::string volumetric, technique, presentation;
+  bool modality_lut = false;  // stored values become others by a table
+  struct ValueMap {
+    std::string unit;  // as UCUM; empty where it is not said
+    std::optional<double> slope, intercept;
+  };
+  std::vector<ValueMap> value_maps;  // real-world values, beside slope and intercept
   std::string kernel;  // of the reconstruction, one line; empty where absent
   // What the header says beside positions; none where absent or zero.
   std::optional<double> kvp, thickness_mm, spacing_between_mm, tilt_deg;
@@ -112,11 +123,15 @@ struct DicomHeader {
 // The code of the Error of a file that may not be read, or not any more.
 inline constexpr const char* kUnreadableFile = "UNREADABLE_FILE";
 
+// The end of the reason for skipping an archive or a compressed file.
+inline constexpr const char* kUnpackFirst = ": unpack it first";
+
 // Reads everything but the pixels, once; one header a frame. The Error's `what` is the reason for
-// skipping the file, without its name: it may not be read, is empty, no DICOM, cut short, a
+// skipping the file, without its name: it may not be read, is empty, packed, no DICOM, cut short, a
 // DICOMDIR, or lacks a UID.
 // Called on the threads of forEachFile only (deep recursion).
 Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& file,
-                                                  std::uint64_t file_bytes);
+                                                  std::uint64_t file_bytes,
+                                                  const Progress& progress = Progress());
 
 }  // namespace trephine

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "imaging/common/workers.h"
 #include "imaging/dicom/codecs.h"
 #include "imaging/dicom/dicom_stream.h"
 #include "imaging/dicom/transfer_syntax.h"
@@ -28,19 +29,21 @@ Error failed(std::string what) {
 
 class File {
  public:
-  explicit File(const std::filesystem::path& path)
-      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  explicit File(const std::filesystem::path& path, const Progress* progress = nullptr)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {}
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 
-  // All of it, or false.
+  // All of it, or false; false as well once it is cancelled.
   bool read(std::uint64_t offset, void* to, std::size_t bytes) const {
     auto* at = static_cast<std::uint8_t*>(to);
     while (bytes > 0) {
-      const ssize_t count = ::pread(descriptor_, at, bytes, off_t(offset));
+      if (progress_ && progress_->cancelled()) return false;
+      const std::size_t piece = std::min(bytes, kPieceBytes);
+      const ssize_t count = ::pread(descriptor_, at, piece, off_t(offset));
       if (count <= 0) return false;
       at += count;
       offset += std::uint64_t(count);
@@ -51,6 +54,7 @@ class File {
 
  private:
   int descriptor_;
+  const Progress* progress_;
 };
 
 std::uint32_t number32(const std::uint8_t* bytes, bool big) {
@@ -197,11 +201,11 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
   }
   if (number32(head + 8, false) < needed) return failed("its pixels are cut short");
   // Memory is taken as bytes come, not as the header promises.
-  constexpr std::uint64_t kBlock = std::uint64_t(1) << 20;
   auto all = std::make_shared<Bytes>();
   while (all->size() < needed) {
+    if (progress_.cancelled()) return failed("reading it was cancelled");
     const std::size_t before = all->size();
-    all->resize(before + std::min(kBlock, needed - before));
+    all->resize(before + std::min<std::uint64_t>(kPieceBytes, needed - before));
     const offile_off_t count =
         stream.read(all->data() + before, offile_off_t(all->size() - before));
     if (count <= 0) return failed("its pixels are cut short");
@@ -223,7 +227,7 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     if (std::size_t(header.frame) >= header.pixels->frames.size()) {
       return failed("its frame is not in the file");
     }
-    const File file(header.file);
+    const File file(header.file, &progress_);
     std::vector<std::uint8_t> codestream;
     for (const auto& fragment : header.pixels->frames[std::size_t(header.frame)]) {
       const std::size_t before = codestream.size();
@@ -250,7 +254,7 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
     if (!all) return all.error();
     if ((*all)->size() < skipped + bytes) return failed("its pixels are cut short");
     std::memcpy(to, (*all)->data() + skipped, bytes);
-  } else if (!File(header.file).read(header.pixels->offset + skipped, to, bytes)) {
+  } else if (!File(header.file, &progress_).read(header.pixels->offset + skipped, to, bytes)) {
     return failed("its file vanished, changed or is cut short");
   }
   if (narrow) {

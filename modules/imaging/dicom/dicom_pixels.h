@@ -9,6 +9,7 @@
 #include <mutex>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/result.h"
 #include "imaging/dicom/dicom_file.h"
 
@@ -32,6 +33,9 @@ std::optional<std::vector<std::uint8_t>> readBytes(const std::filesystem::path& 
 // Reads frames of one series. Any number of threads at once.
 class PixelReader {
  public:
+  // Cancelled with `progress`, which outlives it: what is being read then fails.
+  explicit PixelReader(const Progress& progress) : progress_(progress) {}
+
   // The frame's words in native byte order into `words` (rows * columns; 8-bit pixels widened).
   // Fails, with the reason in `what`, unless the file holds exactly what `header` said.
   Status read(const DicomHeader& header, std::int16_t* words);
@@ -40,6 +44,7 @@ class PixelReader {
   using Bytes = std::vector<std::uint8_t>;
   Result<std::shared_ptr<const Bytes>> inflated(const DicomHeader& header);
 
+  const Progress& progress_;
   std::mutex mutex_;
   std::map<std::filesystem::path, std::shared_ptr<const Bytes>> inflated_;  // multi-frame files
 };

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "imaging/common/workers.h"
+
 namespace trephine {
 
 namespace {
@@ -132,13 +134,15 @@ DcmInputStreamFactory* DicomStream::newFactory() const {
   return new DcmInputFileStreamFactory(OFFilename(path_.c_str()), tell());
 }
 
-bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes) {
+bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes,
+                    const Progress& progress) {
   if (file_bytes <= kSafeBytes) return false;
   constexpr std::string_view kLittle("\xFE\xFF\x00\xE0", 4), kBig("\xFF\xFE\xE0\x00", 4);
   std::ifstream in(file, std::ios::binary);
-  std::string block(std::size_t(1) << 20, '\0');
+  std::string block(kPieceBytes, '\0');
   std::size_t items = 0, kept = 0;
   while (in) {
+    if (progress.cancelled()) return true;
     in.read(block.data() + kept, std::streamsize(block.size() - kept));
     const std::string_view view(block.data(), kept + std::size_t(in.gcount()));
     for (const std::string_view tag : {kLittle, kBig}) {

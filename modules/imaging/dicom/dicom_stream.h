@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/progress.h"
+
 namespace trephine {
 
 // No value that we read is longer: longer ones stay in the file.
@@ -72,7 +74,8 @@ class DicomStream : public DcmInputStream {
 };
 
 // Whether sequences in the file might nest so deep that no worker's stack holds them. Deflated ones
-// are bounded by DicomStream.
-bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes);
+// are bounded by DicomStream. True as well where it was cancelled.
+bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes,
+                    const Progress& progress = Progress());
 
 }  // namespace trephine

@@ -5,6 +5,7 @@
 #include <dcmtk/dcmjpeg/djdecode.h>
 #include <dcmtk/dcmjpls/djdecode.h>
 #include <dcmtk/oflog/oflog.h>
+#include <dcmtk/ofstd/ofchrenc.h>
 
 #include <mutex>
 
@@ -16,6 +17,59 @@ namespace {
 
 std::uint32_t tagNumber(const DcmTagKey& tag) {
   return std::uint32_t(tag.getGroup()) << 16 | tag.getElement();
+}
+
+// Japanese text of several sets (ISO 2022) as EUC-JP, which holds them all and which iconv knows,
+// as it does not JIS X 0208 alone. A set is chosen by an escape and lasts until the next.
+std::string eucJpOf(std::string_view text) {
+  struct Set {
+    std::string_view escape;
+    std::string_view prefix;  // of each character
+    int bytes;
+  };
+  constexpr Set kSets[] = {{"(B", "", 0}, {"(J", "", 0}, {"(I", "\x8E", 1},
+                           {"$@", "", 2}, {"$B", "", 2}, {"$(D", "\x8F", 2}};
+  constexpr char kEscape = 0x1B, kHigh = char(0x80);
+  const Set* set = &kSets[0];
+  std::string euc;
+  while (!text.empty()) {
+    if (text.front() == kEscape) {
+      text.remove_prefix(1);
+      const auto next =
+          std::ranges::find_if(kSets, [&](const Set& one) { return text.starts_with(one.escape); });
+      if (next == std::end(kSets)) continue;
+      set = next;
+      text.remove_prefix(set->escape.size());
+      continue;
+    }
+    // Half-width katakana (JIS X 0201) has the high bit beside Latin letters.
+    if (set->bytes == 0 || std::size_t(set->bytes) > text.size()) {
+      if (text.front() & kHigh) euc += '\x8E';
+      euc += text.front();
+      text.remove_prefix(1);
+      continue;
+    }
+    euc += set->prefix;
+    for (int n = 0; n < set->bytes; ++n) euc += char(text[std::size_t(n)] | kHigh);
+    text.remove_prefix(std::size_t(set->bytes));
+  }
+  return euc;
+}
+
+bool isJapanese(const std::string& charset) {
+  return charset.find("ISO 2022 IR 87") != charset.npos ||
+         charset.find("ISO 2022 IR 159") != charset.npos;
+}
+
+std::optional<std::string> japaneseUtf8(const std::string& raw) {
+  const std::string euc = eucJpOf(raw);
+  OFCharacterEncoding iconv;
+  OFString utf8;
+  if (iconv.selectEncoding("EUC-JP", "UTF-8").bad() ||
+      iconv.convertString(OFString(euc.data(), euc.size()), utf8).bad()) {
+    return std::nullopt;
+  }
+  return std::string(utf8.c_str(), utf8.length());
 }
 
 }  // namespace
@@ -84,6 +138,9 @@ std::string decodedText(const DicomItem& item, const DcmTagKey& tag) {
       converter.selectCharacterSet(OFString(charset.data(), charset.size()), "ISO_IR 192").good() &&
       converter.convertString(OFString(raw.data(), raw.size()), utf8).good()) {
     return cleanUtf8(std::string_view(utf8.c_str(), utf8.length()));
+  }
+  if (isJapanese(charset)) {
+    if (const auto japanese = japaneseUtf8(raw)) return cleanUtf8(*japanese);
   }
   return guessUtf8(raw);
 }

@@ -71,11 +71,11 @@ bool isDicomDir(const fs::path& file) {
   return head.find(kMediaDirectory) != head.npos;
 }
 
-std::vector<fs::path> filesOfDicomDir(const fs::path& file) {
+std::vector<fs::path> filesOfDicomDir(const fs::path& file, const Progress& progress) {
   std::error_code error;
   if (!isDicomDir(file)) return {};
   const std::uintmax_t bytes = fs::file_size(file, error);
-  if (error || bytes > kLargest || nestsTooDeeply(file, bytes)) return {};
+  if (error || bytes > kLargest || nestsTooDeeply(file, bytes, progress)) return {};
   setUpDcmtk();
   std::vector<fs::path> files;
   // On a worker: a crafted file nests thousands deep.

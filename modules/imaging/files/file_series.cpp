@@ -82,10 +82,10 @@ SeriesReport assessFile(const std::filesystem::path& file, const std::string& na
 }
 
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress& progress,
-                              SeriesReport& report) {
+                              SeriesReport& report, HuLook& look) {
   Result<VolumeFileReading> reading = readVolumeFile(file, progress);
   if (!reading) return reading.error();
-  const auto voxels = [](std::uint64_t count) { return std::to_string(count) + " voxels"; };
+  const auto voxels = [](std::uint64_t count) { return counted(count, "voxel"); };
   if (reading->rounded > 0) {
     add(report, "HU_ROUNDED", "repair",
         voxels(reading->rounded) + " had HU that are not whole numbers",
@@ -104,18 +104,17 @@ Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress&
     const Finding& finding = report.findings.back();
     return Error{finding.code, finding.text, report.uid, finding.action};
   }
-  if (reading->hu_min >= 0.0) {
-    add(report, "NO_AIR", "notice",
-        "The smallest value is " + fixedText(reading->hu_min, 0) +
-            ": there is no air, so these may be stored values and not HU",
-        "Nothing was changed; if bone and air look wrong, subtract 1024 where it was exported");
-  }
+  look.addSampleOf(reading->volume.hu, reading->not_numbers);
+  const auto [low, high] = std::ranges::minmax(reading->volume.hu);
+  report.hu_min = low;
+  report.hu_max = high;
   report.verdict = verdictOf(report.findings);
   return std::move(reading->volume);
 }
 
-Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index) {
-  const Result<Volume> volume = readVolume(file);
+Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
+                               const Progress& progress) {
+  const Result<Volume> volume = readVolume(file, progress);
   if (!volume) return volume.error();
   const GridGeometry& g = volume->geometry;
   if (index < 0 || index >= g.size[2]) {

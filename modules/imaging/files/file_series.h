@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "imaging/common/hu_look.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/report/report.h"
 #include "volume/volume_files.h"
@@ -17,11 +18,12 @@ namespace trephine {
 // uid and description. A file that cannot be read is a refused series, by the reader's own code.
 SeriesReport assessFile(const std::filesystem::path& file, const std::string& name);
 
-// Reads the voxels and adds what they tell to `report`. Errors: the reader's.
+// Reads the voxels, looks at them and adds what they tell to `report`. Errors: the reader's.
 Result<Volume> readFileSeries(const std::filesystem::path& file, const Progress& progress,
-                              SeriesReport& report);
+                              SeriesReport& report, HuLook& look);
 
 // One slice, for a preview: the whole file is read. Errors: NO_SUCH_SLICE, the reader's.
-Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index);
+Result<SlicePicture> fileSlice(const std::filesystem::path& file, int index,
+                               const Progress& progress);
 
 }  // namespace trephine

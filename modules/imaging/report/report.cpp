@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/sha256.h"
 #include "imaging/common/text.h"
 #include "imaging/report/provenance.h"
 #include "volume/case_memory.h"
@@ -44,7 +45,8 @@ Json choiceJson(const Choice& choice) {
           {"words", choice.words}};
 }
 
-Json seriesJson(const SeriesReport& series) {
+Json seriesJson(const SeriesReport& series, Identity identity) {
+  const bool shown = identity == Identity::shown;
   const GridGeometry& g = series.geometry;
   Json direction = Json::array();
   for (int row = 0; row < 3; ++row) {
@@ -54,10 +56,10 @@ Json seriesJson(const SeriesReport& series) {
   for (const Finding& finding : series.findings) findings.push_back(findingJson(finding));
   Json choices = Json::array();
   for (const Choice& choice : series.choices) choices.push_back(choiceJson(choice));
-  return {{"uid", cleanUtf8(series.uid)},
-          {"description", cleanUtf8(series.description)},
+  return {{"uid", shown ? cleanUtf8(series.uid) : seriesHash(series.uid)},
+          {"description", shown ? cleanUtf8(series.description) : ""},
           {"modality", cleanUtf8(series.modality)},
-          {"source", series.source},
+          {"source", shown ? series.source : ""},
           {"slices", series.slices},
           {"phases", series.phases},
           {"memory_mb", series.memory_mb},
@@ -98,19 +100,30 @@ double memoryMb(const SeriesReport& series, const ImportRequest& request) {
   return kWindow_mb + std::max(readingMb(series, request), openedMb(voxelsOf(series, request)));
 }
 
-Json toJson(const ImportReport& report) {
+std::string seriesHash(const std::string& uid) {
+  constexpr std::size_t kDigits = 32;
+  std::size_t end = std::min(uid.rfind('#'), uid.size());
+  // A file's name may hold one, too.
+  if (uid.find_first_not_of("0123456789#.") != uid.npos) end = uid.size();
+  return sha256Hex(uid.data(), end).substr(0, kDigits) + uid.substr(end);
+}
+
+Json toJson(const ImportReport& report, Identity identity) {
+  const bool shown = identity == Identity::shown;
   Json skipped = Json::array();
   for (const SkippedFiles& files : report.skipped) {
     skipped.push_back({{"reason", cleanUtf8(files.reason)}, {"count", files.count}});
   }
   Json series = Json::array();
-  for (const SeriesReport& one : report.series) series.push_back(seriesJson(one));
-  Json json = {{"path", cleanUtf8(report.path)},
+  for (const SeriesReport& one : report.series) series.push_back(seriesJson(one, identity));
+  std::optional<std::string> chosen = report.chosen;
+  if (chosen && !shown) chosen = seriesHash(*chosen);
+  Json json = {{"path", shown ? cleanUtf8(report.path) : ""},
                {"files_seen", report.files_seen},
                {"files_read", report.files_read},
                {"skipped", std::move(skipped)},
                {"series", std::move(series)},
-               {"chosen", orNull(report.chosen)},
+               {"chosen", orNull(chosen)},
                {"provenance", report.provenance ? toJson(*report.provenance) : Json(nullptr)},
                {"seconds",
                 {{"scan", report.seconds.scan},
@@ -121,7 +134,7 @@ Json toJson(const ImportReport& report) {
   if (report.error) {
     json["error"] = {{"code", report.error->code},
                      {"what", cleanUtf8(report.error->what)},
-                     {"where", cleanUtf8(report.error->where)},
+                     {"where", shown ? cleanUtf8(report.error->where) : ""},
                      {"next", cleanUtf8(report.error->next)}};
   }
   return json;

@@ -123,8 +123,16 @@ struct ImportReport {
   double start_rss_mb = 0.0, peak_rss_mb = 0.0;
 };
 
+// Stands for a series where its UID may not: 32 hexadecimal digits, the same on every machine, with
+// the "#2" of a part. From SHA-256 of the UID.
+std::string seriesHash(const std::string& uid);
+
+// Whether a report names its source: path, UIDs, descriptions and formats. Where it is hidden, UIDs
+// are their hashes, and the others empty.
+enum class Identity { hidden, shown };
+
 // The contract of `trephine-lab import --json`, without schema and build.
-Json toJson(const ImportReport& report);
+Json toJson(const ImportReport& report, Identity identity = Identity::hidden);
 
 struct SlicePicture {
   int columns = 0, rows = 0;

@@ -83,11 +83,32 @@ std::string findingRow(const Finding& finding) {
          "</td><td><font size=\"1\">" + escaped(finding.code) + "</font></td></tr>\n";
 }
 
-std::string seriesSection(const SeriesReport& series, std::size_t number, bool chosen) {
+std::string findingsTable(const SeriesReport& series) {
+  std::string html =
+      "<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\" width=\"100%\">\n"
+      "<tr><th align=\"left\">Severity</th><th align=\"left\">What was found</th>"
+      "<th align=\"left\">What was done, or is to do</th><th align=\"left\">Code</th></tr>\n";
+  for (const Finding& finding : series.findings) html += findingRow(finding);
+  return html + "</table>\n";
+}
+
+std::string choiceTable(const Choice& choice) {
+  std::string html = "<p>" + escaped(choice.question) + "</p>\n<table cellpadding=\"2\">\n";
+  for (std::size_t n = 0; n < choice.options.size(); ++n) {
+    html += "<tr><td><font size=\"1\">" + escaped(choice.code + "=" + choice.options[n]) +
+            "</font></td><td>" + escaped(choice.words[n]) + "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+// `number` of `count`, as the page lists them.
+std::string seriesSection(const SeriesReport& series, std::size_t number, std::size_t count,
+                          bool chosen) {
   const GridGeometry& g = series.geometry;
-  std::string html = "<h3>Series " + std::to_string(number) + (chosen ? " (opened)" : "") +
-                     ": <font color=\"" + verdictColour(series.verdict) + "\">" +
-                     verdictSentence(series.verdict) + "</font></h3>\n<table cellpadding=\"2\">\n";
+  std::string html = "<h3>Series " + std::to_string(number) + " of " + std::to_string(count) +
+                     (chosen ? " (opened)" : "") + ": <font color=\"" +
+                     verdictColour(series.verdict) + "\">" + verdictSentence(series.verdict) +
+                     "</font></h3>\n<table cellpadding=\"2\">\n";
   html += row("Kind", escaped(series.modality.empty() ? "unknown" : series.modality) + ", " +
                           escaped(series.source) +
                           (series.transfer_syntax.empty()
@@ -107,13 +128,10 @@ std::string seriesSection(const SeriesReport& series, std::size_t number, bool c
   }
   if (series.lossy) html += row("Compression", "with loss");
   html += "</table>\n";
-  if (series.findings.empty()) return html + "<p>Nothing to remark.</p>\n";
-  html +=
-      "<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\" width=\"100%\">\n"
-      "<tr><th align=\"left\">Severity</th><th align=\"left\">What was found</th>"
-      "<th align=\"left\">What was done, or is to do</th><th align=\"left\">Code</th></tr>\n";
-  for (const Finding& finding : series.findings) html += findingRow(finding);
-  return html + "</table>\n";
+  if (series.findings.empty()) html += "<p>Nothing to remark.</p>\n";
+  if (!series.findings.empty()) html += findingsTable(series);
+  for (const Choice& choice : series.choices) html += choiceTable(choice);
+  return html;
 }
 
 std::string provenanceSection(const Provenance& provenance) {
@@ -165,15 +183,16 @@ std::string reportPage(const ImportReport& report) {
     return chosen(n) ? 0 : report.series[n].verdict != Verdict::refused ? 1 : 2;
   });
   for (std::size_t n = 0; n < std::min(order.size(), kMostSeries); ++n) {
-    html += seriesSection(report.series[order[n]], order[n] + 1, chosen(order[n]));
+    html += seriesSection(report.series[order[n]], n + 1, order.size(), chosen(order[n]));
   }
   if (order.size() > kMostSeries) {
-    html += "<p>" + std::to_string(order.size() - kMostSeries) +
-            " more series were found; the window lists them.</p>\n";
+    html += "<p>" + std::to_string(order.size() - kMostSeries) + " more series " +
+            (order.size() == kMostSeries + 1 ? "was" : "were") +
+            " found; the window lists all.</p>\n";
   }
   if (report.provenance) html += provenanceSection(*report.provenance);
-  html += "<h3>Files</h3>\n<p>" + std::to_string(report.files_seen) + " files were seen, " +
-          std::to_string(report.files_read) + " read.";
+  html += "<h3>Files</h3>\n<p>" + counted(std::uint64_t(report.files_seen), "file", "was", "were") +
+          " seen, " + std::to_string(report.files_read) + " read.";
   for (const SkippedFiles& skipped : report.skipped) {
     html += " Skipped " + std::to_string(skipped.count) + ": " + escaped(skipped.reason) + ".";
   }

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "base/memory.h"
+#include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_pixels.h"
@@ -19,8 +20,9 @@ constexpr double kRead = 0.9;
 
 class Assembler {
  public:
-  Assembler(const Series& series, const SeriesPlan& plan, Assembly& assembly)
-      : series_(series), plan_(plan), assembly_(assembly) {
+  Assembler(const Series& series, const SeriesPlan& plan, const Progress& progress,
+            Assembly& assembly)
+      : series_(series), plan_(plan), assembly_(assembly), reader_(progress) {
     const DicomHeader& first = series.slices[plan.sources.front()];
     source_ = {first.columns, first.rows};
     target_ = {assembly.volume.geometry.size[0], assembly.volume.geometry.size[1]};
@@ -78,6 +80,8 @@ class Assembler {
                        });
   }
 
+  bool sourceVanished() const { return watch_.vanished(); }
+
   // Interpolation is done: what was not scanned becomes air, and the range is taken anew.
   void finish() {
     HuCounts& counts = assembly_.counts;
@@ -93,13 +97,18 @@ class Assembler {
  private:
   void read(std::size_t n, std::int16_t* words, std::int16_t padding_hu) {
     thread_local HuConverter converter;
+    thread_local std::vector<std::int16_t> sample;
+    sample.clear();
     const std::size_t slice = plan_.sources[n];
     const DicomHeader& header = series_.slices[slice];
+    const std::size_t number = watch_.begin();
     const Status read = reader_.read(header, words);
+    watch_.end(number, header.file, header.file_bytes, read.ok());
     HuCounts counts;
-    if (read) counts = converter.convert(words, source_voxels_, header.format, padding_hu);
+    if (read) counts = converter.convert(words, source_voxels_, header.format, padding_hu, &sample);
     const std::lock_guard lock(mutex_);
     assembly_.counts.add(counts);
+    assembly_.look.add(sample);
     if (!read) assembly_.unreadable.push_back({slice, read.error().what});
   }
 
@@ -109,6 +118,7 @@ class Assembler {
   SliceSize source_, target_;
   std::size_t source_voxels_ = 0, target_voxels_ = 0;
   PixelReader reader_;
+  SourceWatch watch_;
   std::mutex mutex_;
 };
 
@@ -122,10 +132,11 @@ Result<Assembly> assemble(const Series& series, const SeriesPlan& plan, const Pr
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the volume", "");
   }
-  Assembler assembler(series, plan, assembly);
+  Assembler assembler(series, plan, progress, assembly);
   const bool mixed = !plan.stack.oneToOne();
   const Status status = mixed ? assembler.readAndMix(progress) : assembler.readOneToOne(progress);
   if (!status) return status.error();
+  assembly.vanished = !assembly.unreadable.empty() && assembler.sourceVanished();
   if (mixed || plan.stack.sheared()) assembler.finish();
   return assembly;
 }

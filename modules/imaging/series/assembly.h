@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "imaging/common/hu_look.h"
 #include "imaging/common/stored_values.h"
 #include "imaging/series/series.h"
 #include "volume/volume.h"
@@ -15,11 +16,13 @@ namespace trephine {
 struct Assembly {
   Volume volume;
   HuCounts counts;
+  HuLook look;  // at the slices before anything was interpolated
   struct Unreadable {
     std::size_t slice;  // in Series::slices
     std::string why;
   };
   std::vector<Unreadable> unreadable;  // where there are any, the volume is not complete
+  bool vanished = false;  // the whole source, rather than one slice or the other, while it was read
 };
 
 // Reads the plan's slices on several threads, straight into the volume where nothing is to be

@@ -3,11 +3,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <future>
+#include <mutex>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include "imaging/common/source_watch.h"
 #include "imaging/common/text.h"
 #include "imaging/common/workers.h"
 #include "imaging/dicom/dicom_values.h"
@@ -80,7 +83,60 @@ class Walk {
   std::vector<FoundFile> files_;
 };
 
+// Whether all of the header could be read.
+bool isWhole(const Result<std::vector<DicomHeader>>& headers) {
+  return headers && std::ranges::none_of(headers.value(), [](const DicomHeader& frame) {
+           return frame.defect == Defect::cut;
+         });
+}
+
+// The series that are there so far, and where their files lie, for a person who may choose one. Any
+// thread.
+class LookedAt {
+ public:
+  explicit LookedAt(ScanGuide& guide) : guide_(guide) {}
+
+  // Whether the file can be left out: the series that was chosen has none in its folder.
+  bool skips(const fs::path& file) {
+    const std::optional<std::string> chosen = guide_.chosen();
+    if (!chosen) return false;
+    const std::lock_guard lock(mutex_);
+    const auto folders = folders_.find(*chosen);
+    return folders != folders_.end() && !folders->second.contains(file.parent_path());
+  }
+
+  void add(const std::vector<DicomHeader>& frames) {
+    const DicomHeader& first = frames.front();
+    const std::lock_guard lock(mutex_);
+    const auto [folders, is_new] = folders_.try_emplace(first.series_uid);
+    folders->second.insert(first.file.parent_path());
+    if (is_new) {
+      found_.push_back(
+          {first.series_uid, first.description, first.modality, 0, screenNames(first)});
+    }
+    std::ranges::find(found_, first.series_uid, &FoundSeries::uid)->slices += int(frames.size());
+    const auto now = Clock::now();
+    if (now - told_ < kTellEvery) return;
+    told_ = now;
+    guide_.tell(found_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kTellEvery{200};
+
+  ScanGuide& guide_;
+  std::mutex mutex_;
+  std::vector<FoundSeries> found_;  // in the order in which they were
+  std::map<std::string, std::set<fs::path>> folders_;
+  Clock::time_point told_{};
+};
+
 }  // namespace
+
+ScreenNames screenNames(const DicomHeader& header) {
+  return {header.patient, header.study_uid, header.patient_name, header.study_text};
+}
 
 std::optional<FileId> fileId(const fs::path& file) {
   struct stat status;
@@ -88,7 +144,7 @@ std::optional<FileId> fileId(const fs::path& file) {
   return FileId{status.st_dev, status.st_ino};
 }
 
-Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
+Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress, ScanGuide* guide) {
   std::error_code error;
   if (!fs::exists(path, error)) {
     return Error{"MISSING_FOLDER", "The folder does not exist or may not be opened",
@@ -100,7 +156,7 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
   progress.at(0.0, "Looking for files");
   Walk walk(result, progress);
   std::vector<fs::path> named;
-  if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path);
+  if (fs::is_regular_file(path, error)) named = filesOfDicomDir(path, progress);
   if (named.empty()) {
     const bool stale = isDicomDir(path);
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -109,13 +165,31 @@ Result<ScannedFiles> scanFiles(const fs::path& path, const Progress& progress) {
   for (const fs::path& file : named) walk.visit(file, 0);
 
   const std::vector<FoundFile>& files = walk.files();
+  SourceWatch watch;
+  std::optional<LookedAt> looked;
+  if (guide) looked.emplace(*guide);
   std::vector<std::optional<Result<std::vector<DicomHeader>>>> headers(files.size());
-  const Status read = forEachFile(
-      files.size(), progress, {0.0, 1.0, "Reading headers"},
-      [&](std::size_t i) { headers[i] = readDicomHeaders(files[i].path, files[i].bytes); });
+  const Status read =
+      forEachFile(files.size(), progress, {0.0, 0.99, "Reading headers"}, [&](std::size_t i) {
+        const auto& [file, bytes] = files[i];
+        if (looked && looked->skips(file)) return;
+        const std::size_t number = watch.begin();
+        headers[i] = readDicomHeaders(file, bytes, progress);
+        watch.end(number, file, bytes, isWhole(*headers[i]));
+        if (looked && *headers[i]) looked->add(headers[i]->value());
+      });
   if (!read) return read.error();
+  if (watch.vanished() || !fs::exists(path, error)) {
+    return Error{kSourceVanished, "The source vanished while its files were looked through",
+                 cleanUtf8(path.string()), "Plug it in or connect it again, then open it again"};
+  }
 
   for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!headers[i]) {
+      ++result.not_looked_at;
+      result.folders_left.insert(files[i].path.parent_path());
+      continue;
+    }
     auto& frames = *headers[i];
     if (frames) {
       ++result.dicom_files;

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "imaging/dicom/dicom_file.h"
+#include "imaging/report/scan_guide.h"
 
 namespace trephine {
 
@@ -26,13 +27,19 @@ struct ScannedFiles {
   std::vector<std::filesystem::path> volume_files;  // NIfTI and the like, sorted
   int dicom_files = 0;                              // that were read
   int files_seen = 0;                               // everything that is not a folder
+  int not_looked_at = 0;                            // since a series was chosen before the end
+  std::set<std::filesystem::path> folders_left;     // in which those files lie
   std::map<std::string, int> skipped;               // by reason; none names a file
   FileIds came_upon;                                // files and folders, read or not
 };
 
 // `path` is a folder, taken with its subfolders, or one file. Of a DICOMDIR the files that it names
 // are taken, or its folder where one of them is not there. Links are followed, each file and folder
-// once. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY.
-Result<ScannedFiles> scanFiles(const std::filesystem::path& path, const Progress& progress);
+// once. `guide` may be null. Errors: MISSING_FOLDER, CANCELLED, OUT_OF_MEMORY, SOURCE_VANISHED.
+Result<ScannedFiles> scanFiles(const std::filesystem::path& path, const Progress& progress,
+                               ScanGuide* guide);
+
+// What the header says of whom and what it is, for the screen alone.
+ScreenNames screenNames(const DicomHeader& header);
 
 }  // namespace trephine

@@ -84,11 +84,12 @@ void markParts(Series& series) {
   }
 }
 
-bool sameBytes(const DicomHeader& a, const DicomHeader& b) {
+bool sameBytes(const DicomHeader& a, const DicomHeader& b, const Progress& progress) {
   if (a.file_bytes != b.file_bytes) return false;
   std::ifstream file_a(a.file, std::ios::binary), file_b(b.file, std::ios::binary);
   std::vector<char> block_a(1 << 16), block_b(1 << 16);
   while (file_a && file_b) {
+    if (progress.cancelled()) return false;
     file_a.read(block_a.data(), std::streamsize(block_a.size()));
     file_b.read(block_b.data(), std::streamsize(block_b.size()));
     const std::streamsize count = file_a.gcount();
@@ -99,12 +100,12 @@ bool sameBytes(const DicomHeader& a, const DicomHeader& b) {
 }
 
 // Keeps one of each set of equal files, and prefers a whole file to a cut copy of it.
-void dropDuplicates(Series& series) {
+void dropDuplicates(Series& series, const Progress& progress) {
   std::vector<DicomHeader> kept;
   std::map<std::pair<std::filesystem::path, std::filesystem::path>, bool> compared;  // of frames
   const auto equal = [&](const DicomHeader& a, const DicomHeader& b) {
     const auto [it, first_time] = compared.try_emplace({a.file, b.file}, false);
-    if (first_time) it->second = sameBytes(a, b);
+    if (first_time) it->second = sameBytes(a, b, progress);
     return it->second;
   };
   const auto image = [](const DicomHeader& h) { return std::tie(h.sop_instance, h.frame); };
@@ -129,13 +130,12 @@ void dropDuplicates(Series& series) {
   series.slices = std::move(kept);
   if (!dropped.slices.empty()) {
     const std::size_t count = dropped.slices.size();
-    dropped.text = count == 1 ? "1 file is a copy of another"
-                              : std::to_string(count) + " files are copies of others";
+    dropped.text = counted(count, "file", "is a copy of another", "are copies of others");
     series.report.findings.push_back(std::move(dropped));
   }
   if (!different.slices.empty()) {
     const std::size_t count = different.slices.size();
-    different.text = std::to_string(count) + (count == 1 ? " file claims" : " files claim") +
+    different.text = counted(count, "file", "claims", "claim") +
                      " to be another file's image but " + (count == 1 ? "differs" : "differ") +
                      " from it";
     series.report.findings.push_back(std::move(different));
@@ -174,6 +174,7 @@ std::vector<Series> splitSeries(std::vector<DicomHeader> headers) {
   for (DicomHeader& header : headless) parts.front().slices.push_back(std::move(header));
   if (parts.size() == 1) return parts;
   for (Series& part : parts) {
+    if (!isCt(part.slices.front())) continue;
     part.report.findings.push_back(
         {"SERIES_SPLIT",
          "repair",
@@ -210,7 +211,16 @@ Verdict verdictOf(const std::vector<Finding>& findings) {
   return any("refusal") ? Verdict::refused : any("repair") ? Verdict::repaired : Verdict::pass;
 }
 
-std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
+void conclude(Series& series) {
+  std::vector<Finding>& findings = series.report.findings;
+  series.report.verdict = verdictOf(findings);
+  if (series.report.verdict != Verdict::refused) return;
+  for (std::size_t n = series.findings_kept; n < findings.size(); ++n) {
+    if (findings[n].severity == "repair") findings[n].action.clear();
+  }
+}
+
+std::vector<Series> groupSeries(std::vector<DicomHeader> headers, const Progress& progress) {
   // Numbered in order of UIDs, which no file name or folder order can change.
   std::map<std::array<std::string, 2>, std::vector<DicomHeader>> groups;
   for (DicomHeader& header : headers) {
@@ -231,8 +241,8 @@ std::vector<Series> groupSeries(std::vector<DicomHeader> headers) {
              {},
              "Slices of one study, series number, date and time were taken together"});
       }
-      dropDuplicates(series);
-      dropEqualRepeats(series);
+      dropDuplicates(series, progress);
+      dropEqualRepeats(series, progress);
       series.findings_kept = series.report.findings.size();
       assessSeries(series);
       all.push_back(std::move(series));

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/progress.h"
 #include "imaging/dicom/dicom_file.h"
 #include "imaging/report/report.h"
 #include "imaging/series/series_geometry.h"
@@ -28,8 +29,9 @@ struct SeriesPlan {
 // may have made differ within one scan (study, frame of reference, the last digits of spacing and
 // orientation) makes parts of one series, which are joined on consent.
 // `headers` are sorted by SOP Instance UID; the result does not depend on names or order of files.
-// Files are opened only to compare those that claim to be the same image or lie at one place.
-std::vector<Series> groupSeries(std::vector<DicomHeader> headers);
+// Files are opened only to compare those that claim to be the same image or lie at one place; once
+// `progress` is cancelled, none any more.
+std::vector<Series> groupSeries(std::vector<DicomHeader> headers, const Progress& progress);
 
 // Fills the report anew: every finding that headers can give under these answers, choices, geometry
 // and verdict; orders the slices. Pure. (series_checks.cpp)
@@ -37,6 +39,8 @@ SeriesPlan assessSeries(Series& series, const Answers& answers = {});
 
 // The worst of the findings' severities.
 Verdict verdictOf(const std::vector<Finding>& findings);
+// Sets the verdict. In what is refused nothing was put right: its repairs say only what was found.
+void conclude(Series& series);
 
 // "slice 12", by instance number, or "a slice without number".
 std::string sliceName(const DicomHeader& header);

@@ -20,6 +20,7 @@ namespace trephine {
 namespace {
 
 constexpr int kMostPhases = 100;
+const ProgressPart kComparing{0.99, 0.99, "Comparing slices"};  // of the scan's
 constexpr std::size_t kMostCompared = 64;  // repeats that are read while the folder is scanned
 
 // [first, last) of the slices at each place.
@@ -183,8 +184,9 @@ Ranks ranks(const std::vector<const DicomHeader*>& slices, const std::vector<Pla
 std::string timeText(const DicomHeader& slice) {
   const std::optional<double>& taken =
       slice.phase[kAcquisitionTime] ? slice.phase[kAcquisitionTime] : slice.phase[kContentTime];
-  if (!taken || *taken < 0.0 || *taken > 1e15) return "";
-  const auto second = std::int64_t(std::fmod(*taken, 1e6));  // HHMMSS, after a date or alone
+  // HHMMSS alone, or after a date of eight digits.
+  if (!taken || *taken < 0.0 || *taken > 1e15 || (*taken >= 1e6 && *taken < 1e13)) return "";
+  const auto second = std::int64_t(std::fmod(*taken, 1e6));
   char text[16];
   std::snprintf(text, sizeof text, ", %02d:%02d:%02d", int(second / 10000), int(second / 100 % 100),
                 int(second % 100));
@@ -206,7 +208,7 @@ std::optional<Pixels> pixelsOf(PixelReader& reader, const DicomHeader& slice) {
 
 }  // namespace
 
-void dropEqualRepeats(Series& series) {
+void dropEqualRepeats(Series& series, const Progress& progress) {
   struct Placed {
     double place_mm;
     std::size_t slice;
@@ -228,14 +230,14 @@ void dropEqualRepeats(Series& series) {
   const std::size_t repeats = placed.size() - places.size();
   const bool scanned_again = areMostRepeated(places);
 
-  PixelReader reader;
+  PixelReader reader(progress);
   std::vector<bool> dropped(series.slices.size(), false);
   Finding finding{"DUPLICATE_FILES", "notice", "", {}, "One of each was kept"};
   for (const Place& place : places) {
     if (place.count() < 2) continue;
     std::vector<std::optional<Pixels>> pixels(place.count());
     // On workers, for the reader's sake.
-    const Status read = forEachFile(place.count(), Progress(), {}, [&](std::size_t n) {
+    const Status read = forEachFile(place.count(), progress, kComparing, [&](std::size_t n) {
       pixels[n] = pixelsOf(reader, series.slices[placed[place.first + n].slice]);
     });
     if (!read) return;
@@ -254,8 +256,7 @@ void dropEqualRepeats(Series& series) {
     if (different && repeats > kMostCompared) break;  // too many to read them all
   }
   if (finding.slices.empty()) return;
-  finding.text = std::to_string(finding.slices.size()) +
-                 (finding.slices.size() == 1 ? " slice repeats" : " slices repeat") +
+  finding.text = counted(finding.slices.size(), "slice", "repeats", "repeat") +
                  " another at the same place, pixel by pixel";
   series.report.findings.push_back(std::move(finding));
   std::vector<DicomHeader> kept;
@@ -320,9 +321,11 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       }
       const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
-      choice.words.push_back("Phase " + std::to_string(phase + 1) + " by " + told_apart_by +
+      const bool by_kernel = told_apart_by == "convolution kernel";
+      choice.words.push_back("Phase " + std::to_string(phase + 1) +
+                             (by_kernel ? "" : " by " + told_apart_by) +
                              (middle.kernel.empty() ? "" : ", kernel " + middle.kernel) +
-                             timeText(middle) + ", " + std::to_string(its.size()) + " slices");
+                             timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }

@@ -9,7 +9,7 @@ namespace trephine {
 
 // Drops all but one of the slices that lie at one place and hold the same pixels, with a notice.
 // Opens files. Where every place holds as many different slices, they are phases: left alone.
-void dropEqualRepeats(Series& series);
+void dropEqualRepeats(Series& series, const Progress& progress);
 
 // Of slices sorted by place (`places_mm` along the normal): those that one volume is made of, in
 // that order. Adds PHASES or DUPLICATE_POSITIONS and what is to choose to `report`; while that is

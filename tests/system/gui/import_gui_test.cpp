@@ -1,6 +1,7 @@
 // Importing as a person does it: open a folder, look at its series and slices, import one; by mouse
 // and by keys alone. Real DICOM files, the real window.
 #include <QApplication>
+#include <QComboBox>
 #include <QDir>
 #include <QDropEvent>
 #include <QFileDialog>
@@ -24,16 +25,18 @@
 
 #include "gui_support.h"
 #include "imaging/dicom/ct_writer.h"
+#include "slow_source/slow_source.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "volume/case_memory.h"
 #include "volume/phantom.h"
+#include "volume/volume_files.h"
 
 using namespace trephine;
 
 namespace {
 
-constexpr int kLong_ms = 120000;
+constexpr int kLong_ms = 120000, kSoon_ms = 20000;
 constexpr int kManySeries = 10, kSlicesOfMany = 300;
 // With this between two turns of the event loop a window still feels alive.
 constexpr double kLongestGap_ms = 200.0;
@@ -267,6 +270,31 @@ class ImportGuiTest : public QObject {
     dialog()->reject();
   }
 
+  void valuesThatCannotBeHuAreAskedForOnceTheyWereRead() {
+    const QString folder = temporary_.filePath("stored");
+    Volume stored = block({64, 48, 40}, 3);
+    for (std::int16_t& hu : stored.hu) hu = std::int16_t(hu + 1000);  // its intercept is lost
+    write(stored, "Stored values", folder);
+    open(folder);
+    auto* import = find<QPushButton>("import");
+    QVERIFY(import->isEnabled());
+    QSignalSpy stopped(&workstation().import(), &ImportTask::stopped);
+    QTest::mouseClick(import, Qt::LeftButton);
+    QVERIFY(stopped.wait(kLong_ms));
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("errorDialog"));
+    closeError();
+    QCOMPARE(find<QLabel>("verdictWord")->text(), stateWord(SeriesState::asks));
+    QVERIFY(!import->isEnabled());
+    find<QRadioButton>("choice_IMPLAUSIBLE_HU_accept")->click();
+    QVERIFY(import->isEnabled());
+    keepGrab("import-implausible.png");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    QTest::mouseClick(import, Qt::LeftButton);
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(workstation().currentCase()->volume->hu == stored.hu);
+    closeError();
+  }
+
   void couchAndFaceAreAskedForBeforeTheCaseOpens() {
     const QString folder = temporary_.filePath("head");
     write(headOnACouch(), "Head", folder);
@@ -442,6 +470,76 @@ class ImportGuiTest : public QObject {
     }
   }
 
+  void aLabelMapBesideTheCtIsOpenedWithIt() {
+    const QString folder = temporary_.filePath("labelled");
+    write(block({64, 48, 40}, 0), "Head", folder + "/ct");
+    Volume map = block({64, 48, 40}, 0);
+    for (std::int16_t& hu : map.hu) hu = hu > 0 ? 3 : 0;
+    QVERIFY(writeVolume(map, toPath(folder + "/organs_seg.nii.gz")).ok());
+    open(folder);
+    QCOMPARE(list()->currentItem()->text(), QString("Head"));
+    auto* offered = find<QComboBox>("labelFile");
+    QVERIFY(offered->isVisible());
+    keepGrab("import-labels.png");
+    offered->setCurrentIndex(1);
+    find<QPushButton>("import")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase() && workstation().currentCase()->labels,
+                             kLong_ms);
+    closeError();
+    QVERIFY(find<QLabel>("caseLabel")->text().contains("with a label map"));
+    QVERIFY(QDir(folder).removeRecursively());
+  }
+
+  // 5 MB/s. A series that was found is used before the rest has been looked at.
+  void aSeriesOnASlowStickIsUsedBeforeTheSearchEnds() {
+    write(block({512, 512, 30}, 0), "Head 1.0", temporary_.filePath("stick/a"));
+    write(block({64, 64, 2000}, 1), "Whole body", temporary_.filePath("stick/b"));
+    write(block({64, 64, 1500}, 2), "Legs", temporary_.filePath("stick/c"));
+    const test::SlowSource slow(qPrintable(temporary_.filePath("stick")), 5e6);
+    workstation().openPath(toPath(temporary_.filePath("stick")));
+    auto* take = find<QPushButton>("takeFound");
+    auto* status = find<QLabel>("importStatus");
+    QTRY_VERIFY_WITH_TIMEOUT(list()->count() >= 2, kSoon_ms);
+    QVERIFY(workstation().import().isWorking());
+    QVERIFY(!take->isEnabled());
+    list()->setCurrentRow(0);
+    QVERIFY(take->isEnabled());
+    QTRY_VERIFY_WITH_TIMEOUT(status->text().contains(" left"), kSoon_ms);
+    QVERIFY(workstation().import().isWorking());
+    keepGrab("import-slow.png");
+    QTest::mouseClick(take, Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QCOMPARE(list()->currentItem()->text(), QString("Head 1.0"));
+    QVERIFY(find<QLabel>("folderWords")->text().contains("not looked at"));
+    QVERIFY(find<QPushButton>("import")->isEnabled());
+    QVERIFY(find<QPushButton>("scanOn")->isVisible());
+    keepGrab("import-stopped.png");
+  }
+
+  void ASeriesThatVanishesIsRefusedAndTheWindowLivesOn() {
+    const auto before = workstation().currentCase();
+    {
+      const test::SlowSource slow(qPrintable(temporary_.filePath("stick")), 1e9, 6e6);
+      find<QPushButton>("import")->click();
+      QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>("errorDialog"), kLong_ms);
+      auto* error = window_->findChild<QMessageBox*>("errorDialog");
+      QVERIFY2(error->text().contains("vanished") || error->informativeText().contains("vanished"),
+               qPrintable(error->text()));
+      closeError();
+      QVERIFY(dialog()->isVisible());
+      QVERIFY(!find<QPushButton>("import")->isEnabled());
+      QVERIFY(find<QLabel>("verdictSentence")->text().startsWith("Cannot be used"));
+      keepGrab("import-vanished.png");
+    }
+    QCOMPARE(workstation().currentCase().has_value(), before.has_value());
+    if (before) QVERIFY(workstation().currentCase()->volume == before->volume);
+    find<QPushButton>("scanOn")->click();  // it is plugged in again
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
+    QVERIFY(!find<QPushButton>("scanOn")->isVisible());
+    QCOMPARE(list()->currentItem()->text(), QString("Whole body"));
+    QVERIFY(std::filesystem::remove_all(toPath(temporary_.filePath("stick"))) > 0);
+  }
+
   void nothingIsWritten() {
     // The folder of a recording is not even made.
     QVERIFY(!QDir(temporary_.filePath("sessions")).exists());
@@ -450,7 +548,7 @@ class ImportGuiTest : public QObject {
       files << toQt(entry.path().filename());
     }
     files.sort();
-    QCOMPARE(files, QStringList({"empty", "gap", "head", "many", "two"}));
+    QCOMPARE(files, QStringList({"empty", "gap", "head", "many", "stored", "two"}));
   }
 
   void cleanupTestCase() { window_.reset(); }

@@ -94,8 +94,8 @@ TEST_F(FileSeries, WhatWasDoneToValuesIsSaidWithTheNumberOfVoxels) {
   EXPECT_EQ(codesOfReading(), "ASSUMED_HU HU_ROUNDED HU_CLAMPED NOT_NUMBERS ");
   const SeriesReport& series = report_.series.front();
   EXPECT_EQ(series.verdict, Verdict::repaired);
-  EXPECT_EQ(find(series, "HU_ROUNDED")->text.substr(0, 8), "1 voxels");
-  EXPECT_EQ(find(series, "HU_CLAMPED")->text.substr(0, 8), "1 voxels");
+  EXPECT_EQ(find(series, "HU_ROUNDED")->text.substr(0, 8), "1 voxel ");
+  EXPECT_EQ(find(series, "HU_CLAMPED")->text.substr(0, 8), "1 voxel ");
   EXPECT_EQ(find(series, "NOT_NUMBERS")->text.substr(0, 8), "3 voxels");
 }
 

@@ -103,7 +103,7 @@ TEST_F(Import, GarbageAboveTwelveStoredBitsDoesNotReachTheVolume) {
 TEST_F(Import, SignedTwelveBitPixelsAreSignExtended) {
   write(rampVolume({4, 4, 4}));
   editAll([](DcmDataset& data) {
-    std::vector<Uint16> words(16, 0x0FFF);  // -1 in 12 bits
+    std::vector<Uint16> words(16, 0x0F9C);  // -100 in 12 bits
     words[0] = 0x0800;
     data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
     data.putAndInsertUint16(DCM_BitsStored, 12);
@@ -113,7 +113,7 @@ TEST_F(Import, SignedTwelveBitPixelsAreSignExtended) {
   });
   const Volume back = import();
   EXPECT_EQ(back.at(0, 0, 0), -2048);
-  EXPECT_EQ(back.at(1, 0, 0), -1);
+  EXPECT_EQ(back.at(1, 0, 0), -100);
 }
 
 TEST_F(Import, PaddingBecomesAirAndThePassStays) {

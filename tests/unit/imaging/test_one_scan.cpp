@@ -69,6 +69,17 @@ TEST_F(OneScan, IsOfOnePatient) {
   }
 }
 
+TEST_F(OneScan, IsOfOneModality) {
+  anew({7, 5, 10});
+  editSome({6, 7, 8, 9, 10}, set(DCM_Modality, "PT"));
+  const ImportReport report = scan().report();
+  ASSERT_EQ(report.series.size(), 2u);
+  for (const SeriesReport& part : report.series) {
+    EXPECT_EQ(part.slices, 5);
+    EXPECT_NE(part.verdict, Verdict::pass);
+  }
+}
+
 TEST_F(OneScan, IsOfOnePatientHoweverTheNameEnds) {
   editSome({1, 2}, set(DCM_PatientName, "TREPHINE^PHANTOM^^^"));
   EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
@@ -79,7 +90,7 @@ TEST_F(OneScan, IsMadeInOneWay) {
        {std::tuple(DCM_ConvolutionKernel, "B70f", "convolution kernel"),
         std::tuple(DCM_KVP, "80", "tube voltage (80.00 to 120.00 kV)"),
         std::tuple(DCM_SliceThickness, "3", "slice thickness"),
-        std::tuple(DCM_ImageType, "DERIVED\\SECONDARY\\MPR", "image type"),
+        std::tuple(DCM_ImageType, "DERIVED\\SECONDARY\\AXIAL", "image type"),
         std::tuple(DCM_SeriesDescription, "Mueller", "series description")}) {
     anew();
     editAll([](DcmDataset& data) {
@@ -324,6 +335,16 @@ TEST_F(Rounded, PositionsWithASliceMissingHaveAGapThere) {
     ASSERT_EQ(finding.slices.size(), 1u);
     EXPECT_NEAR(std::stod(finding.slices.front()), 100.0 + 19 * step_mm, 0.5 * grid_mm);
   }
+}
+
+// Five places 0, 1, 2, 4, 5 mm: one slice in six missing, or 1.25 mm rounded. The header tells.
+TEST_F(Rounded, PositionsOrAGapIsToldByTheStepThatTheHeaderStates) {
+  place(6, 1.0, 1.0, {4});
+  expectRefused("MISSING_SLICES");
+  EXPECT_EQ(find(report_.series.front(), "ROUNDED_POSITIONS"), nullptr);
+  place(5, 1.25, 1.0);
+  import();
+  EXPECT_NE(find(chosen(), "ROUNDED_POSITIONS"), nullptr) << codes(chosen());
 }
 
 TEST_F(Rounded, PositionsThatNoLineExplainsStayUneven) {

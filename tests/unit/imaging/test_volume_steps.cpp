@@ -127,7 +127,7 @@ TEST_F(VolumeSteps, ProvenanceAndPageTellWhatWasDoneAndNotWhoseItIs) {
   const std::string page = reportPage(ct.report());
   EXPECT_NE(file.find("\"MISSING_SLICES\": \"fill\""), std::string::npos) << file;
   EXPECT_NE(file.find("102.50 mm"), std::string::npos) << file;
-  EXPECT_NE(page.find("filled by interpolation"), std::string::npos) << page;
+  EXPECT_NE(page.find("Filled in by interpolation"), std::string::npos) << page;
   for (const std::string& text : {file, page}) {
     for (const std::string& secret : {std::string("Secret"), std::string("4711"),
                                       ct.report().series.front().uid, folder().string()}) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QRadioButton>
@@ -14,6 +15,7 @@
 #include "ui/cases/import_dialog.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
+#include "volume/volume_files.h"
 
 namespace trephine {
 namespace {
@@ -34,7 +36,7 @@ Volume stack(int slices, std::int16_t first_hu) {
 class ImportTaskTest : public ::testing::Test {
  protected:
   ImportTaskTest() {
-    write(stack(40, 0), "forty");
+    write(stack(40, -100), "forty");
     write(stack(10, 200), "ten");
     QObject::connect(&task_, &ImportTask::scanned, &task_, [this] { ++scanned_; });
     QObject::connect(&task_, &ImportTask::readDone, &task_, [this] { ++read_; });
@@ -72,7 +74,7 @@ TEST_F(ImportTaskTest, AScanListsTheSeriesAndARreadGivesTheVoxels) {
   task_.read(*task_.bestSeries(), {});
   ASSERT_TRUE(waitFor([&] { return read_ == 1; }));
   ASSERT_TRUE(task_.volume());
-  EXPECT_EQ(task_.volume()->hu, stack(40, 0).hu);
+  EXPECT_EQ(task_.volume()->hu, stack(40, -100).hu);
   EXPECT_EQ(task_.report().chosen, task_.bestSeries());
   EXPECT_FALSE(task_.isWorking());
 }
@@ -97,7 +99,7 @@ TEST_F(ImportTaskTest, OfManySlicesWantedInARushTheLastIsShownAndMostAreNeverRea
   scan();
   for (int i = 0; i < 40; ++i) task_.wantSlice(*task_.bestSeries(), i);
   ASSERT_TRUE(waitFor([&] { return !slices_.empty() && slices_.back() == 39; }));
-  EXPECT_EQ(last_hu_, 39);
+  EXPECT_EQ(last_hu_, -61);
   EXPECT_LE(slices_.size(), 2u) << "the one under way, and the last";
 }
 
@@ -111,6 +113,23 @@ TEST_F(ImportTaskTest, EverySeriesGetsItsThumbnail) {
   task_.wantThumbnails(uids);
   ASSERT_TRUE(waitFor([&] { return thumbnails.size() == 2; }));
   for (const auto& [uid, picture] : thumbnails) EXPECT_FALSE(picture.isNull());
+}
+
+TEST_F(ImportTaskTest, SlicesThatTellPhasesApartComeBeforeTheThumbnails) {
+  scan();
+  std::vector<int> order;
+  QObject::connect(&task_, &ImportTask::thumbnailReady, &task_,
+                   [&](const QString&, const QImage&) { order.push_back(-1); });
+  QObject::connect(&task_, &ImportTask::pictureReady, &task_,
+                   [&](const QString&, int slice, const QImage& picture) {
+                     EXPECT_FALSE(picture.isNull());
+                     order.push_back(slice);
+                   });
+  const std::string uid = *task_.bestSeries();
+  task_.wantThumbnails({uid, uid});
+  task_.wantPictures(uid, {3, 4});
+  ASSERT_TRUE(waitFor([&] { return order.size() == 4; }));
+  EXPECT_EQ(order, (std::vector{-1, 4, 3, -1})) << "one was under way";
 }
 
 TEST_F(ImportTaskTest, AReadGoesBeforeTheThumbnailsThatWait) {
@@ -172,6 +191,9 @@ TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
   auto* half = dialog.findChild<QRadioButton*>("reduction2");
   half->click();
+  // Whoever reads a picture reserves a stack that would count as room once he is done.
+  auto* list = dialog.findChild<SeriesList*>();
+  ASSERT_TRUE(waitFor([&] { return list->withoutThumbnail().empty(); }));
   {
     const test::DataLimit limit(200.0);
     import->click();
@@ -224,7 +246,7 @@ TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
   import->click();
   ASSERT_TRUE(waitFor([&] { return of.volume != nullptr; }));
-  EXPECT_EQ(of.volume->hu, stack(40, 0).hu);
+  EXPECT_EQ(of.volume->hu, stack(40, -100).hu);
   EXPECT_EQ(of.name, "forty");
   EXPECT_EQ(of.sha256, volumeSha256(*of.volume));
   ASSERT_TRUE(of.provenance);
@@ -234,6 +256,35 @@ TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
 
   dialog.open();
   EXPECT_TRUE(import->isEnabled()) << "another series of the same folder";
+}
+
+TEST_F(ImportTaskTest, ALabelMapBesideTheCtIsOfferedWithItAndLeftUnlessItIsChosen) {
+  write(stack(40, 0), "labelled/ct");
+  ASSERT_TRUE(writeVolume(stack(60, 0), path() / "labelled" / "organs_seg.nii.gz"));
+  ImportDialog dialog(task_);
+  std::vector<std::filesystem::path> labels;
+  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog,
+                   [&](const Case&, const std::filesystem::path& file) { labels.push_back(file); });
+  auto* import = dialog.findChild<QPushButton*>("import");
+  auto* offered = dialog.findChild<QComboBox*>("labelFile");
+  task_.scan(path() / "labelled");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  EXPECT_TRUE(offered->isVisible());
+  EXPECT_EQ(offered->currentText(), "None");
+  import->click();
+  ASSERT_TRUE(waitFor([&] { return labels.size() == 1; }));
+  EXPECT_TRUE(labels.back().empty());
+
+  dialog.open();
+  offered->setCurrentIndex(1);
+  EXPECT_EQ(offered->currentText(), "organs_seg.nii.gz");
+  import->click();
+  ASSERT_TRUE(waitFor([&] { return labels.size() == 2; }));
+  EXPECT_EQ(labels.back(), path() / "labelled" / "organs_seg.nii.gz");
+
+  task_.scan(path() / "ten");
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  EXPECT_FALSE(offered->isVisible());
 }
 
 TEST_F(ImportTaskTest, ADialogThatIsClosedStopsItsWork) {

@@ -94,12 +94,98 @@ TEST_F(ImportWidgetsTest, TheSelectionIsTold) {
   EXPECT_EQ(selected, "");
 }
 
+ScreenNames named(const char* patient_key, const char* study_key, const char* patient,
+                  const char* study) {
+  return {patient_key, study_key, patient, study};
+}
+
+// The lines over each item, "-" where there are none.
+QString headings(const SeriesList& list) {
+  QStringList all;
+  for (int row = 0; row < list.count(); ++row) {
+    const QStringList lines = list.item(row)->data(kHeadingRole).toStringList();
+    all << (lines.isEmpty() ? QString("-") : lines.join('/'));
+  }
+  return all.join(" | ");
+}
+
+TEST_F(ImportWidgetsTest, SeriesStandTogetherUnderTheirPatientAndStudy) {
+  const std::vector<SeriesReport> series = {
+      fakeSeries("1", Verdict::pass, 400), fakeSeries("2", Verdict::pass, 300),
+      fakeSeries("3", Verdict::pass, 200), fakeSeries("4", Verdict::refused, 100),
+      fakeSeries("file", Verdict::pass, 50)};
+  SeriesList list;
+  list.showSeries(series, {},
+                  {{"1", named("a", "s", "Doe, Jane", "Head")},
+                   {"2", named("b", "t", "", "Hip")},
+                   {"3", named("a", "u", "Doe, Jane", "")},
+                   {"4", named("a", "s", "Doe, Jane", "Head")}});
+  QStringList shown;
+  for (int row = 0; row < list.count(); ++row) shown << list.item(row)->text();
+  EXPECT_EQ(shown.join(", "), "Series 1, Series 4, Series 3, Series 2, Series file");
+  EXPECT_EQ(headings(list),
+            "Doe, Jane/Head | - | A study without a description | A patient without a name/Hip | "
+            "Files of no patient");
+}
+
+TEST_F(ImportWidgetsTest, OnePatientIsNamedOnceAndNobodyWhereNothingIsKnown) {
+  SeriesList list;
+  list.showSeries(
+      {fakeSeries("1", Verdict::pass), fakeSeries("2", Verdict::pass)}, {},
+      {{"1", named("a", "s", "Doe, Jane", "")}, {"2", named("a", "s", "Doe, Jane", "")}});
+  EXPECT_EQ(headings(list), "Doe, Jane | -");
+  list.showSeries({fakeSeries("1", Verdict::pass), fakeSeries("2", Verdict::pass)}, {},
+                  {{"1", named("a", "s", "", "")}, {"2", named("a", "s", "", "")}});
+  EXPECT_EQ(headings(list), "- | -");
+}
+
+TEST_F(ImportWidgetsTest, WhatAScanFindsGrowsInItsPlaceAndKeepsTheSelection) {
+  SeriesList list;
+  list.showFound({{"1", "Head", "CT", 5, named("a", "s", "Doe, Jane", "")}});
+  list.select("1");
+  list.showFound({{"1", "Head", "CT", 80, named("a", "s", "Doe, Jane", "")},
+                  {"2", "Hip", "CT", 3, named("b", "t", "Roe, Max", "")},
+                  {"3", "Bone", "CT", 1, named("a", "s", "Doe, Jane", "")}});
+  QStringList shown;
+  for (int row = 0; row < list.count(); ++row) {
+    shown << list.item(row)->data(Qt::AccessibleTextRole).toString();
+  }
+  EXPECT_EQ(shown.join(" | ").toStdString(),
+            "Head, CT \u00b7 80 slices, Still looking | Bone, CT \u00b7 1 slice, Still looking | "
+            "Hip, CT \u00b7 3 slices, Still looking");
+  EXPECT_EQ(list.selectedUid(), "1");
+}
+
 // --- Questions ---
 
 class ChoicePanelTest : public ImportWidgetsTest {
  protected:
   ChoicePanel panel_;
 };
+
+TEST_F(ChoicePanelTest, AnOptionShowsItsSliceAndWhatIsForTheScreenAlone) {
+  const Choice phases{"PHASES",
+                      "Which phase?",
+                      {"refuse", "1", "2"},
+                      {"None", "One", "Two"},
+                      {"", "arterial", "venous"},
+                      {-1, 7, 9}};
+  panel_.ask({phases}, {});
+  EXPECT_EQ(panel_.slicesShown(), (std::vector{7, 9}));
+  QStringList words;
+  for (const QLabel* label : panel_.findChildren<QLabel*>()) words << label->text();
+  EXPECT_TRUE(words.contains("arterial") && words.contains("venous"))
+      << words.join(", ").toStdString();
+  QImage slice(160, 80, QImage::Format_Grayscale8);
+  slice.fill(Qt::gray);
+  panel_.setPicture(9, slice);
+  EXPECT_EQ(find<QLabel>(panel_, "picture_PHASES_2").pixmap().size(), QSize(72, 36));
+  EXPECT_TRUE(find<QLabel>(panel_, "picture_PHASES_1").pixmap().isNull());
+  EXPECT_EQ(panel_.findChild<QLabel*>("picture_PHASES_refuse"), nullptr);
+  panel_.ask({}, {});
+  panel_.setPicture(9, slice);  // of a series that is not shown any more
+  EXPECT_TRUE(panel_.slicesShown().empty());
+}
 
 TEST_F(ChoicePanelTest, NothingIsAnsweredForThePerson) {
   panel_.ask({test::missingSlices(), test::couch()}, {});

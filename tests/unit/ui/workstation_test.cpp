@@ -86,6 +86,22 @@ TEST_F(WorkstationTest, ALabelMapBelongsToTheCaseThatIsOpen) {
   EXPECT_EQ(workstation_.currentCase()->labels, nullptr);
 }
 
+TEST_F(WorkstationTest, AnImportedCaseComesWithItsLabelMapOrWithoutOneAndASentence) {
+  const auto ct = std::make_shared<const Volume>(ball());
+  workstation_.openImported(caseOf(ct), labels(7));
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  ASSERT_TRUE(workstation_.currentCase() && workstation_.currentCase()->labels);
+
+  const auto another = std::make_shared<const Volume>(ball());
+  workstation_.openImported(caseOf(another), labels(700));
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(failed_);
+  EXPECT_EQ(failed_->code, "NOT_LABELS");
+  EXPECT_EQ(workstation_.currentCase()->volume, another) << "the case opens all the same";
+  EXPECT_EQ(workstation_.currentCase()->labels, nullptr);
+}
+
 TEST_F(WorkstationTest, ThatACaseIsBeingOpenedIsToldFromItsBeginningToItsEnd) {
   std::vector<bool> opening;
   QObject::connect(&workstation_, &Workstation::phaseChanged, &workstation_,

@@ -1,0 +1,118 @@
+#include "imaging/common/hu_look.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+#include "volume/volume.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kLowest = std::numeric_limits<std::int16_t>::min();
+constexpr int kHighest = std::numeric_limits<std::int16_t>::max();
+// Air with noise and undershoot lies between; what is lower was not scanned.
+constexpr int kLowestOfAir = -1100, kHighestOfAir = -300;
+constexpr int kNear = 20;          // HU to either side of a mode
+constexpr int kNotAScale = -3339;  // below what 12 bits reach with any usual intercept (-3072)
+
+// A value around which no third of a patient lies. `most_air` is the share that may lie where air
+// does all the same: inverted bone lies there.
+struct Mode {
+  int hu;
+  double most_air;
+  const char* words;
+};
+constexpr const char* kStored =
+    "stored values without their intercept, or a background that was set to 0";
+constexpr Mode kModes[] = {
+    {0, 0.001, kStored},
+    {1000, 0.1, "values that are inverted or shifted by 1000"},
+    {1024, 0.1, "values that are inverted or shifted by 1024"},
+    {kHighest, 0.1, "values that did not fit their range"},
+};
+// Where air lies without the usual intercept of -1024: also a place for brain, so that more has to
+// tell the two apart.
+constexpr int kStoredAir[] = {24, 32, 40};
+constexpr double kClamped = 0.001;  // share of voxels at 0 where values were cut there
+constexpr double kTissue = 0.03;    // share of voxels where soft tissue then lies,
+constexpr double kFat = 0.005;      // and the most where fat does in HU
+
+std::string percent(double share) {
+  return std::to_string(int(100.0 * share)) + " %";
+}
+
+}  // namespace
+
+void HuLook::add(std::span<const std::int16_t> hu) {
+  for (const std::int16_t value : hu) ++counts_[std::size_t(value - kLowest)];
+}
+
+void HuLook::addSampleOf(std::span<const std::int16_t> hu, std::uint64_t not_numbers) {
+  visitSample(hu.size(), [&](std::size_t n) { ++counts_[std::size_t(hu[n] - kLowest)]; });
+  if (not_numbers == 0) return;
+  const auto air = std::uint64_t(std::ranges::count(hu, kAirHu));
+  std::uint32_t& count = counts_[std::size_t(kAirHu - kLowest)];
+  count -= std::uint32_t(count * not_numbers / std::max(air, not_numbers));
+}
+
+std::uint64_t HuLook::count(int from, int to) const {
+  std::uint64_t sum = 0;
+  for (int hu = std::max(from, kLowest); hu <= std::min(to, kHighest); ++hu) {
+    sum += counts_[std::size_t(hu - kLowest)];
+  }
+  return sum;
+}
+
+bool HuLook::hasAir() const {
+  return count(kLowestOfAir, kHighestOfAir - 1) > 0;
+}
+
+std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
+  if (lowest == highest && highest <= kAirHu) {
+    return {"all of it is padding, or one and the same air"};
+  }
+  std::vector<std::string> doubts;
+  if (lowest == kNotAScale || counts_[std::size_t(kNotAScale - kLowest)] > 0) {
+    doubts.push_back("values down to " + std::to_string(kNotAScale) + " are below any scale");
+  }
+  const auto scanned = double(count(kLowestOfAir, kHighest));
+  if (scanned == 0.0) return doubts;
+  const auto share = [&](int from, int to) { return double(count(from, to)) / scanned; };
+  const double air = share(kLowestOfAir, kHighestOfAir - 1);
+  // The corners beyond the field of view are padding that no file names: of one value, at an end.
+  int first = kLowestOfAir, last = kHighest;
+  while (count(first, first) == 0) ++first;
+  while (count(last, last) == 0) --last;
+  const auto around = [&](int hu) {
+    double most = share(hu - kNear, hu + kNear);
+    for (const int end : {first, last}) {
+      const double corners = share(end, end);
+      const double inside = std::abs(end - hu) <= kNear ? corners : 0.0;
+      if (corners < 1.0) {
+        most = std::max(most, (share(hu - kNear, hu + kNear) - inside) / (1.0 - corners));
+      }
+    }
+    return most;
+  };
+  const auto said = [&](int hu, const char* words) {
+    doubts.push_back(percent(around(hu)) + " of the voxels lie near " + std::to_string(hu) +
+                     " HU and hardly any where air does, as of " + words);
+  };
+  for (const Mode& mode : kModes) {
+    if (air > mode.most_air || 3.0 * around(mode.hu) <= 1.0) continue;
+    said(mode.hu, mode.words);
+    return doubts;
+  }
+  const bool clamped = first == 0 && share(0, 0) > kClamped;
+  const bool tissue = share(700, 1300) > kTissue && share(kHighestOfAir, -kNear - 1) < kFat;
+  for (const int hu : kStoredAir) {
+    if (air > kModes[0].most_air || !(clamped || tissue) || 3.0 * around(hu) <= 1.0) continue;
+    said(hu, kStored);
+    break;
+  }
+  return doubts;
+}
+
+}  // namespace trephine

@@ -1,0 +1,58 @@
+#include "imaging/series/hu_checks.h"
+
+#include <algorithm>
+
+#include "imaging/common/text.h"
+#include "imaging/series/series_geometry.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr const char* kImplausibleHu = "IMPLAUSIBLE_HU";
+
+}  // namespace
+
+void checkHu(const HuLook& look, const Answers& answers, SeriesReport& report) {
+  const std::vector<std::string> doubts =
+      look.doubts(report.hu_min.value_or(0), report.hu_max.value_or(0));
+  if (!doubts.empty()) {
+    const std::string text = "The values can hardly be HU: " + listed(doubts);
+    const std::string answer = ask(
+        {kImplausibleHu,
+         "The values can hardly be HU. Use them all the same?",
+         {"refuse", "accept"},
+         {"Do not use the series",
+          "Take them as HU: what looks and cuts like air, tissue or bone may be something else"}},
+        answers, report.choices);
+    if (answer == "accept") {
+      report.findings.push_back(
+          {kImplausibleHu, "repair", text, {}, "They were taken as HU, as was agreed"});
+    } else {
+      report.findings.push_back({kImplausibleHu,
+                                 "refusal",
+                                 text,
+                                 {},
+                                 "Export the series again with its rescale, or agree to use it"});
+    }
+  } else if (!look.hasAir()) {
+    report.findings.push_back(
+        {"NO_AIR",
+         "notice",
+         "Hardly anything in it lies where air does; the smallest value is " +
+             std::to_string(report.hu_min.value_or(0)) +
+             ". It is small or cropped, or these are stored values and not HU",
+         {},
+         "Nothing was changed; if bone and air look wrong, export it again with its rescale"});
+  }
+}
+
+bool refusedByHu(const SeriesReport& report, const Answers& answers) {
+  if (std::ranges::find(report.choices, kImplausibleHu, &Choice::code) == report.choices.end()) {
+    return false;
+  }
+  const auto answer = answers.find(kImplausibleHu);
+  return answer == answers.end() || answer->second != "accept";
+}
+
+}  // namespace trephine

@@ -1,0 +1,258 @@
+#include "imaging/series/series_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace trephine {
+
+namespace {
+
+// Whether slices of different parts lie at one place: then they are scans of the same, not one
+// scan.
+bool overlap(const Headers& placed) {
+  const auto axes = axesOf(*placed.front()->orientation);
+  if (!axes) return true;
+  Headers sorted = placed;
+  const auto place_mm = [&](const DicomHeader* h) { return glm::dot(*h->position_mm, (*axes)[2]); };
+  std::ranges::sort(sorted, {}, place_mm);
+  for (std::size_t n = 1; n < sorted.size(); ++n) {
+    if (sorted[n]->part != sorted[n - 1]->part &&
+        place_mm(sorted[n]) - place_mm(sorted[n - 1]) <= kSamePlace_mm) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Headers chooseParts(const Series& series, Headers placed, const Answers& answers,
+                    SeriesReport& report, Findings& findings) {
+  constexpr int kMostOffered = 9;
+  if (series.parted_by.empty() || placed.empty()) return placed;
+  std::map<int, std::size_t> counts;
+  for (const DicomHeader* header : placed) ++counts[header->part];
+  const bool joinable = !overlap(placed);
+  Choice choice{"PARTS",
+                "The slices do not say that they are of one scan. How shall they be used?",
+                {"refuse"},
+                {"Do not use the series"}};
+  const std::string differing = listed(series.parted_by);
+  if (joinable) {
+    choice.options.push_back("join");
+    choice.words.push_back("Join all " + counted(placed.size(), "slice") +
+                           ": it is assumed that they are one scan of one patient who lay "
+                           "still, whatever the " +
+                           differing + " say");
+  }
+  for (const auto& [part, count] : counts) {
+    if (part >= kMostOffered || count < 2) continue;
+    choice.options.push_back(std::to_string(part + 1));
+    choice.words.push_back("Use only part " + std::to_string(part + 1) + ": " +
+                           std::to_string(count) + " of " + counted(placed.size(), "slice"));
+  }
+  const std::string text = "The series falls into " + std::to_string(counts.size()) +
+                           " parts that differ in " + differing;
+  const std::string answer = ask(std::move(choice), answers, report.choices);
+  if (answer == "join") {
+    findings.repaired("PARTS", text,
+                      "They were joined: it was assumed that they are one scan of one patient who "
+                      "lay still");
+    return placed;
+  }
+  if (answer == "refuse") {
+    findings.refuse("PARTS", text,
+                    joinable ? "Join them, or choose a part" : "Choose a part of the series");
+    if (joinable) return placed;
+  }
+  const int wanted = answer == "refuse" ? 0 : *parseInteger(answer) - 1;
+  const std::size_t whole = placed.size();
+  std::erase_if(placed, [&](const DicomHeader* header) { return header->part != wanted; });
+  if (answer != "refuse") {
+    findings.repaired("PARTS", text,
+                      "Part " + answer + " was taken, " + std::to_string(placed.size()) + " of " +
+                          counted(whole, "slice") + "; the others were left out");
+  }
+  return placed;
+}
+
+void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport& report,
+                      Findings& findings) {
+  std::vector<std::string> differing;
+  // Absent values contradict nothing.
+  const auto words = [&](const char* name, bool shown, const auto& value) {
+    std::map<std::string, int> counts;
+    for (const DicomHeader* header : used) {
+      if (const std::string text = value(*header); !text.empty()) ++counts[text];
+    }
+    if (counts.size() < 2) return;
+    std::vector<std::string> some;
+    for (const auto& [text, count] : counts) {
+      if (some.size() == 3) {
+        some.push_back("others");
+        break;
+      }
+      some.push_back(text + " in " + std::to_string(count));
+    }
+    differing.push_back(name + (shown ? " (" + listed(some) + ")" : ""));
+  };
+  const auto numbers = [&](const char* name, const char* unit, double tolerance,
+                           std::optional<double> DicomHeader::*value) {
+    std::optional<double> least, most;
+    for (const DicomHeader* header : used) {
+      if (!(header->*value)) continue;
+      least = std::min(least.value_or(*(header->*value)), *(header->*value));
+      most = std::max(most.value_or(*(header->*value)), *(header->*value));
+    }
+    if (!least || *most - *least <= tolerance * std::max(std::abs(*least), std::abs(*most))) return;
+    differing.push_back(name + (" (" + fixedText(*least, 2) + " to ") + fixedText(*most, 2) + " " +
+                        unit + ")");
+  };
+  words("convolution kernel", true, [](const DicomHeader& h) { return h.kernel; });
+  numbers("tube voltage", "kV", 0.01, &DicomHeader::kvp);
+  numbers("slice thickness", "mm", 0.01, &DicomHeader::thickness_mm);
+  words("image type", true, [](const DicomHeader& h) {
+    std::string text;
+    for (const std::string& value : h.image_type) text += (text.empty() ? "" : "\\") + value;
+    return text;
+  });
+  // A description may hold a name.
+  words("series description", false, [](const DicomHeader& h) { return h.description; });
+  if (differing.empty()) return;
+  const std::string text =
+      "The slices were not all made in one way: they differ in " + listed(differing);
+  const std::string answer =
+      ask({"MIXED_SLICES",
+           "The slices were not all made in one way. Use them as one volume?",
+           {"refuse", "accept"},
+           {"Do not use the series",
+            "Use them as one volume: equal tissue may differ in HU and "
+            "sharpness from slice to slice"}},
+          answers, report.choices);
+  if (answer == "accept") {
+    findings.repaired("MIXED_SLICES", text, "They were taken as one volume, as was agreed");
+  } else {
+    findings.refuse("MIXED_SLICES", text,
+                    "Use a series of one acquisition, or agree to take them as one");
+  }
+}
+
+void checkDensity(const Headers& used, const Stack& stack, const Answers& answers,
+                  SeriesReport& report, Findings& findings) {
+  constexpr std::size_t kFewest = 4;
+  constexpr double kWidestStep_mm = 20.0, kMostThicknesses = 5.0;
+  if (used.empty()) return;
+  const double step_mm = stack.geometry.spacing_mm.z;
+  double thickness_mm = 0.0;
+  for (const DicomHeader* header : used) {
+    thickness_mm = std::max(thickness_mm, header->thickness_mm.value_or(0.0));
+  }
+  std::vector<std::string> why;
+  if (used.size() < kFewest) why.push_back("there are only " + std::to_string(used.size()));
+  if (step_mm > kWidestStep_mm) why.push_back("they lie " + placeText(step_mm) + " apart");
+  if (thickness_mm > 0.0 && step_mm >= kMostThicknesses * thickness_mm) {
+    why.push_back("each is " + placeText(thickness_mm) + " thick and the next is " +
+                  placeText(step_mm) + " away");
+  }
+  if (why.empty()) {
+    if (thickness_mm > 0.0 && step_mm > 1.05 * thickness_mm) {
+      findings.notice("GAPS_BETWEEN_SLICES",
+                      "The slices are " + placeText(thickness_mm) + " thick and lie " +
+                          placeText(step_mm) + " apart: what lies between was not scanned",
+                      "It is interpolated where the volume is drawn and cut");
+    }
+    return;
+  }
+  const std::string text = "The slices are too few or too far apart to be cut: " + listed(why);
+  const std::string answer =
+      ask({"SPARSE_SLICES",
+           "The slices are too few or too far apart to be cut. Use them all the same?",
+           {"refuse", "accept"},
+           {"Do not use the series",
+            "Use them: what lies between them was not scanned and is only guessed"}},
+          answers, report.choices);
+  if (answer == "accept") {
+    findings.repaired("SPARSE_SLICES", text, "They were used all the same, as was agreed");
+  } else {
+    findings.refuse("SPARSE_SLICES", text, "Choose a series of thin slices");
+  }
+}
+
+void checkContradictions(const Headers& in_order, const Stack& stack, const Answers& answers,
+                         SeriesReport& report, Findings& findings) {
+  constexpr double kTilt_deg = 1.0;
+  if (in_order.size() < 2) return;
+  const double step_mm = stack.geometry.spacing_mm.z;  // along the normal
+  const double slant = 1.0 / std::cos(stack.tilt_deg * std::numbers::pi / 180.0);
+  const auto near = [](double a, double b, double tolerance) {
+    return std::abs(a - b) <= tolerance;
+  };
+
+  // Steps of the slice location against those of the positions, along the normal or the table.
+  double worst_mm = 0.0, said_mm = 0.0, is_mm = 0.0;
+  for (std::size_t n = 1; n < in_order.size(); ++n) {
+    const auto &a = in_order[n - 1]->location_mm, &b = in_order[n]->location_mm;
+    if (!a || !b) continue;
+    const double said = std::abs(*b - *a), is = stack.places_mm[n] - stack.places_mm[n - 1];
+    const double off = std::min(std::abs(said - is), std::abs(said - is * slant));
+    if (off > worst_mm) {
+      worst_mm = off;
+      said_mm = said;
+      is_mm = is;
+    }
+  }
+  if (worst_mm > std::max(0.15, 0.1 * step_mm)) {
+    const std::string text = "The slice locations contradict the positions: between two slices " +
+                             placeText(is_mm) + " by position and " + placeText(said_mm) +
+                             " by slice location";
+    const std::string answer =
+        ask({"LOCATION_MISMATCH",
+             "Slice locations and positions contradict each other. Believe the positions?",
+             {"refuse", "positions"},
+             {"Do not use the series",
+              "Believe the positions: if they are wrong, lengths in the volume are wrong"}},
+            answers, report.choices);
+    if (answer == "positions") {
+      findings.repaired("LOCATION_MISMATCH", text, "The positions were believed, as was agreed");
+    } else {
+      findings.refuse("LOCATION_MISMATCH", text,
+                      "Export the series again, or agree to believe the positions");
+    }
+  }
+  std::optional<double> between_mm, tilt_deg;
+  for (const DicomHeader* header : in_order) {
+    if (header->spacing_between_mm) between_mm = std::abs(*header->spacing_between_mm);
+    if (header->tilt_deg) tilt_deg = std::abs(*header->tilt_deg);
+  }
+  const double tolerance_mm = std::max(0.05, 0.02 * step_mm);
+  if (between_mm && !near(*between_mm, step_mm, tolerance_mm) &&
+      !near(*between_mm, step_mm * slant, tolerance_mm)) {
+    findings.repaired("SPACING_MISMATCH",
+                      "The header says that slices lie " + placeText(*between_mm) +
+                          " apart, by their positions it is " + placeText(step_mm),
+                      "The positions were believed");
+  }
+  if (tilt_deg && !near(*tilt_deg, stack.tilt_deg, kTilt_deg)) {
+    findings.repaired("TILT_MISMATCH",
+                      "The header says that the gantry was tilted by " + fixedText(*tilt_deg, 1) +
+                          " degrees, by the slices' positions it is " +
+                          fixedText(stack.tilt_deg, 1),
+                      "The positions were believed");
+  }
+}
+
+void takeMeanOrientation(const Headers& used, StackInput& input) {
+  const double share = 1.0 / double(used.size());
+  input.pixel_spacing_mm.fill(0.0);
+  input.orientation.fill(0.0);
+  for (const DicomHeader* header : used) {
+    for (std::size_t n = 0; n < 2; ++n) {
+      input.pixel_spacing_mm[n] += share * (*header->pixel_spacing_mm)[n];
+    }
+    for (std::size_t n = 0; n < 6; ++n) input.orientation[n] += share * (*header->orientation)[n];
+  }
+}
+
+}  // namespace trephine

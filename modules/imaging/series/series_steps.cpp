@@ -1,0 +1,372 @@
+#include "imaging/series/series_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imaging/common/text.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kJitter = 0.1;              // of the median step: up to here a stack is resampled
+constexpr std::int64_t kMostSlices = 10000;  // of a volume with filled gaps
+
+double stepTolerance_mm(double step) {
+  return std::max(0.01, 0.01 * step);
+}
+
+// How the steps between places compare with their median.
+struct Steps {
+  double median_mm = 0.0, least_mm = 0.0, most_mm = 0.0;
+  std::vector<std::int64_t> multiples;  // of the median that each step is nearest to, at least 1
+  std::int64_t total = 0;               // of the multiples
+  bool even = true;                     // every step is its multiple, within the tolerance
+  bool jittered = true;                 // ... within kJitter
+  bool gaps = false;                    // a multiple over 1
+};
+
+Steps stepsOf(const Slices& slices) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    steps.push_back(slices[i].place_mm - slices[i - 1].place_mm);
+  }
+  std::vector<double> sorted = steps;
+  std::ranges::sort(sorted);
+  Steps result;
+  result.median_mm = sorted[(sorted.size() - 1) / 2];  // of two, the smaller: never a gap
+  result.least_mm = sorted.front();
+  result.most_mm = sorted.back();
+  for (const double step : steps) {
+    const double multiple = std::clamp(std::round(step / result.median_mm), 1.0, 1e9);
+    const double off = std::abs(step - multiple * result.median_mm);
+    const double most = kJitter * result.median_mm;
+    result.even &= off <= std::min(multiple * stepTolerance_mm(result.median_mm),
+                                   std::max(most, stepTolerance_mm(result.median_mm)));
+    result.jittered &= off <= most;
+    result.gaps |= multiple > 1.5;
+    result.multiples.push_back(std::int64_t(multiple));
+    result.total += result.multiples.back();
+  }
+  return result;
+}
+
+// The longest row of usable slices whose steps are `step_mm` within the tolerance.
+Slices longestPart(const Slices& slices, double step_mm, double tolerance_mm) {
+  std::size_t best = 0, best_count = 0, first = 0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const bool goes_on =
+        i > first && slices[i].usable && slices[i - 1].usable &&
+        std::abs(slices[i].place_mm - slices[i - 1].place_mm - step_mm) <= tolerance_mm;
+    if (!goes_on) first = i;
+    if (slices[i].usable && i - first + 1 > best_count) {
+      best = first;
+      best_count = i - first + 1;
+    }
+  }
+  return {slices.begin() + std::ptrdiff_t(best),
+          slices.begin() + std::ptrdiff_t(best + best_count)};
+}
+
+std::string rangeText(const Slices& slices) {
+  return placeText(slices.front().place_mm) + " to " + placeText(slices.back().place_mm);
+}
+
+// The places where a slice is wanted and none can be had, and how many slices that is.
+std::vector<std::string> missingPlaces(const Slices& slices, const Steps& steps,
+                                       std::int64_t& missing) {
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    if (!slices[i].usable) {
+      ++missing;
+      places.push_back(placeText(slices[i].place_mm));
+    }
+    if (i + 1 == slices.size() || steps.multiples[i] < 2) continue;
+    const std::int64_t gap = steps.multiples[i] - 1;
+    const double step = (slices[i + 1].place_mm - slices[i].place_mm) / double(gap + 1);
+    missing += gap;
+    std::string text = placeText(slices[i].place_mm + step);
+    if (gap > 1) {
+      text += " to " + placeText(slices[i + 1].place_mm - step) + " (" +
+              counted(std::uint64_t(gap), "slice") + ")";
+    }
+    places.push_back(std::move(text));
+  }
+  return places;
+}
+
+void trimUnusableEnds(Slices& slices) {
+  while (!slices.empty() && !slices.back().usable) slices.pop_back();
+  while (!slices.empty() && !slices.front().usable) slices.erase(slices.begin());
+}
+
+// Which slices of the volume lie where: `count` of them, evenly from the first place to the last.
+void planSlices(const Slices& slices, std::int64_t count, Stack& stack) {
+  const double first = slices.front().place_mm;
+  const double step = (slices.back().place_mm - first) / double(count - 1);
+  Slices usable;
+  std::ranges::copy_if(slices, std::back_inserter(usable), &Slice::usable);
+  stack.order.clear();
+  stack.places_mm.clear();
+  stack.slices.clear();
+  for (const Slice& slice : usable) {
+    stack.order.push_back(slice.input);
+    stack.places_mm.push_back(slice.place_mm);
+  }
+  std::size_t upper = 0;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const double place = first + step * double(k);
+    while (upper + 1 < usable.size() && usable[upper].place_mm < place) ++upper;
+    const std::size_t lower = upper > 0 ? upper - 1 : 0;
+    const double span = usable[upper].place_mm - usable[lower].place_mm;
+    double share = span > 0.0 ? (place - usable[lower].place_mm) / span : 0.0;
+    const double near = stepTolerance_mm(step) / std::max(span, step);
+    if (share < near) share = 0.0;
+    if (share > 1.0 - near) share = 1.0;
+    stack.slices.push_back(share == 1.0 ? SliceMixture{upper, upper, 0.0}
+                                        : SliceMixture{lower, share == 0.0 ? lower : upper, share});
+  }
+  stack.geometry.size[2] = std::int32_t(count);
+  stack.geometry.spacing_mm.z = step;
+}
+
+// One slice of the volume for each usable one: what a report states of a stack that is even or
+// refused.
+void planAsTheyAre(const Slices& slices, Stack& stack) {
+  stack.slices.clear();
+  stack.order.clear();
+  stack.places_mm.clear();
+  for (const Slice& slice : slices) {
+    if (!slice.usable) continue;
+    stack.slices.push_back({stack.order.size(), stack.order.size(), 0.0});
+    stack.order.push_back(slice.input);
+    stack.places_mm.push_back(slice.place_mm);
+  }
+  stack.geometry.size[2] = std::int32_t(slices.size());
+}
+
+void keepPart(const Slices& part, const char* code, const std::string& text, Stack& stack) {
+  stack.findings.push_back({code,
+                            "repair",
+                            text,
+                            {},
+                            "Only the longest even part was taken, " + rangeText(part) + ", " +
+                                counted(part.size(), "slice") + "; the rest is not there"});
+  planSlices(part, std::int64_t(part.size()), stack);
+}
+
+// Slices that are not there, or are there and lost, in a stack that is even otherwise (or nearly).
+void planGaps(Slices slices, const Steps& steps, const Answers& answers,
+              const std::string& lost_text, Stack& stack) {
+  std::int64_t missing = 0;
+  const std::vector<std::string> places = missingPlaces(slices, steps, missing);
+  const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
+                           " missing from a stack with a step of " + placeText(steps.median_mm) +
+                           lost_text;
+  const Slices part =
+      longestPart(slices, steps.median_mm,
+                  steps.even ? stepTolerance_mm(steps.median_mm) : kJitter * steps.median_mm);
+  Choice choice{
+      "MISSING_SLICES",
+      places.size() == 1 ? "What shall become of the gap?" : "What shall become of the gaps?",
+      {"refuse"},
+      {"Do not use the series"}};
+  // From the first usable slice to the last.
+  std::int64_t filled = steps.total + 1;
+  for (std::size_t i = 0; i < slices.size() && !slices[i].usable; ++i) filled -= steps.multiples[i];
+  for (std::size_t i = slices.size(); i-- > 0 && !slices[i].usable;) {
+    filled -= steps.multiples[i - 1];
+  }
+  // A volume that is mostly made up is none.
+  const bool fillable = filled <= 2 * std::ranges::count(slices, true, &Slice::usable);
+  if (fillable) {
+    choice.options.push_back("fill");
+    choice.words.push_back("Fill in by interpolation between the slices beside, marked as such");
+  }
+  if (part.size() > 1) {
+    choice.options.push_back("part");
+    choice.words.push_back("Use only the longest part without a gap: " + rangeText(part) + ", " +
+                           counted(part.size(), "slice"));
+  }
+  const std::string answer = ask(std::move(choice), answers, stack.choices);
+  if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
+  if (answer == "fill") {
+    trimUnusableEnds(slices);
+    planSlices(slices, filled, stack);
+    stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
+                              "Filled in by interpolation: what lies there was not scanned, and a "
+                              "lesion in it cannot be seen. Ends were cut off"});
+    return;
+  }
+  planAsTheyAre(slices, stack);
+  stack.findings.push_back({"MISSING_SLICES", "refusal", text, places,
+                            fillable ? "Copy or export the series again, or choose to fill in"
+                                     : "Copy or export the series again"});
+}
+
+void planUneven(const Slices& slices, const Steps& steps, const Answers& answers, Stack& stack) {
+  Slices whole = slices;
+  trimUnusableEnds(whole);
+  const double extent = whole.back().place_mm - whole.front().place_mm;
+  const double wanted = std::round(extent / steps.median_mm) + 1.0;
+  const auto count = std::int64_t(std::min(wanted, double(kMostSlices) + 1.0));
+  const std::string text = "The steps between slices vary from " + fixedText(steps.least_mm, 3) +
+                           " to " + fixedText(steps.most_mm, 3) + " mm (median " +
+                           fixedText(steps.median_mm, 3) + " mm)";
+  const Slices part = longestPart(slices, steps.median_mm, stepTolerance_mm(steps.median_mm));
+  Choice choice{"UNEVEN_SPACING",
+                "How shall the uneven steps be used?",
+                {"refuse"},
+                {"Do not use the series"}};
+  if (count > 1 && count <= kMostSlices) {
+    choice.options.push_back("resample");
+    choice.words.push_back("Interpolate " + counted(std::uint64_t(count), "slice") +
+                           " at even steps of about " + placeText(steps.median_mm));
+  }
+  if (part.size() > 1) {
+    choice.options.push_back("part");
+    choice.words.push_back("Use only the longest even part: " + rangeText(part) + ", " +
+                           counted(part.size(), "slice"));
+  }
+  const std::string answer = ask(std::move(choice), answers, stack.choices);
+  if (answer == "part") return keepPart(part, "UNEVEN_SPACING", text, stack);
+  if (answer == "resample") {
+    planSlices(whole, count, stack);
+    stack.findings.push_back({"UNEVEN_SPACING",
+                              "repair",
+                              text,
+                              {},
+                              "Slices were interpolated at even steps of " +
+                                  placeText(stack.geometry.spacing_mm.z) +
+                                  "; where the scan is coarse, detail is only apparent"});
+    return;
+  }
+  planAsTheyAre(slices, stack);
+  stack.findings.push_back({"UNEVEN_SPACING",
+                            "refusal",
+                            text,
+                            {},
+                            "Export the series with even spacing, or choose how to use it"});
+}
+
+// The coarsest grid that a writer rounds to and that all positions lie on [mm]; 0: none.
+double roundedTo_mm(const std::vector<Vec3>& positions_mm) {
+  for (const double grid_mm : {1.0, 0.1}) {
+    const bool all = std::ranges::all_of(positions_mm, [&](const Vec3& p) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(p[axis] / grid_mm - std::round(p[axis] / grid_mm)) > 1e-5) return false;
+      }
+      return true;
+    });
+    if (all) return grid_mm;
+  }
+  return 0.0;
+}
+
+// Places that were rounded, put back on the line that they were rounded from: the step is that of
+// the least squares over whole numbers of steps, with as few slices missing as any line explains.
+// Nothing where no line does. Rounding moves a place by `most_mm` at most, and a step by less than
+// twice that.
+std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
+                                  const std::optional<double>& known_mm) {
+  const double n = double(slices.size());
+  const double first = slices.front().place_mm, extent = slices.back().place_mm - first;
+  const auto most_missing = std::int64_t(slices.size() / 2);
+  for (std::int64_t missing = 0; missing <= most_missing; ++missing) {
+    const double guess = extent / (n - 1.0 + double(missing));
+    std::vector<double> numbers;
+    double sum = 0.0, sum_squares = 0.0, places = 0.0, products = 0.0;
+    bool rising = true;
+    for (const Slice& slice : slices) {
+      const double number = std::round((slice.place_mm - first) / guess);
+      rising &= numbers.empty() || number > numbers.back();
+      numbers.push_back(number);
+      sum += number;
+      sum_squares += number * number;
+      places += slice.place_mm - first;
+      products += number * (slice.place_mm - first);
+    }
+    if (!rising) continue;
+    const double step = (n * products - sum * places) / (n * sum_squares - sum * sum);
+    const double start = first + (places - step * sum) / n;
+    Slices fitted = slices;
+    // What the header says tells a gap from a step that was rounded. Few slices tell a step less
+    // well.
+    bool fits = !known_mm || std::abs(step - *known_mm) <= std::max(0.01 * *known_mm, most_mm / n);
+    for (std::size_t i = 0; i < slices.size() && fits; ++i) {
+      fitted[i].place_mm = start + step * numbers[i];
+      fits =
+          std::abs(fitted[i].place_mm - slices[i].place_mm) <= most_mm * (1.0 + 1.0 / std::sqrt(n));
+      if (i == 0) continue;
+      const double steps = (numbers[i] - numbers[i - 1]) * step;
+      const double is = slices[i].place_mm - slices[i - 1].place_mm;
+      fits &= std::abs(is - steps) < 2.0 * most_mm * (1.0 - 1e-6);
+    }
+    const auto moved = [&](const Slice& slice) {
+      const auto at = std::size_t(&slice - fitted.data());
+      return std::abs(slice.place_mm - slices[at].place_mm) > kSamePlace_mm;
+    };
+    if (fits && std::ranges::any_of(fitted, moved)) return fitted;
+    if (fits) return {};  // they lie on it as they are
+  }
+  return {};
+}
+
+}  // namespace
+
+void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
+                     const Answers& answers, Stack& stack) {
+  const std::string& lost_text = input.lost_text;
+  Steps steps = stepsOf(slices);
+  const double grid_mm = roundedTo_mm(input.positions_mm);
+  // Whole steps with gaps may be rounded ones, too: only the header can tell.
+  const std::optional<double> known_mm =
+      input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
+  if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
+    const double most_mm =
+        0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    if (std::optional<Slices> fitted = onTheirLine(slices, most_mm, known_mm)) {
+      slices = *std::move(fitted);
+      steps = stepsOf(slices);
+      stack.findings.push_back(
+          {"ROUNDED_POSITIONS",
+           "repair",
+           "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
+           {},
+           "They were put back on the line that explains them all, with a step of " +
+               fixedText(steps.median_mm, 3) + " mm"});
+    }
+  }
+  stack.geometry.spacing_mm.z = steps.median_mm;
+  const auto usable = std::ranges::count(slices, true, &Slice::usable);
+  const bool lost = std::size_t(usable) < slices.size();
+  if (usable < 2) {
+    planAsTheyAre(slices, stack);
+    stack.findings.push_back({"MISSING_SLICES",
+                              "refusal",
+                              std::to_string(slices.size() - std::size_t(usable)) + " of " +
+                                  counted(slices.size(), "slice") + " cannot be used" + lost_text,
+                              {},
+                              "Copy these files again from their source"});
+  } else if ((steps.gaps || lost) && (steps.even || steps.jittered) && steps.total < kMostSlices) {
+    planGaps(slices, steps, answers, lost_text, stack);
+  } else if (steps.even && !steps.gaps) {
+    planAsTheyAre(slices, stack);
+    stack.geometry.spacing_mm.z =
+        (slices.back().place_mm - slices.front().place_mm) / double(slices.size() - 1);
+  } else if (steps.jittered && !steps.gaps) {
+    planSlices(slices, std::int64_t(slices.size()), stack);
+    stack.findings.push_back(
+        {"RESAMPLED_SPACING",
+         "repair",
+         "The steps between slices vary from " + fixedText(steps.least_mm, 3) + " to " +
+             fixedText(steps.most_mm, 3) + " mm",
+         {},
+         "Slices were interpolated at even steps of " + fixedText(stack.geometry.spacing_mm.z, 3) +
+             " mm; the scan's extent is kept, and fine detail is slightly blurred"});
+  } else {
+    planUneven(slices, steps, answers, stack);
+  }
+}
+
+}  // namespace trephine
