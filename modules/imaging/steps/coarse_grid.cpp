@@ -41,6 +41,16 @@ void addRow(const std::int16_t* from, Stride stride, std::size_t n, RowBuffers& 
 
 }  // namespace
 
+bool CoarseGrid::isIn(const VoxelBox& box, int a, int b, int s) const {
+  const Index3 cell{a, b, s};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto along = std::size_t(axis[n]);
+    const int from = cell[n] * step[n];
+    if (from + step[n] <= box.low[along] || from >= box.high[along]) return false;
+  }
+  return true;
+}
+
 Vec3 CoarseGrid::place_mm(double a, double b, double s) const {
   const double cell[3] = {a, b, s};
   Vec3 voxel(0.0);

@@ -42,6 +42,8 @@ struct CoarseGrid {
   bool holds(int a, int b, int s) const {
     return a >= 0 && b >= 0 && s >= 0 && a < size[0] && b < size[1] && s < size[2];
   }
+  // Whether a box of voxels holds some of cell (a, b, s).
+  bool isIn(const VoxelBox& box, int a, int b, int s) const;
   // The middle of cell (a, b, s), LPS mm.
   Vec3 place_mm(double a, double b, double s) const;
   // The cell that a place lies in, which may be beyond the grid.

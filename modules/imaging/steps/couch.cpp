@@ -288,33 +288,56 @@ void markPads(const CoarseGrid& grid, CoarseCells& kind) {
 
 // What to do in each cell: everything within one cell of couch or pad goes, but where matter that
 // stays is as near, cells are shared. So are those of the body's side in the columns of a straight
-// couch that the body lies on.
+// couch that the body lies on, but beyond its ends: there are shoulders and lungs in them.
 CoarseCells actions(const CoarseGrid& grid, const CoarseCells& kind) {
   constexpr std::uint8_t kGoing = 1, kStaying = 2;
   const auto slice = std::size_t(grid.size[0]) * std::size_t(grid.size[1]);
   CoarseCells near(grid.count());
-  CoarseCells columns(slice);
-  {
-    std::vector<int> in_column(slice);
-    for (std::size_t n = 0; n < near.size(); n += slice) {
-      for (std::size_t m = 0; m < slice; ++m) {
-        const std::uint8_t own = kind[n + m];
-        near[n + m] = std::uint8_t((own >= couch ? kGoing : 0) | (stays(own) ? kStaying : 0));
-        in_column[m] += own == couch;
-      }
-    }
-    for (std::size_t m = 0; m < slice; ++m) columns[m] = in_column[m] * 10 >= grid.size[2];
-  }
-  dilate(grid.size, near);
-  dilateAcross({grid.size[0], grid.size[1], 1}, columns);
-
-  for (std::size_t n = 0; n < near.size(); n += slice) {
+  struct Column {
+    int cells = 0, first = 0, last = -1;  // of the couch
+  };
+  std::vector<Column> columns(slice);
+  for (int s = 0; s < grid.size[2]; ++s) {
+    const std::size_t n = slice * std::size_t(s);
     for (std::size_t m = 0; m < slice; ++m) {
       const std::uint8_t own = kind[n + m];
-      std::uint8_t& cell = near[n + m];
-      const bool all = cell == kGoing;
-      const bool some = (cell & kGoing) || (stays(own) && columns[m]);
-      cell = all ? CouchFinding::remove : some ? CouchFinding::share : CouchFinding::keep;
+      near[n + m] = std::uint8_t((own >= couch ? kGoing : 0) | (stays(own) ? kStaying : 0));
+      if (own != couch) continue;
+      Column& column = columns[m];
+      if (column.cells++ == 0) column.first = s;
+      column.last = s;
+    }
+  }
+  dilate(grid.size, near);
+  // Where air follows, a couch ends there; where the body follows at once, it goes on within.
+  std::vector<Column> wide(slice);  // with the columns beside it
+  for (int b = 0; b < grid.size[1]; ++b) {
+    for (int a = 0; a < grid.size[0]; ++a) {
+      const std::size_t m = grid.indexOf(a, b, 0);
+      Column column = columns[m];
+      if (column.cells * 10 < grid.size[2] || column.cells == 0) continue;
+      const auto isBody = [&](int s) { return stays(kind[slice * std::size_t(s) + m]); };
+      while (column.first > 0 && isBody(column.first - 1)) --column.first;
+      while (column.last + 1 < grid.size[2] && isBody(column.last + 1)) ++column.last;
+      for (int y = std::max(0, b - 1); y <= std::min(grid.size[1] - 1, b + 1); ++y) {
+        for (int x = std::max(0, a - 1); x <= std::min(grid.size[0] - 1, a + 1); ++x) {
+          Column& beside = wide[grid.indexOf(x, y, 0)];
+          const bool none = beside.last < 0;
+          beside.first = none ? column.first : std::min(beside.first, column.first);
+          beside.last = std::max(beside.last, column.last);
+        }
+      }
+    }
+  }
+  for (int s = 0; s < grid.size[2]; ++s) {
+    for (std::size_t m = 0; m < slice; ++m) {
+      const std::size_t n = slice * std::size_t(s) + m;
+      const std::uint8_t cell = near[n];
+      const bool within = s >= wide[m].first && s <= wide[m].last;
+      const bool some = (cell & kGoing) || (stays(kind[n]) && within);
+      near[n] = cell == kGoing ? CouchFinding::remove
+                : some         ? CouchFinding::share
+                               : CouchFinding::keep;
     }
   }
   return near;

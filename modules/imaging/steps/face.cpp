@@ -224,13 +224,14 @@ class FaceSearch {
     finding.offset_mm = -(front + kFront_mm);
     finding.back_mm = front + kFront_mm;
     finding.bottom_mm = std::max(bottom - 10.0, top - 300.0);
-    const Vec3 front_middle(middle / double(cells), front + 0.5 * kFront_mm, 0.5 * (top + bottom));
-    finding.middle_mm = middleOfAir([&](std::size_t, const Vec3& p) {
-                          return finding.clears(p);
-                        }).value_or(front_middle);
     const Seen seen = look(finding, middle / double(cells));
     finding.skin_cm2 = seen.skin_cm2;
     finding.found = isFace(seen);
+    if (!finding.found) return finding;
+    finding.middle_mm =
+        middleOfAir([&](std::size_t, const Vec3& p) {
+          return finding.clears(p);
+        }).value_or(Vec3(middle / double(cells), front + 0.5 * kFront_mm, 0.5 * (top + bottom)));
     return finding;
   }
 
@@ -301,8 +302,9 @@ class FaceSearch {
       for (int y = 0; y < head_.size[1]; ++y) {
         for (int x = 0; x < head_.size[0]; ++x) {
           const std::size_t n = head_.at(x, y, z);
+          if (!enclosed[n]) continue;
           const Vec3 p = head_.place_mm(x, y, z);
-          if (!enclosed[n] || !counts(n, p)) continue;
+          if (!counts(n, p)) continue;
           sum += p;
           ++cells;
         }
@@ -380,14 +382,14 @@ FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined
   return inside.empty() ? search.frontOnly() : search.belowBraincase(inside);
 }
 
-BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding) {
+BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding, const VoxelBox& kept) {
   BeyondFace beyond;
   const double cell_mL = grid.cell_mm[0] * grid.cell_mm[1] * grid.cell_mm[2] / 1000.0;
   for (int s = 0; s < grid.size[2]; ++s) {
     for (int b = 0; b < grid.size[1]; ++b) {
       for (int a = 0; a < grid.size[0]; ++a) {
         const std::size_t n = grid.indexOf(a, b, s);
-        if (grid.mean[n] < kSkinHu) continue;
+        if (grid.mean[n] < kSkinHu || !grid.isIn(kept, a, b, s)) continue;
         const Vec3 p = grid.place_mm(a, b, s), from = p - finding.middle_mm;
         if (!finding.clears(p) || glm::length(from) < kFace_mm) continue;
         const bool below = from.z < 0.0 && std::abs(from.x) < kFace_mm;

@@ -42,13 +42,13 @@ struct FaceFinding {
 FaceFinding findFace(const Volume& volume, std::string_view body_part_examined = {});
 FaceFinding findFace(const CoarseGrid& grid, std::string_view body_part_examined = {});
 
-// What the cut takes that is none of the face: over 90 mm from its middle.
+// What the cut takes of `kept` that is none of the face: over 90 mm from its middle.
 struct BeyondFace {
   double throat_mL = 0.0;  // below the face
   double beside_mL = 0.0;  // beside and above it: arms, hands, shoulders
   double bone_mL = 0.0;    // of both
 };
-BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding);
+BeyondFace beyondFace(const CoarseGrid& grid, const FaceFinding& finding, const VoxelBox& kept);
 
 // Sets all beyond a flat cut to kAirHu; returns how many voxels that were not air (over -900 HU)
 // went. The cut touches the braincase 8 mm outside it on the side of the face, after Quickshear

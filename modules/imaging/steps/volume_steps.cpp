@@ -49,23 +49,26 @@ constexpr double kLittle_mL = 20.0;
 
 const char* const kFaceText = "The patient's face can be reconstructed from this scan";
 
-// A face that the crop leaves out needs no cut.
-bool showsFace(const CoarseGrid& grid, const FaceFinding& face, const VoxelBox& box) {
+// Whether the crop keeps some of what the cut would take, or an eye, nose or mouth elsewhere. A
+// face that it leaves out needs no cut.
+bool keepsFace(const VoxelBox& kept, const CoarseGrid& grid, const FaceFinding& face,
+               const Volume& volume) {
   for (int s = 0; s < grid.size[2]; ++s) {
     for (int b = 0; b < grid.size[1]; ++b) {
       for (int a = 0; a < grid.size[0]; ++a) {
-        const std::array<int, 3> cell{a, b, s};
-        bool inside = grid.mean[grid.indexOf(a, b, s)] > -500;
-        for (std::size_t n = 0; n < 3 && inside; ++n) {
-          const auto axis = std::size_t(grid.axis[n]);
-          const int from = cell[n] * grid.step[n];
-          inside = from + grid.step[n] > box.low[axis] && from < box.high[axis];
-        }
-        if (inside && face.clears(grid.place_mm(a, b, s))) return true;
+        const bool matter = grid.mean[grid.indexOf(a, b, s)] > -500;
+        if (matter && grid.isIn(kept, a, b, s) && face.clears(grid.place_mm(a, b, s))) return true;
       }
     }
   }
-  return false;
+  const FaceMarks marks = findFaceMarks(faceGrid(volume));
+  std::vector<Vec3> places = marks.eyes;
+  if (marks.nose) places.push_back(*marks.nose);
+  if (marks.mouth) places.push_back(*marks.mouth);
+  return std::ranges::any_of(places, [&](const Vec3& place) {
+    const Index3 cell = grid.cellAt(place);
+    return grid.isIn(kept, cell[0], cell[1], cell[2]);
+  });
 }
 
 // What is wrong after the cut, in words; empty where the face is gone for sure.
@@ -110,7 +113,9 @@ Error refuse(const char* code, const std::string& text, const std::string& actio
 Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, SeriesReport& series,
                       Volume& volume) {
   const FaceFinding face = findFace(grid, series.body_part);
-  if (!face.found || (request.crop && !showsFace(grid, face, *request.crop))) return false;
+  if (!face.found) return false;
+  const VoxelBox kept_box = request.crop.value_or(VoxelBox{{0, 0, 0}, volume.geometry.size});
+  if (request.crop && !keepsFace(kept_box, grid, face, volume)) return false;
   const auto kept = [&](const std::string& why) {
     series.findings.push_back(
         {"FACE",
@@ -129,7 +134,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
           request.answers, series.choices);
   if (answer != "deface") return kept("");
 
-  const BeyondFace beyond = beyondFace(grid, face);
+  const BeyondFace beyond = beyondFace(grid, face, kept_box);
   const std::string more = beyondText(beyond);
   if (beyond.throat_mL + beyond.beside_mL >= kLittle_mL) {
     const std::string agreed = ask(
@@ -142,7 +147,7 @@ Result<bool> stepFace(const CoarseGrid& grid, const ImportRequest& request, Seri
     if (agreed == "keep") return kept("The cut would have taken more: " + more + ". ");
     if (agreed != "accept") {
       return refuse("FACE_TAKES_MORE", "The cut that takes the face away takes more: " + more,
-                    "Accept it, keep the face, or crop the scan to the head first", series);
+                    "Accept it, keep the face, or crop the scan to the head", series);
     }
   }
 

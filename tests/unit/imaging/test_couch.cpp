@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "imaging/steps/couch.h"
 #include "painted.h"
+#include "posed.h"
 #include "volume/phantom.h"
 
 namespace trephine::test {
@@ -56,7 +59,99 @@ void expectRemoved(const Painted& painted, double left_percent, const char* what
   EXPECT_NEAR(outcome.said_percent, 100.0, 40.0) << what;
 }
 
+// Head, neck and shoulders on or between `thing`, into which they press.
+template <class Thing>
+Painted headOn(const Thing& thing) {
+  GridGeometry grid = centredGrid({150, 120, 120}, {2.5, 2.5, 2.75});
+  grid.origin_mm.z -= 50.0;
+  return paint(grid, [&](const Vec3& p) {
+    const Matter matter = thing(p);
+    return matter.owner == Owner::couch ? matter : posedMan(p, {});
+  });
+}
+// Negative inside.
+double box(const Vec3& p, const Vec3& middle, const Vec3& half) {
+  const Vec3 beyond = glm::abs(p - middle) - half;
+  return std::max({beyond.x, beyond.y, beyond.z});
+}
+// `wall` mm of `hu` around a core of foam.
+Matter hollow(double distance, double wall, int hu) {
+  if (distance > 0.0) return {};
+  return {distance > -wall ? hu : -940, Owner::couch};
+}
+Matter headBoard(const Vec3& p) {
+  return hollow(box(p, {0, 103, 0}, {140, 7.5, 1000}), 1.5, 80);
+}
+// Beside the head; two.
+double headBlocks(const Vec3& p, double thick) {
+  return box({std::abs(p.x), p.y, p.z}, {82 + thick / 2, 45, -10}, {thick / 2, 42, 60});
+}
+
 }  // namespace
+
+TEST(Couch, AHeadBoardOnWhichHeadAndShouldersLieGoes) {
+  expectRemoved(headOn(headBoard), 1.0, "board");
+}
+
+TEST(Couch, WhereAHeadBoardEndsTheShouldersBeyondItStay) {
+  // What is in the board's columns there is the patient: skin, muscle and lung.
+  for (const int hu : {80, -100}) {
+    const auto board = [&](const Vec3& p) {
+      return hollow(box(p, {0, 100, 60}, {90, 7.5, 190}), 2.5, hu);
+    };
+    const Outcome outcome = outcomeOf(headOn(board));
+    std::printf("[ figures  ] board of %d HU that ends: %llu lost, %.1f %% left\n", hu,
+                (unsigned long long)outcome.patient_lost, outcome.couch_left_percent);
+    EXPECT_TRUE(outcome.found);
+    EXPECT_EQ(outcome.patient_lost, 0u);
+    EXPECT_EQ(outcome.preview_patient, 0u);
+    EXPECT_LT(outcome.couch_left_percent, 5.0);
+  }
+}
+
+TEST(Couch, ARestThatLeansAlongTheScanGoes) {
+  for (const double rise : {0.09, 0.18}) {  // 5 and 10 degrees
+    const auto rest = [&](const Vec3& p) {
+      return hollow(box({p.x, p.y + rise * p.z, p.z}, {0, 104, 30}, {90, 6, 130}), 2.0, 80);
+    };
+    const Outcome outcome = outcomeOf(headOn(rest));
+    std::printf("[ figures  ] rest of 1 in %.0f: %llu lost, %.1f %% left\n", 1.0 / rise,
+                (unsigned long long)outcome.patient_lost, outcome.couch_left_percent);
+    EXPECT_TRUE(outcome.found);
+    EXPECT_EQ(outcome.patient_lost, 0u);
+    EXPECT_LT(outcome.couch_left_percent, 6.0);
+  }
+}
+
+TEST(Couch, BlocksBesideTheHeadNeverCostThePatientAnything) {
+  struct Case {
+    const char* name;
+    bool board;
+    double thick, wall;
+    int hu;
+    double left_percent;  // 100: nothing need go
+  };
+  for (const Case& one : {Case{"foam in covers", false, 56, 1.5, -200, 30.0},
+                          Case{"foam in covers, on a board", true, 56, 1.5, -200, 3.0},
+                          Case{"bare foam on a board", true, 56, 100, -900, 1.0},
+                          Case{"plates of 5 mm on a board", true, 5, 100, 120, 1.0},
+                          Case{"solid blocks of 20 mm on a board", true, 20, 100, 120, 70.0},
+                          Case{"solid blocks alone", false, 20, 100, 120, 100.0}}) {
+    const auto blocks = [&](const Vec3& p) {
+      const Matter board = one.board ? headBoard(p) : Matter{};
+      if (board.owner == Owner::couch) return board;
+      return hollow(headBlocks(p, one.thick), one.wall, one.hu);
+    };
+    const Outcome outcome = outcomeOf(headOn(blocks));
+    std::printf("[ figures  ] %s: %s, %llu lost, %.1f %% left\n", one.name,
+                outcome.found ? "found" : "not found", (unsigned long long)outcome.patient_lost,
+                outcome.couch_left_percent);
+    EXPECT_EQ(outcome.found, one.left_percent < 100.0) << one.name;
+    EXPECT_EQ(outcome.patient_lost, 0u) << one.name;
+    EXPECT_EQ(outcome.preview_patient, 0u) << one.name;
+    EXPECT_LE(outcome.couch_left_percent, one.left_percent) << one.name;
+  }
+}
 
 TEST(Couch, AFlatCouchGoesWhollyAndThePatientStays) {
   const auto truth = [](const Vec3& p) { return manOn(p, couchPlates(p, 125.0, 0.0)); };

@@ -179,7 +179,7 @@ TEST(FaceCheck, OfRealScansTheSkullHasANoseAtMostAndTheAbdomenNothing) {
 TEST(FaceCheck, WhatElseGoesIsMeasured) {
   const auto beyond = [](const HeadPose& pose) {
     const CoarseGrid grid = coarseGrid(posedHead(pose));
-    return beyondFace(grid, findFace(grid));
+    return beyondFace(grid, findFace(grid), {{0, 0, 0}, grid.voxels.size});
   };
   const BeyondFace neck = beyond({}), arms = beyond({0, 0, true});
   std::printf("[ figures  ] throat %.0f mL, beside %.0f; with arms up %.0f and %.0f, bone %.0f\n",
@@ -311,6 +311,19 @@ TEST_F(FaceSteps, ACropThatLeavesTheFaceOutNeedsNoCut) {
   ASSERT_TRUE(part.ok()) << part.error().sentence();
   EXPECT_EQ(asked(ct), Codes{});
   EXPECT_EQ(part->hu, crop(head, shoulders)->hu);
+  // To the head: then throat and shoulders do not count.
+  const auto skull = readAs(ct, {{"FACE", "deface"}}, VoxelBox{{0, 0, 75}, {200, 150, 150}});
+  EXPECT_TRUE(skull.ok()) << skull.error().sentence();
+  EXPECT_EQ(asked(ct), Codes{"FACE"});
+}
+
+TEST_F(FaceSteps, AFaceInTheCropIsAskedAboutThoughTheCutWouldBeElsewhere) {
+  // The header turns her over: the cut would be made at the nape, which the crop leaves out.
+  const Volume head = laidAs(upright(), {-1, -1, 1});
+  write(head);
+  CtFolder ct = scan();
+  ASSERT_TRUE(readAs(ct, {}, VoxelBox{{0, 0, 0}, {200, 65, 150}}).ok());
+  EXPECT_EQ(asked(ct), Codes{"FACE"});
 }
 
 }  // namespace trephine::test
