@@ -84,11 +84,7 @@ std::string faceDoubt(const FaceMarks& marks, const CoarseGrid& before, const Co
   if (left.nose >= kStillThere) there.emplace_back("nose");
   if (left.mouth >= kStillThere) there.emplace_back("mouth");
   if (there.empty()) return "";
-  std::string words = there.front();
-  for (std::size_t n = 1; n < there.size(); ++n) {
-    words += (n + 1 == there.size() ? " and " : ", ") + there[n];
-  }
-  return words + " can still be seen after the cut";
+  return listed(there) + " can still be seen after the cut";
 }
 
 std::string beyondText(const BeyondFace& beyond) {
