@@ -14,6 +14,19 @@ namespace trephine {
 
 namespace {
 
+// "At: 12.00 mm, 13.00 mm and 4 more. "
+std::string placesOf(const Finding& finding) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(finding.slices.size(), kMost); ++n) {
+    text += (n == 0 ? "At: " : ", ") + finding.slices[n];
+  }
+  if (finding.slices.size() > kMost) {
+    text += " and " + std::to_string(finding.slices.size() - kMost) + " more";
+  }
+  return text.empty() ? text : text + ". ";
+}
+
 void printReport(const ImportReport& report) {
   for (const SeriesReport& s : report.series) {
     const GridGeometry& g = s.geometry;
@@ -30,13 +43,16 @@ void printReport(const ImportReport& report) {
       std::printf("          --series %s%s\n", seriesHash(s.uid).c_str(), mark);
     }
     for (const Finding& f : s.findings) {
-      std::printf("          %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+      std::printf("          %s: %s. %s%s\n", f.code.c_str(), f.text.c_str(), placesOf(f).c_str(),
+                  f.action.c_str());
     }
     for (const Choice& c : s.choices) {
       std::printf("          %s\n", c.question.c_str());
       for (std::size_t n = 0; n < c.options.size(); ++n) {
-        std::printf("            --choice %s=%s  %s\n", c.code.c_str(), c.options[n].c_str(),
-                    c.words[n].c_str());
+        const std::string more =
+            n < c.on_screen.size() && !c.on_screen[n].empty() ? " (" + c.on_screen[n] + ")" : "";
+        std::printf("            --choice %s=%s  %s%s\n", c.code.c_str(), c.options[n].c_str(),
+                    c.words[n].c_str(), more.c_str());
       }
     }
   }
@@ -63,7 +79,12 @@ Result<ImportRequest> importRequest(const ImportArguments& arguments) {
       return Error{"BAD_ARGUMENT", "A choice is written CODE=OPTION, not '" + choice + "'",
                    "--choice", "The report lists codes and options"};
     }
-    request.answers[choice.substr(0, equals)] = choice.substr(equals + 1);
+    const auto [known, added] =
+        request.answers.try_emplace(choice.substr(0, equals), choice.substr(equals + 1));
+    if (!added && known->second != choice.substr(equals + 1)) {
+      return Error{"BAD_ARGUMENT", known->first + " is answered twice, and not alike", "--choice",
+                   "Answer each question once"};
+    }
   }
   if (arguments.phase) request.answers["PHASES"] = std::to_string(*arguments.phase);
   if (!arguments.crop.empty()) {

@@ -328,6 +328,16 @@ std::optional<std::string> CtFolder::bestSeries(const Answers& answers) const {
     }
     if (usable && (!best || rank(*best) < rank(listed))) best = &listed;
   }
+  // Where none can be used, the one that the answers were for: reading it says what is in the way.
+  const auto answered = [&](const SeriesReport& s) {
+    return s.modality == "CT" && std::ranges::any_of(s.choices, [&](const Choice& choice) {
+             return answers.contains(choice.code);
+           });
+  };
+  for (const SeriesReport& listed : contents_->report.series) {
+    if (best || !answered(listed)) continue;
+    best = &listed;
+  }
   if (!best) return std::nullopt;
   return best->uid;
 }

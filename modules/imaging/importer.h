@@ -41,7 +41,7 @@ class CtFolder {
   };
   std::vector<LabelFile> labelFiles() const;
   // The DICOM CT with most slices that is not refused once `answers` are given, else the largest
-  // volume file; nothing where none can be read.
+  // volume file; where none can be read, the first CT that asks what they answer, else nothing.
   std::optional<std::string> bestSeries(const Answers& answers = {}) const;
   // Whether each answer is one that a series of the folder takes where it asks. Errors: BAD_CHOICE.
   Status checkAnswers(const Answers& answers) const;

@@ -287,7 +287,7 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
     return row.second.contains(fields->word("type"));
   });
   if (type == std::end(kTypes)) {
-    return notHu("The voxels are not one number each but " + shown(fields->text("type")), file);
+    return notHu("The voxels are not one number each", file);
   }
   header.type = type->first;
   const std::string encoding = fields->word("encoding");

@@ -93,6 +93,9 @@ class Phantom(LabTest):
         sorted((self.folder / "ct").iterdir())[40].unlink()  # a gap, so nothing can be read as it is
         answer = lab("import", self.folder / "ct", "--choice", "MISSING_SLICES=guess", expect=2)
         self.assert_error(answer, "BAD_CHOICE", "refuse, fill or part")
+        answer = lab("import", self.folder / "ct", "--choice", "MISSING_SLICES=fill", "--choice",
+                     "MISSING_SLICES=part", expect=2)
+        self.assert_error(answer, "BAD_ARGUMENT", "answered twice")
         answer = lab("import", self.folder / "ct", "--choice", "NO_SUCH=1", expect=2)
         self.assert_error(answer, "BAD_CHOICE", "MISSING_SLICES")
 

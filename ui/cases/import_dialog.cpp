@@ -188,7 +188,8 @@ void ImportDialog::showStep(Step step) {
   }
   purpose_->setVisible(!working);
   close_->setVisible(!working && step != Step::asking);
-  import_->setVisible(step != Step::asking && step != Step::scanning);
+  // Also while it cannot be used: what follows Cancel at its place is Close, never Import.
+  import_->setVisible(step != Step::asking);
   report_->setVisible(choosing && task_.hasFolder());
   back_->setVisible(step == Step::asking);
   open_case_->setVisible(step == Step::asking);

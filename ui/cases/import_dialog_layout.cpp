@@ -173,7 +173,7 @@ QLayout* ImportDialog::buildBottomRow() {
   row->addWidget(status_);
   row->addWidget(progress_, 1);
   row->addStretch(1);
-  for (QPushButton* each : {report_, back_, close_, take_found_, cancel_, import_, open_case_}) {
+  for (QPushButton* each : {report_, back_, take_found_, cancel_, close_, import_, open_case_}) {
     each->setMinimumWidth(110);
     row->addWidget(each);
   }

@@ -32,12 +32,9 @@ constexpr Mode kModes[] = {
     {1024, 0.1, "values that are inverted or shifted by 1024"},
     {kHighest, 0.1, "values that did not fit their range"},
 };
-// Where air lies without the usual intercept of -1024: also a place for brain, so that more has to
-// tell the two apart.
+// Where air lies without the usual intercept of -1024. Brain lies there, too, but is not cut at 0.
 constexpr int kStoredAir[] = {24, 32, 40};
 constexpr double kClamped = 0.001;  // share of voxels at 0 where values were cut there
-constexpr double kTissue = 0.03;    // share of voxels where soft tissue then lies,
-constexpr double kFat = 0.005;      // and the most where fat does in HU
 
 std::string percent(double share) {
   return std::to_string(int(100.0 * share)) + " %";
@@ -96,19 +93,29 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
     }
     return most;
   };
+  // Tissue that lies beside a mode reaches into what is near it, but has its peak elsewhere.
+  const auto peaksAt = [&](int hu) {
+    constexpr int kWide = 5, kAside = 12;
+    std::uint64_t inside = 0, outside = 0;
+    for (int at = hu - 2 * kNear; at <= std::min(hu + 2 * kNear, kHighest); ++at) {
+      std::uint64_t& most = std::abs(at - hu) <= kAside ? inside : outside;
+      most = std::max(most, count(at - kWide, at + kWide));
+    }
+    return inside >= outside;
+  };
   const auto said = [&](int hu, const char* words) {
     doubts.push_back(percent(around(hu)) + " of the voxels lie near " + std::to_string(hu) +
                      " HU and hardly any where air does, as of " + words);
   };
   for (const Mode& mode : kModes) {
     if (air > mode.most_air || 3.0 * around(mode.hu) <= 1.0) continue;
+    if (!peaksAt(mode.hu)) continue;
     said(mode.hu, mode.words);
     return doubts;
   }
-  const bool clamped = first == 0 && share(0, 0) > kClamped;
-  const bool tissue = share(700, 1300) > kTissue && share(kHighestOfAir, -kNear - 1) < kFat;
+  if (first != 0 || share(0, 0) <= kClamped || air > kModes[0].most_air) return doubts;
   for (const int hu : kStoredAir) {
-    if (air > kModes[0].most_air || !(clamped || tissue) || 3.0 * around(hu) <= 1.0) continue;
+    if (3.0 * around(hu) <= 1.0) continue;
     said(hu, kStored);
     break;
   }

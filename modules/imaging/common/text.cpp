@@ -96,6 +96,18 @@ std::string counted(std::uint64_t count, std::string_view thing, std::string_vie
   return verb.empty() ? text : text + " " + std::string(verb);
 }
 
+std::string shownTerm(const std::string& text) {
+  constexpr std::size_t kLongest = 16;
+  std::size_t length = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool fits = std::isalnum(byte) || std::string_view("_-+./ ").find(c) != text.npos;
+    length = c == '\\' ? 0 : length + 1;
+    if ((!fits && c != '\\') || byte > 0x7E || length > kLongest) return "another";
+  }
+  return text;
+}
+
 std::string listed(const std::vector<std::string>& words, std::string_view last) {
   std::string text;
   for (std::size_t n = 0; n < words.size(); ++n) {

@@ -32,6 +32,10 @@ std::string fixedText(double value, int digits);
 std::string counted(std::uint64_t count, std::string_view thing, std::string_view one_does = "",
                     std::string_view many_do = "");
 
+// A term as the standard's short strings hold them ("B30f", "AXIAL"): at most 16 letters, digits
+// and " _-+./" in each value. Other text, which could name somebody, becomes "another".
+std::string shownTerm(const std::string& text);
+
 // "size", "size and kernel", "size, kernel and kVp"
 std::string listed(const std::vector<std::string>& words, std::string_view last = "and");
 

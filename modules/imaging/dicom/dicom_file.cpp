@@ -82,7 +82,12 @@ void readRescale(const DicomItem& item, DicomHeader& header) {
   const std::string slope = trimmedText(item, DCM_RescaleSlope);
   const std::string intercept = trimmedText(item, DCM_RescaleIntercept);
   const auto slope_value = parseDecimal(slope), intercept_value = parseDecimal(intercept);
-  header.rescale_bad = (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
+  // No scale of CT comes near to these.
+  constexpr double kSteepest = 1e4, kFarthest = 1e7;
+  const bool odd = std::abs(slope_value.value_or(1.0)) > kSteepest ||
+                   std::abs(intercept_value.value_or(0.0)) > kFarthest;
+  header.rescale_bad =
+      odd || (!slope.empty() && !slope_value) || (!intercept.empty() && !intercept_value);
   format.slope = slope_value.value_or(1.0);
   format.intercept = intercept_value.value_or(0.0);
   header.intercept_given = intercept_value.has_value();
@@ -155,26 +160,52 @@ std::string personName(std::string name) {
   return cleanUtf8(text);
 }
 
+std::string dayText(const std::string& day) {
+  if (day.size() != 8 || !parseInteger(day)) return "";
+  return day.substr(0, 4) + '-' + day.substr(4, 2) + '-' + day.substr(6);
+}
+
+// "FAMILY, GIVEN (ID, born 1970-12-31)"
+std::string patientText(const DicomItem& data) {
+  std::string text = personName(decodedText(data, DCM_PatientName));
+  std::string more = decodedText(data, DCM_PatientID);
+  if (const std::string day = dayText(trimmedText(data, DCM_PatientBirthDate)); !day.empty()) {
+    more += (more.empty() ? "born " : ", born ") + day;
+  }
+  if (more.empty()) return text;
+  return text.empty() ? more : text + " (" + more + ")";
+}
+
 // "Head, 2024-05-03": what a study is called, and its day.
 std::string studyText(const DicomItem& data) {
   std::string text = decodedText(data, DCM_StudyDescription);
-  const std::string day = trimmedText(data, DCM_StudyDate);
-  if (day.size() == 8 && parseInteger(day)) {
-    if (!text.empty()) text += ", ";
-    text += day.substr(0, 4) + '-' + day.substr(4, 2) + '-' + day.substr(6);
-  }
+  const std::string day = dayText(trimmedText(data, DCM_StudyDate));
+  if (!day.empty()) text += (text.empty() ? "" : ", ") + day;
   return text;
 }
 
-// Nobody can be found by it outside of this process: what is hashed along differs in each.
-std::string patientOf(const DicomItem& data) {
+// Without what writers of one name differ in: case, blanks, and other ways of writing it.
+std::string plainName(const std::string& name) {
+  std::string plain;
+  for (const char c : bareName(name.substr(0, name.find('=')))) {
+    if (c != ' ') plain += char(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  }
+  return plain;
+}
+
+// Nobody can be found by them outside of this process: what is hashed along differs in each.
+std::array<std::string, 3> patientOf(const DicomItem& data) {
   static const std::string salt = std::to_string(std::random_device{}()) +
                                   std::to_string(std::random_device{}());
-  const std::string who = bareName(valueText(data, DCM_PatientName)) + '\0' +
-                          trimmedText(data, DCM_PatientID) + '\0' +
-                          trimmedText(data, DCM_PatientBirthDate);
-  const std::string salted = salt + who;
-  return sha256Hex(salted.data(), salted.size());
+  std::array<std::string, 3> who{plainName(decodedText(data, DCM_PatientName)),
+                                 trimmedText(data, DCM_PatientID),
+                                 trimmedText(data, DCM_PatientBirthDate)};
+  for (std::string& one : who) {
+    if (one.empty()) continue;
+    const std::string salted = salt + one;
+    one = sha256Hex(salted.data(), salted.size());
+  }
+  return who;
 }
 
 std::optional<double> notZero(std::optional<double> value) {
@@ -184,6 +215,11 @@ std::optional<double> notZero(std::optional<double> value) {
 // What tells one way of scanning from another, and what says in other words where slices lie.
 void readAcquisition(const DicomItem& data, DicomHeader& header) {
   header.kernel = trimmedText(data, DCM_ConvolutionKernel);
+  header.scanner = trimmedText(data, DCM_Manufacturer) +
+                   trimmedText(data, DCM_ManufacturerModelName) +
+                   trimmedText(data, DCM_DeviceSerialNumber);
+  header.patient_position = trimmedText(data, DCM_PatientPosition);
+  header.contrast = trimmedText(data, DCM_ContrastBolusAgent);
   header.kvp = notZero(number(data, DCM_KVP));
   header.thickness_mm = notZero(number(data, DCM_SliceThickness));
   header.spacing_between_mm = notZero(number(data, DCM_SpacingBetweenSlices));
@@ -474,7 +510,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   readPhase(data, header);
   readAcquisition(data, header);
   header.patient = patientOf(data);
-  header.patient_name = personName(decodedText(data, DCM_PatientName));
+  header.patient_name = patientText(data);
   header.study_text = studyText(data);
   header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
 

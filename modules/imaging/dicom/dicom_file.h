@@ -63,9 +63,9 @@ struct DicomHeader {
   std::string rescale_type;
   std::vector<std::string> image_type;
   std::string instance_number;
-  // Who it is of: equal for equal patients, and nothing else can be told from it. Compared, never
-  // written anywhere.
-  std::string patient;
+  // Name, ID and birth date of whom it is of, each equal where they are equal, empty where they
+  // are; nothing else can be told from them. Compared, never written anywhere.
+  std::array<std::string, 3> patient;
   // For the screen alone, as ScreenNames has them.
   std::string patient_name, study_text;
   // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
@@ -80,6 +80,8 @@ struct DicomHeader {
   };
   std::vector<ValueMap> value_maps;  // real-world values, beside slope and intercept
   std::string kernel;  // of the reconstruction, one line; empty where absent
+  // Manufacturer, model and serial number; "HFS" and the like; the contrast agent.
+  std::string scanner, patient_position, contrast;
   // What the header says beside positions; none where absent or zero.
   std::optional<double> kvp, thickness_mm, spacing_between_mm, tilt_deg;
   std::optional<double> location_mm;  // along the patient's axis, in its writer's own sense

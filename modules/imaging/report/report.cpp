@@ -58,7 +58,7 @@ Json seriesJson(const SeriesReport& series, Identity identity) {
   for (const Choice& choice : series.choices) choices.push_back(choiceJson(choice));
   return {{"uid", shown ? cleanUtf8(series.uid) : seriesHash(series.uid)},
           {"description", shown ? cleanUtf8(series.description) : ""},
-          {"modality", cleanUtf8(series.modality)},
+          {"modality", shown ? cleanUtf8(series.modality) : shownTerm(series.modality)},
           {"source", shown ? series.source : ""},
           {"slices", series.slices},
           {"phases", series.phases},

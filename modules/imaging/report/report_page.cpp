@@ -114,6 +114,7 @@ std::string seriesSection(const SeriesReport& series, std::size_t number, std::s
                           (series.transfer_syntax.empty()
                                ? ""
                                : ", " + escaped(transferSyntaxName(series.transfer_syntax))));
+  html += row("Known as", "<font size=\"1\">" + seriesHash(series.uid) + "</font>");
   html += row("Slices",
               std::to_string(series.slices) +
                   (series.phases > 1 ? " in " + std::to_string(series.phases) + " phases" : ""));

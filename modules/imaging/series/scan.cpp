@@ -135,7 +135,8 @@ class LookedAt {
 }  // namespace
 
 ScreenNames screenNames(const DicomHeader& header) {
-  return {header.patient, header.study_uid, header.patient_name, header.study_text};
+  std::string patient = header.patient[0] + header.patient[1] + header.patient[2];
+  return {std::move(patient), header.study_uid, header.patient_name, header.study_text};
 }
 
 std::optional<FileId> fileId(const fs::path& file) {

@@ -26,13 +26,26 @@ bool near(const std::optional<std::array<double, kCount>>& a,
   return true;
 }
 
+// What tells that two slices are of two patients; null where nothing does. What one of them leaves
+// empty tells nothing, as long as they have something in common.
+const char* otherPatient(const DicomHeader& a, const DicomHeader& b) {
+  constexpr const char* kNames[] = {"patient's name", "patient's ID", "patient's birth date"};
+  bool common = a.patient == b.patient;
+  for (std::size_t n = 0; n < a.patient.size(); ++n) {
+    if (a.patient[n].empty() || b.patient[n].empty()) continue;
+    if (a.patient[n] != b.patient[n]) return kNames[n];
+    common = true;
+  }
+  return common ? nullptr : "patient";
+}
+
 // Why two slices of one Series UID cannot lie in one stack; null where they can. Spacings and
 // cosines may differ by what a writer makes of one scan; parts() has the finer look.
 const char* difference(const DicomHeader& a, const DicomHeader& b) {
-  if (a.patient != b.patient) return "patient";
+  if (const char* what = otherPatient(a, b)) return what;
   if (a.modality != b.modality) return "modality";
   if (a.sop_class != b.sop_class) return "kind of image";
-  if (isLocalizer(a) != isLocalizer(b)) return "localizer";
+  if (isLocalizer(a) != isLocalizer(b)) return "being a localizer";
   if (a.rows != b.rows || a.columns != b.columns) return "size";
   if (!near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-3)) return "pixel spacing";
   if (!near(a.orientation, b.orientation, 2.1e-3)) return "orientation";

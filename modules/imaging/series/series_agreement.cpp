@@ -26,6 +26,13 @@ bool overlap(const Headers& placed) {
   return false;
 }
 
+std::string inCapitals(std::string text) {
+  for (char& c : text) {
+    if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
+  }
+  return text;
+}
+
 }  // namespace
 
 Headers chooseParts(const Series& series, Headers placed, const Answers& answers,
@@ -44,8 +51,8 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
     choice.options.push_back("join");
     choice.words.push_back("Join all " + counted(placed.size(), "slice") +
                            ": it is assumed that they are one scan of one patient who lay "
-                           "still, whatever the " +
-                           differing + " say");
+                           "still, whatever is said of " +
+                           differing);
   }
   for (const auto& [part, count] : counts) {
     if (part >= kMostOffered || count < 2) continue;
@@ -53,6 +60,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
     choice.words.push_back("Use only part " + std::to_string(part + 1) + ": " +
                            std::to_string(count) + " of " + counted(placed.size(), "slice"));
   }
+  const bool offers_part = choice.options.size() > 2;
   const std::string text = "The series falls into " + std::to_string(counts.size()) +
                            " parts that differ in " + differing;
   const std::string answer = ask(std::move(choice), answers, report.choices);
@@ -64,7 +72,9 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   }
   if (answer == "refuse") {
     findings.refuse("PARTS", text,
-                    joinable ? "Join them, or choose a part" : "Choose a part of the series");
+                    !joinable     ? "Choose a part of the series"
+                    : offers_part ? "Join them, or choose a part"
+                                  : "Join them, or use another series");
     if (joinable) return placed;
   }
   const int wanted = answer == "refuse" ? 0 : *parseInteger(answer) - 1;
@@ -80,23 +90,44 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
 
 void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport& report,
                       Findings& findings) {
-  std::vector<std::string> differing;
-  // Absent values contradict nothing.
-  const auto words = [&](const char* name, bool shown, const auto& value) {
+  std::vector<std::string> differing, unsaid, odd_ones;
+  // Slices that say another thing than most do.
+  const auto unlikeMost = [&](const auto& key) {
     std::map<std::string, int> counts;
+    for (const DicomHeader* header : used) ++counts[key(*header)];
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; });
     for (const DicomHeader* header : used) {
-      if (const std::string text = value(*header); !text.empty()) ++counts[text];
+      if (key(*header) == most->first) continue;
+      const std::string name = sliceName(*header);
+      if (std::ranges::find(odd_ones, name) == odd_ones.end()) odd_ones.push_back(name);
     }
-    if (counts.size() < 2) return;
+  };
+  // Absent values contradict nothing, and small letters are those that somebody typed.
+  const auto words = [&](const char* name, bool shown, const auto& value) {
+    const auto key = [&](const DicomHeader& header) { return inCapitals(value(header)); };
+    std::map<std::string, std::pair<std::string, int>> said;
+    int silent = 0;
+    for (const DicomHeader* header : used) {
+      const std::string text = value(*header);
+      if (text.empty()) {
+        ++silent;
+        continue;
+      }
+      auto& [first, count] = said[inCapitals(text)];
+      if (count++ == 0) first = text;
+    }
+    if (!said.empty() && silent > 0) unsaid.push_back(name + (" in " + std::to_string(silent)));
+    if (said.size() < 2) return;
     std::vector<std::string> some;
-    for (const auto& [text, count] : counts) {
+    for (const auto& [key_, one] : said) {
       if (some.size() == 3) {
         some.push_back("others");
         break;
       }
-      some.push_back(text + " in " + std::to_string(count));
+      some.push_back(shownTerm(one.first) + " in " + std::to_string(one.second));
     }
     differing.push_back(name + (shown ? " (" + listed(some) + ")" : ""));
+    unlikeMost(key);
   };
   const auto numbers = [&](const char* name, const char* unit, double tolerance,
                            std::optional<double> DicomHeader::*value) {
@@ -109,17 +140,29 @@ void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport&
     if (!least || *most - *least <= tolerance * std::max(std::abs(*least), std::abs(*most))) return;
     differing.push_back(name + (" (" + fixedText(*least, 2) + " to ") + fixedText(*most, 2) + " " +
                         unit + ")");
+    unlikeMost([&](const DicomHeader& h) { return fixedText((h.*value).value_or(0.0), 3); });
   };
   words("convolution kernel", true, [](const DicomHeader& h) { return h.kernel; });
   numbers("tube voltage", "kV", 0.01, &DicomHeader::kvp);
   numbers("slice thickness", "mm", 0.01, &DicomHeader::thickness_mm);
+  // From the fourth on its values are the maker's own.
   words("image type", true, [](const DicomHeader& h) {
     std::string text;
-    for (const std::string& value : h.image_type) text += (text.empty() ? "" : "\\") + value;
+    for (std::size_t n = 0; n < std::min<std::size_t>(h.image_type.size(), 3); ++n) {
+      text += (text.empty() ? "" : "\\") + h.image_type[n];
+    }
     return text;
   });
-  // A description may hold a name.
+  // What may hold a name is not shown.
   words("series description", false, [](const DicomHeader& h) { return h.description; });
+  words("scanner", false, [](const DicomHeader& h) { return h.scanner; });
+  words("position of the patient", true, [](const DicomHeader& h) { return h.patient_position; });
+  words("contrast agent", false, [](const DicomHeader& h) { return h.contrast; });
+  if (!unsaid.empty()) {
+    findings.notice("PARTLY_SAID",
+                    "Not all slices say how they were made: absent are " + listed(unsaid),
+                    "What is absent was taken to be as in the others");
+  }
   if (differing.empty()) return;
   const std::string text =
       "The slices were not all made in one way: they differ in " + listed(differing);
@@ -132,17 +175,18 @@ void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport&
             "sharpness from slice to slice"}},
           answers, report.choices);
   if (answer == "accept") {
-    findings.repaired("MIXED_SLICES", text, "They were taken as one volume, as was agreed");
+    findings.repaired("MIXED_SLICES", text, "They were taken as one volume, as was agreed",
+                      odd_ones);
   } else {
     findings.refuse("MIXED_SLICES", text,
-                    "Use a series of one acquisition, or agree to take them as one");
+                    "Use a series of one acquisition, or agree to take them as one", odd_ones);
   }
 }
 
 void checkDensity(const Headers& used, const Stack& stack, const Answers& answers,
                   SeriesReport& report, Findings& findings) {
   constexpr std::size_t kFewest = 4;
-  constexpr double kWidestStep_mm = 20.0, kMostThicknesses = 5.0;
+  constexpr double kWidestStep_mm = 20.01, kMostThicknesses = 5.0;
   if (used.empty()) return;
   const double step_mm = stack.geometry.spacing_mm.z;
   double thickness_mm = 0.0;
@@ -150,7 +194,8 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
     thickness_mm = std::max(thickness_mm, header->thickness_mm.value_or(0.0));
   }
   std::vector<std::string> why;
-  if (used.size() < kFewest) why.push_back("there are only " + std::to_string(used.size()));
+  const bool few = used.size() < kFewest;
+  if (few) why.push_back("there are only " + std::to_string(used.size()));
   if (step_mm > kWidestStep_mm) why.push_back("they lie " + placeText(step_mm) + " apart");
   if (thickness_mm > 0.0 && step_mm >= kMostThicknesses * thickness_mm) {
     why.push_back("each is " + placeText(thickness_mm) + " thick and the next is " +
@@ -171,12 +216,15 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
            "The slices are too few or too far apart to be cut. Use them all the same?",
            {"refuse", "accept"},
            {"Do not use the series",
-            "Use them: what lies between them was not scanned and is only guessed"}},
+            few ? "Use them: they cover next to nothing"
+                : "Use them: what lies between them was not scanned and is only guessed"}},
           answers, report.choices);
   if (answer == "accept") {
     findings.repaired("SPARSE_SLICES", text, "They were used all the same, as was agreed");
   } else {
-    findings.refuse("SPARSE_SLICES", text, "Choose a series of thin slices");
+    findings.refuse(
+        "SPARSE_SLICES", text,
+        few ? "Choose a series that covers the anatomy" : "Choose a series of thin slices");
   }
 }
 
@@ -191,18 +239,39 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   };
 
   // Steps of the slice location against those of the positions, along the normal or the table.
-  double worst_mm = 0.0, said_mm = 0.0, is_mm = 0.0;
-  for (std::size_t n = 1; n < in_order.size(); ++n) {
-    const auto &a = in_order[n - 1]->location_mm, &b = in_order[n]->location_mm;
-    if (!a || !b) continue;
-    const double said = std::abs(*b - *a), is = stack.places_mm[n] - stack.places_mm[n - 1];
-    const double off = std::min(std::abs(said - is), std::abs(said - is * slant));
-    if (off > worst_mm) {
+  // Slices without one are passed over; a location that never changes says nothing, and one in
+  // whole millimetres may be off by as much as one.
+  std::vector<std::size_t> located;
+  for (std::size_t n = 0; n < in_order.size(); ++n) {
+    if (in_order[n]->location_mm) located.push_back(n);
+  }
+  const auto location_mm = [&](std::size_t n) { return *in_order[n]->location_mm; };
+  const bool whole = std::ranges::all_of(
+      located, [&](std::size_t n) { return location_mm(n) == std::round(location_mm(n)); });
+  const bool constant = std::ranges::all_of(
+      located, [&](std::size_t n) { return location_mm(n) == location_mm(located.front()); });
+  double worst_mm = 0.0, said_mm = 0.0, is_mm = 0.0, drift_mm = 0.0;
+  for (std::size_t i = 1; i < located.size() && !constant; ++i) {
+    const std::size_t from = located[i - 1], to = located[i];
+    const auto off_mm = [&](std::size_t first) {
+      const Vec3 moved = *in_order[to]->position_mm - *in_order[first]->position_mm;
+      const double said = std::abs(location_mm(to) - location_mm(first));
+      double off = std::abs(said - std::abs(stack.places_mm[to] - stack.places_mm[first]));
+      // Along the table, or as a coordinate.
+      const double length = glm::length(moved);
+      for (const double is : {length, std::abs(moved.x), std::abs(moved.y), std::abs(moved.z)}) {
+        if (is >= 0.5 * length) off = std::min(off, std::abs(said - is));
+      }
+      return off;
+    };
+    drift_mm = std::max(drift_mm, off_mm(located.front()));
+    if (const double off = off_mm(from); off > worst_mm) {
       worst_mm = off;
-      said_mm = said;
-      is_mm = is;
+      said_mm = std::abs(location_mm(to) - location_mm(from));
+      is_mm = stack.places_mm[to] - stack.places_mm[from];
     }
   }
+  if (whole && drift_mm <= 1.0) worst_mm = 0.0;
   if (worst_mm > std::max(0.15, 0.1 * step_mm)) {
     const std::string text = "The slice locations contradict the positions: between two slices " +
                              placeText(is_mm) + " by position and " + placeText(said_mm) +
@@ -223,7 +292,12 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   }
   std::optional<double> between_mm, tilt_deg;
   for (const DicomHeader* header : in_order) {
-    if (header->spacing_between_mm) between_mm = std::abs(*header->spacing_between_mm);
+    // Of several that it says, the one that lies farthest off.
+    const auto said = header->spacing_between_mm;
+    if (said &&
+        (!between_mm || std::abs(std::abs(*said) - step_mm) > std::abs(*between_mm - step_mm))) {
+      between_mm = std::abs(*said);
+    }
     if (header->tilt_deg) tilt_deg = std::abs(*header->tilt_deg);
   }
   const double tolerance_mm = std::max(0.05, 0.02 * step_mm);

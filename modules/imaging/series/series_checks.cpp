@@ -34,7 +34,8 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
   if (!first.has_pixels && first.defect == Defect::none) {
     findings.refuse(
         "NOT_AN_IMAGE_SERIES",
-        (first.modality.empty() ? "The files" : "The files of this " + first.modality + " series") +
+        (first.modality.empty() ? "The files"
+                                : "The files of this " + shownTerm(first.modality) + " series") +
             std::string(" hold no pixels"),
         kChooseCt);
   } else if (secondary) {
@@ -42,7 +43,8 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
                     kChooseCt);
   } else if (!isCt(first) || (!first.modality.empty() && first.modality != "CT")) {
     findings.refuse("NOT_CT",
-                    "The series is " + (first.modality.empty() ? "no CT" : first.modality) +
+                    "The series is " +
+                        (first.modality.empty() ? "no CT" : shownTerm(first.modality)) +
                         ": its values are not HU",
                     kChooseCt);
   } else if (isLocalizer(first)) {
@@ -65,8 +67,9 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
   for (const auto& [uid, count] : counts) {
     if (findTransferSyntax(uid)) continue;
     findings.refuse("UNSUPPORTED_TRANSFER_SYNTAX",
-                    "The transfer syntax " + transferSyntaxName(uid) + " (" + cleanUtf8(uid) +
-                        ") of " + counted(std::uint64_t(count), "slice") + " cannot be read",
+                    "The transfer syntax " + transferSyntaxName(uid) +
+                        (uid.starts_with("1.2.840.10008.") ? " (" + cleanUtf8(uid) + ")" : "") +
+                        " of " + counted(std::uint64_t(count), "slice") + " cannot be read",
                     "Export the series uncompressed (Explicit VR Little Endian)");
   }
 }
@@ -95,7 +98,8 @@ void checkValues(const Series& series, Findings& findings) {
   const DicomHeader& first = typicalSlice(series.slices);
   const bool grey = first.photometric == "MONOCHROME1" || first.photometric == "MONOCHROME2";
   if (first.samples != 1 || (!grey && !first.photometric.empty())) {
-    findings.refuse("COLOUR", "The pixels are colour (" + first.photometric + "), not HU",
+    findings.refuse("COLOUR",
+                    "The pixels are colour (" + shownTerm(first.photometric) + "), not HU",
                     "Export the original CT slices");
   }
   const auto odd_format = findings.slicesWhere([](const DicomHeader& h) {
@@ -114,14 +118,15 @@ void checkValues(const Series& series, Findings& findings) {
            h.rescale_type != "US";
   });
   if (!not_hu.empty()) {
-    findings.refuse("NOT_HU", "The values are " + first.rescale_type + ", not HU",
+    findings.refuse("NOT_HU", "The values are " + shownTerm(first.rescale_type) + ", not HU",
                     "Choose the series in HU", not_hu);
   }
   const auto bad =
       findings.slicesWhere([](const DicomHeader& h) { return h.has_pixels && h.rescale_bad; });
   if (!bad.empty()) {
     findings.refuse("BAD_RESCALE",
-                    "The rescale slope or intercept of " + countOfSlices(bad) + " is no number",
+                    "The rescale slope or intercept of " + countOfSlices(bad) +
+                        " is no number that CT could have",
                     "Export the series again", bad);
   }
   const auto raw = findings.slicesWhere(
@@ -180,7 +185,7 @@ bool isPlaced(const DicomHeader& header) {
 // "; of these cannot be read: slice 2 (its pixels are cut short)"
 std::string lostText(const std::vector<const DicomHeader*>& lost) {
   if (lost.empty()) return "";
-  std::string text = "; " + std::to_string(lost.size()) + " of these cannot be read:";
+  std::string text = "; " + counted(lost.size(), "slice") + " cannot be read:";
   for (std::size_t n = 0; n < std::min<std::size_t>(lost.size(), 5); ++n) {
     text += (n == 0 ? " " : ", ") + sliceName(*lost[n]);
   }
@@ -271,7 +276,8 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
       in_order.push_back(taken[n]);
       plan.sources.push_back(std::size_t(taken[n] - series.slices.data()));
     }
-    if (plan.stack.geometry.size[2] > 1) {  // else it is no stack, as is said already
+    // Else it is no stack, as is said already.
+    if (plan.stack.geometry.size[2] > 1 && plan.stack.places_mm.size() == in_order.size()) {
       checkAcquisition(in_order, answers, report, findings);
       checkDensity(in_order, plan.stack, answers, report, findings);
       checkContradictions(in_order, plan.stack, answers, report, findings);

@@ -100,7 +100,8 @@ bool Stack::oneToOne() const {
 }
 
 std::string placeText(double mm) {
-  return fixedText(mm, 2) + " mm";
+  const bool hundredths = std::abs(100.0 * mm - std::round(100.0 * mm)) < 0.05;
+  return fixedText(mm, hundredths ? 2 : 3) + " mm";
 }
 
 std::string ask(Choice choice, const Answers& answers, std::vector<Choice>& choices) {

@@ -56,7 +56,7 @@ std::optional<Mat3> axesOf(const std::array<double, 6>& orientation);
 // Slices nearer to each other than this lie at one place.
 constexpr double kSamePlace_mm = 0.01;
 
-// "102.50 mm"
+// "102.50 mm", "0.625 mm"
 std::string placeText(double mm);
 
 // Adds the choice and says what was answered; its first option where nothing (or nonsense) was.

@@ -43,6 +43,11 @@ constexpr Term kTerms[] = {
     {"MAT VALUE BASED", Use::no_hu, "a map of materials"},
     {"EFF ATOMIC NUM", Use::no_hu, "effective atomic numbers"},
     {"ELECTRON DENSITY", Use::no_hu, "electron densities"},
+    {"IODINE", Use::no_hu, "a map of one material"},
+    {"CALCIUM", Use::no_hu, "a map of one material"},
+    {"Z EFF", Use::no_hu, "effective atomic numbers"},
+    {"VRT", Use::projection, "a rendered picture"},
+    {"SSD", Use::projection, "a rendered picture"},
     {"MAX IP", Use::projection, "a maximum intensity projection"},
     {"MIP", Use::projection, "a maximum intensity projection"},
     {"MAXIMUM", Use::projection, "the maximum of several images"},
@@ -62,6 +67,7 @@ constexpr Term kTerms[] = {
     {"AVERAGE", Use::asked, "means of several images"},
     {"MASKED", Use::asked, "masked: parts of them are not what was scanned"},
     {"FILTERED", Use::asked, "filtered"},
+    {"VNC", Use::asked, "calculated as if contrast agent were not there"},
     {"VMI", Use::asked, "virtual monoenergetic: their HU depend on the energy that was chosen"},
     {"MAT REMOVED", Use::asked, "calculated as if a material were not there"},
     {"MAT MODIFIED", Use::asked, "calculated with a material brought out or held back"},
@@ -187,14 +193,15 @@ void checkKind(Series& series, const Answers& answers) {
     }
   }
   if (!derived.empty()) {
-    askOf({"DERIVED_IMAGES",
-           "The slices are not as they were scanned, or not made to be read. Use them?",
-           {"refuse", "accept"},
-           {"Do not use the series",
-            "Use them: detail and HU may differ from those of the slices that were scanned"}},
-          countText(derived, "is", "are") + listed(derived_words),
-          "They were taken as they are, as was agreed",
-          "Choose the series as it was scanned, or agree to use this one", derived);
+    askOf(
+        {"DERIVED_IMAGES",
+         "The slices are not as they were scanned, or were scanned for another purpose. Use them?",
+         {"refuse", "accept"},
+         {"Do not use the series",
+          "Use them: detail and HU may differ from those of the slices that were scanned"}},
+        countText(derived, "is", "are") + listed(derived_words),
+        "They were taken as they are, as was agreed",
+        "Choose the series as it was scanned, or agree to use this one", derived);
   }
   if (!scales.empty()) {
     const auto& [scale, slices] = *scales.begin();

@@ -311,7 +311,11 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
 
   if (phases) {
     report.phases = 1 + std::ranges::max(*phases);
-    Choice choice{"PHASES", "Which phase shall be used?", {"refuse"}, {"Do not use the series"}};
+    const bool by_kernel = told_apart_by == "convolution kernel";
+    Choice choice{"PHASES",
+                  by_kernel ? "Which reconstruction shall be used?" : "Which phase shall be used?",
+                  {"refuse"},
+                  {"Do not use the series"}};
     choice.on_screen.emplace_back();
     choice.shown.push_back(-1);
     for (int phase = 0; phase < report.phases; ++phase) {
@@ -321,22 +325,22 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
       }
       const DicomHeader& middle = *its[its.size() / 2];
       choice.options.push_back(std::to_string(phase + 1));
-      const bool by_kernel = told_apart_by == "convolution kernel";
-      choice.words.push_back("Phase " + std::to_string(phase + 1) +
-                             (by_kernel ? "" : " by " + told_apart_by) +
-                             (middle.kernel.empty() ? "" : ", kernel " + middle.kernel) +
+      choice.words.push_back((by_kernel ? "Reconstruction " : "Phase ") +
+                             std::to_string(phase + 1) + (by_kernel ? "" : " by " + told_apart_by) +
+                             (middle.kernel.empty() ? "" : ", kernel " + shownTerm(middle.kernel)) +
                              timeText(middle) + ", " + counted(its.size(), "slice"));
       choice.on_screen.push_back(middle.description);
       choice.shown.push_back(int(&middle - all.data()));
     }
     const std::string answer = ask(std::move(choice), answers, report.choices);
     const std::string text = "The series holds " + std::to_string(report.phases) +
-                             " phases or repeated acquisitions, told apart by " + told_apart_by;
+                             (by_kernel ? " reconstructions" : " phases or repeated acquisitions") +
+                             ", told apart by " + told_apart_by;
     if (answer == "refuse") {
-      report.findings.push_back({"PHASES", "refusal", text, {}, "Choose one phase"});
+      report.findings.push_back({"PHASES", "refusal", text, {}, "Choose one of them"});
       take(*phases, 0);
     } else {
-      report.findings.push_back({"PHASES", "repair", text, {}, "Phase " + answer + " was taken"});
+      report.findings.push_back({"PHASES", "repair", text, {}, "Number " + answer + " was taken"});
       take(*phases, *parseInteger(answer) - 1);
     }
     return chosen;

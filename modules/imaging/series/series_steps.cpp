@@ -181,7 +181,8 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const bool fillable = filled <= 2 * std::ranges::count(slices, true, &Slice::usable);
   if (fillable) {
     choice.options.push_back("fill");
-    choice.words.push_back("Fill in by interpolation between the slices beside, marked as such");
+    choice.words.push_back(
+        "Fill in by interpolation between the slices beside, and name them in the report");
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
@@ -191,11 +192,14 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   const std::string answer = ask(std::move(choice), answers, stack.choices);
   if (answer == "part") return keepPart(part, "MISSING_SLICES", text, stack);
   if (answer == "fill") {
+    const std::size_t before = slices.size();
     trimUnusableEnds(slices);
+    const bool trimmed = slices.size() < before;
     planSlices(slices, filled, stack);
     stack.findings.push_back({"MISSING_SLICES", "repair", text, places,
-                              "Filled in by interpolation: what lies there was not scanned, and a "
-                              "lesion in it cannot be seen. Ends were cut off"});
+                              std::string("Filled in by interpolation: what lies there was not "
+                                          "scanned, and a lesion in it cannot be seen") +
+                                  (trimmed ? ". Ends that cannot be read were cut off" : "")});
     return;
   }
   planAsTheyAre(slices, stack);
@@ -249,18 +253,65 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                             "Export the series with even spacing, or choose how to use it"});
 }
 
-// The coarsest grid that a writer rounds to and that all positions lie on [mm]; 0: none.
+// The coarsest grid that a writer rounds to and that all positions lie on, along the axes on which
+// they differ [mm]; 0: none.
 double roundedTo_mm(const std::vector<Vec3>& positions_mm) {
   for (const double grid_mm : {1.0, 0.1}) {
-    const bool all = std::ranges::all_of(positions_mm, [&](const Vec3& p) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(p[axis] / grid_mm - std::round(p[axis] / grid_mm)) > 1e-5) return false;
+    bool all = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double first = positions_mm.front()[axis];
+      bool differ = false, on_grid = true;
+      for (const Vec3& p : positions_mm) {
+        differ |= p[axis] != first;
+        on_grid &= std::abs(p[axis] / grid_mm - std::round(p[axis] / grid_mm)) <= 1e-5;
       }
-      return true;
-    });
+      all &= on_grid || !differ;
+    }
     if (all) return grid_mm;
   }
   return 0.0;
+}
+
+// The number of each slice on a line of this step, where some such line can be rounded to all their
+// places, by `most_mm` each: with as few slices missing as that takes. Nothing where none can.
+std::optional<std::vector<double>> numbersOf(const Slices& slices, double step_mm, double most_mm) {
+  const double slack_mm = 1e-6 * step_mm;
+  std::vector<double> numbers{0.0};
+  // Where the line may begin, by the slices so far.
+  double low = slices.front().place_mm - most_mm, high = slices.front().place_mm + most_mm;
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    double number = numbers.back() + 1.0;
+    double here = slices[i].place_mm - number * step_mm;
+    if (here - most_mm > high + slack_mm) {
+      number += std::ceil((here - most_mm - high - slack_mm) / step_mm);
+      here = slices[i].place_mm - number * step_mm;
+    }
+    low = std::max(low, here - most_mm);
+    high = std::min(high, here + most_mm);
+    if (low > high + slack_mm) return std::nullopt;
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+// The slices on the line of this step that lies nearest to their places.
+Slices onLineOf(const Slices& slices, const std::vector<double>& numbers, double step_mm) {
+  double start = 0.0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    start += (slices[i].place_mm - step_mm * numbers[i]) / double(slices.size());
+  }
+  Slices fitted = slices;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    fitted[i].place_mm = start + step_mm * numbers[i];
+  }
+  return fitted;
+}
+
+bool moved(const Slices& fitted, const Slices& slices) {
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    if (std::abs(fitted[i].place_mm - slices[i].place_mm) > kSamePlace_mm) return true;
+  }
+  return false;
 }
 
 // Places that were rounded, put back on the line that they were rounded from: the step is that of
@@ -302,12 +353,7 @@ std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
       const double is = slices[i].place_mm - slices[i - 1].place_mm;
       fits &= std::abs(is - steps) < 2.0 * most_mm * (1.0 - 1e-6);
     }
-    const auto moved = [&](const Slice& slice) {
-      const auto at = std::size_t(&slice - fitted.data());
-      return std::abs(slice.place_mm - slices[at].place_mm) > kSamePlace_mm;
-    };
-    if (fits && std::ranges::any_of(fitted, moved)) return fitted;
-    if (fits) return {};  // they lie on it as they are
+    if (fits) return fitted;
   }
   return {};
 }
@@ -325,7 +371,16 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
     const double most_mm =
         0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-    if (std::optional<Slices> fitted = onTheirLine(slices, most_mm, known_mm)) {
+    std::optional<Slices> fitted;
+    // What is a whole number of the grid's steps is not moved by rounding.
+    const double steps_of_grid = known_mm.value_or(0.0) / grid_mm;
+    if (known_mm && std::abs(steps_of_grid - std::round(steps_of_grid)) > 1e-6) {
+      if (const auto numbers = numbersOf(slices, std::abs(*known_mm), most_mm)) {
+        fitted = onLineOf(slices, *numbers, std::abs(*known_mm));
+      }
+    }
+    if (!fitted) fitted = onTheirLine(slices, most_mm, known_mm);
+    if (fitted && moved(*fitted, slices)) {
       slices = *std::move(fitted);
       steps = stepsOf(slices);
       stack.findings.push_back(

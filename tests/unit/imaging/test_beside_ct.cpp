@@ -223,7 +223,7 @@ TEST_F(BesideCt, NamesAreForTheScreenAndInNothingThatIsWritten) {
   CtFolder ct = scan();
   ASSERT_EQ(ct.screenNames().size(), 1u);
   const ScreenNames names = ct.screenNames().front();
-  EXPECT_EQ(names.patient, "M\xC3\xBCSTERMANN, ERIKA DR.");
+  EXPECT_EQ(names.patient, "M\xC3\xBCSTERMANN, ERIKA DR. (PHANTOM)");
   EXPECT_EQ(names.study, "Knochenstudie, 2024-05-03");
   EXPECT_FALSE(names.patient_key.empty());
 

@@ -52,6 +52,7 @@ TEST_F(OneScan, IsOfOnePatient) {
        {std::pair(DCM_PatientID, "4711"), std::pair(DCM_PatientName, "MUSTERMANN^ERIKA"),
         std::pair(DCM_PatientBirthDate, "19700101")}) {
     anew({7, 5, 10});
+    editAll(set(DCM_PatientBirthDate, "19800202"));
     editSome({6, 7, 8, 9, 10}, set(tag, value));
     const CtFolder folder = scan();
     ASSERT_EQ(folder.report().series.size(), 2u) << value;
@@ -67,6 +68,83 @@ TEST_F(OneScan, IsOfOnePatient) {
     const std::string json = toJson(folder.report()).dump();
     EXPECT_EQ(json.find(value), std::string::npos);
   }
+}
+
+TEST_F(OneScan, IsOfOnePatientHoweverTheNameIsWritten) {
+  for (const auto& [charset, name] :
+       {std::pair("ISO_IR 192", "doe^jane"), std::pair("ISO_IR 192", " Doe ^ Jane"),
+        std::pair("ISO_IR 192", "DOE^JANE=\xE5\xB1\xB1"), std::pair("ISO_IR 100", "DOE^JANE")}) {
+    anew();
+    editAll([](DcmDataset& data) { put(data, DCM_PatientName, "DOE^JANE"); });
+    editSome({2, 4}, [&](DcmDataset& data) {
+      put(data, DCM_SpecificCharacterSet, charset);
+      put(data, DCM_PatientName, name);
+    });
+    EXPECT_EQ(only().verdict, Verdict::pass) << name << ": " << codes(only());
+  }
+  anew();
+  editAll([](DcmDataset& data) {
+    put(data, DCM_SpecificCharacterSet, "ISO_IR 192");
+    put(data, DCM_PatientName, "M\xC3\xBCLLER");
+  });
+  editSome({3}, [](DcmDataset& data) {
+    put(data, DCM_SpecificCharacterSet, "ISO_IR 100");
+    put(data, DCM_PatientName, "M\xFCLLER");
+  });
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+}
+
+TEST_F(OneScan, IsOfOnePatientThoughSomeSlicesSayLessOfHim) {
+  editAll([](DcmDataset& data) { put(data, DCM_PatientBirthDate, "19700101"); });
+  editSome({1, 2}, set(DCM_PatientBirthDate, ""));
+  editSome({3, 4}, set(DCM_PatientID, ""));
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+  editSome({5}, [](DcmDataset& data) {
+    for (const auto& tag : {DCM_PatientID, DCM_PatientName, DCM_PatientBirthDate})
+      put(data, tag, "");
+  });
+  EXPECT_EQ(scan().report().series.size(), 2u) << "nothing in common is another patient";
+}
+
+TEST_F(OneScan, IsMadeByOneScannerOfAPatientWhoLiesInOneWay) {
+  for (const auto& [tag, value, words] :
+       {std::tuple(DCM_Manufacturer, "Another", "scanner"),
+        std::tuple(DCM_PatientPosition, "FFS", "position of the patient (FFS in 3 and HFS in 3)"),
+        std::tuple(DCM_ContrastBolusAgent, "Iodine", "contrast agent")}) {
+    anew();
+    editAll([](DcmDataset& data) {
+      put(data, DCM_Manufacturer, "One");
+      put(data, DCM_PatientPosition, "HFS");
+      put(data, DCM_ContrastBolusAgent, "none");
+    });
+    editSome({1, 2, 3}, set(tag, value));
+    expectAsked("MIXED_SLICES", "accept");
+    const Finding* finding = find(chosen(), "MIXED_SLICES");
+    EXPECT_NE(finding->text.find(words), std::string::npos) << finding->text;
+    EXPECT_EQ(finding->slices.size(), 3u) << "those that differ are named";
+  }
+}
+
+TEST_F(OneScan, MayCallItselfWhatItsMakerLikesFromTheFourthTypeOn) {
+  editAll(set(DCM_ImageType, "ORIGINAL\\PRIMARY\\AXIAL\\CT_SOM5 SPI"));
+  editSome({1, 2}, set(DCM_ImageType, "ORIGINAL\\PRIMARY\\AXIAL\\CT_SOM5 SEQ"));
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+}
+
+TEST_F(OneScan, SaysWhereSomeSlicesAreSilentAboutTheirKernel) {
+  editSome({1, 2}, set(DCM_ConvolutionKernel, "B30f"));
+  EXPECT_EQ(only().verdict, Verdict::pass);
+  ASSERT_NE(find(only(), "PARTLY_SAID"), nullptr);
+  EXPECT_NE(find(only(), "PARTLY_SAID")->text.find("convolution kernel in 4"), std::string::npos);
+}
+
+TEST_F(OneScan, NamesNobodyInItsTypeOrKernel) {
+  editAll(set(DCM_ConvolutionKernel, "B30f"));
+  editSome({1}, set(DCM_ConvolutionKernel, "MEIER^ANNA"));
+  editSome({2}, set(DCM_ConvolutionKernel, std::string(10000, 'x')));
+  editSome({3}, set(DCM_Modality, "MEIER^ANNA"));
+  EXPECT_EQ(toJson(scan().report()).dump().find("MEIER"), std::string::npos);
+  EXPECT_LT(toJson(scan().report()).dump().size(), 10000u);
 }
 
 TEST_F(OneScan, IsOfOneModality) {
@@ -215,6 +293,21 @@ TEST_F(OneScan, CanBeAPartAndWhatWasLeftOutIsSaid) {
 }
 
 // A patient who was laid down anew and scanned again under one number.
+TEST_F(OneScan, WhosePartHasAGapSaysSoOnceThePartIsChosen) {
+  anew({7, 5, 10});
+  editSome({4, 5}, set(DCM_FrameOfReferenceUID, "1.2.3.99"));
+  CtFolder ct = scan();
+  const Answers part{{"PARTS", "1"}};
+  const auto best = ct.bestSeries(part);
+  ASSERT_TRUE(best);
+  ImportRequest request;
+  request.answers = part;
+  const auto read = ct.read(*best, request, Progress());
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, "MISSING_SLICES") << read.error().sentence();
+  EXPECT_FALSE(optionsOf(ct.report().series.front(), "MISSING_SLICES").empty());
+}
+
 TEST_F(OneScan, IsNotJoinedWithAnotherAtTheSamePlaces) {
   for (int n = 1; n <= kSlices; ++n) {
     const fs::path again = folder() / ("again-" + std::to_string(n));
@@ -250,6 +343,36 @@ TEST_F(Contradiction, OfSliceLocationsIsAsked) {
   const std::string text = find(chosen(), "LOCATION_MISMATCH")->text;
   EXPECT_NE(text.find("1.25 mm by position and 3.75 mm by slice location"), std::string::npos)
       << text;
+}
+
+TEST_F(Contradiction, OfSliceLocationsIsFoundThoughEverySecondLacksOne) {
+  locate([](int n) { return 4.0 * n; });
+  editSome({2, 4, 6}, set(DCM_SliceLocation, ""));
+  expectRefused("LOCATION_MISMATCH");
+}
+
+TEST_F(Contradiction, OfSliceLocationsIsNoneWhereTheyAreACoordinateOrSayNothing) {
+  locate([](int) { return 0.0; });
+  EXPECT_EQ(only().verdict, Verdict::pass) << codes(only());
+  locate([](int n) { return std::round(1.25 * n); });
+  EXPECT_EQ(only().verdict, Verdict::pass) << "whole millimetres: " << codes(only());
+  // Straight slices at 40 degrees, located by their z.
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (int n = 1; n <= kSlices; ++n) {
+    edit(slice(n), [&](DcmDataset& data) {
+      put(data, DCM_ImageOrientationPatient,
+          "1\\0\\0\\0\\" + decimalText(c) + "\\" + decimalText(s));
+      put(data, DCM_ImagePositionPatient, positionText(Vec3(0.0, -s, c) * (3.0 * n)));
+      put(data, DCM_SliceLocation, decimalText(3.0 * n * c));
+    });
+  }
+  EXPECT_EQ(find(only(), "LOCATION_MISMATCH"), nullptr) << codes(only());
+}
+
+TEST_F(Contradiction, OfTheSpacingBetweenSlicesCountsInOneOfThem) {
+  editAll(set(DCM_SpacingBetweenSlices, "1.25"));
+  editSome({2}, set(DCM_SpacingBetweenSlices, "5"));
+  EXPECT_NE(find(only(), "SPACING_MISMATCH"), nullptr) << codes(only());
 }
 
 TEST_F(Contradiction, OfTheSpacingBetweenSlicesIsARepair) {
@@ -324,6 +447,34 @@ TEST_F(Rounded, PositionsArePutBackOnTheirLine) {
     EXPECT_NEAR(volume.geometry.spacing_mm.z, step_mm, 0.01 * step_mm);
     EXPECT_EQ(chosen().verdict, Verdict::repaired);
     EXPECT_NE(find(chosen(), "ROUNDED_POSITIONS"), nullptr) << codes(chosen());
+  }
+}
+
+// From half a millimetre on every second one is rounded by as much as can be.
+TEST_F(Rounded, PositionsArePutOnTheLineOfAKnownStepWhereverItBegins) {
+  for (const double step_mm : {1.25, 1.5, 1.75}) {
+    for (const double begin_mm : {50.0, -30.5, -30.25}) {
+      fs::remove_all(folder());
+      write(rampVolume({7, 5, 40}));
+      for (int n = 1; n <= 40; ++n) {
+        const double z = std::nearbyint(begin_mm + step_mm * (n - 1));  // halves to even
+        edit(slice(n), [&](DcmDataset& data) {
+          put(data, DCM_ImagePositionPatient, positionText(Vec3(-115.5, -1.85, z)));
+          put(data, DCM_SpacingBetweenSlices, decimalText(step_mm));
+          put(data, DCM_SliceThickness, decimalText(step_mm));
+          put(data, DCM_SliceLocation, decimalText(begin_mm + step_mm * (n - 1)));
+        });
+      }
+      const Volume volume = import();
+      EXPECT_EQ(volume.geometry.size[2], 40) << step_mm << " from " << begin_mm;
+      EXPECT_NEAR(volume.geometry.spacing_mm.z, step_mm, 1e-9);
+      EXPECT_NE(find(chosen(), "ROUNDED_POSITIONS"), nullptr) << codes(chosen());
+      EXPECT_EQ(find(chosen(), "LOCATION_MISMATCH"), nullptr);
+      EXPECT_EQ(find(chosen(), "SPACING_MISMATCH"), nullptr);
+      if (begin_mm != 50.0) continue;
+      fs::remove(slice(20));
+      EXPECT_NE(expectRefused("MISSING_SLICES").text.find("1 slice is missing"), std::string::npos);
+    }
   }
 }
 

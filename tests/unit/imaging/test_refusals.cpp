@@ -231,4 +231,24 @@ TEST_F(Refusal, WhatNoAnswerCanSaveIsNotAskedAbout) {
   EXPECT_FALSE(scan().bestSeries({{"LOSSY_SOURCE", "accept"}}));
 }
 
+TEST_F(Refusal, OfAWholeSeriesWhoseOrientationIsNone) {
+  for (const char* orientation : {"0\\0\\0\\0\\0\\0", "1\\0\\0\\1\\0\\0", "1\\0\\0\\0.01\\1\\0"}) {
+    write(rampVolume());
+    editAll([&](DcmDataset& data) {
+      put(data, DCM_ImageOrientationPatient, orientation);
+      put(data, DCM_SliceLocation, "3");
+      put(data, DCM_SpacingBetweenSlices, "3");
+    });
+    expectRefused("NOT_ORTHONORMAL");
+  }
+}
+
+TEST_F(Refusal, OfValuesThatAreScaledBeyondCt) {
+  for (const char* slope : {"-1e9", "1e30"}) {
+    write(rampVolume());
+    edit(slice(3), [&](DcmDataset& data) { put(data, DCM_RescaleSlope, slope); });
+    expectRefused("BAD_RESCALE");
+  }
+}
+
 }  // namespace trephine::test

@@ -258,8 +258,23 @@ TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
   EXPECT_TRUE(import->isEnabled()) << "another series of the same folder";
 }
 
+TEST_F(ImportTaskTest, AClickThatComesLateForCancelIsNoImport) {
+  ImportDialog dialog(task_);
+  task_.scan(path());
+  auto* cancel = dialog.findChild<QPushButton*>("cancelImport");
+  auto* import = dialog.findChild<QPushButton*>("import");
+  const auto placeOf = [&](QPushButton* button) {
+    QApplication::processEvents();
+    return QRect(button->mapTo(&dialog, QPoint()), button->size());
+  };
+  const QRect cancelled = placeOf(cancel);
+  ASSERT_FALSE(cancelled.isEmpty());
+  ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
+  EXPECT_FALSE(placeOf(import).intersects(cancelled));
+}
+
 TEST_F(ImportTaskTest, ALabelMapBesideTheCtIsOfferedWithItAndLeftUnlessItIsChosen) {
-  write(stack(40, 0), "labelled/ct");
+  write(stack(40, -100), "labelled/ct");
   ASSERT_TRUE(writeVolume(stack(60, 0), path() / "labelled" / "organs_seg.nii.gz"));
   ImportDialog dialog(task_);
   std::vector<std::filesystem::path> labels;
