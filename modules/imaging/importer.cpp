@@ -13,6 +13,7 @@
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/transfer_syntax.h"
 #include "imaging/files/file_series.h"
+#include "imaging/report/answers.h"
 #include "imaging/series/assembly.h"
 #include "imaging/series/hu_checks.h"
 #include "imaging/series/scan.h"
@@ -85,35 +86,6 @@ Error noSuchSeries(const std::string& uid, std::size_t listed) {
                listed == 0 ? "Choose another folder" : "Choose one that the report lists"};
 }
 
-// The options of each question that is asked.
-using Options = std::map<std::string, std::vector<std::string>>;
-
-Options optionsOf(const SeriesReport& series) {
-  Options options;
-  for (const Choice& choice : series.choices) options[choice.code] = choice.options;
-  return options;
-}
-
-// Answers to questions that are asked must be among the options.
-Status fits(const Options& asked, const Answers& answers) {
-  static const std::set<std::string> known = {
-      "COUCH", "DERIVED_IMAGES", "DUPLICATE_POSITIONS", "FACE", "FACE_REMAINS", "FACE_TAKES_MORE",
-      "IMPLAUSIBLE_HU", "LOCATION_MISMATCH", "LOSSY_SOURCE", "MISSING_SLICES", "MIXED_SLICES", "PARTS",
-      "PHASES", "SPARSE_SLICES", "UNEVEN_SPACING", "VALUE_MAP"};
-  for (const auto& [code, option] : answers) {
-    if (!known.contains(code)) {
-      return Error{"BAD_CHOICE", "There is no choice of this name", cleanUtf8(code),
-                   "Choose among " + listed({known.begin(), known.end()})};
-    }
-    const auto question = asked.find(code);
-    if (question == asked.end()) continue;
-    if (std::ranges::find(question->second, option) != question->second.end()) continue;
-    return Error{"BAD_CHOICE", "The choice " + code + " has no option '" + cleanUtf8(option) + "'",
-                 "", "Choose " + listed(question->second, "or")};
-  }
-  return {};
-}
-
 Provenance provenanceOf(const SeriesReport& series, const ImportRequest& request) {
   Provenance provenance;
   provenance.source = series.source;
@@ -183,7 +155,7 @@ Error refuseVanished(SeriesReport& series) {
                              "Plug it in or connect it again, then open the folder again"});
   series.verdict = Verdict::refused;
   const Finding& finding = series.findings.back();
-  return Error{finding.code, finding.text, series.uid, finding.action};
+  return Error{finding.code, finding.text, cleanUtf8(series.description), finding.action};
 }
 
 Status roomToRead(const SeriesReport& series, const ImportRequest& request) {

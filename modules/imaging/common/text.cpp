@@ -49,7 +49,13 @@ std::string cleanUtf8(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = sequenceLength(text);
     const auto first = static_cast<unsigned char>(text.front());
-    if (length == 0) {
+    // What turns the direction of all that follows is no part of a text's own line.
+    const bool turns =
+        length == 3 && ((text.starts_with("\xE2\x80") && text[2] >= '\xAA' && text[2] <= '\xAE') ||
+                        (text.starts_with("\xE2\x81") && text[2] >= '\xA6' && text[2] <= '\xA9'));
+    if (turns) {
+      clean += ' ';
+    } else if (length == 0) {
       clean += kReplacement;
     } else if (first < 0x20 || first == 0x7F) {
       clean += ' ';

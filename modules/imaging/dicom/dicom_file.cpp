@@ -4,10 +4,9 @@
 #include <cctype>
 #include <cstring>
 #include <functional>
-#include <random>
 
-#include "base/sha256.h"
 #include "imaging/dicom/codecs.h"
+#include "imaging/dicom/dicom_names.h"
 #include "imaging/dicom/dicom_pixels.h"
 #include "imaging/dicom/dicom_stream.h"
 #include "imaging/dicom/dicom_values.h"
@@ -137,75 +136,6 @@ void readPhase(const DicomItem& data, DicomHeader& header) {
   const auto date_time = timeNumber(data, DCM_AcquisitionDateTime);
   header.phase[kAcquisitionTime] = date_time ? date_time : timeNumber(data, DCM_AcquisitionTime);
   header.phase[kContentTime] = timeNumber(data, DCM_ContentTime);
-}
-
-// A person's name means the same with and without empty parts at its end.
-std::string bareName(std::string name) {
-  while (!name.empty() && (name.back() == '^' || name.back() == '=' || name.back() == ' ')) {
-    name.pop_back();
-  }
-  return name;
-}
-
-// "FAMILY^GIVEN^MIDDLE=..." as one reads it: "FAMILY, GIVEN MIDDLE". Of several ways of writing it
-// the first.
-std::string personName(std::string name) {
-  name = bareName(name.substr(0, name.find('=')));
-  std::string text;
-  for (std::size_t at = 0, parts = 0; at < name.size(); ++parts) {
-    const std::size_t end = std::min(name.find('^', at), name.size());
-    if (end > at) text += (parts == 0 ? "" : parts == 1 ? ", " : " ") + name.substr(at, end - at);
-    at = end + 1;
-  }
-  return cleanUtf8(text);
-}
-
-std::string dayText(const std::string& day) {
-  if (day.size() != 8 || !parseInteger(day)) return "";
-  return day.substr(0, 4) + '-' + day.substr(4, 2) + '-' + day.substr(6);
-}
-
-// "FAMILY, GIVEN (ID, born 1970-12-31)"
-std::string patientText(const DicomItem& data) {
-  std::string text = personName(decodedText(data, DCM_PatientName));
-  std::string more = decodedText(data, DCM_PatientID);
-  if (const std::string day = dayText(trimmedText(data, DCM_PatientBirthDate)); !day.empty()) {
-    more += (more.empty() ? "born " : ", born ") + day;
-  }
-  if (more.empty()) return text;
-  return text.empty() ? more : text + " (" + more + ")";
-}
-
-// "Head, 2024-05-03": what a study is called, and its day.
-std::string studyText(const DicomItem& data) {
-  std::string text = decodedText(data, DCM_StudyDescription);
-  const std::string day = dayText(trimmedText(data, DCM_StudyDate));
-  if (!day.empty()) text += (text.empty() ? "" : ", ") + day;
-  return text;
-}
-
-// Without what writers of one name differ in: case, blanks, and other ways of writing it.
-std::string plainName(const std::string& name) {
-  std::string plain;
-  for (const char c : bareName(name.substr(0, name.find('=')))) {
-    if (c != ' ') plain += char(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-  }
-  return plain;
-}
-
-// Nobody can be found by them outside of this process: what is hashed along differs in each.
-std::array<std::string, 3> patientOf(const DicomItem& data) {
-  static const std::string salt = std::to_string(std::random_device{}()) +
-                                  std::to_string(std::random_device{}());
-  std::array<std::string, 3> who{plainName(decodedText(data, DCM_PatientName)),
-                                 trimmedText(data, DCM_PatientID),
-                                 trimmedText(data, DCM_PatientBirthDate)};
-  for (std::string& one : who) {
-    if (one.empty()) continue;
-    const std::string salted = salt + one;
-    one = sha256Hex(salted.data(), salted.size());
-  }
-  return who;
 }
 
 std::optional<double> notZero(std::optional<double> value) {

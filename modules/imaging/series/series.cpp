@@ -64,6 +64,12 @@ std::vector<std::string> smallDifferences(const DicomHeader& a, const DicomHeade
   return all;
 }
 
+bool agree(const DicomHeader& a, const DicomHeader& b) {
+  return a.study_uid == b.study_uid && a.frame_of_reference == b.frame_of_reference &&
+         near(a.pixel_spacing_mm, b.pixel_spacing_mm, 1e-4) &&
+         near(a.orientation, b.orientation, 1e-4);
+}
+
 // Numbers the parts of what could be one stack, from the largest down.
 void markParts(Series& series) {
   std::vector<const DicomHeader*> firsts;
@@ -72,7 +78,7 @@ void markParts(Series& series) {
   for (std::size_t n = 0; n < series.slices.size(); ++n) {
     const DicomHeader& header = series.slices[n];
     std::size_t part = 0;
-    while (part < firsts.size() && !smallDifferences(*firsts[part], header).empty()) ++part;
+    while (part < firsts.size() && !agree(*firsts[part], header)) ++part;
     if (part == firsts.size()) {
       firsts.push_back(&header);
       counts.push_back(0);

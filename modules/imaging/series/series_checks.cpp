@@ -14,6 +14,7 @@
 #include "imaging/series/series_geometry.h"
 #include "imaging/series/series_kind.h"
 #include "imaging/series/series_repeats.h"
+#include "imaging/series/series_steps.h"
 #include "volume/case_memory.h"
 
 namespace trephine {
@@ -221,6 +222,39 @@ void checkUnplaced(const std::vector<const DicomHeader*>& lost, bool others_are_
   }
 }
 
+// The step that headers state beside the positions, by which slices at one place can be told apart:
+// that between slices, or of their locations. 0: none.
+double statedStep_mm(const Headers& slices) {
+  if (slices.size() < 2) return 0.0;
+  const auto all = [&](const auto& test) { return std::ranges::all_of(slices, test); };
+  const std::optional<double> stated = slices.front()->spacing_between_mm;
+  if (stated && all([&](const DicomHeader* h) { return h->spacing_between_mm == stated; })) {
+    return std::abs(*stated);
+  }
+  if (!all([](const DicomHeader* h) { return h->location_mm.has_value(); })) return 0.0;
+  std::vector<double> locations_mm;
+  for (const DicomHeader* h : slices) locations_mm.push_back(*h->location_mm);
+  std::ranges::sort(locations_mm);
+  const double step_mm =
+      (locations_mm.back() - locations_mm.front()) / double(locations_mm.size() - 1);
+  for (std::size_t n = 1; n < locations_mm.size(); ++n) {
+    if (std::abs(locations_mm[n] - locations_mm[n - 1] - step_mm) > 0.05 * step_mm) return 0.0;
+  }
+  return step_mm;
+}
+
+// By place, and at one place in the order of locations or instance numbers, whichever way they run.
+void orderAsScanned(Headers& slices, const Vec3& normal) {
+  const auto place_mm = [&](const DicomHeader* h) { return glm::dot(*h->position_mm, normal); };
+  const auto number = [](const DicomHeader* h) {
+    return h->location_mm ? *h->location_mm : parseDecimal(h->instance_number).value_or(0.0);
+  };
+  std::ranges::stable_sort(slices, {}, place_mm);
+  const double sense = number(slices.back()) < number(slices.front()) ? -1.0 : 1.0;
+  std::ranges::stable_sort(
+      slices, {}, [&](const DicomHeader* h) { return std::pair(place_mm(h), sense * number(h)); });
+}
+
 SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findings) {
   SeriesPlan plan;
   const auto nowhere =
@@ -243,17 +277,27 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
     const DicomHeader& first = whole == placed.end() ? *placed.front() : **whole;
     std::vector<std::size_t> used(placed.size());
     for (std::size_t n = 0; n < used.size(); ++n) used[n] = n;
+    std::vector<Vec3> positions_mm;
+    for (const DicomHeader* h : placed) positions_mm.push_back(*h->position_mm);
     if (const auto axes = axesOf(*first.orientation)) {
-      std::vector<double> places_mm;
-      for (const DicomHeader* h : placed) {
-        places_mm.push_back(glm::dot(*h->position_mm, (*axes)[2]));
+      const Vec3 normal = (*axes)[2];
+      Headers scanned = placed;
+      orderAsScanned(scanned, normal);
+      std::vector<Vec3> apart_mm;
+      for (const DicomHeader* h : scanned) apart_mm.push_back(*h->position_mm);
+      if (std::optional<Finding> rounded = takeApart(apart_mm, normal, statedStep_mm(scanned))) {
+        placed = std::move(scanned);
+        positions_mm = std::move(apart_mm);
+        report.findings.push_back(*std::move(rounded));
       }
+      std::vector<double> places_mm;
+      for (const Vec3& position : positions_mm) places_mm.push_back(glm::dot(position, normal));
       used = chooseRepeats(placed, places_mm, answers, series.slices, report);
     }
     StackInput input{first.rows, first.columns, *first.pixel_spacing_mm, *first.orientation, {}, {},
                      ""};
     for (const std::size_t n : used) {
-      input.positions_mm.push_back(*placed[n]->position_mm);
+      input.positions_mm.push_back(positions_mm[n]);
       input.usable.push_back(!isLost(*placed[n]));
       if (isLost(*placed[n])) lost.push_back(placed[n]);
     }

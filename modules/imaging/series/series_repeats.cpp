@@ -372,7 +372,9 @@ std::vector<std::size_t> chooseRepeats(const std::vector<const DicomHeader*>& sl
     }
   }
   if (answer == "refuse") {
-    finding.action = "Choose which to use, or remove the slices that do not belong to the scan";
+    finding.action =
+        scanned_again ? "Export one of the scans alone: nothing in them tells them apart"
+                      : "Choose which to use, or remove the slices that do not belong to the scan";
   } else {
     finding.severity = "repair";
     finding.action = "Of each place the " + answer + " was taken, the others left out";

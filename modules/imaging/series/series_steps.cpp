@@ -358,7 +358,41 @@ std::optional<Slices> onTheirLine(const Slices& slices, double most_mm,
   return {};
 }
 
+Finding roundedFinding(double grid_mm, double step_mm) {
+  return {"ROUNDED_POSITIONS",
+          "repair",
+          "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
+          {},
+          "They were put back on the line that explains them all, with a step of " +
+              fixedText(step_mm, 3) + " mm"};
+}
+
+// How far rounding to a grid moves a place along the normal at most.
+double mostRounded_mm(double grid_mm, const Vec3& normal) {
+  return 0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+}
+
 }  // namespace
+
+std::optional<Finding> takeApart(std::vector<Vec3>& positions_mm, const Vec3& normal,
+                                 double step_mm) {
+  const double grid_mm = roundedTo_mm(positions_mm);
+  if (!(grid_mm > 0.0) || !(step_mm > 0.0) || step_mm >= grid_mm) return std::nullopt;
+  Slices slices;
+  bool fell_together = false;
+  for (std::size_t n = 0; n < positions_mm.size(); ++n) {
+    slices.push_back({n, glm::dot(positions_mm[n], normal), true});
+    if (n == 0) continue;
+    fell_together |= slices[n].place_mm - slices[n - 1].place_mm <= kSamePlace_mm;
+  }
+  const auto numbers = numbersOf(slices, step_mm, mostRounded_mm(grid_mm, normal));
+  if (!fell_together || !numbers) return std::nullopt;
+  const Slices fitted = onLineOf(slices, *numbers, step_mm);
+  for (std::size_t n = 0; n < positions_mm.size(); ++n) {
+    positions_mm[n] += normal * (fitted[n].place_mm - slices[n].place_mm);
+  }
+  return roundedFinding(grid_mm, step_mm);
+}
 
 void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
                      const Answers& answers, Stack& stack) {
@@ -369,8 +403,7 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
   const std::optional<double> known_mm =
       input.spacing_between_mm || !steps.even ? input.spacing_between_mm : input.thickness_mm;
   if (grid_mm > 0.0 && (!steps.even || (steps.gaps && known_mm))) {
-    const double most_mm =
-        0.5 * grid_mm * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+    const double most_mm = mostRounded_mm(grid_mm, normal);
     std::optional<Slices> fitted;
     // What is a whole number of the grid's steps is not moved by rounding.
     const double steps_of_grid = known_mm.value_or(0.0) / grid_mm;
@@ -383,13 +416,7 @@ void planAlongNormal(Slices slices, const StackInput& input, const Vec3& normal,
     if (fitted && moved(*fitted, slices)) {
       slices = *std::move(fitted);
       steps = stepsOf(slices);
-      stack.findings.push_back(
-          {"ROUNDED_POSITIONS",
-           "repair",
-           "The positions of the slices were rounded to " + fixedText(grid_mm, 1) + " mm",
-           {},
-           "They were put back on the line that explains them all, with a step of " +
-               fixedText(steps.median_mm, 3) + " mm"});
+      stack.findings.push_back(roundedFinding(grid_mm, steps.median_mm));
     }
   }
   stack.geometry.spacing_mm.z = steps.median_mm;

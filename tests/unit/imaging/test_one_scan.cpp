@@ -478,6 +478,27 @@ TEST_F(Rounded, PositionsArePutOnTheLineOfAKnownStepWhereverItBegins) {
   }
 }
 
+TEST_F(Rounded, PositionsThatFellTogetherAreTakenApartByAStepThatIsKnown) {
+  for (const double step_mm : {0.625, 0.4, 0.9}) {
+    for (const bool by_location : {false, true}) {
+      fs::remove_all(folder());
+      write(rampVolume({7, 5, 40}));
+      for (int n = 1; n <= 40; ++n) {
+        edit(slice(n), [&](DcmDataset& data) {
+          const double z = 100.0 + step_mm * (n - 1);
+          put(data, DCM_ImagePositionPatient, positionText(Vec3(-20.0, 10.5, std::round(z))));
+          put(data, DCM_SpacingBetweenSlices, by_location ? "" : decimalText(step_mm));
+          put(data, DCM_SliceLocation, by_location ? decimalText(-z) : "");
+          put(data, DCM_SliceThickness, decimalText(step_mm));
+        });
+      }
+      EXPECT_EQ(import().hu, rampVolume({7, 5, 40}).hu) << step_mm;
+      EXPECT_NEAR(chosen().geometry.spacing_mm.z, step_mm, 1e-9);
+      EXPECT_EQ(codes(chosen()), "ROUNDED_POSITIONS ") << step_mm << " " << by_location;
+    }
+  }
+}
+
 TEST_F(Rounded, PositionsWithASliceMissingHaveAGapThere) {
   for (const auto& [step_mm, grid_mm] : {std::pair(0.625, 0.1), std::pair(1.25, 1.0)}) {
     place(40, step_mm, grid_mm, {20});

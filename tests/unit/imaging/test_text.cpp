@@ -26,6 +26,17 @@ TEST(Text, AnUndecodableTextIsReadAsLatin1) {
   EXPECT_EQ(guessUtf8("Schädel"), "Schädel");
 }
 
+TEST(Text, ThatTurnsTheDirectionOfReadingDoesNot) {
+  EXPECT_EQ(cleanUtf8("a\xE2\x80\xAE"
+                      "b\xE2\x81\xA6"
+                      "c"),
+            "a b c");
+  EXPECT_EQ(cleanUtf8("a\xE2\x80\x93"
+                      "b"),
+            "a\xE2\x80\x93"
+            "b");
+}
+
 TEST(Text, Iso2022TextWithoutADecoderKeepsItsPlainPart) {
   const std::string guess = guessUtf8("Head \x1B$B;3ED\x1B(B end");
   EXPECT_TRUE(isUtf8(guess));
