@@ -59,8 +59,12 @@ std::optional<Error> folderError(const ImportReport& report) {
     if (!largest || series.geometry.size[2] > largest->geometry.size[2]) largest = &series;
   }
   const auto refusal = std::ranges::find(largest->findings, "refusal", &Finding::severity);
-  return Error{"ALL_REFUSED", "No CT series can be used; of the largest: " + refusal->text,
-               report.path, refusal->action};
+  const bool only = std::ranges::count_if(report.series, is_ct) == 1;
+  return Error{
+      "ALL_REFUSED",
+      (only ? "The CT series cannot be used: " : "No CT series can be used; of the largest: ") +
+          refusal->text,
+      report.path, refusal->action};
 }
 
 void addValueFindings(const HuCounts& counts, SeriesReport& report) {

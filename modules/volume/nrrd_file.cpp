@@ -287,7 +287,10 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
     return row.second.contains(fields->word("type"));
   });
   if (type == std::end(kTypes)) {
-    return notHu("The voxels are not one number each", file);
+    // Any other word could be a name.
+    const bool block = fields->word("type") == "block";
+    return notHu(std::string("The voxels are not one number each") + (block ? " but 'block'" : ""),
+                 file);
   }
   header.type = type->first;
   const std::string encoding = fields->word("encoding");

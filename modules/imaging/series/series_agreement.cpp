@@ -196,16 +196,16 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
   std::vector<std::string> why;
   const bool few = used.size() < kFewest;
   if (few) why.push_back("there are only " + std::to_string(used.size()));
-  if (step_mm > kWidestStep_mm) why.push_back("they lie " + placeText(step_mm) + " apart");
+  if (step_mm > kWidestStep_mm) why.push_back("they lie " + lengthText(step_mm) + " apart");
   if (thickness_mm > 0.0 && step_mm >= kMostThicknesses * thickness_mm) {
-    why.push_back("each is " + placeText(thickness_mm) + " thick and the next is " +
-                  placeText(step_mm) + " away");
+    why.push_back("each is " + lengthText(thickness_mm) + " thick and the next is " +
+                  lengthText(step_mm) + " away");
   }
   if (why.empty()) {
     if (thickness_mm > 0.0 && step_mm > 1.05 * thickness_mm) {
       findings.notice("GAPS_BETWEEN_SLICES",
-                      "The slices are " + placeText(thickness_mm) + " thick and lie " +
-                          placeText(step_mm) + " apart: what lies between was not scanned",
+                      "The slices are " + lengthText(thickness_mm) + " thick and lie " +
+                          lengthText(step_mm) + " apart: what lies between was not scanned",
                       "It is interpolated where the volume is drawn and cut");
     }
     return;
@@ -274,7 +274,7 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   if (whole && drift_mm <= 1.0) worst_mm = 0.0;
   if (worst_mm > std::max(0.15, 0.1 * step_mm)) {
     const std::string text = "The slice locations contradict the positions: between two slices " +
-                             placeText(is_mm) + " by position and " + placeText(said_mm) +
+                             lengthText(is_mm) + " by position and " + lengthText(said_mm) +
                              " by slice location";
     const std::string answer =
         ask({"LOCATION_MISMATCH",
@@ -304,8 +304,8 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
   if (between_mm && !near(*between_mm, step_mm, tolerance_mm) &&
       !near(*between_mm, step_mm * slant, tolerance_mm)) {
     findings.repaired("SPACING_MISMATCH",
-                      "The header says that slices lie " + placeText(*between_mm) +
-                          " apart, by their positions it is " + placeText(step_mm),
+                      "The header says that slices lie " + lengthText(*between_mm) +
+                          " apart, by their positions it is " + lengthText(step_mm),
                       "The positions were believed");
   }
   if (tilt_deg && !near(*tilt_deg, stack.tilt_deg, kTilt_deg)) {

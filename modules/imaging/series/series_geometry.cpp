@@ -100,6 +100,10 @@ bool Stack::oneToOne() const {
 }
 
 std::string placeText(double mm) {
+  return fixedText(mm, 2) + " mm";
+}
+
+std::string lengthText(double mm) {
   const bool hundredths = std::abs(100.0 * mm - std::round(100.0 * mm)) < 0.05;
   return fixedText(mm, hundredths ? 2 : 3) + " mm";
 }

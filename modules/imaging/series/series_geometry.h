@@ -56,8 +56,10 @@ std::optional<Mat3> axesOf(const std::array<double, 6>& orientation);
 // Slices nearer to each other than this lie at one place.
 constexpr double kSamePlace_mm = 0.01;
 
-// "102.50 mm", "0.625 mm"
+// "102.50 mm"
 std::string placeText(double mm);
+// A step or a thickness: "1.25 mm", "0.625 mm".
+std::string lengthText(double mm);
 
 // Adds the choice and says what was answered; its first option where nothing (or nonsense) was.
 std::string ask(Choice choice, const Answers& answers, std::vector<Choice>& choices);

@@ -161,7 +161,7 @@ void planGaps(Slices slices, const Steps& steps, const Answers& answers,
   std::int64_t missing = 0;
   const std::vector<std::string> places = missingPlaces(slices, steps, missing);
   const std::string text = counted(std::uint64_t(missing), "slice", "is", "are") +
-                           " missing from a stack with a step of " + placeText(steps.median_mm) +
+                           " missing from a stack with a step of " + lengthText(steps.median_mm) +
                            lost_text;
   const Slices part =
       longestPart(slices, steps.median_mm,
@@ -225,7 +225,7 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
   if (count > 1 && count <= kMostSlices) {
     choice.options.push_back("resample");
     choice.words.push_back("Interpolate " + counted(std::uint64_t(count), "slice") +
-                           " at even steps of about " + placeText(steps.median_mm));
+                           " at even steps of about " + lengthText(steps.median_mm));
   }
   if (part.size() > 1) {
     choice.options.push_back("part");
@@ -241,7 +241,7 @@ void planUneven(const Slices& slices, const Steps& steps, const Answers& answers
                               text,
                               {},
                               "Slices were interpolated at even steps of " +
-                                  placeText(stack.geometry.spacing_mm.z) +
+                                  lengthText(stack.geometry.spacing_mm.z) +
                                   "; where the scan is coarse, detail is only apparent"});
     return;
   }

@@ -381,6 +381,8 @@ class ImportGuiTest : public QObject {
     static_cast<QDialog*>(files.data())->accept();
     QTRY_COMPARE_WITH_TIMEOUT(list()->count() == 1 ? list()->item(0)->text() : QString(),
                               QString("Head"), kLong_ms);
+    // It is listed as soon as it is found.
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking(), kLong_ms);
     // Qt would keep where the dialog has been.
     QTRY_VERIFY(!files);
     const QSettings kept(QSettings::UserScope, "QtProject");
