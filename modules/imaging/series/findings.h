@@ -30,6 +30,17 @@ class Findings {
     series_.report.findings.push_back(
         {code, "notice", std::move(text), std::move(slices), std::move(action)});
   }
+  // Asks whether the series shall be used in spite of what was found (the second option): then it
+  // is a repair, else a refusal.
+  void askConsent(Choice choice, const Answers& answers, std::string text, std::string done,
+                  std::string to_do, std::vector<std::string> slices = {}) {
+    const std::string code = choice.code, agreed = choice.options[1];
+    if (ask(std::move(choice), answers, series_.report.choices) == agreed) {
+      repaired(code.c_str(), std::move(text), std::move(done), std::move(slices));
+    } else {
+      refuse(code.c_str(), std::move(text), std::move(to_do), std::move(slices));
+    }
+  }
   // The names of all slices that `test` holds for.
   template <class Test>
   std::vector<std::string> slicesWhere(Test test) const {

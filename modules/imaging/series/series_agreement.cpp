@@ -88,8 +88,7 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
   return placed;
 }
 
-void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport& report,
-                      Findings& findings) {
+void checkAcquisition(const Headers& used, const Answers& answers, Findings& findings) {
   std::vector<std::string> differing, unsaid, odd_ones;
   // Slices that say another thing than most do.
   const auto unlikeMost = [&](const auto& key) {
@@ -166,25 +165,18 @@ void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport&
   if (differing.empty()) return;
   const std::string text =
       "The slices were not all made in one way: they differ in " + listed(differing);
-  const std::string answer =
-      ask({"MIXED_SLICES",
-           "The slices were not all made in one way. Use them as one volume?",
-           {"refuse", "accept"},
-           {"Do not use the series",
-            "Use them as one volume: equal tissue may differ in HU and "
-            "sharpness from slice to slice"}},
-          answers, report.choices);
-  if (answer == "accept") {
-    findings.repaired("MIXED_SLICES", text, "They were taken as one volume, as was agreed",
-                      odd_ones);
-  } else {
-    findings.refuse("MIXED_SLICES", text,
-                    "Use a series of one acquisition, or agree to take them as one", odd_ones);
-  }
+  findings.askConsent({"MIXED_SLICES",
+                       "The slices were not all made in one way. Use them as one volume?",
+                       {"refuse", "accept"},
+                       {"Do not use the series",
+                        "Use them as one volume: equal tissue may differ in HU and "
+                        "sharpness from slice to slice"}},
+                      answers, text, "They were taken as one volume, as was agreed",
+                      "Use a series of one acquisition, or agree to take them as one", odd_ones);
 }
 
 void checkDensity(const Headers& used, const Stack& stack, const Answers& answers,
-                  SeriesReport& report, Findings& findings) {
+                  Findings& findings) {
   constexpr std::size_t kFewest = 4;
   constexpr double kWidestStep_mm = 20.01, kMostThicknesses = 5.0;
   if (used.empty()) return;
@@ -211,25 +203,19 @@ void checkDensity(const Headers& used, const Stack& stack, const Answers& answer
     return;
   }
   const std::string text = "The slices are too few or too far apart to be cut: " + listed(why);
-  const std::string answer =
-      ask({"SPARSE_SLICES",
-           "The slices are too few or too far apart to be cut. Use them all the same?",
-           {"refuse", "accept"},
-           {"Do not use the series",
-            few ? "Use them: they cover next to nothing"
-                : "Use them: what lies between them was not scanned and is only guessed"}},
-          answers, report.choices);
-  if (answer == "accept") {
-    findings.repaired("SPARSE_SLICES", text, "They were used all the same, as was agreed");
-  } else {
-    findings.refuse(
-        "SPARSE_SLICES", text,
-        few ? "Choose a series that covers the anatomy" : "Choose a series of thin slices");
-  }
+  findings.askConsent(
+      {"SPARSE_SLICES",
+       "The slices are too few or too far apart to be cut. Use them all the same?",
+       {"refuse", "accept"},
+       {"Do not use the series",
+        few ? "Use them: they cover next to nothing"
+            : "Use them: what lies between them was not scanned and is only guessed"}},
+      answers, text, "They were used all the same, as was agreed",
+      few ? "Choose a series that covers the anatomy" : "Choose a series of thin slices");
 }
 
 void checkContradictions(const Headers& in_order, const Stack& stack, const Answers& answers,
-                         SeriesReport& report, Findings& findings) {
+                         Findings& findings) {
   constexpr double kTilt_deg = 1.0;
   if (in_order.size() < 2) return;
   const double step_mm = stack.geometry.spacing_mm.z;  // along the normal
@@ -276,19 +262,14 @@ void checkContradictions(const Headers& in_order, const Stack& stack, const Answ
     const std::string text = "The slice locations contradict the positions: between two slices " +
                              lengthText(is_mm) + " by position and " + lengthText(said_mm) +
                              " by slice location";
-    const std::string answer =
-        ask({"LOCATION_MISMATCH",
-             "Slice locations and positions contradict each other. Believe the positions?",
-             {"refuse", "positions"},
-             {"Do not use the series",
-              "Believe the positions: if they are wrong, lengths in the volume are wrong"}},
-            answers, report.choices);
-    if (answer == "positions") {
-      findings.repaired("LOCATION_MISMATCH", text, "The positions were believed, as was agreed");
-    } else {
-      findings.refuse("LOCATION_MISMATCH", text,
-                      "Export the series again, or agree to believe the positions");
-    }
+    findings.askConsent(
+        {"LOCATION_MISMATCH",
+         "Slice locations and positions contradict each other. Believe the positions?",
+         {"refuse", "positions"},
+         {"Do not use the series",
+          "Believe the positions: if they are wrong, lengths in the volume are wrong"}},
+        answers, text, "The positions were believed, as was agreed",
+        "Export the series again, or agree to believe the positions");
   }
   std::optional<double> between_mm, tilt_deg;
   for (const DicomHeader* header : in_order) {

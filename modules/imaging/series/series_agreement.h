@@ -17,13 +17,12 @@ Headers chooseParts(const Series& series, Headers placed, const Answers& answers
 // Pixel spacing and orientation of a stack that was joined: the mean, which is nearest to all.
 void takeMeanOrientation(const Headers& used, StackInput& input);
 // What slices of one volume must share beyond their geometry.
-void checkAcquisition(const Headers& used, const Answers& answers, SeriesReport& report,
-                      Findings& findings);
+void checkAcquisition(const Headers& used, const Answers& answers, Findings& findings);
 // Whether there are enough slices, near enough to each other, to be cut.
 void checkDensity(const Headers& used, const Stack& stack, const Answers& answers,
-                  SeriesReport& report, Findings& findings);
+                  Findings& findings);
 // What headers say of where slices lie, beside their positions.
 void checkContradictions(const Headers& in_order, const Stack& stack, const Answers& answers,
-                         SeriesReport& report, Findings& findings);
+                         Findings& findings);
 
 }  // namespace trephine

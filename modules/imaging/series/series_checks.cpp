@@ -75,24 +75,19 @@ void checkTransferSyntax(const Series& series, Findings& findings) {
   }
 }
 
-void checkLoss(Series& series, const Answers& answers, Findings& findings) {
+void checkLoss(const Answers& answers, Findings& findings) {
   const auto lossy = findings.slicesWhere([](const DicomHeader& h) { return h.lossy; });
   if (lossy.empty()) return;
   const std::string text = countOfSlices(lossy, "was", "were") + " compressed with loss";
-  const std::string answer =
-      ask({"LOSSY_SOURCE",
-           "The series was compressed with loss: its HU are not those of the scanner. Use it?",
-           {"refuse", "accept"},
-           {"Do not use the series", "Use it for training, marked as lossy"}},
-          answers, series.report.choices);
-  if (answer == "accept") {
-    findings.repaired("LOSSY_SOURCE", text,
-                      "They were taken as they are, as was agreed: small differences of HU are "
-                      "not real",
-                      lossy);
-  } else {
-    findings.refuse("LOSSY_SOURCE", text, "Use the original series, or agree to the loss", lossy);
-  }
+  findings.askConsent(
+      {"LOSSY_SOURCE",
+       "The series was compressed with loss: its HU are not those of the scanner. Use it?",
+       {"refuse", "accept"},
+       {"Do not use the series", "Use it for training, marked as lossy"}},
+      answers, text,
+      "They were taken as they are, as was agreed: small differences of HU are "
+      "not real",
+      "Use the original series, or agree to the loss", lossy);
 }
 
 void checkValues(const Series& series, Findings& findings) {
@@ -322,9 +317,9 @@ SeriesPlan checkGeometry(Series& series, const Answers& answers, Findings& findi
     }
     // Else it is no stack, as is said already.
     if (plan.stack.geometry.size[2] > 1 && plan.stack.places_mm.size() == in_order.size()) {
-      checkAcquisition(in_order, answers, report, findings);
-      checkDensity(in_order, plan.stack, answers, report, findings);
-      checkContradictions(in_order, plan.stack, answers, report, findings);
+      checkAcquisition(in_order, answers, findings);
+      checkDensity(in_order, plan.stack, answers, findings);
+      checkContradictions(in_order, plan.stack, answers, findings);
     }
   }
   checkUnplaced(unplaced, !placed.empty(), answers, report, findings);
@@ -384,7 +379,7 @@ SeriesPlan assessSeries(Series& series, const Answers& answers) {
     checkTransferSyntax(series, findings);
     checkValues(series, findings);
     checkKind(series, answers);
-    checkLoss(series, answers, findings);
+    checkLoss(answers, findings);
     checkSizes(series, findings);
     plan = checkGeometry(series, answers, findings);
     if (const Status size = checkSize(report.geometry.size, ""); !size) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "imaging/common/text.h"
+#include "imaging/series/findings.h"
 #include "imaging/series/series_geometry.h"
 
 namespace trephine {
@@ -156,63 +157,57 @@ void checkKind(Series& series, const Answers& answers) {
       coloured.push_back(name);
     }
   }
-  SeriesReport& report = series.report;
-  const auto refuse = [&](const char* code, std::string text, const char* action, Slices slices) {
-    report.findings.push_back({code, "refusal", std::move(text), std::move(slices), action});
-  };
-  const auto askOf = [&](Choice choice, std::string text, const char* done, const char* to_do,
-                         Slices slices) {
-    const std::string code = choice.code;
-    const bool accepted = ask(std::move(choice), answers, report.choices) == "accept";
-    report.findings.push_back({code, accepted ? "repair" : "refusal", std::move(text),
-                               std::move(slices), accepted ? done : to_do});
-  };
+  Findings findings(series);
   if (!coloured.empty()) {
-    refuse("COLOUR", countText(coloured, "holds", "hold") + "pixels that stand for colours, not HU",
-           "Export the original CT slices", coloured);
+    findings.refuse("COLOUR",
+                    countText(coloured, "holds", "hold") + "pixels that stand for colours, not HU",
+                    "Export the original CT slices", coloured);
   }
   if (!tables.empty()) {
-    refuse("NOT_HU",
-           countText(tables, "needs", "need") +
-               "a look-up table (Modality LUT) to become HU, which is not read",
-           "Export the series with a rescale slope and intercept", tables);
+    findings.refuse("NOT_HU",
+                    countText(tables, "needs", "need") +
+                        "a look-up table (Modality LUT) to become HU, which is not read",
+                    "Export the series with a rescale slope and intercept", tables);
   }
   Slices derived;
   std::vector<std::string> derived_words;
   for (const auto& [kind, slices] : kinds) {
     if (kind.first == Use::no_hu) {
-      refuse("NOT_HU", countText(slices, "holds", "hold") + kind.second + ", not HU",
-             "Choose the series that it was calculated from", slices);
+      findings.refuse("NOT_HU", countText(slices, "holds", "hold") + kind.second + ", not HU",
+                      "Choose the series that it was calculated from", slices);
     } else if (kind.first == Use::projection) {
-      refuse("PROJECTION",
-             countText(slices, "holds", "hold") + kind.second + ", not what lies at their place",
-             "Choose the series that it was calculated from", slices);
+      findings.refuse(
+          "PROJECTION",
+          countText(slices, "holds", "hold") + kind.second + ", not what lies at their place",
+          "Choose the series that it was calculated from", slices);
     } else {
       derived.insert(derived.end(), slices.begin(), slices.end());
       derived_words.push_back(kind.second);
     }
   }
   if (!derived.empty()) {
-    askOf(
+    findings.askConsent(
         {"DERIVED_IMAGES",
          "The slices are not as they were scanned, or were scanned for another purpose. Use them?",
          {"refuse", "accept"},
          {"Do not use the series",
           "Use them: detail and HU may differ from those of the slices that were scanned"}},
-        countText(derived, "is", "are") + listed(derived_words),
+        answers, countText(derived, "is", "are") + listed(derived_words),
         "They were taken as they are, as was agreed",
         "Choose the series as it was scanned, or agree to use this one", derived);
   }
   if (!scales.empty()) {
     const auto& [scale, slices] = *scales.begin();
-    askOf({"VALUE_MAP",
-           "The header gives the values another meaning beside HU. Take them as HU?",
-           {"refuse", "accept"},
-           {"Do not use the series", "Take slope and intercept for HU and leave the map aside"}},
-          countText(slices, "has", "have") + "a real-world value map to " + scale +
-              " beside slope and intercept",
-          "The map was left aside, as was agreed",
-          "Choose the series in HU, or agree to leave the map aside", slices);
+    findings.askConsent(
+        {"VALUE_MAP",
+         "The header gives the values another meaning beside HU. Take them as HU?",
+         {"refuse", "accept"},
+         {"Do not use the series", "Take slope and intercept for HU and leave the map aside"}},
+        answers,
+        countText(slices, "has", "have") + "a real-world value map to " + scale +
+            " beside slope and intercept",
+        "The map was left aside, as was agreed",
+        "Choose the series in HU, or agree to leave the map aside", slices);
   }
 }
 

@@ -61,6 +61,15 @@ void SeriesFixture::editAll(const Change& change, E_TransferSyntax syntax) {
   for (const auto& entry : fs::directory_iterator(folder())) edit(entry.path(), change, syntax);
 }
 
+void SeriesFixture::again(int number, const Change& change) {
+  const fs::path copy = folder() / ("again-" + std::to_string(number));
+  fs::copy_file(slice(number), copy);
+  edit(copy, [&](DcmDataset& data) {
+    put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(number));
+    change(data);
+  });
+}
+
 std::string SeriesFixture::text(DcmDataset& data, const DcmTagKey& tag) {
   OFString value;
   data.findAndGetOFStringArray(tag, value);

@@ -35,6 +35,8 @@ class SeriesFixture : public ::testing::Test {
   void edit(const std::filesystem::path& file, const Change& change,
             E_TransferSyntax syntax = EXS_LittleEndianExplicit);
   void editAll(const Change& change, E_TransferSyntax syntax = EXS_LittleEndianExplicit);
+  // One more slice at the place of the one as written: a copy under another name and UID, changed.
+  void again(int number, const Change& change);
   static std::string text(DcmDataset& data, const DcmTagKey& tag);
   static void put(DcmDataset& data, const DcmTagKey& tag, const std::string& value);
 

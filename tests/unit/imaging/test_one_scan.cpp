@@ -200,10 +200,7 @@ TEST_F(OneScan, OfTwoKernelsIsTwoAndTheyAreToldApartByThem) {
     put(data, DCM_AcquisitionTime, "101500");
   });
   for (int n = 1; n <= kSlices; ++n) {
-    const fs::path sharp = folder() / ("sharp-" + std::to_string(n));
-    fs::copy_file(slice(n), sharp);
-    edit(sharp, [&](DcmDataset& data) {
-      put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+    again(n, [&](DcmDataset& data) {
       put(data, DCM_ConvolutionKernel, "B70f");
       put(data, DCM_RescaleIntercept, "-1000");
       // Saved one after the other: times would mix the two.
@@ -229,10 +226,7 @@ TEST_F(OneScan, OfTwoKernelsIsTwoAndTheyAreToldApartByThem) {
 
 TEST_F(OneScan, ThatNothingTellsFromAnotherOffersNoChoice) {
   for (int n = 1; n <= kSlices; ++n) {
-    const fs::path again = folder() / ("again-" + std::to_string(n));
-    fs::copy_file(slice(n), again);
-    edit(again, [&](DcmDataset& data) {
-      put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+    again(n, [&](DcmDataset& data) {
       put(data, DCM_RescaleIntercept, "-1000");
       data.findAndDeleteElement(DCM_InstanceNumber);
     });
@@ -310,10 +304,7 @@ TEST_F(OneScan, WhosePartHasAGapSaysSoOnceThePartIsChosen) {
 
 TEST_F(OneScan, IsNotJoinedWithAnotherAtTheSamePlaces) {
   for (int n = 1; n <= kSlices; ++n) {
-    const fs::path again = folder() / ("again-" + std::to_string(n));
-    fs::copy_file(slice(n), again);
-    edit(again, [&](DcmDataset& data) {
-      put(data, DCM_SOPInstanceUID, "1.2.3." + std::to_string(n));
+    again(n, [&](DcmDataset& data) {
       put(data, DCM_FrameOfReferenceUID, "1.2.3.99");
       put(data, DCM_RescaleIntercept, "-1000");
     });
