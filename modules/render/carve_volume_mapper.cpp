@@ -121,7 +121,12 @@ struct CarveVolume::Parts {
   BrickRanges bricks;
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
-  double half_voxel_mm = 0.5;
+  double smallest_edge_mm = 1.0;  // of a voxel
+  double sample_distance = 0.5;   // at full quality, in that edge
+  RayTruth truth;
+  std::vector<ClipPlane> clip;
+  Vec3 light{0.0, 0.0, 1.0};
+  bool first_tissue = false;
   bool leaping = true;
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
@@ -320,7 +325,7 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
     place->SetElement(row, 3, g.origin_mm[row]);
   }
   p.prop->SetUserMatrix(place);
-  p.half_voxel_mm = 0.5 * std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
+  p.smallest_edge_mm = std::min({g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
   setQuality(1.0, 1.0);
   if (!renderer.HasViewProp(p.prop)) renderer.AddVolume(p.prop);
 }
@@ -334,14 +339,20 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->boxes.clear();
 }
 
-void CarveVolume::setTissues(const TissueSet& tissues) {
+void CarveVolume::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   Parts& p = *parts_;
   const LabelRows rows(tissueTable(tissues));
   p.labels_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
+  TissueSet seen = tissues;
+  for (Tissue& tissue : seen.tissues) {
+    const auto look = looks.find(tissue.id);
+    if (look == looks.end() || look->second == TissueLook::shown) continue;
+    tissue.opacity *= look->second == TissueLook::hidden ? 0.0 : 0.05;
+  }
   for (int row = 0; row < p.label_rows.count; ++row) {
-    p.looks.push_back(transferFunction(tissues, p.label_rows.label[std::size_t(row)]));
+    p.looks.push_back(transferFunction(seen, p.label_rows.label[std::size_t(row)]));
   }
   p.updateLooks();
 }
@@ -393,7 +404,7 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
 void CarveVolume::setQuality(double pixel_step, double ray_step) {
   Parts& p = *parts_;
   p.mapper->SetImageSampleDistance(float(pixel_step));
-  p.mapper->SetSampleDistance(float(ray_step * p.half_voxel_mm));
+  p.mapper->SetSampleDistance(float(ray_step * p.sample_distance * p.smallest_edge_mm));
 }
 
 void CarveVolume::setRows(std::optional<std::pair<int, int>> rows) {
@@ -402,6 +413,29 @@ void CarveVolume::setRows(std::optional<std::pair<int, int>> rows) {
 
 void CarveVolume::setLeaping(bool on) {
   parts_->leaping = on;
+  parts_->updateShader();
+}
+
+void CarveVolume::setClip(const std::vector<ClipPlane>& planes) {
+  parts_->clip = planes;
+  parts_->updateShader();
+}
+
+void CarveVolume::setLight(const Vec3& from) {
+  parts_->light = from;
+}
+
+void CarveVolume::setTruth(const RayTruth& truth) {
+  parts_->truth = truth;
+  parts_->updateShader();
+}
+
+void CarveVolume::setSampleDistance(double voxels) {
+  parts_->sample_distance = voxels;
+}
+
+void CarveVolume::setFirstTissue(bool on) {
+  parts_->first_tissue = on;
   parts_->updateShader();
 }
 

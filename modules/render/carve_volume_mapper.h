@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/scene_renderer.h"
 #include "render/transfer_function.h"
 #include "volume/grid.h"
 #include "volume/label_map.h"
@@ -29,7 +30,11 @@ class CarveVolume {
   // `labels`, fitted to it, say where tissues of a label are; null: nowhere.
   void show(Volume& copy, std::shared_ptr<const LabelMap> labels, vtkRenderer& renderer);
   void remove(vtkRenderer& renderer);
-  void setTissues(const TissueSet& tissues);
+  void setTissues(const TissueSet& tissues, const TissueLooks& looks);
+  void setClip(const std::vector<ClipPlane>& planes);
+  void setLight(const Vec3& from);  // of length 1; right, up, towards the eye
+  void setTruth(const RayTruth& truth);
+  void setSampleDistance(double voxels);  // at full quality
 
   // Voxels in the box were changed in the copy: sent by sendChanges, or with all the others.
   void changed(const VoxelBox& box);
@@ -41,12 +46,15 @@ class CarveVolume {
   // Sends every voxel now. Context current. False when the GPU refused.
   bool sendAll(vtkRenderer& renderer);
 
-  // Pixels between rays (1 is full quality), and the samples' distance in half voxels.
+  // Pixels between rays (1 is full quality), and the samples' distance as a multiple of that at
+  // full quality.
   void setQuality(double pixel_step, double ray_step);
   // Casts rays for these rows of pixels only, [first, second) from below; nothing: for all.
   void setRows(std::optional<std::pair<int, int>> rows);
   // Off draws as VTK does; for comparisons.
   void setLeaping(bool on);
+  // Each ray in the colour of its first visible tissue, opaque and without light.
+  void setFirstTissue(bool on);
 
   // Before the context goes. Context current.
   void releaseGraphics(vtkRenderer& renderer);

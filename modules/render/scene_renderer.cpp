@@ -261,9 +261,31 @@ bool SceneRenderer::hasVolume() const {
   return !parts_->copy.hu.empty();
 }
 
-void SceneRenderer::setTissues(const TissueSet& tissues) {
+void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   parts_->stale = true;
-  parts_->volume.setTissues(tissues);
+  parts_->volume.setTissues(tissues, looks);
+}
+
+void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {
+  parts_->stale = true;
+  parts_->volume.setClip(planes);
+}
+
+void SceneRenderer::setLight(const Vec3& from) {
+  if (!isFinite(from) || glm::length(from) == 0.0) return;
+  parts_->stale = true;
+  parts_->volume.setLight(glm::normalize(from));
+}
+
+void SceneRenderer::setTruth(const RayTruth& truth) {
+  parts_->stale = true;
+  parts_->volume.setTruth(truth);
+}
+
+void SceneRenderer::setSampleDistance(double voxels) {
+  if (!(voxels > 0.0)) return;
+  parts_->stale = true;
+  parts_->volume.setSampleDistance(voxels);
 }
 
 bool SceneRenderer::pullChanges(Grid& grid) {
@@ -415,6 +437,10 @@ Volume& UploadProbe::copy(SceneRenderer& renderer) {
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {
   renderer.parts_->stale = true;
   renderer.parts_->volume.setLeaping(on);
+}
+void UploadProbe::setFirstTissue(SceneRenderer& renderer, bool on) {
+  renderer.parts_->stale = true;
+  renderer.parts_->volume.setFirstTissue(on);
 }
 
 }  // namespace trephine

@@ -13,6 +13,7 @@
 #include "base/math.h"
 #include "base/result.h"
 #include "render/picture.h"
+#include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "volume/grid.h"
 #include "volume/voxel_slabs.h"
@@ -34,6 +35,20 @@ struct ToolView {
   std::string mesh_file;
   Vec3 mesh_tip_mm{0.0};          // in the mesh's frame
   Vec3 mesh_axis{0.0, 0.0, 1.0};  // from the tip to the handle, in the mesh's frame
+};
+
+// What lies on the side that the normal points to is not drawn. Patient frame.
+struct ClipPlane {
+  Vec3 point_mm{0.0};
+  Vec3 normal{0.0, 0.0, 1.0};
+  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
+};
+
+// Where the ray caster departs from VTK's, beside leaping over what is empty.
+struct RayTruth {
+  bool normals = true;  // shading follows the surface; off: VTK's central differences
+  bool classes = true;  // a partial-volume edge shows none of the tissues it passes through
+  friend bool operator==(const RayTruth&, const RayTruth&) = default;
 };
 
 // How the window lends its OpenGL context to VTK.
@@ -65,7 +80,15 @@ class SceneRenderer {
   // Copies all voxels again, from others of the same geometry. Allocates none.
   void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels);
   bool hasVolume() const;
-  void setTissues(const TissueSet& tissues);
+  void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
+  // At most kMostClipPlanes; what all of them leave is drawn, with a face where a plane cuts it.
+  static constexpr std::size_t kMostClipPlanes = 8;
+  void setClip(const std::vector<ClipPlane>& planes);
+  // Where the light comes from: right, up, towards the eye. It is fixed to the eye.
+  void setLight(const Vec3& from);
+  void setTruth(const RayTruth& truth);
+  // Distance of the samples of a ray at full quality, in the smallest edge of a voxel.
+  void setSampleDistance(double voxels);
   // Copies what the writer changed since the last call and keeps the boxes for the next paint.
   // True when there is something new to draw.
   bool pullChanges(Grid& grid);
@@ -112,6 +135,9 @@ struct UploadProbe {
   // The copy that will be uploaded, to be changed by the measurement.
   static Volume& copy(SceneRenderer& renderer);
   static void setLeaping(SceneRenderer& renderer, bool on);
+  // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:
+  // what the picture says is there.
+  static void setFirstTissue(SceneRenderer& renderer, bool on);
 };
 
 }  // namespace trephine
