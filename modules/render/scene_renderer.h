@@ -138,6 +138,8 @@ struct UploadProbe {
   // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:
   // what the picture says is there.
   static void setFirstTissue(SceneRenderer& renderer, bool on);
+  // Each ray in the normal of its first visible sample, n/2 + 1/2: right, up, towards the eye.
+  static void setNormalsAsColour(SceneRenderer& renderer, bool on);
 };
 
 }  // namespace trephine
