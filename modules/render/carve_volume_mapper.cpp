@@ -127,6 +127,7 @@ struct CarveVolume::Parts {
   std::vector<ClipPlane> clip;
   Vec3 light{0.0, 0.0, 1.0};
   bool first_tissue = false;
+  bool normals_as_colour = false;
   bool leaping = true;
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
@@ -436,6 +437,11 @@ void CarveVolume::setSampleDistance(double voxels) {
 
 void CarveVolume::setFirstTissue(bool on) {
   parts_->first_tissue = on;
+  parts_->updateShader();
+}
+
+void CarveVolume::setNormalsAsColour(bool on) {
+  parts_->normals_as_colour = on;
   parts_->updateShader();
 }
 

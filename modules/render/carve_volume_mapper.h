@@ -55,6 +55,8 @@ class CarveVolume {
   void setLeaping(bool on);
   // Each ray in the colour of its first visible tissue, opaque and without light.
   void setFirstTissue(bool on);
+  // Each ray in the normal of its first visible sample.
+  void setNormalsAsColour(bool on);
 
   // Before the context goes. Context current.
   void releaseGraphics(vtkRenderer& renderer);
