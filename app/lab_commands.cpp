@@ -12,6 +12,7 @@
 #include "lab/import/read_floor.h"
 #include "lab/machine/jitter_measurement.h"
 #include "lab/machine/upload_measurement.h"
+#include "lab/render/render_measurement.h"
 #include "lab/stability/stability_measurement.h"
 #include "lab/stability/stability_pictures.h"
 #include "lab/stability/stability_sets.h"
@@ -248,6 +249,16 @@ int measureHapticsCommand(const std::string& out, bool json, const Progress& pro
   Result<HapticsMeasurement> measured = measureHaptics({}, out, progress);
   if (!measured) return printError("measure.haptics", measured.error(), json);
   printMeasured("measure.haptics", *measured, json);
+  return 0;
+}
+
+int measureRenderCommand(const std::string& case_source, const std::string& out, bool json,
+                         const Progress& progress) {
+  RenderOptions options;
+  options.case_source = case_source;
+  Result<RenderMeasurement> measured = measureRender(options, out, progress);
+  if (!measured) return printError("measure.render", measured.error(), json);
+  printMeasured("measure.render", *measured, json);
   return 0;
 }
 

@@ -113,6 +113,10 @@ int run(int argc, char** argv) {
   auto* haptics_command = with_json(measure_command->add_subcommand(
       "haptics", "What a tick costs, and how true the push of elastic tissue is"));
   haptics_command->add_option("--out", out, "Folder for the table")->required();
+  auto* render_command = with_json(measure_command->add_subcommand(
+      "render", "What a picture costs and how true it is, beside VTK's own ray caster"));
+  render_command->add_option("--case", case_source, "Bone in a case of your own as well");
+  render_command->add_option("--out", out, "Folder for the table and the pictures")->required();
   auto* trades_command = with_json(measure_command->add_subcommand(
       "trades", "Speed against accuracy for every knob of touch, and what is recommended here"));
   trades_command->add_option("--out", out, "Folder for tables and charts")->required();
@@ -178,6 +182,7 @@ int run(int argc, char** argv) {
   if (*stability_command) return measureStabilityCommand(stability, json, progress);
   if (*extremes_command) return measureExtremesCommand(case_source, out, json, progress);
   if (*haptics_command) return measureHapticsCommand(out, json, progress);
+  if (*render_command) return measureRenderCommand(case_source, out, json, progress);
   if (*trades_command) return measureTradesCommand(out, json, progress);
   if (*measure_import_command) {
     import_options.series.size[0] = import_options.series.size[1] = edge;

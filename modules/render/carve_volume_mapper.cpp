@@ -109,9 +109,10 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
 
 }  // namespace
 
-// Places of the ball around a sample, and the contrast in HU from which on it lies across an edge.
-constexpr int kBallPlaces = 18;
+// The contrast over the ball around a sample from which on it lies across an edge.
 constexpr double kEdge_HU = 60.0;
+// How far along a ray, in the smallest edge of a voxel, what the ball has said holds.
+constexpr double kSafe_voxels = 2.8;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
@@ -274,7 +275,7 @@ struct CarveVolume::Parts {
   }
 
   // Whether surfaces and classes are shown truly, or as VTK shows them.
-  bool isTrue() const { return leaping && copy && (truth.normals || truth.classes); }
+  bool isTrue() const { return leaping && copy && (truth.normals || truth.classes || shows != 0); }
 
   // What the shader is told by numbers alone: it is not built anew when they change.
   void tellShader() {
@@ -301,26 +302,20 @@ struct CarveVolume::Parts {
     to->SetUniform4fv("in_look", kMaxTissues, look_of);
     to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
 
-    const Vec3 radii_mm = ballRadii_mm(g.spacing_mm);
-    const double mean_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
-    float ball[kBallPlaces][3], weight[kBallPlaces][3];
-    const std::vector<Vec3> directions = sphereDirections(kBallPlaces);
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      set(ball[i], directions[i] * radii_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
-      // Across a flat edge the sum is the contrast: half a sphere's directions, their mean height
-      // 1/2.
-      set(weight[i], directions[i] * (4.0 / kBallPlaces * mean_mm) / radii_mm);
+    const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
+    float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
+      set(weight[i], around[i].weight);
     }
-    to->SetUniformi("in_ballCount", kBallPlaces);
+    to->SetUniformi("in_ballCount", int(around.size()));
     to->SetUniform3fv("in_ball", kBallPlaces, ball);
     to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
     const float air[2] = {scaled(kAirEnds_HU),
                           float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
     to->SetUniform2f("in_air", air);
     to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
-    const double step_mm = sample_distance * smallest_edge_mm;
-    to->SetUniformf("in_safe",
-                    float(1.5 * std::min({radii_mm.x, radii_mm.y, radii_mm.z}) / step_mm));
+    to->SetUniformf("in_safe", float(kSafe_voxels / sample_distance));
     to->SetUniformi("in_shows", shows);
 
     float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
@@ -537,10 +532,12 @@ void CarveVolume::setSampleDistance(double voxels) {
 
 void CarveVolume::setFirstTissue(bool on) {
   parts_->shows = on ? 1 : 0;
+  parts_->updateShader();
 }
 
 void CarveVolume::setNormalsAsColour(bool on) {
   parts_->shows = on ? 2 : 0;
+  parts_->updateShader();
 }
 
 void CarveVolume::lookFrom(const Vec3& right, const Vec3& up, const Vec3& forward) {

@@ -14,8 +14,8 @@ double level(double step) {
 
 }  // namespace
 
-double LevelOfDetail::rayStep() const {
-  return std::min(pixel_step_, 2.0);
+double LevelOfDetail::rayStepAt(double pixel_step) {
+  return std::min(pixel_step, 2.0);
 }
 
 void LevelOfDetail::stillFrameTook(double ms) {

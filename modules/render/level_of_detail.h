@@ -12,7 +12,8 @@ class LevelOfDetail {
   // Pixels between two rays, each way; 1 is full quality.
   double pixelStep() const { return pixel_step_; }
   // Factor on the distance between two samples of a ray.
-  double rayStep() const;
+  double rayStep() const { return rayStepAt(pixel_step_); }
+  static double rayStepAt(double pixel_step);
 
   // A frame drawn at full quality, or at the moving level, took this long. The first of a movement
   // takes its level from the still frame before it.

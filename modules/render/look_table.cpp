@@ -57,20 +57,34 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
   return shades;
 }
 
-std::vector<Vec3> sphereDirections(int count) {
+RayBall rayBall(const Vec3& spacing_mm) {
+  // 1.5 mm at 0.8 x 0.8 x 1.0 mm.
+  const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  const Vec3 radii_mm = glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+  const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
   const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
-  std::vector<Vec3> directions;
-  for (int n = 0; n < count; ++n) {
-    const double z = 1.0 - (n + 0.5) * 2.0 / count, r = std::sqrt(1.0 - z * z);
-    directions.emplace_back(std::cos(turn * n) * r, std::sin(turn * n) * r, z);
+  RayBall ball;
+  for (int n = 0; n < kBallPlaces; ++n) {
+    const double z = 1.0 - (n + 0.5) * 2.0 / kBallPlaces, r = std::sqrt(1.0 - z * z);
+    const Vec3 direction(std::cos(turn * n) * r, std::sin(turn * n) * r, z);
+    // Half of the directions are beyond an edge, on average by half of the reach.
+    ball.push_back({direction * radii_mm, direction * (4.0 / kBallPlaces * reach_mm) / radii_mm});
   }
-  return directions;
+  return ball;
 }
 
-Vec3 ballRadii_mm(const Vec3& spacing_mm) {
-  // 1.75 voxels: 1.5 mm at 0.8 x 0.8 x 1.0 mm. At least a voxel where slices are far apart.
+RayBall centralDifferences(const Vec3& spacing_mm) {
+  RayBall ball;
   const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
-  return glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      RayPlace place;
+      place.from_mm[axis] = sign * spacing_mm[axis];
+      place.weight[axis] = 0.5 * sign * mean_mm / spacing_mm[axis];
+      ball.push_back(place);
+    }
+  }
+  return ball;
 }
 
 }  // namespace trephine

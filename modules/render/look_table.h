@@ -29,9 +29,19 @@ TissueSet asSeen(TissueSet set, const TissueLooks& looks);
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
                                       double highest_HU);
 
-// Directions spread evenly over a sphere (Fibonacci's spiral), and the ball's half-axes in mm along
-// the axes of the grid: the sum of HU times direction over the ball is the normal of a surface.
-std::vector<Vec3> sphereDirections(int count);
-Vec3 ballRadii_mm(const Vec3& spacing_mm);
+// A place around a sample, in mm along the grid's axes, and what its HU adds to the normal there.
+// The sum over a ball's places is as long as the contrast across a flat edge in its middle.
+struct RayPlace {
+  Vec3 from_mm{0.0};
+  Vec3 weight{0.0};
+};
+using RayBall = std::vector<RayPlace>;
+constexpr int kBallPlaces = 18;
+
+// Directions spread evenly (Fibonacci's spiral) at 1.75 voxels, or one where slices are far apart:
+// the sum of HU times direction is the normal of a surface.
+RayBall rayBall(const Vec3& spacing_mm);
+// VTK's: the six neighbours.
+RayBall centralDifferences(const Vec3& spacing_mm);
 
 }  // namespace trephine

@@ -41,7 +41,85 @@ bool complete(const Picture& picture) {
          picture.rgb.size() == std::size_t(picture.width) * std::size_t(picture.height) * 3;
 }
 
+// Values of each pixel, rows from the top.
+struct Plane {
+  int width = 0;
+  int height = 0;
+  std::vector<double> values;
+};
+
+Plane luminance(const Picture& picture) {
+  Plane plane{picture.width, picture.height, {}};
+  plane.values.reserve(picture.rgb.size() / 3);
+  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {  // Rec. 601
+    plane.values.push_back(0.299 * picture.rgb[i] + 0.587 * picture.rgb[i + 1] +
+                           0.114 * picture.rgb[i + 2]);
+  }
+  return plane;
+}
+
+constexpr int kWindow = 11;
+
+// Means over the windows that lie in the plane.
+Plane windowMeans(const Plane& of) {
+  constexpr double sigma = 1.5;
+  double weights[kWindow], sum = 0.0;
+  for (int i = 0; i < kWindow; ++i) {
+    const double x = i - kWindow / 2;
+    sum += weights[i] = std::exp(-x * x / (2.0 * sigma * sigma));
+  }
+  for (double& weight : weights) weight /= sum;
+  const int width = of.width - kWindow + 1, height = of.height - kWindow + 1;
+  std::vector<double> rows;
+  rows.reserve(std::size_t(width) * std::size_t(of.height));
+  for (int y = 0; y < of.height; ++y) {
+    const double* row = of.values.data() + std::size_t(y) * std::size_t(of.width);
+    for (int x = 0; x < width; ++x) {
+      double mean = 0.0;
+      for (int i = 0; i < kWindow; ++i) mean += weights[i] * row[x + i];
+      rows.push_back(mean);
+    }
+  }
+  Plane means{width, height, {}};
+  means.values.reserve(std::size_t(width) * std::size_t(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      double mean = 0.0;
+      for (int i = 0; i < kWindow; ++i) {
+        mean += weights[i] * rows[std::size_t(y + i) * std::size_t(width) + std::size_t(x)];
+      }
+      means.values.push_back(mean);
+    }
+  }
+  return means;
+}
+
+Plane product(const Plane& a, const Plane& b) {
+  Plane out = a;
+  for (std::size_t i = 0; i < out.values.size(); ++i) out.values[i] *= b.values[i];
+  return out;
+}
+
 }  // namespace
+
+double ssim(const Picture& a, const Picture& b) {
+  if (!complete(a) || !complete(b) || a.width != b.width || a.height != b.height) return 0.0;
+  if (std::min(a.width, a.height) < kWindow) return 0.0;
+  constexpr double c1 = 0.01 * 255.0 * 0.01 * 255.0, c2 = 0.03 * 255.0 * 0.03 * 255.0;
+  const Plane of_a = luminance(a), of_b = luminance(b);
+  const Plane mean_a = windowMeans(of_a), mean_b = windowMeans(of_b);
+  const Plane aa = windowMeans(product(of_a, of_a)), bb = windowMeans(product(of_b, of_b));
+  const Plane ab = windowMeans(product(of_a, of_b));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < aa.values.size(); ++i) {
+    const double ma = mean_a.values[i], mb = mean_b.values[i];
+    const double var_a = aa.values[i] - ma * ma, var_b = bb.values[i] - mb * mb;
+    const double covariance = ab.values[i] - ma * mb;
+    sum += (2.0 * ma * mb + c1) * (2.0 * covariance + c2) /
+           ((ma * ma + mb * mb + c1) * (var_a + var_b + c2));
+  }
+  return sum / double(aa.values.size());
+}
 
 double psnr_dB(const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size()) return 0.0;

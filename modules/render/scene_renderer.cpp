@@ -156,6 +156,24 @@ struct SceneRenderer::Parts {
     if (row == 0) level.stillFrameTook(picture_ms);
   }
 
+  // What was drawn last.
+  Picture read() {
+    Picture picture;
+    vtkNew<vtkUnsignedCharArray> pixels;
+    window->GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0);
+    const std::size_t row_bytes = std::size_t(width) * 3;
+    const std::size_t bytes = row_bytes * std::size_t(height);
+    if (std::size_t(pixels->GetNumberOfValues()) != bytes) return picture;
+    picture.width = width;
+    picture.height = height;
+    picture.rgb.resize(bytes);
+    for (int y = 0; y < height; ++y) {  // OpenGL's rows go up
+      std::copy_n(pixels->GetPointer(0) + std::size_t(height - 1 - y) * row_bytes, row_bytes,
+                  picture.rgb.data() + std::size_t(y) * row_bytes);
+    }
+    return picture;
+  }
+
   void release() {
     if (!window) return;
     window->MakeCurrent();
@@ -264,7 +282,7 @@ bool SceneRenderer::hasVolume() const {
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   parts_->stale = true;
-  parts_->volume.setTissues(tissues, looks);
+  parts_->volume.setTissues(asSeen(tissues, looks), looks);
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {
@@ -347,22 +365,9 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
 }
 
 Picture SceneRenderer::picture() {
-  Parts& p = *parts_;
-  Picture picture;
-  if (!p.window) return picture;
-  p.draw(1.0, 1.0);
-  vtkNew<vtkUnsignedCharArray> pixels;
-  p.window->GetPixelData(0, 0, p.width - 1, p.height - 1, 0, pixels, 0);
-  const std::size_t row = std::size_t(p.width) * 3;
-  if (std::size_t(pixels->GetNumberOfValues()) != row * std::size_t(p.height)) return picture;
-  picture.width = p.width;
-  picture.height = p.height;
-  picture.rgb.resize(row * std::size_t(p.height));
-  for (int y = 0; y < p.height; ++y) {  // OpenGL's rows go up
-    std::copy_n(pixels->GetPointer(0) + std::size_t(p.height - 1 - y) * row, row,
-                picture.rgb.data() + std::size_t(y) * row);
-  }
-  return picture;
+  if (!parts_->window) return {};
+  parts_->draw(1.0, 1.0);
+  return parts_->read();
 }
 
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
@@ -446,6 +451,22 @@ void UploadProbe::setFirstTissue(SceneRenderer& renderer, bool on) {
 void UploadProbe::setNormalsAsColour(SceneRenderer& renderer, bool on) {
   renderer.parts_->stale = true;
   renderer.parts_->volume.setNormalsAsColour(on);
+}
+
+double UploadProbe::level(const SceneRenderer& renderer) {
+  return renderer.parts_->level.pixelStep();
+}
+
+Picture UploadProbe::pictureAt(SceneRenderer& renderer, double level) {
+  if (!renderer.parts_->window) return {};
+  renderer.parts_->stale = true;
+  renderer.parts_->draw(level, LevelOfDetail::rayStepAt(level));
+  return renderer.parts_->read();
+}
+
+Picture UploadProbe::painted(SceneRenderer& renderer) {
+  if (!renderer.parts_->window) return {};
+  return renderer.parts_->read();
 }
 
 }  // namespace trephine

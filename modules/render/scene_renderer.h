@@ -80,6 +80,7 @@ class SceneRenderer {
   // Copies all voxels again, from others of the same geometry. Allocates none.
   void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels);
   bool hasVolume() const;
+  // A tissue of the set that is not visible is shown all the same where a look says so (asSeen).
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   // At most kMostClipPlanes; what all of them leave is drawn, with a face where a plane cuts it.
   static constexpr std::size_t kMostClipPlanes = 8;
@@ -138,8 +139,15 @@ struct UploadProbe {
   // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:
   // what the picture says is there.
   static void setFirstTissue(SceneRenderer& renderer, bool on);
-  // Each ray in the normal of its first visible sample, n/2 + 1/2: right, up, towards the eye.
+  // Each ray in the normal of its first visible sample, opaque and without light: red right, green
+  // up, blue towards the eye, -1..1 as 0..255. Of VTK's own normals without RayTruth::normals.
   static void setNormalsAsColour(SceneRenderer& renderer, bool on);
+  // Pixels between two rays of the last moving picture, each way.
+  static double level(const SceneRenderer& renderer);
+  // A picture at that level instead of at full quality, read back.
+  static Picture pictureAt(SceneRenderer& renderer, double level);
+  // What the last paint drew, read back.
+  static Picture painted(SceneRenderer& renderer);
 };
 
 }  // namespace trephine

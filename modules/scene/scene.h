@@ -13,6 +13,7 @@
 #include "haptics/haptic_core.h"
 #include "scene/landmark.h"
 #include "scene/scene_tool.h"
+#include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "volume/volume.h"
 
@@ -41,6 +42,7 @@ struct SceneArm {
 struct SceneView {
   std::string landmark;       // looked at from outside; empty: the whole case from the front
   double distance_mm = 350.0;
+  TissueLooks looks;  // to start with; a person may change them
 };
 
 struct Scene {

@@ -72,6 +72,29 @@ Landmark readLandmark(JsonReader& item) {
   return landmark;
 }
 
+// By tissue id.
+TissueLooks readLooks(JsonReader& view, const TissueSet& tissues) {
+  TissueLooks looks;
+  JsonReader named = view.object("looks");
+  for (const Tissue& tissue : tissues.tissues) {
+    const char* id = tissue.id.c_str();
+    if (!named.has(id)) continue;
+    const std::string look = named.text(id);
+    if (const auto kind = kindOf(kTissueLookNames, look)) {
+      looks[tissue.id] = *kind;
+    } else {
+      named.fail(id, "Unknown look '" + look + "'", choices(kTissueLookNames));
+    }
+  }
+  const Json& all = view.raw("looks");
+  for (auto item = all.begin(); all.is_object() && item != all.end(); ++item) {
+    if (tissues.find(item.key())) continue;
+    named.fail(item.key().c_str(), "The view names the unknown tissue '" + item.key() + "'",
+               "Use the ids of the scene's tissues");
+  }
+  return looks;
+}
+
 // Names by which others refer to an element are there once.
 template <class Items, class NameOf>
 void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, NameOf name_of) {
@@ -182,8 +205,9 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   }
   if (reader.has("view")) {
     JsonReader view = reader.object("view");
-    scene.view.landmark = view.text("landmark");
+    scene.view.landmark = view.text("landmark", "");
     readNumbers(view, kViewNumbers, scene.view);
+    if (view.has("looks")) scene.view.looks = readLooks(view, scene.tissues);
   }
   if (reader.ok()) checkReferences(reader, scene);
   if (Status status = reader.finish(); !status) return status.error();
@@ -244,6 +268,9 @@ Json toJson(const Scene& scene) {
   if (!scene.view.landmark.empty()) {
     json["view"]["landmark"] = scene.view.landmark;
     writeNumbers(json["view"], kViewNumbers, scene.view);
+  }
+  for (const auto& [id, look] : scene.view.looks) {
+    json["view"]["looks"][id] = nameOf(kTissueLookNames, look);
   }
   return json;
 }

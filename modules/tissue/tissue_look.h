@@ -1,9 +1,15 @@
-// How a view shows a tissue. It changes neither what is felt nor what is cut.
+// How a view shows a tissue. It changes neither what is felt nor what is cut nor what is recorded.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+
+#include "tissue/tissue_set.h"
 
 namespace trephine {
 
@@ -13,7 +19,35 @@ enum class TissueLook : std::uint8_t {
   hidden
 };
 
-// By tissue id; a tissue that is not named is shown.
+// In files.
+inline constexpr std::array<std::pair<std::string_view, TissueLook>, 3> kTissueLookNames{
+    {{"shown", TissueLook::shown},
+     {"ghosted", TissueLook::ghosted},
+     {"hidden", TissueLook::hidden}}};
+
+// By id. What is not named here looks as its set says: shown, or hidden where its opacity is 0.
 using TissueLooks = std::map<std::string, TissueLook>;
+TissueLook lookOf(const Tissue& tissue, const TissueLooks& looks);
+
+// Of a tissue that looks show or ghost and whose own opacity is 0: enough to see its surface.
+constexpr double kSeenOpacity = 0.9;
+
+// The set with the opacities that these looks leave: 0 where hidden, at least kSeenOpacity instead
+// of 0 where not. A ghost keeps its opacity: how it is drawn is the renderer's.
+TissueSet asSeen(TissueSet tissues, const TissueLooks& looks);
+
+// Where to start from, in the terms of a set.
+enum class ViewPreset : std::uint8_t { bone, skin, soft_tissue, liver };
+inline constexpr std::array kViewPresets{ViewPreset::bone, ViewPreset::skin,
+                                         ViewPreset::soft_tissue, ViewPreset::liver};
+
+// A look for every tissue of the set:
+// - bone: bone alone;
+// - skin: skin, and behind it what the set shows;
+// - soft tissue: what the set shows, through a ghost of the bone;
+// - liver: the liver with its vessels, through a ghost of the bone.
+// Nothing where the set has no tissue that the preset is about; by ids, as the shipped sets name
+// them.
+std::optional<TissueLooks> presetLooks(const TissueSet& tissues, ViewPreset preset);
 
 }  // namespace trephine

@@ -53,8 +53,9 @@ INNER = {
         "machine": {"common"},
         "stability": {"common"},
         "touch": {"common"},
-        "trades": {"common", "touch"},
+        "trades": {"common", "touch", "render"},
         "import": {"common"},
+        "render": {"common", "import"},
         "exercise": {"common", "trades"},
     },
     "ui": {

@@ -1,8 +1,5 @@
 #include "lab/import/import_measurement.h"
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -12,6 +9,7 @@
 
 #include "base/file.h"
 #include "lab/common/quantile.h"
+#include "lab/common/temporary_folder.h"
 
 namespace trephine {
 
@@ -47,33 +45,6 @@ Status check(const ImportOptions& options, const std::vector<std::string>& names
   }
   return {};
 }
-
-// A folder of its own in another, which goes away with all that it holds.
-class TemporaryFolder {
- public:
-  static Result<TemporaryFolder> in(const fs::path& folder) {
-    std::string pattern = (folder / ".import-XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) {
-      return Error{"CANNOT_WRITE", "The folder cannot be written to", folder.string(),
-                   "Choose another place"};
-    }
-    return TemporaryFolder(pattern);
-  }
-  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::move(other.path_)) {
-    other.path_.clear();
-  }
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder() {
-    std::error_code none;
-    if (!path_.empty()) fs::remove_all(path_, none);
-  }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  const fs::path& path() const { return path_; }
-
- private:
-  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
-};
 
 // The figures of one loader under one of its names, on their way to a row.
 struct Gathered {
@@ -234,7 +205,7 @@ Result<ImportMeasurement> measureImport(const ImportOptions& options,
                                         const Progress& progress) {
   if (Status good = check(options, subjects.names); !good) return good.error();
   if (Status made = makeFolder(out); !made) return made.error();
-  Result<TemporaryFolder> folder = TemporaryFolder::in(out);
+  Result<TemporaryFolder> folder = TemporaryFolder::in(out, "import");
   if (!folder) return folder.error();
   ImportSeries series = options.series;
   if (series.names.empty()) series.names = subjects.names;

@@ -1,0 +1,159 @@
+// Exercises drawn as they run: how long from what happened to what is seen.
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "base/system.h"
+#include "lab/common/quantile.h"
+#include "lab/render/render_parts.h"
+#include "render/tool_view.h"
+#include "session/session.h"
+
+namespace trephine {
+
+namespace {
+
+// When what was read for a picture was read, and when the picture was there.
+struct Seen {
+  double read_ms = 0.0, there_ms = 0.0;
+};
+
+// The delays of things that happen at any time between two readings: each is seen in the picture of
+// the reading that follows it. So many moments stand for all of an interval.
+constexpr int kMoments = 10;
+void addDelays(double last_read_ms, const Seen& seen, std::vector<double>& delays) {
+  for (int n = 0; n <= kMoments; ++n) {
+    const double when = last_read_ms + (seen.read_ms - last_read_ms) * n / kMoments;
+    delays.push_back(seen.there_ms - when);
+  }
+}
+
+std::vector<ToolView> toolsOf(const Scene& scene, const LoopState& state) {
+  std::vector<ToolView> tools;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
+                             {arm.proxy_position_mm, arm.proxy_orientation}, arm.tissue_class >= 0,
+                             Vec3(0.75, 0.78, 0.82)));
+  }
+  return tools;
+}
+
+std::uint64_t removedVoxels(const LoopState& state, std::size_t arms) {
+  std::uint64_t voxels = 0;
+  for (std::size_t arm = 0; arm < arms; ++arm) {
+    for (const std::uint64_t of_tissue : state.removed[arm]) voxels += of_tissue;
+  }
+  return voxels;
+}
+
+struct Delays {
+  std::vector<double> removal_ms, hand_ms;
+  std::uint64_t ticks = 0, missed = 0;
+};
+
+Status measureExercise(const char* file, const char* preset, const RenderOptions& options,
+                       const Progress& progress, Delays& delays, RenderMeasurement& result) {
+  Result<Scene> scene = readScene(resourceFolder() / "scenes" / file);
+  if (!scene) return scene.error();
+  const Result<Case> of = openCase(*scene, Progress(progress, 0.0, 0.2));
+  if (!of) return of.error();
+  Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+  if (!script) return script.error();
+  Result<std::unique_ptr<Session>> made = Session::create(*scene, *of, {"", *script});
+  if (!made) return made.error();
+  Session& session = **made;
+  auto renderer_made = SceneRenderer::offscreen(options.moving[0], options.moving[1]);
+  if (!renderer_made) return renderer_made.error();
+  SceneRenderer& renderer = **renderer_made;
+  const double distance = options.sample_distances.front();
+  renderer.setSampleDistance(distance);
+  renderer.setTissues(scene->tissues, scene->view.looks);
+  renderer.setVolume(session.grid());
+  for (const PlacedLandmark& landmark : session.landmarks()) {
+    if (landmark.id != scene->view.landmark) continue;
+    renderer.lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
+                    landmark.frame.viewUp(), scene->view.distance_mm);
+  }
+  for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume
+  renderer.setMoving(true);
+  Picture last = UploadProbe::painted(renderer);
+
+  if (Status started = session.start(options.cut_s); !started) return started;
+  const auto begin = RenderClock::now();
+  std::vector<double> ms, levels;
+  std::uint64_t removed_before = 0;
+  double last_pull_ms = 0.0, last_hands_ms = 0.0;
+  while (!session.finished()) {
+    if (progress.cancelled()) break;
+    progress.at(0.2 + 0.8 * std::min(1.0, msSince(begin) / (1000.0 * options.cut_s)), file);
+    Seen hands, removal;
+    const double start_ms = msSince(begin);
+    removal.read_ms = start_ms;
+    const bool cut = renderer.pullChanges(session.grid());
+    hands.read_ms = msSince(begin);
+    const LoopState& state = session.state();
+    const std::uint64_t removed = removedVoxels(state, session.scene().arms.size());
+    renderer.setTools(toolsOf(session.scene(), state));
+    renderer.paint(0);
+    hands.there_ms = removal.there_ms = msSince(begin);
+    // Outside of the time: that the picture is another is the evidence that it was drawn.
+    Picture picture = UploadProbe::painted(renderer);
+    const bool drawn = !(picture == last);
+    last = std::move(picture);
+    if (removed > removed_before && drawn) {
+      ms.push_back(removal.there_ms - start_ms);
+      levels.push_back(UploadProbe::level(renderer));
+      addDelays(last_hands_ms, hands, delays.hand_ms);
+      if (cut) addDelays(last_pull_ms, removal, delays.removal_ms);
+    }
+    removed_before = removed;
+    last_pull_ms = removal.read_ms;
+    last_hands_ms = hands.read_ms;
+  }
+  if (Status stopped = session.stop(); !stopped) return stopped;
+  if (progress.cancelled()) return renderCancelled();
+  const RunReport report = session.report();
+  delays.ticks += report.ticks;
+  delays.missed += report.missed_deadlines;
+
+  RenderRow row;
+  row.of_case = scene->case_source;
+  row.preset = preset;
+  row.width = options.moving[0];
+  row.height = options.moving[1];
+  row.mode = "cut";
+  row.mapper = "trephine";
+  row.sample_distance_voxels = distance;
+  row.ms_median = medianOf(ms);
+  row.level = levels.empty() ? UploadProbe::level(renderer) : medianOf(levels);
+  result.rows.push_back(row);
+  return {};
+}
+
+}  // namespace
+
+Status measureExercises(const RenderOptions& options, const Progress& progress,
+                        RenderMeasurement& result) {
+  Delays delays;
+  const std::pair<const char*, const char*> scenes[] = {{"cranium.json", "bone"},
+                                                        {"liver.json", "liver"}};
+  double from = 0.0;
+  for (const auto& [file, preset] : scenes) {
+    const Progress part(progress, from, from + 0.5);
+    if (Status run = measureExercise(file, preset, options, part, delays, result); !run) return run;
+    from += 0.5;
+  }
+  for (std::vector<double>* all : {&delays.removal_ms, &delays.hand_ms}) {
+    std::sort(all->begin(), all->end());
+  }
+  result.removal_median_ms = quantile(delays.removal_ms, 500);
+  result.removal_max_ms = quantile(delays.removal_ms, 1000);
+  result.hand_median_ms = quantile(delays.hand_ms, 500);
+  result.hand_p99_ms = quantile(delays.hand_ms, 990);
+  result.missed_ticks_percent =
+      100.0 * double(delays.missed) / double(std::max<std::uint64_t>(1, delays.ticks));
+  return {};
+}
+
+}  // namespace trephine
