@@ -102,7 +102,9 @@ inline const std::string kLeapStart = R"(//VTK::Terminate::Init
 // Goes to the next sample that is not transparent: by whole steps, so that samples are taken where
 // VTK would take them. A software rasteriser pays for shading whether or not a sample needs it,
 // so transparent samples are passed here too. The condition also ends a ray that is not a number.
-inline const std::string kLeap = R"(//VTK::Base::Impl
+// `visible`: what is done at a visible sample before the search ends there.
+inline std::string leapTo(const std::string& visible) {
+  return R"(//VTK::Base::Impl
     while (g_currentT <= g_lastT)
       {
       vec3 l_place = g_dataPos * g_bricks;
@@ -120,8 +122,8 @@ inline const std::string kLeap = R"(//VTK::Base::Impl
         g_hu = texture3D(in_volume[0], g_dataPos).r * in_volume_scale[0].r + in_volume_bias[0].r;
         g_opacity = texture2D(in_opacityTransferFunc_0[0], vec2(lookOf(g_hu), 0.0)).r;
         if (g_opacity > 0.0)
-          {
-          break;
+          {)" +
+         visible + R"(
           }
         }
       g_currentT += l_steps;
@@ -132,6 +134,21 @@ inline const std::string kLeap = R"(//VTK::Base::Impl
       break;
       }
 )";
+}
+inline const std::string kStopThere = R"(
+          break;)";
+// Samples of a run that was begun (kTruthShading) are all of one colour: they need no more than
+// this.
+inline const std::string kGoOnInRun = R"(
+          if (!g_sure || g_currentT - g_lastSeen > 1.5 || g_row != g_runRow ||
+              g_hu < g_runRange.x || g_hu > g_runRange.y)
+            {
+            break;
+            }
+          g_lastSeen = g_currentT;
+          float l_alpha = g_opacity * g_runGain;
+          g_fragColor += (1.0 - g_fragColor.a) * l_alpha * vec4(g_runColour, 1.0);
+          l_steps = g_fragColor.a > g_opacityThreshold ? g_lastT + 1.0 : 1.0;)";
 
 // Planes that clip: the ray begins at the last that it enters by and ends at the first that it
 // leaves by. After kLeapStart.
@@ -159,24 +176,28 @@ inline const std::string kClipStart = R"(
 inline const std::string kTruthDeclarations = R"(
 float g_faceT = -1.0;  // of the sample on a face that a plane cuts
 vec3 g_faceNormal = vec3(0.0);
+// The run of visible samples of one tissue that the ray is in.
 float g_lastSeen = -10.0;
-float g_safeUntil = -1.0;
-int g_tissue = -1;
-vec3 g_normal = vec3(0.0);
+bool g_sure = false;  // it was found twice in a row, or needs no second time
+int g_runTissue = -1;
+float g_runRow = 0.0;
+vec2 g_runRange = vec2(0.0);
+vec3 g_runNormal = vec3(0.0);
+vec3 g_runColour = vec3(0.0);
+float g_runGain = 0.0;      // factor on the opacity of samples after the first
 )";
 
-// In VTK's place. A run of visible samples of one tissue is shaded with the normal at its
-// beginning: the sum of HU times direction over a ball, which follows a surface where differences
-// of neighbours follow the voxels. Inside of a tissue that lets light through there is no surface,
-// only noise.
+// In VTK's place, at each visible sample that does not just go on in its run. A run of visible
+// samples of one tissue is shaded with the normal at its beginning: the sum of HU times direction
+// over a ball, which follows a surface where differences of neighbours follow the voxels. Inside of
+// a tissue that lets light through there is no surface, only noise.
 // A tissue whose range has others above and below is not shown where the ball reaches beyond its
 // upper end and either beyond its lower end too or across an edge of which the sample is on the
 // lower side: there the HU are passing by (partial volume). One sample alone may be noise: such a
 // tissue shows from the second in a row on.
-inline const std::string kTruthShading = R"(//VTK::Shading::Impl
+inline const std::string kTruthShading = R"(
     int l_tissue = -1;
     vec4 l_look = vec4(0.0);
-    vec3 l_colour = vec3(0.0);
     for (int i = 0; i < in_lookCount; ++i)
       {
       vec4 l_other = in_look[i];
@@ -184,84 +205,86 @@ inline const std::string kTruthShading = R"(//VTK::Shading::Impl
         {
         l_tissue = i;
         l_look = l_other;
-        l_colour = in_lookColour[i];
         }
       }
     bool l_between = mod(l_look.w, 2.0) == 1.0;
     bool l_ghost = l_look.w >= 2.0;
-    bool l_fresh = g_currentT - g_lastSeen > 1.5 || l_tissue != g_tissue;
+    bool l_enters = g_currentT - g_lastSeen > 1.5;  // from where nothing is seen
+    bool l_fresh = l_enters || l_tissue != g_runTissue;
     bool l_seen = l_tissue >= 0;
-    for (bool l_look_around = l_seen && (l_fresh || (l_between && g_currentT >= g_safeUntil));
-         l_look_around; l_look_around = false)
+    vec3 l_sum = vec3(0.0);
+    vec3 l_shape = vec3(0.0);
+    float l_low = g_hu;
+    float l_high = g_hu;
+    for (int i = 0; i < in_ballCount; ++i)
       {
-      vec3 l_sum = vec3(0.0);
-      vec3 l_shape = vec3(0.0);
-      float l_low = g_hu;
-      float l_high = g_hu;
-      for (int i = 0; i < in_ballCount; ++i)
-        {
-        float l_there = texture3D(in_volume[0], g_dataPos + in_ball[i]).r;
-        l_there = l_there * in_volume_scale[0].r + in_volume_bias[0].r;
-        l_low = min(l_low, l_there);
-        l_high = max(l_high, l_there);
-        l_sum -= l_there * in_ballWeight[i];
-        l_shape -= shapeAt(g_dataPos + in_ball[i], l_there) * in_ballWeight[i];
-        }
-      // A label's border has the voxels' steps. Where the HU change across it, in about its
-      // direction, they know the surface better; where they do not, only the label does. Where
-      // neither changes there is no surface, and a ray that was in tissue before keeps the normal
-      // by which it entered.
-      bool l_label_ends = l_look.z > 0.0 && length(l_shape) > 0.25;
-      if (l_label_ends)
-        {
-        float l_along = dot(l_sum, l_shape) / (length(l_shape) * max(length(l_sum), 1e-9));
-        l_sum = length(l_sum) > in_edge && abs(l_along) > 0.8 ? l_sum * sign(l_along) : l_shape;
-        }
-      if (l_fresh &&
-          (l_label_ends || length(l_sum) > 0.5 * in_edge || g_currentT - g_lastSeen > 1.5))
-        {
-        g_normal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
-        }
-      if (l_between)
-        {
-        l_seen = !(l_high > l_look.y &&
-                   (l_low < l_look.x ||
-                    (l_high - l_low > in_edge && g_hu - l_low < l_high - g_hu)));
-        }
-      g_safeUntil = g_currentT + in_safe;
+      float l_there = texture3D(in_volume[0], g_dataPos + in_ball[i]).r;
+      l_there = l_there * in_volume_scale[0].r + in_volume_bias[0].r;
+      l_low = min(l_low, l_there);
+      l_high = max(l_high, l_there);
+      l_sum -= l_there * in_ballWeight[i];
+      l_shape -= shapeAt(g_dataPos + in_ball[i], l_there) * in_ballWeight[i];
       }
-    g_tissue = l_seen ? l_tissue : -1;
+    if (l_between)
+      {
+      l_seen = !(l_high > l_look.y &&
+                 (l_low < l_look.x ||
+                  (l_high - l_low > in_edge && g_hu - l_low < l_high - g_hu)));
+      }
+    // A label's border has the voxels' steps. Where the HU change across it, in about its
+    // direction, they know the surface better; where they do not, only the label does. Where
+    // neither changes there is no surface, and a ray that was in tissue before keeps the normal
+    // by which it entered.
+    bool l_label_ends = l_look.z > 0.0 && length(l_shape) > 0.25;
+    if (l_label_ends)
+      {
+      float l_along = dot(l_sum, l_shape) / (length(l_shape) * max(length(l_sum), 1e-9));
+      l_sum = length(l_sum) > in_edge && abs(l_along) > 0.8 ? l_sum * sign(l_along) : l_shape;
+      }
+    bool l_begins = l_fresh || !g_sure;
+    if (l_begins && (l_enters || l_label_ends || length(l_sum) > 0.5 * in_edge))
+      {
+      g_runNormal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
+      }
+    if (g_faceT == g_currentT)
+      {
+      g_runNormal = g_faceNormal;
+      l_seen = l_tissue >= 0;
+      }
     if (l_seen)
       {
+      g_sure = !l_between || !l_fresh || g_faceT == g_currentT;
       g_lastSeen = g_currentT;
-      if (g_faceT == g_currentT)
-        {
-        g_normal = g_faceNormal;
-        l_fresh = false;
-        }
-      }
-    bool l_draw = l_seen && (l_ghost ? l_fresh : !(l_between && l_fresh));
-    if (l_draw)
-      {
-      float l_towards = dot(g_normal, g_vdir[0]);
-      vec3 l_normal = l_towards < 0.0 ? -g_normal : g_normal;
-      float l_alpha = g_opacity;
-      if (l_ghost)
-        {
-        l_alpha = 0.03 + 0.5 * pow(1.0 - abs(l_towards), 3.0);
-        }
+      g_runTissue = l_tissue;
+      g_runRow = g_row;
+      g_runRange = l_look.xy;
+      float l_towards = dot(g_runNormal, g_vdir[0]);
+      vec3 l_normal = l_towards < 0.0 ? -g_runNormal : g_runNormal;
       float l_lit = max(dot(l_normal, in_light), 0.0);
       float l_shine = max(dot(l_normal, normalize(in_light + g_vdir[0])), 0.0);
-      vec3 l_shown = l_colour * (in_ambient[0] + in_diffuse[0] * l_lit) +
-                     in_specular[0] * pow(l_shine, in_shininess[0]);
-      if (in_shows != 0)
+      g_runColour = in_lookColour[l_tissue] * (in_ambient[0] + in_diffuse[0] * l_lit) +
+                    in_specular[0] * pow(l_shine, in_shininess[0]);
+      float l_alpha = g_sure ? g_opacity : 0.0;
+      g_runGain = 1.0;
+      if (l_ghost)
+        {
+        l_alpha = l_begins && g_sure ? 0.03 + 0.5 * pow(1.0 - abs(l_towards), 3.0) : 0.0;
+        g_runGain = 0.0;
+        }
+      if (in_shows != 0 && g_sure)
         {
         l_alpha = 1.0;
-        l_shown = in_shows == 1 ? l_colour
-                                : 0.5 + 0.5 * vec3(dot(g_normal, in_eye[0]), dot(g_normal, in_eye[1]),
-                                                   dot(g_normal, in_eye[2]));
+        g_runColour = in_shows == 1
+                          ? in_lookColour[l_tissue]
+                          : 0.5 + 0.5 * vec3(dot(g_runNormal, in_eye[0]), dot(g_runNormal, in_eye[1]),
+                                             dot(g_runNormal, in_eye[2]));
         }
-      g_fragColor += (1.0 - g_fragColor.a) * vec4(l_shown * l_alpha, l_alpha);
+      g_fragColor += (1.0 - g_fragColor.a) * l_alpha * vec4(g_runColour, 1.0);
+      }
+    else
+      {
+      g_runTissue = -1;
+      g_sure = false;
       }
 )";
 

@@ -111,8 +111,6 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
 
 // The contrast over the ball around a sample from which on it lies across an edge.
 constexpr double kEdge_HU = 60.0;
-// How far along a ray, in the smallest edge of a voxel, what the ball has said holds.
-constexpr double kSafe_voxels = 2.8;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
@@ -254,16 +252,16 @@ struct CarveVolume::Parts {
     };
     prop->GetShaderProperty()->GetFragmentCustomUniforms()->RemoveAllUniforms();
     const bool by_label = rowCount() > 1;
-    if (!leaping && !by_label) return;
+    if (!leaping && !by_label && !isTrue()) return;
     std::string declarations =
         kLeapDeclarations + (by_label ? labelledLookUps(rowCount()) : kPlainLookUps);
     if (by_label) {
       replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
       replace("//VTK::ComputeColor::Dec", kLabelledColour);
     }
-    if (leaping) {
+    if (leaping || isTrue()) {
       replace("//VTK::Terminate::Init", kLeapStart);
-      replace("//VTK::Base::Impl", kLeap);
+      replace("//VTK::Base::Impl", leapTo(isTrue() ? kGoOnInRun : kStopThere));
     }
     if (isTrue()) {
       declarations += kTruthDeclarations + (by_label ? kLabelledShape : kPlainShape);
@@ -275,7 +273,9 @@ struct CarveVolume::Parts {
   }
 
   // Whether surfaces and classes are shown truly, or as VTK shows them.
-  bool isTrue() const { return leaping && copy && (truth.normals || truth.classes || shows != 0); }
+  bool isTrue() const {
+    return copy && (shows != 0 || (leaping && (truth.normals || truth.classes)));
+  }
 
   // What the shader is told by numbers alone: it is not built anew when they change.
   void tellShader() {
@@ -315,7 +315,6 @@ struct CarveVolume::Parts {
                           float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
     to->SetUniform2f("in_air", air);
     to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
-    to->SetUniformf("in_safe", float(kSafe_voxels / sample_distance));
     to->SetUniformi("in_shows", shows);
 
     float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
@@ -439,13 +438,13 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->boxes.clear();
 }
 
-void CarveVolume::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
+void CarveVolume::setTissues(const TissueSet& seen, const TissueLooks& looks) {
   Parts& p = *parts_;
-  const LabelRows rows(tissueTable(tissues));
+  const LabelRows rows(tissueTable(seen));
   p.labels_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
-  p.seen = asSeen(tissues, looks);
+  p.seen = seen;
   p.tissue_looks = looks;
   for (int row = 0; row < p.label_rows.count; ++row) {
     p.looks.push_back(transferFunction(p.seen, p.label_rows.label[std::size_t(row)]));

@@ -30,7 +30,8 @@ class CarveVolume {
   // `labels`, fitted to it, say where tissues of a label are; null: nowhere.
   void show(Volume& copy, std::shared_ptr<const LabelMap> labels, vtkRenderer& renderer);
   void remove(vtkRenderer& renderer);
-  void setTissues(const TissueSet& tissues, const TissueLooks& looks);
+  // As seen: asSeen().
+  void setTissues(const TissueSet& seen, const TissueLooks& looks);
   void setClip(const std::vector<ClipPlane>& planes);
   void setLight(const Vec3& from);  // of length 1; right, up, towards the eye
   void setTruth(const RayTruth& truth);

@@ -1,32 +1,8 @@
 #include "render/look_table.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "render/transfer_function.h"
-
 namespace trephine {
-
-namespace {
-
-// Enough for a surface to stop the ray that asks; what is drawn of a ghost is the shader's.
-constexpr double kGhostOpacity = 0.05;
-
-TissueLook lookOf(const TissueLooks& looks, const Tissue& tissue) {
-  const auto found = looks.find(tissue.id);
-  return found == looks.end() ? TissueLook::shown : found->second;
-}
-
-}  // namespace
-
-TissueSet asSeen(TissueSet set, const TissueLooks& looks) {
-  for (Tissue& tissue : set.tissues) {
-    const TissueLook look = lookOf(looks, tissue);
-    if (look == TissueLook::hidden) tissue.opacity = 0.0;
-    if (look == TissueLook::ghosted) tissue.opacity = kGhostOpacity;
-  }
-  return set;
-}
 
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
                                       double highest_HU) {
@@ -35,21 +11,12 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
   for (const bool labelled : {false, true}) {
     for (const Tissue& tissue : seen.tissues) {
       if (tissue.opacity <= 0.0 || tissue.label.has_value() != labelled) continue;
-      // A ramp towards what is transparent belongs to the tissue.
-      const auto beside = [&](int hu) {
-        return std::ranges::any_of(seen.tissues, [&](const Tissue& other) {
-          return other.opacity > 0.0 && other.label == tissue.label && other.hu_min <= hu &&
-                 hu <= other.hu_max;
-        });
-      };
-      const double below = beside(tissue.hu_min - 1) ? 0.0 : kRampHalfWidth_HU;
-      const double above = beside(tissue.hu_max + 1) ? 0.0 : kRampHalfWidth_HU;
       TissueShade shade;
-      shade.low_HU = tissue.hu_min - 0.5 - below;
-      shade.high_HU = tissue.hu_max + 0.5 + above;
+      shade.low_HU = tissue.hu_min - 0.5;
+      shade.high_HU = tissue.hu_max + 0.5;
       if (tissue.label) shade.row = rows.row[std::size_t(*tissue.label)];
       shade.passed = !labelled && tissue.hu_max < highest_HU;
-      shade.ghosted = lookOf(looks, tissue) == TissueLook::ghosted;
+      shade.ghosted = lookOf(tissue, looks) == TissueLook::ghosted;
       shade.colour = tissue.colour;
       shades.push_back(shade);
     }

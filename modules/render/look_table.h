@@ -12,7 +12,7 @@
 namespace trephine {
 
 struct TissueShade {
-  double low_HU = 0.0;  // where its opacity is over zero, ramps included
+  double low_HU = 0.0;  // half a HU beyond its range
   double high_HU = 0.0;
   int row = 0;          // of its label (LabelRows); 0: of any voxel
   bool passed = false;  // tissues lie above it in HU, and no label says where it is
@@ -20,9 +20,6 @@ struct TissueShade {
   Vec3 colour{1.0};
   friend bool operator==(const TissueShade&, const TissueShade&) = default;
 };
-
-// The set as it is looked at: hidden tissues are transparent, ghosted ones visible in any case.
-TissueSet asSeen(TissueSet set, const TissueLooks& looks);
 
 // Of the visible tissues of a set asSeen(), those without a label first: where several hold a HU,
 // the last counts. `highest_HU` is the highest that a voxel may have.
