@@ -18,6 +18,9 @@ vec3 g_start;
 vec3 g_forward;
 vec3 g_stepsPerBrick;
 float g_lastT;
+float g_hu;       // of the visible sample that was found, as VTK scaled it
+float g_opacity;
+float g_row = 0.0;  // of the label there
 )";
 
 // Where in the tables of colour and opacity a HU is, as VTK scaled it, in the voxel at g_dataPos.
@@ -26,9 +29,12 @@ vec3 lastBrick() { return vec3(textureSize(in_leaps, 0)) - 1.0; }
 float leapsAt(vec3 brick) { return texelFetch(in_leaps, ivec3(brick), 0).r; }
 float lookOf(float hu) { return hu; }
 )";
+inline const std::string kPlainShape = "float shapeAt(vec3 place, float hu) { return 0.0; }\n";
 
-// The same texture holds the row of each voxel's label first and the leaps in the slices above: one
-// texture, since only the first of all is where a shader that was just built looks for it.
+// The same texture holds the labels first and the leaps in the slices above: one texture, since
+// only the first of all is where a shader that was just built looks for it. Of a voxel it holds the
+// row of its label, or of a neighbour's where it has none, and how much of what surrounds it has a
+// label: from a half on it is inside (label_shape.h).
 inline std::string labelledLookUps(std::size_t rows) {
   static_assert(kSideMargin == 0.01, "written out below");
   return "const float kRows = " + std::to_string(rows) + R"(.0;
@@ -38,14 +44,31 @@ float leapsAt(vec3 brick)
   {
   return texelFetch(in_leaps, ivec3(brick + vec3(0.0, 0.0, voxels().z)), 0).r;
   }
+float insideAt(vec3 place)
+  {
+  vec3 l_at = clamp(place * voxels(), vec3(0.5), voxels() - 0.5);
+  return texture3D(in_leaps, l_at / vec3(textureSize(in_leaps, 0))).g;
+  }
 float lookOf(float hu)
   {
-  vec3 l_voxel = clamp(floor(g_dataPos * voxels()), vec3(0.0), voxels() - 1.0);
-  float l_row = floor(texelFetch(in_leaps, ivec3(l_voxel), 0).r * 255.0 + 0.5);
-  return (l_row + mix(0.01, 0.99, clamp(hu, 0.0, 1.0))) / kRows;
+  g_row = 0.0;
+  if (insideAt(g_dataPos) > 0.5)
+    {
+    vec3 l_voxel = clamp(floor(g_dataPos * voxels()), vec3(0.0), voxels() - 1.0);
+    g_row = floor(texelFetch(in_leaps, ivec3(l_voxel), 0).r * 255.0 + 0.5);
+    }
+  return (g_row + mix(0.01, 0.99, clamp(hu, 0.0, 1.0))) / kRows;
   }
 )";
 }
+
+inline const std::string kLabelledShape = R"(
+// What a labelled structure still has of its shape at a place: nothing where it was cut.
+float shapeAt(vec3 place, float hu)
+  {
+  return insideAt(place) * clamp((hu - in_air.x) / in_air.y, 0.0, 1.0);
+  }
+)";
 
 // In VTK's place, with its tables.
 inline const std::string kLabelledOpacity = R"(
@@ -94,9 +117,9 @@ inline const std::string kLeap = R"(//VTK::Base::Impl
         }
       else
         {
-        float l_hu = texture3D(in_volume[0], g_dataPos).r;
-        l_hu = l_hu * in_volume_scale[0].r + in_volume_bias[0].r;
-        if (texture2D(in_opacityTransferFunc_0[0], vec2(lookOf(l_hu), 0.0)).r > 0.0)
+        g_hu = texture3D(in_volume[0], g_dataPos).r * in_volume_scale[0].r + in_volume_bias[0].r;
+        g_opacity = texture2D(in_opacityTransferFunc_0[0], vec2(lookOf(g_hu), 0.0)).r;
+        if (g_opacity > 0.0)
           {
           break;
           }
@@ -107,6 +130,138 @@ inline const std::string kLeap = R"(//VTK::Base::Impl
     if (!(g_currentT <= g_lastT))
       {
       break;
+      }
+)";
+
+// Planes that clip: the ray begins at the last that it enters by and ends at the first that it
+// leaves by. After kLeapStart.
+inline const std::string kClipStart = R"(
+  for (int i = 0; i < in_clipCount; ++i)
+    {
+    float l_at = dot(in_clip[i].xyz, g_start) + in_clip[i].w;
+    float l_per_step = dot(in_clip[i].xyz, g_dirStep);
+    float l_t = -l_at / (abs(l_per_step) > 1e-12 ? l_per_step : 1e-12);
+    if (l_per_step > 0.0)
+      {
+      g_lastT = min(g_lastT, l_t);
+      }
+    else if (l_t > g_currentT)
+      {
+      g_currentT = g_faceT = l_t;
+      g_faceNormal = in_clipNormal[i];
+      }
+    }
+  g_dataPos = g_start + g_currentT * g_dirStep;
+)";
+
+// What a visible sample is told beside its HU: each tissue's range, look and colour, the light, and
+// the ball of places around a sample from which its normal and its neighbourhood are taken.
+inline const std::string kTruthDeclarations = R"(
+float g_faceT = -1.0;  // of the sample on a face that a plane cuts
+vec3 g_faceNormal = vec3(0.0);
+float g_lastSeen = -10.0;
+float g_safeUntil = -1.0;
+int g_tissue = -1;
+vec3 g_normal = vec3(0.0);
+)";
+
+// In VTK's place. A run of visible samples of one tissue is shaded with the normal at its
+// beginning: the sum of HU times direction over a ball, which follows a surface where differences
+// of neighbours follow the voxels. Inside of a tissue that lets light through there is no surface,
+// only noise.
+// A tissue whose range has others above and below is not shown where the ball reaches beyond its
+// upper end and either beyond its lower end too or across an edge of which the sample is on the
+// lower side: there the HU are passing by (partial volume). One sample alone may be noise: such a
+// tissue shows from the second in a row on.
+inline const std::string kTruthShading = R"(//VTK::Shading::Impl
+    int l_tissue = -1;
+    vec4 l_look = vec4(0.0);
+    vec3 l_colour = vec3(0.0);
+    for (int i = 0; i < in_lookCount; ++i)
+      {
+      vec4 l_other = in_look[i];
+      if (g_hu >= l_other.x && g_hu <= l_other.y && (l_other.z == g_row || l_other.z == 0.0))
+        {
+        l_tissue = i;
+        l_look = l_other;
+        l_colour = in_lookColour[i];
+        }
+      }
+    bool l_between = mod(l_look.w, 2.0) == 1.0;
+    bool l_ghost = l_look.w >= 2.0;
+    bool l_fresh = g_currentT - g_lastSeen > 1.5 || l_tissue != g_tissue;
+    bool l_seen = l_tissue >= 0;
+    for (bool l_look_around = l_seen && (l_fresh || (l_between && g_currentT >= g_safeUntil));
+         l_look_around; l_look_around = false)
+      {
+      vec3 l_sum = vec3(0.0);
+      vec3 l_shape = vec3(0.0);
+      float l_low = g_hu;
+      float l_high = g_hu;
+      for (int i = 0; i < in_ballCount; ++i)
+        {
+        float l_there = texture3D(in_volume[0], g_dataPos + in_ball[i]).r;
+        l_there = l_there * in_volume_scale[0].r + in_volume_bias[0].r;
+        l_low = min(l_low, l_there);
+        l_high = max(l_high, l_there);
+        l_sum -= l_there * in_ballWeight[i];
+        l_shape -= shapeAt(g_dataPos + in_ball[i], l_there) * in_ballWeight[i];
+        }
+      // A label's border has the voxels' steps. Where the HU change across it, in about its
+      // direction, they know the surface better; where they do not, only the label does. Where
+      // neither changes there is no surface, and a ray that was in tissue before keeps the normal
+      // by which it entered.
+      bool l_label_ends = l_look.z > 0.0 && length(l_shape) > 0.25;
+      if (l_label_ends)
+        {
+        float l_along = dot(l_sum, l_shape) / (length(l_shape) * max(length(l_sum), 1e-9));
+        l_sum = length(l_sum) > in_edge && abs(l_along) > 0.8 ? l_sum * sign(l_along) : l_shape;
+        }
+      if (l_fresh &&
+          (l_label_ends || length(l_sum) > 0.5 * in_edge || g_currentT - g_lastSeen > 1.5))
+        {
+        g_normal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
+        }
+      if (l_between)
+        {
+        l_seen = !(l_high > l_look.y &&
+                   (l_low < l_look.x ||
+                    (l_high - l_low > in_edge && g_hu - l_low < l_high - g_hu)));
+        }
+      g_safeUntil = g_currentT + in_safe;
+      }
+    g_tissue = l_seen ? l_tissue : -1;
+    if (l_seen)
+      {
+      g_lastSeen = g_currentT;
+      if (g_faceT == g_currentT)
+        {
+        g_normal = g_faceNormal;
+        l_fresh = false;
+        }
+      }
+    bool l_draw = l_seen && (l_ghost ? l_fresh : !(l_between && l_fresh));
+    if (l_draw)
+      {
+      float l_towards = dot(g_normal, g_vdir[0]);
+      vec3 l_normal = l_towards < 0.0 ? -g_normal : g_normal;
+      float l_alpha = g_opacity;
+      if (l_ghost)
+        {
+        l_alpha = 0.03 + 0.5 * pow(1.0 - abs(l_towards), 3.0);
+        }
+      float l_lit = max(dot(l_normal, in_light), 0.0);
+      float l_shine = max(dot(l_normal, normalize(in_light + g_vdir[0])), 0.0);
+      vec3 l_shown = l_colour * (in_ambient[0] + in_diffuse[0] * l_lit) +
+                     in_specular[0] * pow(l_shine, in_shininess[0]);
+      if (in_shows != 0)
+        {
+        l_alpha = 1.0;
+        l_shown = in_shows == 1 ? l_colour
+                                : 0.5 + 0.5 * vec3(dot(g_normal, in_eye[0]), dot(g_normal, in_eye[1]),
+                                                   dot(g_normal, in_eye[2]));
+        }
+      g_fragColor += (1.0 - g_fragColor.a) * vec4(l_shown * l_alpha, l_alpha);
       }
 )";
 

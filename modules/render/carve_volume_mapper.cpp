@@ -22,6 +22,7 @@
 #include <vtkShortArray.h>
 #include <vtkSmartPointer.h>
 #include <vtkTextureObject.h>
+#include <vtkUniforms.h>
 #include <vtkVolume.h>
 #include <vtkVolumeInputHelper.h>
 #include <vtkVolumeProperty.h>
@@ -29,12 +30,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
+#include "render/label_shape.h"
+#include "render/look_table.h"
 
 namespace trephine {
 
@@ -78,6 +82,17 @@ class UnpackRows {
   GLint alignment_ = 4;
 };
 
+// How values of a type lie in a texture.
+constexpr GLenum formatOf(const std::int16_t*) {
+  return GL_RED;
+}
+constexpr GLenum formatOf(const LabelShape*) {
+  return GL_RG;
+}
+constexpr GLenum formatOf(const std::uint8_t*) {
+  return GL_RED;
+}
+
 // Sends a part of `grid`, of this size, into a texture that holds all of it from this slice on.
 template <class Value>
 void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, const VoxelBox& box,
@@ -86,13 +101,20 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
   const UnpackRows layout(size);
   texture.Activate();
   glTexSubImage3D(
-      GL_TEXTURE_3D, 0, i, j, slice + k, box.high[0] - i, box.high[1] - j, box.high[2] - k, GL_RED,
-      sizeof(Value) == 1 ? GL_UNSIGNED_BYTE : GL_SHORT,
+      GL_TEXTURE_3D, 0, i, j, slice + k, box.high[0] - i, box.high[1] - j, box.high[2] - k,
+      formatOf(grid), std::is_same_v<Value, std::int16_t> ? GL_SHORT : GL_UNSIGNED_BYTE,
       grid + (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
           std::size_t(i));
 }
 
 }  // namespace
+
+// The contrast over the ball around a sample from which on it lies across an edge.
+constexpr double kEdge_HU = 60.0;
+// How far along a ray, in the smallest edge of a voxel, what the ball has said holds.
+constexpr double kSafe_voxels = 2.8;
+// Between these a labelled structure fades into the air of a cut.
+constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
 struct CarveVolume::Parts {
   vtkNew<CarveMapper> mapper;
@@ -113,6 +135,8 @@ struct CarveVolume::Parts {
   std::shared_ptr<const LabelMap> labels;
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
+  TissueSet seen;
+  TissueLooks tissue_looks;
   std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
   std::vector<std::vector<HuInterval>> visible;  // of each row
   std::vector<std::uint32_t> rows_of_bricks;
@@ -126,8 +150,8 @@ struct CarveVolume::Parts {
   RayTruth truth;
   std::vector<ClipPlane> clip;
   Vec3 light{0.0, 0.0, 1.0};
-  bool first_tissue = false;
-  bool normals_as_colour = false;
+  int shows = 0;  // see kTruthDeclarations
+  Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
   bool leaping = true;
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
@@ -150,8 +174,9 @@ struct CarveVolume::Parts {
     const bool anew = labels_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
     if (anew) {
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
-      leaps->SetMinificationFilter(vtkTextureObject::Nearest);
-      leaps->SetMagnificationFilter(vtkTextureObject::Nearest);
+      leaps->ResetFormatAndType();                             // one or two bytes
+      leaps->SetMinificationFilter(vtkTextureObject::Linear);  // of labels; leaps are fetched
+      leaps->SetMagnificationFilter(vtkTextureObject::Linear);
     }
     if (anew && by_label) sendLabels();
     if (anew && !by_label) {
@@ -169,16 +194,12 @@ struct CarveVolume::Parts {
   // Makes the texture of labels and leaps, and fills in the row of each voxel's label.
   void sendLabels() {
     const Index3& size = copy->geometry.size;
-    leaps->Create3DFromRaw(unsigned(size[0]), unsigned(size[1]), unsigned(size[2] + bricks.size()[2]),
-                           1, VTK_UNSIGNED_CHAR, nullptr);
-    const std::size_t slice = std::size_t(size[0]) * std::size_t(size[1]);
-    std::vector<std::uint8_t> rows_of_slice(slice);
+    leaps->Create3DFromRaw(unsigned(size[0]), unsigned(size[1]),
+                           unsigned(size[2] + bricks.size()[2]), 2, VTK_UNSIGNED_CHAR, nullptr);
+    LabelShapes shapes(*labels, label_rows);
     for (int k = 0; k < size[2]; ++k) {
-      const std::uint8_t* label = labels->labels.data() + std::size_t(k) * slice;
-      std::transform(label, label + slice, rows_of_slice.begin(),
-                     [&](std::uint8_t l) { return label_rows.row[l]; });
-      sendBox(*leaps, rows_of_slice.data(), {size[0], size[1], 1}, {{0, 0, 0}, {size[0], size[1], 1}},
-              k);
+      sendBox(*leaps, shapes.next().data(), {size[0], size[1], 1},
+              {{0, 0, 0}, {size[0], size[1], 1}}, k);
     }
   }
 
@@ -231,17 +252,95 @@ struct CarveVolume::Parts {
     const auto replace = [&](const char* tag, const std::string& text) {
       shader->AddFragmentShaderReplacement(tag, true, text, false);
     };
+    prop->GetShaderProperty()->GetFragmentCustomUniforms()->RemoveAllUniforms();
     const bool by_label = rowCount() > 1;
     if (!leaping && !by_label) return;
-    replace("//VTK::Base::Dec", kLeapDeclarations +
-                                    (by_label ? labelledLookUps(rowCount()) : kPlainLookUps));
+    std::string declarations =
+        kLeapDeclarations + (by_label ? labelledLookUps(rowCount()) : kPlainLookUps);
     if (by_label) {
       replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
       replace("//VTK::ComputeColor::Dec", kLabelledColour);
     }
-    if (!leaping) return;
-    replace("//VTK::Terminate::Init", kLeapStart);
-    replace("//VTK::Base::Impl", kLeap);
+    if (leaping) {
+      replace("//VTK::Terminate::Init", kLeapStart);
+      replace("//VTK::Base::Impl", kLeap);
+    }
+    if (isTrue()) {
+      declarations += kTruthDeclarations + (by_label ? kLabelledShape : kPlainShape);
+      replace("//VTK::Terminate::Init", kLeapStart + kClipStart);
+      replace("//VTK::Shading::Impl", kTruthShading);
+      tellShader();
+    }
+    replace("//VTK::Base::Dec", declarations);
+  }
+
+  // Whether surfaces and classes are shown truly, or as VTK shows them.
+  bool isTrue() const { return leaping && copy && (truth.normals || truth.classes || shows != 0); }
+
+  // What the shader is told by numbers alone: it is not built anew when they change.
+  void tellShader() {
+    if (!isTrue()) return;
+    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
+    const auto scaled = [&](double hu) { return float((hu - low_HU) / (high_HU - low_HU)); };
+    const auto set = [](float(&to_three)[3], const Vec3& v) {
+      for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
+    };
+    const GridGeometry& g = copy->geometry;
+    const Mat3 to_grid = glm::transpose(g.direction);
+
+    float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{};
+    const std::vector<TissueShade> shades = tissueShades(seen, tissue_looks, high_HU);
+    for (std::size_t i = 0; i < shades.size(); ++i) {
+      look_of[i][0] = scaled(shades[i].low_HU);
+      look_of[i][1] = scaled(shades[i].high_HU);
+      look_of[i][2] = float(shades[i].row);
+      look_of[i][3] =
+          (truth.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
+      set(colour_of[i], shades[i].colour);
+    }
+    to->SetUniformi("in_lookCount", int(shades.size()));
+    to->SetUniform4fv("in_look", kMaxTissues, look_of);
+    to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
+
+    const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
+    float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
+      set(weight[i], around[i].weight);
+    }
+    to->SetUniformi("in_ballCount", int(around.size()));
+    to->SetUniform3fv("in_ball", kBallPlaces, ball);
+    to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
+    const float air[2] = {scaled(kAirEnds_HU),
+                          float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
+    to->SetUniform2f("in_air", air);
+    to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
+    to->SetUniformf("in_safe", float(kSafe_voxels / sample_distance));
+    to->SetUniformi("in_shows", shows);
+
+    float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
+    const std::size_t count = std::min(clip.size(), SceneRenderer::kMostClipPlanes);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 normal = to_grid * clip[i].normal;
+      set(normals[i], normal);
+      double beyond = glm::dot(clip[i].normal, g.origin_mm - clip[i].point_mm);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double edge_mm = g.spacing_mm[axis];
+        planes[i][axis] = float(normal[axis] * edge_mm * g.size[std::size_t(axis)]);
+        beyond -= 0.5 * normal[axis] * edge_mm;
+      }
+      planes[i][3] = float(beyond);
+    }
+    to->SetUniformi("in_clipCount", int(count));
+    to->SetUniform4fv("in_clip", int(SceneRenderer::kMostClipPlanes), planes);
+    to->SetUniform3fv("in_clipNormal", int(SceneRenderer::kMostClipPlanes), normals);
+
+    float axes[3][3], towards_light[3];
+    const Vec3 eye_axes[3] = {to_grid * eye_right, to_grid * eye_up, -(to_grid * eye_forward)};
+    for (int axis = 0; axis < 3; ++axis) set(axes[axis], eye_axes[axis]);
+    set(towards_light, eye_axes[0] * light.x + eye_axes[1] * light.y + eye_axes[2] * light.z);
+    to->SetUniform3fv("in_eye", 3, axes);
+    to->SetUniform3f("in_light", towards_light);
   }
 };
 
@@ -346,14 +445,10 @@ void CarveVolume::setTissues(const TissueSet& tissues, const TissueLooks& looks)
   p.labels_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
-  TissueSet seen = tissues;
-  for (Tissue& tissue : seen.tissues) {
-    const auto look = looks.find(tissue.id);
-    if (look == looks.end() || look->second == TissueLook::shown) continue;
-    tissue.opacity *= look->second == TissueLook::hidden ? 0.0 : 0.05;
-  }
+  p.seen = asSeen(tissues, looks);
+  p.tissue_looks = looks;
   for (int row = 0; row < p.label_rows.count; ++row) {
-    p.looks.push_back(transferFunction(seen, p.label_rows.label[std::size_t(row)]));
+    p.looks.push_back(transferFunction(p.seen, p.label_rows.label[std::size_t(row)]));
   }
   p.updateLooks();
 }
@@ -369,6 +464,7 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   p.width = window->GetSize()[0];
   p.height = window->GetSize()[1];
   if (!p.copy) return;
+  p.tellShader();
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
@@ -419,7 +515,6 @@ void CarveVolume::setLeaping(bool on) {
 
 void CarveVolume::setClip(const std::vector<ClipPlane>& planes) {
   parts_->clip = planes;
-  parts_->updateShader();
 }
 
 void CarveVolume::setLight(const Vec3& from) {
@@ -436,13 +531,19 @@ void CarveVolume::setSampleDistance(double voxels) {
 }
 
 void CarveVolume::setFirstTissue(bool on) {
-  parts_->first_tissue = on;
+  parts_->shows = on ? 1 : 0;
   parts_->updateShader();
 }
 
 void CarveVolume::setNormalsAsColour(bool on) {
-  parts_->normals_as_colour = on;
+  parts_->shows = on ? 2 : 0;
   parts_->updateShader();
+}
+
+void CarveVolume::lookFrom(const Vec3& right, const Vec3& up, const Vec3& forward) {
+  parts_->eye_right = right;
+  parts_->eye_up = up;
+  parts_->eye_forward = forward;
 }
 
 void CarveVolume::releaseGraphics(vtkRenderer& renderer) {

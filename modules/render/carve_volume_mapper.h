@@ -55,8 +55,10 @@ class CarveVolume {
   void setLeaping(bool on);
   // Each ray in the colour of its first visible tissue, opaque and without light.
   void setFirstTissue(bool on);
-  // Each ray in the normal of its first visible sample.
+  // Each ray in the normal of its first visible sample, n/2 + 1/2: right, up, towards the eye.
   void setNormalsAsColour(bool on);
+  // The view plane's axes, patient frame; before each draw.
+  void lookFrom(const Vec3& right, const Vec3& up, const Vec3& forward);
 
   // Before the context goes. Context current.
   void releaseGraphics(vtkRenderer& renderer);

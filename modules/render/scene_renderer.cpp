@@ -111,6 +111,7 @@ struct SceneRenderer::Parts {
       window->GetState()->vtkglDepthFunc(GL_LEQUAL);
     }
     window->SetSize(width, height);
+    volume.lookFrom(camera.right(), camera.up(), camera.forward());
     volume.sendChanges(*renderer);
     volume.setQuality(pixel_step, ray_step);
     placeCamera();
@@ -447,7 +448,6 @@ void UploadProbe::setFirstTissue(SceneRenderer& renderer, bool on) {
   renderer.parts_->stale = true;
   renderer.parts_->volume.setFirstTissue(on);
 }
-
 void UploadProbe::setNormalsAsColour(SceneRenderer& renderer, bool on) {
   renderer.parts_->stale = true;
   renderer.parts_->volume.setNormalsAsColour(on);

@@ -1,0 +1,90 @@
+#include "render/look_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/transfer_function.h"
+
+namespace trephine {
+
+namespace {
+
+// Enough for a surface to stop the ray that asks; what is drawn of a ghost is the shader's.
+constexpr double kGhostOpacity = 0.05;
+
+TissueLook lookOf(const TissueLooks& looks, const Tissue& tissue) {
+  const auto found = looks.find(tissue.id);
+  return found == looks.end() ? TissueLook::shown : found->second;
+}
+
+}  // namespace
+
+TissueSet asSeen(TissueSet set, const TissueLooks& looks) {
+  for (Tissue& tissue : set.tissues) {
+    const TissueLook look = lookOf(looks, tissue);
+    if (look == TissueLook::hidden) tissue.opacity = 0.0;
+    if (look == TissueLook::ghosted) tissue.opacity = kGhostOpacity;
+  }
+  return set;
+}
+
+std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
+                                      double highest_HU) {
+  const LabelRows rows(tissueTable(seen));
+  std::vector<TissueShade> shades;
+  for (const bool labelled : {false, true}) {
+    for (const Tissue& tissue : seen.tissues) {
+      if (tissue.opacity <= 0.0 || tissue.label.has_value() != labelled) continue;
+      // A ramp towards what is transparent belongs to the tissue.
+      const auto beside = [&](int hu) {
+        return std::ranges::any_of(seen.tissues, [&](const Tissue& other) {
+          return other.opacity > 0.0 && other.label == tissue.label && other.hu_min <= hu &&
+                 hu <= other.hu_max;
+        });
+      };
+      const double below = beside(tissue.hu_min - 1) ? 0.0 : kRampHalfWidth_HU;
+      const double above = beside(tissue.hu_max + 1) ? 0.0 : kRampHalfWidth_HU;
+      TissueShade shade;
+      shade.low_HU = tissue.hu_min - 0.5 - below;
+      shade.high_HU = tissue.hu_max + 0.5 + above;
+      if (tissue.label) shade.row = rows.row[std::size_t(*tissue.label)];
+      shade.passed = !labelled && tissue.hu_max < highest_HU;
+      shade.ghosted = lookOf(looks, tissue) == TissueLook::ghosted;
+      shade.colour = tissue.colour;
+      shades.push_back(shade);
+    }
+  }
+  return shades;
+}
+
+RayBall rayBall(const Vec3& spacing_mm) {
+  // 1.5 mm at 0.8 x 0.8 x 1.0 mm.
+  const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  const Vec3 radii_mm = glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+  const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
+  const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
+  RayBall ball;
+  for (int n = 0; n < kBallPlaces; ++n) {
+    const double z = 1.0 - (n + 0.5) * 2.0 / kBallPlaces, r = std::sqrt(1.0 - z * z);
+    const Vec3 direction(std::cos(turn * n) * r, std::sin(turn * n) * r, z);
+    // Half of the directions are beyond an edge, on average by half of the reach.
+    ball.push_back({direction * radii_mm, direction * (4.0 / kBallPlaces * reach_mm) / radii_mm});
+  }
+  return ball;
+}
+
+RayBall centralDifferences(const Vec3& spacing_mm) {
+  RayBall ball;
+  const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      RayPlace place;
+      place.from_mm[axis] = sign * spacing_mm[axis];
+      place.weight[axis] = 0.5 * sign * mean_mm / spacing_mm[axis];
+      ball.push_back(place);
+    }
+  }
+  return ball;
+}
+
+}  // namespace trephine
