@@ -7,27 +7,6 @@
 
 namespace trephine {
 
-namespace {
-
-// Enough for a surface to stop the ray that asks; what is drawn of a ghost is the shader's.
-constexpr double kGhostOpacity = 0.05;
-
-TissueLook lookOf(const TissueLooks& looks, const Tissue& tissue) {
-  const auto found = looks.find(tissue.id);
-  return found == looks.end() ? TissueLook::shown : found->second;
-}
-
-}  // namespace
-
-TissueSet asSeen(TissueSet set, const TissueLooks& looks) {
-  for (Tissue& tissue : set.tissues) {
-    const TissueLook look = lookOf(looks, tissue);
-    if (look == TissueLook::hidden) tissue.opacity = 0.0;
-    if (look == TissueLook::ghosted) tissue.opacity = kGhostOpacity;
-  }
-  return set;
-}
-
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
                                       double highest_HU) {
   const LabelRows rows(tissueTable(seen));
@@ -49,7 +28,7 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
       shade.high_HU = tissue.hu_max + 0.5 + above;
       if (tissue.label) shade.row = rows.row[std::size_t(*tissue.label)];
       shade.passed = !labelled && tissue.hu_max < highest_HU;
-      shade.ghosted = lookOf(looks, tissue) == TissueLook::ghosted;
+      shade.ghosted = lookOf(tissue, looks) == TissueLook::ghosted;
       shade.colour = tissue.colour;
       shades.push_back(shade);
     }

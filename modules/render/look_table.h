@@ -21,9 +21,6 @@ struct TissueShade {
   friend bool operator==(const TissueShade&, const TissueShade&) = default;
 };
 
-// The set as it is looked at: hidden tissues are transparent, ghosted ones visible in any case.
-TissueSet asSeen(TissueSet set, const TissueLooks& looks);
-
 // Of the visible tissues of a set asSeen(), those without a label first: where several hold a HU,
 // the last counts. `highest_HU` is the highest that a voxel may have.
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,

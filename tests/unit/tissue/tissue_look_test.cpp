@@ -77,7 +77,8 @@ TEST(ViewPresets, NameEveryTissueSoThatNoneIsLeftAsTheLastPresetHadIt) {
 
 TEST(ViewPresets, BoneIsAloneSkinIsSolidAndTheLiverIsSeenThroughGhostsOfBone) {
   const TissueSet set = *readTissueSet(resourceFolder() / "tissues" / "abdomen.json");
-  for (const auto& [id, look] : *presetLooks(set, ViewPreset::bone)) {
+  const TissueLooks bone = *presetLooks(set, ViewPreset::bone);
+  for (const auto& [id, look] : bone) {
     EXPECT_EQ(look, id == "bone" ? TissueLook::shown : TissueLook::hidden) << id;
   }
   const TissueSet skin = asSeen(set, *presetLooks(set, ViewPreset::skin));
