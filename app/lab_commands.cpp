@@ -40,6 +40,14 @@ void printMeasured(const char* name, const Measurement& measured, bool json) {
   }
 }
 
+// Whether there is such a case at all: the phantoms take their time before it is opened.
+Status checkCase(const std::string& source) {
+  std::error_code ec;
+  if (source.empty() || phantomNamed(source) || std::filesystem::exists(source, ec)) return {};
+  return Error{"MISSING_FOLDER", "There is no such case", source,
+               "Give a folder of CT, a volume file, phantom:cranium or phantom:abdomen"};
+}
+
 // The files that `draw` makes, or null where nothing can be drawn.
 template <class Draw>
 Result<Json> drawnFiles(const char* what, Draw&& draw) {
@@ -231,13 +239,8 @@ int measureStabilityCommand(const StabilityArguments& arguments, bool json,
 
 int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,
                            const Progress& progress) {
-  std::error_code ec;  // the phantoms take their time before it is opened
-  if (!case_source.empty() && !phantomNamed(case_source) &&
-      !std::filesystem::exists(case_source, ec)) {
-    return printError("measure.extremes",
-                      {"MISSING_FOLDER", "There is no such case", case_source,
-                       "Give a folder of CT, a volume file, phantom:cranium or phantom:abdomen"},
-                      json);
+  if (Status there = checkCase(case_source); !there) {
+    return printError("measure.extremes", there.error(), json);
   }
   Result<ExtremesMeasurement> measured = measureExtremes(out, progress, {true, case_source});
   if (!measured) return printError("measure.extremes", measured.error(), json);
@@ -254,6 +257,9 @@ int measureHapticsCommand(const std::string& out, bool json, const Progress& pro
 
 int measureRenderCommand(const std::string& case_source, const std::string& out, bool json,
                          const Progress& progress) {
+  if (Status there = checkCase(case_source); !there) {
+    return printError("measure.render", there.error(), json);
+  }
   RenderOptions options;
   options.case_source = case_source;
   Result<RenderMeasurement> measured = measureRender(options, out, progress);

@@ -144,7 +144,7 @@ struct CarveVolume::Parts {
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
   double smallest_edge_mm = 1.0;  // of a voxel
-  double sample_distance = 0.5;   // at full quality, in that edge
+  double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
   RayTruth truth;
   std::vector<ClipPlane> clip;
   Vec3 light{0.0, 0.0, 1.0};

@@ -282,7 +282,7 @@ bool SceneRenderer::hasVolume() const {
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   parts_->stale = true;
-  parts_->volume.setTissues(asSeen(tissues, looks), looks);
+  parts_->volume.setTissues(tissues, looks);
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {

@@ -89,6 +89,8 @@ class SceneRenderer {
   void setLight(const Vec3& from);
   void setTruth(const RayTruth& truth);
   // Distance of the samples of a ray at full quality, in the smallest edge of a voxel.
+  // `measure trades` recommends the default, and RayTruth's.
+  static constexpr double kSampleDistance = 0.5;
   void setSampleDistance(double voxels);
   // Copies what the writer changed since the last call and keeps the boxes for the next paint.
   // True when there is something new to draw.

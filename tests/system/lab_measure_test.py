@@ -104,6 +104,21 @@ class Haptics(LabTest):
         self.assertEqual(len((self.folder / "out" / "haptics.csv").read_text().splitlines()), 73)
 
 
+class Render(LabTest):
+    """What it measures takes minutes: the measurement itself is a test of the lab's, in small."""
+
+    def test_without_a_display_it_says_so_and_makes_no_folder(self):
+        answer = lab("measure", "render", "--out", self.folder / "out", expect=1,
+                     environment=without_display())
+        self.assert_error(answer, "NO_DISPLAY")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_case_that_is_not_there_is_named_at_once(self):
+        answer = lab("measure", "render", "--out", self.folder / "out", "--case",
+                     self.folder / "none", expect=1)
+        self.assert_error(answer, "MISSING_FOLDER", "none")
+
+
 class Trades(LabTest):
     def test_every_knob_has_its_trade_and_one_recommended_setting(self):
         answer = lab("measure", "trades", "--out", self.folder / "out",

@@ -155,7 +155,8 @@ void MainWindow::showScene() {
   setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
   tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
   showRenderable(scene->controller);
-  view_->setTissues(scene->tissues);
+  tissues_->setLooks(workstation_.looks());
+  view_->setTissues(scene->tissues, workstation_.looks());
   arms_->setScene(*scene);
 }
 

@@ -145,6 +145,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     scene_ = std::move(scene);
     scene_file_ = scene_file;
     declared_tissues_ = scene_->tissues;
+    looks_ = scene_->view.looks;
     emit sceneChanged();
     return;
   }
@@ -203,6 +204,7 @@ void Workstation::opened(Result<Opened> outcome) {
     outcome->scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
   } else {
     declared_tissues_ = outcome->scene.tissues;
+    looks_ = outcome->scene.view.looks;
   }
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);

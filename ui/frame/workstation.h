@@ -64,6 +64,10 @@ class Workstation : public QObject {
   // Felt at once, in an exercise that is being started too, and kept for the next one. The tissues
   // are kept as long as the scene is, whatever the case.
   void setTissues(const TissueSet& tissues);
+  // How tissues look: the scene's until a person chooses. Of the view alone, so neither the scene
+  // nor a recording changes with it.
+  void setLooks(const TissueLooks& looks) { looks_ = looks; }
+  const TissueLooks& looks() const { return looks_; }
   void setController(ControllerKind kind);
   // The tissues as the scene's file has them, or as they were saved last; and whether they have
   // been edited since.
@@ -127,6 +131,7 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   TissueSet declared_tissues_;
+  TissueLooks looks_;
   std::optional<Case> case_;
   TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;

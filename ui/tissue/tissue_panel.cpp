@@ -37,6 +37,34 @@ QIcon swatch(const QColor& colour, bool hidden) {
   return icon;
 }
 
+QString presetWords(ViewPreset preset) {
+  switch (preset) {
+    case ViewPreset::bone:
+      return TissuePanel::tr("Bone");
+    case ViewPreset::skin:
+      return TissuePanel::tr("Skin");
+    case ViewPreset::soft_tissue:
+      return TissuePanel::tr("Soft tissue");
+    case ViewPreset::liver:
+      return TissuePanel::tr("Liver");
+  }
+  return {};
+}
+
+const char* presetName(ViewPreset preset) {
+  switch (preset) {
+    case ViewPreset::bone:
+      return "presetBone";
+    case ViewPreset::skin:
+      return "presetSkin";
+    case ViewPreset::soft_tissue:
+      return "presetSoftTissue";
+    case ViewPreset::liver:
+      return "presetLiver";
+  }
+  return "";
+}
+
 // Stands beside what it speaks of, where there is something to say.
 QLabel* notice(const char* name, QWidget* parent) {
   auto* label = new QLabel(parent);
@@ -129,6 +157,7 @@ void TissuePanel::build() {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(10);
+  layout->addLayout(buildPresets());
   layout->addWidget(list_);
   layout->addWidget(editor_);
   layout->addWidget(felt_);
@@ -142,6 +171,29 @@ void TissuePanel::build() {
     wanted.opacity = opacityAtSlider(double(step) / kOpacitySteps);
     (void)apply(wanted);
   });
+}
+
+QLayout* TissuePanel::buildPresets() {
+  auto* row = new QHBoxLayout;
+  row->setSpacing(4);
+  presets_title_ = new QLabel(tr("View"), this);
+  row->addWidget(presets_title_);
+  for (const ViewPreset preset : kViewPresets) {
+    auto* button = new QToolButton(this);
+    button->setObjectName(presetName(preset));
+    button->setText(presetWords(preset));
+    button->setAccessibleName(tr("View preset: %1").arg(button->text()));
+    button->setToolTip(tr("A start for the choices below; what is felt and cut stays as it is"));
+    button->setFocusPolicy(Qt::StrongFocus);
+    button->hide();
+    connect(button, &QToolButton::clicked, this, [this, preset] {
+      if (const auto looks = presetLooks(tissues_, preset)) lookChosen(*looks);
+    });
+    row->addWidget(button);
+    presets_.emplace_back(preset, button);
+  }
+  row->addStretch(1);
+  return row;
 }
 
 QLayout* TissuePanel::addNumber(const TissueNumber& row) {
@@ -161,6 +213,17 @@ void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared
   declared_ = declared;
   showList();
   showSelected();
+}
+
+void TissuePanel::setLooks(const TissueLooks& looks) {
+  looks_ = looks;
+  showList();
+}
+
+void TissuePanel::lookChosen(const TissueLooks& looks) {
+  if (looks == looks_) return;
+  setLooks(looks);
+  emit looksChanged(looks_);
 }
 
 void TissuePanel::setRenderable(const std::optional<Renderable>& most,
@@ -227,21 +290,53 @@ void TissuePanel::setLabelsOpen(bool open) {
   showSelected();
 }
 
+// A row of the list with its choice of looks.
+void TissuePanel::addItem() {
+  list_->addItem(QString());
+  auto* beside = new QWidget;
+  auto* layout = new QHBoxLayout(beside);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addStretch(1);
+  auto* box = new LookBox(beside);
+  layout->addWidget(box);
+  const int row = list_->count() - 1;
+  box->chosen = [this, row](TissueLook look) {
+    TissueLooks looks = looks_;
+    looks[tissues_.tissues[std::size_t(row)].id] = look;
+    lookChosen(looks);
+  };
+  list_->item(row)->setSizeHint({0, beside->sizeHint().height()});
+  list_->setItemWidget(list_->item(row), beside);
+  setTabOrder(look_boxes_.empty() ? static_cast<QWidget*>(list_) : look_boxes_.back(), box);
+  look_boxes_.push_back(box);
+}
+
 void TissuePanel::showList() {
   const int row = std::max(0, list_->currentRow());
   listing_ = true;
-  while (list_->count() > int(tissues_.tissues.size())) delete list_->takeItem(list_->count() - 1);
-  while (list_->count() < int(tissues_.tissues.size())) list_->addItem(QString());
+  while (list_->count() > int(tissues_.tissues.size())) {
+    delete list_->takeItem(list_->count() - 1);
+    look_boxes_.pop_back();
+  }
+  while (list_->count() < int(tissues_.tissues.size())) addItem();
+  bool any = false;
+  for (const auto& [preset, button] : presets_) {
+    button->setVisible(presetLooks(tissues_, preset).has_value());
+    any = any || !button->isHidden();
+  }
+  presets_title_->setVisible(any);
   for (int i = 0; i < list_->count(); ++i) {
     const Tissue& tissue = tissues_.tissues[std::size_t(i)];
     QListWidgetItem& item = *list_->item(i);
     item.setText(toQt(tissue.name));
-    item.setIcon(swatch(toColour(tissue.colour), tissue.opacity == 0.0));
+    const TissueLook look = lookOf(tissue, looks_);
+    look_boxes_[std::size_t(i)]->show(tissue, look);
+    item.setIcon(swatch(toColour(tissue.colour), look == TissueLook::hidden));
     item.setToolTip(tr("%1 to %2 HU%3%4")
                         .arg(tissue.hu_min)
                         .arg(tissue.hu_max)
                         .arg(tissue.label ? tr(", label %1").arg(*tissue.label) : QString())
-                        .arg(tissue.opacity == 0.0 ? tr(", not drawn") : QString()));
+                        .arg(look == TissueLook::hidden ? tr(", not drawn") : QString()));
   }
   list_->setCurrentRow(std::min(row, list_->count() - 1));
   listing_ = false;

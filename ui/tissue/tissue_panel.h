@@ -1,6 +1,6 @@
-// The scene's tissues: a list with colour and opacity, and the numbers of the one that is selected.
-// What is not a possible number or set is refused in words beside the field and not applied; HU
-// that have lost their tissue are mentioned.
+// The scene's tissues: a list with colour and look, presets of looks, and the numbers of the one
+// that is selected. What is not a possible number or set is refused in words beside the field and
+// not applied; HU that have lost their tissue are mentioned.
 #pragma once
 
 #include <QLabel>
@@ -12,8 +12,10 @@
 #include <optional>
 
 #include "haptics/controllers.h"
+#include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "ui/common/number_field.h"
+#include "ui/tissue/look_box.h"
 
 namespace trephine {
 
@@ -26,6 +28,8 @@ class TissuePanel : public QWidget {
   void setTissues(const TissueSet& tissues, const TissueSet& declared);
   void setTissues(const TissueSet& tissues) { setTissues(tissues, tissues); }
   const TissueSet& tissues() const { return tissues_; }
+  // How the view shows them; a preset that the set has nothing for is not offered.
+  void setLooks(const TissueLooks& looks);
   void select(const std::string& id);
   // Without a label map a tissue can be freed from a label, but not restricted to one.
   void setLabelsOpen(bool open);
@@ -38,6 +42,8 @@ class TissuePanel : public QWidget {
  signals:
   // A possible set, changed by a person.
   void tissuesChanged(const trephine::TissueSet& tissues);
+  // Looks chosen by a person: no change of a tissue.
+  void looksChanged(const trephine::TissueLooks& looks);
 
  private:
   struct Number {
@@ -45,7 +51,10 @@ class TissuePanel : public QWidget {
     const TissueNumber* row;
   };
   void build();
+  QLayout* buildPresets();
   QLayout* addNumber(const TissueNumber& row);
+  void addItem();
+  void lookChosen(const TissueLooks& looks);
   void showList();
   // Every field as the selected tissue is; what was typed and refused goes.
   void showSelected();
@@ -62,12 +71,16 @@ class TissuePanel : public QWidget {
   const Tissue& declared(const Tissue& tissue) const;
 
   TissueSet tissues_, declared_;
+  TissueLooks looks_;
   std::optional<Renderable> renderable_;
   std::function<Impedance(const Tissue&)> demanded_;
   ControllerKind in_force_ = ControllerKind::bounded;
   bool listing_ = false;
   bool labels_open_ = false;
   QListWidget* list_;
+  std::vector<LookBox*> look_boxes_;  // by row of the list
+  QLabel* presets_title_;
+  std::vector<std::pair<ViewPreset, QToolButton*>> presets_;
   QWidget* editor_;
   QLabel *title_, *opacity_text_, *gaps_, *felt_, *problem_;
   QToolButton* colour_;

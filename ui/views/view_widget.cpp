@@ -131,8 +131,8 @@ void ViewWidget::refill(const VoxelSlabs& voxels, const std::shared_ptr<const La
   redraw();
 }
 
-void ViewWidget::setTissues(const TissueSet& tissues) {
-  renderer_.setTissues(tissues);
+void ViewWidget::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
+  renderer_.setTissues(tissues, looks);
   redraw();
 }
 

@@ -34,7 +34,7 @@ class ViewWidget : public QOpenGLWidget {
   void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels);
   // All voxels of the same place again, from elsewhere.
   void refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels);
-  void setTissues(const TissueSet& tissues);
+  void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   // Looks at a landmark from outside, or at the whole case from the front.
   void lookAtLandmark(const LandmarkFrame& frame, double distance_mm);
   void lookFromFront();

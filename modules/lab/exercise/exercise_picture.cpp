@@ -18,7 +18,7 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
   const Scene& scene = session.scene();
-  renderer.setTissues(scene.tissues);
+  renderer.setTissues(scene.tissues, scene.view.looks);
   renderer.setVolume(session.grid());
   std::vector<ToolView> tools;
   const LoopState& state = session.state();

@@ -12,6 +12,8 @@
 #include "base/system.h"
 #include "haptics/haptic_core.h"
 #include "lab/trades/recommended.h"
+#include "lab/trades/trade_knobs.h"
+#include "render/scene_renderer.h"
 #include "scene/names.h"
 #include "session/arm_devices.h"
 #include "session/case.h"
@@ -167,6 +169,7 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
   rate.imbue(std::locale::classic());
   rate << scene.rate_hz;
   add("rate_hz", rate.str());
+  add("ray_casting", rayCastingSetting(SceneRenderer::kSampleDistance, !RayTruth().normals));
   return settings;
 }
 

@@ -27,7 +27,7 @@ Result<Json> explainScene(Scene scene, const Progress& progress = Progress());
 // The same for a person, some lines.
 std::string explanationText(const Json& explained);
 
-// The knobs of `measure trades` that a scene sets, each once: knob and setting.
+// The knobs of `measure trades` that a scene sets or is drawn with, each once: knob and setting.
 std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scene);
 
 }  // namespace trephine

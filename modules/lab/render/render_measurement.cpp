@@ -42,28 +42,29 @@ Result<RenderMeasurement> measureRender(const RenderOptions& options,
   RenderMeasurement result;
   const auto subjects = renderSubjects(options.case_source, Progress(progress, 0.0, 0.1));
   if (!subjects) return subjects.error();
-  const double share = 0.5 / double(subjects->size());
-  double from = 0.1;
+  // What needs most of the machine's parts comes first: where one is missing, it is soon said.
+  const Progress exercises(progress, 0.1, 0.2), picture(progress, 0.2, 0.25);
+  if (Status done = measureExercises(options, exercises, result); !done) return done.error();
+  if (Status done = measureFirstPicture(options, out, picture, result); !done) return done.error();
+  const Progress surface(progress, 0.25, 0.3), classes(progress, 0.3, 0.4);
+  if (Status done = measureSurface(options, surface, result); !done) return done.error();
+  if (Status done = measureClasses(*subjects, options, classes, result); !done) return done.error();
+  const double share = 0.6 / double(subjects->size());
+  double from = 0.4;
   for (const RenderSubject& subject : *subjects) {
     const Progress part(progress, from, from + share);
-    if (Status done = measureStills(subject, options, out, part, result); !done)
+    if (subject.preset != "skin") {
+      const Progress turning(part, 0.0, 0.1);
+      if (Status done = measureRotation(subject, options, turning, result); !done) {
+        return done.error();
+      }
+    }
+    const Progress still(part, 0.1, 1.0);
+    if (Status done = measureStills(subject, options, out, still, result); !done) {
       return done.error();
+    }
     from += share;
   }
-  for (const RenderSubject& subject : *subjects) {
-    if (subject.preset == "skin") continue;
-    const Progress part(progress, from, from + 0.02);
-    if (Status done = measureRotation(subject, options, part, result); !done) return done.error();
-    from += 0.02;
-  }
-  using Part = Status (*)(const RenderOptions&, const Progress&, RenderMeasurement&);
-  for (const Part part : {measureSurface, measureClasses, measureExercises}) {
-    const Progress its(progress, from, from + 0.08);
-    if (Status done = part(options, its, result); !done) return done.error();
-    from += 0.08;
-  }
-  const Progress last(progress, from, 1.0);
-  if (Status done = measureFirstPicture(options, out, last, result); !done) return done.error();
   if (Status done = writeTextFile(out / "render.csv", toCsv(result)); !done) return done.error();
   progress.at(1.0, "done");
   return result;

@@ -14,6 +14,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "render/scene_renderer.h"
 
 namespace trephine {
 
@@ -72,7 +73,7 @@ struct RenderOptions {
   std::array<int, 2> still{800, 600};
   std::array<int, 2> moving{1280, 800};
   // The first is timed most often, and beside truths that are off.
-  std::vector<double> sample_distances{0.5, 0.25, 1.0};
+  std::vector<double> sample_distances{SceneRenderer::kSampleDistance, 0.25, 1.0};
   std::vector<double> levels{2.0, 3.0, 4.0};
   int repeats = 3;  // of the first distance; one of the others
   double rotate_s = 4.0;

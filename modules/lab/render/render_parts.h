@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "lab/render/ray_settings.h"
 #include "lab/render/render_measurement.h"
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
@@ -33,7 +34,7 @@ struct RenderSubject {
 // The built-in subjects, and bone in `case_source` unless that is empty.
 Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source,
                                                   const Progress& progress);
-// Of the cranium's own set.
+// "cranium" or "abdomen".
 Result<TissueSet> shippedTissues(const std::string& name);
 // Only what is told by HU: without labels. A tissue that had one keeps what it is by HU alone.
 TissueSet byHuAlone(TissueSet tissues);
@@ -64,8 +65,15 @@ Status measureRotation(const RenderSubject& subject, const RenderOptions& option
 Status measureSurface(const RenderOptions& options, const Progress& progress,
                       RenderMeasurement& result);
 // Both mappers on both phantoms, from six directions.
-Status measureClasses(const RenderOptions& options, const Progress& progress,
-                      RenderMeasurement& result);
+Status measureClasses(const std::vector<RenderSubject>& subjects, const RenderOptions& options,
+                      const Progress& progress, RenderMeasurement& result);
+// By setting, of the cranium and of the shell.
+Result<std::vector<double>> craniumWrongPercent(const std::vector<RaySetting>& settings,
+                                                const RenderOptions& options,
+                                                const Progress& progress);
+Result<std::vector<double>> shellLuminancePercent(const std::vector<RaySetting>& settings,
+                                                  const RenderOptions& options,
+                                                  const Progress& progress);
 // Shipped exercises with their operators, drawn as they run.
 Status measureExercises(const RenderOptions& options, const Progress& progress,
                         RenderMeasurement& result);

@@ -84,7 +84,7 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
 void show(const RenderSubject& subject, bool with_labels, SceneRenderer& renderer) {
   const bool labelled = with_labels && subject.labels;
   renderer.setTissues(labelled ? subject.tissues : byHuAlone(subject.tissues), subject.looks);
-  renderer.setVolume(Volume(*subject.volume), labelled ? subject.labels : nullptr);
+  renderer.setVolume(Grid(Volume(*subject.volume), labelled ? subject.labels : nullptr));
   placeCamera(subject, renderer);
 }
 

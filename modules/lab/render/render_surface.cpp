@@ -70,36 +70,58 @@ void compare(const Picture& picture, const SceneRenderer& renderer, Errors& erro
   }
 }
 
+Result<std::unique_ptr<SceneRenderer>> shellRenderer(int edge) {
+  auto made = SceneRenderer::offscreen(edge, edge);
+  if (!made) return made;
+  (*made)->setTissues(bone());
+  (*made)->setVolume(Grid(boneShell()));
+  UploadProbe::setNormalsAsColour(**made, true);
+  return made;
+}
+
+SurfaceRow surfaceOf(SceneRenderer& renderer, bool stock) {
+  // A picture of normals is never VTK's own, but without our normals it holds VTK's gradient.
+  renderer.setTruth({!stock, true});
+  Errors errors;
+  // Rings depend on how the rows of voxels lie to the eye.
+  for (const Vec3& direction : {Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(0.5, 0.7, -0.4)}) {
+    renderer.lookAt(Vec3(0.0), direction, Vec3(0, 0.1, 1), kEye_mm);
+    compare(renderer.picture(), renderer, errors);
+  }
+  std::sort(errors.angles_deg.begin(), errors.angles_deg.end());
+  const double count = std::max<double>(1.0, double(errors.angles_deg.size()));
+  const double mean = std::max(1e-9, errors.sum / count);
+  return {stock ? "stock" : "trephine", quantile(errors.angles_deg, 500),
+          quantile(errors.angles_deg, 990), 100.0 * std::sqrt(errors.squares / count) / mean};
+}
+
 }  // namespace
 
 Status measureSurface(const RenderOptions& options, const Progress& progress,
                       RenderMeasurement& result) {
-  auto made = SceneRenderer::offscreen(options.surface_edge, options.surface_edge);
-  if (!made) return made.error();
-  SceneRenderer& renderer = **made;
   progress.at(0.0, "shell");
-  renderer.setTissues(bone());
-  renderer.setVolume(boneShell(), nullptr);
-  renderer.setSampleDistance(options.sample_distances.front());
-  UploadProbe::setNormalsAsColour(renderer, true);
+  auto made = shellRenderer(options.surface_edge);
+  if (!made) return made.error();
+  (*made)->setSampleDistance(options.sample_distances.front());
   for (const bool stock : {true, false}) {
-    UploadProbe::setLeaping(renderer, !stock);
-    renderer.setTruth(stock ? RayTruth{false, false} : RayTruth{});
-    Errors errors;
-    // Rings depend on how the rows of voxels lie to the eye.
-    for (const Vec3& direction : {Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(0.5, 0.7, -0.4)}) {
-      if (progress.cancelled()) return renderCancelled();
-      renderer.lookAt(Vec3(0.0), direction, Vec3(0, 0.1, 1), kEye_mm);
-      compare(renderer.picture(), renderer, errors);
-    }
-    std::sort(errors.angles_deg.begin(), errors.angles_deg.end());
-    const double count = std::max<double>(1.0, double(errors.angles_deg.size()));
-    const double mean = std::max(1e-9, errors.sum / count);
-    result.surface.push_back({stock ? "stock" : "trephine", quantile(errors.angles_deg, 500),
-                              quantile(errors.angles_deg, 990),
-                              100.0 * std::sqrt(errors.squares / count) / mean});
+    if (progress.cancelled()) return renderCancelled();
+    result.surface.push_back(surfaceOf(**made, stock));
   }
   return {};
+}
+
+Result<std::vector<double>> shellLuminancePercent(const std::vector<RaySetting>& settings,
+                                                  const RenderOptions& options,
+                                                  const Progress& progress) {
+  auto made = shellRenderer(options.surface_edge);
+  if (!made) return made.error();
+  std::vector<double> percents;
+  for (const RaySetting& setting : settings) {
+    if (progress.cancelled()) return renderCancelled();
+    (*made)->setSampleDistance(setting.distance_voxels);
+    percents.push_back(surfaceOf(**made, setting.plain).luminance_error_percent);
+  }
+  return percents;
 }
 
 }  // namespace trephine

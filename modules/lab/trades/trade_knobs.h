@@ -32,6 +32,11 @@ Volume averaged(const Volume& fine, int factor);
 // The grid as it is, at half and at a quarter of its resolution, against the first.
 TradeRows tradeGrid(const TradesOptions& options, const Progress& progress);
 
+// The ray caster on the cranium and a shell of bone. No rows where nothing can be drawn.
+TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress);
+// As rows, recommendations and `explain` name it.
+std::string rayCastingSetting(double distance_voxels, bool plain);
+
 inline Error tradesCancelled() {
   return {"CANCELLED", "The measurement was cancelled", "measure trades", ""};
 }

@@ -39,6 +39,11 @@ Status check(const TradesOptions& options) {
   if (options.grid < 32 || options.grid > 512 || options.grid % 4 != 0) {
     return bad("The grid has 32 to 512 voxels along an edge, a multiple of 4", "grid");
   }
+  for (double distance : options.ray_distances) {
+    if (!(distance >= 0.1 && distance <= 8.0)) {
+      return bad("Samples lie 0.1 to 8 voxels apart", "ray_distances");
+    }
+  }
   if (!(options.stroke_s >= 0.2 && options.stroke_s <= 20.0)) {
     return bad("A stroke takes 0.2 to 20 s", "stroke_s");
   }
@@ -126,7 +131,8 @@ Result<TradesMeasurement> measureTrades(const TradesOptions& options,
        [&] { return tradePoints(ToolKind::burr, options.burr_points, options, progress); }},
       {"force_at", [&] { return tradeForceAt(options, progress); }},
       {"rate_hz", [&] { return tradeRate(options, progress); }},
-      {"grid", [&] { return tradeGrid(options, progress); }}};
+      {"grid", [&] { return tradeGrid(options, progress); }},
+      {"ray_casting", [&] { return tradeRayCasting(options, progress); }}};
   TradesMeasurement result;
   for (std::size_t n = 0; n < knobs.size(); ++n) {
     progress.at(double(n) / double(knobs.size()), knobs[n].first);

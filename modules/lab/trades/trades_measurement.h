@@ -1,9 +1,9 @@
-// Speed against accuracy: for every knob of touch its settings, what each gets wrong and what each
-// costs, from one run, and which one is recommended on this machine.
+// Speed against accuracy: for every knob of touch and of the view its settings, what each gets
+// wrong and what each costs, from one run, and which one is recommended on this machine.
 //
-// A knob is what a scene or an import can set. Of each exactly one setting is recommended: the
-// cheapest of those that are good enough, which is what the table of kKnobs says. Where none is,
-// the one with the least error.
+// A knob is what a scene or an import can set, or what the view is drawn with. Of each exactly one
+// setting is recommended: the cheapest of those that are good enough, which is what the table of
+// kKnobs says. Where none is, the one with the least error.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct Knob {
   double also_limit = 0.0;
   std::string_view unit = "";  // of the settings
 };
-inline constexpr std::array<Knob, 5> kKnobs{{
+inline constexpr std::array<Knob, 6> kKnobs{{
     {"points_blade", "Points along a blade", 5.0, "volume_error_percent", 5.0},
     {"points_burr", "Points on a burr's shell", 5.0, "volume_error_percent", 5.0},
     {"force_at", "Where the force acts", 10.0},
@@ -53,6 +53,8 @@ inline constexpr std::array<Knob, 5> kKnobs{{
     // what the hand and its delays take.
     {"rate_hz", "Rate of touch", 10.0, "cost", 25.0, "bone_of_k_max_percent", 60.0, "Hz"},
     {"grid", "Resolution of the grid", 5.0, "surface_distance_mm", 0.5},
+    {"ray_casting", "Samples of a ray", 4.0, "luminance_error_percent", 2.5, "picture_rms_percent",
+     2.0},
 }};
 
 struct TradesOptions {
@@ -61,6 +63,8 @@ struct TradesOptions {
   std::vector<double> rates_hz{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0, 20000.0};
   int grid = 256;         // voxels along an edge of 49.2 mm, a multiple of 4, 32 to 512
   double stroke_s = 2.0;  // 0.2 to 20
+  std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};  // voxels, 0.1 to 8
+  std::array<int, 2> ray_picture{800, 600};
 };
 
 struct TradesMeasurement {

@@ -67,7 +67,8 @@ TEST(SceneSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
   const std::vector<std::pair<std::string, std::string>> expected{{"points_blade", "33"},
                                                                   {"points_burr", "64"},
                                                                   {"force_at", "distributed"},
-                                                                  {"rate_hz", "2000"}};
+                                                                  {"rate_hz", "2000"},
+                                                                  {"ray_casting", "0.5 voxels"}};
   EXPECT_EQ(sceneSettings(scene), expected);
 }
 

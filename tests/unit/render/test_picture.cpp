@@ -50,6 +50,44 @@ TEST(Picture, PsnrOfPicturesOfOtherSizesIsZero) {
   EXPECT_EQ(psnr_dB(gradient(8, 4), gradient(4, 8)), 0.0);
 }
 
+TEST(Picture, SsimIsOneForEqualPicturesAndFallsWithWhatTheEyeMisses) {
+  Picture a{64, 48, {}};
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      for (int c = 0; c < 3; ++c) a.rgb.push_back(std::uint8_t((x / 4 + y / 4) % 2 ? 200 : 60));
+    }
+  }
+  EXPECT_NEAR(ssim(a, a), 1.0, 1e-12);
+  // The same error, once as a shift of all values and once as a pattern of its own.
+  Picture brighter = a, noisy = a;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    brighter.rgb[i] = std::uint8_t(a.rgb[i] + 20);
+    noisy.rgb[i] = std::uint8_t(a.rgb[i] + ((i / 3) * 7919 % 13 < 6 ? 20 : -20));
+  }
+  EXPECT_NEAR(psnr_dB(a, brighter), psnr_dB(a, noisy), 0.01);
+  EXPECT_GT(ssim(a, brighter), 0.97);
+  EXPECT_LT(ssim(a, noisy), 0.95);
+  Picture flat = a;
+  std::fill(flat.rgb.begin(), flat.rgb.end(), std::uint8_t(130));
+  EXPECT_LT(ssim(a, flat), 0.1);
+}
+
+// Two flat pictures: only the term of the means is not 1.
+TEST(Picture, SsimFollowsItsFormula) {
+  const auto flat = [](std::uint8_t value) {
+    return Picture{20, 16, std::vector<std::uint8_t>(20 * 16 * 3, value)};
+  };
+  const double c1 = 0.01 * 255 * 0.01 * 255;
+  EXPECT_NEAR(ssim(flat(100), flat(150)), (2 * 100 * 150 + c1) / (100 * 100 + 150 * 150 + c1),
+              1e-6);
+}
+
+TEST(Picture, SsimOfOtherSizesOrOfNextToNothingIsZero) {
+  EXPECT_EQ(ssim(gradient(32, 16), gradient(16, 32)), 0.0);
+  EXPECT_EQ(ssim(gradient(10, 40), gradient(10, 40)), 0.0);
+  EXPECT_EQ(ssim(Picture{}, Picture{}), 0.0);
+}
+
 TEST(Picture, WritingIntoAMissingFolderFailsAndLeavesNothing) {
   const test::TemporaryFolder folder;
   EXPECT_FALSE(writePng(gradient(4, 4), folder / "no" / "a.png").ok());

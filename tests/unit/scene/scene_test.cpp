@@ -112,6 +112,14 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
        "trephine.tissues"},
       {"run", [](Json& s) { s["landmarks"][0]["run_mm"] = 0; }, "landmarks[0].run_mm", "0"},
       {"view", [](Json& s) { s["view"]["distance_mm"] = 1e9; }, "view.distance_mm", "1000000000"},
+      {"look of a tissue that is not there",
+       [](Json& s) { s["view"]["looks"]["cheese"] = "shown"; }, "view.looks.cheese", "cheese"},
+      {"unknown look", [](Json& s) { s["view"]["looks"]["bone"] = "pink"; }, "view.looks.bone",
+       "pink"},
+      {"look that is no text", [](Json& s) { s["view"]["looks"]["bone"] = 1; }, "view.looks.bone",
+       "1"},
+      {"looks that are no object", [](Json& s) { s["view"]["looks"] = "hidden"; }, "view.looks",
+       "hidden"},
       {"no arms", [](Json& s) { s["arms"] = Json::array(); }, "arms", "0"},
       {"law twice", [](Json& s) { s["laws"].push_back(s["laws"][0]); }, "laws", "viscous"},
       {"tool id twice", [](Json& s) { s["tools"].push_back(s["tools"][0]); }, "tools", "blade"},
@@ -218,6 +226,24 @@ TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
         "/arms/0/dynamics/delay_ticks"}) {
     EXPECT_EQ(written.at(Json::json_pointer(at)), json.at(Json::json_pointer(at))) << at;
   }
+}
+
+TEST(Scene, SaysHowTissuesLookAndIsWrittenWithIt) {
+  Json json = shipped();
+  json["view"]["looks"] = {{"bone", "ghosted"}, {"brain", "shown"}, {"dura", "hidden"}};
+  Result<Scene> scene = parseScene(json, shippedFile());
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  EXPECT_EQ(scene->view.looks, (TissueLooks{{"bone", TissueLook::ghosted},
+                                            {"brain", TissueLook::shown},
+                                            {"dura", TissueLook::hidden}}));
+  EXPECT_EQ(toJson(*scene)["view"]["looks"], json["view"]["looks"]);
+
+  // Of the whole case, too: a view without a landmark.
+  json["view"] = {{"looks", {{"bone", "hidden"}}}};
+  scene = parseScene(json, shippedFile());
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  EXPECT_EQ(scene->view.landmark, "");
+  EXPECT_EQ(toJson(*scene)["view"], json["view"]);
 }
 
 TEST(Scene, ANumberThatIsNotGivenIsAsThePageSays) {

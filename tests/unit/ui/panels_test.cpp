@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
+#include <QToolButton>
 
 #include "haptics/bounded_controller.h"
 #include "qt_support.h"
@@ -171,6 +172,76 @@ TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMost
     EXPECT_TRUE(felt.text().contains("above 1000 N/m these arms may shake"))
         << felt.text().toStdString();
   }
+}
+
+class LooksTest : public TissuePanelTest {
+ protected:
+  LooksTest() {
+    QObject::connect(&panel_, &TissuePanel::looksChanged, &panel_,
+                     [this](const TissueLooks& looks) {
+                       looks_ = looks;
+                       ++looked_;
+                     });
+  }
+  QComboBox& box(const char* id) {
+    return find<QComboBox>(panel_, ("look:" + std::string(id)).c_str());
+  }
+  // As a click in the opened list does.
+  void choose(const char* id, TissueLook look) {
+    box(id).setCurrentIndex(int(look));
+    QMetaObject::invokeMethod(&box(id), "activated", Q_ARG(int, int(look)));
+  }
+  TissueLooks looks_;
+  int looked_ = 0;
+};
+
+TEST_F(LooksTest, EveryTissueHasAChoiceWithANameThatCanBeReadOut) {
+  EXPECT_EQ(box("soft").accessibleName(), "Look of Soft tissue");
+  EXPECT_NE(box("bone").focusPolicy() & Qt::TabFocus, 0);
+  choose("soft", TissueLook::ghosted);
+  EXPECT_EQ(looks_, (TissueLooks{{"soft", TissueLook::ghosted}}));
+  choose("bone", TissueLook::hidden);
+  EXPECT_EQ(looks_, (TissueLooks{{"soft", TissueLook::ghosted}, {"bone", TissueLook::hidden}}));
+  EXPECT_EQ(looked_, 2);
+}
+
+TEST_F(LooksTest, AreNoChangeOfATissue) {
+  choose("bone", TissueLook::hidden);
+  EXPECT_EQ(changes_, 0);
+  EXPECT_TRUE(sameSet(panel_.tissues(), twoTissues()));
+  EXPECT_TRUE(find<QListWidget>(panel_, "tissueList").item(1)->toolTip().contains("not drawn"));
+}
+
+TEST_F(LooksTest, OfWhatTheSetHasClearIsHiddenUntilItIsChosen) {
+  TissueSet set = twoTissues();
+  set.tissues[0].opacity = 0.0;
+  panel_.setTissues(set);
+  EXPECT_EQ(box("soft").currentIndex(), int(TissueLook::hidden));
+  choose("soft", TissueLook::shown);
+  EXPECT_EQ(box("soft").currentIndex(), int(TissueLook::shown));
+  panel_.setLooks({});
+  EXPECT_EQ(box("soft").currentIndex(), int(TissueLook::hidden));
+}
+
+TEST_F(LooksTest, FollowTheirTissuesIntoAnotherSet) {
+  TissueSet set = twoTissues();
+  set.tissues.erase(set.tissues.begin());
+  panel_.setTissues(set);
+  EXPECT_EQ(panel_.findChild<QComboBox*>("look:soft"), nullptr);
+  choose("bone", TissueLook::ghosted);
+  EXPECT_EQ(looks_.at("bone"), TissueLook::ghosted);
+}
+
+TEST_F(LooksTest, APresetIsAStartThatChoicesChange) {
+  auto& bone = find<QToolButton>(panel_, "presetBone");
+  EXPECT_FALSE(bone.isHidden());
+  EXPECT_TRUE(find<QToolButton>(panel_, "presetLiver").isHidden()) << "the set has none";
+  bone.click();
+  EXPECT_EQ(looks_, (TissueLooks{{"soft", TissueLook::hidden}, {"bone", TissueLook::shown}}));
+  EXPECT_EQ(box("soft").currentIndex(), int(TissueLook::hidden));
+  choose("soft", TissueLook::ghosted);
+  EXPECT_EQ(looks_.at("soft"), TissueLook::ghosted);
+  EXPECT_EQ(looks_.at("bone"), TissueLook::shown);
 }
 
 TEST_F(TissuePanelTest, HuThatHaveLostTheirTissueAreMentioned) {

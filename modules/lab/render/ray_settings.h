@@ -1,0 +1,36 @@
+// What a setting of the ray caster costs, and what it gets wrong.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct RaySetting {
+  double distance_voxels = 0.5;  // between samples, in the smallest edge of a voxel
+  bool plain = false;            // without the truths of surface and class
+};
+
+struct RaySettingFigures {
+  RaySetting setting;
+  double ms = 0.0;                       // of a picture of the cranium's bone
+  double picture_rms_percent = 0.0;      // of 255, against a sample every 0.25 voxels
+  double wrong_class_percent = 0.0;      // of the cranium's pixels
+  double luminance_error_percent = 0.0;  // of a shell of bone
+};
+
+struct RaySettingOptions {
+  std::array<int, 2> size{800, 600};
+  int repeats = 5;
+  int truth_edge = 232, truth_step = 4, surface_edge = 480;
+};
+
+// Errors: NO_DISPLAY, NO_OPENGL, CANCELLED.
+Result<std::vector<RaySettingFigures>> measureRaySettings(const std::vector<RaySetting>& settings,
+                                                          const RaySettingOptions& options,
+                                                          const Progress& progress = Progress());
+
+}  // namespace trephine

@@ -1,0 +1,21 @@
+// Shown, ghosted or hidden: the choice beside a tissue's name.
+#pragma once
+
+#include <QComboBox>
+#include <functional>
+
+#include "tissue/tissue_look.h"
+
+namespace trephine {
+
+class LookBox : public QComboBox {
+  Q_OBJECT
+ public:
+  explicit LookBox(QWidget* parent = nullptr);
+  // Its object is called "look:" and the id.
+  void show(const Tissue& tissue, TissueLook look);
+  // A person has chosen.
+  std::function<void(TissueLook)> chosen;
+};
+
+}  // namespace trephine
