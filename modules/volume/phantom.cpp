@@ -60,13 +60,14 @@ struct BuiltIn {
   PhantomTruth truth;
   Index3 size;
   Vec3 spacing_mm;
+  double middle_mm;  // of the scan along the body; the head's reaches further below its brain
   bool labelled;
 };
 
 constexpr std::string_view kPrefix = "phantom:";
 const std::array<BuiltIn, 2> kPhantoms{{
-    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.0}, false},
-    {"abdomen", abdomenTissue, {256, 256, 160}, {1.4, 1.4, 1.5}, true},
+    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.2}, -16.6, false},
+    {"abdomen", abdomenTissue, {256, 256, 160}, {1.4, 1.4, 1.5}, 0.0, true},
 }};
 
 Result<const BuiltIn*> findPhantom(const std::string& name) {
@@ -84,6 +85,7 @@ GridGeometry geometryOf(const BuiltIn& phantom) {
   for (int axis = 0; axis < 3; ++axis) {
     geometry.origin_mm[axis] = -0.5 * (phantom.size[axis] - 1) * phantom.spacing_mm[axis];
   }
+  geometry.origin_mm.z += phantom.middle_mm;
   return geometry;
 }
 
