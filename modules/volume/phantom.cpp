@@ -66,7 +66,7 @@ struct BuiltIn {
 
 constexpr std::string_view kPrefix = "phantom:";
 const std::array<BuiltIn, 2> kPhantoms{{
-    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.2}, -16.6, false},
+    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.0}, -5.0, false},
     {"abdomen", abdomenTissue, {256, 256, 160}, {1.4, 1.4, 1.5}, 0.0, true},
 }};
 

@@ -95,7 +95,7 @@ T insideDura(const Vec3& p, const Vec3& m, double depth) {
 
 // Air in the bones of face and base; `wall` is how far the nearest sinus is.
 bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
-  static const Ellipsoid maxillary({25, -53, -56}, {12, 15, 13});
+  static const Ellipsoid maxillary({25, -53, -53}, {11, 14, 9.5});
   static const Ellipsoid frontal({10, -74, -6}, {7, 2.6, 6});
   static const Ellipsoid sphenoid({8, -18, -36}, {7, 10, 7});
   wall =
@@ -187,7 +187,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
     const double canal = canalDistance(m);
     if (m.z < -35.0 && canal < 0.0) return inCanal(canal);
     if (vault >= 0.0 || height < -2.0) {  // bone stays between them and the dura
-      static const Rod nostril{{6, -86, -70}, {6, -76, -57}, 3.2, 4.0};
+      static const Rod nostril{{6, -86, -63}, {6, -76, -54}, 3.2, 3.6};
       static const Rod pharynx{{0, -20, -56}, {0, -12, -126}, 8, 8};
       double sinus_wall = 1e3;
       const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);

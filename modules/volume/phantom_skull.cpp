@@ -1,5 +1,5 @@
 // Bones and skin of the head from rods and ellipsoids with smooth joints. Sizes of an adult's;
-// nasion (0, -80, -14), chin at z = -117, the ears' openings at z = -35.
+// nasion (0, -80, -14), chin at z = -117 (at -94 as drawn, see lifeSize), ears at z = -35.
 #include "volume/phantom_skull.h"
 
 namespace trephine::skull {
@@ -91,12 +91,12 @@ double lowerJaw(const Vec3& m) {
                              {{15, -69, 0}, {29, -54, 0}, 5.8, 5.6},
                              {{29, -54, 0}, {40, -32, 0}, 5.6, 5.2},
                              {{40, -32, 0}, {46, -13, 0}, 5.2, 4.6}};
-  static const Ellipsoid chin({0, -75, -110}, {10, 5, 6});
+  static const Ellipsoid chin({0, -76.5, -110}, {10, 5, 6});
   static const Ellipsoid tubercle({11, -72, -111}, {6, 4.5, 4.5});
   double d = 1e3;
   if (m.z < -80.0) {
     const double rises = m.z + 105.5 - 9.0 * ramp(-56, -8, m.y);
-    d = chain(body, Vec3(m.x, m.y, 0.5 * rises), 4);
+    d = chain(body, Vec3(m.x, m.y, 0.5 * rises), 0.5);
     d = smoothUnion(d, smoothUnion(chin.roughDistance(m), tubercle.roughDistance(m), 6), 7);
     const Arch at = arch(m, -75);
     double ridge = std::abs(at.out) - 4.4 - roots(at) * (at.out > 0.0 ? 0.8 : 0.0);
@@ -153,6 +153,11 @@ double upperFace(const Vec3& m) {
 
 }  // namespace
 
+Vec3 lifeSize(const Vec3& m) {
+  const double below = std::max(-42.0 - m.z, 0.0);
+  return {m.x, m.y, m.z - 0.52 * below * below / (below + 8.0)};
+}
+
 double orbit(const Vec3& m) {
   // From the opening to the apex; below 0 in front of the rim, where the hollow stays as wide.
   const double t = std::clamp((m.y + 70.0) / 42.0, -0.4, 1.0);
@@ -165,13 +170,13 @@ double orbit(const Vec3& m) {
   return smoothIntersection((norm - 1.0) * std::min(wide, high), m.y + 28.0, 6);
 }
 
-double nose(const Vec3& m) {
+double nose(const Vec3& drawn) {
+  const Vec3 m = lifeSize(drawn);
   // A drop in (x, z), its bottom flat and heart-shaped around the spine.
   const double low = std::sqrt(square(m.x - 4.0) + square(m.z + 54.5)) - 8.0;
   const double high = rod2(m.x, m.z, 0, -53, 0, -38, 9.0, 3.4);
   double d = smoothUnion(low, high, 4);
-  d = smoothIntersection(d, -18.0 - m.y - 0.0 - 5.0, 4);
-  return std::max(d, -m.y - 100.0);
+  return smoothIntersection(d, -23.0 - m.y, 4);
 }
 
 double earCanal(const Vec3& m) {
@@ -195,7 +200,7 @@ double relief(const Vec3& m) {
     const double line = std::sqrt(square((m.y - 2.0) / 62.0) + square((m.z + 14.0) / 54.0));
     const double within = (1.0 - line) * 56.0;  // mm, about
     const double fades = ramp(70.0, 10.0, m.y);
-    out += fades * (0.8 * bump(within / 5.0) - 1.6 * ramp(0.0, 14.0, within));
+    out += fades * (0.4 * bump(within / 6.0) - 1.3 * ramp(0.0, 20.0, within));
   }
   return out;
 }
@@ -226,8 +231,8 @@ double bones(const Vec3& m, double braincase) {
   static const Ellipsoid mastoid({54, 24, -42}, {10, 13, 20});
   static const Rod root{{56, 12, -31}, {62, 4, -36}, 6, 5};
   static const Rod styloid{{46, 17, -46}, {41, 10, -70}, 2.6, 1.2};
-  static const Rod pterygoid[] = {{{16, -22, -38}, {19, -24, -66}, 4, 2.4},
-                                  {{16, -22, -38}, {10, -18, -64}, 4, 1.8}};
+  static const Rod pterygoid[] = {{{16, -22, -38}, {19, -24, -57}, 4, 2.4},
+                                  {{16, -22, -38}, {10, -18, -56}, 4, 1.8}};
   static const Ellipsoid sphenoid({0, -14, -36}, {22, 24, 13});
   static const Ellipsoid clivus({0, 6, -48}, {13, 14, 14});
   static const Ellipsoid condyle({15, 22, -44}, {6, 10, 6});
@@ -235,7 +240,7 @@ double bones(const Vec3& m, double braincase) {
   if (m.z < 16.0 && m.y < 24.0 && m.z > -90.0) {
     if (m.y < -20.0 || m.x > 34.0) d = smoothUnion(d, upperFace(m), 6);
   }
-  if (m.y < -14.0 && m.z < -8.0 && m.z > -92.0) d = smoothUnion(d, upperJaw(m), 5);
+  if (m.y < -14.0 && m.z < -8.0 && m.z > -84.0) d = smoothUnion(d, upperJaw(lifeSize(m)), 5);
   if (m.z < -20.0 && m.y > -50.0 && m.y < 50.0) {
     d = smoothUnion(d, sphenoid.roughDistance(m), 8);
     d = smoothUnion(d, clivus.roughDistance(m), 8);
@@ -259,13 +264,13 @@ double bones(const Vec3& m, double braincase) {
     d = smoothIntersection(d, -cavity, 2.5);
     if (cavity < 1.0 && m.y > -74.0 && m.y < -24.0) {
       // Septum and the lower conchae.
-      static const Rod concha[] = {{{8, -64, -57}, {8, -30, -57}, 2.2, 2.4},
-                                   {{7, -60, -48}, {7, -30, -48}, 1.8, 2.0}};
+      static const Rod concha[] = {{{8, -64, -53}, {8, -30, -53}, 2.2, 2.4},
+                                   {{7, -60, -45}, {7, -30, -45}, 1.6, 1.8}};
       d = std::min({d, std::max(m.x - 0.8, -70.0 - m.y), chain(concha, m, 1)});
     }
   }
   if (m.x > 48.0 && m.z < -24.0) d = smoothIntersection(d, -earCanal(m), 2);
-  if (m.z < -38.0 && m.y < 16.0) d = std::min(d, lowerJaw(m));
+  if (m.z < -38.0 && m.y < 16.0) d = std::min(d, lowerJaw(lifeSize(m)));
   return d;
 }
 
@@ -295,7 +300,8 @@ double vertebrae(const Vec3& m, double canal) {
   return smoothIntersection(d, -canal, 2);
 }
 
-double skin(const Vec3& m, double scalp) {
+double skin(const Vec3& drawn, double scalp) {
+  const Vec3 m = lifeSize(drawn);
   static const Ellipsoid face({0, -30, -48}, {60, 50, 58});
   static const Ellipsoid jaw({0, -32, -89}, {57, 51, 34});
   static const Ellipsoid jowl({36, -30, -76}, {24, 38, 40});
@@ -342,8 +348,8 @@ double skin(const Vec3& m, double scalp) {
     static const Rod arch_skin[] = {{{44, -61, -42}, {60, -36, -42}, 10, 9},
                                     {{60, -36, -42}, {62, 4, -40}, 9, 10}};
     static const Ellipsoid behind({50, 22, -40}, {21, 24, 32});
-    d = smoothUnion(d, chain(arch_skin, m, 8), 22);
-    d = smoothUnion(d, behind.roughDistance(m), 10);
+    d = smoothUnion(d, chain(arch_skin, drawn, 8), 22);
+    d = smoothUnion(d, behind.roughDistance(drawn), 10);
   }
   if (m.x > 54.0) {
     static const Ellipsoid ear({74, 17, -32}, {5, 15, 29}, {6, 19, 32});
@@ -351,7 +357,7 @@ double skin(const Vec3& m, double scalp) {
     static const Ellipsoid shell({83, 13, -33}, {7, 9, 15});
     static const Ellipsoid scapha({83, 19, -20}, {6, 11, 17});
     // It stands off to the back.
-    const Vec3 turned{m.x - 0.35 * (m.y - 8.0), m.y, m.z};
+    const Vec3 turned{m.x - 0.35 * (m.y - 8.0), m.y, drawn.z};
     double pinna = smoothUnion(ear.roughDistance(turned), lobe.roughDistance(turned), 5);
     pinna = smoothIntersection(pinna, -shell.roughDistance(turned), 3);
     pinna = smoothIntersection(pinna, -scapha.roughDistance(turned), 3);

@@ -6,9 +6,13 @@
 
 namespace trephine::skull {
 
+// The scan is 180 mm long, and so the face below the eye sockets is drawn lower than life: its
+// figures are a life-size face's, and this is where they are looked up.
+Vec3 lifeSize(const Vec3& m);
+
 // Air spaces, eye sockets and canals within the bones. Negative inside.
-double orbit(const Vec3& m);    // a rounded square of 40 x 35 mm in front, an apex behind
-double nose(const Vec3& m);     // the pear-shaped opening and the cavity behind it
+double orbit(const Vec3& m);  // a rounded square of 40 x 35 mm in front, an apex behind
+double nose(const Vec3& m);   // the pear-shaped opening and the cavity behind it
 double earCanal(const Vec3& m);
 
 // How far the vault's bone lies outside of its ellipsoid: eminences, the temporal fossa below its
