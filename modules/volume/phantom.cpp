@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
 #include <string_view>
-#include <system_error>
-#include <thread>
+#include <vector>
 
 #include "base/memory.h"
 #include "volume/case_memory.h"
+#include "volume/phantom_painter.h"
 #include "volume/phantom_shapes.h"
+#include "volume/two_threads.h"
 
 namespace trephine {
 
@@ -56,157 +55,80 @@ constexpr bool inEnumOrder() {
 }
 static_assert(inEnumOrder());
 
-struct Phantom {
+struct BuiltIn {
   const char* name;
   PhantomTruth truth;
   Index3 size;
   Vec3 spacing_mm;
+  double middle_mm;  // of the scan along the body; the head's reaches further below its brain
+  bool labelled;
 };
 
 constexpr std::string_view kPrefix = "phantom:";
-constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
-const std::array<Phantom, 2> kPhantoms{{
-    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.0}},
-    {"abdomen", abdomenTissue, {256, 256, 160}, {1.4, 1.4, 1.5}},
+const std::array<BuiltIn, 2> kPhantoms{{
+    {"cranium", craniumTissue, {256, 256, 180}, {0.8, 0.8, 1.0}, -5.0, false},
+    {"abdomen", abdomenTissue, {256, 256, 160}, {1.4, 1.4, 1.5}, 0.0, true},
 }};
 
-Result<const Phantom*> findPhantom(const std::string& name) {
-  for (const Phantom& phantom : kPhantoms) {
+Result<const BuiltIn*> findPhantom(const std::string& name) {
+  for (const BuiltIn& phantom : kPhantoms) {
     if (name == phantom.name) return &phantom;
   }
   return Error{"UNKNOWN_PHANTOM", "There is no built-in case named '" + name + "'", "phantom",
                "Use cranium or abdomen"};
 }
 
-GridGeometry geometryOf(const Phantom& phantom) {
+GridGeometry geometryOf(const BuiltIn& phantom) {
   GridGeometry geometry;
   geometry.size = phantom.size;
   geometry.spacing_mm = phantom.spacing_mm;
   for (int axis = 0; axis < 3; ++axis) {
     geometry.origin_mm[axis] = -0.5 * (phantom.size[axis] - 1) * phantom.spacing_mm[axis];
   }
+  geometry.origin_mm.z += phantom.middle_mm;
   return geometry;
 }
 
-// A standard normal number for each voxel: the sum of the eight bytes of a hash of its index
-// (splitmix64's finaliser), mean 8 * 127.5, variance 8 * (256^2 - 1) / 12.
-double standardNormal(std::uint64_t index) {
-  std::uint64_t h = (index + 1) * 0x9e3779b97f4a7c15 + kNoiseSeed;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
-  h ^= h >> 31;
-  int sum = 0;
-  for (int byte = 0; byte < 8; ++byte) sum += int(h >> (8 * byte) & 0xff);
-  return (sum - 1020) / std::sqrt(43690.0);
+// By tissue; the other tissues have none.
+struct LabelRow {
+  PhantomTissue tissue;
+  std::uint8_t label;
+};
+constexpr std::array<LabelRow, 5> kLabels{{{PhantomTissue::liver, 1},
+                                           {PhantomTissue::capsule, 2},
+                                           {PhantomTissue::vessel, 3},
+                                           {PhantomTissue::kidney, 4},
+                                           {PhantomTissue::spleen, 5}}};
+
+bool isOfTheLiver(PhantomTissue tissue) {
+  return tissue == PhantomTissue::liver || tissue == PhantomTissue::capsule ||
+         tissue == PhantomTissue::vessel;
 }
 
-class Painter {
- public:
-  Painter(PhantomTruth truth, double noise_hu, const Progress& progress, Volume& volume)
-      : truth_(truth),
-        noise_hu_(noise_hu),
-        progress_(progress),
-        volume_(volume),
-        affine_(volume.geometry.voxelToPatient()),
-        centres_(volume.hu.size()) {}
-
-  // False when cancelled.
-  bool paint() {
-    return overSlices([this](int k) { classifyCentres(k); }, 0.0, 0.3) &&
-           overSlices([this](int k) { averageSlice(k); }, 0.3, 1.0);
-  }
-
- private:
-  // Calls work(k) for every slice on this thread and one more; what a slice gets does not depend
-  // on who does it.
-  template <class Work>
-  bool overSlices(const Work& work, double from, double to) {
-    const int slices = volume_.geometry.size[2];
-    std::atomic<int> next{0};
-    const auto take = [&](bool reports) {
-      for (int k = next++; k < slices && !progress_.cancelled(); k = next++) {
-        if (reports) progress_.at(from + (to - from) * k / slices, "Making the built-in case");
-        work(k);
+LabelMap labelsOf(const std::vector<PhantomTissue>& centres, const GridGeometry& geometry) {
+  LabelMap map{geometry, std::vector<std::uint8_t>(centres.size())};
+  const Index3& size = geometry.size;
+  const auto atBorder = [&](int i, int j, int k) {
+    for (int c = std::max(k - 1, 0); c <= std::min(k + 1, size[2] - 1); ++c) {
+      for (int b = std::max(j - 1, 0); b <= std::min(j + 1, size[1] - 1); ++b) {
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, size[0] - 1); ++a) {
+          if (!isOfTheLiver(centres[geometry.indexOf(a, b, c)])) return true;
+        }
       }
-    };
-    std::thread helper;
-    try {
-      helper = std::thread(take, false);
-    } catch (const std::system_error&) {
-      // No thread to be had: this one does all of it.
     }
-    take(true);
-    if (helper.joinable()) helper.join();
-    return !progress_.cancelled();
-  }
-
-  Vec3 position(double i, double j, double k) const {
-    return Vec3(affine_[0]) * i + Vec3(affine_[1]) * j + Vec3(affine_[2]) * k + Vec3(affine_[3]);
-  }
-
-  void classifyCentres(int k) {
-    const Index3& size = volume_.geometry.size;
-    std::size_t index = volume_.geometry.indexOf(0, 0, k);
-    for (int j = 0; j < size[1]; ++j) {
-      for (int i = 0; i < size[0]; ++i) centres_[index++] = truth_(position(i, j, k));
-    }
-  }
-
-  // A voxel whose six neighbours agree with it needs no averaging.
-  bool nearBoundary(int i, int j, int k, std::size_t index) const {
-    const Index3& size = volume_.geometry.size;
-    const auto nx = std::size_t(size[0]), nxy = nx * std::size_t(size[1]);
-    const PhantomTissue own = centres_[index];
-    return (i > 0 && centres_[index - 1] != own) ||
-           (i + 1 < size[0] && centres_[index + 1] != own) ||
-           (j > 0 && centres_[index - nx] != own) ||
-           (j + 1 < size[1] && centres_[index + nx] != own) ||
-           (k > 0 && centres_[index - nxy] != own) ||
-           (k + 1 < size[2] && centres_[index + nxy] != own);
-  }
-
-  // The mean of the centre and eight samples around it; where those differ by more than noise would
-  // hide, of 27.
-  double averageVoxel(int i, int j, int k, PhantomTissue centre) const {
-    const auto huAt = [&](int s) {
-      const Vec3 at =
-          position(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0);
-      return int(phantomHu(truth_(at)));
-    };
-    constexpr int kHiddenByNoise = 60;
-    int sum = phantomHu(centre), low = sum, high = sum;
-    for (int s : {0, 2, 6, 8, 18, 20, 24, 26}) {
-      const int hu = huAt(s);
-      sum += hu;
-      low = std::min(low, hu);
-      high = std::max(high, hu);
-    }
-    if (high - low <= kHiddenByNoise) return sum / 9.0;
-    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) sum += huAt(s);
-    return sum / 27.0;
-  }
-
-  void averageSlice(int k) {
-    const Index3& size = volume_.geometry.size;
-    std::size_t index = volume_.geometry.indexOf(0, 0, k);
+    return false;
+  };
+  onTwoThreads(size[2], [&](int k) {
+    std::size_t index = geometry.indexOf(0, 0, k);
     for (int j = 0; j < size[1]; ++j) {
       for (int i = 0; i < size[0]; ++i, ++index) {
-        const double mean = nearBoundary(i, j, k, index) ? averageVoxel(i, j, k, centres_[index])
-                                                         : phantomHu(centres_[index]);
-        // A scanner stores 12 bits from -1024 on.
-        const double hu = mean + noise_hu_ * standardNormal(index);
-        volume_.hu[index] = std::int16_t(std::floor(std::clamp(hu, -1024.0, 3071.0) + 0.5));
+        const bool border = centres[index] == PhantomTissue::liver && atBorder(i, j, k);
+        map.labels[index] = phantomLabel(border ? PhantomTissue::capsule : centres[index]);
       }
     }
-  }
-
-  PhantomTruth truth_;
-  double noise_hu_;
-  const Progress& progress_;
-  Volume& volume_;
-  Mat4 affine_;
-  std::vector<PhantomTissue> centres_;
-};
+  });
+  return map;
+}
 
 }  // namespace
 
@@ -238,27 +160,50 @@ Result<GridGeometry> phantomGeometry(const std::string& name) {
   return geometryOf(*phantom.value());
 }
 
-Result<Volume> makePhantom(const std::string& name, const Progress& progress) {
-  const auto phantom = findPhantom(name);
-  if (!phantom) return phantom.error();
-  Volume volume{geometryOf(*phantom.value()), {}};
+std::uint8_t phantomLabel(PhantomTissue tissue) {
+  for (const LabelRow& row : kLabels) {
+    if (row.tissue == tissue) return row.label;
+  }
+  return 0;
+}
+
+Result<Phantom> makePhantomWithLabels(const std::string& name, const Progress& progress) {
+  const auto found = findPhantom(name);
+  if (!found) return found.error();
+  const BuiltIn& built_in = *found.value();
+  Phantom phantom{{geometryOf(built_in), {}}, {}};
+  Volume& volume = phantom.volume;
   const std::size_t count = volume.geometry.voxelCount();
-  if (Status enough = enoughMemory(voxelsMb(count), "Making the built-in case", name); !enough) {
+  const double needed_mb = voxelsMb(count) + (built_in.labelled ? 2.0 : 1.0) * labelsMb(count);
+  if (Status enough = enoughMemory(needed_mb, "Making the built-in case", name); !enough) {
     return enough.error();
   }
   volume.hu.resize(count);
-  if (!Painter(phantom.value()->truth, kPhantomNoiseHu, progress, volume).paint()) {
+  const auto centres = truthAtCentres(built_in.truth, volume.geometry, progress);
+  if (centres.empty() ||
+      !paintPhantom(built_in.truth, centres, kPhantomNoiseHu, progress, volume)) {
     return Error{"CANCELLED", "Making the built-in case was cancelled", name, ""};
   }
+  if (built_in.labelled) phantom.labels = labelsOf(centres, volume.geometry);
   progress.at(1.0, "Making the built-in case");
-  return volume;
+  return phantom;
+}
+
+Result<Volume> makePhantom(const std::string& name, const Progress& progress) {
+  Result<Phantom> made = makePhantomWithLabels(name, progress);
+  if (!made) return made.error();
+  return std::move(made->volume);
 }
 
 Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu) {
   Volume volume{geometry, Voxels(geometry.voxelCount())};
   const Progress progress;
-  Painter(truth, noise_hu, progress, volume).paint();
+  paintPhantom(truth, truthAtCentres(truth, geometry, progress), noise_hu, progress, volume);
   return volume;
+}
+
+LabelMap phantomLabelsOn(PhantomTruth truth, const GridGeometry& geometry) {
+  return labelsOf(truthAtCentres(truth, geometry, Progress()), geometry);
 }
 
 }  // namespace trephine

@@ -1,7 +1,7 @@
 // Built-in cases: anatomical phantoms from formulas, so that every voxel has a known truth.
 //
-// A phantom is a function from patient mm to tissue; the volume is that function averaged over each
-// voxel (partial-volume edges) plus Gaussian noise from a fixed seed. The same bits everywhere.
+// A phantom is a function from patient mm to tissue; the volume is that function seen through a
+// scanner's point spread, plus Gaussian noise from a fixed seed. The same bits everywhere.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -51,15 +52,35 @@ Result<GridGeometry> phantomGeometry(const std::string& name);
 // Standard deviation of the noise added to every voxel, HU.
 constexpr double kPhantomNoiseHu = 8.0;
 
+// Standard deviation of the Gaussian point spread: on each axis of the grid that many mm, or that
+// many voxels where those are coarser (a scanner's slices are as wide as they are far apart).
+constexpr double kPhantomSpread_mm = 0.6;
+constexpr double kPhantomSpread_voxels = 0.4;
+
 // "cranium" of "phantom:cranium", as scenes, commands and recordings name a built-in case; nothing
 // of what is none.
 std::optional<std::string> phantomNamed(const std::string& case_source);
 std::string phantomSource(const std::string& name);
 
-// Makes the volume, on two threads. CANCELLED when `progress` says so; UNKNOWN_PHANTOM.
+// The label of a tissue in a phantom's label map; 0: none. README.md lists them.
+std::uint8_t phantomLabel(PhantomTissue tissue);
+
+struct Phantom {
+  Volume volume;
+  std::optional<LabelMap> labels;  // of the same geometry; none of the cranium
+};
+
+// Makes the volume, on two threads, with its label map or without. CANCELLED when `progress` says
+// so; UNKNOWN_PHANTOM; OUT_OF_MEMORY.
+Result<Phantom> makePhantomWithLabels(const std::string& name,
+                                      const Progress& progress = Progress());
 Result<Volume> makePhantom(const std::string& name, const Progress& progress = Progress());
 
 // The same truth on any other grid (coarser, finer, oblique): tests and measurements.
 Volume makePhantomOn(PhantomTruth truth, const GridGeometry& geometry, double noise_hu);
+// Its labels at the voxels' centres. The capsule is a closed layer instead, since a membrane of a
+// millimetre misses many centres: wherever liver has a neighbour, of its 26, that is neither liver
+// nor capsule nor vessel, it is capsule as well.
+LabelMap phantomLabelsOn(PhantomTruth truth, const GridGeometry& geometry);
 
 }  // namespace trephine

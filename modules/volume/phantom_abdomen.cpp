@@ -28,36 +28,97 @@ double diaphragm(const Vec3& p) {
   const double right = square((p.x + 72) / 92) + square((p.y + 5) / 92);
   const double left = square((p.x - 76) / 84) + square((p.y - 5) / 88);
   const double middle = 66.0 - 40.0 * square(p.x / 60) - 30.0 * square((p.y + 5) / 95);
-  return std::max({104.0 - 85.0 * right, 92.0 - 85.0 * left, middle});
+  const auto higher = [](double a, double b) { return -smoothUnion(-a, -b, 24.0); };
+  return higher(higher(104.0 - 85.0 * right, middle), 92.0 - 85.0 * left);
+}
+
+// Distance, seen from in front, to a line of the chest wall from (ax, az) to (bx, bz).
+double lineDistance(const Vec3& m, double ax, double az, double bx, double bz) {
+  const double dx = bx - ax, dz = bz - az;
+  const double t = std::clamp(((m.x - ax) * dx + (m.z - az) * dz) / (dx * dx + dz * dz), 0.0, 1.0);
+  return std::sqrt(square(m.x - ax - t * dx) + square(m.z - az - t * dz));
 }
 
 // Twelve pairs of ribs, one every 25 mm, sinking forwards; a rib is an ellipse of 13 x 8 mm in the
-// wall. Negative inside, 0 at the surface.
+// wall, with a round end where its cartilage begins.
 double ribDistance(const Vec3& m, double depth, double fat) {
-  if (m.y > 82 || m.x < 14) return 1e3;
+  if (m.y > 86 || m.x < 14) return 1e3;
   const double forwards = std::clamp((80.0 - m.y) / 180.0, 0.0, 1.0);
   const double sunk = m.z + 105.0 * forwards * (1.35 - forwards) - 2.0;
   const double number = std::floor(sunk / 25.0 + 0.5);  // 0 is the twelfth rib
   if (number < 0) return 1e3;
-  const double ends = std::min(0.30 + 0.22 * number, 0.94);
-  if (forwards > ends) return 1e3;
+  static constexpr double kEnds[] = {0.32, 0.54, 0.76, 0.82, 0.85, 0.87, 0.88, 0.89};
+  const double end = kEnds[std::size_t(std::min(number, 7.0))];
   const double across = (sunk - 25.0 * number) / 1.25;
-  return ellipseDistance(across, depth - fat - 8.0, 6.0, 4.2);
+  const double d = ellipseDistance(across, depth - fat - 8.0, 6.0, 4.2);
+  return smoothIntersection(smoothIntersection(d, 130.0 * (forwards - end), 7.0), 17.0 - m.x, 6.0);
+}
+
+// Breast bone and the cartilages that join the ribs to it; those of the seventh to tenth form the
+// arch below which the belly is soft.
+double cartilageDistance(const Vec3& m, double depth, double fat) {
+  if (m.y > -40 || m.z < -12) return 1e3;
+  struct Line {
+    double ax, az, bx, bz;
+  };
+  static constexpr Line kLines[] = {{110, 8, 84, 26},  {84, 26, 58, 46},  {98, 33, 76, 38},
+                                    {76, 38, 48, 54},  {58, 46, 34, 64},  {92, 58, 62, 58},
+                                    {62, 58, 34, 64},  {34, 64, 14, 84},  {84, 86, 52, 78},
+                                    {52, 78, 14, 90},  {80, 112, 46, 100}, {46, 100, 14, 110}};
+  const double deep = square((depth - fat - 8.0) / 0.85);
+  double d = 1e3;
+  for (const Line& line : kLines) {
+    const double aside = lineDistance(m, line.ax, line.az, line.bx, line.bz);
+    d = smoothUnion(d, std::sqrt(aside * aside + deep) - 5.2, 4);
+  }
+  // The breast bone and its sword-shaped end.
+  const double flat = std::sqrt(square(std::max(m.x - 12.0, 0.0)) +
+                                square(std::max(78.0 - m.z, 0.0)) + deep) - 5.5;
+  const double aside = lineDistance(m, 0, 78, 0, 52);
+  return smoothUnion(d, smoothUnion(flat, std::sqrt(aside * aside + deep) - 5.0, 8), 6);
+}
+
+// The wings of the hip bones: a crest, and a plate below it.
+double hipDistance(const Vec3& m) {
+  if (m.z > -84 || m.x < 30) return 1e3;
+  static constexpr double kCrest[][3] = {
+      {42, 78, -122}, {70, 70, -104}, {100, 50, -95}, {122, 18, -97}, {126, -10, -110}, {118, -28, -128}};
+  double d = 1e3;
+  for (std::size_t n = 0; n + 1 < std::size(kCrest); ++n) {
+    const auto& a = kCrest[n];
+    const auto& b = kCrest[n + 1];
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    const double t =
+        std::clamp(((m.x - a[0]) * dx + (m.y - a[1]) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+    const double above = std::max(m.z - (a[2] + t * (b[2] - a[2])), 0.0);
+    const double down = std::min(m.z - (a[2] + t * (b[2] - a[2])), 0.0);
+    const double thick = 4.0 + 3.0 * ramp(-16.0, 0.0, down);
+    d = std::min(d, std::sqrt(square(m.x - a[0] - t * dx) + square(m.y - a[1] - t * dy) +
+                              above * above) - thick);
+  }
+  return d;
 }
 
 double spineDistance(const Vec3& m, double canal) {
   const double level = m.z + 6.0;  // vertebrae 34 mm apart, discs of 8 mm between
-  const double end = toNearest(level, 34.0);
-  // Waisted bodies, flat at their ends.
-  const double waist = 2.5 * bump(end / 13.0);
-  const double body = std::max(ellipseDistance(m.x, m.y - 47, 24 - waist, 17 - waist), end - 13.0);
-  const double arch = std::max({canal - 5.0, 66.0 - m.y, toNearest(level + 3, 34.0) - 12.0});
-  const double spinous =
-      std::max({m.x - 3.2, 82.0 - m.y, m.y - 99.0, toNearest(level + 8, 34.0) - 8.5});
-  const Vec3 local{m.x, m.y, end};
-  static const Rod transverse{{14, 71, 0}, {44, 76, 0}, 5.5, 4};
-  static const Rod pedicle{{12, 56, 0}, {14, 74, 0}, 5.5, 6};
-  return std::min({body, arch, spinous, transverse.distance(local), pedicle.distance(local)});
+  const double number = std::floor(level / 34.0 + 0.5);
+  const double high = level - 34.0 * number, end = std::abs(high);
+  // Waisted bodies with rounded rims.
+  const double waist = 3.5 * bump(end / 13.0);
+  double d = smoothIntersection(ellipseDistance(m.x, m.y - 47, 25 - waist, 18 - waist), end - 13.2,
+                                5);
+  const Vec3 local{m.x, m.y, high};
+  static const Rod pedicle{{13, 56, 4}, {15, 72, 2}, 6, 6.5};
+  static const Rod transverse{{15, 70, 2}, {42, 77, 3}, 5.5, 4};
+  static const Rod facet{{16, 72, 12}, {15, 76, -16}, 6, 6};
+  static const Rod lamina{{14, 74, 0}, {3, 86, -6}, 5.5, 5};
+  static const Rod spinous[] = {{{0, 85, -3}, {0, 100, -8}, 5, 5.5}};
+  d = smoothUnion(d, pedicle.distance(local), 5);
+  double back = smoothUnion(transverse.distance(local), facet.distance(local), 5);
+  back = smoothUnion(back, lamina.distance(local), 5);
+  // A process is a plate: higher than thick.
+  back = smoothUnion(back, spinous[0].distance({1.5 * local.x, local.y, 0.6 * local.z}), 5);
+  return smoothIntersection(smoothUnion(d, back, 4), -canal, 2);
 }
 
 // Psoas, the muscles beside the spine, and quadratus lumborum.
@@ -68,24 +129,36 @@ double deepMuscleDistance(const Vec3& m) {
   return std::min({psoas.distance(m), erector.roughDistance(m), quadratus.roughDistance(m)});
 }
 
-// The liver: an ellipsoid cut by the abdominal wall, the diaphragm and its own visceral surface,
-// which rises to the left, so that the left lobe thins to a wedge. Negative inside.
+// The liver: a right and a left lobe, cut by the abdominal wall, the diaphragm and its own visceral
+// surface, which rises to the left, so that the left lobe thins to a wedge. The falciform ligament's
+// fissure parts the lobes in front; on the visceral side those of the round and venous ligaments,
+// gallbladder and porta set off the quadrate lobe in front and the caudate behind. Negative inside.
 double liverDistance(const Vec3& p, double depth, double fat) {
-  static const Ellipsoid whole({-66, -8, 28}, {96, 92, 86}, {112, 84, 74});
+  static const Ellipsoid right({-70, -4, 24}, {88, 90, 86}, {82, 88, 74});
+  static const Ellipsoid left({4, -36, 40}, {70, 56, 40}, {76, 48, 38});
   static const Ellipsoid gallbladder({-52, -52, -22}, {15, 26, 22});
   static const Ellipsoid kidneyBed({-66, 47, -34}, {34, 36, 58});
-  double d = whole.roughDistance(p);
+  static const Ellipsoid caudate({-20, 30, 20}, {13, 15, 24});
+  static const Rod round_ligament{{-8, -110, -10}, {-14, -14, 8}, 7, 4};
+  static const Rod venous_ligament{{-10, 0, 20}, {-6, 34, 58}, 4, 5};
+  double d = smoothUnion(right.roughDistance(p), left.roughDistance(p), 36);
   if (d > 30.0) return d;
   const double visceral =
       (0.42 * (p.x + 118) + 0.16 * p.y - 42.0 - p.z + 7.0 * bump((p.x + 20) / 40)) / 1.097;
-  const double porta = 13.0 - glm::length(p - Vec3(-26, 12, -2));
-  d = smoothIntersection(d, visceral, 14);
-  d = smoothIntersection(d, fat + kMuscleWall + 8.0 - depth, 10);
-  d = smoothIntersection(d, 0.62 * (p.z - diaphragm(p)), 10);
+  const double porta = 12.0 - glm::length(Vec3(0.5 * (p.x + 28), p.y - 10, p.z + 2));
+  d = smoothIntersection(d, visceral, 16);
+  d = smoothUnion(d, caudate.roughDistance(p), 6);
+  d = smoothIntersection(d, fat + kMuscleWall + 8.0 - depth, 12);
+  d = smoothIntersection(d, 0.62 * (p.z - diaphragm(p) + 4.0), 14);
   d = smoothIntersection(d, -kidneyBed.roughDistance(p), 8);
   d = smoothIntersection(d, -gallbladder.roughDistance(p), 6);
   d = smoothIntersection(d, porta, 8);
+  d = smoothIntersection(d, -round_ligament.distance(p), 7);
+  d = smoothIntersection(d, -venous_ligament.distance(p), 5);
   if (d > 12.0) return d;
+  // The falciform ligament's line on the front and the dome.
+  const double falciform = p.x + 8.0 - 0.06 * (p.z - 20.0);
+  if (p.y < 30.0 && std::abs(falciform) < 9.0) d += 3.0 * bump(falciform / 9.0);
   d = smoothIntersection(d, 2.0 - deepMuscleDistance(mirrored(p)), 8);
   // Room for spine and great vessels.
   return smoothIntersection(d, 36.0 - glm::length(glm::dvec2(p.x - 4, p.y - 50)), 10);
@@ -253,7 +326,7 @@ PhantomTissue abdomenTissue(const Vec3& p) {
   if (depth < kSkin) return T::skin;
 
   const double fat = kSkin + fatThickness(p);
-  if (m.x < 52 && p.y > 25) {
+  if (m.x < 52 && p.y > 24) {
     const double canal = std::sqrt(square(m.x) + square(m.y - 74)) - 9.0;
     if (canal < 0.0) {
       return canal < -4.5 ? T::whiteMatter : canal < -0.5 ? T::csf : T::dura;
@@ -265,12 +338,9 @@ PhantomTissue abdomenTissue(const Vec3& p) {
   if (depth < fat) return T::fat;
   const double rib = ribDistance(m, depth, fat);
   if (rib < 0.0) return longBone(rib, 1.5);
-  static const Rod crest[] = {{{66, 66, -128}, {104, 44, -112}, 7, 6},
-                              {{104, 44, -112}, {122, 2, -122}, 6, 7}};
-  for (const Rod& wing : crest) {
-    const double d = wing.distance(m);
-    if (d < 0.0) return longBone(d, 2.0);
-  }
+  if (cartilageDistance(m, depth, fat) < 0.0) return T::marrow;
+  const double hip = hipDistance(m);
+  if (hip < 0.0) return longBone(hip, 2.0);
   if (deepMuscleDistance(m) < 0.0) return T::muscle;
   if (depth < fat + kMuscleWall) {
     // Three flat muscles at the sides, with thin fat between.
@@ -293,6 +363,7 @@ PhantomTissue abdomenTissue(const Vec3& p) {
     if (liver > -kCapsule) return T::capsule;
     return liver < -3.0 && inLiverVessel(p) ? T::vessel : T::liver;
   }
+  if (liver < 2.5) return T::fat;  // organs glide on it
   static const Ellipsoid gallbladder({-52, -52, -22}, {12, 23, 19});
   if (gallbladder.contains(p)) return T::csf;
   T tissue = T::fat;

@@ -1,0 +1,394 @@
+// Every voxel near a boundary is parted into 3 x 3 x 3 bins. A bin has the HU of its middle; where
+// a boundary runs through it, the share beyond, found by bisection along the axis that meets the
+// boundary most squarely. A Gaussian over the bins, one axis after the other, makes the voxels.
+#include "volume/phantom_painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "volume/two_threads.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
+constexpr int kBins = 3;          // of a voxel, on each axis
+constexpr int kChunk = 4;         // slices that are worked on together
+constexpr int kHiddenByNoise = 60;  // HU: tissues that differ by less need no finer look
+constexpr int kOne = 1 << 14;     // the sum of a kernel's weights
+constexpr int kPerHu = 8;         // what has passed a kernel is in eighths of HU
+
+// A standard normal number for each voxel: the sum of the eight bytes of a hash of its index
+// (splitmix64's finaliser), mean 8 * 127.5, variance 8 * (256^2 - 1) / 12.
+double standardNormal(std::uint64_t index) {
+  std::uint64_t h = (index + 1) * 0x9e3779b97f4a7c15 + kNoiseSeed;
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111eb;
+  h ^= h >> 31;
+  int sum = 0;
+  for (int byte = 0; byte < 8; ++byte) sum += int(h >> (8 * byte) & 0xff);
+  return (sum - 1020) / std::sqrt(43690.0);
+}
+
+// e^-x without the library's, which differs between machines: (e^(-x / 1024))^1024.
+double expOfMinus(double x) {
+  const double t = x / 1024.0;
+  double e = 1.0 - t + t * t / 2.0 - t * t * t / 6.0;
+  for (int n = 0; n < 10; ++n) e *= e;
+  return e;
+}
+
+// The weights of the bins around a voxel's middle on one axis, and how many voxels they reach over.
+struct Kernel {
+  int reach = 0;
+  std::vector<std::int16_t> weights;  // kBins * (2 reach + 1), their sum kOne
+
+  explicit Kernel(double spacing_mm) {
+    const double spread_mm = std::max(kPhantomSpread_mm, kPhantomSpread_voxels * spacing_mm);
+    const double bin_mm = spacing_mm / kBins;
+    // The bins are a box that spreads as well.
+    const double variance = spread_mm * spread_mm - bin_mm * bin_mm / 12.0;
+    reach = int(std::ceil(3.0 * spread_mm / spacing_mm - 0.5));
+    const int side = kBins / 2 + kBins * reach;
+    std::vector<double> shape;
+    double sum = 0.0;
+    for (int n = -side; n <= side; ++n) {
+      shape.push_back(expOfMinus(n * bin_mm * n * bin_mm / (2.0 * variance)));
+      sum += shape.back();
+    }
+    int total = 0;
+    for (double s : shape) {
+      weights.push_back(std::int16_t(std::floor(kOne * s / sum + 0.5)));
+      total += weights.back();
+    }
+    weights[std::size_t(side)] = std::int16_t(weights[std::size_t(side)] + kOne - total);
+  }
+};
+
+std::int16_t rounded(int weighted) {
+  return std::int16_t((weighted + kOne / 2) >> 14);
+}
+
+class Painter {
+ public:
+  Painter(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
+          const Progress& progress, Volume& volume)
+      : truth_(truth),
+        centres_(centres),
+        noise_hu_(noise_hu),
+        progress_(progress),
+        volume_(volume),
+        affine_(volume.geometry.voxelToPatient()),
+        nx_(volume.geometry.size[0]),
+        ny_(volume.geometry.size[1]),
+        nz_(volume.geometry.size[2]),
+        kernels_{Kernel(volume.geometry.spacing_mm.x), Kernel(volume.geometry.spacing_mm.y),
+                 Kernel(volume.geometry.spacing_mm.z)},
+        layer_(std::size_t(nx_) * std::size_t(ny_) * kBins * kBins),
+        bins_(std::size_t(kChunk + 2)),
+        spread_(std::size_t(kChunk + 2 * kernels_[2].reach)) {}
+
+  // False when cancelled.
+  bool paint() {
+    for (auto& slice : bins_) slice.values.resize(layer_ * kBins);
+    for (auto& slice : spread_) slice.resize(std::size_t(nx_) * std::size_t(ny_) * kBins);
+    const int reach = kernels_[2].reach;
+    // Bins lead; their neighbours' let them be refined one slice later, and a voxel needs `reach`
+    // slices beyond its own.
+    for (int first = 0; first < nz_ + 1 + reach; first += kChunk) {
+      progress_.at(kCentresShare + (1.0 - kCentresShare) * first / (nz_ + 1 + reach), kStep);
+      over(first, [this](int k) { fillBins(k); });
+      over(first - 1, [this](int k) { spreadInPlane(k); });
+      over(first - 1 - reach, [this](int k) { finish(k); });
+      if (progress_.cancelled()) return false;
+    }
+    return true;
+  }
+
+  static constexpr double kCentresShare = 0.3;
+  static constexpr const char* kStep = "Making the built-in case";
+
+ private:
+  struct Slice {
+    std::vector<std::int16_t> values;      // HU: layer, row of bins, bin
+    std::vector<std::uint8_t> nearBoundary;  // by voxel: 0, or how closely it is looked at
+  };
+  enum Look : std::uint8_t { uniform, softly, closely };
+
+  template <class Work>
+  void over(int first, const Work& work) {
+    onTwoThreads(kChunk, [&](int n) {
+      const int k = first + n;
+      if (k >= 0 && k < nz_ && !progress_.cancelled()) work(k);
+    });
+  }
+
+  Slice& binsOf(int k) { return bins_[std::size_t(k) % bins_.size()]; }
+  std::vector<std::int16_t>& spreadOf(int k) { return spread_[std::size_t(k) % spread_.size()]; }
+  std::size_t binAt(int a, int b, int layer) const {
+    return (std::size_t(layer) * std::size_t(ny_) * kBins + std::size_t(b)) *
+               (std::size_t(nx_) * kBins) +
+           std::size_t(a);
+  }
+
+  // In voxels.
+  std::int16_t huAt(double i, double j, double k) const {
+    return phantomHu(truth_(Vec3(affine_[0]) * i + Vec3(affine_[1]) * j + Vec3(affine_[2]) * k +
+                            Vec3(affine_[3])));
+  }
+
+  // How much the HU of a voxel and its six neighbours differ.
+  Look lookAt(int i, int j, int k) const {
+    const auto nx = std::size_t(nx_), nxy = nx * std::size_t(ny_);
+    const std::size_t index = volume_.geometry.indexOf(i, j, k);
+    const PhantomTissue own = centres_[index];
+    int low = phantomHu(own), high = low;
+    bool differs = false;
+    const auto see = [&](PhantomTissue other) {
+      if (other == own) return;
+      differs = true;
+      low = std::min(low, int(phantomHu(other)));
+      high = std::max(high, int(phantomHu(other)));
+    };
+    if (i > 0) see(centres_[index - 1]);
+    if (i + 1 < nx_) see(centres_[index + 1]);
+    if (j > 0) see(centres_[index - nx]);
+    if (j + 1 < ny_) see(centres_[index + nx]);
+    if (k > 0) see(centres_[index - nxy]);
+    if (k + 1 < nz_) see(centres_[index + nxy]);
+    return !differs ? uniform : high - low <= kHiddenByNoise ? softly : closely;
+  }
+
+  void fillBins(int k) {
+    Slice& slice = binsOf(k);
+    slice.nearBoundary.resize(std::size_t(nx_) * std::size_t(ny_));
+    std::size_t index = volume_.geometry.indexOf(0, 0, k);
+    for (int j = 0; j < ny_; ++j) {
+      for (int i = 0; i < nx_; ++i, ++index) {
+        const Look look = lookAt(i, j, k);
+        slice.nearBoundary[std::size_t(j) * std::size_t(nx_) + std::size_t(i)] = look;
+        std::array<std::int16_t, 27> hu;
+        hu.fill(phantomHu(centres_[index]));
+        if (look != uniform) look27(i, j, k, hu);
+        for (int s = 0; s < 27; s += 3) {
+          std::copy_n(&hu[std::size_t(s)], 3,
+                      &slice.values[binAt(kBins * i, kBins * j + s / 3 % 3, s / 9)]);
+        }
+      }
+    }
+  }
+
+  // The bins of a voxel, `hu` being that of its middle: of eight near its corners first.
+  void look27(int i, int j, int k, std::array<std::int16_t, 27>& hu) const {
+    const auto at = [&](int s) {
+      return huAt(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0);
+    };
+    int sum = hu[13], low = sum, high = sum;
+    for (int s : {0, 2, 6, 8, 18, 20, 24, 26}) {
+      hu[std::size_t(s)] = at(s);
+      sum += hu[std::size_t(s)];
+      low = std::min<int>(low, hu[std::size_t(s)]);
+      high = std::max<int>(high, hu[std::size_t(s)]);
+    }
+    if (low == high) return hu.fill(std::int16_t(low));  // the boundary is its neighbour's
+    const bool close = high - low > kHiddenByNoise;
+    const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
+    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
+      hu[std::size_t(s)] = close ? at(s) : mean;
+    }
+  }
+
+  // The HU of a bin, wherever it lies; beyond the volume, of the last one within.
+  std::int16_t binHu(int a, int b, int c) {
+    a = std::clamp(a, 0, kBins * nx_ - 1);
+    b = std::clamp(b, 0, kBins * ny_ - 1);
+    c = std::clamp(c, 0, kBins * nz_ - 1);
+    return binsOf(c / kBins).values[binAt(a, b, c % kBins)];
+  }
+
+  // A bin's HU with the share of what lies beyond a boundary through it.
+  std::int16_t refined(int a, int b, int c) {
+    const int own = binHu(a, b, c);
+    const std::array<std::array<int, 2>, 3> beside{{{binHu(a - 1, b, c), binHu(a + 1, b, c)},
+                                                    {binHu(a, b - 1, c), binHu(a, b + 1, c)},
+                                                    {binHu(a, b, c - 1), binHu(a, b, c + 1)}}};
+    int axis = 0;
+    double steepest = 0.0;
+    for (int n = 0; n < 3; ++n) {
+      const auto& [low, high] = beside[std::size_t(n)];
+      // A thin sheet has the same on both sides.
+      const int across = std::max(std::abs(high - low),
+                                  std::min(std::abs(high - own), std::abs(low - own)));
+      const double steep = across / volume_.geometry.spacing_mm[n];
+      if (steep > steepest) steepest = steep, axis = n;
+    }
+    double hu = own;
+    for (int side = 0; side < 2; ++side) {
+      if (std::abs(beside[std::size_t(axis)][std::size_t(side)] - own) <= kHiddenByNoise) continue;
+      Vec3 middle((a - 1) / 3.0, (b - 1) / 3.0, (c - 1) / 3.0), along(0.0);
+      along[axis] = (side == 0 ? -1.0 : 1.0) / kBins;
+      const auto seen = [&](double share) {
+        const Vec3 v = middle + along * share;
+        return huAt(v.x, v.y, v.z);
+      };
+      const int other = seen(0.5);
+      if (other == own) continue;  // the boundary runs through the bin beside
+      double low = 0.0, high = 0.5;
+      for (int n = 0; n < 3; ++n) {
+        const double half = 0.5 * (low + high);
+        (seen(half) == own ? low : high) = half;
+      }
+      hu += (0.5 - 0.5 * (low + high)) * (other - own);
+    }
+    return std::int16_t(std::floor(hu + 0.5));
+  }
+
+  // The bins of a slice through the kernels of x and y: three layers of one value a voxel.
+  void spreadInPlane(int k) {
+    const Slice& slice = binsOf(k);
+    std::vector<std::int16_t>& out = spreadOf(k);
+    const auto nx = std::size_t(nx_), rows = std::size_t(ny_) * kBins;
+    std::vector<std::int16_t> wide(nx * kBins), narrow(nx * rows);
+    for (int layer = 0; layer < kBins; ++layer) {
+      for (int b = 0; b < ny_ * kBins; ++b) {
+        const std::uint8_t* looks = &slice.nearBoundary[std::size_t(b / kBins) * nx];
+        std::copy_n(&slice.values[binAt(0, b, layer)], wide.size(), wide.begin());
+        for (int i = 0; i < nx_; ++i) {
+          if (looks[i] == uniform) continue;
+          for (int a = kBins * i; a < kBins * (i + 1); ++a) {
+            const auto at = std::size_t(a);
+            if (looks[i] == closely || differsAround(a, b, kBins * k + layer)) {
+              wide[at] = refined(a, b, kBins * k + layer);
+            }
+          }
+        }
+        spreadRow(wide, looks, &narrow[std::size_t(b) * nx]);
+      }
+      spreadColumns(narrow, &out[std::size_t(layer) * nx * std::size_t(ny_)]);
+    }
+  }
+
+  // In a voxel that is looked at softly, whether a bin borders on something else after all.
+  bool differsAround(int a, int b, int c) {
+    const int own = binHu(a, b, c);
+    return std::abs(binHu(a - 1, b, c) - own) > kHiddenByNoise ||
+           std::abs(binHu(a + 1, b, c) - own) > kHiddenByNoise ||
+           std::abs(binHu(a, b - 1, c) - own) > kHiddenByNoise ||
+           std::abs(binHu(a, b + 1, c) - own) > kHiddenByNoise ||
+           std::abs(binHu(a, b, c - 1) - own) > kHiddenByNoise ||
+           std::abs(binHu(a, b, c + 1) - own) > kHiddenByNoise;
+  }
+
+  void spreadRow(const std::vector<std::int16_t>& bins, const std::uint8_t* looks,
+                 std::int16_t* out) const {
+    const Kernel& kernel = kernels_[0];
+    const int taps = int(kernel.weights.size()), last = kBins * nx_ - 1;
+    int unlike = 0;  // voxels within reach that are near a boundary
+    for (int i = 0; i < std::min(kernel.reach, nx_); ++i) unlike += looks[i] != uniform;
+    for (int i = 0; i < nx_; ++i) {
+      if (i + kernel.reach < nx_) unlike += looks[i + kernel.reach] != uniform;
+      if (i > kernel.reach) unlike -= looks[i - kernel.reach - 1] != uniform;
+      if (unlike == 0) {
+        out[i] = std::int16_t(kPerHu * bins[std::size_t(kBins * i)]);
+        continue;
+      }
+      const int from = kBins * (i - kernel.reach);
+      int sum = 0;
+      if (from >= 0 && from + taps - 1 <= last) {
+        const std::int16_t* bin = &bins[std::size_t(from)];
+        for (int n = 0; n < taps; ++n) sum += bin[n] * kernel.weights[std::size_t(n)];
+      } else {
+        for (int n = 0; n < taps; ++n) {
+          sum += bins[std::size_t(std::clamp(from + n, 0, last))] * kernel.weights[std::size_t(n)];
+        }
+      }
+      // Weights of 2^14 down to eighths of HU.
+      out[i] = std::int16_t((sum + (kOne / kPerHu) / 2) >> 11);
+    }
+  }
+
+  // Rows of bins, one value a voxel across, to rows of voxels.
+  void spreadColumns(const std::vector<std::int16_t>& rows, std::int16_t* out) const {
+    const Kernel& kernel = kernels_[1];
+    const auto nx = std::size_t(nx_);
+    std::vector<int> sum(nx);
+    for (int j = 0; j < ny_; ++j) {
+      std::fill(sum.begin(), sum.end(), 0);
+      addUp(kernel, kBins * (j - kernel.reach), kBins * ny_,
+            [&](int row) { return &rows[std::size_t(row) * nx]; }, sum);
+      for (std::size_t i = 0; i < nx; ++i) out[std::size_t(j) * nx + i] = rounded(sum[i]);
+    }
+  }
+
+  template <class RowAt>
+  static void addUp(const Kernel& kernel, int from, int count, const RowAt& rowAt,
+                    std::vector<int>& sum) {
+    for (std::size_t n = 0; n < kernel.weights.size(); ++n) {
+      const std::int16_t* row = rowAt(std::clamp(from + int(n), 0, count - 1));
+      const int weight = kernel.weights[n];
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * row[i];
+    }
+  }
+
+  void finish(int k) {
+    const Kernel& kernel = kernels_[2];
+    const std::size_t area = std::size_t(nx_) * std::size_t(ny_);
+    std::vector<int> sum(area, 0);
+    addUp(kernel, kBins * (k - kernel.reach), kBins * nz_,
+          [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
+    std::size_t index = volume_.geometry.indexOf(0, 0, k);
+    for (std::size_t n = 0; n < area; ++n, ++index) {
+      // A scanner stores 12 bits from -1024 on.
+      const double hu = double(rounded(sum[n])) / kPerHu + noise_hu_ * standardNormal(index);
+      volume_.hu[index] = std::int16_t(std::floor(std::clamp(hu, -1024.0, 3071.0) + 0.5));
+    }
+  }
+
+  PhantomTruth truth_;
+  const std::vector<PhantomTissue>& centres_;
+  double noise_hu_;
+  const Progress& progress_;
+  Volume& volume_;
+  Mat4 affine_;
+  int nx_, ny_, nz_;
+  std::array<Kernel, 3> kernels_;
+  std::size_t layer_;  // bins in one layer of a slice
+  // Rings of slices: those that a chunk needs, by number modulo the ring's length.
+  std::vector<Slice> bins_;
+  std::vector<std::vector<std::int16_t>> spread_;
+};
+
+}  // namespace
+
+std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry& geometry,
+                                          const Progress& progress) {
+  std::vector<PhantomTissue> centres(geometry.voxelCount());
+  const Mat4 affine = geometry.voxelToPatient();
+  const int slices = geometry.size[2];
+  for (int first = 0; first < slices; first += kChunk) {
+    progress.at(Painter::kCentresShare * first / slices, Painter::kStep);
+    onTwoThreads(std::min(kChunk, slices - first), [&](int n) {
+      if (progress.cancelled()) return;
+      std::size_t index = geometry.indexOf(0, 0, first + n);
+      for (int j = 0; j < geometry.size[1]; ++j) {
+        for (int i = 0; i < geometry.size[0]; ++i) {
+          centres[index++] =
+              truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
+                    Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
+        }
+      }
+    });
+    if (progress.cancelled()) return {};
+  }
+  return centres;
+}
+
+bool paintPhantom(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
+                  const Progress& progress, Volume& volume) {
+  return Painter(truth, centres, noise_hu, progress, volume).paint();
+}
+
+}  // namespace trephine
