@@ -110,7 +110,7 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
 }  // namespace
 
 // The contrast over the ball around a sample from which on it lies across an edge.
-constexpr double kEdge_HU = 60.0;
+constexpr double kEdge_HU = 40.0;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 

@@ -33,7 +33,7 @@ struct RayPlace {
   Vec3 weight{0.0};
 };
 using RayBall = std::vector<RayPlace>;
-constexpr int kBallPlaces = 18;
+constexpr int kBallPlaces = 24;
 
 // Directions spread evenly (Fibonacci's spiral) at 1.75 voxels, or one where slices are far apart:
 // the sum of HU times direction is the normal of a surface.
