@@ -242,12 +242,11 @@ std::shared_ptr<const LabelMap> organLabels(const ClassSubject& subject) {
 
 }  // namespace
 
-Result<std::vector<double>> craniumWrongPercent(const std::vector<RaySetting>& settings,
+Result<std::vector<double>> craniumWrongPercent(std::shared_ptr<const Volume> volume,
+                                                const std::vector<RaySetting>& settings,
                                                 const RenderOptions& options,
                                                 const Progress& progress) {
-  Result<Volume> volume = makePhantom("cranium", Progress(progress, 0.0, 0.2));
-  if (!volume) return volume.error();
-  auto cranium = subjectOf("cranium", std::make_shared<const Volume>(*std::move(volume)));
+  auto cranium = subjectOf("cranium", std::move(volume));
   if (!cranium) return cranium.error();
   if (Status apart = colourApart(*cranium); !apart) return apart.error();
   auto made = rendererOf(*cranium, options.truth_edge);

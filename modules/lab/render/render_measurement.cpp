@@ -44,7 +44,8 @@ Result<RenderMeasurement> measureRender(const RenderOptions& options,
   if (!subjects) return subjects.error();
   // What needs most of the machine's parts comes first: where one is missing, it is soon said.
   const Progress exercises(progress, 0.1, 0.2), picture(progress, 0.2, 0.25);
-  if (Status done = measureExercises(options, exercises, result); !done) return done.error();
+  if (Status done = measureExercises(*subjects, options, exercises, result); !done)
+    return done.error();
   if (Status done = measureFirstPicture(options, out, picture, result); !done) return done.error();
   const Progress surface(progress, 0.25, 0.3), classes(progress, 0.3, 0.4);
   if (Status done = measureSurface(options, surface, result); !done) return done.error();

@@ -67,16 +67,17 @@ Status measureSurface(const RenderOptions& options, const Progress& progress,
 // Both mappers on both phantoms, from six directions.
 Status measureClasses(const std::vector<RenderSubject>& subjects, const RenderOptions& options,
                       const Progress& progress, RenderMeasurement& result);
-// By setting, of the cranium and of the shell.
-Result<std::vector<double>> craniumWrongPercent(const std::vector<RaySetting>& settings,
+// By setting, of the cranium's own volume and of the shell.
+Result<std::vector<double>> craniumWrongPercent(std::shared_ptr<const Volume> cranium,
+                                                const std::vector<RaySetting>& settings,
                                                 const RenderOptions& options,
                                                 const Progress& progress);
 Result<std::vector<double>> shellLuminancePercent(const std::vector<RaySetting>& settings,
                                                   const RenderOptions& options,
                                                   const Progress& progress);
 // Shipped exercises with their operators, drawn as they run.
-Status measureExercises(const RenderOptions& options, const Progress& progress,
-                        RenderMeasurement& result);
+Status measureExercises(const std::vector<RenderSubject>& subjects, const RenderOptions& options,
+                        const Progress& progress, RenderMeasurement& result);
 // The first picture of a series that was imported.
 Status measureFirstPicture(const RenderOptions& options, const std::filesystem::path& out,
                            const Progress& progress, RenderMeasurement& result);
