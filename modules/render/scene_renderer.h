@@ -1,7 +1,7 @@
 // Draws a case: the volume by ray casting, the tools, nothing else. VTK stays inside the .cpp.
 //
-// One thread, the window's. It owns no voxels: it draws those of a VolumeMirror, whose changes go to
-// the GPU as dirty boxes only.
+// One thread, the window's. It owns no voxels: it draws those of a VolumeMirror, whose changes go
+// to the GPU as dirty boxes only.
 #pragma once
 
 #include <functional>

@@ -8,9 +8,9 @@
 namespace trephine {
 
 inline QSettings windowSettings() {
-  return QSettings(QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation) +
-                       "/window.ini",
-                   QSettings::IniFormat);
+  return QSettings(
+      QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation) + "/window.ini",
+      QSettings::IniFormat);
 }
 
 }  // namespace trephine

@@ -127,7 +127,7 @@ class MainWindow : public QMainWindow {
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   FourUp* views_;
-  ViewWidget* view_;  // of them
+  ViewWidget* view_;     // of them
   StateNotice* notice_;  // over the views
   RewindBar* rewind_;
   QLabel *hint_, *rates_;

@@ -236,9 +236,8 @@ void MainWindow::connectParts() {
     view_->setFocus();
   });
 
-  connect(views_, &FourUp::helpChanged, this, [this](const QString& words) {
-    words.isEmpty() ? showPhase() : hint_->setText(words);
-  });
+  connect(views_, &FourUp::helpChanged, this,
+          [this](const QString& words) { words.isEmpty() ? showPhase() : hint_->setText(words); });
   connect(view_, &ViewWidget::handMoved, this, &MainWindow::moveHand);
   connect(view_, &ViewWidget::failed, this, &MainWindow::report);
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });

@@ -50,8 +50,8 @@ FourUp::FourUp(QWidget* parent) : QWidget(parent) {
                      tr("Axial, coronal, sagittal and 3-D side by side"));
   one_large_ = makeAction("oneLarge", tr("One &large, three small"), Qt::Key_F7,
                           tr("One view large and three small; again: the next one large"));
-  single_ = makeAction("oneView", tr("&One view"), Qt::Key_F8,
-                       tr("One view alone; again: the next one"));
+  single_ =
+      makeAction("oneView", tr("&One view"), Qt::Key_F8, tr("One view alone; again: the next one"));
   connect(four_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::four); });
   connect(one_large_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::one_large); });
   connect(single_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::single); });
@@ -98,9 +98,8 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   connect(made.view, &SliceView::pointChosen, this, &FourUp::setPoint);
   connect(made.view, &SliceView::windowChosen, this, &FourUp::setWindow);
   connect(made.view, &SliceView::toolChosen, this, &FourUp::setTool);
-  connect(made.view, &SliceView::overlayWanted, this, [this] {
-    setOverlay(Overlay((int(colours_.overlay()) + 1) % 3), colours_.opacity());
-  });
+  connect(made.view, &SliceView::overlayWanted, this,
+          [this] { setOverlay(Overlay((int(colours_.overlay()) + 1) % 3), colours_.opacity()); });
   connect(made.view, &SliceView::enlargeWanted, this, [this, axis] { enlarge(int(axis) + 1); });
   connect(made.view, &SliceView::sliceShown, made.slider, [slider = made.slider](int k) {
     const QSignalBlocker quiet(slider);
@@ -108,8 +107,9 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   });
   connect(made.slider, &QSlider::valueChanged, made.view, &SliceView::setSlice);
   connect(made.view, &SliceView::focused, this, [this] {
-    emit helpChanged(tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
-                        "1\u20135: presets. M: ruler. N: angle. O: colours."));
+    emit helpChanged(
+        tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
+           "1\u20135: presets. M: ruler. N: angle. O: colours."));
   });
   return made;
 }

@@ -19,7 +19,8 @@ struct GreyRamp {
 
 // Colours of labels that no tissue names, each far from the one before.
 Vec3 labelColour(int label) {
-  const QColor colour = QColor::fromHsvF(float(std::fmod(label * 0.618033988749895, 1.0)), 0.75f, 1.0f);
+  const QColor colour =
+      QColor::fromHsvF(float(std::fmod(label * 0.618033988749895, 1.0)), 0.75f, 1.0f);
   return {colour.redF(), colour.greenF(), colour.blueF()};
 }
 
@@ -103,8 +104,11 @@ void SliceColours::setOverlay(Overlay overlay, double opacity) {
 }
 
 SliceColours::Tint SliceColours::tintOf(const Vec3& colour) const {
-  const auto part = [&](double c) { return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity_)); };
-  return {unsigned(std::lround(256.0 * (1.0 - opacity_))), part(colour.x), part(colour.y), part(colour.z)};
+  const auto part = [&](double c) {
+    return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity_));
+  };
+  return {unsigned(std::lround(256.0 * (1.0 - opacity_))), part(colour.x), part(colour.y),
+          part(colour.z)};
 }
 
 void SliceColours::mix() {
@@ -144,8 +148,8 @@ void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry&
     std::array<std::int64_t, 3> at;
     for (std::size_t a = 0; a < 3; ++a) at[a] = start.at[a] + first * step.at[a];
     for (int x = first; x < end; ++x) {
-      const std::size_t voxel = g.indexOf(int(at[0] >> kUnitShift), int(at[1] >> kUnitShift),
-                                          int(at[2] >> kUnitShift));
+      const std::size_t voxel =
+          g.indexOf(int(at[0] >> kUnitShift), int(at[1] >> kUnitShift), int(at[2] >> kUnitShift));
       line[x] = colours.of(hu[voxel], label ? label[voxel] : 0);
       for (std::size_t a = 0; a < 3; ++a) at[a] += step.at[a];
     }

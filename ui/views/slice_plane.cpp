@@ -25,7 +25,9 @@ Mat3 axesOf(SliceAxis axis) {
   return {0, 1, 0, 0, 0, -1, -1, 0, 0};
 }
 
-Vec3 lastVoxel(const GridGeometry& g) { return Vec3(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1); }
+Vec3 lastVoxel(const GridGeometry& g) {
+  return Vec3(g.size[0] - 1, g.size[1] - 1, g.size[2] - 1);
+}
 
 // The grid with its axes in another order and each pointing towards `wanted`; nothing where one of
 // them does not lie along the patient.
@@ -38,7 +40,9 @@ std::optional<GridGeometry> permuted(const GridGeometry& grid, const Mat3& wante
   for (int n = 0; n < 3; ++n) {
     int best = 0;
     for (int a = 1; a < 3; ++a) {
-      const auto along = [&](int axis) { return std::abs(glm::dot(grid.direction[axis], wanted[n])); };
+      const auto along = [&](int axis) {
+        return std::abs(glm::dot(grid.direction[axis], wanted[n]));
+      };
       if (along(a) > along(best)) best = a;
     }
     if (taken[std::size_t(best)]) return {};

@@ -11,8 +11,8 @@ namespace trephine {
 
 namespace {
 constexpr int kPageOfSlices = 10;
-constexpr double kShortestRuler_pixels = 3.0;  // less is a click
-constexpr double kWidthPerPixel = 0.006;       // natural logarithm
+constexpr double kShortestRuler_pixels = 3.0;   // less is a click
+constexpr double kWidthPerPixel = 0.006;        // natural logarithm
 constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
 constexpr double kWidest_HU = 8000.0;
 constexpr double kHighest_HU = 4000.0;
@@ -130,8 +130,8 @@ void SliceView::placePoint(const QPointF& in_widget) {
 void SliceView::addMeasurePoint(const QPointF& in_widget) {
   const Vec3 point = toPatient_mm(in_widget);
   if (!drawing_) {
-    drawing_ = Measure{tool_ == SliceTool::ruler ? Measure::Kind::ruler : Measure::Kind::angle,
-                       {point}};
+    drawing_ =
+        Measure{tool_ == SliceTool::ruler ? Measure::Kind::ruler : Measure::Kind::angle, {point}};
   }
   drawing_->points_mm.back() = point;
   if (drawing_->complete()) {

@@ -1,9 +1,10 @@
 // An axial, coronal or sagittal slice of what the mirror holds, as it is cut. It asks for what
 // concerns all views (the common point, window, tool) by signals and is told what came of it.
 //
-// Left drag does what the tool in hand does: window (right: wider, up: brighter), ruler, angle (three
-// clicks), common point; with Shift it moves the common point with any tool. Wheel, Page Up/Down,
-// arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives a tool up.
+// Left drag does what the tool in hand does: window (right: wider, up: brighter), ruler, angle
+// (three clicks), common point; with Shift it moves the common point with any tool. Wheel, Page
+// Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
+// a tool up.
 #pragma once
 
 #include <QImage>

@@ -103,10 +103,12 @@ void SliceView::paintTools(QPainter& painter) const {
   for (const ToolView& tool : tools_) {
     const Vec3 tip = tool.pose_mm.position;
     if (!isFinite(tool.pose_mm)) continue;
-    const Vec3 back = tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
+    const Vec3 back =
+        tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
     const double off_mm = std::abs(toVoxel(stack_, tip).z - slice_) * stack_.spacing_mm.z;
     const bool inside = off_mm <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9;
-    QColor colour = QColor::fromRgbF(float(tool.colour.x), float(tool.colour.y), float(tool.colour.z));
+    QColor colour =
+        QColor::fromRgbF(float(tool.colour.x), float(tool.colour.y), float(tool.colour.z));
     if (!inside) colour.setAlpha(150);
     const QPointF at = fromPatient(tip);
     const double ring = std::max(5.0, tool.radius_mm * pixelsPerMm());
@@ -137,7 +139,8 @@ void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
   QPolygonF line;
   for (const Vec3& point : measure.points_mm) line << fromPatient(point);
   painter.setBrush(Qt::NoBrush);
-  for (const auto& [colour, thick] : {std::pair(QColor(0, 0, 0, 180), 3.5), {colours::kCaution, 1.5}}) {
+  for (const auto& [colour, thick] :
+       {std::pair(QColor(0, 0, 0, 180), 3.5), {colours::kCaution, 1.5}}) {
     painter.setPen(QPen(colour, thick));
     painter.drawPolyline(line);
     for (const QPointF& end : line) painter.drawEllipse(end, 3.0, 3.0);
@@ -163,7 +166,8 @@ void SliceView::paintText(QPainter& painter) const {
   paintWords(painter, box.adjusted(0, line, 0, 0), Qt::AlignLeft | Qt::AlignTop, shades,
              colours::kQuiet);
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
-  const QString words = painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));
+  const QString words =
+      painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));
   if (narrow) box.setBottom(box.bottom() - line);
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignBottom, words, colours::kText);
 }

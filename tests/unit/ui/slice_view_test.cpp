@@ -97,8 +97,8 @@ TEST_F(SliceViewTest, SaysTheStoredHuUnderThePointerInAnyGrid) {
       const QRectF box = view_->target();
       int read = 0;
       for (int n = 1; n < 20; ++n) {
-        const QPointF place = box.topLeft() + QPointF(box.width() * n / 20.0,
-                                                      box.height() * (n * 7 % 20) / 20.0);
+        const QPointF place =
+            box.topLeft() + QPointF(box.width() * n / 20.0, box.height() * (n * 7 % 20) / 20.0);
         hover(place);
         const auto voxel = voxelAt(grid(), view_->toPatient_mm(place));
         if (!voxel) {
@@ -304,6 +304,7 @@ TEST_F(SliceViewTest, OfOneSliceOfEqualHuOrOfNoSizeIsAPictureAndNoCrash) {
   flat.hu.assign(flat.hu.size(), 500);
   for (SliceAxis axis : kSliceAxes) {
     show(flat, axis);
+    press(Qt::Key_2);
     const QRectF box = view_->target();
     EXPECT_GT(box.width(), 0.0);
     const GridGeometry& s = view_->stack();
