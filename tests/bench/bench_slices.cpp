@@ -6,6 +6,8 @@
 #include <QElapsedTimer>
 #include <QStandardPaths>
 #include <QWheelEvent>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -44,6 +46,14 @@ Volume head(const Index3& size, const Mat3& direction) {
   return volume;
 }
 
+// Of all threads of this process: what a busy machine does not change.
+double processor_ms() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto ms = [](const timeval& t) { return double(t.tv_sec) * 1e3 + double(t.tv_usec) * 1e-3; };
+  return ms(used.ru_utime) + ms(used.ru_stime);
+}
+
 // What one slice after another takes, from the turn of the wheel to the end of the window's frame.
 void scroll(FourUp& views, SliceAxis axis, const char* what) {
   SliceView& view = views.slice(axis);
@@ -52,6 +62,7 @@ void scroll(FourUp& views, SliceAxis axis, const char* what) {
   for (int i = 0; i < 5; ++i) QApplication::processEvents();
   std::vector<double> ms;
   const int drawn = view.drawn();
+  const double processor_before_ms = processor_ms();
   QElapsedTimer all;
   all.start();
   for (int k = 1; k < std::min(view.slices(), 200); ++k) {

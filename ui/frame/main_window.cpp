@@ -157,6 +157,7 @@ void MainWindow::showScene() {
   showRenderable(scene->controller);
   view_->setTissues(scene->tissues);
   views_->setTissues(scene->tissues);
+  views_->setAnatomy(scene->anatomy);
   arms_->setScene(*scene);
 }
 

@@ -142,6 +142,7 @@ void FourUp::pullChanges(Grid& grid) {
 }
 
 void FourUp::changed() {
+  bar_->setLabelsAtHand(mirror_->labels() != nullptr);
   three_d_->takeChanges();
   for (const Slices& of : slices_) of.view->takeChanges();
 }
@@ -149,6 +150,10 @@ void FourUp::changed() {
 void FourUp::setTissues(const TissueSet& tissues) {
   colours_.setTissues(tissues);
   for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
+void FourUp::setAnatomy(const std::string& anatomy) {
+  if (std::exchange(anatomy_, anatomy) != anatomy) setWindow(usualWindow(anatomy));
 }
 
 void FourUp::setTools(const std::vector<ToolView>& tools) {

@@ -39,6 +39,8 @@ class FourUp : public QWidget {
 
   // Of the slices; the 3-D view has its own.
   void setTissues(const TissueSet& tissues);
+  // Another anatomy than before is looked at with its usual HU window.
+  void setAnatomy(const std::string& anatomy);
   void setTools(const std::vector<ToolView>& tools);
   // The point that all slices show; outside the case, the nearest in it.
   void setPoint(const Vec3& patient_mm);
@@ -83,6 +85,7 @@ class FourUp : public QWidget {
 
   std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   SliceColours colours_;
+  std::string anatomy_;
   ViewWidget* three_d_;
   std::array<Slices, 3> slices_;
   SliceBar* bar_;

@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QPainter>
 #include <QSignalBlocker>
+#include <QStandardItemModel>
 #include <QToolButton>
 #include <cmath>
 
@@ -129,6 +130,11 @@ void SliceBar::showWindow(const HuWindow& window) {
   const auto preset = std::ranges::find(kWindowPresets, window, &WindowPreset::window);
   const bool own = preset == kWindowPresets.end();
   windows_->setCurrentIndex(own ? -1 : int(preset - kWindowPresets.begin()));
+}
+
+void SliceBar::setLabelsAtHand(bool at_hand) {
+  auto* items = qobject_cast<QStandardItemModel*>(overlays_->model());
+  items->item(int(Overlay::labels))->setEnabled(at_hand);
 }
 
 void SliceBar::showOverlay(Overlay overlay, double opacity) {

@@ -18,6 +18,7 @@ class SliceBar : public QWidget {
   void showTool(SliceTool tool);
   void showWindow(const HuWindow& window);
   void showOverlay(Overlay overlay, double opacity);
+  void setLabelsAtHand(bool at_hand);
 
  signals:
   void toolChosen(trephine::SliceTool tool);

@@ -34,6 +34,10 @@ inline constexpr std::array<WindowPreset, 5> kWindowPresets{{
     {QT_TRANSLATE_NOOP("HuWindow", "Liver"), {60.0, 160.0}},
 }};
 inline constexpr std::size_t kFirstPreset = 1;  // what a view begins with
+// What a case of that anatomy is looked at with: soft tissue for an abdomen, else bone.
+inline HuWindow usualWindow(const std::string& anatomy) {
+  return kWindowPresets[anatomy == "abdomen" ? 2 : kFirstPreset].window;
+}
 
 // From the lowest to the highest value of the slice: for what is no CT.
 HuWindow wholeRange(const SlicePicture& slice);

@@ -18,9 +18,9 @@ constexpr double kWheelNotch = 120.0;    // Qt: eighths of a degree
 
 void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,
                 const QColor& colour) {
-  painter.setPen(QColor(0, 0, 0, 200));
-  for (const QPointF& by : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)}) {
-    painter.drawText(inside.translated(by), alignment, words);
+  painter.setPen(QColor(0, 0, 0, 220));
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) painter.drawText(inside.translated(x, y), alignment, words);
   }
   painter.setPen(colour);
   painter.drawText(inside, alignment, words);

@@ -16,6 +16,7 @@ constexpr double kWidthPerPixel = 0.006;        // natural logarithm
 constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
 constexpr double kWidest_HU = 8000.0;
 constexpr double kHighest_HU = 4000.0;
+constexpr int kLine_pixels = 2;  // what a line may cover beside its pixel
 }  // namespace
 
 SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
@@ -52,18 +53,23 @@ void SliceView::coloursChanged() {
   update();
 }
 
+// Where the slice stays only the lines of the other views move.
 void SliceView::setPoint(const Vec3& patient_mm) {
+  const QPointF before = fromPatient(point_mm_);
   point_mm_ = patient_mm;
-  if (hasSlice()) {
-    const double at = toVoxel(stack_, patient_mm).z;
-    const int k = std::clamp(int(std::lround(at)), 0, slices() - 1);
-    if (k != slice_) {
-      slice_ = k;
-      stale_ = true;
-    }
-    emit sliceShown(slice_);
+  if (!hasSlice()) return;
+  const int k = std::clamp(int(std::lround(toVoxel(stack_, patient_mm).z)), 0, slices() - 1);
+  if (k != slice_) {
+    slice_ = k;
+    stale_ = true;
+    update();
   }
-  update();
+  for (const QPointF& at : {before, fromPatient(point_mm_)}) {
+    const QPoint pixel = at.toPoint();
+    update(0, pixel.y() - kLine_pixels, width(), 2 * kLine_pixels + 1);
+    update(pixel.x() - kLine_pixels, 0, 2 * kLine_pixels + 1, height());
+  }
+  emit sliceShown(slice_);
 }
 
 void SliceView::setSlice(int k) {
@@ -81,9 +87,9 @@ void SliceView::setTool(SliceTool tool) {
 }
 
 void SliceView::setTools(const std::vector<ToolView>& tools) {
-  if (tools.empty() && tools_.empty()) return;
+  const QRect before = toolsRect();
   tools_ = tools;
-  update();
+  update(before | toolsRect());
 }
 
 Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
@@ -176,7 +182,8 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     SlicePane::mouseMoveEvent(event);
   }
   event->accept();
-  update();
+  const int words = 3 * fontMetrics().height() + 14;  // where HU and tissue are written
+  drawing_ ? update() : update(0, height() - words, width(), words);
 }
 
 void SliceView::mouseReleaseEvent(QMouseEvent* event) {

@@ -79,6 +79,13 @@ class SliceView : public SlicePane {
   void placePoint(const QPointF& in_widget);
   void addMeasurePoint(const QPointF& in_widget);
   bool isShown(const Measure& measure) const;
+  struct ToolMark {  // in the widget
+    QPointF tip, back;
+    double ring;
+    bool in_slice;
+  };
+  ToolMark markOf(const ToolView& tool) const;
+  QRect toolsRect() const;  // what the marks of the tools cover
   void paintCross(QPainter& painter) const;
   void paintTools(QPainter& painter) const;
   void paintMeasures(QPainter& painter) const;

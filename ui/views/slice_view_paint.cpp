@@ -97,34 +97,46 @@ void SliceView::paintCross(QPainter& painter) const {
   }
 }
 
+SliceView::ToolMark SliceView::markOf(const ToolView& tool) const {
+  const Vec3 tip = tool.pose_mm.position;
+  const Vec3 back = tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
+  const double off_mm = std::abs(toVoxel(stack_, tip).z - slice_) * stack_.spacing_mm.z;
+  return {fromPatient(tip), fromPatient(back), std::max(5.0, tool.radius_mm * pixelsPerMm()),
+          off_mm <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9};
+}
+
+QRect SliceView::toolsRect() const {
+  QRectF all;
+  for (const ToolView& tool : tools_) {
+    if (!isFinite(tool.pose_mm)) continue;
+    const ToolMark mark = markOf(tool);
+    const double more = mark.ring + 4.0;
+    all |= QRectF(mark.tip, mark.back).normalized().adjusted(-more, -more, more, more);
+  }
+  return (all & QRectF(rect())).toAlignedRect();
+}
+
 // A ring at the tip and a line along the tool, seen along the slice's normal: full where the tip is
 // in the slice, thin and broken where it is before or behind it.
 void SliceView::paintTools(QPainter& painter) const {
   for (const ToolView& tool : tools_) {
-    const Vec3 tip = tool.pose_mm.position;
     if (!isFinite(tool.pose_mm)) continue;
-    const Vec3 back =
-        tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
-    const double off_mm = std::abs(toVoxel(stack_, tip).z - slice_) * stack_.spacing_mm.z;
-    const bool inside = off_mm <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9;
+    const ToolMark mark = markOf(tool);
     QColor colour =
         QColor::fromRgbF(float(tool.colour.x), float(tool.colour.y), float(tool.colour.z));
-    if (!inside) colour.setAlpha(150);
-    const QPointF at = fromPatient(tip);
-    const double ring = std::max(5.0, tool.radius_mm * pixelsPerMm());
+    if (!mark.in_slice) colour.setAlpha(150);
     const auto draw = [&](const QColor& with, double thick) {
       painter.setBrush(Qt::NoBrush);
-      painter.setPen(QPen(with, thick, inside ? Qt::SolidLine : Qt::DotLine));
-      painter.drawLine(at, fromPatient(back));
-      painter.drawEllipse(at, ring, ring);
+      painter.setPen(QPen(with, thick, mark.in_slice ? Qt::SolidLine : Qt::DotLine));
+      painter.drawLine(mark.tip, mark.back);
+      painter.drawEllipse(mark.tip, mark.ring, mark.ring);
     };
-    if (inside) draw(QColor(0, 0, 0, 180), 4.5);
-    draw(colour, inside ? 2.5 : 1.2);
-    if (inside) {
-      painter.setPen(Qt::NoPen);
-      painter.setBrush(colour);
-      painter.drawEllipse(at, 2.0, 2.0);
-    }
+    if (mark.in_slice) draw(QColor(0, 0, 0, 180), 4.5);
+    draw(colour, mark.in_slice ? 2.5 : 1.2);
+    if (!mark.in_slice) continue;
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(colour);
+    painter.drawEllipse(mark.tip, 2.0, 2.0);
   }
 }
 
@@ -149,7 +161,8 @@ void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
   if (angle && line.size() < 3) return;
   const QString words = angle ? tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)
                               : tr("%1 mm").arg(length_mm(measure), 0, 'f', 1);
-  QRectF box(line[1] + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
+  const QPointF beside = angle ? line[1] : (line[0] + line[1]) / 2.0;
+  QRectF box(beside + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
   box.moveRight(std::min(box.right(), width() - 4.0));
   box.moveTop(std::clamp(box.top(), 2.0, std::max(2.0, height() - 20.0)));
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignVCenter, words, colours::kCaution);
@@ -164,7 +177,7 @@ void SliceView::paintText(QPainter& painter) const {
   const HuWindow& window = colours_.window();
   const QString shades = tr("W %1 L %2").arg(window.width_hu).arg(window.centre_hu);
   paintWords(painter, box.adjusted(0, line, 0, 0), Qt::AlignLeft | Qt::AlignTop, shades,
-             colours::kQuiet);
+             colours::kText);
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
   const QString words =
       painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));
