@@ -2,12 +2,12 @@
 // view that is scrolled, and the longest that the event loop was held. Needs a display (xvfb-run).
 //
 //   bench_slices [COLUMNS ROWS SLICES]
+#include <sys/resource.h>
+
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QStandardPaths>
 #include <QWheelEvent>
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -50,7 +50,9 @@ Volume head(const Index3& size, const Mat3& direction) {
 double processor_ms() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
-  const auto ms = [](const timeval& t) { return double(t.tv_sec) * 1e3 + double(t.tv_usec) * 1e-3; };
+  const auto ms = [](const timeval& t) {
+    return double(t.tv_sec) * 1e3 + double(t.tv_usec) * 1e-3;
+  };
   return ms(used.ru_utime) + ms(used.ru_stime);
 }
 

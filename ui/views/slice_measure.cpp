@@ -1,6 +1,6 @@
 #include "ui/views/slice_measure.h"
 
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 namespace trephine {
 
@@ -13,7 +13,7 @@ double angle_deg(const Measure& angle) {
   const Vec3 a = angle.points_mm[0] - angle.points_mm[1];
   const Vec3 b = angle.points_mm[2] - angle.points_mm[1];
   // Precise for small angles too, where the cosine is not.
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / glm::pi<double>();
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace trephine
