@@ -83,9 +83,10 @@ void scroll(FourUp& views, SliceAxis axis, const char* what) {
   const int pictures = view.drawn() - drawn;
   std::sort(ms.begin(), ms.end());
   std::printf(
-      "%-28s %4d x %4d pixels: %6.1f pictures/s, median %5.1f ms, p99 %5.1f, longest %5.1f\n", what,
-      view.width(), view.height(), pictures / seconds, ms[ms.size() / 2], ms[ms.size() * 99 / 100],
-      ms.back());
+      "%-24s %4d x %4d pixels: %6.1f pictures/s, median %5.1f ms, p99 %5.1f, longest %5.1f; "
+      "%5.1f ms of processor a picture\n",
+      what, view.width(), view.height(), pictures / seconds, ms[ms.size() / 2],
+      ms[ms.size() * 99 / 100], ms.back(), (processor_ms() - processor_before_ms) / pictures);
 }
 
 }  // namespace
