@@ -55,11 +55,12 @@ struct SceneRenderer::Parts {
   RenderHost host;
   bool hosted = false;
 
-  Volume copy;
+  std::shared_ptr<VolumeMirror> mirror = std::make_shared<VolumeMirror>();
+  std::unique_ptr<VolumeMirror::Reader> news = std::make_unique<VolumeMirror::Reader>(mirror);
+  GridGeometry shown;  // of what VTK draws
   CarveVolume volume;
   ToolDrawing tools;
   OrientationCue cue{*renderer};
-  std::vector<VoxelBox> pulled;
 
   ViewCamera camera;
   LevelOfDetail level;
@@ -256,28 +257,38 @@ std::string SceneRenderer::openGlDescription() const {
   return text.empty() ? "none" : text;
 }
 
-void SceneRenderer::setVolume(Volume copy, std::shared_ptr<const LabelMap> labels) {
+void SceneRenderer::setMirror(std::shared_ptr<VolumeMirror> mirror) {
   Parts& p = *parts_;
-  p.stale = true;
-  const bool same_place = copy.geometry == p.copy.geometry;
-  p.volume.remove(*p.renderer);
-  p.copy = std::move(copy);
-  if (!hasVolume()) return;
-  p.volume.show(p.copy, std::move(labels), *p.renderer);
-  if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  p.news = std::make_unique<VolumeMirror::Reader>(mirror);
+  p.volume.remove(*p.renderer);  // before the voxels that VTK reads go
+  p.mirror = std::move(mirror);
+  takeChanges();
 }
 
-void SceneRenderer::refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels) {
+void SceneRenderer::setVolume(const Grid& grid) {
+  auto mirror = std::make_shared<VolumeMirror>();
+  mirror->show(grid.snapshot(), grid.labels());
+  setMirror(std::move(mirror));
+}
+
+bool SceneRenderer::takeChanges() {
   Parts& p = *parts_;
-  if (!hasVolume() || !(voxels.geometry == p.copy.geometry)) return;
+  const VolumeMirror::News news = p.news->take();
+  if (!news.any()) return false;
   p.stale = true;
+  for (const VoxelBox& box : news.boxes) p.volume.changed(box);
+  if (!news.all) return true;
   p.volume.remove(*p.renderer);
-  voxels.read(0, p.copy.hu);
-  p.volume.show(p.copy, std::move(labels), *p.renderer);
+  if (!hasVolume()) return true;
+  const bool same_place = p.mirror->volume().geometry == p.shown;
+  p.shown = p.mirror->volume().geometry;
+  p.volume.show(p.mirror->lent(), p.mirror->labels(), *p.renderer);
+  if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  return true;
 }
 
 bool SceneRenderer::hasVolume() const {
-  return !parts_->copy.hu.empty();
+  return !parts_->mirror->empty();
 }
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
@@ -308,23 +319,17 @@ void SceneRenderer::setSampleDistance(double voxels) {
 }
 
 bool SceneRenderer::pullChanges(Grid& grid) {
-  Parts& p = *parts_;
-  if (!hasVolume() || !(grid.geometry() == p.copy.geometry)) return false;
-  p.pulled.clear();
-  grid.copyChanges(p.copy, p.pulled);
-  for (const VoxelBox& box : p.pulled) p.volume.changed(box);
-  if (p.pulled.empty()) return false;
-  p.stale = true;
-  return true;
+  parts_->mirror->pull(grid);
+  return takeChanges();
+}
+
+const Volume& SceneRenderer::copy() const {
+  return parts_->mirror->volume();
 }
 
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
   parts_->stale = true;
   parts_->tools.show(tools, *parts_->renderer);
-}
-
-const Volume& SceneRenderer::copy() const {
-  return parts_->copy;
 }
 
 void SceneRenderer::resize(int width, int height) {
@@ -342,6 +347,7 @@ void SceneRenderer::setMoving(bool moving) {
 bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   Parts& p = *parts_;
   if (!p.window) return true;
+  takeChanges();
   const Clock::time_point start = Clock::now();
   if (!p.moving && p.level.stillFrame_ms() > budget_ms) {
     if (p.stale || p.row > 0) p.drawStill(budget_ms);
@@ -366,6 +372,7 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
 
 Picture SceneRenderer::picture() {
   if (!parts_->window) return {};
+  takeChanges();
   parts_->draw(1.0, 1.0);
   return parts_->read();
 }
@@ -373,7 +380,7 @@ Picture SceneRenderer::picture() {
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
-  p.camera.fit(p.copy.geometry, direction, up, p.width, p.height);
+  p.camera.fit(p.mirror->volume().geometry, direction, up, p.width, p.height);
   p.stale = true;
 }
 
@@ -390,7 +397,7 @@ void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
 
 void SceneRenderer::zoom(double factor) {
   Parts& p = *parts_;
-  p.camera.zoom(factor, hasVolume() ? 20.0 * p.copy.geometry.diagonal_mm() : 1e5);
+  p.camera.zoom(factor, hasVolume() ? 20.0 * p.mirror->volume().geometry.diagonal_mm() : 1e5);
   p.stale = true;
 }
 
@@ -437,7 +444,7 @@ double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
 }
 
 Volume& UploadProbe::copy(SceneRenderer& renderer) {
-  return renderer.parts_->copy;
+  return renderer.parts_->mirror->lent();
 }
 
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {

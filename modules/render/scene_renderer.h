@@ -1,7 +1,7 @@
 // Draws a case: the volume by ray casting, the tools, nothing else. VTK stays inside the .cpp.
 //
-// One thread, the window's. The renderer owns its copy of the voxels; what the haptic thread cuts
-// reaches it through Grid::copyChanges and goes to the GPU as dirty boxes only.
+// One thread, the window's. It owns no voxels: it draws those of a VolumeMirror, whose changes go
+// to the GPU as dirty boxes only.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,7 @@
 #include "render/picture.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
-#include "volume/grid.h"
-#include "volume/voxel_slabs.h"
+#include "volume/volume_mirror.h"
 
 namespace trephine {
 
@@ -73,12 +72,11 @@ class SceneRenderer {
   void detach();  // before the context goes
   std::string openGlDescription() const;
 
-  // Looks at these voxels, its own from now on, and those labels of theirs. The camera stays where
-  // the place in the patient is the same. Full upload at the next paint.
-  void setVolume(Volume copy, std::shared_ptr<const LabelMap> labels);
-  void setVolume(const Grid& grid) { setVolume(grid.snapshot(), grid.labels()); }
-  // Copies all voxels again, from others of the same geometry. Allocates none.
-  void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels);
+  // Draws what this mirror holds from now on. The camera stays where the place in the patient is
+  // the same. Full upload at the next paint.
+  void setMirror(std::shared_ptr<VolumeMirror> mirror);
+  // For a picture without a window: a mirror of the grid, of its own.
+  void setVolume(const Grid& grid);
   bool hasVolume() const;
   // A tissue of the set that is not visible is shown all the same where a look says so (asSeen).
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
@@ -92,12 +90,14 @@ class SceneRenderer {
   // `measure trades` recommends the default, and RayTruth's.
   static constexpr double kSampleDistance = 0.5;
   void setSampleDistance(double voxels);
-  // Copies what the writer changed since the last call and keeps the boxes for the next paint.
-  // True when there is something new to draw.
+  // Takes what is new in the mirror; the boxes are sent at the next paint. True when there is
+  // something new to draw.
+  bool takeChanges();
+  // The same after the mirror took what the grid's writer changed.
   bool pullChanges(Grid& grid);
-  void setTools(const std::vector<ToolView>& tools);
   // What is on the screen.
   const Volume& copy() const;
+  void setTools(const std::vector<ToolView>& tools);
 
   void resize(int width, int height);  // device pixels
   // Fewer rays and longer steps while something moves; `true` at each input, `false` when still.

@@ -74,6 +74,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   Heartbeat heartbeat;
   QEventLoop loop;
   MainWindow window(options.out);
+  window.views().setLayout({});  // the 3-D view alone, whatever its user is used to: it is measured
   Workstation& workstation = window.workstation();
   enum class Step { opening, starting, running, ending } step = Step::opening;
 

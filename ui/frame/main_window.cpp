@@ -157,6 +157,8 @@ void MainWindow::showScene() {
   showRenderable(scene->controller);
   tissues_->setLooks(workstation_.looks());
   view_->setTissues(scene->tissues, workstation_.looks());
+  views_->setTissues(scene->tissues);
+  views_->setAnatomy(scene->anatomy);
   arms_->setScene(*scene);
 }
 
@@ -172,11 +174,11 @@ void MainWindow::showCase() {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of) return;
   carved_ = unsaved_cuts_ = false;
-  view_->setTools({});
+  showTools({});
   if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {
-    view_->showVolume(std::move(mirror), of->labels);
+    views_->showVolume(std::move(mirror), of->labels);
   } else {
-    view_->refill(slabsOf(*of->volume), of->labels);
+    views_->refill(slabsOf(*of->volume), of->labels);
   }
   QString about = sizeWords(of->volume->geometry);
   if (!of->name.empty()) about = toQt(of->name) + '\n' + about;
@@ -189,6 +191,7 @@ void MainWindow::showCase() {
 
 void MainWindow::lookAtCase() {
   if (const std::optional<LandmarkFrame> landmark = workstation_.viewLandmark()) {
+    views_->setPoint(landmark->position_mm);
     view_->lookAtLandmark(*landmark, workstation_.scene()->view.distance_mm);
   } else {
     view_->lookFromFront();
@@ -224,6 +227,7 @@ void MainWindow::showPhase() {
   reset_->setEnabled(running || (ready && carved_));
   for (QAction* action : {picture_, volume_, look_}) action->setEnabled(phase != Phase::empty);
   view_->setTraining(running);
+  views_->setTraining(running);
   switch (phase) {
     case Phase::starting:
       hint_->setText(tr("Starting\u2026"));
@@ -252,7 +256,7 @@ void MainWindow::sessionStarted() {
   rate_clock_.restart();
   // The view has the case already, unless an earlier exercise left its cuts there.
   const Case& of = *workstation_.currentCase();
-  if (carved_) view_->refill(slabsOf(*of.volume), of.labels);
+  if (carved_) views_->refill(slabsOf(*of.volume), of.labels);
   carved_ = true;
   unsaved_cuts_ = false;
   placeHandPoints();
@@ -266,7 +270,7 @@ void MainWindow::sessionEnded(Session& session) {
   arms_->showIdle();
   showRenderable(workstation_.scene()->controller);
   arms_->showController(workstation_.scene()->controller);
-  view_->setTools({});
+  showTools({});
   rates_->clear();
   const RunReport report = session.report();
   unsaved_cuts_ = report.removed_voxels > 0;
@@ -282,8 +286,8 @@ void MainWindow::tick() {
   Session* session = workstation_.session();
   if (!session) return;
   const LoopState& state = session->state();
-  view_->pullChanges(session->grid());
-  view_->setTools(toolViews(session->scene(), state));
+  views_->pullChanges(session->grid());
+  showTools(toolViews(session->scene(), state));
   if (panel_clock_.elapsed() >= kPanelEvery_ms) {
     panel_clock_.restart();
     showState(*session, state);
@@ -293,8 +297,13 @@ void MainWindow::tick() {
   if (session->finished()) workstation_.stop();
 }
 
+void MainWindow::showTools(const std::vector<ToolView>& tools) {
+  view_->setTools(tools);
+  views_->setTools(tools);
+}
+
 void MainWindow::showState(Session& session, const LoopState& state) {
-  view_->pullChanges(session.grid());
+  views_->pullChanges(session.grid());
   constexpr double kOld_s = 0.1;
   LoopState shown = state;
   if (session.standsStillFor_s() > kOld_s) {  // what was sent last is not what is sent now

@@ -22,7 +22,7 @@
 #include "ui/training/arms_panel.h"
 #include "ui/training/rewind_bar.h"
 #include "ui/training/state_notice.h"
-#include "ui/views/view_widget.h"
+#include "ui/views/four_up.h"
 
 class QFileDialog;
 
@@ -35,7 +35,8 @@ class MainWindow : public QMainWindow {
   explicit MainWindow(std::filesystem::path recordings = {}, QWidget* parent = nullptr);
 
   Workstation& workstation() { return workstation_; }
-  ViewWidget& view() { return *view_; }
+  FourUp& views() { return *views_; }
+  ViewWidget& view() { return *view_; }  // 3-D
 
   // As Workstation::openPath, once the window has its place on the screen: what opens over it then
   // knows where that is.
@@ -107,6 +108,7 @@ class MainWindow : public QMainWindow {
   void sessionStarted();
   void sessionEnded(Session& session);
   void tick();
+  void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);
   void showRates();
   void say(const QString& text);
@@ -124,8 +126,9 @@ class MainWindow : public QMainWindow {
   ImportDialog* import_;
   TissuePanel* tissues_;
   ArmsPanel* arms_;
-  ViewWidget* view_;
-  StateNotice* notice_;  // over the view
+  FourUp* views_;
+  ViewWidget* view_;     // of them
+  StateNotice* notice_;  // over the views
   RewindBar* rewind_;
   QLabel *hint_, *rates_;
   QTimer frame_timer_;

@@ -88,14 +88,15 @@ void MainWindow::buildPanels() {
   left_->insertTab(kCaseTab, scrolled(case_, "casePage"), tr("Case"));
   left_->addTab(scrolled(tissues_, "tissuePage"), tr("Tissues"));
   left_->setMinimumWidth(260);
-  view_ = new ViewWidget;
-  notice_ = new StateNotice(view_);
+  views_ = new FourUp;
+  view_ = &views_->threeD();
+  notice_ = new StateNotice(views_);
   rewind_ = new RewindBar;
   auto* middle = new QWidget;
   auto* middle_layout = new QVBoxLayout(middle);
   middle_layout->setContentsMargins(0, 0, 0, 0);
   middle_layout->setSpacing(0);
-  middle_layout->addWidget(view_, 1);
+  middle_layout->addWidget(views_, 1);
   middle_layout->addWidget(rewind_);
   arms_ = new ArmsPanel;
   arms_->setMinimumWidth(240);
@@ -149,7 +150,9 @@ void MainWindow::buildBars() {
       ->addMenu(tr("&Exercise"))
       ->addActions({start_, stop_, pause_, notice_->forceOnAction(), undo_, redo_,
                     rewind_->backAction(), reset_});
-  menuBar()->addMenu(tr("&View"))->addAction(look_);
+  QMenu* view = menuBar()->addMenu(tr("&View"));
+  view->addActions(views_->layoutActions());
+  view->addAction(look_);
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 
@@ -219,6 +222,7 @@ void MainWindow::connectParts() {
   connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
     workstation_.setTissues(set);
     view_->setTissues(set, workstation_.looks());
+    views_->setTissues(set);
   });
   connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
     workstation_.setLooks(looks);
@@ -236,6 +240,8 @@ void MainWindow::connectParts() {
     view_->setFocus();
   });
 
+  connect(views_, &FourUp::helpChanged, this,
+          [this](const QString& words) { words.isEmpty() ? showPhase() : hint_->setText(words); });
   connect(view_, &ViewWidget::handMoved, this, &MainWindow::moveHand);
   connect(view_, &ViewWidget::failed, this, &MainWindow::report);
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });

@@ -1,17 +1,15 @@
-// Draws one slice in its true proportions and as it is customary to look at one: in front or head
-// up, the patient's right at the left; and what is marked in it. Positions are the slice's own
-// pixels, column and row as stored.
+// A slice as it is stored, for the importer, looked at as is customary; and what is marked in it.
+// Positions are the slice's own pixels, column and row as stored.
 #pragma once
 
 #include <QImage>
-#include <QWidget>
-#include <optional>
 
 #include "ui/views/slice_image.h"
+#include "ui/views/slice_pane.h"
 
 namespace trephine {
 
-class SliceCanvas : public QWidget {
+class SliceCanvas : public SlicePane {
   Q_OBJECT
  public:
   explicit SliceCanvas(QWidget* parent = nullptr);
@@ -31,14 +29,12 @@ class SliceCanvas : public QWidget {
 
   const QImage& image() const { return image_; }  // as it is drawn
   const QImage& marked() const { return marked_; }
-  // Where the slice is drawn in the widget; empty without one.
-  QRectF target() const;
 
  signals:
   void boxDrawn(const QRect& pixels);
 
  protected:
-  void paintEvent(QPaintEvent* event) override;
+  void paintSlice(QPainter& painter) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
 
@@ -47,14 +43,11 @@ class SliceCanvas : public QWidget {
   QPoint pixelAt(const QPointF& position) const;
   QRectF inWidget(const QRect& pixels) const;
   void paintKept(QPainter& painter) const;
-  void paintLetters(QPainter& painter) const;
 
   SlicePicture slice_;
-  HuWindow window_ = kWindowPresets[0].window;
+  HuWindow window_ = kWindowPresets[kFirstPreset].window;
   QImage image_, marked_;
-  QString message_;
   std::optional<QRect> kept_;
-  std::optional<Mat3> direction_;
   Mirroring mirroring_;
   bool drawable_ = false;
   std::optional<QPoint> pressed_;

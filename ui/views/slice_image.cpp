@@ -5,6 +5,61 @@
 
 namespace trephine {
 
+namespace {
+
+struct GreyRamp {
+  explicit GreyRamp(const HuWindow& window)
+      : black(float(window.centre_hu - window.width_hu / 2.0)),
+        scale(float(255.0 / window.width_hu)) {}
+  std::uint8_t operator()(std::int16_t hu) const {
+    return std::uint8_t(std::clamp((float(hu) - black) * scale + 0.5f, 0.0f, 255.0f));
+  }
+  float black, scale;
+};
+
+// Colours of labels that no tissue names, each far from the one before.
+Vec3 labelColour(int label) {
+  const QColor colour =
+      QColor::fromHsvF(float(std::fmod(label * 0.618033988749895, 1.0)), 0.75f, 1.0f);
+  return {colour.redF(), colour.greenF(), colour.blueF()};
+}
+
+// Voxel coordinates as whole numbers of 2^-32 voxels, so that a step is an addition and a voxel's
+// number the upper half.
+constexpr double kUnit = 4294967296.0;
+constexpr int kUnitShift = 32;
+struct FixedVoxel {
+  explicit FixedVoxel(const Vec3& v) {
+    for (std::size_t a = 0; a < 3; ++a) at[a] = std::llround(v[int(a)] * kUnit);
+  }
+  std::array<std::int64_t, 3> at;
+};
+
+// Of the steps 0 to count - 1 from `start`, those that lie in the grid: [first, second).
+std::pair<int, int> insideSteps(const FixedVoxel& start, const FixedVoxel& step, const Index3& size,
+                                int count) {
+  std::int64_t first = 0, end = count;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t at = start.at[a], by = step.at[a];
+    const std::int64_t high = (std::int64_t(size[a]) << kUnitShift) - 1;
+    if (by == 0) {
+      if (at < 0 || at > high) return {0, 0};
+      continue;
+    }
+    const auto floored = [](std::int64_t n, std::int64_t d) {
+      return n / d - ((n % d != 0) && ((n < 0) != (d < 0)));
+    };
+    // 0 <= at + n by <= high
+    const std::int64_t low_n = by > 0 ? -floored(at, by) : -floored(high - at, -by);
+    const std::int64_t high_n = by > 0 ? floored(high - at, by) : floored(at, -by);
+    first = std::max(first, low_n);
+    end = std::min(end, high_n + 1);
+  }
+  return first < end ? std::pair{int(first), int(end)} : std::pair{0, 0};
+}
+
+}  // namespace
+
 HuWindow wholeRange(const SlicePicture& slice) {
   if (slice.hu.empty()) return kWideWindow;
   const auto [low, high] = std::ranges::minmax(slice.hu);
@@ -16,28 +71,90 @@ QImage windowed(const SlicePicture& slice, const HuWindow& window) {
       slice.hu.size() != std::size_t(slice.columns) * std::size_t(slice.rows)) {
     return {};
   }
-  const float black = float(window.centre_hu - window.width_hu / 2.0);
-  const float scale = float(255.0 / window.width_hu);
+  const GreyRamp grey(window);
   QImage image(slice.columns, slice.rows, QImage::Format_Grayscale8);
   const std::int16_t* hu = slice.hu.data();
   for (int row = 0; row < slice.rows; ++row) {
     uchar* line = image.scanLine(row);
-    for (int column = 0; column < slice.columns; ++column) {
-      line[column] = uchar(std::clamp((float(*hu++) - black) * scale + 0.5f, 0.0f, 255.0f));
-    }
+    for (int column = 0; column < slice.columns; ++column) line[column] = grey(*hu++);
   }
   return image;
 }
 
-int mainAxis(const Vec3& direction) {
-  const Vec3 size = glm::abs(direction);
-  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+SliceColours::SliceColours() : grey_(65536) {
+  setWindow(window_);
 }
 
-Mirroring mirroringOf(const Mat3& direction) {
-  const Vec3 &across = direction[0], &down = direction[1];
-  const double onwards = down[mainAxis(down)];
-  return {across[mainAxis(across)] < 0.0, mainAxis(down) == 2 ? onwards > 0.0 : onwards < 0.0};
+void SliceColours::setWindow(const HuWindow& window) {
+  window_ = {window.centre_hu, std::max(1.0, window.width_hu)};
+  const GreyRamp grey(window_);
+  for (int hu = -32768; hu <= 32767; ++hu) grey_[std::size_t(hu + 32768)] = grey(std::int16_t(hu));
+}
+
+void SliceColours::setTissues(const TissueSet& tissues) {
+  tissues_ = tissues;
+  lookup_.set(tissueTable(tissues));
+  mix();
+}
+
+void SliceColours::setOverlay(Overlay overlay, double opacity) {
+  overlay_ = overlay;
+  opacity_ = std::clamp(opacity, 0.0, 1.0);
+  mix();
+}
+
+SliceColours::Tint SliceColours::tintOf(const Vec3& colour) const {
+  const auto part = [&](double c) {
+    return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity_));
+  };
+  return {unsigned(std::lround(256.0 * (1.0 - opacity_))), part(colour.x), part(colour.y),
+          part(colour.z)};
+}
+
+void SliceColours::mix() {
+  of_class_.fill({});
+  for (std::size_t c = 0; c < tissues_.tissues.size() && c < kMaxTissues; ++c) {
+    of_class_[c + 1] = tintOf(tissues_.tissues[c].colour);
+  }
+  of_label_[0] = {};
+  for (int label = 1; label < 256; ++label) {
+    Vec3 colour = labelColour(label);
+    for (const Tissue& tissue : tissues_.tissues) {
+      if (tissue.label == label) colour = tissue.colour;
+    }
+    of_label_[std::size_t(label)] = tintOf(colour);
+  }
+}
+
+void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry& stack, int k,
+               const QRect& part, const SliceColours& colours, QImage& image) {
+  if (image.size() != part.size() || image.format() != QImage::Format_RGB32) {
+    image = QImage(part.size(), QImage::Format_RGB32);
+  }
+  const GridGeometry& g = volume.geometry;
+  const Mat4 to_voxel = g.patientToVoxel();
+  const Vec3 across = Mat3(to_voxel) * stack.direction[0] * stack.spacing_mm.x;
+  const Vec3 down = Mat3(to_voxel) * stack.direction[1] * stack.spacing_mm.y;
+  const Vec3 corner = toVoxel(g, stack.toPatient_mm(Vec3(part.left(), part.top(), k))) + 0.5;
+  const FixedVoxel step(across);
+  const std::int16_t* hu = volume.hu.data();
+  const bool coloured = labels && colours.overlay() != Overlay::none;
+  const std::uint8_t* label = coloured ? labels->labels.data() : nullptr;
+  for (int row = 0; row < part.height(); ++row) {
+    auto* line = reinterpret_cast<QRgb*>(image.scanLine(row));
+    const FixedVoxel start(corner + down * double(row));
+    const auto [first, end] = insideSteps(start, step, g.size, part.width());
+    std::fill(line, line + first, qRgb(0, 0, 0));
+    std::array<std::int64_t, 3> at;
+    for (std::size_t a = 0; a < 3; ++a) at[a] = start.at[a] + first * step.at[a];
+    for (int x = first; x < end; ++x) {
+      const std::size_t voxel =
+          g.indexOf(int(at[0] >> kUnitShift), int(at[1] >> kUnitShift), int(at[2] >> kUnitShift));
+      line[x] = colours.of(hu[voxel], label ? label[voxel] : 0);
+      for (std::size_t a = 0; a < 3; ++a) at[a] += step.at[a];
+    }
+    std::fill(line + end, line + part.width(), qRgb(0, 0, 0));
+  }
 }
 
 }  // namespace trephine

@@ -1,17 +1,21 @@
-// A slice as a picture: which HU are black and which are white, and which side is up. Looking never
-// changes a volume.
+// A slice as a picture: which HU are black and which are white, and what is coloured over them.
+// Looking never changes a volume.
 #pragma once
 
 #include <QImage>
 #include <array>
+#include <vector>
 
+#include "haptics/tissue_lookup.h"
 #include "imaging/importer.h"
+#include "ui/views/slice_plane.h"
 
 namespace trephine {
 
 struct HuWindow {
   double centre_hu = 0.0;
   double width_hu = 2000.0;
+  friend bool operator==(const HuWindow&, const HuWindow&) = default;
 };
 
 // The whole of a body from air to dense bone: for thumbnails.
@@ -21,13 +25,19 @@ struct WindowPreset {
   const char* name;  // translated in the context "HuWindow"
   HuWindow window;
 };
-// Usual settings of CT viewers: W 2000 L 500, W 400 L 40, W 1500 L -600.
-inline constexpr std::array<WindowPreset, 4> kWindowPresets{{
+// Usual settings of CT viewers. A preset's key is its place.
+inline constexpr std::array<WindowPreset, 5> kWindowPresets{{
+    {QT_TRANSLATE_NOOP("HuWindow", "Brain"), {40.0, 80.0}},
     {QT_TRANSLATE_NOOP("HuWindow", "Bone"), {500.0, 2000.0}},
-    {QT_TRANSLATE_NOOP("HuWindow", "Soft tissue"), {40.0, 400.0}},
+    {QT_TRANSLATE_NOOP("HuWindow", "Soft"), {40.0, 400.0}},
     {QT_TRANSLATE_NOOP("HuWindow", "Lung"), {-600.0, 1500.0}},
-    {QT_TRANSLATE_NOOP("HuWindow", "Wide"), kWideWindow},
+    {QT_TRANSLATE_NOOP("HuWindow", "Liver"), {60.0, 160.0}},
 }};
+inline constexpr std::size_t kFirstPreset = 1;  // what a view begins with
+// What a case of that anatomy is looked at with: soft tissue for an abdomen, else bone.
+inline HuWindow usualWindow(const std::string& anatomy) {
+  return kWindowPresets[anatomy == "abdomen" ? 2 : kFirstPreset].window;
+}
 
 // From the lowest to the highest value of the slice: for what is no CT.
 HuWindow wholeRange(const SlicePicture& slice);
@@ -36,14 +46,55 @@ HuWindow wholeRange(const SlicePicture& slice);
 // above; null for an empty slice.
 QImage windowed(const SlicePicture& slice, const HuWindow& window);
 
-// How a slice is turned to be looked at as is customary: front or head up, the patient's right or
-// front at the left. Columns of `direction` are the unit directions, LPS, of columns, rows and
-// slices.
-struct Mirroring {
-  bool across = false, down = false;
+enum class Overlay { none, tissues, labels };
+
+// The colour of a voxel: its grey, and over it the colour of its tissue or its label.
+class SliceColours {
+ public:
+  SliceColours();
+  void setWindow(const HuWindow& window);
+  void setTissues(const TissueSet& tissues);
+  void setOverlay(Overlay overlay, double opacity);  // opacity in [0, 1]
+
+  const HuWindow& window() const { return window_; }
+  Overlay overlay() const { return overlay_; }
+  double opacity() const { return opacity_; }
+  const TissueSet& tissues() const { return tissues_; }
+  // As touch classifies it: index into the tissues, or -1.
+  int classOf(std::int16_t hu, std::uint8_t label) const { return lookup_.classOf(hu, label); }
+
+  std::uint8_t greyOf(std::int16_t hu) const { return grey_[std::size_t(int(hu) + 32768)]; }
+  QRgb of(std::int16_t hu, std::uint8_t label) const {
+    const unsigned grey = greyOf(hu);
+    if (overlay_ == Overlay::none) return 0xff000000u | grey * 0x010101u;
+    const Tint& tint = overlay_ == Overlay::tissues
+                           ? of_class_[std::size_t(lookup_.classOf(hu, label) + 1)]
+                           : of_label_[label];
+    const auto mixed = [&](unsigned add) { return (grey * tint.keep + add) >> 8; };
+    return qRgb(int(mixed(tint.red)), int(mixed(tint.green)), int(mixed(tint.blue)));
+  }
+
+ private:
+  struct Tint {  // the share of the grey that stays, of 256, and what is added, times 256
+    unsigned keep = 256, red = 0, green = 0, blue = 0;
+  };
+  Tint tintOf(const Vec3& colour) const;
+  void mix();
+
+  HuWindow window_ = kWindowPresets[kFirstPreset].window;
+  Overlay overlay_ = Overlay::none;
+  double opacity_ = 0.35;
+  TissueSet tissues_;
+  TissueLookup lookup_;
+  std::vector<std::uint8_t> grey_;
+  std::array<Tint, kMaxTissues + 1> of_class_{};  // the first: of no tissue
+  std::array<Tint, 256> of_label_{};
 };
-Mirroring mirroringOf(const Mat3& direction);
-// The axis (0 to 2, of LPS) along which it mostly points.
-int mainAxis(const Vec3& direction);
+
+// Draws pixels `part` of slice `k` of `stack` into `image`, a pixel each: of the voxel of the
+// volume that the pixel's centre lies in, black where there is none. `stack` is one of the volume,
+// `labels` are fitted to it or null. Allocates nothing while `part` keeps its size.
+void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry& stack, int k,
+               const QRect& part, const SliceColours& colours, QImage& image);
 
 }  // namespace trephine

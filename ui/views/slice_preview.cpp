@@ -44,7 +44,7 @@ SlicePreview::SlicePreview(QWidget* parent) : QWidget(parent) {
     window_row->addWidget(button);
   }
   window_row->addStretch(1);
-  windows_->button(0)->setChecked(true);
+  windows_->button(int(kFirstPreset))->setChecked(true);
 
   slider_ = new QSlider(Qt::Horizontal, this);
   slider_->setObjectName("sliceSlider");

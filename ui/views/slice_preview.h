@@ -1,5 +1,5 @@
 // Looks through a stack slice by slice: slider, wheel, arrow keys, Page Up/Down, Home, End, and HU
-// windows (keys 1 to 4, which with Page Up/Down work wherever in the window the focus is, except
+// windows (keys 1 to 5, which with Page Up/Down work wherever in the window the focus is, except
 // in a field that takes them). It asks for the slice it wants and shows what it is given; the
 // picture before stays until then. Looking never changes a volume.
 #pragma once

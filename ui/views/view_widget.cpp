@@ -120,14 +120,14 @@ void ViewWidget::redraw() {
   update();
 }
 
-void ViewWidget::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels) {
-  renderer_.setVolume(std::move(copy), labels);
-  hint_->setVisible(!renderer_.hasVolume());
+void ViewWidget::setMirror(std::shared_ptr<VolumeMirror> mirror) {
+  renderer_.setMirror(std::move(mirror));
   redraw();
 }
 
-void ViewWidget::refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels) {
-  renderer_.refill(voxels, labels);
+void ViewWidget::takeChanges() {
+  if (!renderer_.takeChanges()) return;
+  hint_->setVisible(!renderer_.hasVolume());
   redraw();
 }
 
@@ -145,10 +145,6 @@ void ViewWidget::lookFromFront() {
   fitRenderer();
   renderer_.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
   redraw();
-}
-
-void ViewWidget::pullChanges(Grid& grid) {
-  if (renderer_.pullChanges(grid)) redraw();
 }
 
 void ViewWidget::setTools(const std::vector<ToolView>& tools) {

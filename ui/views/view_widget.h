@@ -29,17 +29,14 @@ class ViewWidget : public QOpenGLWidget {
   explicit ViewWidget(QWidget* parent = nullptr);
   ~ViewWidget() override;
 
-  // Shows these voxels, its own from now on; the camera stays where the place in the patient is the
-  // same.
-  void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels);
-  // All voxels of the same place again, from elsewhere.
-  void refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels);
+  // What it draws, from now on; once what the mirror holds has changed, takeChanges().
+  void setMirror(std::shared_ptr<VolumeMirror> mirror);
+  void takeChanges();
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   // Looks at a landmark from outside, or at the whole case from the front.
   void lookAtLandmark(const LandmarkFrame& frame, double distance_mm);
   void lookFromFront();
-  // What was cut since the last call, and where the tools are now; draws when something changed.
-  void pullChanges(Grid& grid);
+  // Where the tools are now; draws when something changed.
   void setTools(const std::vector<ToolView>& tools);
 
   // In an exercise the mouse moves hands; `point_mm` is where a hand is, which gives the scale.

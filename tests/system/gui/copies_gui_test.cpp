@@ -114,7 +114,7 @@ class CopiesGuiTest : public QObject {
     blank.geometry.size = {edge, edge, edge};
     blank.geometry.spacing_mm = Vec3(200.0 / edge);
     blank.hu.resize(count);
-    window_->view().showVolume(std::move(blank), nullptr);
+    window_->views().showVolume(std::move(blank), nullptr);
     settle();
     const double baseline_mb = test::privateDirtyMb();
 

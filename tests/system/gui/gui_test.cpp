@@ -88,7 +88,7 @@ class GuiTest : public QObject {
     return picture ? *picture : Picture{};
   }
   std::string shownSha() {
-    if (Session* session = workstation().session()) view().pullChanges(session->grid());
+    if (Session* session = workstation().session()) window_->views().pullChanges(session->grid());
     return volumeSha256(view().shownVolume());
   }
 

@@ -182,16 +182,16 @@ class ImportGuiTest : public QObject {
     list()->setFocus();
     QTest::keyClick(list(), Qt::Key_PageUp);
     QCOMPARE(slider->value(), 21);
-    QTest::keyClick(list(), Qt::Key_2);
-    QVERIFY(find<QToolButton>("window2")->isChecked());
+    QTest::keyClick(list(), Qt::Key_3);
+    QVERIFY(find<QToolButton>("window3")->isChecked());
     auto* field = find<QSpinBox>("cropTo2");
     field->setFocus();
     field->selectAll();
     QTest::keyClick(field, Qt::Key_1);
-    QVERIFY(find<QToolButton>("window2")->isChecked());
+    QVERIFY(find<QToolButton>("window3")->isChecked());
     QCOMPARE(field->text(), QString("1"));
     field->setValue(40);
-    find<QToolButton>("window1")->click();
+    find<QToolButton>("window2")->click();
   }
 
   // Every control is reached by Tab, and none twice.

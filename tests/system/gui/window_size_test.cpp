@@ -152,6 +152,15 @@ class WindowSizeTest : public QObject {
     verifyAllIsThere(size);
   }
 
+  void aSmallScreenShowsEveryControlOfFourViewsToo() {
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    window_->views().setLayout({ViewLayout::Kind::four, 0});
+    verifyAllIsThere(QSize(845, 444));
+    window_->views().setLayout({ViewLayout::Kind::one_large, 1});
+    verifyAllIsThere(QSize(845, 444));
+  }
+
   void aSmallScreenShowsEveryControlOfAnExerciseToo() {
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));

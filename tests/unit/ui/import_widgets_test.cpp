@@ -343,9 +343,9 @@ TEST_F(SlicePreviewTest, StartsInTheMiddleAndFollowsWheelAndKeys) {
 TEST_F(SlicePreviewTest, AWindowChangesThePictureAndNothingElse) {
   preview_.showSlice(50, slice(4, 4, Vec3(1.0)));
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 128);
-  find<QToolButton>(preview_, "window2").click();
+  find<QToolButton>(preview_, "window3").click();
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 255);
-  find<QToolButton>(preview_, "window1").click();
+  find<QToolButton>(preview_, "window2").click();
   EXPECT_EQ(preview_.canvas().image().constScanLine(0)[0], 128);
   EXPECT_EQ(preview_.index(), 50);
 }

@@ -1,0 +1,307 @@
+#include "ui/views/four_up.h"
+
+#include <QHBoxLayout>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QSignalBlocker>
+#include <algorithm>
+
+#include "ui/common/colours.h"
+#include "ui/common/settings.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kGap = 2;
+constexpr double kLargeShare = 0.68;  // of the width, beside three small ones
+// As they are written in the settings.
+constexpr std::array kKindNames{"single", "four", "oneLarge"};
+constexpr std::array kViewNames{"3d", "axial", "coronal", "sagittal"};
+constexpr const char* kKindKey = "views/layout";
+constexpr const char* kLargeKey = "views/large";
+
+template <std::size_t N>
+std::optional<int> placeOf(const std::array<const char*, N>& names, const QString& name) {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (name == names[i]) return int(i);
+  }
+  return {};
+}
+
+}  // namespace
+
+FourUp::FourUp(QWidget* parent) : QWidget(parent) {
+  setObjectName("views");
+  setMinimumSize(320, 240);
+  three_d_ = new ViewWidget(this);
+  three_d_->setMinimumSize(60, 60);
+  three_d_->setMirror(mirror_);
+  three_d_->installEventFilter(this);
+  setFocusProxy(three_d_);
+  for (SliceAxis axis : kSliceAxes) slices_[std::size_t(axis)] = makeSlices(axis);
+  bar_ = new SliceBar(this);
+  bar_->setObjectName("sliceBar");
+  bar_->setAutoFillBackground(true);
+  connect(bar_, &SliceBar::toolChosen, this, &FourUp::setTool);
+  connect(bar_, &SliceBar::windowChosen, this, &FourUp::setWindow);
+  connect(bar_, &SliceBar::overlayChosen, this, &FourUp::setOverlay);
+  four_ = makeAction("fourViews", tr("&Four views"), Qt::Key_F6,
+                     tr("Axial, coronal, sagittal and 3-D side by side"));
+  one_large_ = makeAction("oneLarge", tr("One &large, three small"), Qt::Key_F7,
+                          tr("One view large and three small; again: the next one large"));
+  single_ =
+      makeAction("oneView", tr("&One view"), Qt::Key_F8, tr("One view alone; again: the next one"));
+  connect(four_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::four); });
+  connect(one_large_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::one_large); });
+  connect(single_, &QAction::triggered, this, [this] { choose(ViewLayout::Kind::single); });
+  // Until it has painted the 3-D view cannot say whether it can.
+  connect(three_d_, &ViewWidget::framePainted, this, &FourUp::restore,
+          Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
+  setTool(SliceTool::window);
+  setWindow(colours_.window());
+  setOverlay(colours_.overlay(), colours_.opacity());
+  arrange();
+}
+
+QAction* FourUp::makeAction(const char* name, const QString& text, Qt::Key key,
+                            const QString& tip) {
+  auto* action = new QAction(text, this);
+  action->setObjectName(name);
+  action->setShortcut(QKeySequence(key));
+  action->setToolTip(tip);
+  action->setCheckable(true);
+  addAction(action);
+  return action;
+}
+
+FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
+  const char* name = kViewNames[std::size_t(axis) + 1];
+  Slices made;
+  made.box = new QWidget(this);
+  made.box->setAutoFillBackground(true);
+  made.view = new SliceView(axis, mirror_, colours_, made.box);
+  made.view->setObjectName(name);
+  made.view->setAccessibleName(tr("%1 slices").arg(name));
+  made.slider = new QSlider(Qt::Vertical, made.box);
+  made.slider->setObjectName(QString(name) + "Slider");
+  made.slider->setAccessibleName(tr("%1 slice").arg(name));
+  made.slider->setInvertedAppearance(axis != SliceAxis::axial);  // the head, or the front, is up
+  made.slider->setPageStep(10);
+  made.slider->setFocusPolicy(Qt::TabFocus);
+  made.slider->setEnabled(false);
+  auto* layout = new QHBoxLayout(made.box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  layout->addWidget(made.view, 1);
+  layout->addWidget(made.slider);
+  connect(made.view, &SliceView::pointChosen, this, &FourUp::setPoint);
+  connect(made.view, &SliceView::windowChosen, this, &FourUp::setWindow);
+  connect(made.view, &SliceView::toolChosen, this, &FourUp::setTool);
+  connect(made.view, &SliceView::overlayWanted, this,
+          [this] { setOverlay(Overlay((int(colours_.overlay()) + 1) % 3), colours_.opacity()); });
+  connect(made.view, &SliceView::enlargeWanted, this, [this, axis] { enlarge(int(axis) + 1); });
+  connect(made.view, &SliceView::sliceShown, made.slider, [slider = made.slider](int k) {
+    const QSignalBlocker quiet(slider);
+    slider->setValue(k);
+  });
+  connect(made.slider, &QSlider::valueChanged, made.view, &SliceView::setSlice);
+  connect(made.view, &SliceView::focused, this, [this] {
+    emit helpChanged(
+        tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
+           "1\u20135: presets. M: ruler. N: angle. O: colours."));
+  });
+  return made;
+}
+
+QWidget* FourUp::box(int view) const {
+  return view == 0 ? static_cast<QWidget*>(three_d_) : slices_[std::size_t(view - 1)].box;
+}
+
+// --- The case ---
+
+void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels) {
+  const bool same_place = copy.geometry == mirror_->volume().geometry;
+  mirror_->show(std::move(copy), labels);
+  changed();
+  for (const Slices& of : slices_) {
+    const QSignalBlocker quiet(of.slider);
+    of.slider->setRange(0, std::max(0, of.view->slices() - 1));
+    of.slider->setEnabled(of.view->slices() > 1);
+  }
+  setPoint(same_place || mirror_->empty() ? point_mm_ : mirror_->volume().geometry.centre_mm());
+}
+
+void FourUp::refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels) {
+  mirror_->refill(voxels, labels);
+  changed();
+}
+
+void FourUp::pullChanges(Grid& grid) {
+  if (mirror_->pull(grid)) changed();
+}
+
+void FourUp::changed() {
+  bar_->setLabelsAtHand(mirror_->labels() != nullptr);
+  three_d_->takeChanges();
+  for (const Slices& of : slices_) of.view->takeChanges();
+}
+
+void FourUp::setTissues(const TissueSet& tissues) {
+  colours_.setTissues(tissues);
+  for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
+void FourUp::setAnatomy(const std::string& anatomy) {
+  if (std::exchange(anatomy_, anatomy) != anatomy) setWindow(usualWindow(anatomy));
+}
+
+void FourUp::setTools(const std::vector<ToolView>& tools) {
+  for (const Slices& of : slices_) of.view->setTools(tools);
+}
+
+void FourUp::setPoint(const Vec3& patient_mm) {
+  if (mirror_->empty() || !isFinite(patient_mm)) return;
+  const GridGeometry& g = mirror_->volume().geometry;
+  Vec3 voxel = toVoxel(g, patient_mm);
+  for (int axis = 0; axis < 3; ++axis) {
+    voxel[axis] = std::clamp(voxel[axis], 0.0, g.size[std::size_t(axis)] - 1.0);
+  }
+  point_mm_ = g.toPatient_mm(voxel);
+  for (const Slices& of : slices_) of.view->setPoint(point_mm_);
+}
+
+void FourUp::setWindow(const HuWindow& window) {
+  colours_.setWindow(window);
+  bar_->showWindow(colours_.window());
+  for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
+void FourUp::setTool(SliceTool tool) {
+  bar_->showTool(tool);
+  for (const Slices& of : slices_) of.view->setTool(tool);
+}
+
+void FourUp::setOverlay(Overlay overlay, double opacity) {
+  colours_.setOverlay(overlay, opacity);
+  bar_->showOverlay(overlay, colours_.opacity());
+  for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
+// --- The layout ---
+
+void FourUp::setLayout(const ViewLayout& layout) {
+  restored_ = true;
+  if (layout.kind != ViewLayout::Kind::single) before_ = layout;
+  layout_ = layout;
+  arrange();
+}
+
+void FourUp::restore() {
+  if (restored_) return;
+  const QSettings settings = windowSettings();
+  const std::optional<int> kind = placeOf(kKindNames, settings.value(kKindKey).toString());
+  const std::optional<int> large = placeOf(kViewNames, settings.value(kLargeKey).toString());
+  if (kind) setLayout({ViewLayout::Kind(*kind), large.value_or(0)});
+  restored_ = true;
+}
+
+void FourUp::choose(const ViewLayout& layout) {
+  setLayout(layout);
+  QSettings settings = windowSettings();
+  settings.setValue(kKindKey, kKindNames[std::size_t(layout.kind)]);
+  settings.setValue(kLargeKey, kViewNames[std::size_t(layout.large)]);
+  focusLarge();
+}
+
+// By key or menu: again, the next view is the large one.
+void FourUp::choose(ViewLayout::Kind kind) {
+  ViewLayout next{kind, layout_.large};
+  if (kind == layout_.kind && kind != ViewLayout::Kind::four) {
+    next.large = (layout_.large + 1) % kViews;
+  } else {
+    for (int view = 1; view < kViews; ++view) {
+      if (slices_[std::size_t(view - 1)].view->hasFocus()) next.large = view;
+    }
+    if (three_d_->hasFocus()) next.large = 0;
+  }
+  choose(next);
+}
+
+// By double click: alone, or back to what was before.
+void FourUp::enlarge(int view) {
+  choose(layout_.kind == ViewLayout::Kind::single ? before_
+                                                  : ViewLayout{ViewLayout::Kind::single, view});
+}
+
+void FourUp::focusLarge() {
+  if (layout_.large == 0) {
+    three_d_->setFocus();
+  } else {
+    slices_[std::size_t(layout_.large - 1)].view->setFocus();
+  }
+}
+
+void FourUp::arrange() {
+  using Kind = ViewLayout::Kind;
+  four_->setChecked(layout_.kind == Kind::four);
+  one_large_->setChecked(layout_.kind == Kind::one_large);
+  single_->setChecked(layout_.kind == Kind::single);
+  const bool slices = layout_.kind != Kind::single || layout_.large != 0;
+  bar_->setVisible(slices);
+  QRect room = rect();
+  if (slices) {
+    const int tall = bar_->sizeHint().height();
+    bar_->setGeometry(room.left(), room.top(), room.width(), tall);
+    room.setTop(room.top() + tall);
+  }
+  std::array<QRect, kViews> places;
+  if (layout_.kind == Kind::single) {
+    places[std::size_t(layout_.large)] = room;
+  } else if (layout_.kind == Kind::four) {
+    const int left = (room.width() - kGap) / 2, top = (room.height() - kGap) / 2;
+    const QRect first(room.topLeft(), QSize(left, top));
+    const int right = room.width() - left - kGap, low = room.height() - top - kGap;
+    const QPoint x(left + kGap, 0), y(0, top + kGap);
+    places[1] = first;
+    places[0] = {first.topLeft() + x, QSize(right, top)};
+    places[2] = {first.topLeft() + y, QSize(left, low)};
+    places[3] = {first.topLeft() + x + y, QSize(right, low)};
+  } else {
+    const int left = int(kLargeShare * room.width());
+    places[std::size_t(layout_.large)] = {room.topLeft(), QSize(left, room.height())};
+    int row = 0;
+    for (int view : {1, 2, 3, 0}) {
+      if (view == layout_.large) continue;
+      const int from = room.height() * row / 3, to = room.height() * (row + 1) / 3;
+      places[std::size_t(view)] = {room.left() + left + kGap, room.top() + from,
+                                   room.width() - left - kGap, to - from - (row < 2 ? kGap : 0)};
+      ++row;
+    }
+  }
+  for (int view = 0; view < kViews; ++view) {
+    const QRect& place = places[std::size_t(view)];
+    if (!place.isEmpty()) box(view)->setGeometry(place);
+    box(view)->setVisible(!place.isEmpty());
+  }
+}
+
+void FourUp::resizeEvent(QResizeEvent*) {
+  arrange();
+}
+
+void FourUp::paintEvent(QPaintEvent*) {
+  QPainter(this).fillRect(rect(), colours::kLine);
+}
+
+bool FourUp::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == three_d_ && event->type() == QEvent::FocusIn) emit helpChanged({});
+  if (watched == three_d_ && event->type() == QEvent::MouseButtonDblClick && !training_ &&
+      static_cast<QMouseEvent*>(event)->button() == Qt::LeftButton) {
+    enlarge(0);
+    return true;
+  }
+  return QWidget::eventFilter(watched, event);
+}
+
+}  // namespace trephine

@@ -1,0 +1,99 @@
+// The case from every side: the 3-D view and the axial, coronal and sagittal slices, all from one
+// mirror of the voxels. Four of one size, one large with three small, or one alone; the user's
+// choice is remembered from one session to the next.
+#pragma once
+
+#include <QAction>
+#include <QSlider>
+#include <array>
+
+#include "ui/views/slice_bar.h"
+#include "ui/views/view_widget.h"
+
+namespace trephine {
+
+struct ViewLayout {
+  enum class Kind { single, four, one_large };
+  Kind kind = Kind::single;
+  int large = 0;  // 0: 3-D, 1 to 3: axial, coronal, sagittal
+  friend bool operator==(const ViewLayout&, const ViewLayout&) = default;
+};
+
+class FourUp : public QWidget {
+  Q_OBJECT
+ public:
+  static constexpr int kViews = 4;
+
+  explicit FourUp(QWidget* parent = nullptr);
+
+  ViewWidget& threeD() { return *three_d_; }
+  SliceView& slice(SliceAxis axis) { return *slices_[std::size_t(axis)].view; }
+  QList<QAction*> layoutActions() const { return {four_, one_large_, single_}; }
+
+  // These voxels from now on, in every view; or all of them again, of the same place.
+  void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels);
+  void refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels);
+  // What the writer changed since the last call, once for all views.
+  void pullChanges(Grid& grid);
+  const VolumeMirror& mirror() const { return *mirror_; }
+
+  // Of the slices; the 3-D view has its own.
+  void setTissues(const TissueSet& tissues);
+  // Another anatomy than before is looked at with its usual HU window.
+  void setAnatomy(const std::string& anatomy);
+  void setTools(const std::vector<ToolView>& tools);
+  // The point that all slices show; outside the case, the nearest in it.
+  void setPoint(const Vec3& patient_mm);
+  const Vec3& point_mm() const { return point_mm_; }
+  const SliceColours& colours() const { return colours_; }
+  // While an exercise runs a double click in the 3-D view is a hand's.
+  void setTraining(bool training) { training_ = training; }
+
+  // Not remembered: that is the user's choice alone. The layout that is, comes once the 3-D view
+  // has painted for the first time, unless another was set by then.
+  void setLayout(const ViewLayout& layout);
+  const ViewLayout& viewLayout() const { return layout_; }
+
+ signals:
+  // What mouse and keys do where the focus went; empty in the 3-D view.
+  void helpChanged(const QString& words);
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  struct Slices {
+    QWidget* box;
+    SliceView* view;
+    QSlider* slider;
+  };
+  QAction* makeAction(const char* name, const QString& text, Qt::Key key, const QString& tip);
+  Slices makeSlices(SliceAxis axis);
+  QWidget* box(int view) const;
+  void choose(ViewLayout::Kind kind);
+  void enlarge(int view);
+  void choose(const ViewLayout& layout);
+  void restore();
+  void arrange();
+  void focusLarge();
+  void changed();
+  void setWindow(const HuWindow& window);
+  void setTool(SliceTool tool);
+  void setOverlay(Overlay overlay, double opacity);
+
+  std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
+  SliceColours colours_;
+  std::string anatomy_;
+  ViewWidget* three_d_;
+  std::array<Slices, 3> slices_;
+  SliceBar* bar_;
+  QAction *four_, *one_large_, *single_;
+  Vec3 point_mm_{0.0};
+  ViewLayout layout_, before_{ViewLayout::Kind::four, 0};
+  bool restored_ = false;
+  bool training_ = false;
+};
+
+}  // namespace trephine

@@ -1,0 +1,65 @@
+// Draws one slice in its true proportions on black, with the patient's letters at its edges and a
+// scale bar; middle drag shifts it, Ctrl+wheel, right drag, + and - zoom it, 0 fits it in again.
+// What the slice is, and what lies over it, is its subclasses' matter.
+#pragma once
+
+#include <QWidget>
+#include <optional>
+
+#include "ui/views/slice_plane.h"
+
+class QPainter;
+
+namespace trephine {
+
+class SlicePane : public QWidget {
+  Q_OBJECT
+ public:
+  explicit SlicePane(QWidget* parent = nullptr);
+
+  // Where all of the slice is drawn in the widget; empty without one.
+  QRectF target() const;
+  // Pixel (x, y) of the slice, as it is drawn, covers [x, x + 1) x [y, y + 1).
+  QPointF toSlice(const QPointF& in_widget) const;
+  QPointF toWidget(const QPointF& in_slice) const;
+  // Larger by the factor around a point of the widget.
+  void zoomAt(const QPointF& in_widget, double factor);
+  void fit();
+  double pixelsPerMm() const;
+
+ protected:
+  // So many pixels of that size. An empty size: no slice, only the message.
+  void setShape(const QSize& pixels, const QSizeF& pixel_mm);
+  // Unit directions, LPS, to the right and down as drawn; none: no letters.
+  void setEdges(const std::optional<std::array<Vec3, 2>>& right_down);
+  void setMessage(const QString& text);
+  const QSize& shape() const { return shape_; }
+  bool hasSlice() const { return !shape_.isEmpty(); }
+
+  virtual void paintSlice(QPainter& painter) = 0;
+  virtual void paintOver(QPainter&) {}
+
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  bool zoomKey(int key);  // whether it was one
+
+ private:
+  void paintLetters(QPainter& painter) const;
+  void paintScaleBar(QPainter& painter) const;
+
+  QSize shape_;
+  QSizeF pixel_mm_{1.0, 1.0};
+  std::optional<std::array<Vec3, 2>> right_down_;
+  QString message_;
+  double zoom_ = 1.0;  // 1: fits
+  QPointF shift_;      // of the slice's middle from the widget's, in widget pixels at zoom 1
+  QPointF last_, zoom_around_;
+};
+
+// Words that can be read on black and on bone alike.
+void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,
+                const QColor& colour);
+
+}  // namespace trephine

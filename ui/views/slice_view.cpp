@@ -1,0 +1,323 @@
+#include "ui/views/slice_view.h"
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kPageOfSlices = 10;
+constexpr double kShortestRuler_pixels = 3.0;   // less is a click
+constexpr double kWidthPerPixel = 0.006;        // natural logarithm
+constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
+constexpr double kWidest_HU = 8000.0;
+constexpr double kHighest_HU = 4000.0;
+constexpr int kLine_pixels = 2;  // what a line may cover beside its pixel
+}  // namespace
+
+SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
+                     const SliceColours& colours, QWidget* parent)
+    : SlicePane(parent), axis_(axis), mirror_(mirror), news_(mirror), colours_(colours) {
+  setFocusPolicy(Qt::StrongFocus);
+  setMouseTracking(true);
+  setMinimumSize(60, 60);
+  setMessage(tr("No case is open."));
+}
+
+void SliceView::takeChanges() {
+  const VolumeMirror::News news = news_.take();
+  const GridGeometry& grid = mirror_->volume().geometry;
+  if (news.all) {
+    const GridGeometry before = stack_;
+    stack_ = mirror_->empty() ? GridGeometry{} : sliceStack(grid, axis_);
+    if (!(stack_ == before)) {
+      measures_.clear();
+      drawing_.reset();
+      fit();
+    }
+    setShape({stack_.size[0], stack_.size[1]}, {stack_.spacing_mm.x, stack_.spacing_mm.y});
+    setEdges({{stack_.direction[0], stack_.direction[1]}});
+    slice_ = std::clamp(slice_, 0, std::max(0, slices() - 1));
+    stale_ = true;
+  }
+  for (const VoxelBox& box : news.boxes) stale_ = stale_ || touches(stack_, slice_, grid, box);
+  if (stale_) update();
+}
+
+void SliceView::coloursChanged() {
+  stale_ = true;
+  update();
+}
+
+// Where the slice stays only the lines of the other views move.
+void SliceView::setPoint(const Vec3& patient_mm) {
+  const QPointF before = fromPatient(point_mm_);
+  point_mm_ = patient_mm;
+  if (!hasSlice()) return;
+  const int k = std::clamp(int(std::lround(toVoxel(stack_, patient_mm).z)), 0, slices() - 1);
+  if (k != slice_) {
+    slice_ = k;
+    stale_ = true;
+    update();
+  }
+  for (const QPointF& at : {before, fromPatient(point_mm_)}) {
+    const QPoint pixel = at.toPoint();
+    update(0, pixel.y() - kLine_pixels, width(), 2 * kLine_pixels + 1);
+    update(pixel.x() - kLine_pixels, 0, 2 * kLine_pixels + 1, height());
+  }
+  emit sliceShown(slice_);
+}
+
+void SliceView::setSlice(int k) {
+  if (!hasSlice()) return;
+  Vec3 at = toVoxel(stack_, point_mm_);
+  at.z = std::clamp(k, 0, slices() - 1);
+  emit pointChosen(stack_.toPatient_mm(at));
+}
+
+void SliceView::setTool(SliceTool tool) {
+  tool_ = tool;
+  drawing_.reset();
+  setCursor(tool == SliceTool::window ? Qt::ArrowCursor : Qt::CrossCursor);
+  update();
+}
+
+void SliceView::setTools(const std::vector<ToolView>& tools) {
+  const QRect before = toolsRect();
+  tools_ = tools;
+  update(before | toolsRect());
+}
+
+Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
+  const QPointF at = toSlice(in_widget);
+  return stack_.toPatient_mm(Vec3(at.x() - 0.5, at.y() - 0.5, slice_));
+}
+
+QPointF SliceView::fromPatient(const Vec3& patient_mm) const {
+  const Vec3 at = toVoxel(stack_, patient_mm);
+  return toWidget({at.x + 0.5, at.y + 0.5});
+}
+
+QString SliceView::readout() const {
+  if (!pointer_ || !hasSlice()) return {};
+  const Volume& volume = mirror_->volume();
+  const std::optional<Index3> voxel = voxelAt(volume.geometry, toPatient_mm(*pointer_));
+  if (!voxel) return {};
+  const std::size_t index = volume.geometry.indexOf((*voxel)[0], (*voxel)[1], (*voxel)[2]);
+  const std::int16_t hu = volume.hu[index];
+  const std::uint8_t label = mirror_->labels() ? mirror_->labels()->labels[index] : 0;
+  QString words = tr("%1 HU").arg(hu);
+  if (const int tissue = colours_.classOf(hu, label); tissue >= 0) {
+    words += " \u00b7 " + toQt(colours_.tissues().tissues[std::size_t(tissue)].name);
+  }
+  if (label != 0) words += " \u00b7 " + tr("label %1").arg(label);
+  return words;
+}
+
+bool SliceView::isShown(const Measure& measure) const {
+  return std::ranges::all_of(measure.points_mm, [&](const Vec3& point) {
+    return std::lround(toVoxel(stack_, point).z) == slice_;
+  });
+}
+
+// --- Mouse and keys ---
+
+void SliceView::placePoint(const QPointF& in_widget) {
+  const QPointF at = toSlice(in_widget);
+  const Vec3 kept(std::clamp(at.x() - 0.5, 0.0, stack_.size[0] - 1.0),
+                  std::clamp(at.y() - 0.5, 0.0, stack_.size[1] - 1.0), slice_);
+  emit pointChosen(stack_.toPatient_mm(kept));
+}
+
+void SliceView::addMeasurePoint(const QPointF& in_widget) {
+  const Vec3 point = toPatient_mm(in_widget);
+  if (!drawing_) {
+    drawing_ =
+        Measure{tool_ == SliceTool::ruler ? Measure::Kind::ruler : Measure::Kind::angle, {point}};
+  }
+  drawing_->points_mm.back() = point;
+  if (drawing_->complete()) {
+    measures_.push_back(*std::exchange(drawing_, {}));
+  } else {
+    drawing_->points_mm.push_back(point);
+  }
+  update();
+}
+
+void SliceView::mousePressEvent(QMouseEvent* event) {
+  SlicePane::mousePressEvent(event);
+  event->accept();
+  pointer_ = pressed_ = event->position();
+  if (!hasSlice() || event->button() != Qt::LeftButton) return;
+  if ((event->modifiers() & Qt::ShiftModifier) || tool_ == SliceTool::point) {
+    drag_ = Drag::point;
+    placePoint(event->position());
+  } else if (tool_ == SliceTool::window) {
+    drag_ = Drag::window;
+    window_before_ = colours_.window();
+  } else {
+    if (tool_ == SliceTool::ruler) drag_ = Drag::ruler;
+    addMeasurePoint(event->position());
+  }
+}
+
+void SliceView::mouseMoveEvent(QMouseEvent* event) {
+  pointer_ = event->position();
+  const QPointF moved = event->position() - pressed_;
+  if (!(event->buttons() & Qt::LeftButton)) drag_ = Drag::none;
+  if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
+  if (drag_ == Drag::point) {
+    placePoint(event->position());
+  } else if (drag_ == Drag::window && !moved.isNull()) {
+    const double width = window_before_.width_hu * std::exp(kWidthPerPixel * moved.x());
+    const double centre =
+        window_before_.centre_hu + kLevelPerPixel * moved.y() * window_before_.width_hu;
+    emit windowChosen({std::round(std::clamp(centre, -kHighest_HU, kHighest_HU)),
+                       std::round(std::clamp(width, 1.0, kWidest_HU))});
+  } else {
+    SlicePane::mouseMoveEvent(event);
+  }
+  event->accept();
+  const int words = 3 * fontMetrics().height() + 14;  // where HU and tissue are written
+  drawing_ ? update() : update(0, height() - words, width(), words);
+}
+
+void SliceView::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() != Qt::LeftButton) return;
+  if (drag_ == Drag::ruler && drawing_) {
+    const QPointF moved = event->position() - pressed_;
+    if (std::hypot(moved.x(), moved.y()) >= kShortestRuler_pixels) {
+      addMeasurePoint(event->position());
+    } else {
+      drawing_.reset();
+      update();
+    }
+  }
+  drag_ = Drag::none;
+}
+
+void SliceView::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (tool_ == SliceTool::angle || event->button() != Qt::LeftButton) {
+    return mousePressEvent(event);
+  }
+  drag_ = Drag::none;
+  emit enlargeWanted();
+}
+
+void SliceView::wheelEvent(QWheelEvent* event) {
+  if (event->modifiers() & Qt::ControlModifier) return SlicePane::wheelEvent(event);
+  const QPoint angle = event->angleDelta();
+  turned_ += angle.y() != 0 ? angle.y() : angle.x();
+  const int notches = turned_ / QWheelEvent::DefaultDeltasPerStep;
+  turned_ -= notches * QWheelEvent::DefaultDeltasPerStep;  // a touchpad sends parts of a notch
+  if (notches != 0) setSlice(slice_ - notches);
+  event->accept();
+}
+
+bool SliceView::handleKey(int key) {
+  switch (key) {
+    case Qt::Key_Up:
+    case Qt::Key_Right:
+      setSlice(slice_ + 1);
+      break;
+    case Qt::Key_Down:
+    case Qt::Key_Left:
+      setSlice(slice_ - 1);
+      break;
+    case Qt::Key_PageUp:
+      setSlice(slice_ + kPageOfSlices);
+      break;
+    case Qt::Key_PageDown:
+      setSlice(slice_ - kPageOfSlices);
+      break;
+    case Qt::Key_Home:
+      setSlice(0);
+      break;
+    case Qt::Key_End:
+      setSlice(slices() - 1);
+      break;
+    case Qt::Key_W:
+      emit toolChosen(SliceTool::window);
+      break;
+    case Qt::Key_X:
+      emit toolChosen(SliceTool::point);
+      break;
+    case Qt::Key_M:
+      emit toolChosen(SliceTool::ruler);
+      break;
+    case Qt::Key_N:
+      emit toolChosen(SliceTool::angle);
+      break;
+    case Qt::Key_O:
+      emit overlayWanted();
+      break;
+    case Qt::Key_Delete:
+    case Qt::Key_Backspace: {
+      const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
+                                     [&](const Measure& m) { return isShown(m); });
+      if (drawing_) {
+        drawing_.reset();
+      } else if (last != measures_.rend()) {
+        measures_.erase(std::next(last).base());
+      }
+      update();
+      break;
+    }
+    case Qt::Key_Escape:
+      if (drawing_) {
+        drawing_.reset();
+        drag_ = Drag::none;
+        update();
+      } else if (tool_ != SliceTool::window) {
+        emit toolChosen(SliceTool::window);
+      } else {
+        return false;  // the window's: back to the hands
+      }
+      break;
+    default:
+      if (key >= Qt::Key_1 && key < Qt::Key_1 + int(kWindowPresets.size())) {
+        emit windowChosen(kWindowPresets[std::size_t(key - Qt::Key_1)].window);
+      } else {
+        return zoomKey(key);
+      }
+  }
+  return true;
+}
+
+// A key that is this view's is no shortcut of the window's meanwhile: Home, for one.
+bool SliceView::event(QEvent* event) {
+  if (event->type() == QEvent::ShortcutOverride) {
+    auto* key = static_cast<QKeyEvent*>(event);
+    const bool plain = !(key->modifiers() & (Qt::ControlModifier | Qt::AltModifier));
+    if (plain && key->key() != Qt::Key_Escape && key->key() < Qt::Key_F1) {
+      event->accept();
+      return true;
+    }
+  }
+  return SlicePane::event(event);
+}
+
+void SliceView::keyPressEvent(QKeyEvent* event) {
+  const bool plain = !(event->modifiers() & (Qt::ControlModifier | Qt::AltModifier));
+  if (!hasSlice() || !plain || !handleKey(event->key())) SlicePane::keyPressEvent(event);
+}
+
+void SliceView::leaveEvent(QEvent*) {
+  pointer_.reset();
+  update();
+}
+
+void SliceView::focusInEvent(QFocusEvent*) {
+  update();
+  emit focused();
+}
+
+void SliceView::focusOutEvent(QFocusEvent*) {
+  update();
+}
+
+}  // namespace trephine

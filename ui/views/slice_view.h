@@ -1,0 +1,118 @@
+// An axial, coronal or sagittal slice of what the mirror holds, as it is cut. It asks for what
+// concerns all views (the common point, window, tool) by signals and is told what came of it.
+//
+// Left drag does what the tool in hand does: window (right: wider, up: brighter), ruler, angle
+// (three clicks), common point; with Shift it moves the common point with any tool. Wheel, Page
+// Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
+// a tool up.
+#pragma once
+
+#include <QImage>
+#include <memory>
+
+#include "render/scene_renderer.h"
+#include "ui/views/slice_image.h"
+#include "ui/views/slice_measure.h"
+#include "ui/views/slice_pane.h"
+
+namespace trephine {
+
+enum class SliceTool { window, point, ruler, angle };
+
+// The colour of the lines that stand for slices of that axis in the other views.
+QColor colourOf(SliceAxis axis);
+
+class SliceView : public SlicePane {
+  Q_OBJECT
+ public:
+  // `colours` outlives the view; coloursChanged() once they were.
+  SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror, const SliceColours& colours,
+            QWidget* parent = nullptr);
+
+  // What is new in the mirror. Draws only where the slice shows a voxel that changed.
+  void takeChanges();
+  void coloursChanged();
+  // All three views show the slice that holds it.
+  void setPoint(const Vec3& patient_mm);
+  void setTool(SliceTool tool);
+  void setTools(const std::vector<ToolView>& tools);  // of the exercise
+  void setSlice(int k);                               // asks for the point that lies in it
+
+  SliceAxis axis() const { return axis_; }
+  int slice() const { return slice_; }
+  int slices() const { return stack_.size[2]; }
+  const GridGeometry& stack() const { return stack_; }
+  // A place of the widget in the patient, on the slice; and back, along the slice's normal.
+  Vec3 toPatient_mm(const QPointF& in_widget) const;
+  QPointF fromPatient(const Vec3& patient_mm) const;
+  // HU, tissue and label under the pointer; empty where it is not over the volume.
+  QString readout() const;
+  const std::vector<Measure>& measures() const { return measures_; }
+  // What the slice was drawn from, without what lies over it.
+  int drawn() const { return drawn_; }  // how often it was, for tests
+
+ signals:
+  void pointChosen(const trephine::Vec3& patient_mm);
+  void windowChosen(const trephine::HuWindow& window);
+  void toolChosen(trephine::SliceTool tool);
+  void overlayWanted();  // the next kind of overlay
+  void sliceShown(int k);
+  void enlargeWanted();
+  void focused();
+
+ protected:
+  void paintSlice(QPainter& painter) override;
+  void paintOver(QPainter& painter) override;
+  bool event(QEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void leaveEvent(QEvent* event) override;
+  void focusInEvent(QFocusEvent* event) override;
+  void focusOutEvent(QFocusEvent* event) override;
+
+ private:
+  bool handleKey(int key);
+  void placePoint(const QPointF& in_widget);
+  void addMeasurePoint(const QPointF& in_widget);
+  bool isShown(const Measure& measure) const;
+  struct ToolMark {  // in the widget
+    QPointF tip, back;
+    double ring;
+    bool in_slice;
+  };
+  ToolMark markOf(const ToolView& tool) const;
+  QRect toolsRect() const;  // what the marks of the tools cover
+  void paintCross(QPainter& painter) const;
+  void paintTools(QPainter& painter) const;
+  void paintMeasures(QPainter& painter) const;
+  void paintMeasure(QPainter& painter, const Measure& measure) const;
+  void paintText(QPainter& painter) const;
+
+  SliceAxis axis_;
+  std::shared_ptr<VolumeMirror> mirror_;
+  VolumeMirror::Reader news_;
+  const SliceColours& colours_;
+  GridGeometry stack_;
+  int slice_ = 0;
+  Vec3 point_mm_{0.0};
+  QImage image_;
+  QRect part_;  // of the slice's pixels, in the image
+  bool stale_ = true;
+  int drawn_ = 0;
+
+  SliceTool tool_ = SliceTool::window;
+  std::vector<ToolView> tools_;
+  std::vector<Measure> measures_;
+  std::optional<Measure> drawing_;  // its last point follows the pointer
+  std::optional<QPointF> pointer_;
+  QPointF pressed_;
+  enum class Drag { none, window, point, ruler } drag_ = Drag::none;
+  HuWindow window_before_;
+  int turned_ = 0;  // of the wheel, since the last whole notch
+};
+
+}  // namespace trephine

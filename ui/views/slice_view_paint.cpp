@@ -1,0 +1,188 @@
+// What a slice view draws: the slice, and what lies over it.
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/common/colours.h"
+#include "ui/views/slice_view.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kNarrow_pixels = 300.0;  // where words would meet the letters at the edges
+
+QString nameOf(SliceAxis axis) {
+  switch (axis) {
+    case SliceAxis::axial:
+      return SliceView::tr("Axial");
+    case SliceAxis::coronal:
+      return SliceView::tr("Coronal");
+    case SliceAxis::sagittal:
+      break;
+  }
+  return SliceView::tr("Sagittal");
+}
+
+// The view whose slices run across (`down` false) or along the columns of this one.
+SliceAxis lineOf(SliceAxis axis, bool across) {
+  if (axis == SliceAxis::axial) return across ? SliceAxis::coronal : SliceAxis::sagittal;
+  if (across) return SliceAxis::axial;
+  return axis == SliceAxis::coronal ? SliceAxis::sagittal : SliceAxis::coronal;
+}
+
+}  // namespace
+
+QColor colourOf(SliceAxis axis) {
+  switch (axis) {
+    case SliceAxis::axial:
+      return {0xe8, 0x7d, 0x8c};
+    case SliceAxis::coronal:
+      return {0x7c, 0xcf, 0x92};
+    case SliceAxis::sagittal:
+      break;
+  }
+  return {0xdc, 0xc6, 0x5e};
+}
+
+// Only what can be seen is drawn, and only when it changed.
+void SliceView::paintSlice(QPainter& painter) {
+  const QRectF seen(toSlice({0.0, 0.0}), toSlice({double(width()), double(height())}));
+  const QRect part = seen.toAlignedRect().adjusted(-1, -1, 1, 1) & QRect(QPoint(0, 0), shape());
+  if (part.isEmpty()) return;
+  if (stale_ || part != part_) {
+    drawSlice(mirror_->volume(), mirror_->labels().get(), stack_, slice_, part, colours_, image_);
+    part_ = part;
+    stale_ = false;
+    ++drawn_;
+  }
+  const QRectF into(toWidget(part.topLeft()),
+                    toWidget(QPointF(part.left() + part.width(), part.top() + part.height())));
+  painter.drawImage(into, image_);
+}
+
+void SliceView::paintOver(QPainter& painter) {
+  paintCross(painter);
+  painter.setRenderHint(QPainter::Antialiasing);
+  paintTools(painter);
+  paintMeasures(painter);
+  paintText(painter);
+  if (hasFocus()) {
+    painter.setRenderHint(QPainter::Antialiasing, false);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(colours::kAccent);
+    painter.drawRect(rect().adjusted(0, 0, -1, -1));
+  }
+}
+
+// Where the other two views' slices cut this one; open around the point itself.
+void SliceView::paintCross(QPainter& painter) const {
+  constexpr double kOpen_pixels = 9.0;
+  const QPointF at = fromPatient(point_mm_);
+  const QRectF box = target() & QRectF(rect());
+  const auto line = [&](SliceAxis of, const QPointF& from, const QPointF& to) {
+    QColor colour = colourOf(of);
+    colour.setAlpha(190);
+    painter.setPen(colour);
+    painter.drawLine(from, to);
+  };
+  const SliceAxis across = lineOf(axis_, true), along = lineOf(axis_, false);
+  if (at.y() >= box.top() && at.y() <= box.bottom()) {
+    line(across, {box.left(), at.y()}, {std::max(box.left(), at.x() - kOpen_pixels), at.y()});
+    line(across, {std::min(box.right(), at.x() + kOpen_pixels), at.y()}, {box.right(), at.y()});
+  }
+  if (at.x() >= box.left() && at.x() <= box.right()) {
+    line(along, {at.x(), box.top()}, {at.x(), std::max(box.top(), at.y() - kOpen_pixels)});
+    line(along, {at.x(), std::min(box.bottom(), at.y() + kOpen_pixels)}, {at.x(), box.bottom()});
+  }
+}
+
+SliceView::ToolMark SliceView::markOf(const ToolView& tool) const {
+  const Vec3 tip = tool.pose_mm.position;
+  const Vec3 back = tip + tool.pose_mm.orientation * Vec3(0.0, 0.0, std::max(5.0, tool.length_mm));
+  const double off_mm = std::abs(toVoxel(stack_, tip).z - slice_) * stack_.spacing_mm.z;
+  return {fromPatient(tip), fromPatient(back), std::max(5.0, tool.radius_mm * pixelsPerMm()),
+          off_mm <= std::max(tool.radius_mm, 0.5 * stack_.spacing_mm.z) + 1e-9};
+}
+
+QRect SliceView::toolsRect() const {
+  QRectF all;
+  for (const ToolView& tool : tools_) {
+    if (!isFinite(tool.pose_mm)) continue;
+    const ToolMark mark = markOf(tool);
+    const double more = mark.ring + 4.0;
+    all |= QRectF(mark.tip, mark.back).normalized().adjusted(-more, -more, more, more);
+  }
+  return (all & QRectF(rect())).toAlignedRect();
+}
+
+// A ring at the tip and a line along the tool, seen along the slice's normal: full where the tip is
+// in the slice, thin and broken where it is before or behind it.
+void SliceView::paintTools(QPainter& painter) const {
+  for (const ToolView& tool : tools_) {
+    if (!isFinite(tool.pose_mm)) continue;
+    const ToolMark mark = markOf(tool);
+    QColor colour =
+        QColor::fromRgbF(float(tool.colour.x), float(tool.colour.y), float(tool.colour.z));
+    if (!mark.in_slice) colour.setAlpha(150);
+    const auto draw = [&](const QColor& with, double thick) {
+      painter.setBrush(Qt::NoBrush);
+      painter.setPen(QPen(with, thick, mark.in_slice ? Qt::SolidLine : Qt::DotLine));
+      painter.drawLine(mark.tip, mark.back);
+      painter.drawEllipse(mark.tip, mark.ring, mark.ring);
+    };
+    if (mark.in_slice) draw(QColor(0, 0, 0, 180), 4.5);
+    draw(colour, mark.in_slice ? 2.5 : 1.2);
+    if (!mark.in_slice) continue;
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(colour);
+    painter.drawEllipse(mark.tip, 2.0, 2.0);
+  }
+}
+
+void SliceView::paintMeasures(QPainter& painter) const {
+  for (const Measure& measure : measures_) {
+    if (isShown(measure)) paintMeasure(painter, measure);
+  }
+  if (drawing_) paintMeasure(painter, *drawing_);
+}
+
+void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
+  QPolygonF line;
+  for (const Vec3& point : measure.points_mm) line << fromPatient(point);
+  painter.setBrush(Qt::NoBrush);
+  for (const auto& [colour, thick] :
+       {std::pair(QColor(0, 0, 0, 180), 3.5), {colours::kCaution, 1.5}}) {
+    painter.setPen(QPen(colour, thick));
+    painter.drawPolyline(line);
+    for (const QPointF& end : line) painter.drawEllipse(end, 3.0, 3.0);
+  }
+  const bool angle = measure.kind == Measure::Kind::angle;
+  if (angle && line.size() < 3) return;
+  const QString words = angle ? tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)
+                              : tr("%1 mm").arg(length_mm(measure), 0, 'f', 1);
+  const QPointF beside = angle ? line[1] : (line[0] + line[1]) / 2.0;
+  QRectF box(beside + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
+  box.moveRight(std::min(box.right(), width() - 4.0));
+  box.moveTop(std::clamp(box.top(), 2.0, std::max(2.0, height() - 20.0)));
+  paintWords(painter, box, Qt::AlignLeft | Qt::AlignVCenter, words, colours::kCaution);
+}
+
+void SliceView::paintText(QPainter& painter) const {
+  const double line = painter.fontMetrics().height();
+  const bool narrow = width() < kNarrow_pixels;
+  QRectF box = QRectF(rect()).adjusted(7, 4 + (narrow ? line : 0), -7, -(6 + (narrow ? line : 0)));
+  const QString place = tr("%1 %2/%3").arg(nameOf(axis_)).arg(slice_ + 1).arg(slices());
+  paintWords(painter, box, Qt::AlignLeft | Qt::AlignTop, place, colourOf(axis_));
+  const HuWindow& window = colours_.window();
+  const QString shades = tr("W %1 L %2").arg(window.width_hu).arg(window.centre_hu);
+  paintWords(painter, box.adjusted(0, line, 0, 0), Qt::AlignLeft | Qt::AlignTop, shades,
+             colours::kText);
+  box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
+  const QString words =
+      painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));
+  if (narrow) box.setBottom(box.bottom() - line);
+  paintWords(painter, box, Qt::AlignLeft | Qt::AlignBottom, words, colours::kText);
+}
+
+}  // namespace trephine
