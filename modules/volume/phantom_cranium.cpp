@@ -108,7 +108,7 @@ bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
            toNearest(p.z, 7.0) > 0.6;
   }
   static const Ellipsoid mastoid({54, 25, -42}, {6.5, 9, 13});
-  return mastoid.contains(m) && wave(p.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;
+  return mastoid.contains(m) && wave(m.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;
 }
 
 // Eyes and what moves them. True when `tissue` is set.
@@ -193,9 +193,9 @@ PhantomTissue craniumTissue(const Vec3& p) {
       const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);
       if (airway && bone < -0.0) return T::air;
       if (sinus_wall < 1.4 && m.z < 2.0) bone = std::min(bone, sinus_wall - 1.4);
-      if (m.z < -40.0) {
-        const bool neck = m.z < -50.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0;
-        if (neck) bone = std::min(bone, skull::vertebrae(m, canal));
+      if (m.z < -46.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0) {
+        const double vertebra = skull::vertebrae(m, canal);
+        if (vertebra < 0.0 && bone > 0.0) return longBone(vertebra, 1.5);
       }
       const bool shell = vault < 0.0 && vault > -kSkull && height > 0.0;
       if (bone < 0.0 && envelope < -2.5 && !shell) return T::facialBone;

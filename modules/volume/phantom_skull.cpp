@@ -176,7 +176,7 @@ double nose(const Vec3& drawn) {
   const double low = std::sqrt(square(m.x - 4.0) + square(m.z + 54.5)) - 8.0;
   const double high = rod2(m.x, m.z, 0, -53, 0, -38, 9.0, 3.4);
   double d = smoothUnion(low, high, 4);
-  return smoothIntersection(d, -23.0 - m.y, 4);
+  return smoothIntersection(d, m.y + 23.0, 4);
 }
 
 double earCanal(const Vec3& m) {
@@ -326,6 +326,7 @@ double skin(const Vec3& drawn, double scalp) {
     d = smoothUnion(d, jaw.roughDistance(m), 12);
     d = smoothUnion(d, jowl.roughDistance(m), 14);
   }
+  if (d > 50.0 || d < -30.0) return d;  // none of what follows reaches there
   if (m.y < -34.0) {
     d = smoothUnion(d, chain(brow, m, 6), 7);
     d = smoothUnion(d, smoothUnion(cheek.roughDistance(m), muzzle.roughDistance(m), 8), 8);
