@@ -165,7 +165,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
   if (level < 0.3 && height > 8.0) return insideDura(p, m, 20.0);
   if (m.z > 14.0 && level > 1.4) return T::air;  // over 10 mm outside
 
-  const bool far_below = level > 2.6 && m.z < 0.0;
+  const bool far_below = level > 1.6 && m.z < 0.0;
   double vault = level < 0.3 || far_below ? kVault.roughDistance(p) : kVault.distance(p);
   if (level > 0.6 && level < 1.6) vault -= skull::relief(m);
   const double scalp = vault - kScalp;

@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
 constexpr int kBins = 3;          // of a voxel, on each axis
 constexpr int kChunk = 4;         // slices that are worked on together
-constexpr int kHiddenByNoise = 60;  // HU: tissues that differ by less need no finer look
+// HU: a step of less is seen at nine places a voxel and lies within the noise of where it should.
+constexpr int kSoftStep = 180;
 constexpr int kOne = 1 << 14;     // the sum of a kernel's weights
 constexpr int kPerHu = 8;         // what has passed a kernel is in eighths of HU
 
@@ -159,7 +160,7 @@ class Painter {
     if (j + 1 < ny_) see(centres_[index + nx]);
     if (k > 0) see(centres_[index - nxy]);
     if (k + 1 < nz_) see(centres_[index + nxy]);
-    return !differs ? uniform : high - low <= kHiddenByNoise ? softly : closely;
+    return !differs ? uniform : high - low <= kSoftStep ? softly : closely;
   }
 
   void fillBins(int k) {
@@ -194,7 +195,7 @@ class Painter {
       high = std::max<int>(high, hu[std::size_t(s)]);
     }
     if (low == high) return hu.fill(std::int16_t(low));  // the boundary is its neighbour's
-    const bool close = high - low > kHiddenByNoise;
+    const bool close = high - low > kSoftStep;
     const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
     for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
       hu[std::size_t(s)] = close ? at(s) : mean;
@@ -227,7 +228,7 @@ class Painter {
     }
     double hu = own;
     for (int side = 0; side < 2; ++side) {
-      if (std::abs(beside[std::size_t(axis)][std::size_t(side)] - own) <= kHiddenByNoise) continue;
+      if (std::abs(beside[std::size_t(axis)][std::size_t(side)] - own) <= kSoftStep) continue;
       Vec3 middle((a - 1) / 3.0, (b - 1) / 3.0, (c - 1) / 3.0), along(0.0);
       along[axis] = (side == 0 ? -1.0 : 1.0) / kBins;
       const auto seen = [&](double share) {
@@ -274,12 +275,12 @@ class Painter {
   // In a voxel that is looked at softly, whether a bin borders on something else after all.
   bool differsAround(int a, int b, int c) {
     const int own = binHu(a, b, c);
-    return std::abs(binHu(a - 1, b, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a + 1, b, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b - 1, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b + 1, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b, c - 1) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b, c + 1) - own) > kHiddenByNoise;
+    return std::abs(binHu(a - 1, b, c) - own) > kSoftStep ||
+           std::abs(binHu(a + 1, b, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b - 1, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b + 1, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b, c - 1) - own) > kSoftStep ||
+           std::abs(binHu(a, b, c + 1) - own) > kSoftStep;
   }
 
   void spreadRow(const std::vector<std::int16_t>& bins, const std::uint8_t* looks,

@@ -301,6 +301,7 @@ double vertebrae(const Vec3& m, double canal) {
 }
 
 double skin(const Vec3& drawn, double scalp) {
+  if (scalp < -18.0) return scalp;
   const Vec3 m = lifeSize(drawn);
   static const Ellipsoid face({0, -30, -48}, {60, 50, 58});
   static const Ellipsoid jaw({0, -32, -89}, {57, 51, 34});
@@ -326,7 +327,7 @@ double skin(const Vec3& drawn, double scalp) {
     d = smoothUnion(d, jaw.roughDistance(m), 12);
     d = smoothUnion(d, jowl.roughDistance(m), 14);
   }
-  if (d > 50.0 || d < -30.0) return d;  // none of what follows reaches there
+  if (d > 32.0 || d < -18.0) return d;  // none of what follows reaches there
   if (m.y < -34.0) {
     d = smoothUnion(d, chain(brow, m, 6), 7);
     d = smoothUnion(d, smoothUnion(cheek.roughDistance(m), muzzle.roughDistance(m), 8), 8);
