@@ -75,8 +75,8 @@ void useCase(Scene& scene, const std::string& case_source);
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 
-// Self-contained: tissues inline and none for elsewhere, no file names but the plugin's, no label map, and a case only
-// where it is a phantom (a path could name a patient). What a recording keeps.
+// Self-contained: tissues inline and none for elsewhere, no file names but the plugin's, no label
+// map, and a case only where it is a phantom (a path could name a patient). What a recording keeps.
 Json toJson(const Scene& scene);
 
 // A landmark's place in a case, found once and used for maps, scripts and the camera.

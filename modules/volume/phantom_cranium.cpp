@@ -204,8 +204,9 @@ PhantomTissue craniumTissue(const Vec3& p) {
         if (nostril.contains(m) || pharynx.contains(m)) return T::air;
         if (skull::nose(m) < -1.0 && m.y > -76.0 && m.y < -22.0) return T::air;
         if (inOrbit(m, tissue)) return tissue;
-        return vault >= 0.0 && height > -kFloorBone && envelope > -kScalp ? T::scalp
-                                                                         : softTissue(m, -envelope);
+        return vault >= 0.0 && height > -kFloorBone && envelope > -kScalp
+                   ? T::scalp
+                   : softTissue(m, -envelope);
       }
     }
   }

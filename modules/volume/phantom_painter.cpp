@@ -15,12 +15,12 @@ namespace trephine {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
-constexpr int kBins = 3;          // of a voxel, on each axis
-constexpr int kChunk = 4;         // slices that are worked on together
+constexpr int kBins = 3;   // of a voxel, on each axis
+constexpr int kChunk = 4;  // slices that are worked on together
 // HU: a step of less is seen at nine places a voxel and lies within the noise of where it should.
 constexpr int kSoftStep = 180;
-constexpr int kOne = 1 << 14;     // the sum of a kernel's weights
-constexpr int kPerHu = 8;         // what has passed a kernel is in eighths of HU
+constexpr int kOne = 1 << 14;  // the sum of a kernel's weights
+constexpr int kPerHu = 8;      // what has passed a kernel is in eighths of HU
 
 // A standard normal number for each voxel: the sum of the eight bytes of a hash of its index
 // (splitmix64's finaliser), mean 8 * 127.5, variance 8 * (256^2 - 1) / 12.
@@ -114,7 +114,7 @@ class Painter {
 
  private:
   struct Slice {
-    std::vector<std::int16_t> values;      // HU: layer, row of bins, bin
+    std::vector<std::int16_t> values;        // HU: layer, row of bins, bin
     std::vector<std::uint8_t> nearBoundary;  // by voxel: 0, or how closely it is looked at
   };
   enum Look : std::uint8_t { uniform, softly, closely };
@@ -221,8 +221,8 @@ class Painter {
     for (int n = 0; n < 3; ++n) {
       const auto& [low, high] = beside[std::size_t(n)];
       // A thin sheet has the same on both sides.
-      const int across = std::max(std::abs(high - low),
-                                  std::min(std::abs(high - own), std::abs(low - own)));
+      const int across =
+          std::max(std::abs(high - low), std::min(std::abs(high - own), std::abs(low - own)));
       const double steep = across / volume_.geometry.spacing_mm[n];
       if (steep > steepest) steepest = steep, axis = n;
     }
@@ -318,8 +318,9 @@ class Painter {
     std::vector<int> sum(nx);
     for (int j = 0; j < ny_; ++j) {
       std::fill(sum.begin(), sum.end(), 0);
-      addUp(kernel, kBins * (j - kernel.reach), kBins * ny_,
-            [&](int row) { return &rows[std::size_t(row) * nx]; }, sum);
+      addUp(
+          kernel, kBins * (j - kernel.reach), kBins * ny_,
+          [&](int row) { return &rows[std::size_t(row) * nx]; }, sum);
       for (std::size_t i = 0; i < nx; ++i) out[std::size_t(j) * nx + i] = rounded(sum[i]);
     }
   }
@@ -338,8 +339,9 @@ class Painter {
     const Kernel& kernel = kernels_[2];
     const std::size_t area = std::size_t(nx_) * std::size_t(ny_);
     std::vector<int> sum(area, 0);
-    addUp(kernel, kBins * (k - kernel.reach), kBins * nz_,
-          [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
+    addUp(
+        kernel, kBins * (k - kernel.reach), kBins * nz_,
+        [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
     std::size_t index = volume_.geometry.indexOf(0, 0, k);
     for (std::size_t n = 0; n < area; ++n, ++index) {
       // A scanner stores 12 bits from -1024 on.
@@ -376,9 +378,8 @@ std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry
       std::size_t index = geometry.indexOf(0, 0, first + n);
       for (int j = 0; j < geometry.size[1]; ++j) {
         for (int i = 0; i < geometry.size[0]; ++i) {
-          centres[index++] =
-              truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
-                    Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
+          centres[index++] = truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
+                                   Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
         }
       }
     });

@@ -34,7 +34,8 @@ struct Arch {
 };
 Arch arch(const Vec3& m, double front) {
   const double y = m.y - (front + 29.0);
-  if (y < 0.0) return {44.0 * m.x / (m.x - y * (27.0 / 29.0) + 1e-9), ellipseDistance(m.x, y, 27, 29)};
+  if (y < 0.0)
+    return {44.0 * m.x / (m.x - y * (27.0 / 29.0) + 1e-9), ellipseDistance(m.x, y, 27, 29)};
   return {44.0 + y, m.x - 27.0 - 0.06 * y};
 }
 
@@ -190,11 +191,11 @@ double relief(const Vec3& m) {
     const double r2 = (square(m.x - x) + square(m.y - y) + square(m.z - z)) / (reach * reach);
     if (r2 < 1.0) out += high * square(1.0 - r2);
   };
-  swell(56, 30, 44, 52, 4.5);      // parietal eminence
-  swell(30, -64, 36, 40, 3.0);     // frontal eminence
-  swell(0, 88, -20, 16, 3.5);      // occipital protuberance
-  swell(20, 84, -28, 26, 2.0);     // and the swellings beside it
-  swell(62, -34, -4, 46, -7.0);    // temporal fossa, deepest behind the eye socket
+  swell(56, 30, 44, 52, 4.5);    // parietal eminence
+  swell(30, -64, 36, 40, 3.0);   // frontal eminence
+  swell(0, 88, -20, 16, 3.5);    // occipital protuberance
+  swell(20, 84, -28, 26, 2.0);   // and the swellings beside it
+  swell(62, -34, -4, 46, -7.0);  // temporal fossa, deepest behind the eye socket
   // The temporal line: what lies within it is sunk a little, with a low crest at its border.
   if (m.x > 30.0 && m.z > -40.0) {
     const double line = std::sqrt(square((m.y - 2.0) / 62.0) + square((m.z + 14.0) / 54.0));

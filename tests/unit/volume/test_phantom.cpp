@@ -24,7 +24,9 @@ const Phantom& whole(const std::string& name) {
   if (found != made.end()) return found->second;
   return made.emplace(name, makePhantomWithLabels(name).value()).first->second;
 }
-const Volume& phantom(const std::string& name) { return whole(name).volume; }
+const Volume& phantom(const std::string& name) {
+  return whole(name).volume;
+}
 
 // A straight path through the truth as (tissue, length in mm) pieces.
 struct Layer {
@@ -151,7 +153,8 @@ TEST(Cranium, TheVaultIsAClosedShellWithAirAllAround) {
   for (int j = 0; j < g.size[1]; ++j) {
     for (int i = 0; i < g.size[0]; ++i) {
       for (int k = g.size[2] - 3; k < g.size[2]; ++k) {
-        ASSERT_EQ(truth(g.toPatient_mm({i, j, k})), T::air) << "nothing of the head is cut off above";
+        ASSERT_EQ(truth(g.toPatient_mm({i, j, k})), T::air)
+            << "nothing of the head is cut off above";
       }
     }
     for (int k = 90; k < g.size[2]; ++k) {
@@ -398,7 +401,8 @@ TEST(Abdomen, LabelsAreTheTruthAtTheVoxelsCentresButForTheClosedCapsule) {
         // No way past it, not across a corner either.
         for (int n = 0; n < 27; ++n) {
           const auto next = labelAt(i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1);
-          ASSERT_TRUE(next == liver || next == capsule || next == vessel) << i << " " << j << " " << k;
+          ASSERT_TRUE(next == liver || next == capsule || next == vessel)
+              << i << " " << j << " " << k;
         }
       }
     }
