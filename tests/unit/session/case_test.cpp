@@ -162,8 +162,8 @@ TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
 
   const GridGeometry& g = read.volume->geometry;
   Volume given{g, Voxels(g.voxelCount(), std::int16_t(1))};
-  ASSERT_TRUE(writeVolume(given, folder / "given.nrrd").ok());
-  scene.labels_file = (folder / "given.nrrd").string();
+  ASSERT_TRUE(writeVolume(given, folder / "given.nii").ok());
+  scene.labels_file = (folder / "given.nii").string();
   const Case other = *placedIn(scene, read);
   ASSERT_TRUE(other.labels);
   EXPECT_EQ(other.labels->labels.front(), 1);
