@@ -108,7 +108,7 @@ int replayCommand(const std::string& file, const std::string& case_source,
     labels = *std::move(read);
   }
   Result<ReplayResult> result =
-      replay(**recording, *of->volume, labels ? &*labels : nullptr, progress, of->sha256);
+      replay(**recording, *of->volume, labels ? &*labels : of->labels.get(), progress, of->sha256);
   if (!result) return printError("replay", result.error(), json);
   if (result->cut_short) spdlog::warn("The recording was cut short; what it holds was replayed");
   Json difference = nullptr;

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace trephine {
 
@@ -17,7 +18,10 @@ const Landmark* Scene::findLandmarkById(const std::string& id) const {
 
 void useCase(Scene& scene, const std::string& case_source) {
   if (case_source == scene.case_source) return;
-  if (!scene.case_source.empty()) scene.labels_file.clear();
+  if (!scene.case_source.empty()) {
+    scene.labels_file.clear();
+    if (scene.tissues_elsewhere) scene.tissues = *std::exchange(scene.tissues_elsewhere, {});
+  }
   scene.case_source = case_source;
 }
 

@@ -51,6 +51,7 @@ struct Scene {
   std::string case_source;    // "phantom:cranium", a path, or empty: given when it is run
   std::string labels_file;    // label map of that case, empty for none or given when it is run
   TissueSet tissues;
+  std::optional<TissueSet> tissues_elsewhere;  // on another case than its own; none: these
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
@@ -67,7 +68,8 @@ struct Scene {
 };
 
 // The scene is run on this case instead ("" is one that has no name): a label map that the scene
-// names beside its own case is of that one.
+// names beside its own case is of that one, and so are its tissues where it has others for
+// elsewhere.
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
@@ -75,8 +77,8 @@ void useCase(Scene& scene, const std::string& case_source);
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 
-// Self-contained: tissues inline, no file names but the plugin's, no label map, and a case only
-// where it is a phantom (a path could name a patient). What a recording keeps.
+// Self-contained: tissues inline and none for elsewhere, no file names but the plugin's, no label
+// map, and a case only where it is a phantom (a path could name a patient). What a recording keeps.
 Json toJson(const Scene& scene);
 
 // A landmark's place in a case, found once and used for maps, scripts and the camera.

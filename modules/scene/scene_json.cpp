@@ -114,6 +114,10 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
       reader.fail("landmarks", "The landmark '" + landmark.id + "' names the unknown tissue '" +
                                    landmark.tissue + "'");
     }
+    if (scene.tissues_elsewhere && !scene.tissues_elsewhere->find(landmark.tissue)) {
+      reader.fail("tissues", "The set for other cases lacks the tissue '" + landmark.tissue +
+                                 "' of the landmark '" + landmark.id + "'");
+    }
   }
   if (scene.arms.empty() || scene.arms.size() > std::size_t(kMaxArms)) {
     reader.fail("arms", "A scene has 1 to 4 arms, this one has " + std::to_string(scene.arms.size()));
@@ -142,7 +146,11 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
 
 Result<TissueSet> readTissues(const Json& value, const fs::path& folder, const std::string& file) {
   if (value.is_string()) return readTissueSet((folder / value.get<std::string>()).lexically_normal());
-  return parseTissueSet(value, file + ": tissues");
+  Result<TissueSet> set = parseTissueSet(value, file + ": tissues");
+  if (set && !set->elsewhere_file.empty()) {
+    set->elsewhere_file = (folder / set->elsewhere_file).lexically_normal().string();
+  }
+  return set;
 }
 
 }  // namespace
@@ -163,6 +171,11 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) scene.tissues = *std::move(tissues);
+  if (!scene.tissues.elsewhere_file.empty()) {
+    Result<TissueSet> elsewhere = readTissueSet(scene.tissues.elsewhere_file);
+    if (!elsewhere) return elsewhere.error();
+    scene.tissues_elsewhere = *std::move(elsewhere);
+  }
   for (JsonReader& item : reader.objects("landmarks", kMostInAList))
     scene.landmarks.push_back(readLandmark(item));
   for (JsonReader& item : reader.objects("tools", kMostInAList))

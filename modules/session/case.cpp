@@ -40,11 +40,18 @@ Result<Case> read(const std::string& source, const Progress& progress) {
   if (!phantom && (!isVolumeFile(source) || std::filesystem::is_directory(source, ec))) {
     return importBest(source, progress);
   }
-  Result<Volume> volume = phantom ? makePhantom(*phantom, progress) : readVolume(source, progress);
+  if (phantom) {
+    Result<Phantom> made = makePhantomWithLabels(*phantom, progress);
+    if (!made) return made.error();
+    Case built_in = caseOf(std::make_shared<const Volume>(std::move(made->volume)));
+    built_in.built_in = true;
+    built_in.labels_built_in = made->labels.has_value();
+    if (made->labels) built_in.labels = std::make_shared<const LabelMap>(*std::move(made->labels));
+    return built_in;
+  }
+  Result<Volume> volume = readVolume(source, progress);
   if (!volume) return volume.error();
-  Case read = caseOf(std::make_shared<const Volume>(*std::move(volume)));
-  read.built_in = phantom.has_value();
-  return read;
+  return caseOf(std::make_shared<const Volume>(*std::move(volume)));
 }
 
 }  // namespace
@@ -70,6 +77,7 @@ Result<Case> readCase(const std::string& source, const Progress& progress) {
 
 Result<Case> withLabels(Case of, const std::string& file) {
   of.labels.reset();
+  of.labels_built_in = false;
   if (file.empty()) return of;
   try {
     const Result<LabelMap> map = readLabelMap(file);
@@ -87,7 +95,7 @@ Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress) {
   progress.at(0.0, "Finding landmarks");
   of.landmarks.clear();
   of.misfit.reset();
-  if (!of.labels) {
+  if (!scene.labels_file.empty() && (!of.labels || of.labels_built_in)) {
     Result<Case> labelled = withLabels(of, scene.labels_file);
     if (!labelled) {
       of.misfit = labelled.error();

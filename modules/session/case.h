@@ -23,6 +23,7 @@ struct Case {
   std::string name;                      // for the screen alone: it may be a series' description
   bool built_in = false;
   std::shared_ptr<const LabelMap> labels;  // fitted to the volume; null: none
+  bool labels_built_in = false;            // they came with it, and one that is given replaces them
 
   // In the scene that it was placed in: where its landmarks are, or why not. It can be looked at
   // all the same.
@@ -34,7 +35,8 @@ struct Case {
 Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256 = "");
 
 // `source` is "phantom:cranium", "phantom:abdomen", a DICOM folder or file, or a volume file
-// (volume/volume_files.h); from a folder the best CT series is taken. Without labels and landmarks.
+// (volume/volume_files.h); from a folder the best CT series is taken. Without landmarks, and
+// without labels but those of a built-in case.
 // Errors are those of the importer and the readers, OUT_OF_MEMORY, and NO_CASE for an empty source.
 // Any thread, as all of these; reports progress and can be cancelled.
 Result<Case> readCase(const std::string& source, const Progress& progress = Progress());
@@ -43,7 +45,7 @@ Result<Case> readCase(const std::string& source, const Progress& progress = Prog
 // fitTo.
 Result<Case> withLabels(Case of, const std::string& file);
 
-// Placed in a scene: with the label map that it names, unless there is one, and its landmarks.
+// Placed in a scene: with the label map that it names, unless one was given, and its landmarks.
 // Error: CANCELLED; all others are the case's `misfit`.
 Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress = Progress());
 

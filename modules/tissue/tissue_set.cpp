@@ -133,6 +133,7 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
   reader.format("trephine.tissues", 1);
   TissueSet set;
   set.name = reader.text("name");
+  set.elsewhere_file = reader.text("elsewhere", "");
   for (JsonReader& item : reader.objects("tissues", kMaxTissues)) {
     Tissue t;
     t.id = item.text("id");
@@ -155,7 +156,11 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
 Result<TissueSet> readTissueSet(const std::filesystem::path& file) {
   Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
-  return parseTissueSet(*json, file.string());
+  Result<TissueSet> set = parseTissueSet(*json, file.string());
+  if (set && !set->elsewhere_file.empty()) {
+    set->elsewhere_file = (file.parent_path() / set->elsewhere_file).lexically_normal().string();
+  }
+  return set;
 }
 
 Json toJson(const TissueSet& set) {

@@ -46,6 +46,9 @@ struct Tissue : SetNumbers {
 struct TissueSet {
   std::string name;
   std::vector<Tissue> tissues;
+  // The file of the set that holds on cases whose label map is another one, or none; empty: this.
+  // Of a file as it was read: a set that is written (toJson) names none.
+  std::string elsewhere_file{};
 
   const Tissue* find(const std::string& id) const;
 };

@@ -61,10 +61,10 @@ double cartilageDistance(const Vec3& m, double depth, double fat) {
   struct Line {
     double ax, az, bx, bz;
   };
-  static constexpr Line kLines[] = {{110, 8, 84, 26},  {84, 26, 58, 46},  {98, 33, 76, 38},
-                                    {76, 38, 48, 54},  {58, 46, 34, 64},  {92, 58, 62, 58},
-                                    {62, 58, 34, 64},  {34, 64, 14, 84},  {84, 86, 52, 78},
-                                    {52, 78, 14, 90},  {80, 112, 46, 100}, {46, 100, 14, 110}};
+  static constexpr Line kLines[] = {{110, 8, 84, 26}, {84, 26, 58, 46},   {98, 33, 76, 38},
+                                    {76, 38, 48, 54}, {58, 46, 34, 64},   {92, 58, 62, 58},
+                                    {62, 58, 34, 64}, {34, 64, 14, 84},   {84, 86, 52, 78},
+                                    {52, 78, 14, 90}, {80, 112, 46, 100}, {46, 100, 14, 110}};
   const double deep = square((depth - fat - 8.0) / 0.85);
   double d = 1e3;
   for (const Line& line : kLines) {
@@ -72,8 +72,8 @@ double cartilageDistance(const Vec3& m, double depth, double fat) {
     d = smoothUnion(d, std::sqrt(aside * aside + deep) - 5.2, 4);
   }
   // The breast bone and its sword-shaped end.
-  const double flat = std::sqrt(square(std::max(m.x - 12.0, 0.0)) +
-                                square(std::max(78.0 - m.z, 0.0)) + deep) - 5.5;
+  const double flat =
+      std::sqrt(square(std::max(m.x - 12.0, 0.0)) + square(std::max(78.0 - m.z, 0.0)) + deep) - 5.5;
   const double aside = lineDistance(m, 0, 78, 0, 52);
   return smoothUnion(d, smoothUnion(flat, std::sqrt(aside * aside + deep) - 5.0, 8), 6);
 }
@@ -81,8 +81,8 @@ double cartilageDistance(const Vec3& m, double depth, double fat) {
 // The wings of the hip bones: a crest, and a plate below it.
 double hipDistance(const Vec3& m) {
   if (m.z > -84 || m.x < 30) return 1e3;
-  static constexpr double kCrest[][3] = {
-      {42, 78, -122}, {70, 70, -104}, {100, 50, -95}, {122, 18, -97}, {126, -10, -110}, {118, -28, -128}};
+  static constexpr double kCrest[][3] = {{42, 78, -122}, {70, 70, -104},   {100, 50, -95},
+                                         {122, 18, -97}, {126, -10, -110}, {118, -28, -128}};
   double d = 1e3;
   for (std::size_t n = 0; n + 1 < std::size(kCrest); ++n) {
     const auto& a = kCrest[n];
@@ -93,8 +93,9 @@ double hipDistance(const Vec3& m) {
     const double above = std::max(m.z - (a[2] + t * (b[2] - a[2])), 0.0);
     const double down = std::min(m.z - (a[2] + t * (b[2] - a[2])), 0.0);
     const double thick = 4.0 + 3.0 * ramp(-16.0, 0.0, down);
-    d = std::min(d, std::sqrt(square(m.x - a[0] - t * dx) + square(m.y - a[1] - t * dy) +
-                              above * above) - thick);
+    d = std::min(
+        d, std::sqrt(square(m.x - a[0] - t * dx) + square(m.y - a[1] - t * dy) + above * above) -
+               thick);
   }
   return d;
 }
@@ -105,8 +106,8 @@ double spineDistance(const Vec3& m, double canal) {
   const double high = level - 34.0 * number, end = std::abs(high);
   // Waisted bodies with rounded rims.
   const double waist = 3.5 * bump(end / 13.0);
-  double d = smoothIntersection(ellipseDistance(m.x, m.y - 47, 25 - waist, 18 - waist), end - 13.2,
-                                5);
+  double d =
+      smoothIntersection(ellipseDistance(m.x, m.y - 47, 25 - waist, 18 - waist), end - 13.2, 5);
   const Vec3 local{m.x, m.y, high};
   static const Rod pedicle{{13, 56, 4}, {15, 72, 2}, 6, 6.5};
   static const Rod transverse{{15, 70, 2}, {42, 77, 3}, 5.5, 4};
@@ -130,9 +131,10 @@ double deepMuscleDistance(const Vec3& m) {
 }
 
 // The liver: a right and a left lobe, cut by the abdominal wall, the diaphragm and its own visceral
-// surface, which rises to the left, so that the left lobe thins to a wedge. The falciform ligament's
-// fissure parts the lobes in front; on the visceral side those of the round and venous ligaments,
-// gallbladder and porta set off the quadrate lobe in front and the caudate behind. Negative inside.
+// surface, which rises to the left, so that the left lobe thins to a wedge. The falciform
+// ligament's fissure parts the lobes in front; on the visceral side those of the round and venous
+// ligaments, gallbladder and porta set off the quadrate lobe in front and the caudate behind.
+// Negative inside.
 double liverDistance(const Vec3& p, double depth, double fat) {
   static const Ellipsoid right({-70, -4, 24}, {88, 90, 86}, {82, 88, 74});
   static const Ellipsoid left({4, -36, 40}, {70, 56, 40}, {76, 48, 38});

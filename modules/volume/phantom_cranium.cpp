@@ -108,7 +108,7 @@ bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
            toNearest(p.z, 7.0) > 0.6;
   }
   static const Ellipsoid mastoid({54, 25, -42}, {6.5, 9, 13});
-  return mastoid.contains(m) && wave(p.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;
+  return mastoid.contains(m) && wave(m.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;
 }
 
 // Eyes and what moves them. True when `tissue` is set.
@@ -165,7 +165,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
   if (level < 0.3 && height > 8.0) return insideDura(p, m, 20.0);
   if (m.z > 14.0 && level > 1.4) return T::air;  // over 10 mm outside
 
-  const bool far_below = level > 2.6 && m.z < 0.0;
+  const bool far_below = level > 1.6 && m.z < 0.0;
   double vault = level < 0.3 || far_below ? kVault.roughDistance(p) : kVault.distance(p);
   if (level > 0.6 && level < 1.6) vault -= skull::relief(m);
   const double scalp = vault - kScalp;
@@ -193,9 +193,9 @@ PhantomTissue craniumTissue(const Vec3& p) {
       const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);
       if (airway && bone < -0.0) return T::air;
       if (sinus_wall < 1.4 && m.z < 2.0) bone = std::min(bone, sinus_wall - 1.4);
-      if (m.z < -40.0) {
-        const bool neck = m.z < -50.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0;
-        if (neck) bone = std::min(bone, skull::vertebrae(m, canal));
+      if (m.z < -46.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0) {
+        const double vertebra = skull::vertebrae(m, canal);
+        if (vertebra < 0.0 && bone > 0.0) return longBone(vertebra, 1.5);
       }
       const bool shell = vault < 0.0 && vault > -kSkull && height > 0.0;
       if (bone < 0.0 && envelope < -2.5 && !shell) return T::facialBone;
@@ -204,8 +204,9 @@ PhantomTissue craniumTissue(const Vec3& p) {
         if (nostril.contains(m) || pharynx.contains(m)) return T::air;
         if (skull::nose(m) < -1.0 && m.y > -76.0 && m.y < -22.0) return T::air;
         if (inOrbit(m, tissue)) return tissue;
-        return vault >= 0.0 && height > -kFloorBone && envelope > -kScalp ? T::scalp
-                                                                         : softTissue(m, -envelope);
+        return vault >= 0.0 && height > -kFloorBone && envelope > -kScalp
+                   ? T::scalp
+                   : softTissue(m, -envelope);
       }
     }
   }

@@ -15,11 +15,12 @@ namespace trephine {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 0x5452455048494e45;
-constexpr int kBins = 3;          // of a voxel, on each axis
-constexpr int kChunk = 4;         // slices that are worked on together
-constexpr int kHiddenByNoise = 60;  // HU: tissues that differ by less need no finer look
-constexpr int kOne = 1 << 14;     // the sum of a kernel's weights
-constexpr int kPerHu = 8;         // what has passed a kernel is in eighths of HU
+constexpr int kBins = 3;   // of a voxel, on each axis
+constexpr int kChunk = 4;  // slices that are worked on together
+// HU: a step of less is seen at nine places a voxel and lies within the noise of where it should.
+constexpr int kSoftStep = 180;
+constexpr int kOne = 1 << 14;  // the sum of a kernel's weights
+constexpr int kPerHu = 8;      // what has passed a kernel is in eighths of HU
 
 // A standard normal number for each voxel: the sum of the eight bytes of a hash of its index
 // (splitmix64's finaliser), mean 8 * 127.5, variance 8 * (256^2 - 1) / 12.
@@ -113,7 +114,7 @@ class Painter {
 
  private:
   struct Slice {
-    std::vector<std::int16_t> values;      // HU: layer, row of bins, bin
+    std::vector<std::int16_t> values;        // HU: layer, row of bins, bin
     std::vector<std::uint8_t> nearBoundary;  // by voxel: 0, or how closely it is looked at
   };
   enum Look : std::uint8_t { uniform, softly, closely };
@@ -159,7 +160,7 @@ class Painter {
     if (j + 1 < ny_) see(centres_[index + nx]);
     if (k > 0) see(centres_[index - nxy]);
     if (k + 1 < nz_) see(centres_[index + nxy]);
-    return !differs ? uniform : high - low <= kHiddenByNoise ? softly : closely;
+    return !differs ? uniform : high - low <= kSoftStep ? softly : closely;
   }
 
   void fillBins(int k) {
@@ -194,7 +195,7 @@ class Painter {
       high = std::max<int>(high, hu[std::size_t(s)]);
     }
     if (low == high) return hu.fill(std::int16_t(low));  // the boundary is its neighbour's
-    const bool close = high - low > kHiddenByNoise;
+    const bool close = high - low > kSoftStep;
     const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
     for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
       hu[std::size_t(s)] = close ? at(s) : mean;
@@ -220,14 +221,14 @@ class Painter {
     for (int n = 0; n < 3; ++n) {
       const auto& [low, high] = beside[std::size_t(n)];
       // A thin sheet has the same on both sides.
-      const int across = std::max(std::abs(high - low),
-                                  std::min(std::abs(high - own), std::abs(low - own)));
+      const int across =
+          std::max(std::abs(high - low), std::min(std::abs(high - own), std::abs(low - own)));
       const double steep = across / volume_.geometry.spacing_mm[n];
       if (steep > steepest) steepest = steep, axis = n;
     }
     double hu = own;
     for (int side = 0; side < 2; ++side) {
-      if (std::abs(beside[std::size_t(axis)][std::size_t(side)] - own) <= kHiddenByNoise) continue;
+      if (std::abs(beside[std::size_t(axis)][std::size_t(side)] - own) <= kSoftStep) continue;
       Vec3 middle((a - 1) / 3.0, (b - 1) / 3.0, (c - 1) / 3.0), along(0.0);
       along[axis] = (side == 0 ? -1.0 : 1.0) / kBins;
       const auto seen = [&](double share) {
@@ -274,12 +275,12 @@ class Painter {
   // In a voxel that is looked at softly, whether a bin borders on something else after all.
   bool differsAround(int a, int b, int c) {
     const int own = binHu(a, b, c);
-    return std::abs(binHu(a - 1, b, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a + 1, b, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b - 1, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b + 1, c) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b, c - 1) - own) > kHiddenByNoise ||
-           std::abs(binHu(a, b, c + 1) - own) > kHiddenByNoise;
+    return std::abs(binHu(a - 1, b, c) - own) > kSoftStep ||
+           std::abs(binHu(a + 1, b, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b - 1, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b + 1, c) - own) > kSoftStep ||
+           std::abs(binHu(a, b, c - 1) - own) > kSoftStep ||
+           std::abs(binHu(a, b, c + 1) - own) > kSoftStep;
   }
 
   void spreadRow(const std::vector<std::int16_t>& bins, const std::uint8_t* looks,
@@ -317,8 +318,9 @@ class Painter {
     std::vector<int> sum(nx);
     for (int j = 0; j < ny_; ++j) {
       std::fill(sum.begin(), sum.end(), 0);
-      addUp(kernel, kBins * (j - kernel.reach), kBins * ny_,
-            [&](int row) { return &rows[std::size_t(row) * nx]; }, sum);
+      addUp(
+          kernel, kBins * (j - kernel.reach), kBins * ny_,
+          [&](int row) { return &rows[std::size_t(row) * nx]; }, sum);
       for (std::size_t i = 0; i < nx; ++i) out[std::size_t(j) * nx + i] = rounded(sum[i]);
     }
   }
@@ -337,8 +339,9 @@ class Painter {
     const Kernel& kernel = kernels_[2];
     const std::size_t area = std::size_t(nx_) * std::size_t(ny_);
     std::vector<int> sum(area, 0);
-    addUp(kernel, kBins * (k - kernel.reach), kBins * nz_,
-          [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
+    addUp(
+        kernel, kBins * (k - kernel.reach), kBins * nz_,
+        [&](int c) { return &spreadOf(c / kBins)[std::size_t(c % kBins) * area]; }, sum);
     std::size_t index = volume_.geometry.indexOf(0, 0, k);
     for (std::size_t n = 0; n < area; ++n, ++index) {
       // A scanner stores 12 bits from -1024 on.
@@ -375,9 +378,8 @@ std::vector<PhantomTissue> truthAtCentres(PhantomTruth truth, const GridGeometry
       std::size_t index = geometry.indexOf(0, 0, first + n);
       for (int j = 0; j < geometry.size[1]; ++j) {
         for (int i = 0; i < geometry.size[0]; ++i) {
-          centres[index++] =
-              truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
-                    Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
+          centres[index++] = truth(Vec3(affine[0]) * double(i) + Vec3(affine[1]) * double(j) +
+                                   Vec3(affine[2]) * double(first + n) + Vec3(affine[3]));
         }
       }
     });

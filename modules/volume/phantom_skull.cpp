@@ -34,7 +34,8 @@ struct Arch {
 };
 Arch arch(const Vec3& m, double front) {
   const double y = m.y - (front + 29.0);
-  if (y < 0.0) return {44.0 * m.x / (m.x - y * (27.0 / 29.0) + 1e-9), ellipseDistance(m.x, y, 27, 29)};
+  if (y < 0.0)
+    return {44.0 * m.x / (m.x - y * (27.0 / 29.0) + 1e-9), ellipseDistance(m.x, y, 27, 29)};
   return {44.0 + y, m.x - 27.0 - 0.06 * y};
 }
 
@@ -176,7 +177,7 @@ double nose(const Vec3& drawn) {
   const double low = std::sqrt(square(m.x - 4.0) + square(m.z + 54.5)) - 8.0;
   const double high = rod2(m.x, m.z, 0, -53, 0, -38, 9.0, 3.4);
   double d = smoothUnion(low, high, 4);
-  return smoothIntersection(d, -23.0 - m.y, 4);
+  return smoothIntersection(d, m.y + 23.0, 4);
 }
 
 double earCanal(const Vec3& m) {
@@ -190,11 +191,11 @@ double relief(const Vec3& m) {
     const double r2 = (square(m.x - x) + square(m.y - y) + square(m.z - z)) / (reach * reach);
     if (r2 < 1.0) out += high * square(1.0 - r2);
   };
-  swell(56, 30, 44, 52, 4.5);      // parietal eminence
-  swell(30, -64, 36, 40, 3.0);     // frontal eminence
-  swell(0, 88, -20, 16, 3.5);      // occipital protuberance
-  swell(20, 84, -28, 26, 2.0);     // and the swellings beside it
-  swell(62, -34, -4, 46, -7.0);    // temporal fossa, deepest behind the eye socket
+  swell(56, 30, 44, 52, 4.5);    // parietal eminence
+  swell(30, -64, 36, 40, 3.0);   // frontal eminence
+  swell(0, 88, -20, 16, 3.5);    // occipital protuberance
+  swell(20, 84, -28, 26, 2.0);   // and the swellings beside it
+  swell(62, -34, -4, 46, -7.0);  // temporal fossa, deepest behind the eye socket
   // The temporal line: what lies within it is sunk a little, with a low crest at its border.
   if (m.x > 30.0 && m.z > -40.0) {
     const double line = std::sqrt(square((m.y - 2.0) / 62.0) + square((m.z + 14.0) / 54.0));
@@ -301,6 +302,7 @@ double vertebrae(const Vec3& m, double canal) {
 }
 
 double skin(const Vec3& drawn, double scalp) {
+  if (scalp < -18.0) return scalp;
   const Vec3 m = lifeSize(drawn);
   static const Ellipsoid face({0, -30, -48}, {60, 50, 58});
   static const Ellipsoid jaw({0, -32, -89}, {57, 51, 34});
@@ -326,6 +328,7 @@ double skin(const Vec3& drawn, double scalp) {
     d = smoothUnion(d, jaw.roughDistance(m), 12);
     d = smoothUnion(d, jowl.roughDistance(m), 14);
   }
+  if (d > 32.0 || d < -18.0) return d;  // none of what follows reaches there
   if (m.y < -34.0) {
     d = smoothUnion(d, chain(brow, m, 6), 7);
     d = smoothUnion(d, smoothUnion(cheek.roughDistance(m), muzzle.roughDistance(m), 8), 8);

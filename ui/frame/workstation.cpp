@@ -108,8 +108,19 @@ void Workstation::openPhantom(const std::string& name) {
   const bool fits = sceneFits(name);
   const std::filesystem::path file = fits ? scene_file_ : defaultScene(name);
   std::optional<Scene> scene = readSceneOrFail(file);
-  if (scene && fits) scene->tissues = scene_->tissues;
-  if (scene) openSource(*std::move(scene), file, phantomSource(name), fits);
+  if (!scene) return;
+  useCase(*scene, phantomSource(name));
+  const bool same = fits && keepTissues(*scene);
+  openSource(*std::move(scene), file, phantomSource(name), same);
+}
+
+// What was edited holds on the next case too, unless the scene has other tissues there.
+bool Workstation::keepTissues(Scene& scene) const {
+  if (!scene_ || scene_->tissues_elsewhere.has_value() != scene.tissues_elsewhere.has_value()) {
+    return false;
+  }
+  scene.tissues = scene_->tissues;
+  return true;
 }
 
 void Workstation::useScene(const std::filesystem::path& file) {
@@ -158,9 +169,9 @@ void Workstation::openImported(const Case& read, const std::filesystem::path& la
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
-  if (scene_) scene->tissues = scene_->tissues;
   useCase(*scene, "");
-  openInBackground({*std::move(scene), file, read, scene_.has_value(), labels.string()});
+  const bool same = keepTissues(*scene);
+  openInBackground({*std::move(scene), file, read, same, labels.string()});
 }
 
 void Workstation::openInBackground(Opened opening) {

@@ -113,6 +113,7 @@ class Workstation : public QObject {
   void failed(const trephine::Error& error);
 
  private:
+  bool keepTissues(Scene& scene) const;
   struct Opened;
   bool mayOpen();
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);

@@ -144,6 +144,33 @@ TEST(Case, AMissingLabelMapIsNamedAndNoneIsNoError) {
   EXPECT_EQ(Session::create(scene, of, {}).error().code, "MISSING_FILE");
 }
 
+TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
+  test::TemporaryFolder folder;
+  Scene scene = *readScene(resourceFolder() / "scenes" / "liver.json");
+  const Case read = *readCase("phantom:abdomen");
+  ASSERT_TRUE(read.labels);
+  const Case own = *placedIn(scene, read);
+  EXPECT_EQ(own.labels, read.labels);
+  EXPECT_FALSE(own.misfit) << own.misfit->sentence();
+  // What a session recorded with them is replayed with them.
+  auto session = Session::create(
+      scene, own, {folder / "s.h5", *readOperatorScript(scene.operator_file, scene)});
+  ASSERT_TRUE(session.ok()) << session.error().sentence();
+  ASSERT_TRUE((*session)->freewheel(2.0).ok());
+  const auto reader = *SessionReader::open(folder / "s.h5");
+  EXPECT_TRUE(replay(*reader, *read.volume, read.labels.get())->identical);
+
+  const GridGeometry& g = read.volume->geometry;
+  Volume given{g, Voxels(g.voxelCount(), std::int16_t(1))};
+  ASSERT_TRUE(writeVolume(given, folder / "given.nii").ok());
+  scene.labels_file = (folder / "given.nii").string();
+  const Case other = *placedIn(scene, read);
+  ASSERT_TRUE(other.labels);
+  EXPECT_EQ(other.labels->labels.front(), 1);
+  EXPECT_FALSE(other.labels_built_in);
+  EXPECT_EQ(placedIn(scene, other)->labels, other.labels) << "read once";
+}
+
 TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   const auto voxels = std::make_shared<const Volume>(smallHead());
   const Case of = *placedIn(cranium(), caseOf(voxels));

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "base/system.h"
-#include "cases.h"
 #include "haptics/bounded_controller.h"
 #include "session/case.h"
 #include "session/energy_watch.h"
+#include "session/run_statistics.h"
 #include "session/session.h"
 #include "support.h"
 #include "training/session_reader.h"
@@ -22,14 +22,18 @@ constexpr std::array kShipped{"burr-hole", "cranium", "cranium-one-arm", "liver"
 constexpr double kSeconds = 10.0;
 
 // Each case is opened once.
-const Volume& volumeOf(const std::string& case_source) {
-  static std::map<std::string, Volume> all;
-  if (!all.contains(case_source)) {
-    auto read = readCase(case_source);
+const Case& caseOf(const Scene& scene) {
+  static std::map<std::string, Case> all;
+  const std::string& source = scene.case_source;
+  if (!all.contains(source)) {
+    auto read = readCase(source);
     EXPECT_TRUE(read.ok()) << read.error().sentence();
-    all[case_source] = *read->volume;
+    all[source] = *read;
   }
-  return all[case_source];
+  return all[source];
+}
+Case placed(const Scene& scene) {
+  return *placedIn(scene, caseOf(scene));
 }
 
 Scene shipped(const std::string& name, const std::string& case_source) {
@@ -42,6 +46,8 @@ Scene shipped(const std::string& name, const std::string& case_source) {
 struct Recorded {
   Scene scene;  // maps fixed
   Volume before;
+  std::shared_ptr<const LabelMap> labels;
+  RunReport report;
   std::vector<TickRecord> ticks;
   std::vector<CarveRecord> carves;
 };
@@ -50,12 +56,15 @@ Recorded record(const std::string& name, const std::string& case_source) {
   const test::TemporaryFolder folder;
   const Scene scene = shipped(name, case_source);
   Recorded out;
-  out.before = volumeOf(scene.case_source);
+  const Case of = placed(scene);
+  out.before = *of.volume;
+  out.labels = of.labels;
   const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
-  auto session = Session::create(scene, test::placed(scene, out.before), options);
+  auto session = Session::create(scene, of, options);
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   EXPECT_TRUE((*session)->freewheel(kSeconds).ok());
   out.scene = (*session)->scene();
+  out.report = (*session)->report();
   auto reader = SessionReader::open(folder / "s.h5");
   EXPECT_TRUE(reader.ok()) << reader.error().sentence();
   out.ticks = *(*reader)->ticks(0, (*reader)->tickCount());
@@ -106,6 +115,9 @@ void lookInside(const Volume& volume, const TissueTable& tissues, const BodyPart
 // What a run's recording says of one arm.
 struct Seen {
   std::string arm;
+  double removed_mm3 = 0.0;
+  double liver_mm3 = 0.0;  // removed by all arms
+  int touched = 0;                 // ticks
   Inside inside;                   // uncut solid tissue in the tool where it is drawn, every 50 ms
   int gave_out = 0;                // looks, one every 66 ms, at which that was called a fault
   int differs = 0, unflagged = 0;  // ticks whose sent force is not the demanded one; of these
@@ -128,6 +140,11 @@ std::vector<Seen> see(const Recorded& run) {
       const ArmRecord& arm = tick.arms[i];
       Seen& of = seen[i];
       of.arm = run.scene.arms[i].name;
+      of.removed_mm3 = run.report.arms[i].removed_mm3;
+      for (const auto& [tissue, mm3] : run.report.removed_mm3) {
+        if (tissue == "liver") of.liver_mm3 = mm3;
+      }
+      of.touched += arm.tissue_class >= 0;
       const double apart_N = glm::length(arm.sent_N - arm.demanded_N);
       const bool flagged = (arm.controller_parts & ~std::uint32_t(kPartArmNotAsStated)) != 0;
       if (apart_N > kWorthAFlag_N) ++of.differs, of.unflagged += !flagged;
@@ -190,13 +207,46 @@ TEST(ShippedScenes, HaveNoUncutBoneInTheirToolsOnRealCases) {
   TREPHINE_TEST_DATA_OR_SKIP(data);
   for (const char* name : kShipped) expectNoBoneInTheTools(name, realCase(data, name));
 }
+// In its first ten seconds, as its own script has it.
+void expectTouchesAndRemoves(const std::string& name, const std::string& case_source) {
+  for (const Seen& seen : seenOf(name, case_source)) {
+    std::printf("%-16s %-5s %-6s %.0f mm3\n", name.c_str(), case_source.empty() ? "own" : "real",
+                seen.arm.c_str(), seen.removed_mm3);
+    EXPECT_GT(seen.touched, 0) << name << ", " << seen.arm;
+    EXPECT_GE(seen.removed_mm3, 50.0) << name << ", " << seen.arm;
+  }
+}
+TEST(ShippedScenes, TouchAndRemoveTissueWithEveryArm) {
+  for (const char* name : kShipped) expectTouchesAndRemoves(name, "");
+  for (const char* name : {"seed-cranium", "seed-liver"}) expectTouchesAndRemoves(name, "");
+}
+TEST(ShippedScenes, TouchAndRemoveTissueOfRealCasesToo) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  for (const char* name : kShipped) expectTouchesAndRemoves(name, realCase(data, name));
+}
+TEST(ShippedScenes, CutTheLiverInTheLiverScenes) {
+  for (const char* name : {"liver", "liver-one-arm"}) {
+    const Scene scene = shipped(name, "");
+    EXPECT_TRUE(scene.tissues.find("liver")->label);
+    for (const Seen& seen : seenOf(name, "")) {
+      EXPECT_GE(seen.liver_mm3, 50.0) << name;
+      EXPECT_FALSE(seen.sent_N.contains("bone")) << name << ", " << seen.arm;
+    }
+  }
+}
+// The labels of the built-in case are no patient's.
+TEST(ShippedScenes, KnowTissueByHuOnOtherCasesThanTheirOwn) {
+  Scene scene = shipped("liver", "");
+  useCase(scene, "/some/ct");
+  for (const Tissue& tissue : scene.tissues.tissues) EXPECT_FALSE(tissue.label) << tissue.id;
+  EXPECT_TRUE(checkLabels(scene.tissues, nullptr).ok());
+}
 // The window's hands, which no script moves.
 TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
     const Scene scene = shipped(name, "");
-    auto session =
-        Session::create(scene, test::placed(scene, volumeOf(scene.case_source)), {{}, {}, true});
+    auto session = Session::create(scene, placed(scene), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
@@ -227,8 +277,7 @@ TEST(ShippedScenes, GiveOutEnergyWhereAnArmShakesOnFirmBone) {
       tissue.cuttable = false;
       if (tissue.id == "bone") tissue.stiffness_N_per_m.value = 10000.0;
     }
-    auto session =
-        Session::create(scene, test::placed(scene, volumeOf(scene.case_source)), {{}, {}, true});
+    auto session = Session::create(scene, placed(scene), {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     const Vec3 down = (*session)->scene().arms[0].map.fixed->rotation * Vec3(0.0, 0.0, -1.0);
     EnergyWatch watch;
@@ -267,11 +316,11 @@ struct Probed {
 };
 
 Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, const Vec3& aside_mm,
-             const Volume& volume) {
+             const Case& of) {
   HapticParameters p = hapticParameters(placed);
   p.arms = {p.arms[arm]};
   p.journal_voxels = 1'000'000;
-  Grid grid{Volume(volume)};
+  Grid grid{Volume(*of.volume), of.labels};
   HapticCore core(p, *grid.takeWriter());
   TickInput input;
   TickRecord record;
@@ -297,14 +346,14 @@ Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, c
 
 std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
   const Scene scene = shipped(name, case_source);
-  const Volume& volume = volumeOf(scene.case_source);
-  auto session = Session::create(scene, test::placed(scene, volume), {});
+  const Case of = placed(scene);
+  auto session = Session::create(scene, of, {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
   const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -42, 0) : Vec3(0.0);  // below the ribs
   std::vector<Probed> out;
   for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
-    out.push_back(probe((*session)->scene(), arm, frame, aside_mm, volume));
+    out.push_back(probe((*session)->scene(), arm, frame, aside_mm, of));
     for (const auto& [tissue, mean_N] : out.back().mean_N) {
       std::printf("%-16s %-5s %-6s %-8s mean %.2f N, most %.2f N\n", name.c_str(),
                   case_source.empty() ? "own" : "real", out.back().arm.c_str(), tissue.c_str(),
