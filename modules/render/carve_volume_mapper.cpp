@@ -33,6 +33,7 @@
 
 #include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
+#include "render/depth_shader.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
 
@@ -105,9 +106,8 @@ struct CarveVolume::Parts {
   vtkNew<vtkCallbackCommand> draw_starts;
   vtkNew<vtkCallbackCommand> draw_ends;
   vtkOpenGLState* state = nullptr;  // of the window of the last sendChanges
-  std::optional<std::pair<int, int>> rows;
-  int width = 0;
-  int height = 0;
+  PixelRect part;
+  vtkNew<vtkTextureObject> no_depth;  // one pixel: nothing ends a ray
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
   std::shared_ptr<const LabelMap> labels;
@@ -212,17 +212,13 @@ struct CarveVolume::Parts {
     updateShader();
   }
 
-  // The rest of the picture is drawn whole: only rays cost time.
   void startDraw() {
-    if (!rows) return;
+    if (part.empty()) return;
     state->vtkglEnable(GL_SCISSOR_TEST);
-    state->vtkglScissor(0, rows->first, width, rows->second - rows->first);
+    state->vtkglScissor(part.low_x, part.low_y, part.width(), part.height());
   }
 
-  void endDraw() {
-    sent = true;
-    if (rows) state->vtkglScissor(0, 0, width, height);
-  }
+  void endDraw() { sent = true; }
 
   void updateShader() {
     vtkShaderProperty* shader = prop->GetShaderProperty();
@@ -230,6 +226,9 @@ struct CarveVolume::Parts {
     const auto replace = [&](const char* tag, const std::string& text) {
       shader->AddFragmentShaderReplacement(tag, true, text, false);
     };
+    replace("//VTK::RenderToImage::Dec", kDepthDeclarations);
+    replace("//VTK::RenderToImage::Impl", kDepthSample);
+    replace("//VTK::RenderToImage::Exit", kDepthOutput);
     const bool by_label = rowCount() > 1;
     if (!leaping && !by_label) return;
     replace("//VTK::Base::Dec", kLeapDeclarations +
@@ -365,8 +364,6 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   Parts& p = *parts_;
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
-  p.width = window->GetSize()[0];
-  p.height = window->GetSize()[1];
   if (!p.copy) return;
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
@@ -382,6 +379,14 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
   // VTK raises no UpdateShaderEvent in the frame that builds a shader.
   p.sendLeaps(renderer);
+  // Tools are drawn into the picture later, so VTK need not copy a depth buffer for each.
+  if (!p.no_depth->GetHandle()) {
+    float far = 1.0F;
+    p.no_depth->SetContext(window);
+    p.no_depth->CreateDepthFromRaw(1, 1, vtkTextureObject::Float32, VTK_FLOAT, &far);
+    p.mapper->SetSharedDepthTexture(p.no_depth);
+  }
+  p.no_depth->Activate();
 }
 
 void CarveVolume::scan(vtkRenderer& renderer) {
@@ -407,8 +412,8 @@ void CarveVolume::setQuality(double pixel_step, double ray_step) {
   p.mapper->SetSampleDistance(float(ray_step * p.sample_distance * p.smallest_edge_mm));
 }
 
-void CarveVolume::setRows(std::optional<std::pair<int, int>> rows) {
-  parts_->rows = rows;
+void CarveVolume::setPart(const PixelRect& part) {
+  parts_->part = part;
 }
 
 void CarveVolume::setLeaping(bool on) {
@@ -444,6 +449,7 @@ void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
   parts_->sent = false;
   parts_->prop->ReleaseGraphicsResources(window);
   parts_->leaps->ReleaseGraphicsResources(window);
+  parts_->no_depth->ReleaseGraphicsResources(window);
 }
 
 }  // namespace trephine

@@ -5,10 +5,9 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
+#include "render/cast_plan.h"
 #include "render/scene_renderer.h"
 #include "render/transfer_function.h"
 #include "volume/grid.h"
@@ -49,8 +48,8 @@ class CarveVolume {
   // Pixels between rays (1 is full quality), and the samples' distance as a multiple of that at
   // full quality.
   void setQuality(double pixel_step, double ray_step);
-  // Casts rays for these rows of pixels only, [first, second) from below; nothing: for all.
-  void setRows(std::optional<std::pair<int, int>> rows);
+  // Casts rays for these pixels only.
+  void setPart(const PixelRect& part);
   // Off draws as VTK does; for comparisons.
   void setLeaping(bool on);
   // Each ray in the colour of its first visible tissue, opaque and without light.

@@ -7,7 +7,11 @@ namespace trephine {
 
 namespace {
 
-// Quarter steps: every new level makes VTK allocate its images again.
+// A full picture that takes longer has one in between, which takes about the second time.
+constexpr double kLongWait_ms = 1100.0;
+constexpr double kFirstRefined_ms = 350.0;
+
+// Quarter steps: every new level allocates its images again.
 double level(double step) {
   return std::clamp(std::ceil(step * 4.0) / 4.0, 1.0, LevelOfDetail::kCoarsest);
 }
@@ -16,6 +20,17 @@ double level(double step) {
 
 double LevelOfDetail::rayStep() const {
   return std::min(pixel_step_, 2.0);
+}
+
+double LevelOfDetail::finerThan(double pixel_step) const {
+  // Of a picture at full quality; the last one's, or what the moving one says of it.
+  const double full_ms = still_frame_ms_ > 0.0
+                             ? still_frame_ms_
+                             : moving_frame_ms_ * pixel_step_ * pixel_step_ * rayStep();
+  if (full_ms <= kLongWait_ms) return 1.0;
+  // With longer steps along the rays, as in movement.
+  const double between = std::ceil(4.0 * std::sqrt(full_ms / kFirstRefined_ms / 2.0)) / 4.0;
+  return between > 1.25 && between <= 0.75 * pixel_step ? between : 1.0;
 }
 
 void LevelOfDetail::stillFrameTook(double ms) {
@@ -29,6 +44,7 @@ void LevelOfDetail::stillFrameTook(double ms) {
 void LevelOfDetail::movingFrameTook(double ms) {
   if (!std::isfinite(ms) || ms <= 0.0) return;
   const double ratio = ms / kBudget_ms;
+  moving_frame_ms_ = ms;
   // Finer only when there is room for a whole level, or the level would change at every frame.
   if (ratio > 1.0) {
     pixel_step_ = level(pixel_step_ * std::sqrt(ratio));
@@ -37,10 +53,9 @@ void LevelOfDetail::movingFrameTook(double ms) {
   }
 }
 
-int nextStripRows(int rows, double took_ms, double left_ms) {
-  constexpr int kFewest = 8;
-  if (!(took_ms > 0.0) || !(left_ms > 0.0)) return kFewest;
-  return int(std::clamp(rows * left_ms / took_ms, double(kFewest), std::max(8.0, rows * 1.5)));
+double nextStripPixels(double pixels, double took_ms, double left_ms) {
+  if (!(took_ms > 0.0) || !(left_ms > 0.0)) return 0.0;
+  return std::min(pixels * left_ms / took_ms, pixels * 1.5);
 }
 
 }  // namespace trephine

@@ -14,6 +14,10 @@ class LevelOfDetail {
   // Factor on the distance between two samples of a ray.
   double rayStep() const;
 
+  // The step of the next picture once things are still: in between where full quality would keep
+  // the eye waiting, else 1.
+  double finerThan(double pixel_step) const;
+
   // A frame drawn at full quality, or at the moving level, took this long. The first of a movement
   // takes its level from the still frame before it.
   void stillFrameTook(double ms);
@@ -24,11 +28,12 @@ class LevelOfDetail {
 
  private:
   double pixel_step_ = 1.0;
+  double moving_frame_ms_ = 0.0;
   double still_frame_ms_ = 0.0;
 };
 
-// How many rows of a still picture the next strip may have, so that it takes `left_ms`, when the
-// last one's `rows` took `took_ms`. At most half as many again, since the next rows may be dearer.
-int nextStripRows(int rows, double took_ms, double left_ms);
+// How many pixels the next strip of a picture may have, so that it takes `left_ms`, when the last
+// one's took `took_ms`. At most half as many again, since the next may be dearer.
+double nextStripPixels(double pixels, double took_ms, double left_ms);
 
 }  // namespace trephine

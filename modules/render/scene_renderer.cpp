@@ -12,6 +12,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 #include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLShaderCache.h>
 #include <vtkOpenGLState.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -26,12 +27,13 @@
 
 #include "render/canvas.h"
 #include "render/carve_volume_mapper.h"
+#include "render/composer.h"
 #include "render/display_probe.h"
-#include "render/level_of_detail.h"
 #include "render/orientation_cue.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
 #include "render/view_camera.h"
+#include "render/volume_pictures.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2);
@@ -48,8 +50,11 @@ double msSince(Clock::time_point start) {
 
 }  // namespace
 
+// VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
+// other the tools'. The picture is put together from both.
 struct SceneRenderer::Parts {
-  vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkRenderer> renderer;  // of the volume
+  vtkNew<vtkRenderer> tool_renderer;
   vtkSmartPointer<vtkOpenGLRenderWindow> window;  // null while detached
   vtkNew<vtkCallbackCommand> context_asked;
   RenderHost host;
@@ -58,28 +63,24 @@ struct SceneRenderer::Parts {
   Volume copy;
   CarveVolume volume;
   ToolDrawing tools;
-  OrientationCue cue{*renderer};
+  ScreenLines lines;
   std::vector<VoxelBox> pulled;
 
   ViewCamera camera;
-  LevelOfDetail level;
+  VolumePictures pictures;
+  Composer composer;
+  Canvas scene;       // the volume over the background, in the window's size
+  Canvas tool_layer;  // tools alone, colour and depth
+  bool scene_stale = true;
   bool moving = false;
   int width = 1;
   int height = 1;
 
-  // The still picture as it grows from the top; `row` is the lowest that is at full quality.
-  Canvas canvas;
-  bool stale = true;
-  int row = 0;
-  int strip_rows = 0;
-  double strip_ms = 0.0;
-  double picture_ms = 0.0;
-
   Parts() {
-    renderer->GradientBackgroundOn();
-    renderer->SetBackground(0.07, 0.075, 0.08);
-    renderer->SetBackground2(0.22, 0.225, 0.235);
-    renderer->GetActiveCamera()->SetViewAngle(ViewCamera::kViewAngle_deg);
+    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) {
+      each->EraseOff();
+      each->GetActiveCamera();
+    }
     context_asked->SetClientData(this);
     context_asked->SetCallback([](vtkObject*, unsigned long event, void* client, void* data) {
       const RenderHost& lender = static_cast<Parts*>(client)->host;
@@ -92,77 +93,157 @@ struct SceneRenderer::Parts {
     });
   }
 
-  void placeCamera() {
+  void spoil() {
+    pictures.spoil();
+    scene_stale = true;
+  }
+
+  bool drawsVolume() const { return !copy.hu.empty(); }
+
+  // `upwards`: what the picture spans upwards, in the window's height.
+  void place(vtkRenderer& in, double upwards) {
     const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
-    vtkCamera* vtk = renderer->GetActiveCamera();
+    vtkCamera* vtk = in.GetActiveCamera();
     vtk->SetPosition(eye.x, eye.y, eye.z);
     vtk->SetFocalPoint(focus.x, focus.y, focus.z);
     vtk->SetViewUp(up.x, up.y, up.z);
-    cue.update(camera.right(), camera.up(), camera.forward(), width, height);
-    renderer->ResetCameraClippingRange();
+    vtk->SetParallelProjection(camera.parallel());
+    vtk->SetParallelScale(camera.halfHeight_mm() * upwards);
+    const double half = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0)) * upwards;
+    vtk->SetViewAngle(2.0 * glm::degrees(std::atan(half)));
+    in.ResetCameraClippingRange();
   }
 
-  // Draws into VTK's own framebuffer; the context is current afterwards.
-  void draw(double pixel_step, double ray_step) {
-    window->MakeCurrent();
-    // The window's toolkit has changed OpenGL's state behind VTK's back.
-    if (hosted) {
-      window->GetState()->Reset();
-      window->GetState()->vtkglDepthFunc(GL_LEQUAL);
-    }
+  // OpenGL's state was changed behind VTK's back, by us and by the window's toolkit.
+  void handToVtk() {
     window->SetSize(width, height);
+    window->GetState()->Reset();
+    window->GetState()->vtkglEnable(GL_DEPTH_TEST);
+    window->GetState()->vtkglDepthMask(GL_TRUE);
+    window->GetState()->vtkglDepthFunc(GL_LEQUAL);
+    window->GetShaderCache()->ReleaseCurrentShader();
+  }
+
+  // Into the framebuffer that is bound.
+  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.low_x, part.low_y, part.width(), part.height());
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kNever[4] = {1e9F, 1e9F, 0.0F, 0.0F};
+    glClearBufferfv(GL_COLOR, 0, kNothing);
+    glClearBufferfv(GL_COLOR, 1, kNever);
+    glClearBufferfv(GL_COLOR, 2, kNothing);
+    handToVtk();
+    renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
     volume.sendChanges(*renderer);
-    volume.setQuality(pixel_step, ray_step);
-    placeCamera();
-    window->Render();
-  }
-
-  // Copies rows of what VTK drew.
-  void keep(int low, int high) {
-    canvas.bind(width, height);
-    window->BlitDisplayFramebuffer(0, 0, low, width, high - low, 0, low, width, high - low,
-                                   GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  }
-
-  void drawStrip(double left_ms) {
-    const Clock::time_point start = Clock::now();
-    const int rows = std::min(row, nextStripRows(strip_rows, strip_ms, left_ms));
-    volume.setRows(std::pair(row - rows, row));
-    draw(1.0, 1.0);
-    volume.setRows(std::nullopt);
-    keep(row - rows, row);
+    volume.setQuality(1.0, ray_step);
+    volume.setPart(part);
+    place(*renderer, span.pixels.y / height);
+    renderer->Render();
     glFinish();
-    row -= rows;
-    strip_rows = rows;
-    strip_ms = msSince(start);
-    picture_ms += strip_ms;
   }
 
-  void drawStill(double budget_ms) {
-    const Clock::time_point start = Clock::now();
-    if (stale) {
-      draw(level.pixelStep(), level.rayStep());
-      keep(0, height);
-      stale = false;
-      row = height;
-      strip_rows = height / 16;
-      strip_ms = budget_ms;
-      picture_ms = 0.0;
+  bool work(double budget_ms) {
+    if (!drawsVolume()) return std::exchange(scene_stale, false);
+    const bool changed =
+        pictures.work(budget_ms, moving,
+                      [this](const Canvas& into, const Span& span, const PixelRect& part,
+                             double ray_step) { cast(into, span, part, ray_step); });
+    scene_stale |= changed;
+    return changed;
+  }
+
+  // Around the points, in the window's pixels.
+  PixelRect around(const Vec3* points, std::size_t count, int margin) const {
+    PixelRect rect;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::optional<glm::dvec2> at = camera.pixelOf(points[i], width, height);
+      if (!at) return {0, 0, width, height};
+      const auto within = [](double value, int most) {
+        return int(std::floor(std::clamp(value, -1.0, double(most))));
+      };
+      const int x = within(at->x, width), y = within(at->y, height);
+      rect = bounding(rect, {x - margin, y - margin, x + margin + 1, y + margin + 1});
     }
-    do {
-      drawStrip(budget_ms - msSince(start));
-    } while (row > 0 && msSince(start) + 0.5 * strip_ms < budget_ms);
-    if (row == 0) level.stillFrameTook(picture_ms);
+    return {std::max(rect.low_x, 0), std::max(rect.low_y, 0), std::min(rect.high_x, width),
+            std::min(rect.high_y, height)};
+  }
+
+  void cut(const VoxelBox& box) {
+    // Shading and ambient light look this far from a sample.
+    constexpr double kReach_voxels = 4.0;
+    Vec3 corners[8];
+    for (int corner = 0; corner < 8; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = std::size_t(axis);
+        corners[corner][axis] =
+            corner & (1 << axis) ? box.high[a] - 1 + kReach_voxels : box.low[a] - kReach_voxels;
+      }
+      corners[corner] = copy.geometry.toPatient_mm(corners[corner]);
+    }
+    pictures.cut(around(corners, 8, 1));
+  }
+
+  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span) {
+    std::vector<PixelRect> parts;
+    for (const auto& box : tools.boxes()) {
+      const PixelRect part = around(box.data(), box.size(), 2);
+      if (!part.empty()) parts.push_back(part);
+    }
+    if (parts.empty()) return;
+    tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
+    glEnable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    for (const PixelRect& part : parts) {
+      glScissor(part.low_x, part.low_y, part.width(), part.height());
+      constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kFar = 1.0F;
+      glClearBufferfv(GL_COLOR, 0, kNothing);
+      glClearBufferfv(GL_DEPTH, 0, &kFar);
+    }
+    handToVtk();
+    place(*tool_renderer, 1.0);
+    tool_renderer->Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    DepthRange range;
+    tool_renderer->GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
+    range.parallel = camera.parallel();
+    // A part that lies in another would be drawn twice, which changes nothing: what is read is not
+    // what is written.
+    for (const PixelRect& part : parts) {
+      composer.drawTools(tool_layer, range, shown, span, part);
+    }
+  }
+
+  void compose(unsigned int framebuffer) {
+    const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
+    const Span span = shown ? pictures.span() : Span{};
+    if (scene_stale || scene.width() != width || scene.height() != height) {
+      scene.bind(width, height, {Canvas::Image::colour});
+      composer.drawVolume(shown, span, width, height);
+      scene_stale = false;
+    }
+    scene.copyTo(framebuffer);
+    drawTools(framebuffer, shown, span);
+    ScreenLines all;
+    if (shown) {
+      addOrientationCue(camera, width, height, all);
+      addScaleBar(camera, width, height, all);
+    }
+    all.insert(all.end(), lines.begin(), lines.end());
+    composer.drawLines(all, width, height);
   }
 
   void release() {
     if (!window) return;
     window->MakeCurrent();
-    canvas.release();
-    stale = true;
+    pictures.release();
+    composer.release();
+    scene.release();
+    tool_layer.release();
+    scene_stale = true;
     volume.releaseGraphics(*renderer);
     window->Finalize();
-    window->RemoveRenderer(renderer);
+    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
     window->RemoveObserver(context_asked);
     window = nullptr;
   }
@@ -178,8 +259,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   if (Status display = probeDisplay(); !display) return display.error();
   auto renderer = std::make_unique<SceneRenderer>();
   Parts& p = *renderer->parts_;
-  p.width = std::max(1, width);
-  p.height = std::max(1, height);
+  renderer->resize(width, height);
   vtkNew<vtkRenderWindow> window;
   p.window = vtkOpenGLRenderWindow::SafeDownCast(window);
   const Error no_opengl{"NO_OPENGL", "OpenGL 3.2 could not be started", "hidden window",
@@ -188,7 +268,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   p.window->SetOffScreenRendering(1);
   p.window->SetMultiSamples(0);
   p.window->SetSize(p.width, p.height);
-  p.window->AddRenderer(p.renderer);
+  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
   p.window->Initialize();
   p.window->MakeCurrent();
   if (openGlVersion() < kOpenGlNeeded) return no_opengl;
@@ -216,7 +296,7 @@ Status SceneRenderer::attach(RenderHost host) {
     p.window = nullptr;
     return openGlTooOld(description);
   }
-  p.window->AddRenderer(p.renderer);
+  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
   return {};
 }
 
@@ -239,7 +319,7 @@ std::string SceneRenderer::openGlDescription() const {
 
 void SceneRenderer::setVolume(Volume copy, std::shared_ptr<const LabelMap> labels) {
   Parts& p = *parts_;
-  p.stale = true;
+  p.spoil();
   const bool same_place = copy.geometry == p.copy.geometry;
   p.volume.remove(*p.renderer);
   p.copy = std::move(copy);
@@ -251,7 +331,7 @@ void SceneRenderer::setVolume(Volume copy, std::shared_ptr<const LabelMap> label
 void SceneRenderer::refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels) {
   Parts& p = *parts_;
   if (!hasVolume() || !(voxels.geometry == p.copy.geometry)) return;
-  p.stale = true;
+  p.spoil();
   p.volume.remove(*p.renderer);
   voxels.read(0, p.copy.hu);
   p.volume.show(p.copy, std::move(labels), *p.renderer);
@@ -262,29 +342,29 @@ bool SceneRenderer::hasVolume() const {
 }
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setTissues(tissues, looks);
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setClip(planes);
 }
 
 void SceneRenderer::setLight(const Vec3& from) {
   if (!isFinite(from) || glm::length(from) == 0.0) return;
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setLight(glm::normalize(from));
 }
 
 void SceneRenderer::setTruth(const RayTruth& truth) {
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setTruth(truth);
 }
 
 void SceneRenderer::setSampleDistance(double voxels) {
   if (!(voxels > 0.0)) return;
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setSampleDistance(voxels);
 }
 
@@ -293,15 +373,15 @@ bool SceneRenderer::pullChanges(Grid& grid) {
   if (!hasVolume() || !(grid.geometry() == p.copy.geometry)) return false;
   p.pulled.clear();
   grid.copyChanges(p.copy, p.pulled);
-  for (const VoxelBox& box : p.pulled) p.volume.changed(box);
-  if (p.pulled.empty()) return false;
-  p.stale = true;
-  return true;
+  for (const VoxelBox& box : p.pulled) {
+    p.volume.changed(box);
+    p.cut(box);
+  }
+  return !p.pulled.empty();
 }
 
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
-  parts_->stale = true;
-  parts_->tools.show(tools, *parts_->renderer);
+  parts_->tools.show(tools, *parts_->tool_renderer);
 }
 
 const Volume& SceneRenderer::copy() const {
@@ -313,7 +393,8 @@ void SceneRenderer::resize(int width, int height) {
   if (width == p.width && height == p.height) return;
   p.width = std::max(1, width);
   p.height = std::max(1, height);
-  p.stale = true;
+  p.pictures.resize(p.width, p.height);
+  p.scene_stale = true;
 }
 
 void SceneRenderer::setMoving(bool moving) {
@@ -323,42 +404,55 @@ void SceneRenderer::setMoving(bool moving) {
 bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   Parts& p = *parts_;
   if (!p.window) return true;
-  const Clock::time_point start = Clock::now();
-  if (!p.moving && p.level.stillFrame_ms() > budget_ms) {
-    if (p.stale || p.row > 0) p.drawStill(budget_ms);
-    if (p.hosted) p.canvas.copyTo(framebuffer);
-    return p.row == 0;
-  }
-  p.stale = true;
-  p.draw(p.moving ? p.level.pixelStep() : 1.0, p.moving ? p.level.rayStep() : 1.0);
+  p.window->MakeCurrent();
+  p.work(budget_ms);
   if (p.hosted) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    p.window->BlitDisplayFramebuffer();
+    p.compose(framebuffer);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   }
-  glFinish();  // the level follows the time that a frame really takes
-  if (p.moving) {
-    p.level.movingFrameTook(msSince(start));
-  } else {
-    p.level.stillFrameTook(msSince(start));
-  }
-  return true;
+  return p.moving || complete();
+}
+
+bool SceneRenderer::refine(double budget_ms) {
+  Parts& p = *parts_;
+  if (!p.window) return false;
+  p.window->MakeCurrent();
+  return p.work(budget_ms);
+}
+
+bool SceneRenderer::complete() const {
+  return !parts_->drawsVolume() || parts_->pictures.complete();
+}
+
+double SceneRenderer::shareOfRays() const {
+  const double step = parts_->pictures.pixelStep();
+  return parts_->drawsVolume() && step > 0.0 ? 1.0 / (step * step) : 0.0;
 }
 
 Picture SceneRenderer::picture() {
   Parts& p = *parts_;
   Picture picture;
   if (!p.window) return picture;
-  p.draw(1.0, 1.0);
-  vtkNew<vtkUnsignedCharArray> pixels;
-  p.window->GetPixelData(0, 0, p.width - 1, p.height - 1, 0, pixels, 0);
+  p.window->MakeCurrent();
+  const bool moving = std::exchange(p.moving, false);
+  p.work(std::numeric_limits<double>::infinity());
+  p.moving = moving;
+  Canvas whole;
+  if (!whole.bind(p.width, p.height, {Canvas::Image::colour})) return picture;
+  p.compose(whole.framebuffer());
+  whole.bind();
   const std::size_t row = std::size_t(p.width) * 3;
-  if (std::size_t(pixels->GetNumberOfValues()) != row * std::size_t(p.height)) return picture;
+  std::vector<std::uint8_t> up(row * std::size_t(p.height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, p.width, p.height, GL_RGB, GL_UNSIGNED_BYTE, up.data());
+  const bool read = glGetError() == GL_NO_ERROR;
+  whole.release();
+  if (!read) return picture;
   picture.width = p.width;
   picture.height = p.height;
-  picture.rgb.resize(row * std::size_t(p.height));
+  picture.rgb.resize(up.size());
   for (int y = 0; y < p.height; ++y) {  // OpenGL's rows go up
-    std::copy_n(pixels->GetPointer(0) + std::size_t(p.height - 1 - y) * row, row,
+    std::copy_n(up.data() + std::size_t(p.height - 1 - y) * row, row,
                 picture.rgb.data() + std::size_t(y) * row);
   }
   return picture;
@@ -368,30 +462,49 @@ void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
   p.camera.fit(p.copy.geometry, direction, up, p.width, p.height);
-  p.stale = true;
+  p.spoil();
 }
 
 void SceneRenderer::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up,
                            double distance_mm) {
   parts_->camera.lookAt(focus_mm, direction, up, distance_mm);
-  parts_->stale = true;
+  parts_->spoil();
 }
 
 void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
   parts_->camera.orbit(azimuth_deg, elevation_deg);
-  parts_->stale = true;
+  parts_->spoil();
 }
 
 void SceneRenderer::zoom(double factor) {
   Parts& p = *parts_;
   p.camera.zoom(factor, hasVolume() ? 20.0 * p.copy.geometry.diagonal_mm() : 1e5);
-  p.stale = true;
+  p.spoil();
 }
 
 void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   Parts& p = *parts_;
   p.camera.pan(dx_pixels, dy_pixels, p.height);
-  p.stale = true;
+  p.spoil();
+}
+
+void SceneRenderer::lookFrom(StandardView side) {
+  parts_->camera.lookFrom(side);
+  parts_->spoil();
+}
+
+void SceneRenderer::setParallel(bool parallel) {
+  if (parallel == parts_->camera.parallel()) return;
+  parts_->camera.setParallel(parallel);
+  parts_->spoil();
+}
+
+const ViewCamera& SceneRenderer::camera() const {
+  return parts_->camera;
+}
+
+void SceneRenderer::setLines(const ScreenLines& lines) {
+  parts_->lines = lines;
 }
 
 Vec3 SceneRenderer::viewRight() const {
@@ -411,6 +524,7 @@ double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
 double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
   SceneRenderer::Parts& p = *renderer.parts_;
   p.window->MakeCurrent();
+  p.spoil();
   p.volume.scan(*p.renderer);  // outside the time: only what crosses to the GPU counts
   glFinish();
   const Clock::time_point start = Clock::now();
@@ -422,6 +536,7 @@ double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
 double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
   SceneRenderer::Parts& p = *renderer.parts_;
   p.window->MakeCurrent();
+  p.spoil();
   glFinish();
   const Clock::time_point start = Clock::now();
   p.volume.changed(box);
@@ -435,11 +550,11 @@ Volume& UploadProbe::copy(SceneRenderer& renderer) {
 }
 
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {
-  renderer.parts_->stale = true;
+  renderer.parts_->spoil();
   renderer.parts_->volume.setLeaping(on);
 }
 void UploadProbe::setFirstTissue(SceneRenderer& renderer, bool on) {
-  renderer.parts_->stale = true;
+  renderer.parts_->spoil();
   renderer.parts_->volume.setFirstTissue(on);
 }
 

@@ -13,6 +13,8 @@
 #include "base/math.h"
 #include "base/result.h"
 #include "render/picture.h"
+#include "render/screen_lines.h"
+#include "render/view_camera.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "volume/grid.h"
@@ -97,13 +99,18 @@ class SceneRenderer {
   const Volume& copy() const;
 
   void resize(int width, int height);  // device pixels
-  // Fewer rays and longer steps while something moves; `true` at each input, `false` when still.
+  // Fewer rays and longer steps while the camera moves; `true` at each input, `false` when still.
   void setMoving(bool moving);
-  // Renders and copies into the framebuffer object that the window shows. With a budget, a still
-  // picture that would take longer starts coarse and gains full quality in strips from the top,
-  // some at each call; false while it is not complete: paint again when nothing else is to be done.
-  // Whatever changes meanwhile starts it anew. Moving frames and those without a budget are whole.
+  // Makes the picture of the volume where it is stale and renders into the framebuffer object that
+  // the window shows. Tools alone are drawn over the last picture of the volume. With a budget, a
+  // still picture that would take longer comes coarse at first; finer ones follow whole. False
+  // while there is work for refine().
   bool paint(unsigned int framebuffer, double budget_ms = std::numeric_limits<double>::infinity());
+  // Works for about so long on a finer picture. True when there is another to paint.
+  bool refine(double budget_ms);
+  bool complete() const;
+  // Of the rays of full quality, those that the shown picture has; 0 before there is one.
+  double shareOfRays() const;
   // Renders at full quality and reads it back.
   Picture picture();
 
@@ -113,6 +120,11 @@ class SceneRenderer {
   void orbit(double azimuth_deg, double elevation_deg);
   void zoom(double factor);
   void pan(double dx_pixels, double dy_pixels);  // the picture moves right and down, as a mouse
+  void lookFrom(StandardView side);
+  void setParallel(bool parallel);
+  const ViewCamera& camera() const;
+  // Over the picture, in its pixels, until others are set.
+  void setLines(const ScreenLines& lines);
   // The view plane's axes in the patient frame, and the mm that one pixel spans at a point.
   Vec3 viewRight() const;
   Vec3 viewUp() const;
