@@ -10,11 +10,12 @@ namespace trephine {
 
 namespace {
 
-constexpr int kStillAfter_ms = 300;
-// A full picture that takes this long would stop a hand that rests for a moment only, so in an
-// exercise it waits for a longer rest.
-constexpr double kSlowPicture_ms = 150.0;
-constexpr int kLongRest_ms = 1500;
+constexpr int kStillAfter_ms = 120;
+// What one frame may spend on rays: on those of a cut before it is shown, and between two frames on
+// a finer picture. In an exercise the tools wait no longer than this.
+constexpr double kCut_ms = 25.0;
+constexpr double kRefine_ms = 30.0;
+constexpr double kRefineInTraining_ms = 12.0;
 constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
 constexpr double kKeyStep_mm = 0.5;
@@ -39,7 +40,8 @@ bool looksAlike(const ToolView& a, const ToolView& b) {
 
 }  // namespace
 
-ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabel(this)) {
+ViewWidget::ViewWidget(QWidget* parent)
+    : QOpenGLWidget(parent), hint_(new QLabel(this)), level_(new QLabel(this)) {
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
@@ -50,13 +52,21 @@ ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabe
   hint_->setWordWrap(true);
   hint_->setAttribute(Qt::WA_TransparentForMouseEvents);
   hint_->setProperty("quiet", true);
+  level_->setObjectName("viewLevel");
+  level_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  level_->setProperty("quiet", true);
+  level_->move(10, 8);
+  level_->hide();
   hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
   still_.setSingleShot(true);
   connect(&still_, &QTimer::timeout, this, [this] {
     moving_ = false;
     renderer_.setMoving(false);
-    update();
+    refine_.start();
   });
+  refine_.setSingleShot(true);
+  refine_.setInterval(0);  // when nothing else is to be done
+  connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
 }
 
 ViewWidget::~ViewWidget() {
@@ -104,19 +114,37 @@ void ViewWidget::paintGL() {
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
-  constexpr double kStrip_ms =
-      50.0;  // a still picture comes in strips, so that input is not kept waiting
-  if (!renderer_.paint(defaultFramebufferObject(), kStrip_ms)) update();
-  const double paint_ms = double(timer.nsecsElapsed()) * 1e-6;
-  if (!moving_) still_picture_ms_ = paint_ms;
-  emit framePainted(paint_ms, renderer_.hasVolume());
+  renderer_.paint(defaultFramebufferObject(), kCut_ms);
+  if (!moving_ && !renderer_.complete()) refine_.start();
+  emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
+  showLevel();
+}
+
+void ViewWidget::refine() {
+  if (!isVisible() || !context() || moving_) return;
+  makeCurrent();
+  const bool another = renderer_.refine(training_ ? kRefineInTraining_ms : kRefine_ms);
+  doneCurrent();
+  if (another) {
+    update();
+  } else if (!renderer_.complete()) {
+    refine_.start();
+  }
+}
+
+// How coarse the picture is, while it is.
+void ViewWidget::showLevel() {
+  const double share = renderer_.shareOfRays();
+  const bool coarse = share > 0.0 && share < 1.0;
+  if (coarse) level_->setText(tr("1/%1 of the rays").arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0));
+  if (coarse) level_->adjustSize();
+  level_->setVisible(coarse);
 }
 
 void ViewWidget::redraw() {
   moving_ = true;
   renderer_.setMoving(true);
-  const bool slow = training_ && still_picture_ms_ > kSlowPicture_ms;
-  still_.start(slow ? kLongRest_ms : kStillAfter_ms);
+  still_.start(kStillAfter_ms);
   update();
 }
 
@@ -148,7 +176,7 @@ void ViewWidget::lookFromFront() {
 }
 
 void ViewWidget::pullChanges(Grid& grid) {
-  if (renderer_.pullChanges(grid)) redraw();
+  if (renderer_.pullChanges(grid)) update();
 }
 
 void ViewWidget::setTools(const std::vector<ToolView>& tools) {
@@ -157,7 +185,7 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
   if (alike) return;
   tools_ = tools;
   renderer_.setTools(tools);
-  redraw();
+  update();  // over the last picture of the volume
 }
 
 void ViewWidget::setTraining(bool training) {
@@ -192,7 +220,6 @@ void ViewWidget::moveHand(Hand hand, double right_pixels, double up_pixels) {
 
 void ViewWidget::moveHandBy(Hand hand, const Vec3& by_mm) {
   emit handMoved(hand, by_mm);
-  redraw();
 }
 
 void ViewWidget::turn(double right_pixels, double down_pixels) {

@@ -70,7 +70,9 @@ class ViewWidget : public QOpenGLWidget {
 
  private:
   void releaseGraphics();
-  void redraw();  // coarse now, refined when still
+  void redraw();  // the volume too: coarse now, refined when still
+  void refine();
+  void showLevel();
   void moveHand(Hand hand, double right_pixels, double up_pixels);
   void moveHandBy(Hand hand, const Vec3& by_mm);
   void turn(double right_pixels, double down_pixels);
@@ -82,13 +84,13 @@ class ViewWidget : public QOpenGLWidget {
                         "Install the graphics driver and start again"}};
   std::string gl_description_;
   QLabel* hint_;
-  QTimer still_;
+  QLabel* level_;
+  QTimer still_, refine_;
   QPointF last_;
   std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;
   bool training_ = false;
   bool moving_ = false;
-  double still_picture_ms_ = 0.0;  // what the last picture at full quality took
 };
 
 }  // namespace trephine
