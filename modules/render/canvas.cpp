@@ -64,6 +64,18 @@ void Canvas::copyTo(unsigned int framebuffer) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
+std::vector<float> Canvas::readDepth_mm(const PixelRect& part) const {
+  if (part.empty()) return {};
+  std::vector<float> depth(std::size_t(part.pixels()));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glReadBuffer(GL_COLOR_ATTACHMENT1);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(part.low_x, part.low_y, part.width(), part.height(), GL_GREEN, GL_FLOAT,
+               depth.data());
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  return depth;
+}
+
 void Canvas::release() {
   if (framebuffer_) glDeleteFramebuffers(1, &framebuffer_);
   for (const unsigned int texture : textures_) {

@@ -5,6 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <initializer_list>
+#include <vector>
+
+#include "render/cast_plan.h"
 
 namespace trephine {
 
@@ -27,6 +30,8 @@ class Canvas {
   int height() const { return height_; }
   // Copies the first image into another framebuffer of the same size, and leaves that one bound.
   void copyTo(unsigned int framebuffer) const;
+  // The second channel of the depths, which are the second image; rows go up. Empty for no pixels.
+  std::vector<float> readDepth_mm(const PixelRect& part) const;
   void release();
 
  private:

@@ -105,6 +105,8 @@ struct CarveVolume::Parts {
   vtkNew<vtkCallbackCommand> shader_used;
   vtkNew<vtkCallbackCommand> draw_starts;
   vtkNew<vtkCallbackCommand> draw_ends;
+  vtkNew<vtkCallbackCommand> complained;
+  std::string complaint;
   vtkOpenGLState* state = nullptr;  // of the window of the last sendChanges
   PixelRect part;
   vtkNew<vtkTextureObject> no_depth;  // one pixel: nothing ends a ray
@@ -264,6 +266,12 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
   p.draw_ends->SetCallback(
       [](vtkObject*, unsigned long, void* parts, void*) { static_cast<Parts*>(parts)->endDraw(); });
   p.mapper->AddObserver(vtkCommand::VolumeMapperRenderEndEvent, p.draw_ends);
+  p.complained->SetClientData(&p);
+  p.complained->SetCallback([](vtkObject*, unsigned long, void* parts, void* text) {
+    std::string& complaint = static_cast<Parts*>(parts)->complaint;
+    if (complaint.empty()) complaint = text ? static_cast<const char*>(text) : "unknown";
+  });
+  p.mapper->AddObserver(vtkCommand::ErrorEvent, p.complained);
   p.look->SetColor(p.colour);
   p.look->SetScalarOpacity(p.opacity);
   p.look->SetScalarOpacityUnitDistance(1.0);  // a tissue's opacity is per mm
@@ -288,6 +296,7 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   p.labels = std::move(labels);
   p.labels_stale = true;
   p.boxes.clear();
+  p.complaint.clear();
   p.sent = false;
   p.bricks = BrickRanges(copy);
 
@@ -402,8 +411,15 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   if (!p.copy) return false;
   p.boxes.clear();
   p.image->Modified();
-  p.sent = p.mapper->PreLoadData(&renderer, p.prop);
+  while (glGetError() != GL_NO_ERROR) {  // of others
+  }
+  p.sent = p.mapper->PreLoadData(&renderer, p.prop) && glGetError() == GL_NO_ERROR &&
+           p.mapper->texture();
   return p.sent;
+}
+
+const std::string& CarveVolume::complaint() const {
+  return parts_->complaint;
 }
 
 void CarveVolume::setQuality(double pixel_step, double ray_step) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "render/cast_plan.h"
@@ -44,6 +45,8 @@ class CarveVolume {
   void scan(vtkRenderer& renderer);
   // Sends every voxel now. Context current. False when the GPU refused.
   bool sendAll(vtkRenderer& renderer);
+  // What VTK complained of since the last show(); empty: nothing.
+  const std::string& complaint() const;
 
   // Pixels between rays (1 is full quality), and the samples' distance as a multiple of that at
   // full quality.

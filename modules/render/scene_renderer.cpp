@@ -25,13 +25,16 @@
 #include <optional>
 #include <utility>
 
+#include "base/log.h"
 #include "render/canvas.h"
 #include "render/carve_volume_mapper.h"
 #include "render/composer.h"
 #include "render/display_probe.h"
+#include "render/display_volume.h"
 #include "render/orientation_cue.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
+#include "render/tool_guide.h"
 #include "render/view_camera.h"
 #include "render/volume_pictures.h"
 
@@ -62,7 +65,13 @@ struct SceneRenderer::Parts {
 
   Volume copy;
   CarveVolume volume;
+  std::shared_ptr<const LabelMap> labels;
+  std::optional<DisplayVolume> reduced;  // stands in for `copy` on the graphics card
+  Index3 reduction{1, 1, 1};
+  bool fitted = false;  // what is shown has been sent, or refused
+  Status refusal;
   ToolDrawing tools;
+  std::vector<ToolView> tool_views;
   ScreenLines lines;
   std::vector<VoxelBox> pulled;
 
@@ -99,6 +108,54 @@ struct SceneRenderer::Parts {
   }
 
   bool drawsVolume() const { return !copy.hu.empty(); }
+
+  // All voxels, as many as the card takes; sent with the next picture.
+  void show(std::shared_ptr<const LabelMap> of_them) {
+    labels = std::move(of_them);
+    reduced.reset();
+    reduction = {1, 1, 1};
+    fitted = false;
+    volume.show(copy, labels, *renderer);
+  }
+
+  void showReduced() {
+    volume.remove(*renderer);
+    reduced.emplace(copy, reduction);
+    volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *renderer);
+  }
+
+  void changed(const VoxelBox& box) {
+    volume.changed(reduced ? reduced->update(copy, box) : box);
+    cut(box);
+  }
+
+  // Halves it until the card takes it.
+  void fit() {
+    fitted = true;
+    refusal = {};
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+    if (most_edge > 0) most = std::min(most, most_edge);
+    const Index3 needed = reductionFor(copy.geometry.size, most, labels != nullptr);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      reduction[axis] = std::max(reduction[axis], needed[axis]);
+    }
+    constexpr int kMost = 16;  // beyond it there is too little left to see
+    for (;;) {
+      if (reduction != Index3{1, 1, 1}) showReduced();
+      handToVtk();
+      volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
+      if (volume.sendAll(*renderer)) return;
+      if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (copy.geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;
+      }
+    }
+    refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
+                    "Close other programs, or import the case with a part or fewer voxels"};
+    spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
+  }
+  int most_edge = 0;  // for tests: as if textures had no longer edges
 
   // `upwards`: what the picture spans upwards, in the window's height.
   void place(vtkRenderer& in, double upwards) {
@@ -145,11 +202,18 @@ struct SceneRenderer::Parts {
 
   bool work(double budget_ms) {
     if (!drawsVolume()) return std::exchange(scene_stale, false);
+    if (!fitted) fit();
     const bool changed =
         pictures.work(budget_ms, moving,
                       [this](const Canvas& into, const Span& span, const PixelRect& part,
                              double ray_step) { cast(into, span, part, ray_step); });
     scene_stale |= changed;
+    const std::string& shader = composer.failure();
+    if (refusal && (!pictures.allocated() || !shader.empty())) {
+      refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
+                      "Make the window smaller, or update the graphics driver"};
+      spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
+    }
     return changed;
   }
 
@@ -214,6 +278,30 @@ struct SceneRenderer::Parts {
     }
   }
 
+  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
+    for (const ToolView& tool : tool_views) {
+      const PixelRect reach = guideReach(tool, camera, width, height);
+      std::optional<double> ahead_mm;
+      if (!tool.contact && !reach.empty()) {
+        DepthPatch patch;
+        patch.step = span.pixels / glm::dvec2(shown.width(), shown.height());
+        patch.beyond = span.beyond;
+        const auto ray = [&](int x, int y) {
+          return glm::ivec2(glm::floor((glm::dvec2(x, y) + span.beyond) / patch.step));
+        };
+        const glm::ivec2 low = ray(reach.low_x, reach.low_y),
+                         high = ray(reach.high_x, reach.high_y);
+        patch.rays = {std::max(low.x, 0), std::max(low.y, 0), std::min(high.x + 1, shown.width()),
+                      std::min(high.y + 1, shown.height())};
+        patch.depth_mm = shown.readDepth_mm(patch.rays);
+        if (!patch.depth_mm.empty()) {
+          ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
+        }
+      }
+      addGuide(tool, ahead_mm, camera, width, height, to);
+    }
+  }
+
   void compose(unsigned int framebuffer) {
     const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
     const Span span = shown ? pictures.span() : Span{};
@@ -228,6 +316,8 @@ struct SceneRenderer::Parts {
     if (shown) {
       addOrientationCue(camera, width, height, all);
       addScaleBar(camera, width, height, all);
+      if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     }
     all.insert(all.end(), lines.begin(), lines.end());
     composer.drawLines(all, width, height);
@@ -241,6 +331,7 @@ struct SceneRenderer::Parts {
     scene.release();
     tool_layer.release();
     scene_stale = true;
+    fitted = false;
     volume.releaseGraphics(*renderer);
     window->Finalize();
     for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
@@ -324,7 +415,7 @@ void SceneRenderer::setVolume(Volume copy, std::shared_ptr<const LabelMap> label
   p.volume.remove(*p.renderer);
   p.copy = std::move(copy);
   if (!hasVolume()) return;
-  p.volume.show(p.copy, std::move(labels), *p.renderer);
+  p.show(std::move(labels));
   if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
 }
 
@@ -334,7 +425,7 @@ void SceneRenderer::refill(const VoxelSlabs& voxels, std::shared_ptr<const Label
   p.spoil();
   p.volume.remove(*p.renderer);
   voxels.read(0, p.copy.hu);
-  p.volume.show(p.copy, std::move(labels), *p.renderer);
+  p.show(std::move(labels));
 }
 
 bool SceneRenderer::hasVolume() const {
@@ -374,14 +465,14 @@ bool SceneRenderer::pullChanges(Grid& grid) {
   p.pulled.clear();
   grid.copyChanges(p.copy, p.pulled);
   for (const VoxelBox& box : p.pulled) {
-    p.volume.changed(box);
-    p.cut(box);
+    p.changed(box);
   }
   return !p.pulled.empty();
 }
 
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
   parts_->tools.show(tools, *parts_->tool_renderer);
+  parts_->tool_views = tools;
 }
 
 const Volume& SceneRenderer::copy() const {
@@ -422,6 +513,14 @@ bool SceneRenderer::refine(double budget_ms) {
 
 bool SceneRenderer::complete() const {
   return !parts_->drawsVolume() || parts_->pictures.complete();
+}
+
+Index3 SceneRenderer::reduction() const {
+  return parts_->reduction;
+}
+
+Status SceneRenderer::refusal() const {
+  return parts_->refusal;
 }
 
 double SceneRenderer::shareOfRays() const {
@@ -539,7 +638,7 @@ double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
   p.spoil();
   glFinish();
   const Clock::time_point start = Clock::now();
-  p.volume.changed(box);
+  p.changed(box);
   p.volume.sendChanges(*p.renderer);
   glFinish();
   return msSince(start);
@@ -547,6 +646,10 @@ double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
 
 Volume& UploadProbe::copy(SceneRenderer& renderer) {
   return renderer.parts_->copy;
+}
+
+void UploadProbe::limitEdges(SceneRenderer& renderer, int most) {
+  renderer.parts_->most_edge = most;
 }
 
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {

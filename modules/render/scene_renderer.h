@@ -12,6 +12,7 @@
 
 #include "base/math.h"
 #include "base/result.h"
+#include "render/clip_plane.h"
 #include "render/picture.h"
 #include "render/screen_lines.h"
 #include "render/view_camera.h"
@@ -37,13 +38,6 @@ struct ToolView {
   std::string mesh_file;
   Vec3 mesh_tip_mm{0.0};          // in the mesh's frame
   Vec3 mesh_axis{0.0, 0.0, 1.0};  // from the tip to the handle, in the mesh's frame
-};
-
-// What lies on the side that the normal points to is not drawn. Patient frame.
-struct ClipPlane {
-  Vec3 point_mm{0.0};
-  Vec3 normal{0.0, 0.0, 1.0};
-  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
 
 // Where the ray caster departs from VTK's, beside leaping over what is empty.
@@ -109,6 +103,12 @@ class SceneRenderer {
   // Works for about so long on a finer picture. True when there is another to paint.
   bool refine(double budget_ms);
   bool complete() const;
+  // How many voxels became one for the display, where the graphics card takes no more; {1, 1, 1}
+  // where it shows all. Known once it is painted.
+  Index3 reduction() const;
+  // VOLUME_REFUSED where the graphics card cannot show the volume at all, NO_OPENGL where a picture
+  // or a shader was refused. Known once it is painted.
+  Status refusal() const;
   // Of the rays of full quality, those that the shown picture has; 0 before there is one.
   double shareOfRays() const;
   // Renders at full quality and reads it back.
@@ -146,6 +146,8 @@ struct UploadProbe {
   static double boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box);
   // The copy that will be uploaded, to be changed by the measurement.
   static Volume& copy(SceneRenderer& renderer);
+  // As if the graphics card took no texture with a longer edge. Before the volume is painted.
+  static void limitEdges(SceneRenderer& renderer, int most);
   static void setLeaping(SceneRenderer& renderer, bool on);
   // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:
   // what the picture says is there.

@@ -12,6 +12,7 @@
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
+#include "ui/views/view_tools.h"
 
 namespace trephine {
 
@@ -149,7 +150,11 @@ void MainWindow::buildBars() {
       ->addMenu(tr("&Exercise"))
       ->addActions({start_, stop_, pause_, notice_->forceOnAction(), undo_, redo_,
                     rewind_->backAction(), reset_});
-  menuBar()->addMenu(tr("&View"))->addAction(look_);
+  QMenu* look = menuBar()->addMenu(tr("&View"));
+  look->addAction(look_);
+  look->addSeparator();
+  for (QAction* tool : view_->tools().all())
+    tool ? look->addAction(tool) : void(look->addSeparator());
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 

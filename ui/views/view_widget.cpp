@@ -6,6 +6,8 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "ui/views/view_tools.h"
+
 namespace trephine {
 
 namespace {
@@ -23,6 +25,7 @@ constexpr double kZoomStep = 1.1;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
 constexpr double kToolMoved_mm = 0.02;
+constexpr double kReach_pixels = 11.0;  // of a handle
 constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
 
 Hand handFor(Qt::KeyboardModifiers modifiers) {
@@ -41,7 +44,10 @@ bool looksAlike(const ToolView& a, const ToolView& b) {
 }  // namespace
 
 ViewWidget::ViewWidget(QWidget* parent)
-    : QOpenGLWidget(parent), hint_(new QLabel(this)), level_(new QLabel(this)) {
+    : QOpenGLWidget(parent),
+      hint_(new QLabel(this)),
+      level_(new QLabel(this)),
+      strip_(new ViewTools(this)) {
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
@@ -58,6 +64,8 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->move(10, 8);
   level_->hide();
   hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
+  strip_->hide();
+  connectTools();
   still_.setSingleShot(true);
   connect(&still_, &QTimer::timeout, this, [this] {
     moving_ = false;
@@ -106,7 +114,70 @@ void ViewWidget::resizeGL(int, int) {
   fitHint();
 }
 
+void ViewWidget::connectTools() {
+  connect(strip_, &ViewTools::viewWanted, this, [this](StandardView side) {
+    renderer_.lookFrom(side);
+    redraw();
+  });
+  connect(strip_, &ViewTools::parallelWanted, this, [this](bool on) {
+    renderer_.setParallel(on);
+    redraw();
+  });
+  connect(strip_, &ViewTools::boxWanted, this, [this](bool on) {
+    clip_.showBox(on);
+    showClip();
+  });
+  connect(strip_, &ViewTools::planeWanted, this, [this](bool on) {
+    clip_.showPlane(on, renderer_.camera());
+    showClip();
+  });
+  connect(strip_, &ViewTools::throughToolWanted, this, &ViewWidget::throughTool);
+  connect(strip_, &ViewTools::planeMoved, this, [this](double mm) {
+    if (!clip_.planeShown()) return;
+    clip_.movePlane(mm);
+    showClip();
+  });
+  connect(strip_, &ViewTools::lightWanted, this, [this](bool on) {
+    moving_light_ = on;
+    setCursor(on ? Qt::CrossCursor : Qt::ArrowCursor);
+  });
+  connect(strip_, &ViewTools::resetWanted, this, &ViewWidget::resetTools);
+}
+
+void ViewWidget::showClip() {
+  renderer_.setClip(clip_.planes());
+  redraw();
+}
+
+void ViewWidget::throughTool() {
+  if (tools_.empty()) return;
+  const Pose& pose = tools_.back().pose_mm;  // the right hand's, where there are two
+  const Vec3 axis = along_tool_ ? pose.orientation * Vec3(0, 0, 1) : Vec3(0.0);
+  clip_.planeThrough(pose.position, axis, renderer_.camera());
+  along_tool_ = !along_tool_;
+  const QSignalBlocker quiet(strip_->plane());
+  strip_->plane()->setChecked(true);
+  showClip();
+}
+
+void ViewWidget::resetTools() {
+  clip_.reset();
+  along_tool_ = false;
+  light_ = Vec3(0.0, 0.0, 1.0);
+  for (QAction* action : {strip_->box(), strip_->plane(), strip_->light()}) {
+    action->setChecked(false);
+  }
+  renderer_.setLight(light_);
+  showClip();
+}
+
+glm::dvec2 ViewWidget::pixelAt(const QPointF& place) const {
+  const double ratio = devicePixelRatioF();
+  return {place.x() * ratio, (height() - place.y()) * ratio};
+}
+
 void ViewWidget::fitHint() {
+  strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
 }
 
@@ -114,10 +185,20 @@ void ViewWidget::paintGL() {
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
+  ScreenLines lines;
+  const int wide = int(std::lround(width() * devicePixelRatioF()));
+  const int high = int(std::lround(height() * devicePixelRatioF()));
+  clip_.addLines(renderer_.camera(), wide, high, lines);
+  renderer_.setLines(lines);
   renderer_.paint(defaultFramebufferObject(), kCut_ms);
   if (!moving_ && !renderer_.complete()) refine_.start();
   emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
   showLevel();
+  if (const Status refused = renderer_.refusal(); !refused && !refusal_said_) {
+    refusal_said_ = true;
+    // Not while a frame is made: a dialog paints.
+    QTimer::singleShot(0, this, [this, why = refused.error()] { emit failed(why); });
+  }
 }
 
 void ViewWidget::refine() {
@@ -132,13 +213,26 @@ void ViewWidget::refine() {
   }
 }
 
-// How coarse the picture is, while it is.
+// How coarse the picture is, while it is, and the volume behind it.
 void ViewWidget::showLevel() {
   const double share = renderer_.shareOfRays();
-  const bool coarse = share > 0.0 && share < 1.0;
-  if (coarse) level_->setText(tr("1/%1 of the rays").arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0));
-  if (coarse) level_->adjustSize();
-  level_->setVisible(coarse);
+  QStringList words;
+  if (share > 0.0 && share < 1.0) {
+    words << tr("1/%1 of the rays").arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0);
+  }
+  const auto [i, j, k] = renderer_.reduction();
+  if (renderer_.hasVolume() && i * j * k > 1) {
+    words << tr("Too large for the graphics card: shown with one voxel for %1 \u00d7 %2 \u00d7 %3")
+                 .arg(i)
+                 .arg(j)
+                 .arg(k);
+  }
+  const QString text = words.join('\n');
+  if (text != level_->text()) {
+    level_->setText(text);
+    level_->adjustSize();
+  }
+  level_->setVisible(!text.isEmpty());
 }
 
 void ViewWidget::redraw() {
@@ -149,8 +243,13 @@ void ViewWidget::redraw() {
 }
 
 void ViewWidget::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels) {
+  refusal_said_ = false;
+  clip_.setVolume(copy.geometry);
+  if (!clip_.cutsAnything()) resetTools();  // the one that was shown before had them
   renderer_.setVolume(std::move(copy), labels);
   hint_->setVisible(!renderer_.hasVolume());
+  strip_->setEnabled(renderer_.hasVolume());
+  strip_->place();
   redraw();
 }
 
@@ -184,6 +283,7 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
   for (std::size_t i = 0; alike && i < tools.size(); ++i) alike = looksAlike(tools[i], tools_[i]);
   if (alike) return;
   tools_ = tools;
+  strip_->setToolAtHand(!tools.empty());
   renderer_.setTools(tools);
   update();  // over the last picture of the volume
 }
@@ -229,23 +329,44 @@ void ViewWidget::turn(double right_pixels, double down_pixels) {
 
 void ViewWidget::mousePressEvent(QMouseEvent* event) {
   last_ = event->position();
+  dragged_.reset();
+  if (event->button() != Qt::LeftButton || !renderer_.hasVolume()) return;
+  const double ratio = devicePixelRatioF();
+  dragged_ = clip_.handleAt(pixelAt(last_), renderer_.camera(), int(std::lround(width() * ratio)),
+                            int(std::lround(height() * ratio)), kReach_pixels * ratio);
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   const QPointF moved = event->position() - last_;
   last_ = event->position();
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
-  if (event->buttons() & Qt::MiddleButton) {
+  const double ratio = devicePixelRatioF();
+  const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
+  const bool left = event->buttons() & Qt::LeftButton;
+  if (left && dragged_) {
+    clip_.drag(*dragged_, pixels, renderer_.camera(), int(std::lround(width() * ratio)),
+               int(std::lround(height() * ratio)));
+    for (const ClipTools::Handle& handle : clip_.handles()) {
+      if (handle.grip == dragged_->grip && handle.face == dragged_->face) dragged_ = handle;
+    }
+    showClip();
+  } else if (left && moving_light_) {
+    light_ = draggedLight(light_, pixels, int(std::lround(height() * ratio)));
+    renderer_.setLight(light_);
+    redraw();
+  } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (training_ && (event->buttons() & Qt::LeftButton)) {
+  } else if (training_ && left) {
     moveHand(handFor(event->modifiers()), moved.x(), -moved.y());
   } else {
     turn(moved.x(), moved.y());
   }
 }
 
-void ViewWidget::mouseReleaseEvent(QMouseEvent*) {}
+void ViewWidget::mouseReleaseEvent(QMouseEvent*) {
+  dragged_.reset();
+}
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {
   if (!renderer_.hasVolume()) return;
