@@ -54,6 +54,8 @@ class ViewWidget : public QOpenGLWidget {
   // Standard views, crop box and what else the strip over the view offers.
   const ViewTools& tools() const { return *strip_; }
 
+  const ViewCamera& camera() const { return renderer_.camera(); }
+
   // NO_OPENGL until the view could start to draw, and where it could not.
   const Status& canDraw() const { return drawing_; }
   // What is on the screen: the voxels, and the picture at full quality.
