@@ -23,13 +23,8 @@ double LevelOfDetail::rayStep() const {
 }
 
 double LevelOfDetail::finerThan(double pixel_step) const {
-  // Of a picture at full quality; the last one's, or what the moving one says of it.
-  const double full_ms = still_frame_ms_ > 0.0
-                             ? still_frame_ms_
-                             : moving_frame_ms_ * pixel_step_ * pixel_step_ * rayStep();
-  if (full_ms <= kLongWait_ms) return 1.0;
-  // With longer steps along the rays, as in movement.
-  const double between = std::ceil(4.0 * std::sqrt(full_ms / kFirstRefined_ms / 2.0)) / 4.0;
+  if (still_frame_ms_ <= kLongWait_ms) return 1.0;
+  const double between = std::ceil(4.0 * std::sqrt(still_frame_ms_ / kFirstRefined_ms)) / 4.0;
   return between > 1.25 && between <= 0.75 * pixel_step ? between : 1.0;
 }
 
@@ -44,7 +39,6 @@ void LevelOfDetail::stillFrameTook(double ms) {
 void LevelOfDetail::movingFrameTook(double ms) {
   if (!std::isfinite(ms) || ms <= 0.0) return;
   const double ratio = ms / kBudget_ms;
-  moving_frame_ms_ = ms;
   // Finer only when there is room for a whole level, or the level would change at every frame.
   if (ratio > 1.0) {
     pixel_step_ = level(pixel_step_ * std::sqrt(ratio));

@@ -23,12 +23,11 @@ class LevelOfDetail {
   void stillFrameTook(double ms);
   void movingFrameTook(double ms);
 
-  // What the last picture at full quality took; 0 before there is one.
+  // What the last picture at full quality took, or is expected to; 0 while nothing is known.
   double stillFrame_ms() const { return still_frame_ms_; }
 
  private:
   double pixel_step_ = 1.0;
-  double moving_frame_ms_ = 0.0;
   double still_frame_ms_ = 0.0;
 };
 

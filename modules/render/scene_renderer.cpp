@@ -69,6 +69,7 @@ struct SceneRenderer::Parts {
   std::optional<DisplayVolume> reduced;  // stands in for `copy` on the graphics card
   Index3 reduction{1, 1, 1};
   bool fitted = false;  // what is shown has been sent, or refused
+  bool refused = false;  // and nothing is drawn of it
   Status refusal;
   ToolDrawing tools;
   std::vector<ToolView> tool_views;
@@ -107,14 +108,16 @@ struct SceneRenderer::Parts {
     scene_stale = true;
   }
 
-  bool drawsVolume() const { return !copy.hu.empty(); }
+  bool drawsVolume() const { return !copy.hu.empty() && !refused; }
 
   // All voxels, as many as the card takes; sent with the next picture.
   void show(std::shared_ptr<const LabelMap> of_them) {
     labels = std::move(of_them);
     reduced.reset();
     reduction = {1, 1, 1};
-    fitted = false;
+    fitted = refused = false;
+    refusal = {};
+    pictures.startAnew();
     volume.show(copy, labels, *renderer);
   }
 
@@ -132,7 +135,6 @@ struct SceneRenderer::Parts {
   // Halves it until the card takes it.
   void fit() {
     fitted = true;
-    refusal = {};
     GLint most = 0;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
     if (most_edge > 0) most = std::min(most, most_edge);
@@ -145,17 +147,18 @@ struct SceneRenderer::Parts {
       if (reduction != Index3{1, 1, 1}) showReduced();
       handToVtk();
       volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
-      if (volume.sendAll(*renderer)) return;
+      if (volume.sendAll(*renderer) && most_edge >= 0) return;
       if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (copy.geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;
       }
     }
+    refused = true;
     refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
                     "Close other programs, or import the case with a part or fewer voxels"};
     spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
   }
-  int most_edge = 0;  // for tests: as if textures had no longer edges
+  int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
 
   // `upwards`: what the picture spans upwards, in the window's height.
   void place(vtkRenderer& in, double upwards) {
@@ -201,8 +204,8 @@ struct SceneRenderer::Parts {
   }
 
   bool work(double budget_ms) {
+    if (!fitted && !copy.hu.empty()) fit();
     if (!drawsVolume()) return std::exchange(scene_stale, false);
-    if (!fitted) fit();
     const bool changed =
         pictures.work(budget_ms, moving,
                       [this](const Canvas& into, const Span& span, const PixelRect& part,
@@ -331,7 +334,7 @@ struct SceneRenderer::Parts {
     scene.release();
     tool_layer.release();
     scene_stale = true;
-    fitted = false;
+    fitted = refused = false;
     volume.releaseGraphics(*renderer);
     window->Finalize();
     for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);

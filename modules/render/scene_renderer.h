@@ -146,7 +146,8 @@ struct UploadProbe {
   static double boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box);
   // The copy that will be uploaded, to be changed by the measurement.
   static Volume& copy(SceneRenderer& renderer);
-  // As if the graphics card took no texture with a longer edge. Before the volume is painted.
+  // As if the graphics card took no texture with a longer edge; negative: none at all. Before the
+  // volume is painted.
   static void limitEdges(SceneRenderer& renderer, int most);
   static void setLeaping(SceneRenderer& renderer, bool on);
   // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:

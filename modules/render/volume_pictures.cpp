@@ -14,6 +14,8 @@ namespace {
 constexpr double kCut_ms = 60.0;
 constexpr std::chrono::milliseconds kHold(500);
 constexpr double kFirstStrip = 12000.0;  // pixels, before any was measured
+constexpr double kTelling = 4000.0;
+constexpr double kFirstStep = 4.0;  // of a volume of which nothing is known
 
 double msSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
@@ -25,6 +27,12 @@ double msSince(std::chrono::steady_clock::time_point start) {
 void VolumePictures::resize(int width, int height) {
   width_ = width;
   height_ = height;
+  stale_ = true;
+}
+
+void VolumePictures::startAnew() {
+  pixels_per_ms_ = 0.0;
+  level_ = LevelOfDetail();
   stale_ = true;
 }
 
@@ -52,7 +60,10 @@ void VolumePictures::castSome(Picture& picture, double budget_ms, const Cast& ca
     cast(picture.canvas, picture.span, *strip, picture.ray_step);
     const double took_ms = std::max(msSince(begun), 1e-3);
     picture.took_ms += took_ms;
-    pixels_per_ms_ = strip->pixels() / picture.ray_step / took_ms;
+    // A small cut's strip is mostly what each strip costs beside its rays.
+    if (strip->pixels() >= kTelling || pixels_per_ms_ == 0.0) {
+      pixels_per_ms_ = strip->pixels() / picture.ray_step / took_ms;
+    }
     const double left_ms = budget_ms - msSince(start);
     if (left_ms < 0.5 * took_ms) return;
     pixels = nextStripPixels(strip->pixels(), took_ms, left_ms);
@@ -86,19 +97,25 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   const Clock::time_point begun = Clock::now();
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   bool changed = false;
-  const bool whole = !moving && level_.stillFrame_ms() <= budget_ms;
+  const bool unknown = pixels_per_ms_ == 0.0 && budget_ms < kNoLimit;
+  const bool whole = !moving && !unknown && level_.stillFrame_ms() <= budget_ms;
   const bool costly = !stale_ && expected_ms(shown_) > kCut_ms &&
                       shown_.step < level_.pixelStep() && budget_ms < kNoLimit;
   if (stale_ || costly) {
     if (costly) hold_until_ = begun + kHold;
     next_.step = 0.0;
     const bool full = stale_ && whole;
-    start(shown_, full ? 1.0 : level_.pixelStep(), full ? 1.0 : level_.rayStep());
+    const double step = std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0);
+    start(shown_, full ? 1.0 : step, full ? 1.0 : level_.rayStep());
     castSome(shown_, kNoLimit, cast);
     stale_ = false;
     changed = true;
     if (!full) {
-      level_.movingFrameTook(msSince(begun));
+      if (unknown) {
+        level_.stillFrameTook(double(width_) * double(height_) / pixels_per_ms_);
+      } else {
+        level_.movingFrameTook(msSince(begun));
+      }
     } else {
       level_.stillFrameTook(shown_.took_ms);
     }

@@ -23,7 +23,8 @@ class VolumePictures {
   void resize(int width, int height);
   // The camera, the looks or all voxels changed.
   void spoil() { stale_ = true; }
-  bool stale() const { return stale_; }
+  // Another volume: what the last one's pictures took says nothing of its.
+  void startAnew();
   // Voxels changed whose picture lies in here. Window pixels, from below.
   void cut(const PixelRect& part);
 

@@ -18,6 +18,7 @@ constexpr int kStillAfter_ms = 120;
 constexpr double kCut_ms = 25.0;
 constexpr double kRefine_ms = 30.0;
 constexpr double kRefineInTraining_ms = 12.0;
+constexpr int kNothingToRefine_ms = 40;  // while cuts follow each other too fast for full quality
 constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
 constexpr double kKeyStep_mm = 0.5;
@@ -25,6 +26,7 @@ constexpr double kZoomStep = 1.1;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
 constexpr double kToolMoved_mm = 0.02;
+const Vec3 kLightColour(1.0, 0.95, 0.5);
 constexpr double kReach_pixels = 11.0;  // of a handle
 constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
 
@@ -70,10 +72,9 @@ ViewWidget::ViewWidget(QWidget* parent)
   connect(&still_, &QTimer::timeout, this, [this] {
     moving_ = false;
     renderer_.setMoving(false);
-    refine_.start();
+    refine_.start(0);  // when nothing else is to be done
   });
   refine_.setSingleShot(true);
-  refine_.setInterval(0);  // when nothing else is to be done
   connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
 }
 
@@ -140,6 +141,7 @@ void ViewWidget::connectTools() {
   connect(strip_, &ViewTools::lightWanted, this, [this](bool on) {
     moving_light_ = on;
     setCursor(on ? Qt::CrossCursor : Qt::ArrowCursor);
+    update();
   });
   connect(strip_, &ViewTools::resetWanted, this, &ViewWidget::resetTools);
 }
@@ -189,9 +191,15 @@ void ViewWidget::paintGL() {
   const int wide = int(std::lround(width() * devicePixelRatioF()));
   const int high = int(std::lround(height() * devicePixelRatioF()));
   clip_.addLines(renderer_.camera(), wide, high, lines);
+  if (moving_light_) {  // on a half sphere that is seen from the eye
+    const glm::dvec2 middle(0.5 * wide, 0.5 * high);
+    const glm::dvec2 at = middle + glm::dvec2(light_) * (0.25 * high);
+    lines.push_back({middle, at, kLightColour, 2.0});
+    addSquare(at, 7.0, kLightColour, 3.0, lines);
+  }
   renderer_.setLines(lines);
   renderer_.paint(defaultFramebufferObject(), kCut_ms);
-  if (!moving_ && !renderer_.complete()) refine_.start();
+  if (!moving_ && !renderer_.complete()) refine_.start(0);
   emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
   showLevel();
   if (const Status refused = renderer_.refusal(); !refused && !refusal_said_) {
@@ -203,13 +211,15 @@ void ViewWidget::paintGL() {
 
 void ViewWidget::refine() {
   if (!isVisible() || !context() || moving_) return;
+  QElapsedTimer timer;
+  timer.start();
   makeCurrent();
   const bool another = renderer_.refine(training_ ? kRefineInTraining_ms : kRefine_ms);
   doneCurrent();
   if (another) {
     update();
   } else if (!renderer_.complete()) {
-    refine_.start();
+    refine_.start(timer.elapsed() > 0 ? 0 : kNothingToRefine_ms);
   }
 }
 

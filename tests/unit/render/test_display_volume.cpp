@@ -86,6 +86,22 @@ TEST(SceneRenderer, ALongSeriesDoesNotOpenEmpty) {
   EXPECT_TRUE(renderer.refusal().ok());
 }
 
+TEST(SceneRenderer, WhatTheGraphicsCardRefusesIsSaidAndTheNextVolumeIsShown) {
+  RENDERER_OR_SKIP(renderer);
+  renderer.setTissues(tissues());
+  UploadProbe::limitEdges(renderer, -1);
+  renderer.setVolume(Grid(ball()));
+  const Picture none = renderer.picture();
+  EXPECT_EQ(none.width, kWidth);
+  ASSERT_FALSE(renderer.refusal().ok());
+  EXPECT_EQ(renderer.refusal().error().code, "VOLUME_REFUSED");
+  EXPECT_TRUE(renderer.complete());
+  UploadProbe::limitEdges(renderer, 0);
+  renderer.setVolume(Grid(ball()));
+  EXPECT_GT(difference(none, renderer.picture()).pixels, 1000);
+  EXPECT_TRUE(renderer.refusal().ok());
+}
+
 TEST(SceneRenderer, OddVolumesAndViewsGiveAPictureOrNoneButNoHarm) {
   RENDERER_OR_SKIP(renderer);
   renderer.setTissues(tissues());
