@@ -312,6 +312,7 @@ Result<Picture> ViewWidget::picture() {
                  "Open a case first"};
   }
   makeCurrent();
+  renderer_.setLines({});  // handles are none of the picture
   Picture picture = renderer_.picture();
   doneCurrent();
   update();  // the picture was drawn with VTK's state, the window's frame is still the old one

@@ -52,6 +52,19 @@ class ViewToolsGuiTest : public QObject {
     const Result<Picture> picture = view().picture();
     return picture ? *picture : Picture{};
   }
+  // What the window shows once it is at rest, handles and all.
+  Picture seen() {
+    QTest::qWait(300);
+    const auto label = view().findChild<QLabel*>("viewLevel");
+    (void)QTest::qWaitFor([&] { return !label->isVisible(); }, kLong_ms);
+    const QImage image = view().grabFramebuffer().convertToFormat(QImage::Format_RGB888);
+    Picture picture{image.width(), image.height(), {}};
+    for (int y = 0; y < image.height(); ++y) {
+      const uchar* row = image.constScanLine(y);
+      picture.rgb.insert(picture.rgb.end(), row, row + image.width() * 3);
+    }
+    return picture;
+  }
   void press(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
     window_->activateWindow();
     view().setFocus();
@@ -108,9 +121,9 @@ class ViewToolsGuiTest : public QObject {
   }
 
   void theBoxIsShownWithItsHandlesAndAHandleIsDragged() {
-    const Picture before = shot();
+    const Picture before = seen();
     press(Qt::Key_B);
-    const Picture boxed = shot();
+    const Picture boxed = seen();
     QVERIFY(differentPixels(before, boxed) > 100);
     // The handle of the patient's left face lies at the right of the picture's middle.
     const GridGeometry& g = view().shownVolume().geometry;
@@ -122,22 +135,22 @@ class ViewToolsGuiTest : public QObject {
     QVERIFY(pixel);
     const QPoint from(int(pixel->x), view().height() - int(pixel->y));
     drag(from, from - QPoint(60, 0));
-    QVERIFY2(differentPixels(boxed, shot()) > 100, "the handle and the box's edge went with it");
+    QVERIFY2(differentPixels(boxed, seen()) > 100, "the handle and the box's edge went with it");
     QCOMPARE(camera.forward(), Vec3(0, 1, 0));  // the drag turned no camera
     press(Qt::Key_X);
     QVERIFY(!view().tools().box()->isChecked());
-    QCOMPARE(differentPixels(before, shot()), 0);
+    QCOMPARE(differentPixels(before, seen()), 0);
   }
 
   void thePlaneComesByKeyMovesByKeyAndGoes() {
-    const Picture before = shot();
+    const Picture before = seen();
     press(Qt::Key_C);
-    const Picture with = shot();
+    const Picture with = seen();
     QVERIFY(differentPixels(before, with) > 100);
     for (int i = 0; i < 8; ++i) press(Qt::Key_Comma);
-    QVERIFY(differentPixels(with, shot()) > 50);
+    QVERIFY(differentPixels(with, seen()) > 50);
     press(Qt::Key_C);
-    QCOMPARE(differentPixels(before, shot()), 0);
+    QCOMPARE(differentPixels(before, seen()), 0);
     press(Qt::Key_X);
   }
 
@@ -147,20 +160,23 @@ class ViewToolsGuiTest : public QObject {
     ToolView tool;
     tool.length_mm = 40.0;
     tool.pose_mm.position = view().shownVolume().geometry.centre_mm();
-    const Picture before = shot();
+    const Picture before = seen();
     view().setTools({tool});
     QVERIFY(through->isEnabled());
     press(Qt::Key_T);
     QVERIFY(view().tools().plane()->isChecked());
-    QVERIFY(differentPixels(before, shot()) > 100);
+    QVERIFY(differentPixels(before, seen()) > 100);
     view().setTools({});
     press(Qt::Key_X);
-    QCOMPARE(differentPixels(before, shot()), 0);
+    QCOMPARE(differentPixels(before, seen()), 0);
   }
 
   void inTheLightsModeADragTurnsNoCamera() {
+    const Picture before = seen();
     press(Qt::Key_L, Qt::ShiftModifier);
     QVERIFY(view().tools().light()->isChecked());
+    QVERIFY2(differentPixels(before, seen()) > 20, "where the light is stands in the view");
+    QCOMPARE(differentPixels(shot(), before), 0);  // but in no picture that is saved
     const Vec3 forward = view().camera().forward();
     const QPoint middle = view().rect().center();
     drag(middle, middle + QPoint(120, 40));
@@ -174,8 +190,7 @@ class ViewToolsGuiTest : public QObject {
 
   void aToolMovesOverThePictureAtOnce() {
     const auto label = view().findChild<QLabel*>("viewLevel");
-    QTRY_VERIFY_WITH_TIMEOUT(!label->isVisible(), kLong_ms);
-    QTest::qWait(300);
+    seen();  // at rest
     ToolView tool;
     tool.length_mm = 60.0;
     tool.colour = Vec3(0, 0, 1);
@@ -220,6 +235,28 @@ class ViewToolsGuiTest : public QObject {
     home->layout()->invalidate();
     home->layout()->activate();
     QTRY_COMPARE_WITH_TIMEOUT(shot().width, opened_.width, kLong_ms);
+  }
+
+  void aToolSaysHowFarItIsFromTheSurface() {
+    press(Qt::Key_A);
+    const Picture before = seen();
+    const GridGeometry& g = view().shownVolume().geometry;
+    ToolView tool;
+    tool.length_mm = 60.0;
+    tool.radius_mm = 1.0;
+    // Beside the head, pointing at it: towards +x, the patient's left.
+    tool.pose_mm.position = g.centre_mm() - Vec3(105.0, 0.0, 0.0);
+    tool.pose_mm.orientation = glm::angleAxis(glm::radians(-90.0), Vec3(0, 1, 0));
+    tool.contact = true;
+    view().setTools({tool});
+    const Picture touching = seen();
+    tool.contact = false;
+    view().setTools({tool});
+    const Picture away = seen();
+    QVERIFY(differentPixels(before, away) > 50);
+    QVERIFY2(differentPixels(touching, away) > 50, "a ring at the tip, or the way with its length");
+    view().grab().save(QStringLiteral(TREPHINE_ARTEFACTS "/view_guide.png"));
+    view().setTools({});
   }
 
   void cleanupTestCase() { window_.reset(); }
