@@ -10,9 +10,9 @@ namespace trephine {
 namespace {
 
 // A cut that takes longer than this at the shown level makes the whole picture coarse instead, and
-// it stays so for a while: the next cut would cost as much.
+// while cuts follow each other no finer picture is made at which the next would take as long.
 constexpr double kCut_ms = 60.0;
-constexpr std::chrono::milliseconds kHold(500);
+constexpr std::chrono::milliseconds kCutting(1000);
 constexpr double kFirstStrip = 12000.0;  // pixels, before any was measured
 constexpr double kTelling = 4000.0;
 constexpr double kFirstStep = 4.0;  // of a volume of which nothing is known
@@ -86,6 +86,8 @@ void VolumePictures::add(Picture& picture, const PixelRect& part) {
 void VolumePictures::cut(const PixelRect& part) {
   add(shown_, part);
   add(next_, part);
+  cut_pixels_ = std::max(0.9 * cut_pixels_, part.pixels());
+  last_cut_ = Clock::now();
 }
 
 double VolumePictures::expected_ms(const Picture& picture) const {
@@ -102,7 +104,6 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   const bool costly = !stale_ && expected_ms(shown_) > kCut_ms &&
                       shown_.step < level_.pixelStep() && budget_ms < kNoLimit;
   if (stale_ || costly) {
-    if (costly) hold_until_ = begun + kHold;
     next_.step = 0.0;
     const bool full = stale_ && whole;
     const double step = std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0);
@@ -123,13 +124,15 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
     castSome(shown_, budget_ms, cast);
     changed = true;
   }
-  const bool held = begun < hold_until_ && budget_ms < kNoLimit;
-  if (moving || held || !shown_.plan.done()) return changed;
+  if (moving || !shown_.plan.done()) return changed;
+  const bool cutting = begun - last_cut_ < kCutting && budget_ms < kNoLimit;
   while (shown_.step != 1.0 && msSince(begun) < budget_ms) {
     if (next_.step == 0.0) {
       const double step = budget_ms < kNoLimit ? level_.finerThan(shown_.step) : 1.0;
       start(next_, step, step == 1.0 ? 1.0 : level_.rayStep());
     }
+    const double cut_ms = cut_pixels_ / (next_.step * next_.step * pixels_per_ms_ * next_.ray_step);
+    if (cutting && cut_ms > kCut_ms) break;
     castSome(next_, budget_ms - msSince(begun), cast);
     if (!next_.plan.done()) break;
     if (next_.step == 1.0) level_.stillFrameTook(next_.took_ms);

@@ -65,7 +65,8 @@ class VolumePictures {
   bool stale_ = true;
   bool allocated_ = true;
   double pixels_per_ms_ = 0.0;  // of the last strip, at usual steps
-  Clock::time_point hold_until_{};
+  double cut_pixels_ = 0.0;     // the window's, of the larger of the last cuts
+  Clock::time_point last_cut_{};
 };
 
 }  // namespace trephine

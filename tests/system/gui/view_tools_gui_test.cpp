@@ -238,15 +238,15 @@ class ViewToolsGuiTest : public QObject {
   }
 
   void aToolSaysHowFarItIsFromTheSurface() {
-    press(Qt::Key_A);
+    window_->findChild<QAction*>("resetView")->trigger();  // the focus lies on the surface
     const Picture before = seen();
-    const GridGeometry& g = view().shownVolume().geometry;
+    const ViewCamera& camera = view().camera();
     ToolView tool;
     tool.length_mm = 60.0;
     tool.radius_mm = 1.0;
-    // Beside the head, pointing at it: towards +x, the patient's left.
-    tool.pose_mm.position = g.centre_mm() - Vec3(105.0, 0.0, 0.0);
-    tool.pose_mm.orientation = glm::angleAxis(glm::radians(-90.0), Vec3(0, 1, 0));
+    const Vec3 way = glm::normalize(camera.forward() + 0.6 * camera.right());
+    tool.pose_mm.position = camera.focus() - 20.0 * way;
+    tool.pose_mm.orientation = glm::quatLookAt(way, camera.up());  // -z points the way
     tool.contact = true;
     view().setTools({tool});
     const Picture touching = seen();
