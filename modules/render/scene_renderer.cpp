@@ -1,3 +1,6 @@
+// Everything that one frame passes through in order, from boxes to pixels, and the methods that set
+// what it shows: each is a line or two, so it stands in one file, of over 500 lines.
+//
 // VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
 #if __has_include(<vtk_glad.h>)
 #include <vtk_glad.h>
