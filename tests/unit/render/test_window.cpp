@@ -182,7 +182,7 @@ TEST(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
     EXPECT_EQ(screen.read(), mended);
     // A second one, while a picture is on its way, is in that one too.
     hosted.orbit(10, 0);
-    for (int strip = 0; strip < 4; ++strip) hosted.paint(screen.id(), kTiny_ms);
+    for (int strip = 0; strip < 14; ++strip) hosted.paint(screen.id(), 0.5);
     ASSERT_FALSE(hosted.complete());
     carve(grid, Vec3(6, -24, 8), 6.0);
     ASSERT_TRUE(hosted.pullChanges(grid));
