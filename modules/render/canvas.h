@@ -1,20 +1,42 @@
-// An image on the GPU in which a still picture grows, strip by strip.
+// Images on the GPU that are drawn into and read by a later pass. VTK's own framebuffers are not
+// used: theirs have the window's size and hold one picture.
 #pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <vector>
+
+#include "render/cast_plan.h"
 
 namespace trephine {
 
 // Every method needs the context to be current. Rows go up, as OpenGL's do.
 class Canvas {
  public:
-  // Makes this the draw framebuffer, of this size; what it held is lost where the size changed.
-  void bind(int width, int height);
-  // Copies all of it into another framebuffer of the same size, and leaves that one bound.
+  enum class Image {
+    colour,      // 8 bits each of RGBA, premultiplied
+    depths_mm,   // two floats: first visible, opaque by half; 1e9: never
+    hidden_part  // a depth buffer, 0 near to 1 far
+  };
+
+  // Makes this the framebuffer, with these images, of this size; what they held is lost where the
+  // size changed. False when the GPU refused.
+  bool bind(int width, int height, std::initializer_list<Image> images);
+  void bind() const;
+  unsigned int framebuffer() const { return framebuffer_; }
+  unsigned int texture(std::size_t image) const { return textures_[image]; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  // Copies the first image into another framebuffer of the same size, and leaves that one bound.
   void copyTo(unsigned int framebuffer) const;
+  // The second channel of the depths, which are the second image; rows go up. Empty for no pixels.
+  std::vector<float> readDepth_mm(const PixelRect& part) const;
   void release();
 
  private:
   unsigned int framebuffer_ = 0;
-  unsigned int colour_ = 0;
+  std::array<unsigned int, 3> textures_{};
   int width_ = 0;
   int height_ = 0;
 };

@@ -148,6 +148,7 @@ inline const std::string kGoOnInRun = R"(
           g_lastSeen = g_currentT;
           float l_alpha = g_opacity * g_runGain;
           g_fragColor += (1.0 - g_fragColor.a) * l_alpha * vec4(g_runColour, 1.0);
+          keepDepth();
           l_steps = g_fragColor.a > g_opacityThreshold ? g_lastT + 1.0 : 1.0;)";
 
 // Planes that clip: the ray begins at the last that it enters by and ends at the first that it

@@ -35,6 +35,7 @@
 
 #include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
+#include "render/depth_shader.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
 #include "render/label_shape.h"
@@ -110,7 +111,7 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
 }  // namespace
 
 // The contrast over the ball around a sample from which on it lies across an edge.
-constexpr double kEdge_HU = 40.0;
+constexpr double kEdge_HU = 30.0;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
@@ -124,10 +125,11 @@ struct CarveVolume::Parts {
   vtkNew<vtkCallbackCommand> shader_used;
   vtkNew<vtkCallbackCommand> draw_starts;
   vtkNew<vtkCallbackCommand> draw_ends;
+  vtkNew<vtkCallbackCommand> complained;
+  std::string complaint;
   vtkOpenGLState* state = nullptr;  // of the window of the last sendChanges
-  std::optional<std::pair<int, int>> rows;
-  int width = 0;
-  int height = 0;
+  PixelRect part;
+  vtkNew<vtkTextureObject> no_depth;  // one pixel: nothing ends a ray
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
   std::shared_ptr<const LabelMap> labels;
@@ -232,17 +234,13 @@ struct CarveVolume::Parts {
     updateShader();
   }
 
-  // The rest of the picture is drawn whole: only rays cost time.
   void startDraw() {
-    if (!rows) return;
+    if (part.empty()) return;
     state->vtkglEnable(GL_SCISSOR_TEST);
-    state->vtkglScissor(0, rows->first, width, rows->second - rows->first);
+    state->vtkglScissor(part.low_x, part.low_y, part.width(), part.height());
   }
 
-  void endDraw() {
-    sent = true;
-    if (rows) state->vtkglScissor(0, 0, width, height);
-  }
+  void endDraw() { sent = true; }
 
   void updateShader() {
     vtkShaderProperty* shader = prop->GetShaderProperty();
@@ -251,6 +249,9 @@ struct CarveVolume::Parts {
       shader->AddFragmentShaderReplacement(tag, true, text, false);
     };
     prop->GetShaderProperty()->GetFragmentCustomUniforms()->RemoveAllUniforms();
+    replace("//VTK::RenderToImage::Dec", kDepthDeclarations);
+    replace("//VTK::RenderToImage::Impl", kDepthSample);
+    replace("//VTK::RenderToImage::Exit", kDepthOutput);
     const bool by_label = rowCount() > 1;
     if (!leaping && !by_label && !isTrue()) return;
     std::string declarations =
@@ -364,6 +365,12 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
   p.draw_ends->SetCallback(
       [](vtkObject*, unsigned long, void* parts, void*) { static_cast<Parts*>(parts)->endDraw(); });
   p.mapper->AddObserver(vtkCommand::VolumeMapperRenderEndEvent, p.draw_ends);
+  p.complained->SetClientData(&p);
+  p.complained->SetCallback([](vtkObject*, unsigned long, void* parts, void* text) {
+    std::string& complaint = static_cast<Parts*>(parts)->complaint;
+    if (complaint.empty()) complaint = text ? static_cast<const char*>(text) : "unknown";
+  });
+  p.mapper->AddObserver(vtkCommand::ErrorEvent, p.complained);
   p.look->SetColor(p.colour);
   p.look->SetScalarOpacity(p.opacity);
   p.look->SetScalarOpacityUnitDistance(1.0);  // a tissue's opacity is per mm
@@ -388,6 +395,7 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   p.labels = std::move(labels);
   p.labels_stale = true;
   p.boxes.clear();
+  p.complaint.clear();
   p.sent = false;
   p.bricks = BrickRanges(copy);
 
@@ -460,8 +468,6 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   Parts& p = *parts_;
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
-  p.width = window->GetSize()[0];
-  p.height = window->GetSize()[1];
   if (!p.copy) return;
   p.tellShader();
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
@@ -478,6 +484,14 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
   // VTK raises no UpdateShaderEvent in the frame that builds a shader.
   p.sendLeaps(renderer);
+  // Tools are drawn into the picture later, so VTK need not copy a depth buffer for each.
+  if (!p.no_depth->GetHandle()) {
+    float far = 1.0F;
+    p.no_depth->SetContext(window);
+    p.no_depth->CreateDepthFromRaw(1, 1, vtkTextureObject::Float32, VTK_FLOAT, &far);
+    p.mapper->SetSharedDepthTexture(p.no_depth);
+  }
+  p.no_depth->Activate();
 }
 
 void CarveVolume::scan(vtkRenderer& renderer) {
@@ -493,8 +507,15 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   if (!p.copy) return false;
   p.boxes.clear();
   p.image->Modified();
-  p.sent = p.mapper->PreLoadData(&renderer, p.prop);
+  while (glGetError() != GL_NO_ERROR) {  // of others
+  }
+  p.sent = p.mapper->PreLoadData(&renderer, p.prop) && glGetError() == GL_NO_ERROR &&
+           p.mapper->texture();
   return p.sent;
+}
+
+const std::string& CarveVolume::complaint() const {
+  return parts_->complaint;
 }
 
 void CarveVolume::setQuality(double pixel_step, double ray_step) {
@@ -503,8 +524,8 @@ void CarveVolume::setQuality(double pixel_step, double ray_step) {
   p.mapper->SetSampleDistance(float(ray_step * p.sample_distance * p.smallest_edge_mm));
 }
 
-void CarveVolume::setRows(std::optional<std::pair<int, int>> rows) {
-  parts_->rows = rows;
+void CarveVolume::setPart(const PixelRect& part) {
+  parts_->part = part;
 }
 
 void CarveVolume::setLeaping(bool on) {
@@ -550,6 +571,7 @@ void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
   parts_->sent = false;
   parts_->prop->ReleaseGraphicsResources(window);
   parts_->leaps->ReleaseGraphicsResources(window);
+  parts_->no_depth->ReleaseGraphicsResources(window);
 }
 
 }  // namespace trephine

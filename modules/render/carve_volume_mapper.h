@@ -5,10 +5,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <utility>
+#include <string>
 #include <vector>
 
+#include "render/cast_plan.h"
 #include "render/scene_renderer.h"
 #include "render/transfer_function.h"
 #include "volume/grid.h"
@@ -46,12 +46,14 @@ class CarveVolume {
   void scan(vtkRenderer& renderer);
   // Sends every voxel now. Context current. False when the GPU refused.
   bool sendAll(vtkRenderer& renderer);
+  // What VTK complained of since the last show(); empty: nothing.
+  const std::string& complaint() const;
 
   // Pixels between rays (1 is full quality), and the samples' distance as a multiple of that at
   // full quality.
   void setQuality(double pixel_step, double ray_step);
-  // Casts rays for these rows of pixels only, [first, second) from below; nothing: for all.
-  void setRows(std::optional<std::pair<int, int>> rows);
+  // Casts rays for these pixels only.
+  void setPart(const PixelRect& part);
   // Off draws as VTK does; for comparisons.
   void setLeaping(bool on);
   // Each ray in the colour of its first visible tissue, opaque and without light.

@@ -7,7 +7,11 @@ namespace trephine {
 
 namespace {
 
-// Quarter steps: every new level makes VTK allocate its images again.
+// A full picture that takes longer has one in between, which takes about the second time.
+constexpr double kLongWait_ms = 1100.0;
+constexpr double kFirstRefined_ms = 350.0;
+
+// Quarter steps: every new level allocates its images again.
 double level(double step) {
   return std::clamp(std::ceil(step * 4.0) / 4.0, 1.0, LevelOfDetail::kCoarsest);
 }
@@ -16,6 +20,12 @@ double level(double step) {
 
 double LevelOfDetail::rayStepAt(double pixel_step) {
   return std::min(pixel_step, 2.0);
+}
+
+double LevelOfDetail::finerThan(double pixel_step) const {
+  if (still_frame_ms_ <= kLongWait_ms) return 1.0;
+  const double between = std::ceil(4.0 * std::sqrt(still_frame_ms_ / kFirstRefined_ms)) / 4.0;
+  return between > 1.25 && between <= 0.75 * pixel_step ? between : 1.0;
 }
 
 void LevelOfDetail::stillFrameTook(double ms) {
@@ -37,10 +47,9 @@ void LevelOfDetail::movingFrameTook(double ms) {
   }
 }
 
-int nextStripRows(int rows, double took_ms, double left_ms) {
-  constexpr int kFewest = 8;
-  if (!(took_ms > 0.0) || !(left_ms > 0.0)) return kFewest;
-  return int(std::clamp(rows * left_ms / took_ms, double(kFewest), std::max(8.0, rows * 1.5)));
+double nextStripPixels(double pixels, double took_ms, double left_ms) {
+  if (!(took_ms > 0.0) || !(left_ms > 0.0)) return 0.0;
+  return std::min(pixels * left_ms / took_ms, pixels * 1.5);
 }
 
 }  // namespace trephine

@@ -5,8 +5,8 @@ namespace trephine {
 
 class LevelOfDetail {
  public:
-  // Leaves a share of a 15th of a second to the window's other work.
-  static constexpr double kBudget_ms = 50.0;
+  // Of rays; leaves a share of a 15th of a second to putting the picture together and showing it.
+  static constexpr double kBudget_ms = 42.0;
   static constexpr double kCoarsest = 8.0;
 
   // Pixels between two rays, each way; 1 is full quality.
@@ -15,12 +15,16 @@ class LevelOfDetail {
   double rayStep() const { return rayStepAt(pixel_step_); }
   static double rayStepAt(double pixel_step);
 
+  // The step of the next picture once things are still: in between where full quality would keep
+  // the eye waiting, else 1.
+  double finerThan(double pixel_step) const;
+
   // A frame drawn at full quality, or at the moving level, took this long. The first of a movement
   // takes its level from the still frame before it.
   void stillFrameTook(double ms);
   void movingFrameTook(double ms);
 
-  // What the last picture at full quality took; 0 before there is one.
+  // What the last picture at full quality took, or is expected to; 0 while nothing is known.
   double stillFrame_ms() const { return still_frame_ms_; }
 
  private:
@@ -28,8 +32,8 @@ class LevelOfDetail {
   double still_frame_ms_ = 0.0;
 };
 
-// How many rows of a still picture the next strip may have, so that it takes `left_ms`, when the
-// last one's `rows` took `took_ms`. At most half as many again, since the next rows may be dearer.
-int nextStripRows(int rows, double took_ms, double left_ms);
+// How many pixels the next strip of a picture may have, so that it takes `left_ms`, when the last
+// one's took `took_ms`. At most half as many again, since the next may be dearer.
+double nextStripPixels(double pixels, double took_ms, double left_ms);
 
 }  // namespace trephine

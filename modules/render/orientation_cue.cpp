@@ -1,110 +1,68 @@
 #include "render/orientation_cue.h"
 
-#include <vtkActor2D.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataMapper2D.h>
-#include <vtkProperty2D.h>
-#include <vtkRenderer.h>
-#include <vtkUnsignedCharArray.h>
-
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trephine {
 
 namespace {
 
-using Stroke = std::vector<glm::dvec2>;
-
-// Letters as strokes in a box of -1..1, y up.
-struct Letter {
-  Vec3 direction;  // patient frame, LPS
-  std::vector<Stroke> strokes;
-};
-
-const std::vector<Letter>& letters() {
-  static const std::vector<Letter> all = {
-      {{1, 0, 0}, {{{-0.6, 1}, {-0.6, -1}, {0.6, -1}}}},
-      {{-1, 0, 0},
-       {{{-0.6, -1}, {-0.6, 1}, {0.3, 1}, {0.6, 0.7}, {0.6, 0.3}, {0.3, 0}, {-0.6, 0}},
-        {{0, 0}, {0.6, -1}}}},
-      {{0, -1, 0}, {{{-0.7, -1}, {0, 1}, {0.7, -1}}, {{-0.4, -0.3}, {0.4, -0.3}}}},
-      {{0, 1, 0}, {{{-0.6, -1}, {-0.6, 1}, {0.3, 1}, {0.6, 0.7}, {0.6, 0.3}, {0.3, 0}, {-0.6, 0}}}},
-      {{0, 0, 1},
-       {{{0.6, 0.7},
-         {0.3, 1},
-         {-0.3, 1},
-         {-0.6, 0.7},
-         {-0.6, 0.3},
-         {-0.3, 0},
-         {0.3, 0},
-         {0.6, -0.3},
-         {0.6, -0.7},
-         {0.3, -1},
-         {-0.3, -1},
-         {-0.6, -0.7}}}},
-      {{0, 0, -1}, {{{0, -1}, {0, 1}}, {{-0.4, 1}, {0.4, 1}}, {{-0.4, -1}, {0.4, -1}}}},
-  };
-  return all;
-}
+constexpr std::string_view kNames = "LRPASI";  // of the directions below, patient frame, LPS
+const Vec3 kDirections[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+const Vec3 kNear(1.0, 1.0, 1.0);
+const Vec3 kFar(0.55, 0.57, 0.6);
 
 }  // namespace
 
-struct OrientationCue::Parts {
-  vtkNew<vtkActor2D> actor;
-  vtkNew<vtkPolyData> lines;
-};
-
-OrientationCue::OrientationCue(vtkRenderer& renderer) : parts_(std::make_unique<Parts>()) {
-  vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(parts_->lines);
-  parts_->actor->SetMapper(mapper);
-  parts_->actor->GetProperty()->SetLineWidth(1.5F);
-  renderer.AddActor2D(parts_->actor);
+void addOrientationCue(const ViewCamera& camera, int width, int height, ScreenLines& to) {
+  if (std::min(width, height) < kRoomForCues) return;
+  const double radius = std::clamp(0.05 * height, 24.0, 64.0);
+  const double letter = std::clamp(0.024 * height, 13.0, 32.0);
+  const double line = std::clamp(height / 500.0, 1.5, 4.0);
+  const glm::dvec2 centre(radius + 1.9 * letter, radius + 1.9 * letter);
+  // The nearest last, over the others.
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < 6; ++i) {
+    order.emplace_back(-glm::dot(kDirections[i], camera.forward()), i);
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [nearness, i] : order) {
+    const Vec3& direction = kDirections[i];
+    const glm::dvec2 way(glm::dot(direction, camera.right()), glm::dot(direction, camera.up()));
+    // What points away from the eye is dimmer.
+    const Vec3 colour = glm::mix(kFar, kNear, 0.5 + 0.5 * nearness);
+    const bool end_on = glm::length(way) < 0.2;
+    if (!end_on || nearness > 0.0) {
+      to.push_back({centre, centre + way * radius, 0.75 * colour, line});
+    }
+    if (end_on) continue;  // its letter would lie on the cross
+    const glm::dvec2 middle = centre + way * (radius + 0.95 * letter);
+    addWords(kNames.substr(i, 1), middle - glm::dvec2(0.3, 0.5) * letter, letter, colour, line, to);
+  }
 }
 
-OrientationCue::~OrientationCue() = default;
-
-void OrientationCue::update(const Vec3& right, const Vec3& up, const Vec3& forward, int width,
-                            int height) {
-  const bool room = std::min(width, height) >= 240;
-  parts_->actor->SetVisibility(room);
-  if (!room) return;
-  const double radius = std::clamp(0.05 * height, 22.0, 60.0);
-  const double letter_size = 0.17 * radius;
-  const glm::dvec2 centre(1.7 * radius, 1.7 * radius);
-
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkUnsignedCharArray> colours;
-  colours->SetNumberOfComponents(3);
-  const auto addStroke = [&](const Stroke& stroke, unsigned char shade) {
-    cells->InsertNextCell(int(stroke.size()));
-    for (const glm::dvec2& p : stroke) cells->InsertCellPoint(points->InsertNextPoint(p.x, p.y, 0));
-    const unsigned char grey[3] = {shade, shade, shade};
-    colours->InsertNextTypedTuple(grey);
-  };
-  for (const Letter& letter : letters()) {
-    const glm::dvec2 way(glm::dot(letter.direction, right), glm::dot(letter.direction, up));
-    // What points away from the eye is dimmer.
-    const double away = glm::dot(letter.direction, forward);
-    const auto shade = static_cast<unsigned char>(std::clamp(185.0 - 65.0 * away, 0.0, 255.0));
-    addStroke({centre, centre + way * radius}, static_cast<unsigned char>(shade / 2));
-    const glm::dvec2 at = centre + way * (radius + 1.9 * letter_size);
-    if (glm::length(way) < 0.2) continue;  // seen end on: it would lie on the cross
-    for (const Stroke& stroke : letter.strokes) {
-      Stroke placed;
-      for (const glm::dvec2& p : stroke) placed.push_back(at + p * letter_size);
-      addStroke(placed, shade);
-    }
-  }
-  parts_->lines->SetPoints(points);
-  parts_->lines->SetLines(cells);
-  parts_->lines->GetCellData()->SetScalars(colours);
+void addScaleBar(const ViewCamera& camera, int width, int height, ScreenLines& to) {
+  if (std::min(width, height) < kRoomForCues) return;
+  const double mm = camera.mmPerPixelAt(camera.focus(), height);
+  const std::optional<double> length_mm = scaleBar_mm(mm, 0.22 * width);
+  if (!length_mm) return;
+  const double line = std::clamp(height / 500.0, 1.5, 4.0);
+  const double letter = std::clamp(0.018 * height, 11.0, 26.0);
+  const glm::dvec2 end(width - 1.6 * letter, 1.6 * letter);
+  const glm::dvec2 start(end.x - *length_mm / mm, end.y);
+  const glm::dvec2 tick(0.0, 0.45 * letter);
+  const Vec3 colour = kNear;
+  to.push_back({start, end, colour, line});
+  to.push_back({start - tick, start + tick, colour, line});
+  to.push_back({end - tick, end + tick, colour, line});
+  char words[32];
+  std::snprintf(words, sizeof words, "%g mm", *length_mm);
+  addWords(words, {0.5 * (start.x + end.x - widthOfWords(words, letter)), start.y + 0.8 * letter},
+           letter, colour, line, to);
 }
 
 }  // namespace trephine

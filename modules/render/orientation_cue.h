@@ -1,27 +1,17 @@
-// A small cross of the patient's axes in the lower left corner: L R, A P, S I.
+// What tells the viewer where he looks from and how large things are: a cross of the patient's axes
+// in the lower left corner (L R, A P, S I), a scale bar in the lower right one. Pure.
 #pragma once
 
-#include <memory>
-
-#include "base/math.h"
-
-class vtkRenderer;
+#include "render/screen_lines.h"
+#include "render/view_camera.h"
 
 namespace trephine {
 
-class OrientationCue {
- public:
-  explicit OrientationCue(vtkRenderer& renderer);
-  ~OrientationCue();
-  OrientationCue(const OrientationCue&) = delete;
-  OrientationCue& operator=(const OrientationCue&) = delete;
+// A picture smaller than this, in pixels, has room for neither.
+constexpr int kRoomForCues = 240;
 
-  // The view plane's axes in the patient frame; the picture's size in pixels.
-  void update(const Vec3& right, const Vec3& up, const Vec3& forward, int width, int height);
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
-};
+void addOrientationCue(const ViewCamera& camera, int width, int height, ScreenLines& to);
+// Its length holds in the focus's plane, orthographic everywhere.
+void addScaleBar(const ViewCamera& camera, int width, int height, ScreenLines& to);
 
 }  // namespace trephine

@@ -1,3 +1,6 @@
+// Everything that one frame passes through in order, from boxes to pixels, and the methods that set
+// what it shows: each is a line or two, so it stands in one file, of over 500 lines.
+//
 // VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
 #if __has_include(<vtk_glad.h>)
 #include <vtk_glad.h>
@@ -12,6 +15,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 #include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLShaderCache.h>
 #include <vtkOpenGLState.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -24,14 +28,18 @@
 #include <optional>
 #include <utility>
 
+#include "base/log.h"
 #include "render/canvas.h"
 #include "render/carve_volume_mapper.h"
+#include "render/composer.h"
 #include "render/display_probe.h"
-#include "render/level_of_detail.h"
+#include "render/display_volume.h"
 #include "render/orientation_cue.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
+#include "render/tool_guide.h"
 #include "render/view_camera.h"
+#include "render/volume_pictures.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2);
@@ -48,8 +56,11 @@ double msSince(Clock::time_point start) {
 
 }  // namespace
 
+// VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
+// other the tools'. The picture is put together from both.
 struct SceneRenderer::Parts {
-  vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkRenderer> renderer;  // of the volume
+  vtkNew<vtkRenderer> tool_renderer;
   vtkSmartPointer<vtkOpenGLRenderWindow> window;  // null while detached
   vtkNew<vtkCallbackCommand> context_asked;
   RenderHost host;
@@ -57,30 +68,33 @@ struct SceneRenderer::Parts {
 
   std::shared_ptr<VolumeMirror> mirror = std::make_shared<VolumeMirror>();
   std::unique_ptr<VolumeMirror::Reader> news = std::make_unique<VolumeMirror::Reader>(mirror);
-  GridGeometry shown;  // of what VTK draws
+  GridGeometry place_shown;
   CarveVolume volume;
+  std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
+  Index3 reduction{1, 1, 1};
+  bool fitted = false;   // what is shown has been sent, or refused
+  bool refused = false;  // and nothing is drawn of it
+  Status refusal;
   ToolDrawing tools;
-  OrientationCue cue{*renderer};
+  std::vector<ToolView> tool_views;
+  ScreenLines lines;
 
   ViewCamera camera;
-  LevelOfDetail level;
+  VolumePictures pictures;
+  Composer composer;
+  Canvas scene;       // the volume over the background, in the window's size
+  Canvas tool_layer;  // tools alone, colour and depth
+  Canvas frame;       // pictures that are read back
+  bool scene_stale = true;
   bool moving = false;
   int width = 1;
   int height = 1;
 
-  // The still picture as it grows from the top; `row` is the lowest that is at full quality.
-  Canvas canvas;
-  bool stale = true;
-  int row = 0;
-  int strip_rows = 0;
-  double strip_ms = 0.0;
-  double picture_ms = 0.0;
-
   Parts() {
-    renderer->GradientBackgroundOn();
-    renderer->SetBackground(0.07, 0.075, 0.08);
-    renderer->SetBackground2(0.22, 0.225, 0.235);
-    renderer->GetActiveCamera()->SetViewAngle(ViewCamera::kViewAngle_deg);
+    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) {
+      each->EraseOff();
+      each->GetActiveCamera();
+    }
     context_asked->SetClientData(this);
     context_asked->SetCallback([](vtkObject*, unsigned long event, void* client, void* data) {
       const RenderHost& lender = static_cast<Parts*>(client)->host;
@@ -93,84 +107,259 @@ struct SceneRenderer::Parts {
     });
   }
 
-  void placeCamera() {
+  void spoil() {
+    pictures.spoil();
+    scene_stale = true;
+  }
+
+  const Volume& voxels() const { return mirror->volume(); }
+  bool drawsVolume() const { return !mirror->empty() && !refused; }
+
+  // All voxels, as many as the card takes; sent with the next picture.
+  void show() {
+    reduced.reset();
+    reduction = {1, 1, 1};
+    fitted = refused = false;
+    refusal = {};
+    pictures.startAnew();
+    volume.show(mirror->lent(), mirror->labels(), *renderer);
+  }
+
+  void showReduced() {
+    volume.remove(*renderer);
+    reduced.emplace(voxels(), reduction);
+    const LabelMap* labels = mirror->labels().get();
+    volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *renderer);
+  }
+
+  void changed(const VoxelBox& box) {
+    volume.changed(reduced ? reduced->update(voxels(), box) : box);
+    cut(box);
+  }
+
+  // Halves it until the card takes it.
+  void fit() {
+    fitted = true;
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+    if (most_edge > 0) most = std::min(most, most_edge);
+    const Index3 needed = reductionFor(voxels().geometry.size, most, mirror->labels() != nullptr);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      reduction[axis] = std::max(reduction[axis], needed[axis]);
+    }
+    constexpr int kMost = 16;  // beyond it there is too little left to see
+    for (;;) {
+      if (reduction != Index3{1, 1, 1}) showReduced();
+      handToVtk();
+      volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
+      if (volume.sendAll(*renderer) && most_edge >= 0) return;
+      if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (voxels().geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;
+      }
+    }
+    refused = true;
+    refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
+                    "Close other programs, or import the case with a part or fewer voxels"};
+    spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
+  }
+  int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
+
+  // `upwards`: what the picture spans upwards, in the window's height.
+  void place(vtkRenderer& in, double upwards) {
     const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
-    vtkCamera* vtk = renderer->GetActiveCamera();
+    vtkCamera* vtk = in.GetActiveCamera();
     vtk->SetPosition(eye.x, eye.y, eye.z);
     vtk->SetFocalPoint(focus.x, focus.y, focus.z);
     vtk->SetViewUp(up.x, up.y, up.z);
-    cue.update(camera.right(), camera.up(), camera.forward(), width, height);
-    renderer->ResetCameraClippingRange();
+    vtk->SetParallelProjection(camera.parallel());
+    vtk->SetParallelScale(camera.halfHeight_mm() * upwards);
+    const double half = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0)) * upwards;
+    vtk->SetViewAngle(2.0 * glm::degrees(std::atan(half)));
+    in.ResetCameraClippingRange();
   }
 
-  // Draws into VTK's own framebuffer; the context is current afterwards.
-  void draw(double pixel_step, double ray_step) {
-    window->MakeCurrent();
-    // The window's toolkit has changed OpenGL's state behind VTK's back.
-    if (hosted) {
-      window->GetState()->Reset();
-      window->GetState()->vtkglDepthFunc(GL_LEQUAL);
-    }
+  // OpenGL's state was changed behind VTK's back, by us and by the window's toolkit.
+  void handToVtk() {
     window->SetSize(width, height);
+    window->GetState()->Reset();
+    window->GetState()->vtkglEnable(GL_DEPTH_TEST);
+    window->GetState()->vtkglDepthMask(GL_TRUE);
+    window->GetState()->vtkglDepthFunc(GL_LEQUAL);
+    window->GetShaderCache()->ReleaseCurrentShader();
+  }
+
+  // Into the framebuffer that is bound.
+  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.low_x, part.low_y, part.width(), part.height());
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kNever[4] = {1e9F, 1e9F, 0.0F, 0.0F};
+    glClearBufferfv(GL_COLOR, 0, kNothing);
+    glClearBufferfv(GL_COLOR, 1, kNever);
+    glClearBufferfv(GL_COLOR, 2, kNothing);
+    handToVtk();
+    renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
     volume.lookFrom(camera.right(), camera.up(), camera.forward());
     volume.sendChanges(*renderer);
-    volume.setQuality(pixel_step, ray_step);
-    placeCamera();
-    window->Render();
-  }
-
-  // Copies rows of what VTK drew.
-  void keep(int low, int high) {
-    canvas.bind(width, height);
-    window->BlitDisplayFramebuffer(0, 0, low, width, high - low, 0, low, width, high - low,
-                                   GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  }
-
-  void drawStrip(double left_ms) {
-    const Clock::time_point start = Clock::now();
-    const int rows = std::min(row, nextStripRows(strip_rows, strip_ms, left_ms));
-    volume.setRows(std::pair(row - rows, row));
-    draw(1.0, 1.0);
-    volume.setRows(std::nullopt);
-    keep(row - rows, row);
+    volume.setQuality(1.0, ray_step);
+    volume.setPart(part);
+    place(*renderer, span.pixels.y / height);
+    renderer->Render();
     glFinish();
-    row -= rows;
-    strip_rows = rows;
-    strip_ms = msSince(start);
-    picture_ms += strip_ms;
   }
 
-  void drawStill(double budget_ms) {
-    const Clock::time_point start = Clock::now();
-    if (stale) {
-      draw(level.pixelStep(), level.rayStep());
-      keep(0, height);
-      stale = false;
-      row = height;
-      strip_rows = height / 16;
-      strip_ms = budget_ms;
-      picture_ms = 0.0;
+  VolumePictures::Cast caster() {
+    return [this](const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
+      cast(into, span, part, ray_step);
+    };
+  }
+
+  void drawAt(double level) {
+    if (!fitted && !mirror->empty()) fit();
+    if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
+    scene_stale = true;
+  }
+
+  bool work(double budget_ms) {
+    if (!fitted && !mirror->empty()) fit();
+    if (!drawsVolume()) return std::exchange(scene_stale, false);
+    const bool changed = pictures.work(budget_ms, moving, caster());
+    scene_stale |= changed;
+    const std::string& shader = composer.failure();
+    if (refusal && (!pictures.allocated() || !shader.empty())) {
+      refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
+                      "Make the window smaller, or update the graphics driver"};
+      spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
     }
-    do {
-      drawStrip(budget_ms - msSince(start));
-    } while (row > 0 && msSince(start) + 0.5 * strip_ms < budget_ms);
-    if (row == 0) level.stillFrameTook(picture_ms);
+    return changed;
   }
 
-  // What was drawn last.
+  // Around the points, in the window's pixels.
+  PixelRect around(const Vec3* points, std::size_t count, int margin) const {
+    PixelRect rect;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::optional<glm::dvec2> at = camera.pixelOf(points[i], width, height);
+      if (!at) return {0, 0, width, height};
+      const auto within = [](double value, int most) {
+        return int(std::floor(std::clamp(value, -1.0, double(most))));
+      };
+      const int x = within(at->x, width), y = within(at->y, height);
+      rect = bounding(rect, {x - margin, y - margin, x + margin + 1, y + margin + 1});
+    }
+    return {std::max(rect.low_x, 0), std::max(rect.low_y, 0), std::min(rect.high_x, width),
+            std::min(rect.high_y, height)};
+  }
+
+  void cut(const VoxelBox& box) {
+    // Shading and ambient light look this far from a sample.
+    constexpr double kReach_voxels = 4.0;
+    Vec3 corners[8];
+    for (int corner = 0; corner < 8; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = std::size_t(axis);
+        corners[corner][axis] =
+            corner & (1 << axis) ? box.high[a] - 1 + kReach_voxels : box.low[a] - kReach_voxels;
+      }
+      corners[corner] = voxels().geometry.toPatient_mm(corners[corner]);
+    }
+    pictures.cut(around(corners, 8, 1));
+  }
+
+  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span) {
+    std::vector<PixelRect> parts;
+    for (const auto& box : tools.boxes()) {
+      const PixelRect part = around(box.data(), box.size(), 2);
+      if (!part.empty()) parts.push_back(part);
+    }
+    if (parts.empty()) return;
+    tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
+    glEnable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    for (const PixelRect& part : parts) {
+      glScissor(part.low_x, part.low_y, part.width(), part.height());
+      constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kFar = 1.0F;
+      glClearBufferfv(GL_COLOR, 0, kNothing);
+      glClearBufferfv(GL_DEPTH, 0, &kFar);
+    }
+    handToVtk();
+    place(*tool_renderer, 1.0);
+    tool_renderer->Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    DepthRange range;
+    tool_renderer->GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
+    range.parallel = camera.parallel();
+    // A part that lies in another would be drawn twice, which changes nothing: what is read is not
+    // what is written.
+    for (const PixelRect& part : parts) {
+      composer.drawTools(tool_layer, range, shown, span, part);
+    }
+  }
+
+  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
+    for (const ToolView& tool : tool_views) {
+      const PixelRect reach = guideReach(tool, camera, width, height);
+      std::optional<double> ahead_mm;
+      if (!tool.contact && !reach.empty()) {
+        DepthPatch patch;
+        patch.step = span.pixels / glm::dvec2(shown.width(), shown.height());
+        patch.beyond = span.beyond;
+        const auto ray = [&](int x, int y) {
+          return glm::ivec2(glm::floor((glm::dvec2(x, y) + span.beyond) / patch.step));
+        };
+        const glm::ivec2 low = ray(reach.low_x, reach.low_y),
+                         high = ray(reach.high_x, reach.high_y);
+        patch.rays = {std::max(low.x, 0), std::max(low.y, 0), std::min(high.x + 1, shown.width()),
+                      std::min(high.y + 1, shown.height())};
+        patch.depth_mm = shown.readDepth_mm(patch.rays);
+        if (!patch.depth_mm.empty()) {
+          ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
+        }
+      }
+      addGuide(tool, ahead_mm, camera, width, height, to);
+    }
+  }
+
+  void compose(unsigned int framebuffer) {
+    const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
+    const Span span = shown ? pictures.span() : Span{};
+    if (scene_stale || scene.width() != width || scene.height() != height) {
+      scene.bind(width, height, {Canvas::Image::colour});
+      composer.drawVolume(shown, span, width, height);
+      scene_stale = false;
+    }
+    scene.copyTo(framebuffer);
+    drawTools(framebuffer, shown, span);
+    ScreenLines all;
+    if (shown) {
+      addOrientationCue(camera, width, height, all);
+      addScaleBar(camera, width, height, all);
+      if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    }
+    all.insert(all.end(), lines.begin(), lines.end());
+    composer.drawLines(all, width, height);
+  }
+
+  // What is shown now.
   Picture read() {
     Picture picture;
-    vtkNew<vtkUnsignedCharArray> pixels;
-    window->GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0);
-    const std::size_t row_bytes = std::size_t(width) * 3;
-    const std::size_t bytes = row_bytes * std::size_t(height);
-    if (std::size_t(pixels->GetNumberOfValues()) != bytes) return picture;
+    if (!frame.bind(width, height, {Canvas::Image::colour})) return picture;
+    compose(frame.framebuffer());
+    frame.bind();
+    const std::size_t row = std::size_t(width) * 3;
+    std::vector<std::uint8_t> up(row * std::size_t(height));
+    while (glGetError() != GL_NO_ERROR) {  // of before
+    }
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, up.data());
+    if (glGetError() != GL_NO_ERROR) return picture;
     picture.width = width;
     picture.height = height;
-    picture.rgb.resize(bytes);
+    picture.rgb.resize(up.size());
     for (int y = 0; y < height; ++y) {  // OpenGL's rows go up
-      std::copy_n(pixels->GetPointer(0) + std::size_t(height - 1 - y) * row_bytes, row_bytes,
-                  picture.rgb.data() + std::size_t(y) * row_bytes);
+      std::copy_n(up.data() + std::size_t(height - 1 - y) * row, row,
+                  picture.rgb.data() + std::size_t(y) * row);
     }
     return picture;
   }
@@ -178,11 +367,16 @@ struct SceneRenderer::Parts {
   void release() {
     if (!window) return;
     window->MakeCurrent();
-    canvas.release();
-    stale = true;
+    pictures.release();
+    composer.release();
+    scene.release();
+    tool_layer.release();
+    frame.release();
+    scene_stale = true;
+    fitted = refused = false;
     volume.releaseGraphics(*renderer);
     window->Finalize();
-    window->RemoveRenderer(renderer);
+    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
     window->RemoveObserver(context_asked);
     window = nullptr;
   }
@@ -198,8 +392,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   if (Status display = probeDisplay(); !display) return display.error();
   auto renderer = std::make_unique<SceneRenderer>();
   Parts& p = *renderer->parts_;
-  p.width = std::max(1, width);
-  p.height = std::max(1, height);
+  renderer->resize(width, height);
   vtkNew<vtkRenderWindow> window;
   p.window = vtkOpenGLRenderWindow::SafeDownCast(window);
   const Error no_opengl{"NO_OPENGL", "OpenGL 3.2 could not be started", "hidden window",
@@ -208,7 +401,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   p.window->SetOffScreenRendering(1);
   p.window->SetMultiSamples(0);
   p.window->SetSize(p.width, p.height);
-  p.window->AddRenderer(p.renderer);
+  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
   p.window->Initialize();
   p.window->MakeCurrent();
   if (openGlVersion() < kOpenGlNeeded) return no_opengl;
@@ -236,7 +429,7 @@ Status SceneRenderer::attach(RenderHost host) {
     p.window = nullptr;
     return openGlTooOld(description);
   }
-  p.window->AddRenderer(p.renderer);
+  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
   return {};
 }
 
@@ -275,14 +468,14 @@ bool SceneRenderer::takeChanges() {
   Parts& p = *parts_;
   const VolumeMirror::News news = p.news->take();
   if (!news.any()) return false;
-  p.stale = true;
-  for (const VoxelBox& box : news.boxes) p.volume.changed(box);
+  for (const VoxelBox& box : news.boxes) p.changed(box);
   if (!news.all) return true;
+  p.spoil();
   p.volume.remove(*p.renderer);
   if (!hasVolume()) return true;
-  const bool same_place = p.mirror->volume().geometry == p.shown;
-  p.shown = p.mirror->volume().geometry;
-  p.volume.show(p.mirror->lent(), p.mirror->labels(), *p.renderer);
+  const bool same_place = p.voxels().geometry == p.place_shown;
+  p.place_shown = p.voxels().geometry;
+  p.show();
   if (!same_place) resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
   return true;
 }
@@ -292,29 +485,29 @@ bool SceneRenderer::hasVolume() const {
 }
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
-  parts_->stale = true;
-  parts_->volume.setTissues(tissues, looks);
+  parts_->spoil();
+  parts_->volume.setTissues(asSeen(tissues, looks), looks);
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setClip(planes);
 }
 
 void SceneRenderer::setLight(const Vec3& from) {
   if (!isFinite(from) || glm::length(from) == 0.0) return;
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setLight(glm::normalize(from));
 }
 
 void SceneRenderer::setTruth(const RayTruth& truth) {
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setTruth(truth);
 }
 
 void SceneRenderer::setSampleDistance(double voxels) {
   if (!(voxels > 0.0)) return;
-  parts_->stale = true;
+  parts_->spoil();
   parts_->volume.setSampleDistance(voxels);
 }
 
@@ -328,8 +521,8 @@ const Volume& SceneRenderer::copy() const {
 }
 
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
-  parts_->stale = true;
-  parts_->tools.show(tools, *parts_->renderer);
+  parts_->tools.show(tools, *parts_->tool_renderer);
+  parts_->tool_views = tools;
 }
 
 void SceneRenderer::resize(int width, int height) {
@@ -337,7 +530,8 @@ void SceneRenderer::resize(int width, int height) {
   if (width == p.width && height == p.height) return;
   p.width = std::max(1, width);
   p.height = std::max(1, height);
-  p.stale = true;
+  p.pictures.resize(p.width, p.height);
+  p.scene_stale = true;
 }
 
 void SceneRenderer::setMoving(bool moving) {
@@ -348,63 +542,100 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   Parts& p = *parts_;
   if (!p.window) return true;
   takeChanges();
-  const Clock::time_point start = Clock::now();
-  if (!p.moving && p.level.stillFrame_ms() > budget_ms) {
-    if (p.stale || p.row > 0) p.drawStill(budget_ms);
-    if (p.hosted) p.canvas.copyTo(framebuffer);
-    return p.row == 0;
-  }
-  p.stale = true;
-  p.draw(p.moving ? p.level.pixelStep() : 1.0, p.moving ? p.level.rayStep() : 1.0);
+  p.window->MakeCurrent();
+  p.work(budget_ms);
   if (p.hosted) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    p.window->BlitDisplayFramebuffer();
+    p.compose(framebuffer);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  } else if (p.frame.bind(p.width, p.height, {Canvas::Image::colour})) {
+    p.compose(p.frame.framebuffer());
+    glFinish();
   }
-  glFinish();  // the level follows the time that a frame really takes
-  if (p.moving) {
-    p.level.movingFrameTook(msSince(start));
-  } else {
-    p.level.stillFrameTook(msSince(start));
-  }
-  return true;
+  return p.moving || complete();
+}
+
+bool SceneRenderer::refine(double budget_ms) {
+  Parts& p = *parts_;
+  if (!p.window) return false;
+  p.window->MakeCurrent();
+  return p.work(budget_ms);
+}
+
+bool SceneRenderer::complete() const {
+  return !parts_->drawsVolume() || parts_->pictures.complete();
+}
+
+Index3 SceneRenderer::reduction() const {
+  return parts_->reduction;
+}
+
+Status SceneRenderer::refusal() const {
+  return parts_->refusal;
+}
+
+double SceneRenderer::shareOfRays() const {
+  const double step = parts_->pictures.pixelStep();
+  return parts_->drawsVolume() && step > 0.0 ? 1.0 / (step * step) : 0.0;
 }
 
 Picture SceneRenderer::picture() {
-  if (!parts_->window) return {};
+  Parts& p = *parts_;
+  if (!p.window) return {};
   takeChanges();
-  parts_->draw(1.0, 1.0);
-  return parts_->read();
+  p.window->MakeCurrent();
+  const bool moving = std::exchange(p.moving, false);
+  p.work(std::numeric_limits<double>::infinity());
+  p.moving = moving;
+  return p.read();
 }
 
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
-  p.camera.fit(p.mirror->volume().geometry, direction, up, p.width, p.height);
-  p.stale = true;
+  p.camera.fit(p.voxels().geometry, direction, up, p.width, p.height);
+  p.spoil();
 }
 
 void SceneRenderer::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up,
                            double distance_mm) {
   parts_->camera.lookAt(focus_mm, direction, up, distance_mm);
-  parts_->stale = true;
+  parts_->spoil();
 }
 
 void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
   parts_->camera.orbit(azimuth_deg, elevation_deg);
-  parts_->stale = true;
+  parts_->spoil();
 }
 
 void SceneRenderer::zoom(double factor) {
   Parts& p = *parts_;
-  p.camera.zoom(factor, hasVolume() ? 20.0 * p.mirror->volume().geometry.diagonal_mm() : 1e5);
-  p.stale = true;
+  p.camera.zoom(factor, hasVolume() ? 20.0 * p.voxels().geometry.diagonal_mm() : 1e5);
+  p.spoil();
 }
 
 void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   Parts& p = *parts_;
   p.camera.pan(dx_pixels, dy_pixels, p.height);
-  p.stale = true;
+  p.spoil();
+}
+
+void SceneRenderer::lookFrom(StandardView side) {
+  parts_->camera.lookFrom(side);
+  parts_->spoil();
+}
+
+void SceneRenderer::setParallel(bool parallel) {
+  if (parallel == parts_->camera.parallel()) return;
+  parts_->camera.setParallel(parallel);
+  parts_->spoil();
+}
+
+const ViewCamera& SceneRenderer::camera() const {
+  return parts_->camera;
+}
+
+void SceneRenderer::setLines(const ScreenLines& lines) {
+  parts_->lines = lines;
 }
 
 Vec3 SceneRenderer::viewRight() const {
@@ -424,6 +655,7 @@ double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
 double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
   SceneRenderer::Parts& p = *renderer.parts_;
   p.window->MakeCurrent();
+  p.spoil();
   p.volume.scan(*p.renderer);  // outside the time: only what crosses to the GPU counts
   glFinish();
   const Clock::time_point start = Clock::now();
@@ -435,9 +667,10 @@ double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
 double UploadProbe::boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box) {
   SceneRenderer::Parts& p = *renderer.parts_;
   p.window->MakeCurrent();
+  p.spoil();
   glFinish();
   const Clock::time_point start = Clock::now();
-  p.volume.changed(box);
+  p.changed(box);
   p.volume.sendChanges(*p.renderer);
   glFinish();
   return msSince(start);
@@ -447,32 +680,40 @@ Volume& UploadProbe::copy(SceneRenderer& renderer) {
   return renderer.parts_->mirror->lent();
 }
 
+void UploadProbe::limitEdges(SceneRenderer& renderer, int most) {
+  renderer.parts_->most_edge = most;
+}
+
 void UploadProbe::setLeaping(SceneRenderer& renderer, bool on) {
-  renderer.parts_->stale = true;
+  renderer.parts_->spoil();
   renderer.parts_->volume.setLeaping(on);
 }
 void UploadProbe::setFirstTissue(SceneRenderer& renderer, bool on) {
-  renderer.parts_->stale = true;
+  renderer.parts_->spoil();
   renderer.parts_->volume.setFirstTissue(on);
 }
+
 void UploadProbe::setNormalsAsColour(SceneRenderer& renderer, bool on) {
-  renderer.parts_->stale = true;
+  renderer.parts_->spoil();
   renderer.parts_->volume.setNormalsAsColour(on);
 }
 
 double UploadProbe::level(const SceneRenderer& renderer) {
-  return renderer.parts_->level.pixelStep();
+  return renderer.parts_->pictures.pixelStep();
 }
 
 Picture UploadProbe::pictureAt(SceneRenderer& renderer, double level) {
-  if (!renderer.parts_->window) return {};
-  renderer.parts_->stale = true;
-  renderer.parts_->draw(level, LevelOfDetail::rayStepAt(level));
-  return renderer.parts_->read();
+  SceneRenderer::Parts& p = *renderer.parts_;
+  if (!p.window) return {};
+  renderer.takeChanges();
+  p.window->MakeCurrent();
+  p.drawAt(level);
+  return p.read();
 }
 
 Picture UploadProbe::painted(SceneRenderer& renderer) {
   if (!renderer.parts_->window) return {};
+  renderer.parts_->window->MakeCurrent();
   return renderer.parts_->read();
 }
 

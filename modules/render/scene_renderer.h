@@ -12,7 +12,10 @@
 
 #include "base/math.h"
 #include "base/result.h"
+#include "render/clip_plane.h"
 #include "render/picture.h"
+#include "render/screen_lines.h"
+#include "render/view_camera.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "volume/volume_mirror.h"
@@ -34,13 +37,6 @@ struct ToolView {
   std::string mesh_file;
   Vec3 mesh_tip_mm{0.0};          // in the mesh's frame
   Vec3 mesh_axis{0.0, 0.0, 1.0};  // from the tip to the handle, in the mesh's frame
-};
-
-// What lies on the side that the normal points to is not drawn. Patient frame.
-struct ClipPlane {
-  Vec3 point_mm{0.0};
-  Vec3 normal{0.0, 0.0, 1.0};
-  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
 
 // Where the ray caster departs from VTK's, beside leaping over what is empty.
@@ -100,13 +96,24 @@ class SceneRenderer {
   void setTools(const std::vector<ToolView>& tools);
 
   void resize(int width, int height);  // device pixels
-  // Fewer rays and longer steps while something moves; `true` at each input, `false` when still.
+  // Fewer rays and longer steps while the camera moves; `true` at each input, `false` when still.
   void setMoving(bool moving);
-  // Renders and copies into the framebuffer object that the window shows. With a budget, a still
-  // picture that would take longer starts coarse and gains full quality in strips from the top,
-  // some at each call; false while it is not complete: paint again when nothing else is to be done.
-  // Whatever changes meanwhile starts it anew. Moving frames and those without a budget are whole.
+  // Makes the picture of the volume where it is stale and renders into the framebuffer object that
+  // the window shows. Tools alone are drawn over the last picture of the volume. With a budget, a
+  // still picture that would take longer comes coarse at first; finer ones follow whole. False
+  // while there is work for refine().
   bool paint(unsigned int framebuffer, double budget_ms = std::numeric_limits<double>::infinity());
+  // Works for about so long on a finer picture. True when there is another to paint.
+  bool refine(double budget_ms);
+  bool complete() const;
+  // How many voxels became one for the display, where the graphics card takes no more; {1, 1, 1}
+  // where it shows all. Known once it is painted.
+  Index3 reduction() const;
+  // VOLUME_REFUSED where the graphics card cannot show the volume at all, NO_OPENGL where a picture
+  // or a shader was refused. Known once it is painted.
+  Status refusal() const;
+  // Of the rays of full quality, those that the shown picture has; 0 before there is one.
+  double shareOfRays() const;
   // Renders at full quality and reads it back.
   Picture picture();
 
@@ -116,6 +123,11 @@ class SceneRenderer {
   void orbit(double azimuth_deg, double elevation_deg);
   void zoom(double factor);
   void pan(double dx_pixels, double dy_pixels);  // the picture moves right and down, as a mouse
+  void lookFrom(StandardView side);
+  void setParallel(bool parallel);
+  const ViewCamera& camera() const;
+  // Over the picture, in its pixels, until others are set.
+  void setLines(const ScreenLines& lines);
   // The view plane's axes in the patient frame, and the mm that one pixel spans at a point.
   Vec3 viewRight() const;
   Vec3 viewUp() const;
@@ -137,6 +149,9 @@ struct UploadProbe {
   static double boxUpload_ms(SceneRenderer& renderer, const VoxelBox& box);
   // The copy that will be uploaded, to be changed by the measurement.
   static Volume& copy(SceneRenderer& renderer);
+  // As if the graphics card took no texture with a longer edge; negative: none at all. Before the
+  // volume is painted.
+  static void limitEdges(SceneRenderer& renderer, int most);
   static void setLeaping(SceneRenderer& renderer, bool on);
   // Each ray in the colour of the first tissue with an opacity over zero, opaque and without light:
   // what the picture says is there.

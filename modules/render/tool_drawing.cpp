@@ -344,4 +344,25 @@ void ToolDrawing::show(const std::vector<ToolView>& tools, vtkRenderer& renderer
   }
 }
 
+std::vector<std::array<Vec3, 8>> ToolDrawing::boxes() const {
+  std::vector<std::array<Vec3, 8>> boxes;
+  for (const auto& tool : tools_) {
+    vtkBoundingBox box;  // in the tool's frame
+    for (vtkActor* actor : {tool->body.Get(), tool->handle.Get(), tool->mark.Get()}) {
+      if (actor->GetVisibility()) box.AddBounds(actor->GetMapper()->GetBounds());
+    }
+    if (!box.IsValid()) continue;
+    std::array<Vec3, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+      double corner[4], placed[4];
+      box.GetCorner(i, corner);
+      corner[3] = 1.0;
+      tool->place->MultiplyPoint(corner, placed);
+      corners[std::size_t(i)] = Vec3(placed[0], placed[1], placed[2]);
+    }
+    boxes.push_back(corners);
+  }
+  return boxes;
+}
+
 }  // namespace trephine

@@ -1,6 +1,7 @@
 // Tools as solids, built in or read from meshes, with a mark where one touches.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +26,8 @@ class ToolDrawing {
   // Shows these tools and no others. A tool whose pose or length is not finite is left out. A mesh
   // is read when it is first shown and never again; one that cannot be drawn is logged once.
   void show(const std::vector<ToolView>& tools, vtkRenderer& renderer);
+  // The corners of a box around each tool that is shown, patient frame.
+  std::vector<std::array<Vec3, 8>> boxes() const;
 
  private:
   struct Tool;

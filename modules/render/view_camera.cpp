@@ -27,6 +27,23 @@ void ViewCamera::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3&
   up_ = glm::normalize(glm::cross(side, forward_));
 }
 
+void ViewCamera::lookFrom(StandardView side) {
+  switch (side) {
+    case StandardView::anterior:
+      return lookAt(focus_mm_, Vec3(0, 1, 0), Vec3(0, 0, 1), distance_mm_);
+    case StandardView::posterior:
+      return lookAt(focus_mm_, Vec3(0, -1, 0), Vec3(0, 0, 1), distance_mm_);
+    case StandardView::left:
+      return lookAt(focus_mm_, Vec3(-1, 0, 0), Vec3(0, 0, 1), distance_mm_);
+    case StandardView::right:
+      return lookAt(focus_mm_, Vec3(1, 0, 0), Vec3(0, 0, 1), distance_mm_);
+    case StandardView::superior:
+      return lookAt(focus_mm_, Vec3(0, 0, -1), Vec3(0, -1, 0), distance_mm_);
+    case StandardView::inferior:
+      return lookAt(focus_mm_, Vec3(0, 0, 1), Vec3(0, -1, 0), distance_mm_);
+  }
+}
+
 void ViewCamera::fit(const GridGeometry& geometry, const Vec3& direction, const Vec3& view_up,
                      int width, int height) {
   const Vec3 centre = geometry.centre_mm();
@@ -61,9 +78,40 @@ void ViewCamera::pan(double right_pixels, double down_pixels, int height) {
   focus_mm_ += (up_ * down_pixels - right() * right_pixels) * mmPerPixelAt(focus_mm_, height);
 }
 
+double ViewCamera::halfHeight_mm() const {
+  return distance_mm_ * kTan;
+}
+
 double ViewCamera::mmPerPixelAt(const Vec3& patient_mm, int height) const {
+  if (parallel_) return 2.0 * halfHeight_mm() / double(std::max(1, height));
   const double depth_mm = std::max(1e-3, glm::dot(patient_mm - eye(), forward_));
-  return 2.0 * depth_mm * kTan / double(height);
+  return 2.0 * depth_mm * kTan / double(std::max(1, height));
+}
+
+std::optional<glm::dvec2> ViewCamera::pixelOf(const Vec3& patient_mm, int width, int height) const {
+  const Vec3 at = patient_mm - eye();
+  if (!isFinite(at) || (!parallel_ && glm::dot(at, forward_) < 1e-3)) return std::nullopt;
+  const double mm = mmPerPixelAt(patient_mm, height);
+  return glm::dvec2(0.5 * width + glm::dot(at, right()) / mm,
+                    0.5 * height + glm::dot(at, up_) / mm);
+}
+
+ViewCamera::Ray ViewCamera::rayThrough(const glm::dvec2& pixel, int width, int height) const {
+  const double mm = 2.0 * halfHeight_mm() / double(std::max(1, height));
+  const Vec3 beside =
+      right() * ((pixel.x - 0.5 * width) * mm) + up_ * ((pixel.y - 0.5 * height) * mm);
+  if (parallel_) return {eye() + beside, forward_};
+  return {eye(), glm::normalize(forward_ * distance_mm_ + beside)};
+}
+
+std::optional<double> scaleBar_mm(double mm_per_pixel, double most_pixels) {
+  const double most_mm = mm_per_pixel * most_pixels;
+  if (!isFinite(most_mm) || most_mm < 1e-3 || most_mm > 1e6) return std::nullopt;
+  const double ten = std::pow(10.0, std::floor(std::log10(most_mm)));
+  for (const double times : {5.0, 2.0}) {
+    if (times * ten <= most_mm) return times * ten;
+  }
+  return ten;
 }
 
 }  // namespace trephine

@@ -1,10 +1,15 @@
-// The eye: a perspective camera in the patient frame. Pure.
+// The eye in the patient frame: in perspective, or orthographic. Pure.
 #pragma once
+
+#include <optional>
 
 #include "base/math.h"
 #include "volume/volume.h"
 
 namespace trephine {
+
+// Named for the side of the patient that is seen.
+enum class StandardView { anterior, posterior, left, right, superior, inferior };
 
 class ViewCamera {
  public:
@@ -13,6 +18,9 @@ class ViewCamera {
   // `direction` points from the eye to the focus. What is not finite or has no length is ignored;
   // an `up` along the direction is replaced.
   void lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up, double distance_mm);
+  // From this side at the same focus, as near as before; the patient upright, seen from above and
+  // below with the face up.
+  void lookFrom(StandardView side);
   // As near as every corner of the volume allows, in a picture of this shape.
   void fit(const GridGeometry& geometry, const Vec3& direction, const Vec3& up, int width,
            int height);
@@ -22,19 +30,44 @@ class ViewCamera {
   void zoom(double factor, double farthest_mm);
   // The picture moves right and down by pixels, in a picture of this height.
   void pan(double right_pixels, double down_pixels, int height);
+  // Orthographic: what lies in the focus's plane keeps its size.
+  void setParallel(bool parallel) { parallel_ = parallel; }
+  bool parallel() const { return parallel_; }
 
   const Vec3& focus() const { return focus_mm_; }
-  Vec3 eye() const { return focus_mm_ - forward_ * distance_mm_; }
+  double distance_mm() const { return distance_mm_; }
+  // Orthographic, it stands back, so that nothing of the volume lies behind it.
+  Vec3 eye() const { return focus_mm_ - forward_ * (distance_mm_ + (parallel_ ? kBack_mm : 0.0)); }
   const Vec3& forward() const { return forward_; }
   const Vec3& up() const { return up_; }
   Vec3 right() const { return glm::cross(forward_, up_); }
+  // Orthographic, the same everywhere.
   double mmPerPixelAt(const Vec3& patient_mm, int height) const;
+  // Half of what the picture spans upwards in the focus's plane.
+  double halfHeight_mm() const;
+
+  // The pixel of a point, from the lower left corner, whole numbers at the pixels' corners. None
+  // for a point beside or behind a perspective eye.
+  std::optional<glm::dvec2> pixelOf(const Vec3& patient_mm, int width, int height) const;
+  // Where the ray through a pixel starts and goes; of length 1.
+  struct Ray {
+    Vec3 from_mm{0.0};
+    Vec3 direction{0.0};
+  };
+  Ray rayThrough(const glm::dvec2& pixel, int width, int height) const;
 
  private:
+  static constexpr double kBack_mm = 2000.0;
+
   Vec3 focus_mm_{0.0};
   Vec3 forward_{0.0, 1.0, 0.0};
   Vec3 up_{0.0, 0.0, 1.0};
   double distance_mm_ = 500.0;
+  bool parallel_ = false;
 };
+
+// A scale bar's length: 1, 2 or 5 times a power of ten, in mm, as long as `most_pixels` allow; none
+// where a pixel's span is no number that can be drawn.
+std::optional<double> scaleBar_mm(double mm_per_pixel, double most_pixels);
 
 }  // namespace trephine

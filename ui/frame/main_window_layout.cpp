@@ -12,6 +12,7 @@
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
+#include "ui/views/view_tools.h"
 
 namespace trephine {
 
@@ -153,6 +154,9 @@ void MainWindow::buildBars() {
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view->addActions(views_->layoutActions());
   view->addAction(look_);
+  view->addSeparator();
+  for (QAction* tool : view_->tools().all())
+    tool ? view->addAction(tool) : void(view->addSeparator());
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 

@@ -6,15 +6,19 @@
 #include <QWheelEvent>
 #include <cmath>
 
+#include "ui/views/view_tools.h"
+
 namespace trephine {
 
 namespace {
 
-constexpr int kStillAfter_ms = 300;
-// A full picture that takes this long would stop a hand that rests for a moment only, so in an
-// exercise it waits for a longer rest.
-constexpr double kSlowPicture_ms = 150.0;
-constexpr int kLongRest_ms = 1500;
+constexpr int kStillAfter_ms = 120;
+// What one frame may spend on rays: on those of a cut before it is shown, and between two frames on
+// a finer picture. In an exercise the tools wait no longer than this.
+constexpr double kCut_ms = 25.0;
+constexpr double kRefine_ms = 30.0;
+constexpr double kRefineInTraining_ms = 12.0;
+constexpr int kNothingToRefine_ms = 40;  // while cuts follow each other too fast for full quality
 constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
 constexpr double kKeyStep_mm = 0.5;
@@ -22,6 +26,8 @@ constexpr double kZoomStep = 1.1;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
 constexpr double kToolMoved_mm = 0.02;
+const Vec3 kLightColour(1.0, 0.95, 0.5);
+constexpr double kReach_pixels = 11.0;  // of a handle
 constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
 
 Hand handFor(Qt::KeyboardModifiers modifiers) {
@@ -39,7 +45,11 @@ bool looksAlike(const ToolView& a, const ToolView& b) {
 
 }  // namespace
 
-ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabel(this)) {
+ViewWidget::ViewWidget(QWidget* parent)
+    : QOpenGLWidget(parent),
+      hint_(new QLabel(this)),
+      level_(new QLabel(this)),
+      strip_(new ViewTools(this)) {
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
@@ -50,13 +60,22 @@ ViewWidget::ViewWidget(QWidget* parent) : QOpenGLWidget(parent), hint_(new QLabe
   hint_->setWordWrap(true);
   hint_->setAttribute(Qt::WA_TransparentForMouseEvents);
   hint_->setProperty("quiet", true);
+  level_->setObjectName("viewLevel");
+  level_->setAttribute(Qt::WA_TransparentForMouseEvents);
+  level_->setProperty("quiet", true);
+  level_->move(10, 8);
+  level_->hide();
   hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
+  strip_->hide();
+  connectTools();
   still_.setSingleShot(true);
   connect(&still_, &QTimer::timeout, this, [this] {
     moving_ = false;
     renderer_.setMoving(false);
-    update();
+    refine_.start(0);  // when nothing else is to be done
   });
+  refine_.setSingleShot(true);
+  connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
 }
 
 ViewWidget::~ViewWidget() {
@@ -96,7 +115,71 @@ void ViewWidget::resizeGL(int, int) {
   fitHint();
 }
 
+void ViewWidget::connectTools() {
+  connect(strip_, &ViewTools::viewWanted, this, [this](StandardView side) {
+    renderer_.lookFrom(side);
+    redraw();
+  });
+  connect(strip_, &ViewTools::parallelWanted, this, [this](bool on) {
+    renderer_.setParallel(on);
+    redraw();
+  });
+  connect(strip_, &ViewTools::boxWanted, this, [this](bool on) {
+    clip_.showBox(on);
+    showClip();
+  });
+  connect(strip_, &ViewTools::planeWanted, this, [this](bool on) {
+    clip_.showPlane(on, renderer_.camera());
+    showClip();
+  });
+  connect(strip_, &ViewTools::throughToolWanted, this, &ViewWidget::throughTool);
+  connect(strip_, &ViewTools::planeMoved, this, [this](double mm) {
+    if (!clip_.planeShown()) return;
+    clip_.movePlane(mm);
+    showClip();
+  });
+  connect(strip_, &ViewTools::lightWanted, this, [this](bool on) {
+    moving_light_ = on;
+    setCursor(on ? Qt::CrossCursor : Qt::ArrowCursor);
+    update();
+  });
+  connect(strip_, &ViewTools::resetWanted, this, &ViewWidget::resetTools);
+}
+
+void ViewWidget::showClip() {
+  renderer_.setClip(clip_.planes());
+  redraw();
+}
+
+void ViewWidget::throughTool() {
+  if (tools_.empty()) return;
+  const Pose& pose = tools_.back().pose_mm;  // the right hand's, where there are two
+  const Vec3 axis = along_tool_ ? pose.orientation * Vec3(0, 0, 1) : Vec3(0.0);
+  clip_.planeThrough(pose.position, axis, renderer_.camera());
+  along_tool_ = !along_tool_;
+  const QSignalBlocker quiet(strip_->plane());
+  strip_->plane()->setChecked(true);
+  showClip();
+}
+
+void ViewWidget::resetTools() {
+  clip_.reset();
+  along_tool_ = false;
+  light_ = Vec3(0.0, 0.0, 1.0);
+  for (QAction* action : {strip_->box(), strip_->plane(), strip_->light()}) {
+    action->setChecked(false);
+  }
+  renderer_.setLight(light_);
+  showClip();
+}
+
+glm::dvec2 ViewWidget::pixelAt(const QPointF& place) const {
+  const double ratio = devicePixelRatioF();
+  return {place.x() * ratio, (height() - place.y()) * ratio};
+}
+
 void ViewWidget::fitHint() {
+  strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
 }
 
@@ -104,30 +187,92 @@ void ViewWidget::paintGL() {
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
-  constexpr double kStrip_ms =
-      50.0;  // a still picture comes in strips, so that input is not kept waiting
-  if (!renderer_.paint(defaultFramebufferObject(), kStrip_ms)) update();
-  const double paint_ms = double(timer.nsecsElapsed()) * 1e-6;
-  if (!moving_) still_picture_ms_ = paint_ms;
-  emit framePainted(paint_ms, renderer_.hasVolume());
+  ScreenLines lines;
+  const int wide = int(std::lround(width() * devicePixelRatioF()));
+  const int high = int(std::lround(height() * devicePixelRatioF()));
+  clip_.addLines(renderer_.camera(), wide, high, lines);
+  if (moving_light_) {  // on a half sphere that is seen from the eye
+    const glm::dvec2 middle(0.5 * wide, 0.5 * high);
+    const glm::dvec2 at = middle + glm::dvec2(light_) * (0.25 * high);
+    lines.push_back({middle, at, kLightColour, 2.0});
+    addSquare(at, 7.0, kLightColour, 3.0, lines);
+  }
+  renderer_.setLines(lines);
+  renderer_.paint(defaultFramebufferObject(), kCut_ms);
+  if (!moving_ && !renderer_.complete()) refine_.start(0);
+  emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
+  showLevel();
+  if (const Status refused = renderer_.refusal(); !refused && !refusal_said_) {
+    refusal_said_ = true;
+    // Not while a frame is made: a dialog paints.
+    QTimer::singleShot(0, this, [this, why = refused.error()] { emit failed(why); });
+  }
+}
+
+void ViewWidget::refine() {
+  if (!isVisible() || !context() || moving_) return;
+  QElapsedTimer timer;
+  timer.start();
+  makeCurrent();
+  const bool another = renderer_.refine(training_ ? kRefineInTraining_ms : kRefine_ms);
+  doneCurrent();
+  if (another) {
+    update();
+  } else if (!renderer_.complete()) {
+    refine_.start(timer.elapsed() > 0 ? 0 : kNothingToRefine_ms);
+  }
+}
+
+// How coarse the picture is, while it is, and the volume behind it.
+void ViewWidget::showLevel() {
+  const double share = renderer_.shareOfRays();
+  QStringList words;
+  if (share > 0.0 && share < 1.0) {
+    words << tr("1/%1 of the rays").arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0);
+  }
+  const auto [i, j, k] = renderer_.reduction();
+  if (renderer_.hasVolume() && i * j * k > 1) {
+    words << tr("Too large for the graphics card: shown with one voxel for %1 \u00d7 %2 \u00d7 %3")
+                 .arg(i)
+                 .arg(j)
+                 .arg(k);
+  }
+  const QString text = words.join('\n');
+  if (text != level_->text()) {
+    level_->setText(text);
+    level_->adjustSize();
+  }
+  level_->setVisible(!text.isEmpty());
 }
 
 void ViewWidget::redraw() {
   moving_ = true;
   renderer_.setMoving(true);
-  const bool slow = training_ && still_picture_ms_ > kSlowPicture_ms;
-  still_.start(slow ? kLongRest_ms : kStillAfter_ms);
+  still_.start(kStillAfter_ms);
   update();
 }
 
 void ViewWidget::setMirror(std::shared_ptr<VolumeMirror> mirror) {
   renderer_.setMirror(std::move(mirror));
-  redraw();
+  showNews();
 }
 
 void ViewWidget::takeChanges() {
   if (!renderer_.takeChanges()) return;
+  if (renderer_.copy().geometry == shown_) return update();
+  showNews();
+}
+
+void ViewWidget::showNews() {
+  shown_ = renderer_.copy().geometry;
+  if (renderer_.hasVolume()) {
+    refusal_said_ = false;
+    clip_.setVolume(shown_);
+    if (!clip_.cutsAnything()) resetTools();  // the one that was shown before had them
+  }
   hint_->setVisible(!renderer_.hasVolume());
+  strip_->setEnabled(renderer_.hasVolume());
+  strip_->place();
   redraw();
 }
 
@@ -152,8 +297,9 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
   for (std::size_t i = 0; alike && i < tools.size(); ++i) alike = looksAlike(tools[i], tools_[i]);
   if (alike) return;
   tools_ = tools;
+  strip_->setToolAtHand(!tools.empty());
   renderer_.setTools(tools);
-  redraw();
+  update();  // over the last picture of the volume
 }
 
 void ViewWidget::setTraining(bool training) {
@@ -170,6 +316,7 @@ Result<Picture> ViewWidget::picture() {
                  "Open a case first"};
   }
   makeCurrent();
+  renderer_.setLines({});  // handles are none of the picture
   Picture picture = renderer_.picture();
   doneCurrent();
   update();  // the picture was drawn with VTK's state, the window's frame is still the old one
@@ -188,7 +335,6 @@ void ViewWidget::moveHand(Hand hand, double right_pixels, double up_pixels) {
 
 void ViewWidget::moveHandBy(Hand hand, const Vec3& by_mm) {
   emit handMoved(hand, by_mm);
-  redraw();
 }
 
 void ViewWidget::turn(double right_pixels, double down_pixels) {
@@ -198,23 +344,44 @@ void ViewWidget::turn(double right_pixels, double down_pixels) {
 
 void ViewWidget::mousePressEvent(QMouseEvent* event) {
   last_ = event->position();
+  dragged_.reset();
+  if (event->button() != Qt::LeftButton || !renderer_.hasVolume()) return;
+  const double ratio = devicePixelRatioF();
+  dragged_ = clip_.handleAt(pixelAt(last_), renderer_.camera(), int(std::lround(width() * ratio)),
+                            int(std::lround(height() * ratio)), kReach_pixels * ratio);
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   const QPointF moved = event->position() - last_;
   last_ = event->position();
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
-  if (event->buttons() & Qt::MiddleButton) {
+  const double ratio = devicePixelRatioF();
+  const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
+  const bool left = event->buttons() & Qt::LeftButton;
+  if (left && dragged_) {
+    clip_.drag(*dragged_, pixels, renderer_.camera(), int(std::lround(width() * ratio)),
+               int(std::lround(height() * ratio)));
+    for (const ClipTools::Handle& handle : clip_.handles()) {
+      if (handle.grip == dragged_->grip && handle.face == dragged_->face) dragged_ = handle;
+    }
+    showClip();
+  } else if (left && moving_light_) {
+    light_ = draggedLight(light_, pixels, int(std::lround(height() * ratio)));
+    renderer_.setLight(light_);
+    redraw();
+  } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (training_ && (event->buttons() & Qt::LeftButton)) {
+  } else if (training_ && left) {
     moveHand(handFor(event->modifiers()), moved.x(), -moved.y());
   } else {
     turn(moved.x(), moved.y());
   }
 }
 
-void ViewWidget::mouseReleaseEvent(QMouseEvent*) {}
+void ViewWidget::mouseReleaseEvent(QMouseEvent*) {
+  dragged_.reset();
+}
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {
   if (!renderer_.hasVolume()) return;

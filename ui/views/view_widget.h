@@ -4,6 +4,8 @@
 // While an exercise runs:  left drag moves the right hand in the view plane, the wheel in depth;
 //                          with Shift, the left hand. Arrow keys and Page Up, Page Down do the
 //                          same.
+// The squares of the crop box and the clip plane are dragged with the left button, and while the
+// light is to be moved, the light.
 // Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
 // left button, the wheel and the keys move the camera too.
 #pragma once
@@ -16,10 +18,13 @@
 #include <optional>
 
 #include "base/result.h"
+#include "render/clip_tools.h"
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
 
 namespace trephine {
+
+class ViewTools;
 
 enum class Hand { left, right };
 
@@ -42,6 +47,11 @@ class ViewWidget : public QOpenGLWidget {
   // In an exercise the mouse moves hands; `point_mm` is where a hand is, which gives the scale.
   void setTraining(bool training);
   void setHandPoint(Hand hand, const Vec3& point_mm);
+
+  // Standard views, crop box and what else the strip over the view offers.
+  const ViewTools& tools() const { return *strip_; }
+
+  const ViewCamera& camera() const { return renderer_.camera(); }
 
   // NO_OPENGL until the view could start to draw, and where it could not.
   const Status& canDraw() const { return drawing_; }
@@ -66,26 +76,42 @@ class ViewWidget : public QOpenGLWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
+  void showNews();  // of the mirror, as a whole
   void releaseGraphics();
-  void redraw();  // coarse now, refined when still
+  void redraw();  // the volume too: coarse now, refined when still
+  void refine();
+  void showLevel();
   void moveHand(Hand hand, double right_pixels, double up_pixels);
   void moveHandBy(Hand hand, const Vec3& by_mm);
   void turn(double right_pixels, double down_pixels);
   void fitHint();
+  void connectTools();
+  void showClip();
+  void throughTool();
+  void resetTools();
+  glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
   void fitRenderer();
 
   SceneRenderer renderer_;
+  GridGeometry shown_;
   Status drawing_{Error{"NO_OPENGL", "The view has no OpenGL to draw with", "3-D view",
                         "Install the graphics driver and start again"}};
   std::string gl_description_;
   QLabel* hint_;
-  QTimer still_;
+  QLabel* level_;
+  ViewTools* strip_;
+  QTimer still_, refine_;
+  ClipTools clip_;
+  std::optional<ClipTools::Handle> dragged_;
+  bool along_tool_ = false;  // how the plane through the tool lies next
+  bool moving_light_ = false;
+  Vec3 light_{0.0, 0.0, 1.0};
   QPointF last_;
   std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;
   bool training_ = false;
   bool moving_ = false;
-  double still_picture_ms_ = 0.0;  // what the last picture at full quality took
+  bool refusal_said_ = false;
 };
 
 }  // namespace trephine

@@ -70,6 +70,8 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   auto renderer_made = SceneRenderer::offscreen(options.moving[0], options.moving[1]);
   if (!renderer_made) return renderer_made.error();
   SceneRenderer& renderer = **renderer_made;
+  // As the window in an exercise: a picture at most this long, and so long for a finer one between.
+  constexpr double kFrame_ms = 25.0, kBetween_ms = 12.0;
   const double distance = options.sample_distances.front();
   renderer.setSampleDistance(distance);
   renderer.setTissues(scene->tissues, scene->view.looks);
@@ -80,7 +82,6 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
                     landmark.frame.viewUp(), scene->view.distance_mm);
   }
   for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume
-  renderer.setMoving(true);
   Picture last = UploadProbe::painted(renderer);
 
   if (Status started = session.start(options.cut_s); !started) return started;
@@ -99,7 +100,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
     const LoopState& state = session.state();
     const std::uint64_t removed = removedVoxels(state, session.scene().arms.size());
     renderer.setTools(toolsOf(session.scene(), state));
-    renderer.paint(0);
+    renderer.paint(0, kFrame_ms);
     hands.there_ms = removal.there_ms = msSince(begin);
     // Outside of the time: that the picture is another is the evidence that it was drawn.
     Picture picture = UploadProbe::painted(renderer);
@@ -112,6 +113,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
       addDelays(last_hands_ms, hands, delays.hand_ms);
       if (cut) addDelays(last_pull_ms, removal, delays.removal_ms);
     }
+    renderer.refine(kBetween_ms);
     removed_before = removed;
     last_pull_ms = removal.read_ms;
     last_hands_ms = hands.read_ms;

@@ -28,7 +28,7 @@ Status measureFirstPicture(const RenderOptions& options, const std::filesystem::
   const auto start = RenderClock::now();
   renderer.setVolume(grid);
   renderer.setMoving(true);  // as the window draws what is new
-  renderer.paint(0);
+  renderer.paint(0, 50.0);
   result.first_picture_ms = msSince(start);
   return {};
 }

@@ -66,10 +66,23 @@ TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
   EXPECT_EQ(level.pixelStep(), 1.0);
 }
 
-TEST(StripRows, AStripTakesTheTimeThatIsLeft) {
-  EXPECT_EQ(nextStripRows(40, 20.0, 20.0), 40);
-  EXPECT_EQ(nextStripRows(40, 20.0, 10.0), 20);
-  EXPECT_EQ(nextStripRows(40, 20.0, 1000.0), 60);  // the next rows may be dearer
-  EXPECT_EQ(nextStripRows(40, 20.0, -5.0), 8);     // but there is always some progress
-  EXPECT_EQ(nextStripRows(0, 0.0, 50.0), 8);
+TEST(LevelOfDetail, AfterMovementAPictureInBetweenComesOnlyWhereFullQualityWouldTakeLong) {
+  LevelOfDetail quick, slow;
+  quick.stillFrameTook(900.0);
+  EXPECT_EQ(quick.finerThan(quick.pixelStep()), 1.0);
+  slow.stillFrameTook(4000.0);
+  const double between = slow.finerThan(slow.pixelStep());
+  EXPECT_GT(between, 1.0);
+  EXPECT_LT(between, slow.pixelStep());
+  EXPECT_LE(frame_ms(4000.0, slow) * slow.pixelStep() * slow.pixelStep() / (between * between),
+            500.0);
+  EXPECT_EQ(slow.finerThan(between), 1.0);
+}
+
+TEST(StripPixels, AStripTakesTheTimeThatIsLeft) {
+  EXPECT_EQ(nextStripPixels(4000, 20.0, 20.0), 4000);
+  EXPECT_EQ(nextStripPixels(4000, 20.0, 10.0), 2000);
+  EXPECT_EQ(nextStripPixels(4000, 20.0, 1000.0), 6000);  // the next may be dearer
+  EXPECT_EQ(nextStripPixels(4000, 20.0, -5.0), 0);
+  EXPECT_EQ(nextStripPixels(0, 0.0, 50.0), 0);
 }

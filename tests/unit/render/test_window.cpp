@@ -73,6 +73,27 @@ TEST(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
   hosted.detach();
 }
 
+namespace {
+
+constexpr double kTiny_ms = 1e-3;  // less than any picture takes
+
+// How often it had to be asked until the picture was complete.
+int finish(SceneRenderer& renderer, unsigned int screen) {
+  int asked = 1;
+  while (!renderer.paint(screen, kTiny_ms)) ++asked;
+  return asked;
+}
+
+ToolView needle(const Vec3& tip) {
+  ToolView tool;
+  tool.length_mm = 20.0;
+  tool.colour = Vec3(0, 0, 1);
+  tool.pose_mm.position = tip;
+  return tool;
+}
+
+}  // namespace
+
 TEST(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
   RENDERER_OR_SKIP(lender);
   lender.picture();  // leaves the lender's context current
@@ -83,33 +104,93 @@ TEST(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
   ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
   {
     const Screen screen;
+    EXPECT_EQ(hosted.shareOfRays(), 0.0);
     EXPECT_TRUE(hosted.paint(screen.id()));
+    EXPECT_EQ(hosted.shareOfRays(), 1.0);
     const Picture whole = screen.read();
     EXPECT_EQ(whole, hosted.picture());
-
-    constexpr double kTiny_ms = 1e-3;  // less than any picture takes
-    const auto finish = [&] {
-      int paints = 1;
-      while (!hosted.paint(screen.id(), kTiny_ms)) ++paints;
-      return paints;
-    };
-    EXPECT_GT(finish(), 5);
-    EXPECT_EQ(screen.read(), whole);
-    EXPECT_EQ(finish(), 1);  // nothing changed: what is there is shown again
+    EXPECT_EQ(finish(hosted, screen.id()), 1);  // nothing changed: what is there is shown again
     EXPECT_EQ(screen.read(), whole);
 
     hosted.orbit(20, 0);
     EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
+    EXPECT_LT(hosted.shareOfRays(), 1.0);
+    const Picture coarse = screen.read();
+    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
+    EXPECT_EQ(screen.read(), coarse) << "a finer picture is shown when it is whole";
     hosted.orbit(-20, 0);
-    EXPECT_GT(finish(), 5);
+    EXPECT_GT(finish(hosted, screen.id()), 5);
     EXPECT_GE(psnr_dB(screen.read(), whole), 60.0);  // the camera came back but for rounding
+  }
+  hosted.detach();
+}
 
-    ToolView tool;
-    tool.length_mm = 20.0;
-    tool.pose_mm.position = Vec3(0, -40, 0);
-    hosted.setTools({tool});
-    EXPECT_GT(finish(), 5);
-    EXPECT_EQ(screen.read(), hosted.picture());
+TEST(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
+  RENDERER_OR_SKIP(lender);
+  lender.picture();
+  SceneRenderer hosted;
+  hosted.resize(kWidth, kHeight);
+  hosted.setTissues(tissues(0.1));
+  hosted.setVolume(Grid(ball()));
+  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
+  {
+    const Screen screen;
+    hosted.paint(screen.id());
+    const Picture without = screen.read();
+    hosted.setTools({needle(Vec3(0, -40, 0))});
+    EXPECT_TRUE(hosted.paint(screen.id(), kTiny_ms)) << "no ray is cast";
+    const Picture with = screen.read();
+    const Difference seen = difference(without, with);
+    EXPECT_GT(seen.pixels, 50);
+    EXPECT_EQ(with, hosted.picture());
+
+    // While a finer picture is made.
+    hosted.orbit(15, 0);
+    hosted.paint(screen.id(), kTiny_ms);
+    ASSERT_FALSE(hosted.complete());
+    const Picture before = screen.read();
+    hosted.setTools({needle(Vec3(0, -40, 10))});
+    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
+    EXPECT_GT(difference(before, screen.read()).pixels, 50);
+    hosted.setTools({});
+    hosted.orbit(-15, 0);
+    finish(hosted, screen.id());
+    EXPECT_GE(psnr_dB(screen.read(), without), 60.0);
+  }
+  hosted.detach();
+}
+
+TEST(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
+  RENDERER_OR_SKIP(lender);
+  lender.picture();
+  SceneRenderer hosted;
+  hosted.resize(kWidth, kHeight);
+  hosted.setTissues(tissues(0.1));
+  Grid grid(ball());
+  hosted.setVolume(grid);
+  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
+  {
+    const Screen screen;
+    hosted.paint(screen.id());
+    carve(grid, Vec3(-5, -24, 0), 6.0);
+    ASSERT_TRUE(hosted.pullChanges(grid));
+    finish(hosted, screen.id());
+    EXPECT_EQ(hosted.shareOfRays(), 1.0);
+    const Picture mended = screen.read();
+    hosted.setTruth({});  // starts anew
+    hosted.paint(screen.id());
+    EXPECT_EQ(screen.read(), mended);
+    // A second one, while a picture is on its way, is in that one too.
+    hosted.orbit(10, 0);
+    for (int strip = 0; strip < 14; ++strip) hosted.paint(screen.id(), 0.5);
+    ASSERT_FALSE(hosted.complete());
+    carve(grid, Vec3(6, -24, 8), 6.0);
+    ASSERT_TRUE(hosted.pullChanges(grid));
+    finish(hosted, screen.id());
+    const Picture late = screen.read();
+    hosted.setTruth({});
+    hosted.paint(screen.id());
+    EXPECT_EQ(screen.read(), late);
   }
   hosted.detach();
 }

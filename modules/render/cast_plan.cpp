@@ -1,0 +1,66 @@
+#include "render/cast_plan.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+namespace {
+
+constexpr int kFewestRows = 8;  // each strip costs a millisecond or two beside its rays
+
+}  // namespace
+
+PixelRect bounding(const PixelRect& a, const PixelRect& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::min(a.low_x, b.low_x), std::min(a.low_y, b.low_y), std::max(a.high_x, b.high_x),
+          std::max(a.high_y, b.high_y)};
+}
+
+void CastPlan::setWhole(int width, int height) {
+  setNone(width, height);
+  add({0, 0, width, height});
+}
+
+void CastPlan::setNone(int width, int height) {
+  width_ = width;
+  height_ = height;
+  rects_.clear();
+}
+
+void CastPlan::add(PixelRect rect) {
+  rect = {std::max(rect.low_x, 0), std::max(rect.low_y, 0), std::min(rect.high_x, width_),
+          std::min(rect.high_y, height_)};
+  if (rect.empty()) return;
+  // Joined where that costs no more rays than both; a joined one may meet others.
+  for (auto other = rects_.begin(); other != rects_.end();) {
+    const PixelRect both = bounding(rect, *other);
+    if (both.pixels() <= rect.pixels() + other->pixels()) {
+      rect = both;
+      rects_.erase(other);
+      other = rects_.begin();
+    } else {
+      ++other;
+    }
+  }
+  rects_.push_back(rect);
+}
+
+std::optional<PixelRect> CastPlan::next(double pixels) {
+  if (rects_.empty()) return std::nullopt;
+  PixelRect& rect = rects_.front();
+  const double rows = std::max(double(kFewestRows), pixels / rect.width());
+  PixelRect strip = rect;
+  if (rows < rect.height()) strip.low_y = rect.high_y - int(rows);
+  rect.high_y = strip.low_y;
+  if (rect.empty()) rects_.erase(rects_.begin());
+  return strip;
+}
+
+double CastPlan::pixels() const {
+  double sum = 0.0;
+  for (const PixelRect& rect : rects_) sum += rect.pixels();
+  return sum;
+}
+
+}  // namespace trephine

@@ -1,0 +1,75 @@
+// The picture of the volume that is shown, and the finer one that is being made behind it. A cut
+// mends the part of both that it falls on; whatever else changes starts anew, coarse first. Only
+// whole pictures are shown, so no seam runs between coarse and fine.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "render/canvas.h"
+#include "render/cast_plan.h"
+#include "render/composer.h"
+#include "render/level_of_detail.h"
+
+namespace trephine {
+
+class VolumePictures {
+ public:
+  // Casts the rays of this part of a picture, `ray_step` times the usual distance between samples,
+  // into the framebuffer that is bound; until it is done.
+  using Cast = std::function<void(const Canvas&, const Span&, const PixelRect&, double ray_step)>;
+
+  // Window pixels.
+  void resize(int width, int height);
+  // The camera, the looks or all voxels changed.
+  void spoil() { stale_ = true; }
+  // Another volume: what the last one's pictures took says nothing of its.
+  void startAnew();
+  // Voxels changed whose picture lies in here. Window pixels, from below.
+  void cut(const PixelRect& part);
+
+  // Works for about so long on what is to be done: the shown picture first, which comes whole where
+  // it is stale; then a finer one, unless things move. True when there is another picture to show.
+  bool work(double budget_ms, bool moving, const Cast& cast);
+  // A whole picture with so many pixels between two rays, for measurements; the next work() starts
+  // anew.
+  void castAt(double step, double ray_step, const Cast& cast);
+  // The shown one is what is there now, at full quality.
+  bool complete() const { return !stale_ && shown_.step == 1.0 && shown_.plan.done(); }
+
+  const Canvas& canvas() const { return shown_.canvas; }
+  const Span& span() const { return shown_.span; }
+  double pixelStep() const { return shown_.step; }  // between two rays of the shown picture
+  LevelOfDetail& level() { return level_; }
+  // False once the GPU refused a picture.
+  bool allocated() const { return allocated_; }
+  void release();
+
+ private:
+  struct Picture {
+    Canvas canvas;
+    CastPlan plan;
+    Span span;
+    double step = 0.0;  // 0: none
+    double ray_step = 1.0;
+    double took_ms = 0.0;
+  };
+  using Clock = std::chrono::steady_clock;
+
+  void start(Picture& picture, double step, double ray_step);
+  void castSome(Picture& picture, double budget_ms, const Cast& cast);
+  void add(Picture& picture, const PixelRect& part);
+  double expected_ms(const Picture& picture) const;  // of the rest of its plan
+
+  Picture shown_, next_;
+  LevelOfDetail level_;
+  int width_ = 1;
+  int height_ = 1;
+  bool stale_ = true;
+  bool allocated_ = true;
+  double pixels_per_ms_ = 0.0;  // of the last strip, at usual steps
+  double cut_pixels_ = 0.0;     // the window's, of the larger of the last cuts
+  Clock::time_point last_cut_{};
+};
+
+}  // namespace trephine

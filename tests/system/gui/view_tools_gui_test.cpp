@@ -1,0 +1,268 @@
+// The tools of the 3-D view, each driven by keys and the mouse as a person does, and looked at in
+// its pixels.
+#include <QApplication>
+#include <QLabel>
+#include <QMouseEvent>
+#include <QSignalSpy>
+#include <QTemporaryDir>
+#include <QVBoxLayout>
+#include <QtTest>
+#include <cmath>
+
+#include "gui_support.h"
+#include "render/picture.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
+#include "ui/views/view_tools.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 120000;
+
+int differentPixels(const Picture& a, const Picture& b, int x_from = 0, int x_to = 1 << 20) {
+  if (a.rgb.size() != b.rgb.size()) return -1;
+  int count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = x_from; x < std::min(x_to, a.width); ++x) {
+      const std::size_t at = (std::size_t(y) * std::size_t(a.width) + std::size_t(x)) * 3;
+      int most = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        most = std::max(most, std::abs(int(a.rgb[at + c]) - int(b.rgb[at + c])));
+      }
+      count += most > 16;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+class ViewToolsGuiTest : public QObject {
+  Q_OBJECT
+
+ private:
+  QTemporaryDir temporary_;
+  std::unique_ptr<MainWindow> window_;
+  Picture opened_;
+
+  ViewWidget& view() { return window_->view(); }
+  Picture shot() {
+    const Result<Picture> picture = view().picture();
+    return picture ? *picture : Picture{};
+  }
+  // What the window shows once it is at rest, handles and all.
+  Picture seen() {
+    QTest::qWait(300);
+    const auto label = view().findChild<QLabel*>("viewLevel");
+    (void)QTest::qWaitFor([&] { return !label->isVisible(); }, kLong_ms);
+    const QImage image = view().grabFramebuffer().convertToFormat(QImage::Format_RGB888);
+    Picture picture{image.width(), image.height(), {}};
+    for (int y = 0; y < image.height(); ++y) {
+      const uchar* row = image.constScanLine(y);
+      picture.rgb.insert(picture.rgb.end(), row, row + image.width() * 3);
+    }
+    return picture;
+  }
+  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = {}) {
+    window_->activateWindow();
+    view().setFocus();
+    QTRY_VERIFY(view().hasFocus());
+    QTest::keyClick(&view(), key, modifiers);
+  }
+  void move(const QPoint& to) {
+    QMouseEvent event(QEvent::MouseMove, to, view().mapToGlobal(to), Qt::NoButton, Qt::LeftButton,
+                      Qt::NoModifier);
+    QApplication::sendEvent(&view(), &event);
+  }
+  void drag(const QPoint& from, const QPoint& to) {
+    QTest::mousePress(&view(), Qt::LeftButton, {}, from);
+    move(from + (to - from) / 2);
+    move(to);
+    QTest::mouseRelease(&view(), Qt::LeftButton, {}, to);
+  }
+
+ private slots:
+  void initTestCase() {
+    QVERIFY(temporary_.isValid());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("recordings")));
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    window_->workstation().openPhantom("cranium");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->workstation().currentCase().has_value(), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!shot().rgb.empty(), kLong_ms);
+    opened_ = shot();
+  }
+
+  void theStripIsOverTheViewAndTheMenuHasTheSame() {
+    QVERIFY(view().tools().isVisible());
+    for (QAction* tool : view().tools().all()) {
+      if (tool) QVERIFY2(tool->associatedObjects().size() >= 3, qPrintable(tool->text()));
+    }
+  }
+
+  void aKeyLooksFromASide() {
+    press(Qt::Key_A);
+    const Picture front = shot();
+    press(Qt::Key_L);
+    QVERIFY(differentPixels(front, shot()) > 2000);
+    press(Qt::Key_A);
+    QCOMPARE(differentPixels(front, shot()), 0);
+  }
+
+  void orthographicChangesThePictureAndComesBack() {
+    const Picture before = shot();
+    press(Qt::Key_O);
+    QVERIFY(view().tools().parallel()->isChecked());
+    QVERIFY(differentPixels(before, shot()) > 500);
+    press(Qt::Key_O);
+    QCOMPARE(differentPixels(before, shot()), 0);
+  }
+
+  void theBoxIsShownWithItsHandlesAndAHandleIsDragged() {
+    const Picture before = seen();
+    press(Qt::Key_B);
+    const Picture boxed = seen();
+    QVERIFY(differentPixels(before, boxed) > 100);
+    // The handle of the patient's left face lies at the right of the picture's middle.
+    const GridGeometry& g = view().shownVolume().geometry;
+    const QSignalSpy moved(&view(), &ViewWidget::handMoved);
+    const ViewCamera& camera = view().camera();
+    const Vec3 face =
+        g.toPatient_mm(Vec3(g.size[0] - 0.5, (g.size[1] - 1) / 2.0, (g.size[2] - 1) / 2.0));
+    const auto pixel = camera.pixelOf(face, view().width(), view().height());
+    QVERIFY(pixel);
+    const QPoint from(int(pixel->x), view().height() - int(pixel->y));
+    drag(from, from - QPoint(60, 0));
+    QVERIFY2(differentPixels(boxed, seen()) > 100, "the handle and the box's edge went with it");
+    QCOMPARE(camera.forward(), Vec3(0, 1, 0));  // the drag turned no camera
+    press(Qt::Key_X);
+    QVERIFY(!view().tools().box()->isChecked());
+    QCOMPARE(differentPixels(before, seen()), 0);
+  }
+
+  void thePlaneComesByKeyMovesByKeyAndGoes() {
+    const Picture before = seen();
+    press(Qt::Key_C);
+    const Picture with = seen();
+    QVERIFY(differentPixels(before, with) > 100);
+    for (int i = 0; i < 8; ++i) press(Qt::Key_Comma);
+    QVERIFY(differentPixels(with, seen()) > 50);
+    press(Qt::Key_C);
+    QCOMPARE(differentPixels(before, seen()), 0);
+    press(Qt::Key_X);
+  }
+
+  void thePlaneThroughTheToolNeedsATool() {
+    QAction* through = view().findChild<QAction*>("clipThroughTool");
+    QVERIFY(through && !through->isEnabled());
+    ToolView tool;
+    tool.length_mm = 40.0;
+    tool.pose_mm.position = view().shownVolume().geometry.centre_mm();
+    const Picture before = seen();
+    view().setTools({tool});
+    QVERIFY(through->isEnabled());
+    press(Qt::Key_T);
+    QVERIFY(view().tools().plane()->isChecked());
+    QVERIFY(differentPixels(before, seen()) > 100);
+    view().setTools({});
+    press(Qt::Key_X);
+    QCOMPARE(differentPixels(before, seen()), 0);
+  }
+
+  void inTheLightsModeADragTurnsNoCamera() {
+    const Picture before = seen();
+    press(Qt::Key_L, Qt::ShiftModifier);
+    QVERIFY(view().tools().light()->isChecked());
+    QVERIFY2(differentPixels(before, seen()) > 20, "where the light is stands in the view");
+    QCOMPARE(differentPixels(shot(), before), 0);  // but in no picture that is saved
+    const Vec3 forward = view().camera().forward();
+    const QPoint middle = view().rect().center();
+    drag(middle, middle + QPoint(120, 40));
+    QCOMPARE(view().camera().forward(), forward);
+    press(Qt::Key_X);
+    QVERIFY(!view().tools().light()->isChecked());
+    drag(middle, middle + QPoint(60, 0));
+    QVERIFY(view().camera().forward() != forward);
+    press(Qt::Key_A);
+  }
+
+  void aToolMovesOverThePictureAtOnce() {
+    const auto label = view().findChild<QLabel*>("viewLevel");
+    seen();  // at rest
+    ToolView tool;
+    tool.length_mm = 60.0;
+    tool.colour = Vec3(0, 0, 1);
+    const Vec3 centre = view().shownVolume().geometry.centre_mm();
+    tool.pose_mm.position = centre - view().camera().forward() * 140.0;
+    view().setTools({tool});
+    QSignalSpy painted(&view(), &ViewWidget::framePainted);
+    QTRY_VERIFY(!painted.isEmpty());
+    QVERIFY2(!label->isVisible(), "no coarser picture of the volume was made");
+    view().setTools({});
+  }
+
+  void aLostContextIsRebuilt() {
+    const Picture before = shot();
+    QWidget* home = view().parentWidget();
+    auto* layout = qobject_cast<QVBoxLayout*>(home->layout());
+    QVERIFY(layout);
+    QWidget other;
+    auto* box = new QVBoxLayout(&other);
+    box->addWidget(&view());
+    other.resize(700, 500);
+    other.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&other));
+    QTRY_VERIFY_WITH_TIMEOUT(!shot().rgb.empty(), kLong_ms);
+    const Picture elsewhere = shot();
+    int lit = 0;
+    for (const std::uint8_t value : elsewhere.rgb) lit += value > 120;
+    QVERIFY2(lit > 5000, "the case is seen in the other window");
+    layout->insertWidget(0, &view(), 1);
+    QTRY_COMPARE_WITH_TIMEOUT(shot().width, before.width, kLong_ms);
+    QTRY_COMPARE_WITH_TIMEOUT(differentPixels(before, shot()), 0, kLong_ms);
+  }
+
+  void aViewOfNoSizeDoesNoHarm() {
+    QWidget* home = view().parentWidget();
+    view().setMinimumSize(0, 0);
+    view().resize(0, 0);
+    QTest::qWait(100);
+    view().resize(1, 1);
+    QTest::qWait(100);
+    view().setMinimumSize(320, 240);
+    home->layout()->invalidate();
+    home->layout()->activate();
+    QTRY_COMPARE_WITH_TIMEOUT(shot().width, opened_.width, kLong_ms);
+  }
+
+  void aToolSaysHowFarItIsFromTheSurface() {
+    window_->findChild<QAction*>("resetView")->trigger();  // the focus lies on the surface
+    const Picture before = seen();
+    const ViewCamera& camera = view().camera();
+    ToolView tool;
+    tool.length_mm = 60.0;
+    tool.radius_mm = 1.0;
+    const Vec3 way = glm::normalize(camera.forward() + 0.6 * camera.right());
+    tool.pose_mm.position = camera.focus() - 20.0 * way;
+    tool.pose_mm.orientation = glm::quatLookAt(way, camera.up());  // -z points the way
+    tool.contact = true;
+    view().setTools({tool});
+    const Picture touching = seen();
+    tool.contact = false;
+    view().setTools({tool});
+    const Picture away = seen();
+    QVERIFY(differentPixels(before, away) > 50);
+    QVERIFY2(differentPixels(touching, away) > 50, "a ring at the tip, or the way with its length");
+    view().grab().save(QStringLiteral(TREPHINE_ARTEFACTS "/view_guide.png"));
+    view().setTools({});
+  }
+
+  void cleanupTestCase() { window_.reset(); }
+};
+
+int main(int argc, char** argv) {
+  return test::runInWindow<ViewToolsGuiTest>(argc, argv);
+}
+#include "view_tools_gui_test.moc"

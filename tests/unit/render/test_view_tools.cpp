@@ -1,0 +1,255 @@
+// What the tools of the 3-D view compute: strips of rays, planes, the way ahead of a tool, letters.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/cast_plan.h"
+#include "render/clip_tools.h"
+#include "render/orientation_cue.h"
+#include "render/tool_guide.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kWide = 640, kHigh = 480;
+
+GridGeometry grid() {
+  GridGeometry g;
+  g.size = {40, 60, 80};
+  g.spacing_mm = Vec3(2.0, 1.0, 0.5);
+  g.origin_mm = -0.5 * Vec3(39, 59, 79) * g.spacing_mm;
+  return g;
+}
+
+ViewCamera fromTheFront() {
+  ViewCamera camera;
+  camera.lookAt(Vec3(0.0), Vec3(0, 1, 0), Vec3(0, 0, 1), 200.0);
+  return camera;
+}
+
+bool cutAway(const std::vector<ClipPlane>& planes, const Vec3& at) {
+  for (const ClipPlane& plane : planes) {
+    if (glm::dot(at - plane.point_mm, plane.normal) > 0.0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST(CastPlan, StripsCoverEveryPixelOnce) {
+  CastPlan plan;
+  plan.setWhole(50, 40);
+  std::vector<int> count(50 * 40);
+  while (const auto strip = plan.next(600.0)) {
+    EXPECT_LE(strip->pixels(), 600.0);
+    for (int y = strip->low_y; y < strip->high_y; ++y) {
+      for (int x = strip->low_x; x < strip->high_x; ++x) ++count[std::size_t(y * 50 + x)];
+    }
+  }
+  EXPECT_TRUE(plan.done());
+  for (const int times : count) ASSERT_EQ(times, 1);
+}
+
+TEST(CastPlan, CutsThatOverlapAreCastTogetherAndWhatLiesOutsideNotAtAll) {
+  CastPlan plan;
+  plan.setNone(100, 100);
+  plan.add({200, 10, 300, 20});
+  plan.add({-20, -20, 0, 50});
+  EXPECT_TRUE(plan.done());
+  plan.add({10, 10, 30, 30});
+  plan.add({12, 10, 32, 30});
+  EXPECT_EQ(plan.pixels(), 22.0 * 20.0);
+  plan.add({80, 80, 120, 90});
+  EXPECT_EQ(plan.pixels(), 22.0 * 20.0 + 20.0 * 10.0);
+}
+
+TEST(Camera, EachStandardViewShowsItsSideWithThePatientUpright) {
+  ViewCamera camera = fromTheFront();
+  camera.lookFrom(StandardView::left);
+  EXPECT_EQ(camera.forward(), Vec3(-1, 0, 0)) << "the eye is at the patient's left, +x";
+  EXPECT_NEAR(glm::distance(camera.right(), Vec3(0, 1, 0)), 0.0, 1e-12)
+      << "the nose is at the left";
+  camera.lookFrom(StandardView::right);
+  EXPECT_EQ(camera.forward(), Vec3(1, 0, 0));
+  camera.lookFrom(StandardView::posterior);
+  EXPECT_NEAR(glm::distance(camera.right(), Vec3(-1, 0, 0)), 0.0, 1e-12);
+  camera.lookFrom(StandardView::superior);
+  EXPECT_EQ(camera.forward(), Vec3(0, 0, -1));
+  EXPECT_EQ(camera.up(), Vec3(0, -1, 0)) << "the face is up";
+  camera.lookFrom(StandardView::inferior);
+  EXPECT_EQ(camera.forward(), Vec3(0, 0, 1));
+  EXPECT_NEAR(glm::distance(camera.right(), Vec3(1, 0, 0)), 0.0, 1e-12)
+      << "as in an axial slice, the patient's left is at the right";
+  EXPECT_EQ(camera.distance_mm(), 200.0);
+}
+
+TEST(Camera, OrthographicAPixelSpansTheSameEverywhereAndAtTheFocusWhatItDidBefore) {
+  ViewCamera camera = fromTheFront();
+  const double mm = camera.mmPerPixelAt(camera.focus(), kHigh);
+  camera.setParallel(true);
+  for (const Vec3& at : {Vec3(0.0), Vec3(10, -150, 3), Vec3(0, 900, 0), Vec3(0, -900, 0)}) {
+    EXPECT_NEAR(camera.mmPerPixelAt(at, kHigh), mm, 1e-12);
+    const auto pixel = camera.pixelOf(at, kWide, kHigh);
+    ASSERT_TRUE(pixel);
+    EXPECT_NEAR(pixel->x, kWide / 2.0 + at.x / mm, 1e-6);
+  }
+}
+
+TEST(Camera, ARayThroughAPixelMeetsThePointThatIsDrawnThere) {
+  for (const bool parallel : {false, true}) {
+    ViewCamera camera = fromTheFront();
+    camera.orbit(30, 20);
+    camera.setParallel(parallel);
+    const Vec3 at(12, -7, 25);
+    const auto pixel = camera.pixelOf(at, kWide, kHigh);
+    ASSERT_TRUE(pixel);
+    const ViewCamera::Ray ray = camera.rayThrough(*pixel, kWide, kHigh);
+    EXPECT_NEAR(glm::length(glm::cross(at - ray.from_mm, ray.direction)), 0.0, 1e-6);
+  }
+  EXPECT_FALSE(fromTheFront().pixelOf(Vec3(0, -300, 0), kWide, kHigh)) << "behind the eye";
+  ViewCamera camera = fromTheFront();
+  EXPECT_TRUE(isFinite(camera.mmPerPixelAt(Vec3(0.0), 0))) << "a view of no size";
+}
+
+TEST(ScaleBar, ItsLengthIsRoundAndFitsTheRoomThereIs) {
+  for (const double mm : {0.013, 0.2, 0.37, 1.0, 4.2}) {
+    const std::optional<double> bar = scaleBar_mm(mm, 150.0);
+    ASSERT_TRUE(bar);
+    EXPECT_LE(*bar / mm, 150.0 + 1e-9);
+    EXPECT_GE(*bar / mm, 150.0 / 2.5 - 1e-9);
+    const double digit = *bar / std::pow(10.0, std::floor(std::log10(*bar) + 1e-9));
+    EXPECT_TRUE(std::abs(digit - 1) < 1e-6 || std::abs(digit - 2) < 1e-6 ||
+                std::abs(digit - 5) < 1e-6);
+  }
+  EXPECT_FALSE(scaleBar_mm(std::nan(""), 150.0));
+  EXPECT_FALSE(scaleBar_mm(0.0, 150.0));
+}
+
+TEST(ScaleBar, TheBarThatIsDrawnIsAsLongAsItSaysInTheFocussPlane) {
+  const ViewCamera camera = fromTheFront();
+  ScreenLines lines;
+  addScaleBar(camera, kWide, kHigh, lines);
+  ASSERT_GT(lines.size(), 3U);
+  const double pixels = glm::distance(lines[0].from, lines[0].to);
+  EXPECT_NEAR(pixels * camera.mmPerPixelAt(camera.focus(), kHigh),
+              *scaleBar_mm(camera.mmPerPixelAt(camera.focus(), kHigh), 0.22 * kWide), 1e-6);
+  ScreenLines none;
+  addScaleBar(camera, 100, 100, none);
+  EXPECT_TRUE(none.empty()) << "no room";
+}
+
+TEST(ClipTools, ABoxCutsNothingUntilAFaceIsDragged) {
+  ClipTools tools;
+  tools.setVolume(grid());
+  tools.showBox(true);
+  EXPECT_TRUE(tools.planes().empty());
+  EXPECT_EQ(tools.handles().size(), 6U);
+
+  // The patient's left face, at the picture's right, 20 mm inwards.
+  const ViewCamera camera = fromTheFront();
+  ClipTools::Handle left;
+  for (const ClipTools::Handle& handle : tools.handles()) {
+    if (handle.face == 1) left = handle;
+  }
+  EXPECT_NEAR(left.at_mm.x, 40.0, 1e-9) << "half a voxel beyond the last one's middle";
+  const double mm = camera.mmPerPixelAt(left.at_mm, kHigh);
+  tools.drag(left, {-20.0 / mm, 33.0}, camera, kWide, kHigh);
+  const std::vector<ClipPlane> planes = tools.planes();
+  ASSERT_EQ(planes.size(), 1U);
+  EXPECT_NEAR(planes[0].point_mm.x, 20.0, 0.2);
+  EXPECT_TRUE(cutAway(planes, Vec3(25, 0, 0)));
+  EXPECT_FALSE(cutAway(planes, Vec3(15, 0, 0)));
+
+  // Never beyond the opposite face, nor out of the volume.
+  tools.drag(left, {-1e6, 0.0}, camera, kWide, kHigh);
+  EXPECT_GT(tools.planes()[0].point_mm.x, -40.0);
+  tools.drag(left, {1e6, 0.0}, camera, kWide, kHigh);
+  EXPECT_TRUE(tools.planes().empty());
+  tools.drag(left, {std::nan(""), 0.0}, camera, kWide, kHigh);
+  EXPECT_TRUE(tools.planes().empty());
+}
+
+TEST(ClipTools, AHandleIsFoundWhereItIsDrawn) {
+  ClipTools tools;
+  tools.setVolume(grid());
+  tools.showBox(true);
+  const ViewCamera camera = fromTheFront();
+  for (const ClipTools::Handle& handle : tools.handles()) {
+    const auto at = camera.pixelOf(handle.at_mm, kWide, kHigh);
+    const auto found = tools.handleAt(*at + glm::dvec2(4, 4), camera, kWide, kHigh, 10.0);
+    ASSERT_TRUE(found);
+    // Those of the front and the back lie on each other: the front one is taken.
+    EXPECT_EQ(found->face, handle.face == 3 ? 2 : handle.face);
+  }
+  EXPECT_FALSE(tools.handleAt({3, 3}, camera, kWide, kHigh, 10.0));
+}
+
+TEST(ClipTools, APlaneThroughTheToolTakesWhatLiesBetweenItAndTheEye) {
+  ClipTools tools;
+  tools.setVolume(grid());
+  const ViewCamera camera = fromTheFront();
+  const Vec3 tip(5, -3, 8);
+  tools.planeThrough(tip, Vec3(0.0), camera);
+  EXPECT_TRUE(cutAway(tools.planes(), Vec3(5, -10, 8)));
+  EXPECT_FALSE(cutAway(tools.planes(), Vec3(5, 4, 8)));
+  const Vec3 axis = glm::normalize(Vec3(0.2, -0.5, 1.0));
+  tools.planeThrough(tip, axis, camera);
+  ASSERT_EQ(tools.planes().size(), 1U);
+  EXPECT_NEAR(glm::dot(tools.planes()[0].normal, axis), 0.0, 1e-12) << "it contains the axis";
+  EXPECT_TRUE(cutAway(tools.planes(), tip + (camera.eye() - tip) * 0.1));
+  tools.movePlane(-4.0);
+  EXPECT_FALSE(cutAway(tools.planes(), tip + axis * 20.0 - tools.planes()[0].normal * 5.0));
+  tools.movePlane(1e9);
+  EXPECT_LT(glm::length(tools.planes()[0].point_mm), 1000.0) << "it stays at the volume";
+  tools.reset();
+  EXPECT_TRUE(tools.planes().empty());
+}
+
+TEST(ClipTools, AnotherVolumeStartsWithoutCutsTheSamePlaceKeepsThem) {
+  ClipTools tools;
+  tools.setVolume(grid());
+  tools.showPlane(true, fromTheFront());
+  tools.setVolume(grid());
+  EXPECT_TRUE(tools.planeShown());
+  GridGeometry other = grid();
+  other.origin_mm.x += 1.0;
+  tools.setVolume(other);
+  EXPECT_FALSE(tools.cutsAnything());
+}
+
+TEST(Light, ItFollowsTheHandAndNeverGoesBehind) {
+  Vec3 light(0, 0, 1);
+  light = draggedLight(light, {100, 0}, kHigh);
+  EXPECT_GT(light.x, 0.3);
+  EXPECT_NEAR(glm::length(light), 1.0, 1e-9);
+  light = draggedLight(light, {1e9, 1e9}, kHigh);
+  EXPECT_GT(light.z, 0.1);
+  EXPECT_EQ(draggedLight(Vec3(0.0), {1, 1}, kHigh), Vec3(0, 0, 1));
+}
+
+TEST(ToolGuide, TheWayToASurfaceIsMeasuredAlongTheTool) {
+  const ViewCamera camera = fromTheFront();
+  // A wall facing the eye, 230 mm from it.
+  DepthPatch wall;
+  wall.rays = {0, 0, kWide, kHigh};
+  wall.depth_mm.assign(std::size_t(kWide * kHigh), 230.0F);
+  ToolView tool;
+  tool.length_mm = 20.0;
+  tool.pose_mm.position = Vec3(0, 0, 0);
+  tool.pose_mm.orientation = glm::angleAxis(glm::radians(90.0), Vec3(1, 0, 0));  // points away
+  EXPECT_NEAR(*surfaceAhead_mm(tool, wall, camera, kWide, kHigh), 30.0, 0.3);
+  ScreenLines lines;
+  addGuide(tool, 30.0, camera, kWide, kHigh, lines);
+  EXPECT_GT(lines.size(), 5U) << "a line, a square, and words";
+  // Hidden behind the wall there is no way to show, nor where the tool points past it.
+  tool.pose_mm.position = Vec3(0, 50, 0);
+  EXPECT_FALSE(surfaceAhead_mm(tool, wall, camera, kWide, kHigh));
+  tool.pose_mm.position = Vec3(0, 0, 0);
+  tool.pose_mm.orientation = Quat(1, 0, 0, 0);
+  EXPECT_FALSE(surfaceAhead_mm(tool, wall, camera, kWide, kHigh));
+  tool.pose_mm.position.x = std::nan("");
+  EXPECT_FALSE(surfaceAhead_mm(tool, wall, camera, kWide, kHigh));
+  EXPECT_TRUE(guideReach(tool, camera, kWide, kHigh).empty());
+}
