@@ -278,9 +278,15 @@ Vec3 downOf(const Vec3& forwards, const Vec3& across) {
   return glm::dot(down, Vec3(0, -1, -1)) < 0.0 ? -down : down;
 }
 
-// From the tip of the nose to the lips.
-Vec3 mouthFromNose(const Vec3& forwards, const Vec3& down, double eyes_mm) {
-  return eyes_mm * (0.45 * down - 0.12 * forwards);
+// The lips below the tip of a nose, or what is behind them: how far a nose stands out before the
+// lips is its own, and a head that is turned shows the way forwards by some degrees only.
+std::optional<Vec3> mouthBelow(const MarkSearch& search, const Vec3& nose, const Vec3& forwards,
+                               const Vec3& down, double eyes_mm) {
+  for (const double behind : {0.12, 0.24, 0.36}) {
+    const auto mouth = search.matterAt(nose + eyes_mm * (0.45 * down - behind * forwards));
+    if (mouth) return mouth;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -306,7 +312,7 @@ FaceMarks findFaceMarks(const CoarseGrid& grid) {
     }
     marks.forwards = search.outwards(nose, 40.0, across);
     const Vec3 down = downOf(marks.forwards, across);
-    marks.mouth = search.matterAt(nose + mouthFromNose(marks.forwards, down, kEyesApart_mm));
+    marks.mouth = mouthBelow(search, nose, marks.forwards, down, kEyesApart_mm);
     return marks;
   }
   const double apart = glm::distance(marks.eyes[0], marks.eyes[1]);
@@ -314,15 +320,21 @@ FaceMarks findFaceMarks(const CoarseGrid& grid) {
   const Vec3 across = (marks.eyes[1] - marks.eyes[0]) / apart;
   marks.forwards = search.outwards(middle, 45.0, across);
   Vec3 down = downOf(marks.forwards, across);
+  // Lips and chin stand out as well: a nose lies about where the eyes expect it, whichever way is
+  // down.
   const auto tip = std::ranges::find_if(tips, [&](const NoseTip& one) {
-    return isNoseNear(middle, one.place) && std::abs(glm::dot(one.place - middle, across)) < 15.0;
+    const Vec3 from = one.place - middle;
+    const double below = std::abs(glm::dot(from, down)) - 0.5 * apart;
+    const double before = glm::dot(from, marks.forwards) - 0.5 * apart;
+    return isNoseNear(middle, one.place) && std::abs(glm::dot(from, across)) < 15.0 &&
+           std::hypot(below, before) < 0.3 * apart;
   });
   if (tip != tips.end() && glm::dot(tip->place - middle, down) < 0.0) down = -down;
   // A bandaged or cut nose is looked for where the eyes say.
   const Vec3 nose =
       tip != tips.end() ? tip->place : middle + apart * (0.5 * marks.forwards + 0.55 * down);
   marks.nose = tip != tips.end() ? nose : search.matterAt(nose);
-  marks.mouth = search.matterAt(nose + mouthFromNose(marks.forwards, down, apart));
+  marks.mouth = mouthBelow(search, nose, marks.forwards, down, apart);
   return marks;
 }
 

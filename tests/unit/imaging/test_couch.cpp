@@ -82,9 +82,9 @@ Matter hollow(double distance, double wall, int hu) {
 Matter headBoard(const Vec3& p) {
   return hollow(box(p, {0, 103, 0}, {140, 7.5, 1000}), 1.5, 80);
 }
-// Beside the head; two.
+// Beside the head, past its ears; two.
 double headBlocks(const Vec3& p, double thick) {
-  return box({std::abs(p.x), p.y, p.z}, {82 + thick / 2, 45, -10}, {thick / 2, 42, 60});
+  return box({std::abs(p.x), p.y, p.z}, {92 + thick / 2, 45, -10}, {thick / 2, 42, 60});
 }
 
 }  // namespace

@@ -350,7 +350,7 @@ std::vector<Probed> probesOf(const std::string& name, const std::string& case_so
   auto session = Session::create(scene, of, {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();
   const LandmarkFrame& frame = (*session)->landmarks()[0].frame;
-  const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -42, 0) : Vec3(0.0);  // below the ribs
+  const Vec3 aside_mm = name.starts_with("liver") ? Vec3(8, -34, 0) : Vec3(0.0);  // below the ribs
   std::vector<Probed> out;
   for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
     out.push_back(probe((*session)->scene(), arm, frame, aside_mm, of));
@@ -385,8 +385,11 @@ TEST(ShippedScenes, LetBoneBeFeltOnTheRealSkull) {
 TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
   for (const char* name : {"liver", "liver-one-arm"}) {
     for (const Probed& probed : probesOf(name, "")) {
-      EXPECT_GT(probed.most_N.at("capsule"), 1.5 * probed.mean_N.at("liver"))
-          << name << ", " << probed.arm;
+      // A blade lies across the capsule all the way in: there it is the click that stands out.
+      const auto inside = probed.mean_N.find("liver");
+      const double after_N =
+          inside != probed.mean_N.end() ? inside->second : probed.mean_N.at("capsule");
+      EXPECT_GT(probed.most_N.at("capsule"), 1.5 * after_N) << name << ", " << probed.arm;
     }
   }
 }
