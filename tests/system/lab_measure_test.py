@@ -61,9 +61,7 @@ class WholeScenes(LabTest):
 
 class Extremes(LabTest):
     def test_the_extremes_all_end_as_they_should(self):
-        # 3: on the phantom the arm is beyond its proxy by more than is accepted, once a tool that is
-        # turned and dragged has slipped and the controller has learnt to show less.
-        answer = lab("measure", "extremes", "--out", self.folder, expect=3)
+        answer = lab("measure", "extremes", "--out", self.folder)
         self.assertGreater(len(answer["rows"]), 60)
         names = [row["name"] for row in answer["rows"]]
         for tool in ("needle", "blade", "burr"):

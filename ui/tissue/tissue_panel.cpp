@@ -174,10 +174,10 @@ void TissuePanel::build() {
 }
 
 QLayout* TissuePanel::buildPresets() {
-  auto* row = new QHBoxLayout;
-  row->setSpacing(4);
+  auto* grid = new QGridLayout;  // two beside each other: the column is narrow
+  grid->setSpacing(4);
   presets_title_ = new QLabel(tr("View"), this);
-  row->addWidget(presets_title_);
+  grid->addWidget(presets_title_, 0, 0);
   for (const ViewPreset preset : kViewPresets) {
     auto* button = new QToolButton(this);
     button->setObjectName(presetName(preset));
@@ -189,11 +189,12 @@ QLayout* TissuePanel::buildPresets() {
     connect(button, &QToolButton::clicked, this, [this, preset] {
       if (const auto looks = presetLooks(tissues_, preset)) lookChosen(*looks);
     });
-    row->addWidget(button);
+    const int place = int(presets_.size());
+    grid->addWidget(button, place / 2, 1 + place % 2);
     presets_.emplace_back(preset, button);
   }
-  row->addStretch(1);
-  return row;
+  grid->setColumnStretch(3, 1);
+  return grid;
 }
 
 QLayout* TissuePanel::addNumber(const TissueNumber& row) {

@@ -84,7 +84,7 @@ std::string uidOf(DcmDataset& data, const DcmTagKey& tag) {
 
 TEST(NoisyCt, HasTheSameBitsEverywhere) {
   EXPECT_EQ(volumeSha256(noisyCt({33, 24, 7})),
-            "63faafaef0e73ada68d4f930b8dd1b1bf55a9a01b6aa6277d4320a849b7b3e51");
+            "71d9736da76ac646d099adef9326c7253180866b774b8327aa369fcd09b15738");
 }
 
 TEST(NoisyCt, HasTheNoiseOfACtInTheBrain) {
@@ -114,7 +114,7 @@ TEST(NoisyCt, FillsTheRangeOfAScannerAndNoMore) {
   const Volume volume = noisyCt({128, 128, 100});
   const auto [low, high] = std::minmax_element(volume.hu.begin(), volume.hu.end());
   EXPECT_EQ(*low, -1024) << "air with noise is cut off there";
-  EXPECT_GT(*high, 1200) << "bone";
+  EXPECT_GT(*high, 1000) << "bone";
   EXPECT_LE(*high, 3071);
   EXPECT_NEAR(volume.geometry.spacing_mm.x * 128, 230.0, 1e-9);
 }

@@ -64,6 +64,7 @@ TEST(HandStart, WhatLiesFartherOutDoesNotKeepItFromTheAirBetween) {
 
 Scene liver() {
   Scene scene = *readScene(resourceFolder() / "scenes" / "liver-one-arm.json");
+  useCase(scene, "");                       // which has no labels
   Landmark& landmark = scene.landmarks[0];  // found by a ray, in a belly that is quick to make
   landmark.bulk_radius_mm = 0.0;
   landmark.from = {0.5, -0.2, 0.5};
