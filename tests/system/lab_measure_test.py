@@ -70,7 +70,10 @@ class Extremes(LabTest):
         for row in answer["rows"]:
             if row["name"].startswith("barrier"):
                 # How far the arm is beyond it is the arm's and the controller's, and printed.
-                self.assertIn("inside by 0.000 mm", row["got"], row)
+                # A block is sharp; the phantom is blurred as by a scanner, and held to half a voxel.
+                if "block" in row["name"]:
+                    self.assertIn("inside by 0.000 mm", row["got"], row)
+                self.assertTrue(row["pass"], row)
             else:
                 self.assertTrue(row["pass"], row)
 
