@@ -261,14 +261,14 @@ struct CarveVolume::Parts {
       replace("//VTK::ComputeColor::Dec", kLabelledColour);
     }
     if (leaping || isTrue()) {
-      replace("//VTK::Terminate::Init", kLeapStart);
+      replace("//VTK::Terminate::Init", isTrue() ? kLeapStart + kClipStart : kLeapStart);
       replace("//VTK::Base::Impl", leapTo(isTrue() ? kGoOnInRun : kStopThere));
     }
     if (isTrue()) {
       declarations += kTruthDeclarations + (by_label ? kLabelledShape : kPlainShape);
-      replace("//VTK::Terminate::Init", kLeapStart + kClipStart);
       replace("//VTK::Shading::Impl", kTruthShading);
-      tellShader();
+      tellTissues();
+      tellView();
     }
     replace("//VTK::Base::Dec", declarations);
   }
@@ -278,16 +278,15 @@ struct CarveVolume::Parts {
     return copy && (shows != 0 || (leaping && (truth.normals || truth.classes)));
   }
 
-  // What the shader is told by numbers alone: it is not built anew when they change.
-  void tellShader() {
-    if (!isTrue()) return;
+  static void set(float (&to_three)[3], const Vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
+  }
+
+  // Numbers of the tissues and the volume, that only updateShader() changes.
+  void tellTissues() {
     vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
     const auto scaled = [&](double hu) { return float((hu - low_HU) / (high_HU - low_HU)); };
-    const auto set = [](float(&to_three)[3], const Vec3& v) {
-      for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
-    };
     const GridGeometry& g = copy->geometry;
-    const Mat3 to_grid = glm::transpose(g.direction);
 
     float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{};
     const std::vector<TissueShade> shades = tissueShades(seen, tissue_looks, high_HU);
@@ -317,7 +316,14 @@ struct CarveVolume::Parts {
     to->SetUniform2f("in_air", air);
     to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
     to->SetUniformi("in_shows", shows);
+  }
 
+  // Numbers of the view, which may be others at each draw: the shader is not built anew for them.
+  void tellView() {
+    if (!isTrue()) return;
+    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
+    const GridGeometry& g = copy->geometry;
+    const Mat3 to_grid = glm::transpose(g.direction);
     float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
     const std::size_t count = std::min(clip.size(), SceneRenderer::kMostClipPlanes);
     for (std::size_t i = 0; i < count; ++i) {
@@ -469,7 +475,7 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
   if (!p.copy) return;
-  p.tellShader();
+  p.tellView();
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
