@@ -99,6 +99,7 @@ TEST(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
   lender.picture();  // leaves the lender's context current
   SceneRenderer hosted;
   hosted.resize(kWidth, kHeight);
+  hosted.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
   hosted.setTissues(tissues(0.1));
   hosted.setVolume(Grid(ball()));
   ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
@@ -165,6 +166,7 @@ TEST(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
   lender.picture();
   SceneRenderer hosted;
   hosted.resize(kWidth, kHeight);
+  hosted.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
   hosted.setTissues(tissues(0.1));
   Grid grid(ball());
   hosted.setVolume(grid);
@@ -182,7 +184,7 @@ TEST(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
     EXPECT_EQ(screen.read(), mended);
     // A second one, while a picture is on its way, is in that one too.
     hosted.orbit(10, 0);
-    for (int strip = 0; strip < 14; ++strip) hosted.paint(screen.id(), 0.5);
+    for (int strip = 0; strip < 3; ++strip) hosted.paint(screen.id(), kTiny_ms);
     ASSERT_FALSE(hosted.complete());
     carve(grid, Vec3(6, -24, 8), 6.0);
     ASSERT_TRUE(hosted.pullChanges(grid));
