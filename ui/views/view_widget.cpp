@@ -272,7 +272,7 @@ void ViewWidget::showNews() {
   }
   const bool flat = renderer_.hasVolume() && std::ranges::min(shown_.size) < 2;
   hint_->setText(
-      flat ? tr("One slice alone has no depth to show in 3-D:\nF6 shows it in the slices.")
+      flat ? tr("One slice has no depth.\nF6 shows it in the slices.")
            : tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
   hint_->setVisible(flat || !renderer_.hasVolume());
   strip_->setEnabled(renderer_.hasVolume());
