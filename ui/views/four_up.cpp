@@ -147,8 +147,8 @@ void FourUp::changed() {
   for (const Slices& of : slices_) of.view->takeChanges();
 }
 
-void FourUp::setTissues(const TissueSet& tissues) {
-  colours_.setTissues(tissues);
+void FourUp::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
+  colours_.setTissues(tissues, looks);
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 
