@@ -415,6 +415,7 @@ class SlicesGuiTest : public QObject {
     QVERIFY(near(colourOfPlace(axial(), bone), plain, 3));
     find<QSlider>("sliceOpacity")->setValue(35);
     key(axial(), Qt::Key_O);  // there are no labels
+    QCOMPARE(find<QComboBox>("sliceOverlay")->currentIndex(), 0);
     QVERIFY(near(colourOfPlace(axial(), bone), plain, 3));
   }
 
