@@ -343,6 +343,49 @@ TEST_F(SliceViewTest, MarksAToolBoldlyInItsSliceAndFaintlyBeyond) {
   EXPECT_EQ(qRed(picture().pixel(at(12, 22).toPoint())), 0);
 }
 
+// The letter as it is drawn where nothing is under the pointer.
+TEST_F(SliceViewTest, TheLetterBelowStaysReadableHoweverLongTheNameOfATissueIs) {
+  show(numbered(Mat3(1.0)));
+  TissueSet set = bone();
+  set.tissues[0].name = "Bone of the kind that has a very long name";
+  set.tissues[0].hu_min = -3000;
+  colours_.setTissues(set);
+  for (int width : {310, 340, 400, 640}) {
+    view_->resize(width, 420);
+    const QRect letter(width / 2 - 6, 400, 12, 20);
+    const auto drawn = [&](const QPointF& pointer) {
+      hover(pointer);
+      return view_->grab(letter).toImage();
+    };
+    const QImage alone = drawn({-5, -5});
+    EXPECT_EQ(drawn(at(20, 12)), alone) << width;
+    EXPECT_FALSE(view_->readout().isEmpty());
+  }
+}
+
+TEST_F(SliceViewTest, TheScaleBarIsAsLongAsItSaysToThePixel) {
+  Volume dark = numbered(Mat3(1.0));
+  dark.hu.assign(dark.hu.size(), kAirHu);
+  show(dark);
+  for (int width = 300; width < 640; width += 17) {
+    view_->resize(width, 420);
+    view_->fit();
+    const QImage image = picture();
+    int first = 0, last = 0;
+    for (int x = width / 2; x < width; ++x) {
+      if (qGray(image.pixel(x, 420 - 7)) < 150) continue;
+      if (first == 0) first = x;
+      last = x;
+    }
+    const double mm = (last - first) / view_->pixelsPerMm();
+    double apart = 1e9;
+    for (double round_mm : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+      apart = std::min(apart, std::abs(mm - round_mm) * view_->pixelsPerMm());
+    }
+    EXPECT_LE(apart, 0.51) << width;
+  }
+}
+
 TEST_F(SliceViewTest, OfOneSliceOfEqualHuOrOfNoSizeIsAPictureAndNoCrash) {
   Volume flat = numbered(Mat3(1.0), {40, 30, 1});
   flat.hu.assign(flat.hu.size(), 500);
