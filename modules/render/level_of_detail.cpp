@@ -47,6 +47,11 @@ void LevelOfDetail::movingFrameTook(double ms) {
   }
 }
 
+void LevelOfDetail::pixelsChanged(double times) {
+  if (!std::isfinite(times) || times <= 0.0) return;
+  stillFrameTook(times * still_frame_ms_);
+}
+
 double nextStripPixels(double pixels, double took_ms, double left_ms) {
   if (!(took_ms > 0.0) || !(left_ms > 0.0)) return 0.0;
   return std::min(pixels * left_ms / took_ms, pixels * 1.5);

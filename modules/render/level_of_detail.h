@@ -24,6 +24,9 @@ class LevelOfDetail {
   void stillFrameTook(double ms);
   void movingFrameTook(double ms);
 
+  // The view has so many times as many pixels as before.
+  void pixelsChanged(double times);
+
   // What the last picture at full quality took, or is expected to; 0 while nothing is known.
   double stillFrame_ms() const { return still_frame_ms_; }
 

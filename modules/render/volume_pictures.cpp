@@ -25,6 +25,8 @@ double msSince(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 void VolumePictures::resize(int width, int height) {
+  // The first picture at the new size is to take no longer than those before it.
+  level_.pixelsChanged(double(width) * height / (double(width_) * height_));
   width_ = width;
   height_ = height;
   stale_ = true;

@@ -14,6 +14,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
+#include "bench/head_volume.h"
 #include "ui/common/colours.h"
 #include "ui/frame/start_up.h"
 #include "ui/views/four_up.h"
@@ -21,30 +22,6 @@
 using namespace trephine;
 
 namespace {
-
-// A ball of bone around brain, with noise, so that no picture is like the one before.
-Volume head(const Index3& size, const Mat3& direction) {
-  Volume volume;
-  GridGeometry& g = volume.geometry;
-  g.size = size;
-  g.spacing_mm = {0.45, 0.45, 0.7};
-  g.direction = direction;
-  volume.hu.resize(g.voxelCount());
-  const Vec3 middle = Vec3(size[0] - 1, size[1] - 1, size[2] - 1) * 0.5;
-  std::size_t at = 0;
-  unsigned noise = 1;
-  for (int k = 0; k < size[2]; ++k) {
-    for (int j = 0; j < size[1]; ++j) {
-      for (int i = 0; i < size[0]; ++i, ++at) {
-        noise = noise * 1664525u + 1013904223u;
-        const double r = glm::length((Vec3(i, j, k) - middle) * g.spacing_mm);
-        const int hu = r > 95 ? -1000 : r > 90 ? -20 : r > 82 ? 1200 : 35;
-        volume.hu[at] = std::int16_t(hu + int(noise >> 28));
-      }
-    }
-  }
-  return volume;
-}
 
 // Of all threads of this process: what a busy machine does not change.
 double processor_ms() {
@@ -118,7 +95,7 @@ int main(int argc, char** argv) {
   const Mat3 oblique(glm::rotate(Mat4(1.0), 0.3, glm::normalize(Vec3(1, 0.4, -0.2))));
   for (const auto& [direction, name] :
        {std::pair{Mat3(1.0), "along the patient"}, {oblique, "oblique"}}) {
-    views.showVolume(head(size, direction), nullptr);
+    views.showVolume(bench::head(size, direction), nullptr);
     QElapsedTimer settle;
     settle.start();
     while (settle.elapsed() < 4000) QApplication::processEvents(QEventLoop::WaitForMoreEvents, 50);

@@ -157,7 +157,7 @@ void MainWindow::showScene() {
   showRenderable(scene->controller);
   tissues_->setLooks(workstation_.looks());
   view_->setTissues(scene->tissues, workstation_.looks());
-  views_->setTissues(scene->tissues);
+  views_->setTissues(scene->tissues, workstation_.looks());
   views_->setAnatomy(scene->anatomy);
   arms_->setScene(*scene);
 }

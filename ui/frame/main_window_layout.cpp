@@ -226,11 +226,12 @@ void MainWindow::connectParts() {
   connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
     workstation_.setTissues(set);
     view_->setTissues(set, workstation_.looks());
-    views_->setTissues(set);
+    views_->setTissues(set, workstation_.looks());
   });
   connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
     workstation_.setLooks(looks);
     view_->setTissues(tissues_->tissues(), looks);
+    views_->setTissues(tissues_->tissues(), looks);
   });
   connect(arms_, &ArmsPanel::controllerWanted, this, [this](ControllerKind kind) {
     workstation_.setController(kind);

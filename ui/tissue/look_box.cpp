@@ -7,7 +7,7 @@ namespace trephine {
 LookBox::LookBox(QWidget* parent) : QComboBox(parent) {
   // By number of TissueLook.
   addItems({tr("Shown"), tr("Ghosted"), tr("Hidden")});
-  setToolTip(tr("In the 3-D view only: what is felt and cut stays as it is"));
+  setToolTip(tr("In the views only: what is felt and cut stays as it is"));
   connect(this, &QComboBox::activated, this, [this](int look) {
     if (chosen) chosen(TissueLook(look));
   });

@@ -98,8 +98,10 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   connect(made.view, &SliceView::pointChosen, this, &FourUp::setPoint);
   connect(made.view, &SliceView::windowChosen, this, &FourUp::setWindow);
   connect(made.view, &SliceView::toolChosen, this, &FourUp::setTool);
-  connect(made.view, &SliceView::overlayWanted, this,
-          [this] { setOverlay(Overlay((int(colours_.overlay()) + 1) % 3), colours_.opacity()); });
+  connect(made.view, &SliceView::overlayWanted, this, [this] {
+    const int kinds = mirror_->labels() ? 3 : 2;
+    setOverlay(Overlay((int(colours_.overlay()) + 1) % kinds), colours_.opacity());
+  });
   connect(made.view, &SliceView::enlargeWanted, this, [this, axis] { enlarge(int(axis) + 1); });
   connect(made.view, &SliceView::sliceShown, made.slider, [slider = made.slider](int k) {
     const QSignalBlocker quiet(slider);
@@ -147,8 +149,8 @@ void FourUp::changed() {
   for (const Slices& of : slices_) of.view->takeChanges();
 }
 
-void FourUp::setTissues(const TissueSet& tissues) {
-  colours_.setTissues(tissues);
+void FourUp::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
+  colours_.setTissues(tissues, looks);
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 

@@ -38,7 +38,7 @@ class FourUp : public QWidget {
   const VolumeMirror& mirror() const { return *mirror_; }
 
   // Of the slices; the 3-D view has its own.
-  void setTissues(const TissueSet& tissues);
+  void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   // Another anatomy than before is looked at with its usual HU window.
   void setAnatomy(const std::string& anatomy);
   void setTools(const std::vector<ToolView>& tools);

@@ -17,6 +17,8 @@ struct GreyRamp {
   float black, scale;
 };
 
+constexpr double kGhostShare = 0.5;  // of the overlay's opacity
+
 // Colours of labels that no tissue names, each far from the one before.
 Vec3 labelColour(int label) {
   const QColor colour =
@@ -58,6 +60,48 @@ std::pair<int, int> insideSteps(const FixedVoxel& start, const FixedVoxel& step,
   return first < end ? std::pair{int(first), int(end)} : std::pair{0, 0};
 }
 
+// HU between the eight voxels around places of a grid; at its borders those inside count twice.
+class Between {
+ public:
+  explicit Between(const Volume& volume) : hu_(volume.hu.data()) {
+    std::int64_t stride = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      last_[a] = volume.geometry.size[a] - 1;
+      stride_[a] = stride;
+      stride *= volume.geometry.size[a];
+    }
+  }
+  // Of a place inside the grid, half a voxel on from its voxel coordinates.
+  std::int16_t at(const std::array<std::int64_t, 3>& place) const {
+    // From the voxel's middle to its number and, rounded, 256ths of the way to the next.
+    constexpr std::int64_t kBack =
+        (std::int64_t(1) << (kUnitShift - 1)) - (std::int64_t(1) << (kUnitShift - 9));
+    std::array<std::int64_t, 3> next;
+    std::array<std::int32_t, 3> share;
+    const std::int16_t* from = hu_;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::int64_t low = place[a] - kBack;
+      const std::int64_t voxel = low >> kUnitShift;
+      share[a] = std::int32_t((low >> (kUnitShift - 8)) & 255);
+      next[a] = voxel >= 0 && voxel < last_[a] ? stride_[a] : 0;
+      from += std::max<std::int64_t>(voxel, 0) * stride_[a];
+    }
+    const auto row = [&](const std::int16_t* p) {
+      return p[0] * 256 + (p[next[0]] - p[0]) * share[0];
+    };
+    const auto plane = [&](const std::int16_t* p) {
+      const std::int32_t a = row(p) >> 4, b = row(p + next[1]) >> 4;
+      return (a * 256 + (b - a) * share[1]) >> 8;
+    };
+    const std::int32_t a = plane(from), b = plane(from + next[2]);
+    return std::int16_t((a * 256 + (b - a) * share[2] + (1 << 11)) >> 12);
+  }
+
+ private:
+  const std::int16_t* hu_;
+  std::array<std::int64_t, 3> last_, stride_;
+};
+
 }  // namespace
 
 HuWindow wholeRange(const SlicePicture& slice) {
@@ -91,8 +135,9 @@ void SliceColours::setWindow(const HuWindow& window) {
   for (int hu = -32768; hu <= 32767; ++hu) grey_[std::size_t(hu + 32768)] = grey(std::int16_t(hu));
 }
 
-void SliceColours::setTissues(const TissueSet& tissues) {
+void SliceColours::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   tissues_ = tissues;
+  looks_ = looks;
   lookup_.set(tissueTable(tissues));
   mix();
 }
@@ -103,26 +148,32 @@ void SliceColours::setOverlay(Overlay overlay, double opacity) {
   mix();
 }
 
-SliceColours::Tint SliceColours::tintOf(const Vec3& colour) const {
+SliceColours::Tint SliceColours::tintOf(const Vec3& colour, TissueLook look) const {
+  if (look == TissueLook::hidden) return {};
+  const double opacity = look == TissueLook::ghosted ? kGhostShare * opacity_ : opacity_;
   const auto part = [&](double c) {
-    return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity_));
+    return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity));
   };
-  return {unsigned(std::lround(256.0 * (1.0 - opacity_))), part(colour.x), part(colour.y),
+  return {unsigned(std::lround(256.0 * (1.0 - opacity))), part(colour.x), part(colour.y),
           part(colour.z)};
 }
 
 void SliceColours::mix() {
   of_class_.fill({});
   for (std::size_t c = 0; c < tissues_.tissues.size() && c < kMaxTissues; ++c) {
-    of_class_[c + 1] = tintOf(tissues_.tissues[c].colour);
+    const Tissue& tissue = tissues_.tissues[c];
+    of_class_[c + 1] = tintOf(tissue.colour, lookOf(tissue, looks_));
   }
   of_label_[0] = {};
   for (int label = 1; label < 256; ++label) {
-    Vec3 colour = labelColour(label);
+    // Of several tissues of a label, the one that is seen best.
+    const Tissue* named = nullptr;
     for (const Tissue& tissue : tissues_.tissues) {
-      if (tissue.label == label) colour = tissue.colour;
+      if (tissue.label != label) continue;
+      if (!named || lookOf(tissue, looks_) < lookOf(*named, looks_)) named = &tissue;
     }
-    of_label_[std::size_t(label)] = tintOf(colour);
+    of_label_[std::size_t(label)] = named ? tintOf(named->colour, lookOf(*named, looks_))
+                                          : tintOf(labelColour(label), TissueLook::shown);
   }
 }
 
@@ -140,6 +191,8 @@ void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry&
   const std::int16_t* hu = volume.hu.data();
   const bool coloured = labels && colours.overlay() != Overlay::none;
   const std::uint8_t* label = coloured ? labels->labels.data() : nullptr;
+  const bool between = !hasVoxelsForPixels(stack, g);
+  const Between voxels(volume);
   for (int row = 0; row < part.height(); ++row) {
     auto* line = reinterpret_cast<QRgb*>(image.scanLine(row));
     const FixedVoxel start(corner + down * double(row));
@@ -150,7 +203,8 @@ void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry&
     for (int x = first; x < end; ++x) {
       const std::size_t voxel =
           g.indexOf(int(at[0] >> kUnitShift), int(at[1] >> kUnitShift), int(at[2] >> kUnitShift));
-      line[x] = colours.of(hu[voxel], label ? label[voxel] : 0);
+      const std::int16_t shown = between ? voxels.at(at) : hu[voxel];
+      line[x] = colours.of(shown, hu[voxel], label ? label[voxel] : 0);
       for (std::size_t a = 0; a < 3; ++a) at[a] += step.at[a];
     }
     std::fill(line + end, line + part.width(), qRgb(0, 0, 0));

@@ -8,6 +8,7 @@
 
 #include "haptics/tissue_lookup.h"
 #include "imaging/importer.h"
+#include "tissue/tissue_look.h"
 #include "ui/views/slice_plane.h"
 
 namespace trephine {
@@ -48,12 +49,13 @@ QImage windowed(const SlicePicture& slice, const HuWindow& window);
 
 enum class Overlay { none, tissues, labels };
 
-// The colour of a voxel: its grey, and over it the colour of its tissue or its label.
+// The colour of a voxel: its grey, and over it the colour of its tissue or its label, as the looks
+// say: a ghost with half the opacity, nothing where it is hidden. What was cut has neither.
 class SliceColours {
  public:
   SliceColours();
   void setWindow(const HuWindow& window);
-  void setTissues(const TissueSet& tissues);
+  void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   void setOverlay(Overlay overlay, double opacity);  // opacity in [0, 1]
 
   const HuWindow& window() const { return window_; }
@@ -64,12 +66,14 @@ class SliceColours {
   int classOf(std::int16_t hu, std::uint8_t label) const { return lookup_.classOf(hu, label); }
 
   std::uint8_t greyOf(std::int16_t hu) const { return grey_[std::size_t(int(hu) + 32768)]; }
-  QRgb of(std::int16_t hu, std::uint8_t label) const {
-    const unsigned grey = greyOf(hu);
+  QRgb of(std::int16_t hu, std::uint8_t label) const { return of(hu, hu, label); }
+  // With the grey of another HU than the voxel's own: one that was interpolated.
+  QRgb of(std::int16_t shown_hu, std::int16_t hu, std::uint8_t label) const {
+    const unsigned grey = greyOf(shown_hu);
     if (overlay_ == Overlay::none) return 0xff000000u | grey * 0x010101u;
     const Tint& tint = overlay_ == Overlay::tissues
                            ? of_class_[std::size_t(lookup_.classOf(hu, label) + 1)]
-                           : of_label_[label];
+                           : of_label_[hu == kRemovedHu ? 0 : label];
     const auto mixed = [&](unsigned add) { return (grey * tint.keep + add) >> 8; };
     return qRgb(int(mixed(tint.red)), int(mixed(tint.green)), int(mixed(tint.blue)));
   }
@@ -78,22 +82,25 @@ class SliceColours {
   struct Tint {  // the share of the grey that stays, of 256, and what is added, times 256
     unsigned keep = 256, red = 0, green = 0, blue = 0;
   };
-  Tint tintOf(const Vec3& colour) const;
+  Tint tintOf(const Vec3& colour, TissueLook look) const;
   void mix();
 
   HuWindow window_ = kWindowPresets[kFirstPreset].window;
   Overlay overlay_ = Overlay::none;
   double opacity_ = 0.35;
   TissueSet tissues_;
+  TissueLooks looks_;
   TissueLookup lookup_;
   std::vector<std::uint8_t> grey_;
   std::array<Tint, kMaxTissues + 1> of_class_{};  // the first: of no tissue
   std::array<Tint, 256> of_label_{};
 };
 
-// Draws pixels `part` of slice `k` of `stack` into `image`, a pixel each: of the voxel of the
-// volume that the pixel's centre lies in, black where there is none. `stack` is one of the volume,
-// `labels` are fitted to it or null. Allocates nothing while `part` keeps its size.
+// Draws pixels `part` of slice `k` of `stack` into `image`, a pixel each, black where no voxel is.
+// Where the stack's pixels are the volume's voxels, they have their greys; in an oblique grid the
+// grey is of the HU between the eight voxels around the pixel's centre, without which edges would
+// be stairs. Tissue and label are always those of the voxel that the centre lies in. `stack` is one
+// of the volume, `labels` are fitted to it or null. Allocates nothing while `part` keeps its size.
 void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry& stack, int k,
                const QRect& part, const SliceColours& colours, QImage& image);
 

@@ -164,7 +164,8 @@ void SlicePane::paintScaleBar(QPainter& painter) const {
   if (!(scale > 0.0) || !std::isfinite(most_mm) || most_mm <= 0.0 || width() < 120) return;
   const double ten = std::pow(10.0, std::floor(std::log10(most_mm)));
   const double mm = most_mm >= 5.0 * ten ? 5.0 * ten : most_mm >= 2.0 * ten ? 2.0 * ten : ten;
-  const double right = width() - 8.0, y = height() - 7.0, left = right - mm * scale;
+  const double right = width() - 8.0, y = height() - 7.0;
+  const double left = right - std::round(mm * scale);  // of whole pixels, the nearest length
   const auto bar = [&](const QColor& colour, double thick) {
     painter.setPen(QPen(colour, thick));
     painter.drawLine(QPointF(left, y), QPointF(right, y));

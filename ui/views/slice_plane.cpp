@@ -97,6 +97,16 @@ GridGeometry sliceStack(const GridGeometry& grid, SliceAxis axis) {
   return stack;
 }
 
+bool hasVoxelsForPixels(const GridGeometry& stack, const GridGeometry& grid) {
+  const Mat3 to_voxel(grid.patientToVoxel());
+  for (int n = 0; n < 3; ++n) {
+    const Vec3 step = to_voxel * (stack.direction[n] * stack.spacing_mm[n]);
+    const double off = glm::length(step - glm::round(step)) * stack.size[std::size_t(n)];
+    if (off > kAlongWithin + 1e-9) return false;
+  }
+  return true;
+}
+
 Vec3 toVoxel(const GridGeometry& grid, const Vec3& patient_mm) {
   return Vec3(grid.patientToVoxel() * glm::dvec4(patient_mm, 1.0));
 }
@@ -114,7 +124,12 @@ std::optional<Index3> voxelAt(const GridGeometry& grid, const Vec3& patient_mm) 
 
 bool touches(const GridGeometry& stack, int k, const GridGeometry& grid, const VoxelBox& box) {
   const Vec3 onwards = stack.direction[2];
-  const auto [low, high] = reach(grid, box, onwards);
+  // Between voxels a picture shows half a voxel more of each.
+  VoxelBox seen = box;
+  if (!hasVoxelsForPixels(stack, grid)) {
+    for (std::size_t a = 0; a < 3; ++a) --seen.low[a], ++seen.high[a];
+  }
+  const auto [low, high] = reach(grid, seen, onwards);
   const double at = glm::dot(stack.origin_mm, onwards) + k * stack.spacing_mm.z;
   const double slack = 1e-6 * stack.spacing_mm.z;
   return at >= low - slack && at <= high + slack;

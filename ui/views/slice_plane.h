@@ -21,6 +21,9 @@ inline constexpr std::array kSliceAxes{SliceAxis::axial, SliceAxis::coronal, Sli
 // are along each axis, and reach around it. `grid` has at least one voxel.
 GridGeometry sliceStack(const GridGeometry& grid, SliceAxis axis);
 
+// Whether the grid's axes are the patient's, so that this stack of it has its voxels for pixels.
+bool hasVoxelsForPixels(const GridGeometry& stack, const GridGeometry& grid);
+
 // The voxel of the grid that holds a place in the patient: the nearest one.
 std::optional<Index3> voxelAt(const GridGeometry& grid, const Vec3& patient_mm);
 // Voxel coordinates of a place: a voxel's centre is whole numbers.

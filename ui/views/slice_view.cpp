@@ -16,7 +16,8 @@ constexpr double kWidthPerPixel = 0.006;        // natural logarithm
 constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
 constexpr double kWidest_HU = 8000.0;
 constexpr double kHighest_HU = 4000.0;
-constexpr int kLine_pixels = 2;  // what a line may cover beside its pixel
+constexpr int kLine_pixels = 2;       // what a line may cover beside its pixel
+constexpr double kGrab_pixels = 4.0;  // so near to a line a press takes hold of it
 }  // namespace
 
 SliceView::SliceView(SliceAxis axis, std::shared_ptr<VolumeMirror> mirror,
@@ -82,7 +83,7 @@ void SliceView::setSlice(int k) {
 void SliceView::setTool(SliceTool tool) {
   tool_ = tool;
   drawing_.reset();
-  setCursor(tool == SliceTool::window ? Qt::ArrowCursor : Qt::CrossCursor);
+  showCursor(pointer_.value_or(QPointF(-1.0, -1.0)));
   update();
 }
 
@@ -133,6 +134,32 @@ void SliceView::placePoint(const QPointF& in_widget) {
   emit pointChosen(stack_.toPatient_mm(kept));
 }
 
+SliceView::Lines SliceView::linesAt(const QPointF& in_widget) const {
+  if (!hasSlice() || tool_ != SliceTool::window || !target().contains(in_widget)) return {};
+  const QPointF off = in_widget - fromPatient(point_mm_);
+  return {std::abs(off.y()) <= kGrab_pixels, std::abs(off.x()) <= kGrab_pixels};
+}
+
+// By as much as the pointer moved, so that taking hold of a line moves nothing.
+void SliceView::dragLines(const QPointF& moved) {
+  const QPointF by = toSlice(moved) - toSlice({0.0, 0.0});
+  Vec3 at = toVoxel(stack_, point_before_mm_);
+  if (held_.down) at.x = std::clamp(at.x + by.x(), 0.0, stack_.size[0] - 1.0);
+  if (held_.across) at.y = std::clamp(at.y + by.y(), 0.0, stack_.size[1] - 1.0);
+  emit pointChosen(stack_.toPatient_mm(at));
+}
+
+void SliceView::showCursor(const QPointF& in_widget) {
+  const Lines lines = drag_ == Drag::lines ? held_ : linesAt(in_widget);
+  if (!lines) {
+    setCursor(tool_ == SliceTool::window ? Qt::ArrowCursor : Qt::CrossCursor);
+  } else {
+    setCursor(!lines.down     ? Qt::SplitVCursor
+              : !lines.across ? Qt::SplitHCursor
+                              : Qt::SizeAllCursor);
+  }
+}
+
 void SliceView::addMeasurePoint(const QPointF& in_widget) {
   const Vec3 point = toPatient_mm(in_widget);
   if (!drawing_) {
@@ -156,6 +183,10 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   if ((event->modifiers() & Qt::ShiftModifier) || tool_ == SliceTool::point) {
     drag_ = Drag::point;
     placePoint(event->position());
+  } else if (const Lines lines = linesAt(event->position())) {
+    drag_ = Drag::lines;
+    held_ = lines;
+    point_before_mm_ = point_mm_;
   } else if (tool_ == SliceTool::window) {
     drag_ = Drag::window;
     window_before_ = colours_.window();
@@ -172,6 +203,8 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
   if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
   if (drag_ == Drag::point) {
     placePoint(event->position());
+  } else if (drag_ == Drag::lines) {
+    if (!moved.isNull()) dragLines(moved);
   } else if (drag_ == Drag::window && !moved.isNull()) {
     const double width = window_before_.width_hu * std::exp(kWidthPerPixel * moved.x());
     const double centre =
@@ -182,6 +215,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     SlicePane::mouseMoveEvent(event);
   }
   event->accept();
+  if (!event->buttons() || drag_ == Drag::lines) showCursor(event->position());
   const int words = 3 * fontMetrics().height() + 14;  // where HU and tissue are written
   drawing_ ? update() : update(0, height() - words, width(), words);
 }

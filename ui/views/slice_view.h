@@ -2,7 +2,8 @@
 // concerns all views (the common point, window, tool) by signals and is told what came of it.
 //
 // Left drag does what the tool in hand does: window (right: wider, up: brighter), ruler, angle
-// (three clicks), common point; with Shift it moves the common point with any tool. Wheel, Page
+// (three clicks), common point; with Shift it moves the common point with any tool. Where the
+// window is in hand, a line of another view is dragged to another slice of that view. Wheel, Page
 // Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
 // a tool up.
 #pragma once
@@ -42,6 +43,7 @@ class SliceView : public SlicePane {
   int slice() const { return slice_; }
   int slices() const { return stack_.size[2]; }
   const GridGeometry& stack() const { return stack_; }
+  const Vec3& point_mm() const { return point_mm_; }
   // A place of the widget in the patient, on the slice; and back, along the slice's normal.
   Vec3 toPatient_mm(const QPointF& in_widget) const;
   QPointF fromPatient(const Vec3& patient_mm) const;
@@ -77,6 +79,13 @@ class SliceView : public SlicePane {
  private:
   bool handleKey(int key);
   void placePoint(const QPointF& in_widget);
+  struct Lines {  // of the other views
+    bool across = false, down = false;
+    explicit operator bool() const { return across || down; }
+  };
+  Lines linesAt(const QPointF& in_widget) const;  // that a press there takes hold of
+  void dragLines(const QPointF& moved);
+  void showCursor(const QPointF& in_widget);
   void addMeasurePoint(const QPointF& in_widget);
   bool isShown(const Measure& measure) const;
   struct ToolMark {  // in the widget
@@ -110,8 +119,10 @@ class SliceView : public SlicePane {
   std::optional<Measure> drawing_;  // its last point follows the pointer
   std::optional<QPointF> pointer_;
   QPointF pressed_;
-  enum class Drag { none, window, point, ruler } drag_ = Drag::none;
+  enum class Drag { none, window, point, lines, ruler } drag_ = Drag::none;
   HuWindow window_before_;
+  Lines held_;
+  Vec3 point_before_mm_{0.0};
   int turned_ = 0;  // of the wheel, since the last whole notch
 };
 

@@ -181,7 +181,9 @@ void SliceView::paintText(QPainter& painter) const {
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
   const QString words =
       painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));
-  if (narrow) box.setBottom(box.bottom() - line);
+  // Above the letter in the middle, where they would reach it.
+  const bool long_words = painter.fontMetrics().horizontalAdvance(words) > 0.5 * width() - 20.0;
+  if (narrow || long_words) box.setBottom(box.bottom() - line);
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignBottom, words, colours::kText);
 }
 

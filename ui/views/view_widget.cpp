@@ -113,6 +113,7 @@ void ViewWidget::fitRenderer() {
 void ViewWidget::resizeGL(int, int) {
   fitRenderer();
   fitHint();
+  if (renderer_.hasVolume()) redraw();  // sizes follow each other like turns of the camera
 }
 
 void ViewWidget::connectTools() {

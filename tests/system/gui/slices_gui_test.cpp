@@ -5,6 +5,7 @@
 #include <QDir>
 #include <QElapsedTimer>
 #include <QFile>
+#include <QLineEdit>
 #include <QToolButton>
 #include <QWindow>
 #include <QtTest>
@@ -284,6 +285,44 @@ class SlicesGuiTest : public test::WindowTest {
     views().setPoint(Vec3(0.0));
   }
 
+  void aLineIsDraggedToAnotherSliceOfItsView() {
+    views().setPoint(Vec3(0.0));
+    const HuWindow window = views().colours().window();
+    const Vec3 at_line(0, 50, 0);  // on the line of the sagittal view, away from the others
+    hover(axial(), axial().fromPatient(at_line) + QPointF(3, 0));
+    QCOMPARE(axial().cursor().shape(), Qt::SplitHCursor);
+    hover(axial(), axial().fromPatient(at_line) + QPointF(9, 0));
+    QCOMPARE(axial().cursor().shape(), Qt::ArrowCursor);
+    const auto lineOfSagittal = [&](double x) {
+      const QImage image = axial().grab().toImage();
+      const QPoint p = axial().fromPatient(Vec3(x, 50, 0)).toPoint();
+      for (int off = -1; off <= 1; ++off) {
+        if (near(image.pixelColor(p + QPoint(off, 0)), colourOf(SliceAxis::sagittal), 70)) {
+          return true;
+        }
+      }
+      return false;
+    };
+    QVERIFY(lineOfSagittal(0.0) && !lineOfSagittal(75.0));
+    // Through the middle brain lies there, 75 mm to the left bone alone.
+    const Vec3 place(0, 0, 20);
+    QVERIFY(readoutAt(sagittal(), place).startsWith(QString("%1 HU").arg(kBrain)));
+    const int grey = colourOfPlace(sagittal(), place).red();
+    drag(axial(), axial().fromPatient(at_line), axial().fromPatient(Vec3(75, 30, 0)));
+    QVERIFY(lineOfSagittal(75.0) && !lineOfSagittal(0.0));
+    QVERIFY(std::abs(views().point_mm().x - 75.0) < 1.0);
+    QCOMPARE(readoutAt(sagittal(), place).section(' ', 0, 0), QString::number(kBone));
+    QVERIFY(std::abs(colourOfPlace(sagittal(), place).red() - greyOf(kBone)) <= 4);
+    QVERIFY(greyOf(kBone) > grey + 25);
+    QCOMPARE(views().point_mm().y, 0.0);
+    QCOMPARE(views().colours().window(), window);
+    // The keys of the other view do the same.
+    views().setPoint(Vec3(0.0));
+    for (int n = 0; n < 5; ++n) key(sagittal(), Qt::Key_PageDown);
+    QVERIFY(views().point_mm().x > 70.0);
+    views().setPoint(Vec3(0.0));
+  }
+
   void aDoubleClickEnlargesAndBringsBack() {
     doubleClick(axial());
     QVERIFY(axial().isVisible() && !coronal().isVisible() && !window_->view().isVisible());
@@ -349,7 +388,46 @@ class SlicesGuiTest : public test::WindowTest {
     QVERIFY(near(colourOfPlace(axial(), bone), plain, 3));
     find<QSlider>("sliceOpacity")->setValue(35);
     key(axial(), Qt::Key_O);  // there are no labels
+    QCOMPARE(find<QComboBox>("sliceOverlay")->currentIndex(), 0);
     QVERIFY(near(colourOfPlace(axial(), bone), plain, 3));
+  }
+
+  void theColoursFollowTheLooksAndThresholdsOfTheTissuesAtOnce() {
+    const Vec3 bone(75.0 * std::sqrt(0.5), 75.0 * std::sqrt(0.5), 0.0);
+    const TissueSet set = views().colours().tissues();
+    const Tissue& tissue = set.tissues[std::size_t(classify(tissueTable(set), kBone))];
+    auto* looks = find<QComboBox>(qPrintable("look:" + toQt(tissue.id)));
+    const QColor plain = colourOfPlace(axial(), bone);
+    key(axial(), Qt::Key_O);
+    find<QSlider>("sliceOpacity")->setValue(100);
+    const auto seen = [&](TissueLook look) {
+      looks->setCurrentIndex(int(look));
+      emit looks->activated(int(look));  // as by a person
+      return colourOfPlace(axial(), bone);
+    };
+    const QColor full =
+        QColor::fromRgbF(float(tissue.colour.x), float(tissue.colour.y), float(tissue.colour.z));
+    const QColor half((full.red() + plain.red()) / 2, (full.green() + plain.green()) / 2,
+                      (full.blue() + plain.blue()) / 2);
+    QVERIFY(near(seen(TissueLook::shown), full, 8));
+    QVERIFY(near(seen(TissueLook::ghosted), half, 8));
+    keepGrab("slices-ghost.png");
+    QVERIFY(near(seen(TissueLook::hidden), plain, 3));
+    QVERIFY(near(seen(TissueLook::shown), full, 8));
+    // A threshold above the bone takes its colour away.
+    window_->findChild<TissuePanel*>()->select(tissue.id);
+    const auto from = [&](int hu) {
+      auto* line = find<QAbstractSpinBox>("huLow")->findChild<QLineEdit*>();
+      line->selectAll();
+      QTest::keyClicks(line, QString::number(hu));
+      QTest::keyClick(line, Qt::Key_Return);
+    };
+    from(kBone + 100);
+    QVERIFY(near(colourOfPlace(axial(), bone), plain, 3));
+    from(tissue.hu_min);
+    QVERIFY(near(colourOfPlace(axial(), bone), full, 8));
+    find<QSlider>("sliceOpacity")->setValue(35);
+    key(axial(), Qt::Key_O);
   }
 
   void anExerciseShowsItsToolsAndItsCutsInTheSlices() {

@@ -54,6 +54,23 @@ TEST(LevelOfDetail, ItBecomesFinerWhenThereIsTimeAndThenStaysPut) {
   }
 }
 
+TEST(LevelOfDetail, AnEnlargedViewKeepsItsFramesFromTheFirstOne) {
+  LevelOfDetail level;
+  level.stillFrameTook(150.0);
+  for (int frame = 0; frame < 10; ++frame) level.movingFrameTook(frame_ms(150.0, level));
+  level.pixelsChanged(4.0);
+  EXPECT_LE(frame_ms(600.0, level), 1000.0 / 15.0);
+  EXPECT_NEAR(level.stillFrame_ms(), 600.0, 1e-9);
+  const double large = level.pixelStep();
+  level.pixelsChanged(0.25);
+  EXPECT_LT(level.pixelStep(), large);
+  for (const double nothing : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const double before = level.pixelStep();
+    level.pixelsChanged(nothing);
+    EXPECT_EQ(level.pixelStep(), before);
+  }
+}
+
 TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
   LevelOfDetail level;
   level.movingFrameTook(1e9);

@@ -108,8 +108,8 @@ TEST(SlicePlane, ThroughAnObliqueGridIsThePatientsOwnAndReachesAllOfIt) {
   }
 }
 
-TEST(SlicePlane, ShowsInEachPixelTheStoredVoxelThatItsCentreLiesIn) {
-  for (const Mat3& direction : {Mat3(1.0), kFlipped, kMirrored, kCoronal, kOblique, kTilted}) {
+TEST(SlicePlane, OfAGridAlongThePatientShowsInEachPixelTheVoxelThatItsCentreLiesIn) {
+  for (const Mat3& direction : {Mat3(1.0), kFlipped, kMirrored, kCoronal}) {
     const GridGeometry g = grid(direction);
     const Volume volume = numbered(g);
     SliceColours colours;
@@ -141,6 +141,63 @@ TEST(SlicePlane, ShowsInEachPixelTheStoredVoxelThatItsCentreLiesIn) {
   }
 }
 
+TEST(SlicePlane, OfAnObliqueGridShowsWhatLiesBetweenItsVoxelsInTheColoursOfTheNearest) {
+  Tissue tissue;
+  tissue.id = "upper";
+  tissue.hu_min = 128;
+  tissue.hu_max = 255;
+  tissue.opacity = 1.0;
+  tissue.colour = {1, 0, 0};
+  for (const Mat3& direction : {kOblique, kTilted}) {
+    Volume volume = numbered(grid(direction));
+    const GridGeometry& g = volume.geometry;
+    std::mt19937 random(11);
+    for (std::int16_t& hu : volume.hu) hu = std::int16_t(random() % 256);
+    const auto stored = [&](const Vec3& voxel) {
+      std::array<int, 3> v;
+      for (int a = 0; a < 3; ++a)
+        v[std::size_t(a)] = std::clamp(int(voxel[a]), 0, g.size[std::size_t(a)] - 1);
+      return double(volume.at(v[0], v[1], v[2]));
+    };
+    SliceColours colours;
+    colours.setWindow({127.5, 255.0});
+    colours.setTissues({"set", {tissue}});
+    for (SliceAxis axis : kSliceAxes) {
+      const GridGeometry stack = sliceStack(g, axis);
+      const int k = stack.size[2] / 2;
+      const QRect all(0, 0, stack.size[0], stack.size[1]);
+      QImage plain, coloured;
+      colours.setOverlay(Overlay::none, 1.0);
+      drawSlice(volume, nullptr, stack, k, all, colours, plain);
+      colours.setOverlay(Overlay::tissues, 1.0);
+      drawSlice(volume, nullptr, stack, k, all, colours, coloured);
+      int inside = 0, apart = 0, wrong = 0;
+      for (int y = 0; y < all.height(); ++y) {
+        for (int x = 0; x < all.width(); ++x) {
+          const Vec3 place = stack.toPatient_mm(Vec3(x, y, k));
+          const auto voxel = voxelAt(g, place);
+          const Vec3 exact = toVoxel(g, place), low = glm::floor(exact), share = exact - low;
+          double hu = 0.0;
+          for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+            const Vec3 part = glm::mix(1.0 - share, share, step);
+            hu += part.x * part.y * part.z * stored(low + step);
+          }
+          inside += bool(voxel);
+          apart += std::abs(qRed(plain.pixel(x, y)) - (voxel ? hu : 0.0)) > 2.0;
+          const Vec3 to_border = glm::abs(exact + 0.5 - glm::round(exact + 0.5));
+          if (!voxel || std::min({to_border.x, to_border.y, to_border.z}) < 1e-6) continue;
+          const bool upper = volume.at((*voxel)[0], (*voxel)[1], (*voxel)[2]) >= 128;
+          wrong += (coloured.pixel(x, y) == qRgb(255, 0, 0)) != upper;
+        }
+      }
+      EXPECT_GT(inside, 100);
+      EXPECT_EQ(apart, 0);
+      EXPECT_EQ(wrong, 0);
+    }
+  }
+}
+
 TEST(SlicePlane, IsDrawnAnewWhereABoxOfVoxelsTouchesItAndOnlyThere) {
   for (const Mat3& direction : {Mat3(1.0), kFlipped, kCoronal}) {
     const GridGeometry g = grid(direction);
@@ -166,6 +223,21 @@ TEST(SlicePlane, IsDrawnAnewWhereABoxOfVoxelsTouchesItAndOnlyThere) {
   EXPECT_FALSE(touches(stack, 0, g, {{16, 16, 4}, {20, 20, 6}}));
   const double middle = toVoxel(stack, g.toPatient_mm(Vec3(17, 17, 5))).z;
   EXPECT_TRUE(touches(stack, int(std::lround(middle)), g, {{16, 16, 4}, {20, 20, 6}}));
+  // A cut of one voxel changes no slice that is not drawn anew.
+  Volume volume = numbered(g);
+  volume.hu.assign(volume.hu.size(), 1000);
+  SliceColours colours;
+  for (int k = 0; k < stack.size[2]; ++k) {
+    const QRect all(0, 0, stack.size[0], stack.size[1]);
+    QImage before, after;
+    drawSlice(volume, nullptr, stack, k, all, colours, before);
+    volume.hu[g.indexOf(17, 15, 5)] = kAirHu;
+    drawSlice(volume, nullptr, stack, k, all, colours, after);
+    volume.hu[g.indexOf(17, 15, 5)] = 1000;
+    if (before != after) {
+      EXPECT_TRUE(touches(stack, k, g, {{17, 15, 5}, {18, 16, 6}})) << k;
+    }
+  }
 }
 
 TEST(SlicePlane, OfOneSliceOrOfTwentyToOneHasItsTrueProportions) {
@@ -228,6 +300,7 @@ TEST(SliceColours, ShowTissuesAsTouchClassifiesThemAndLabelsAsTheyAre) {
   soft.hu_min = 0;
   soft.hu_max = 100;
   soft.colour = {1, 0, 0};
+  soft.opacity = 1.0;
   organ = soft;
   organ.id = "organ";
   organ.label = 3;
@@ -253,6 +326,58 @@ TEST(SliceColours, ShowTissuesAsTouchClassifiesThemAndLabelsAsTheyAre) {
   EXPECT_EQ(colours.of(50, 0), plain);
   EXPECT_NE(colours.of(50, 9), plain);
   EXPECT_NE(colours.of(50, 9), colours.of(50, 10));
+}
+
+TEST(SliceColours, FollowTheLooksOfTheTissues) {
+  Tissue soft, organ, vessel;
+  soft.id = "soft";
+  soft.hu_min = 0;
+  soft.hu_max = 100;
+  soft.colour = {1, 0, 0};
+  soft.opacity = 1.0;
+  organ = soft;
+  organ.id = "organ";
+  organ.label = 3;
+  organ.colour = {0, 0, 1};
+  vessel = organ;
+  vessel.id = "vessel";
+  vessel.hu_min = 101;
+  vessel.hu_max = 200;
+  vessel.colour = {0, 1, 0};
+  const TissueSet set{"set", {soft, organ, vessel}};
+  SliceColours colours;
+  colours.setWindow({50.0, 400.0});
+  colours.setTissues(set);
+  const QRgb plain = colours.of(50, 0);
+  colours.setOverlay(Overlay::tissues, 1.0);
+  EXPECT_EQ(colours.of(50, 0), qRgb(255, 0, 0));
+  colours.setTissues(set, {{"soft", TissueLook::hidden}});
+  EXPECT_EQ(colours.of(50, 0), plain);
+  EXPECT_EQ(colours.of(50, 3), qRgb(0, 0, 255)) << "no other";
+  colours.setTissues(set, {{"soft", TissueLook::ghosted}});
+  EXPECT_NEAR(qRed(colours.of(50, 0)), 191, 2);
+  EXPECT_NEAR(qBlue(colours.of(50, 0)), 64, 2);
+
+  // A label looks as the tissue that is seen best of those it names.
+  colours.setOverlay(Overlay::labels, 1.0);
+  colours.setTissues(set);
+  EXPECT_EQ(colours.of(50, 3), qRgb(0, 0, 255));
+  colours.setTissues(set, {{"organ", TissueLook::ghosted}});
+  EXPECT_EQ(colours.of(50, 3), qRgb(0, 255, 0));
+  colours.setTissues(set, {{"organ", TissueLook::hidden}, {"vessel", TissueLook::ghosted}});
+  EXPECT_NEAR(qGreen(colours.of(50, 3)), 191, 2);
+  colours.setTissues(set, {{"organ", TissueLook::hidden}, {"vessel", TissueLook::hidden}});
+  EXPECT_EQ(colours.of(50, 3), plain);
+  EXPECT_NE(colours.of(50, 9), plain) << "no tissue hides what none names";
+  EXPECT_EQ(qRed(colours.of(kAirHu, 9)), 0) << "what was cut has no label";
+
+  // What the set itself makes invisible is not coloured, unless it is asked for.
+  soft.opacity = 0.0;
+  colours.setOverlay(Overlay::tissues, 1.0);
+  colours.setTissues({"set", {soft}});
+  EXPECT_EQ(colours.of(50, 0), plain);
+  colours.setTissues({"set", {soft}}, {{"soft", TissueLook::shown}});
+  EXPECT_EQ(colours.of(50, 0), qRgb(255, 0, 0));
 }
 
 TEST(SliceColours, HaveOneWidthAtLeast) {

@@ -191,15 +191,15 @@ TEST_F(SliceViewTest, WindowsByKeysAndByDragging) {
   }
   press(Qt::Key_2);
   const HuWindow before = colours_.window();
-  drag({200, 200}, {260, 200});
+  drag({150, 150}, {210, 150});
   EXPECT_GT(colours_.window().width_hu, before.width_hu * 1.2) << "right is wider";
   EXPECT_EQ(colours_.window().centre_hu, before.centre_hu);
   press(Qt::Key_2);
   const int grey_before = grey(at(20, 10));
-  drag({200, 200}, {200, 140});
+  drag({150, 150}, {150, 90});
   EXPECT_LT(colours_.window().centre_hu, before.centre_hu);
   EXPECT_GT(grey(at(20, 10)), grey_before + 20) << "up is brighter";
-  drag({200, 200}, {-90000, 90000});
+  drag({150, 150}, {-90000, 90000});
   EXPECT_GE(colours_.window().width_hu, 1.0);
 }
 
@@ -254,7 +254,7 @@ TEST_F(SliceViewTest, MeasuresALengthAndAnAngleAndForgetsThemAgain) {
   press(Qt::Key_Delete);
   EXPECT_TRUE(view_->measures().empty());
   const HuWindow before = colours_.window();
-  drag({200, 200}, {260, 200});
+  drag({150, 150}, {210, 150});
   EXPECT_NE(colours_.window(), before) << "the mouse has the window again";
 }
 
@@ -268,6 +268,50 @@ TEST_F(SliceViewTest, APointIsChosenWithShiftAndStaysInTheSlice) {
   EXPECT_LT(glm::distance(voxel, Vec3(11, 9, view_->slice())), 1e-6);
   drag(at(5, 5), at(-50, 900), Qt::LeftButton, Qt::ShiftModifier);
   EXPECT_LT(glm::distance(toVoxel(grid(), chosen), Vec3(0, 29, view_->slice())), 1e-6);
+}
+
+TEST_F(SliceViewTest, ALineOfAnotherViewIsDraggedAndThePointerSaysSo) {
+  show(numbered(Mat3(1.0)));
+  const HuWindow window = colours_.window();
+  const auto voxel = [&] { return toVoxel(grid(), view_->point_mm()); };
+  const auto shape = [&](const QPointF& place) {
+    hover(place);
+    return view_->cursor().shape();
+  };
+  const QPointF point = view_->fromPatient(view_->point_mm());
+  const QPointF on_vertical(point.x() + 3, point.y() + 60);
+  const QPointF on_horizontal(point.x() - 60, point.y() - 3);
+  EXPECT_EQ(shape(on_vertical), Qt::SplitHCursor);
+  EXPECT_EQ(shape(on_horizontal), Qt::SplitVCursor);
+  EXPECT_EQ(shape(point + QPointF(2, -2)), Qt::SizeAllCursor) << "both, where they meet";
+  EXPECT_EQ(shape(point + QPointF(30, 30)), Qt::ArrowCursor);
+
+  const Vec3 before = voxel();
+  drag(on_vertical, on_vertical);
+  EXPECT_EQ(voxel(), before) << "taking hold moves nothing";
+  const double pixels_a_voxel = at(1, 0).x() - at(0, 0).x();
+  drag(on_vertical, on_vertical + QPointF(6 * pixels_a_voxel, 25));
+  EXPECT_NEAR(voxel().x, before.x + 6, 1e-6);
+  EXPECT_EQ(voxel().y, before.y) << "the other line stays";
+  EXPECT_EQ(voxel().z, before.z);
+  drag(on_horizontal, on_horizontal + QPointF(40, -100000));
+  EXPECT_NEAR(voxel().x, before.x + 6, 1e-6);
+  EXPECT_NEAR(voxel().y, 0.0, 1e-6) << "it stays in the case";
+  view_->setPoint(grid().centre_mm());
+  drag(point, point + QPointF(2 * pixels_a_voxel, 0) + (at(0, 3) - at(0, 0)));
+  EXPECT_NEAR(voxel().x, before.x + 2, 1e-6);
+  EXPECT_NEAR(voxel().y, before.y + 3, 1e-6);
+  EXPECT_EQ(colours_.window(), window) << "and no window changes";
+
+  // A measure begins on a line as anywhere, and so does whatever another button does.
+  view_->setPoint(grid().centre_mm());
+  press(Qt::Key_M);
+  EXPECT_EQ(shape(on_vertical), Qt::CrossCursor);
+  drag(on_vertical, on_vertical + QPointF(50, 10));
+  EXPECT_EQ(view_->measures().size(), 1u);
+  press(Qt::Key_Escape);
+  drag(on_vertical, on_vertical + QPointF(50, 10), Qt::MiddleButton);
+  EXPECT_EQ(voxel(), before);
 }
 
 TEST_F(SliceViewTest, MarksAToolBoldlyInItsSliceAndFaintlyBeyond) {
@@ -297,6 +341,49 @@ TEST_F(SliceViewTest, MarksAToolBoldlyInItsSliceAndFaintlyBeyond) {
   EXPECT_GT(inside, 2 * beyond);
   view_->setTools({});
   EXPECT_EQ(qRed(picture().pixel(at(12, 22).toPoint())), 0);
+}
+
+// The letter as it is drawn where nothing is under the pointer.
+TEST_F(SliceViewTest, TheLetterBelowStaysReadableHoweverLongTheNameOfATissueIs) {
+  show(numbered(Mat3(1.0)));
+  TissueSet set = bone();
+  set.tissues[0].name = "Bone of the kind that has a very long name";
+  set.tissues[0].hu_min = -3000;
+  colours_.setTissues(set);
+  for (int width : {310, 340, 400, 640}) {
+    view_->resize(width, 420);
+    const QRect letter(width / 2 - 6, 400, 12, 20);
+    const auto drawn = [&](const QPointF& pointer) {
+      hover(pointer);
+      return view_->grab(letter).toImage();
+    };
+    const QImage alone = drawn({-5, -5});
+    EXPECT_EQ(drawn(at(20, 12)), alone) << width;
+    EXPECT_FALSE(view_->readout().isEmpty());
+  }
+}
+
+TEST_F(SliceViewTest, TheScaleBarIsAsLongAsItSaysToThePixel) {
+  Volume dark = numbered(Mat3(1.0));
+  dark.hu.assign(dark.hu.size(), kAirHu);
+  show(dark);
+  for (int width = 300; width < 640; width += 17) {
+    view_->resize(width, 420);
+    view_->fit();
+    const QImage image = picture();
+    int first = 0, last = 0;
+    for (int x = width / 2; x < width; ++x) {
+      if (qGray(image.pixel(x, 420 - 7)) < 150) continue;
+      if (first == 0) first = x;
+      last = x;
+    }
+    const double mm = (last - first) / view_->pixelsPerMm();
+    double apart = 1e9;
+    for (double round_mm : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+      apart = std::min(apart, std::abs(mm - round_mm) * view_->pixelsPerMm());
+    }
+    EXPECT_LE(apart, 0.51) << width;
+  }
 }
 
 TEST_F(SliceViewTest, OfOneSliceOfEqualHuOrOfNoSizeIsAPictureAndNoCrash) {
