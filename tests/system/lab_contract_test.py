@@ -420,6 +420,14 @@ class BadInput(LabTest):
             scene["tissues"]["tissues"][0]["mechanics"]["damping_Ns_per_m"]["value"] = -2
         self.run_scene(negative, "BAD_FIELD", "damping_Ns_per_m", "-2")
 
+    def test_a_case_of_one_slice_is_said_and_one_of_slices_far_apart_is_drawn(self):
+        run = ("run", SCENES / "cranium.json", "--seconds", 0.05, "--out", self.folder / "out", "--case")
+        flat = small_head(self.folder / "flat.nii.gz", (80, 80, 1), (1.2, 1.2, 3.0))
+        self.assert_error(lab(*run, flat, expect=1), "NO_SURFACE", "bone")
+        far = small_head(self.folder / "far.nii.gz", (192, 192, 10), (0.5, 0.5, 10.0))
+        picture = Path(lab(*run, far)["picture"])
+        self.assertGreater(picture.stat().st_size, 60_000)  # tools alone have 23 kB
+
     def test_folders_that_are_missing_empty_or_without_ct(self):
         named = ("--with-identity",)
         answer = lab("import", self.folder / "nowhere", *named, expect=2)

@@ -50,29 +50,27 @@ def first_ten_seconds(name, folder, *case):
     return arms
 
 
-def small_head(file):
-    """A ball of bone in scalp, 80 voxels of 1.2 mm along each axis."""
-    n, spacing = 80, 1.2
+def small_head(file, size=(80, 80, 80), spacing_mm=(1.2, 1.2, 1.2)):
+    """A ball of bone in scalp, at the middle of the box."""
     header = bytearray(352)
     struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, n, n, n, 1, 1, 1, 1)
+    struct.pack_into("<8h", header, 40, 3, *size, 1, 1, 1, 1)
     struct.pack_into("<2h", header, 70, 4, 16)
-    struct.pack_into("<4f", header, 76, 1, spacing, spacing, spacing)
+    struct.pack_into("<4f", header, 76, 1, *spacing_mm)
     struct.pack_into("<f", header, 108, 352)
     struct.pack_into("<f", header, 112, 1)
     struct.pack_into("<h", header, 254, 1)
-    start = -spacing * (n - 1) / 2
+    places = [[step * (i - (n - 1) / 2) for i in range(n)] for n, step in zip(size, spacing_mm)]
     for row in range(3):
-        line = [0.0, 0.0, 0.0, start]
-        line[row] = spacing
+        line = [0.0, 0.0, 0.0, places[row][0]]
+        line[row] = spacing_mm[row]
         struct.pack_into("<4f", header, 280 + 16 * row, *line)
     header[344:348] = b"n+1\0"
-    square = [(start + spacing * i) ** 2 for i in range(n)]
     voxels = []
-    for k in range(n):
-        for j in range(n):
-            for i in range(n):
-                rr = square[i] + square[j] + square[k]
+    for z in places[2]:
+        for y in places[1]:
+            for x in places[0]:
+                rr = x * x + y * y + z * z
                 voxels.append(35 if rr < 32**2 else 1200 if rr < 39**2 else -20 if rr < 44**2 else -1024)
     file.write_bytes(gzip.compress(bytes(header) + struct.pack(f"<{len(voxels)}h", *voxels), 1))
     return file

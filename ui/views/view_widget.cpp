@@ -4,6 +4,7 @@
 #include <QMouseEvent>
 #include <QOpenGLContext>
 #include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
 
 #include "ui/views/view_tools.h"
@@ -65,7 +66,6 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->setProperty("quiet", true);
   level_->move(10, 8);
   level_->hide();
-  hint_->setText(tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
   strip_->hide();
   connectTools();
   still_.setSingleShot(true);
@@ -271,7 +271,11 @@ void ViewWidget::showNews() {
     clip_.setVolume(shown_);
     if (!clip_.cutsAnything()) resetTools();  // the one that was shown before had them
   }
-  hint_->setVisible(!renderer_.hasVolume());
+  const bool flat = renderer_.hasVolume() && std::ranges::min(shown_.size) < 2;
+  hint_->setText(
+      flat ? tr("One slice has no depth.\nF6 shows it in the slices.")
+           : tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
+  hint_->setVisible(flat || !renderer_.hasVolume());
   strip_->setEnabled(renderer_.hasVolume());
   strip_->place();
   redraw();

@@ -1,7 +1,6 @@
 // How often a case's voxels are in memory in the real window: what their owners count, against what
 // the process has written to.
 #include <QApplication>
-#include <QTemporaryDir>
 #include <QtTest>
 #include <utility>
 
@@ -11,7 +10,6 @@
 #include "memory_probe.h"
 #include "shells.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 #include "volume/case_memory.h"
 #include "volume/volume_files.h"
 
@@ -32,34 +30,14 @@ std::size_t bytesOf(const Volume& volume) {
 
 }  // namespace
 
-class CopiesGuiTest : public QObject {
+class CopiesGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
 
-  Workstation& workstation() { return window_->workstation(); }
-
-  // A scene of the built-in cranium's kind on that case.
-  std::filesystem::path sceneOn(const Volume& volume, const char* name) {
-    const std::filesystem::path folder = toPath(temporary_.path());
-    const std::filesystem::path file = folder / (std::string(name) + ".mha");
-    [&] { QVERIFY(writeVolume(volume, file).ok()); }();
-    Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
-    scene["case"] = file.string();
-    const auto absolute = [](Json& path) {
-      path = (resourceFolder() / "scenes" / path.get<std::string>()).lexically_normal().string();
-    };
-    absolute(scene["tissues"]);
-    absolute(scene["operator"]);
-    for (Json& tool : scene["tools"]) absolute(tool["file"]);
-    for (Json& arm : scene["arms"]) absolute(arm["device"]["config"]);
-    const std::filesystem::path of = folder / (std::string(name) + ".json");
-    [&] { QVERIFY(writeTextFile(of, scene.dump())); }();
-    return of;
+  std::filesystem::path scene(const Volume& volume, const char* name) {
+    return test::sceneOn(volume, toPath(temporary_.path()), name);
   }
-
   // Opened, drawn and everything written that comes with it.
   void open(const std::filesystem::path& scene) {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
@@ -107,7 +85,7 @@ class CopiesGuiTest : public QObject {
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     // What an exercise takes beside its voxels, once the stacks of all threads were held.
     const int small_edge = 64, edge = 400;
-    open(sceneOn(head(small_edge, 200.0 / small_edge), "small"));
+    open(scene(head(small_edge, 200.0 / small_edge), "small"));
     const double first_mb = exercise_mb();
     stop();
     const double beside_mb = exercise_mb();
@@ -119,7 +97,7 @@ class CopiesGuiTest : public QObject {
 
     // The same texture and no case, only a mirror, which is written in whole: whether pages that
     // were read alone count differs between kernels.
-    const auto scene = sceneOn(head(edge, 200.0 / edge), "large");
+    const auto large = scene(head(edge, 200.0 / edge), "large");
     const std::size_t count = std::size_t(edge) * edge * edge;
     const double copy_mb = voxelsMb(count);
     Volume blank;
@@ -131,7 +109,7 @@ class CopiesGuiTest : public QObject {
     const double baseline_mb = test::privateDirtyMb() - copy_mb;
 
     test::hashed_bytes = 0;
-    open(scene);
+    open(large);
     const double opened_mb = test::privateDirtyMb() - baseline_mb;
     const std::size_t owned =
         bytesOf(*workstation().currentCase()->volume) + bytesOf(window_->view().shownVolume());

@@ -12,13 +12,11 @@
 #include <QSignalSpy>
 #include <QStandardPaths>
 #include <QTabBar>
-#include <QTemporaryDir>
 #include <QtTest>
 
 #include "gui_support.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 #include "volume/phantom.h"
 
 using namespace trephine;
@@ -29,22 +27,12 @@ constexpr int kLong_ms = 120000;
 
 }  // namespace
 
-class EditsGuiTest : public QObject {
+class EditsGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
-
   ViewWidget& view() { return window_->view(); }
-  Workstation& workstation() { return window_->workstation(); }
   const Tissue& bone() { return *workstation().scene()->tissues.find("bone"); }
-  template <class Widget>
-  Widget* find(const QString& name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", qPrintable(name));
-    return widget;
-  }
 
   void activate() {
     QApplication::setActiveWindow(window_.get());

@@ -15,7 +15,6 @@
 #include <QSignalSpy>
 #include <QStandardPaths>
 #include <QStatusBar>
-#include <QTemporaryDir>
 #include <QToolBar>
 #include <QtTest>
 #include <cmath>
@@ -26,7 +25,6 @@
 #include "imaging/dicom/ct_writer.h"
 #include "render/picture.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -62,24 +60,15 @@ std::uint64_t removedVoxels(Session& session) {
 
 }  // namespace
 
-class GuiTest : public QObject {
+class GuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
   Volume written_;
-  std::unique_ptr<MainWindow> window_;
   Picture opened_;  // the case, before anything was done to it
   std::string sha_before_;
 
   ViewWidget& view() { return window_->view(); }
-  Workstation& workstation() { return window_->workstation(); }
-  template <class Widget>
-  Widget* find(const char* name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", name);
-    return widget;
-  }
 
   // The view without the tools, which are elsewhere in every picture.
   Picture casePicture() {

@@ -17,7 +17,6 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QStandardPaths>
-#include <QTemporaryDir>
 #include <QToolButton>
 #include <QtTest>
 #include <cstdio>
@@ -27,7 +26,6 @@
 #include "imaging/dicom/ct_writer.h"
 #include "slow_source/slow_source.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 #include "volume/case_memory.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
@@ -98,20 +96,10 @@ class Gaps {
 
 }  // namespace
 
-class ImportGuiTest : public QObject {
+class ImportGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
-
-  Workstation& workstation() { return window_->workstation(); }
-  template <class Widget>
-  Widget* find(const char* name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", name);
-    return widget;
-  }
   ImportDialog* dialog() { return find<ImportDialog>("importDialog"); }
   SeriesList* list() { return find<SeriesList>("seriesList"); }
   SliceCanvas* canvas() { return find<SliceCanvas>("sliceCanvas"); }

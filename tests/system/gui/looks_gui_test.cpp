@@ -5,14 +5,12 @@
 #include <QDir>
 #include <QSignalSpy>
 #include <QTabWidget>
-#include <QTemporaryDir>
 #include <QToolButton>
 #include <QtTest>
 #include <algorithm>
 
 #include "gui_support.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 
 using namespace trephine;
 
@@ -33,21 +31,11 @@ int pixelsLike(const Picture& picture, const Vec3& colour) {
 
 }  // namespace
 
-class LooksGuiTest : public QObject {
+class LooksGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
-
-  Workstation& workstation() { return window_->workstation(); }
   const Tissue& tissue(const char* id) { return *workstation().scene()->tissues.find(id); }
-  template <class Widget>
-  Widget* find(const QString& name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", qPrintable(name));
-    return widget;
-  }
   Picture picture() { return *window_->view().picture(); }
   int shown(const char* id) { return pixelsLike(picture(), tissue(id).colour); }
   void press(const char* preset) { QTest::mouseClick(find<QToolButton>(preset), Qt::LeftButton); }

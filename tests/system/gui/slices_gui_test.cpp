@@ -6,7 +6,6 @@
 #include <QElapsedTimer>
 #include <QFile>
 #include <QLineEdit>
-#include <QTemporaryDir>
 #include <QToolButton>
 #include <QWindow>
 #include <QtTest>
@@ -18,7 +17,6 @@
 #include "shells.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 #include "volume/volume_files.h"
 
 using namespace trephine;
@@ -41,42 +39,17 @@ bool near(const QColor& a, const QColor& b, int by = 40) {
 
 }  // namespace
 
-class SlicesGuiTest : public QObject {
+class SlicesGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
   std::filesystem::path scene_;
-  std::unique_ptr<MainWindow> window_;
 
-  Workstation& workstation() { return window_->workstation(); }
   FourUp& views() { return window_->views(); }
   SliceView& axial() { return views().slice(SliceAxis::axial); }
   SliceView& coronal() { return views().slice(SliceAxis::coronal); }
   SliceView& sagittal() { return views().slice(SliceAxis::sagittal); }
-  template <class Widget>
-  Widget* find(const char* name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", name);
-    return widget;
-  }
 
-  // A scene of the built-in cranium's kind on the head.
-  std::filesystem::path writeScene() {
-    const std::filesystem::path folder = toPath(temporary_.path());
-    [&] { QVERIFY(writeVolume(head(), folder / "head.mha").ok()); }();
-    Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
-    scene["case"] = (folder / "head.mha").string();
-    const auto absolute = [](Json& path) {
-      path = (resourceFolder() / "scenes" / path.get<std::string>()).lexically_normal().string();
-    };
-    absolute(scene["tissues"]);
-    absolute(scene["operator"]);
-    for (Json& tool : scene["tools"]) absolute(tool["file"]);
-    for (Json& arm : scene["arms"]) absolute(arm["device"]["config"]);
-    [&] { QVERIFY(writeTextFile(folder / "scene.json", scene.dump())); }();
-    return folder / "scene.json";
-  }
   void open() {
     window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
     window_->resize(1280, 800);
@@ -156,7 +129,7 @@ class SlicesGuiTest : public QObject {
     QApplication::setApplicationName("trephine-test-slices");
     QFile::remove(windowSettings().fileName());
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    scene_ = writeScene();
+    scene_ = test::sceneOn(head(), toPath(temporary_.path()), "head");
     open();
   }
   void cleanupTestCase() {

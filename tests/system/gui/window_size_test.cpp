@@ -12,7 +12,6 @@
 #include <QSignalSpy>
 #include <QStandardPaths>
 #include <QStatusBar>
-#include <QTemporaryDir>
 #include <QToolBar>
 #include <QToolButton>
 #include <QtTest>
@@ -22,7 +21,6 @@
 #include "imaging/dicom/ct_writer.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
 
 using namespace trephine;
 
@@ -77,19 +75,10 @@ QStringList outOfReach(QWidget& window) {
 
 }  // namespace
 
-class WindowSizeTest : public QObject {
+class WindowSizeTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  QTemporaryDir temporary_;
-  std::unique_ptr<MainWindow> window_;
-
-  template <class Widget>
-  Widget* find(const char* name) {
-    auto* widget = window_->findChild<Widget*>(name);
-    if (!widget) qFatal("the window has no %s", name);
-    return widget;
-  }
   QString folder() { return temporary_.filePath("ct"); }
 
   void verifyAllIsThere(const QSize& size) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "lab/common/sphere_normals.h"
 #include "scenes.h"
 
 using namespace trephine;
@@ -24,33 +25,14 @@ int brightness(const std::array<int, 3>& rgb) {
   return rgb[0] + rgb[1] + rgb[2];
 }
 
-// Of pixels whose ray meets a sphere round the origin within 0.6 of its radius: the median angle
-// between the picture's normal and the sphere's. `inwards`: a hollow, seen from inside.
-double medianNormalError_deg(SceneRenderer& renderer, double radius_mm, bool inwards = false) {
+// The median angle between the picture's normals of a sphere and the sphere's own.
+double medianNormalError_deg(SceneRenderer& renderer, double radius_mm, bool hollow = false) {
   UploadProbe::setNormalsAsColour(renderer, true);
   const Picture picture = renderer.picture();
   UploadProbe::setNormalsAsColour(renderer, false);
-  const Vec3 right = renderer.viewRight(), up = renderer.viewUp(), forward = renderer.viewForward();
-  const Vec3 eye = -kEye_mm * forward;
-  const double mm = renderer.mmPerPixelAt(Vec3(0.0));
   std::vector<double> errors;
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const Vec3 at = right * ((x + 0.5 - 0.5 * picture.width) * mm) -
-                      up * ((y + 0.5 - 0.5 * picture.height) * mm);
-      const Vec3 ray = glm::normalize(at - eye);
-      const double middle = -glm::dot(eye, ray);
-      const double left = radius_mm * radius_mm - glm::dot(eye, eye) + middle * middle;
-      if (left <= 0.0) continue;
-      const double t = middle + (inwards ? 1.0 : -1.0) * std::sqrt(left);
-      const Vec3 truth = glm::normalize(eye + ray * t) * (inwards ? -1.0 : 1.0);
-      if (glm::length(truth - glm::dot(truth, forward) * forward) > 0.6) continue;
-      const auto rgb = pixel(picture, x, y);
-      const auto part = [&](std::size_t c) { return rgb[c] / 127.5 - 1.0; };
-      const Vec3 coded = right * part(0) + up * part(1) - forward * part(2);
-      const double cosine = glm::dot(coded, truth) / std::max(1e-9, glm::length(coded));
-      errors.push_back(glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
-    }
+  for (const SphereNormal& normal : sphereNormals(picture, renderer, radius_mm, hollow)) {
+    errors.push_back(error_deg(normal));
   }
   std::ranges::sort(errors);
   return errors.empty() ? 180.0 : errors[errors.size() / 2];

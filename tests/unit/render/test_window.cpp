@@ -5,6 +5,7 @@
 #include <vtk_glew.h>
 #endif
 //
+#include <memory>
 #include <vector>
 
 #include "scenes.h"
@@ -49,31 +50,38 @@ class Screen {
   unsigned int colour_ = 0;
 };
 
-}  // namespace
+// The ball in a renderer that draws in a context that is lent to it, as a window's is.
+class Window : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = offscreenIfDisplay();
+    if (!made) GTEST_SKIP() << "No display: this test draws and reads pixels";
+    ASSERT_TRUE(made->ok()) << made->error().sentence();
+    lender_ = std::move(**made);
+    lender_->setTissues(tissues(0.1));
+    lender_->setVolume(grid_);
+    of_hidden_window_ = lender_->picture();  // leaves its context current
+    hosted_.setTissues(tissues(0.1));
+    hosted_.resize(kWidth, kHeight);
+    hosted_.setVolume(grid_);
+    attach();
+    screen_ = std::make_unique<Screen>();
+  }
+  void attach() {
+    const Status attached = hosted_.attach({[] { return true; }, [] {}});
+    ASSERT_TRUE(attached.ok()) << attached.error().sentence();
+  }
+  void TearDown() override {
+    screen_.reset();
+    hosted_.detach();
+  }
 
-TEST(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
-  RENDERER_OR_SKIP(lender);
-  lender.setTissues(tissues(0.1));
-  lender.setVolume(Grid(ball()));
-  const Picture expected = lender.picture();  // leaves the lender's context current
-
-  SceneRenderer hosted;
-  hosted.setTissues(tissues(0.1));
-  hosted.resize(kWidth, kHeight);
-  hosted.setVolume(Grid(ball()));
-  const Status attached = hosted.attach({[] { return true; }, [] {}});
-  ASSERT_TRUE(attached.ok()) << attached.error().sentence();
-  EXPECT_NE(hosted.openGlDescription(), "none");
-  hosted.paint(0);
-  EXPECT_EQ(hosted.picture(), expected);
-  hosted.detach();
-  EXPECT_TRUE(hosted.picture().rgb.empty());
-  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
-  EXPECT_EQ(hosted.picture(), expected);
-  hosted.detach();
-}
-
-namespace {
+  std::unique_ptr<SceneRenderer> lender_;
+  Grid grid_{ball()};
+  Picture of_hidden_window_;
+  SceneRenderer hosted_;
+  std::unique_ptr<Screen> screen_;
+};
 
 constexpr double kTiny_ms = 1e-3;  // less than any picture takes
 
@@ -94,105 +102,81 @@ ToolView needle(const Vec3& tip) {
 
 }  // namespace
 
-TEST(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
-  RENDERER_OR_SKIP(lender);
-  lender.picture();  // leaves the lender's context current
-  SceneRenderer hosted;
-  hosted.resize(kWidth, kHeight);
-  hosted.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
-  hosted.setTissues(tissues(0.1));
-  hosted.setVolume(Grid(ball()));
-  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
-  {
-    const Screen screen;
-    EXPECT_EQ(hosted.shareOfRays(), 0.0);
-    EXPECT_TRUE(hosted.paint(screen.id()));
-    EXPECT_EQ(hosted.shareOfRays(), 1.0);
-    const Picture whole = screen.read();
-    EXPECT_EQ(whole, hosted.picture());
-    EXPECT_EQ(finish(hosted, screen.id()), 1);  // nothing changed: what is there is shown again
-    EXPECT_EQ(screen.read(), whole);
-
-    hosted.orbit(20, 0);
-    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
-    EXPECT_LT(hosted.shareOfRays(), 1.0);
-    const Picture coarse = screen.read();
-    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
-    EXPECT_EQ(screen.read(), coarse) << "a finer picture is shown when it is whole";
-    hosted.orbit(-20, 0);
-    EXPECT_GT(finish(hosted, screen.id()), 5);
-    EXPECT_GE(psnr_dB(screen.read(), whole), 60.0);  // the camera came back but for rounding
-  }
-  hosted.detach();
+TEST_F(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
+  EXPECT_NE(hosted_.openGlDescription(), "none");
+  hosted_.paint(0);
+  EXPECT_EQ(hosted_.picture(), of_hidden_window_);
+  hosted_.detach();
+  EXPECT_TRUE(hosted_.picture().rgb.empty());
+  attach();
+  EXPECT_EQ(hosted_.picture(), of_hidden_window_);
 }
 
-TEST(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
-  RENDERER_OR_SKIP(lender);
-  lender.picture();
-  SceneRenderer hosted;
-  hosted.resize(kWidth, kHeight);
-  hosted.setTissues(tissues(0.1));
-  hosted.setVolume(Grid(ball()));
-  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
-  {
-    const Screen screen;
-    hosted.paint(screen.id());
-    const Picture without = screen.read();
-    hosted.setTools({needle(Vec3(0, -40, 0))});
-    EXPECT_TRUE(hosted.paint(screen.id(), kTiny_ms)) << "no ray is cast";
-    const Picture with = screen.read();
-    const Difference seen = difference(without, with);
-    EXPECT_GT(seen.pixels, 50);
-    EXPECT_EQ(with, hosted.picture());
+TEST_F(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
+  hosted_.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
+  EXPECT_EQ(hosted_.shareOfRays(), 0.0);
+  EXPECT_TRUE(hosted_.paint(screen_->id()));
+  EXPECT_EQ(hosted_.shareOfRays(), 1.0);
+  const Picture whole = screen_->read();
+  EXPECT_EQ(whole, hosted_.picture());
+  EXPECT_EQ(finish(hosted_, screen_->id()), 1);  // nothing changed: what is there is shown again
+  EXPECT_EQ(screen_->read(), whole);
 
-    // While a finer picture is made.
-    hosted.orbit(15, 0);
-    hosted.paint(screen.id(), kTiny_ms);
-    ASSERT_FALSE(hosted.complete());
-    const Picture before = screen.read();
-    hosted.setTools({needle(Vec3(0, -40, 10))});
-    EXPECT_FALSE(hosted.paint(screen.id(), kTiny_ms));
-    EXPECT_GT(difference(before, screen.read()).pixels, 50);
-    hosted.setTools({});
-    hosted.orbit(-15, 0);
-    finish(hosted, screen.id());
-    EXPECT_GE(psnr_dB(screen.read(), without), 60.0);
-  }
-  hosted.detach();
+  hosted_.orbit(20, 0);
+  EXPECT_FALSE(hosted_.paint(screen_->id(), kTiny_ms));
+  EXPECT_LT(hosted_.shareOfRays(), 1.0);
+  const Picture coarse = screen_->read();
+  EXPECT_FALSE(hosted_.paint(screen_->id(), kTiny_ms));
+  EXPECT_EQ(screen_->read(), coarse) << "a finer picture is shown when it is whole";
+  hosted_.orbit(-20, 0);
+  EXPECT_GT(finish(hosted_, screen_->id()), 5);
+  EXPECT_GE(psnr_dB(screen_->read(), whole), 60.0);  // the camera came back but for rounding
 }
 
-TEST(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
-  RENDERER_OR_SKIP(lender);
-  lender.picture();
-  SceneRenderer hosted;
-  hosted.resize(kWidth, kHeight);
-  hosted.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
-  hosted.setTissues(tissues(0.1));
-  Grid grid(ball());
-  hosted.setVolume(grid);
-  ASSERT_TRUE(hosted.attach({[] { return true; }, [] {}}).ok());
-  {
-    const Screen screen;
-    hosted.paint(screen.id());
-    carve(grid, Vec3(-5, -24, 0), 6.0);
-    ASSERT_TRUE(hosted.pullChanges(grid));
-    finish(hosted, screen.id());
-    EXPECT_EQ(hosted.shareOfRays(), 1.0);
-    const Picture mended = screen.read();
-    hosted.setTruth({});  // starts anew
-    hosted.paint(screen.id());
-    EXPECT_EQ(screen.read(), mended);
-    // A second one, while a picture is on its way, is in that one too.
-    hosted.orbit(10, 0);
-    for (int strip = 0; strip < 3; ++strip) hosted.paint(screen.id(), kTiny_ms);
-    ASSERT_FALSE(hosted.complete());
-    carve(grid, Vec3(6, -24, 8), 6.0);
-    ASSERT_TRUE(hosted.pullChanges(grid));
-    finish(hosted, screen.id());
-    const Picture late = screen.read();
-    hosted.setTruth({});
-    hosted.paint(screen.id());
-    EXPECT_EQ(screen.read(), late);
-  }
-  hosted.detach();
+TEST_F(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
+  hosted_.paint(screen_->id());
+  const Picture without = screen_->read();
+  hosted_.setTools({needle(Vec3(0, -40, 0))});
+  EXPECT_TRUE(hosted_.paint(screen_->id(), kTiny_ms)) << "no ray is cast";
+  const Picture with = screen_->read();
+  const Difference seen = difference(without, with);
+  EXPECT_GT(seen.pixels, 50);
+  EXPECT_EQ(with, hosted_.picture());
+
+  // While a finer picture is made.
+  hosted_.orbit(15, 0);
+  hosted_.paint(screen_->id(), kTiny_ms);
+  ASSERT_FALSE(hosted_.complete());
+  const Picture before = screen_->read();
+  hosted_.setTools({needle(Vec3(0, -40, 10))});
+  EXPECT_FALSE(hosted_.paint(screen_->id(), kTiny_ms));
+  EXPECT_GT(difference(before, screen_->read()).pixels, 50);
+  hosted_.setTools({});
+  hosted_.orbit(-15, 0);
+  finish(hosted_, screen_->id());
+  EXPECT_GE(psnr_dB(screen_->read(), without), 60.0);
+}
+
+TEST_F(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
+  hosted_.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
+  hosted_.paint(screen_->id());
+  carve(grid_, Vec3(-5, -24, 0), 6.0);
+  ASSERT_TRUE(hosted_.pullChanges(grid_));
+  finish(hosted_, screen_->id());
+  EXPECT_EQ(hosted_.shareOfRays(), 1.0);
+  const Picture mended = screen_->read();
+  hosted_.setTruth({});  // starts anew
+  hosted_.paint(screen_->id());
+  EXPECT_EQ(screen_->read(), mended);
+  // A second one, while a picture is on its way, is in that one too.
+  hosted_.orbit(10, 0);
+  for (int strip = 0; strip < 3; ++strip) hosted_.paint(screen_->id(), kTiny_ms);
+  ASSERT_FALSE(hosted_.complete());
+  carve(grid_, Vec3(6, -24, 8), 6.0);
+  ASSERT_TRUE(hosted_.pullChanges(grid_));
+  finish(hosted_, screen_->id());
+  const Picture late = screen_->read();
+  hosted_.setTruth({});
+  hosted_.paint(screen_->id());
+  EXPECT_EQ(screen_->read(), late);
 }

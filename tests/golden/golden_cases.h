@@ -1,0 +1,17 @@
+// The cases that pictures are of: built in, no patient's.
+#pragma once
+
+#include "golden_line.h"
+#include "session/case.h"
+
+namespace trephine::test {
+
+struct GoldenCase {
+  Scene scene;
+  Case of;
+};
+
+// Made once, and kept until another is asked for.
+Result<GoldenCase> goldenCase(const GoldenLine& line);
+
+}  // namespace trephine::test
