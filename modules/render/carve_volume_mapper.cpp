@@ -22,7 +22,6 @@
 #include <vtkShortArray.h>
 #include <vtkSmartPointer.h>
 #include <vtkTextureObject.h>
-#include <vtkUniforms.h>
 #include <vtkVolume.h>
 #include <vtkVolumeInputHelper.h>
 #include <vtkVolumeProperty.h>
@@ -33,13 +32,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
-#include "render/depth_shader.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
 #include "render/label_shape.h"
-#include "render/look_table.h"
+#include "render/ray_shading.h"
 
 namespace trephine {
 
@@ -110,11 +107,6 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
 
 }  // namespace
 
-// The contrast over the ball around a sample from which on it lies across an edge.
-constexpr double kEdge_HU = 30.0;
-// Between these a labelled structure fades into the air of a cut.
-constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
-
 struct CarveVolume::Parts {
   vtkNew<CarveMapper> mapper;
   vtkNew<vtkVolume> prop;
@@ -135,24 +127,15 @@ struct CarveVolume::Parts {
   std::shared_ptr<const LabelMap> labels;
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
-  TissueSet seen;
-  TissueLooks tissue_looks;
   std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
   std::vector<std::vector<HuInterval>> visible;  // of each row
   std::vector<std::uint32_t> rows_of_bricks;
-  double low_HU = -1024.0;  // over which VTK spreads its tables
-  double high_HU = 3071.0;
+  RayShading shading;
   BrickRanges bricks;
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
   double smallest_edge_mm = 1.0;  // of a voxel
   double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
-  RayTruth truth;
-  std::vector<ClipPlane> clip;
-  Vec3 light{0.0, 0.0, 1.0};
-  int shows = 0;  // see kTruthDeclarations
-  Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
-  bool leaping = true;
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
@@ -207,7 +190,7 @@ struct CarveVolume::Parts {
   void updateLooks() {
     const std::size_t count = rowCount();
     std::vector<TransferPoint> points = looks[0];
-    if (count > 1) points = sideBySide(looks, low_HU, high_HU);
+    if (count > 1) points = sideBySide(looks, shading.low_HU, shading.high_HU);
     colour->RemoveAllPoints();
     opacity->RemoveAllPoints();
     for (const TransferPoint& point : points) {
@@ -220,18 +203,19 @@ struct CarveVolume::Parts {
     }
     // VTK makes its tables as fine as the two nearest points need, and at least 1024 wide.
     const double entries = std::min(1024.0 * double(count), 8192.0);
-    const double share_HU = (high_HU - low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
-    lookup_step_HU = (count > 1 ? share_HU : high_HU - low_HU) / (entries - 1.0);
+    const double share_HU =
+        (shading.high_HU - shading.low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
+    lookup_step_HU = (count > 1 ? share_HU : shading.high_HU - shading.low_HU) / (entries - 1.0);
     if (count > 1) {
       const TransferPoint& first = points.front();
-      const double near_HU = first.hu - (high_HU - low_HU) / entries;
+      const double near_HU = first.hu - (shading.high_HU - shading.low_HU) / entries;
       colour->AddRGBPoint(near_HU, first.colour.x, first.colour.y, first.colour.z);
       opacity->AddPoint(near_HU, first.opacity);
     }
     visible.clear();
     for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
     leap_map_stale = true;
-    updateShader();
+    buildShader();
   }
 
   void startDraw() {
@@ -242,111 +226,10 @@ struct CarveVolume::Parts {
 
   void endDraw() { sent = true; }
 
-  void updateShader() {
-    vtkShaderProperty* shader = prop->GetShaderProperty();
-    shader->ClearAllFragmentShaderReplacements();
-    const auto replace = [&](const char* tag, const std::string& text) {
-      shader->AddFragmentShaderReplacement(tag, true, text, false);
-    };
-    prop->GetShaderProperty()->GetFragmentCustomUniforms()->RemoveAllUniforms();
-    replace("//VTK::RenderToImage::Dec", kDepthDeclarations);
-    replace("//VTK::RenderToImage::Impl", kDepthSample);
-    replace("//VTK::RenderToImage::Exit", kDepthOutput);
-    const bool by_label = rowCount() > 1;
-    if (!leaping && !by_label && !isTrue()) return;
-    std::string declarations =
-        kLeapDeclarations + (by_label ? labelledLookUps(rowCount()) : kPlainLookUps);
-    if (by_label) {
-      replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
-      replace("//VTK::ComputeColor::Dec", kLabelledColour);
-    }
-    if (leaping || isTrue()) {
-      replace("//VTK::Terminate::Init", isTrue() ? kLeapStart + kClipStart : kLeapStart);
-      replace("//VTK::Base::Impl", leapTo(isTrue() ? kGoOnInRun : kStopThere));
-    }
-    if (isTrue()) {
-      declarations += kTruthDeclarations + (by_label ? kLabelledShape : kPlainShape);
-      replace("//VTK::Shading::Impl", kTruthShading);
-      tellTissues();
-      tellView();
-    }
-    replace("//VTK::Base::Dec", declarations);
-  }
-
-  // Whether surfaces and classes are shown truly, or as VTK shows them.
-  bool isTrue() const {
-    return copy && (shows != 0 || (leaping && (truth.normals || truth.classes)));
-  }
-
-  static void set(float (&to_three)[3], const Vec3& v) {
-    for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
-  }
-
-  // Numbers of the tissues and the volume, that only updateShader() changes.
-  void tellTissues() {
-    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
-    const auto scaled = [&](double hu) { return float((hu - low_HU) / (high_HU - low_HU)); };
-    const GridGeometry& g = copy->geometry;
-
-    float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{};
-    const std::vector<TissueShade> shades = tissueShades(seen, tissue_looks, high_HU);
-    for (std::size_t i = 0; i < shades.size(); ++i) {
-      look_of[i][0] = scaled(shades[i].low_HU);
-      look_of[i][1] = scaled(shades[i].high_HU);
-      look_of[i][2] = float(shades[i].row);
-      look_of[i][3] =
-          (truth.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
-      set(colour_of[i], shades[i].colour);
-    }
-    to->SetUniformi("in_lookCount", int(shades.size()));
-    to->SetUniform4fv("in_look", kMaxTissues, look_of);
-    to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
-
-    const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
-    float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
-      set(weight[i], around[i].weight);
-    }
-    to->SetUniformi("in_ballCount", int(around.size()));
-    to->SetUniform3fv("in_ball", kBallPlaces, ball);
-    to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
-    const float air[2] = {scaled(kAirEnds_HU),
-                          float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
-    to->SetUniform2f("in_air", air);
-    to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
-    to->SetUniformi("in_shows", shows);
-  }
-
-  // Numbers of the view, which may be others at each draw: the shader is not built anew for them.
-  void tellView() {
-    if (!isTrue()) return;
-    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
-    const GridGeometry& g = copy->geometry;
-    const Mat3 to_grid = glm::transpose(g.direction);
-    float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
-    const std::size_t count = std::min(clip.size(), SceneRenderer::kMostClipPlanes);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 normal = to_grid * clip[i].normal;
-      set(normals[i], normal);
-      double beyond = glm::dot(clip[i].normal, g.origin_mm - clip[i].point_mm);
-      for (int axis = 0; axis < 3; ++axis) {
-        const double edge_mm = g.spacing_mm[axis];
-        planes[i][axis] = float(normal[axis] * edge_mm * g.size[std::size_t(axis)]);
-        beyond -= 0.5 * normal[axis] * edge_mm;
-      }
-      planes[i][3] = float(beyond);
-    }
-    to->SetUniformi("in_clipCount", int(count));
-    to->SetUniform4fv("in_clip", int(SceneRenderer::kMostClipPlanes), planes);
-    to->SetUniform3fv("in_clipNormal", int(SceneRenderer::kMostClipPlanes), normals);
-
-    float axes[3][3], towards_light[3];
-    const Vec3 eye_axes[3] = {to_grid * eye_right, to_grid * eye_up, -(to_grid * eye_forward)};
-    for (int axis = 0; axis < 3; ++axis) set(axes[axis], eye_axes[axis]);
-    set(towards_light, eye_axes[0] * light.x + eye_axes[1] * light.y + eye_axes[2] * light.z);
-    to->SetUniform3fv("in_eye", 3, axes);
-    to->SetUniform3f("in_light", towards_light);
+  void buildShader() {
+    shading.rows = rowCount();
+    shading.geometry = copy ? &copy->geometry : nullptr;
+    shading.build(*prop->GetShaderProperty());
   }
 };
 
@@ -421,8 +304,8 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   voxels->GetFiniteRange(0);
   last = kept.second;
   first = kept.first;
-  p.low_HU = low;
-  p.high_HU = high;
+  p.shading.low_HU = low;
+  p.shading.high_HU = high;
   p.updateLooks();
 
   p.image = vtkSmartPointer<vtkImageData>::New();
@@ -448,6 +331,7 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->mapper->RemoveAllInputs();
   parts_->image = nullptr;
   parts_->copy = nullptr;
+  parts_->shading.geometry = nullptr;
   parts_->labels = nullptr;
   parts_->boxes.clear();
 }
@@ -458,10 +342,10 @@ void CarveVolume::setTissues(const TissueSet& seen, const TissueLooks& looks) {
   p.labels_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
-  p.seen = seen;
-  p.tissue_looks = looks;
+  p.shading.seen = seen;
+  p.shading.looks = looks;
   for (int row = 0; row < p.label_rows.count; ++row) {
-    p.looks.push_back(transferFunction(p.seen, p.label_rows.label[std::size_t(row)]));
+    p.looks.push_back(transferFunction(p.shading.seen, p.label_rows.label[std::size_t(row)]));
   }
   p.updateLooks();
 }
@@ -475,7 +359,7 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
   if (!p.copy) return;
-  p.tellView();
+  p.shading.tellView(*p.prop->GetShaderProperty());
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
@@ -535,21 +419,21 @@ void CarveVolume::setPart(const PixelRect& part) {
 }
 
 void CarveVolume::setLeaping(bool on) {
-  parts_->leaping = on;
-  parts_->updateShader();
+  parts_->shading.leaping = on;
+  parts_->buildShader();
 }
 
 void CarveVolume::setClip(const std::vector<ClipPlane>& planes) {
-  parts_->clip = planes;
+  parts_->shading.clip = planes;
 }
 
 void CarveVolume::setLight(const Vec3& from) {
-  parts_->light = from;
+  parts_->shading.light = from;
 }
 
 void CarveVolume::setTruth(const RayTruth& truth) {
-  parts_->truth = truth;
-  parts_->updateShader();
+  parts_->shading.truth = truth;
+  parts_->buildShader();
 }
 
 void CarveVolume::setSampleDistance(double voxels) {
@@ -557,19 +441,19 @@ void CarveVolume::setSampleDistance(double voxels) {
 }
 
 void CarveVolume::setFirstTissue(bool on) {
-  parts_->shows = on ? 1 : 0;
-  parts_->updateShader();
+  parts_->shading.shows = on ? 1 : 0;
+  parts_->buildShader();
 }
 
 void CarveVolume::setNormalsAsColour(bool on) {
-  parts_->shows = on ? 2 : 0;
-  parts_->updateShader();
+  parts_->shading.shows = on ? 2 : 0;
+  parts_->buildShader();
 }
 
 void CarveVolume::lookFrom(const Vec3& right, const Vec3& up, const Vec3& forward) {
-  parts_->eye_right = right;
-  parts_->eye_up = up;
-  parts_->eye_forward = forward;
+  parts_->shading.eye_right = right;
+  parts_->shading.eye_up = up;
+  parts_->shading.eye_forward = forward;
 }
 
 void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
