@@ -33,6 +33,7 @@
 #include <utility>
 
 #include "render/carve_volume_mapper.h"
+#include "render/cut_marks.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
 #include "render/label_shape.h"
@@ -124,6 +125,9 @@ struct CarveVolume::Parts {
   vtkNew<vtkTextureObject> no_depth;  // one pixel: nothing ends a ray
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
+  const VolumeMirror* mirror = nullptr;  // what was cut
+  Index3 factors{1, 1, 1};               // of the mirror's voxels in one of the copy
+  std::int16_t mark = kAirHu;            // HU of removed voxels on the graphics card
   std::shared_ptr<const LabelMap> labels;
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
@@ -212,10 +216,24 @@ struct CarveVolume::Parts {
       colour->AddRGBPoint(near_HU, first.colour.x, first.colour.y, first.colour.z);
       opacity->AddPoint(near_HU, first.opacity);
     }
+    setMark();
     visible.clear();
     for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
     leap_map_stale = true;
     buildShader();
+  }
+
+  // Where a tissue that is seen holds the mark too, what was cut would be seen: then there is none.
+  void setMark() {
+    if (!copy) return;
+    const std::int16_t before = mark;
+    mark = cutMark(bricks.whole().low);
+    const double looked_up = std::max(double(mark), shading.low_HU);
+    for (std::size_t row = 0; row < rowCount(); ++row) {
+      if (evaluate(looks[row], looked_up).opacity > 0.0) mark = kAirHu;
+    }
+    const VoxelBox cuts = boxOfCuts(*mirror, factors);
+    if (mark != before && voxelCount(cuts) > 0) boxes.push_back(cuts);
   }
 
   void startDraw() {
@@ -277,11 +295,13 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
 CarveVolume::~CarveVolume() = default;
 
 void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
-                       vtkRenderer& renderer) {
+                       const VolumeMirror& mirror, const Index3& factors, vtkRenderer& renderer) {
   Parts& p = *parts_;
   const GridGeometry& g = copy.geometry;
   p.copy = &copy;
   p.labels = std::move(labels);
+  p.mirror = &mirror;
+  p.factors = factors;
   p.labels_stale = true;
   p.boxes.clear();
   p.complaint.clear();
@@ -331,6 +351,7 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->mapper->RemoveAllInputs();
   parts_->image = nullptr;
   parts_->copy = nullptr;
+  parts_->mirror = nullptr;
   parts_->shading.geometry = nullptr;
   parts_->labels = nullptr;
   parts_->boxes.clear();
@@ -359,6 +380,8 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
   if (!p.copy) return;
+  const bool marked = p.mark != kAirHu && voxelCount(boxOfCuts(*p.mirror, p.factors)) > 0;
+  p.shading.cut_HU = marked ? std::optional<double>(p.mark) : std::nullopt;
   p.shading.tellView(*p.prop->GetShaderProperty());
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
@@ -368,7 +391,9 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
       if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
-    if (texture) sendBox(*texture, p.copy->hu.data(), p.copy->geometry.size, box);
+    if (!texture) continue;
+    const CutMarks marks(*p.copy, box, *p.mirror, p.factors, p.mark);
+    sendBox(*texture, p.copy->hu.data(), p.copy->geometry.size, box);
   }
   if (texture) texture->Deactivate();
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
@@ -399,6 +424,7 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   p.image->Modified();
   while (glGetError() != GL_NO_ERROR) {  // of others
   }
+  const CutMarks marks(*p.copy, {{0, 0, 0}, p.copy->geometry.size}, *p.mirror, p.factors, p.mark);
   p.sent = p.mapper->PreLoadData(&renderer, p.prop) && glGetError() == GL_NO_ERROR &&
            p.mapper->texture();
   return p.sent;

@@ -24,10 +24,18 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
   return shades;
 }
 
-RayBall rayBall(const Vec3& spacing_mm) {
+Vec3 cutColour(const Vec3& colour) {
+  return colour * Vec3(1.0, 0.72, 0.66);
+}
+
+Vec3 ballRadii_mm(const Vec3& spacing_mm) {
   // 1.5 mm at 0.8 x 0.8 x 1.0 mm.
   const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
-  const Vec3 radii_mm = glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+  return glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+}
+
+RayBall rayBall(const Vec3& spacing_mm) {
+  const Vec3 radii_mm = ballRadii_mm(spacing_mm);
   const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
   const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
   RayBall ball;

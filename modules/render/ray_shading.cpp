@@ -63,7 +63,7 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
   const auto scaled = [&](double hu) { return float((hu - low_HU) / (high_HU - low_HU)); };
   const GridGeometry& g = *geometry;
 
-  float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{};
+  float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{}, cut_of[kMaxTissues][3]{};
   const std::vector<TissueShade> shades = tissueShades(seen, looks, high_HU);
   for (std::size_t i = 0; i < shades.size(); ++i) {
     look_of[i][0] = scaled(shades[i].low_HU);
@@ -72,10 +72,12 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
     look_of[i][3] =
         (truth.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
     set(colour_of[i], shades[i].colour);
+    set(cut_of[i], cutColour(shades[i].colour));
   }
   to->SetUniformi("in_lookCount", int(shades.size()));
   to->SetUniform4fv("in_look", kMaxTissues, look_of);
   to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
+  to->SetUniform3fv("in_cutColour", kMaxTissues, cut_of);
 
   const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
   float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
@@ -86,6 +88,9 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
   to->SetUniformi("in_ballCount", int(around.size()));
   to->SetUniform3fv("in_ball", kBallPlaces, ball);
   to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
+  float reach[3];
+  set(reach, ballRadii_mm(g.spacing_mm) / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
+  to->SetUniform3f("in_cutReach", reach);
   const float air[2] = {scaled(kAirEnds_HU),
                         float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
   to->SetUniform2f("in_air", air);
@@ -121,6 +126,10 @@ void RayShading::tellView(vtkShaderProperty& shader) const {
   set(towards_light, eye_axes[0] * light.x + eye_axes[1] * light.y + eye_axes[2] * light.z);
   to->SetUniform3fv("in_eye", 3, axes);
   to->SetUniform3f("in_light", towards_light);
+  constexpr double kNone = 2.0;  // no voxel is as high
+  const double cut_at = cut_HU ? (*cut_HU - low_HU) / (high_HU - low_HU) : kNone;
+  const float cut[2] = {float(cut_at), float(0.5 / (high_HU - low_HU))};
+  to->SetUniform2f("in_cut", cut);
 }
 
 }  // namespace trephine

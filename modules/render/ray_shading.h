@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "base/math.h"
@@ -29,12 +30,13 @@ struct RayShading {
   int shows = 0;  // 0: the picture, 1: the first tissue, 2: the normal there
   std::vector<ClipPlane> clip;
   Vec3 light{0.0, 0.0, 1.0};
+  std::optional<double> cut_HU;  // of what was removed, on the graphics card; nothing was: none
   Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
 
   // Anew, after anything above changed that is not of the view.
   void build(vtkShaderProperty& shader) const;
-  // Numbers of the view (clip, light, eye), which may be others at each draw: the shader is not
-  // built anew for them.
+  // Numbers of the view (clip, light, cuts, eye), which may be others at each draw: the shader is
+  // not built anew for them.
   void tellView(vtkShaderProperty& shader) const;
 
  private:

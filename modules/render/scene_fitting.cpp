@@ -20,14 +20,15 @@ void SceneRenderer::Parts::show() {
   fitted = refused = false;
   refusal = {};
   pictures.startAnew();
-  volume.show(mirror->lent(), mirror->labels(), *renderer);
+  volume.show(mirror->lent(), mirror->labels(), *mirror, reduction, *renderer);
 }
 
 void SceneRenderer::Parts::showReduced() {
   volume.remove(*renderer);
   reduced.emplace(voxels(), reduction);
   const LabelMap* labels = mirror->labels().get();
-  volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *renderer);
+  volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *mirror, reduction,
+              *renderer);
 }
 
 void SceneRenderer::Parts::changed(const VoxelBox& box) {

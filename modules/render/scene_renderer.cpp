@@ -117,6 +117,13 @@ void SceneRenderer::setVolume(const Grid& grid) {
   setMirror(std::move(mirror));
 }
 
+void SceneRenderer::setVolume(Grid& grid, const std::shared_ptr<const Volume>& whole) {
+  auto mirror = std::make_shared<VolumeMirror>();
+  mirror->show(Volume(*whole), grid.labels(), whole);
+  mirror->pull(grid);
+  setMirror(std::move(mirror));
+}
+
 bool SceneRenderer::takeChanges() {
   Parts& p = *parts_;
   const VolumeMirror::News news = p.news->take();

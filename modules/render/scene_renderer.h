@@ -73,6 +73,9 @@ class SceneRenderer {
   void setMirror(std::shared_ptr<VolumeMirror> mirror);
   // For a picture without a window: a mirror of the grid, of its own.
   void setVolume(const Grid& grid);
+  // The same of a grid that no mirror has read from yet and that began as `whole`, which the caller
+  // keeps: what was cut since is shown as cut.
+  void setVolume(Grid& grid, const std::shared_ptr<const Volume>& whole);
   bool hasVolume() const;
   // A tissue of the set that is not visible is shown all the same where a look says so (asSeen).
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
