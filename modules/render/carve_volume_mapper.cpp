@@ -21,7 +21,6 @@
 #include <vtkShaderProperty.h>
 #include <vtkShortArray.h>
 #include <vtkSmartPointer.h>
-#include <vtkTextureObject.h>
 #include <vtkVolume.h>
 #include <vtkVolumeInputHelper.h>
 #include <vtkVolumeProperty.h>
@@ -29,7 +28,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "render/carve_volume_mapper.h"
@@ -38,6 +36,7 @@
 #include "render/empty_space.h"
 #include "render/label_shape.h"
 #include "render/ray_shading.h"
+#include "render/send_box.h"
 
 namespace trephine {
 
@@ -59,52 +58,6 @@ class CarveMapper : public vtkOpenGLGPUVolumeRayCastMapper {
   }
 };
 vtkStandardNewMacro(CarveMapper);
-
-// Tells OpenGL how the rows of a grid lie in memory, for as long as this lives.
-class UnpackRows {
- public:
-  explicit UnpackRows(const Index3& size) {
-    glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment_);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, size[0]);
-    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, size[1]);
-  }
-  ~UnpackRows() {
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, alignment_);
-  }
-  UnpackRows(const UnpackRows&) = delete;
-  UnpackRows& operator=(const UnpackRows&) = delete;
-
- private:
-  GLint alignment_ = 4;
-};
-
-// How values of a type lie in a texture.
-constexpr GLenum formatOf(const std::int16_t*) {
-  return GL_RED;
-}
-constexpr GLenum formatOf(const LabelShape*) {
-  return GL_RG;
-}
-constexpr GLenum formatOf(const std::uint8_t*) {
-  return GL_RED;
-}
-
-// Sends a part of `grid`, of this size, into a texture that holds all of it from this slice on.
-template <class Value>
-void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, const VoxelBox& box,
-             int slice = 0) {
-  const auto [i, j, k] = box.low;
-  const UnpackRows layout(size);
-  texture.Activate();
-  glTexSubImage3D(
-      GL_TEXTURE_3D, 0, i, j, slice + k, box.high[0] - i, box.high[1] - j, box.high[2] - k,
-      formatOf(grid), std::is_same_v<Value, std::int16_t> ? GL_SHORT : GL_UNSIGNED_BYTE,
-      grid + (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
-          std::size_t(i));
-}
 
 }  // namespace
 
@@ -141,6 +94,8 @@ struct CarveVolume::Parts {
   double smallest_edge_mm = 1.0;  // of a voxel
   double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
+  bool drawn = false;          // VTK sends all once more when it draws for the first time
+  std::optional<CutMarks> marks_of_all;
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
   bool labels_stale = true;    // to be sent, or no longer there
@@ -236,13 +191,22 @@ struct CarveVolume::Parts {
     if (mark != before && voxelCount(cuts) > 0) boxes.push_back(cuts);
   }
 
+  // Until VTK has sent everything.
+  void markAll() {
+    marks_of_all.emplace(*copy, VoxelBox{{0, 0, 0}, copy->geometry.size}, *mirror, factors, mark);
+  }
+
   void startDraw() {
+    if (!drawn) markAll();
     if (part.empty()) return;
     state->vtkglEnable(GL_SCISSOR_TEST);
     state->vtkglScissor(part.low_x, part.low_y, part.width(), part.height());
   }
 
-  void endDraw() { sent = true; }
+  void endDraw() {
+    marks_of_all.reset();
+    sent = drawn = true;
+  }
 
   void buildShader() {
     shading.rows = rowCount();
@@ -305,7 +269,7 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   p.labels_stale = true;
   p.boxes.clear();
   p.complaint.clear();
-  p.sent = false;
+  p.sent = p.drawn = false;
   p.bricks = BrickRanges(copy);
 
   vtkNew<vtkShortArray> voxels;
@@ -424,9 +388,10 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   p.image->Modified();
   while (glGetError() != GL_NO_ERROR) {  // of others
   }
-  const CutMarks marks(*p.copy, {{0, 0, 0}, p.copy->geometry.size}, *p.mirror, p.factors, p.mark);
+  p.markAll();
   p.sent = p.mapper->PreLoadData(&renderer, p.prop) && glGetError() == GL_NO_ERROR &&
            p.mapper->texture();
+  p.marks_of_all.reset();
   return p.sent;
 }
 
@@ -484,7 +449,7 @@ void CarveVolume::lookFrom(const Vec3& right, const Vec3& up, const Vec3& forwar
 
 void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
   vtkWindow* window = renderer.GetRenderWindow();
-  parts_->sent = false;
+  parts_->sent = parts_->drawn = false;
   parts_->prop->ReleaseGraphicsResources(window);
   parts_->leaps->ReleaseGraphicsResources(window);
   parts_->no_depth->ReleaseGraphicsResources(window);

@@ -1,5 +1,6 @@
 #include "render/look_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trephine {
@@ -25,7 +26,8 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
 }
 
 Vec3 cutColour(const Vec3& colour) {
-  return colour * Vec3(1.0, 0.72, 0.66);
+  const double light = std::clamp(glm::dot(colour, Vec3(0.3, 0.59, 0.11)), 0.0, 1.0);
+  return glm::min(Vec3(1.0), colour * glm::mix(Vec3(0.8, 0.45, 0.45), Vec3(1.1, 0.8, 0.76), light));
 }
 
 Vec3 ballRadii_mm(const Vec3& spacing_mm) {
