@@ -29,7 +29,7 @@ struct RayShading {
   bool leaping = true;
   int shows = 0;  // 0: the picture, 1: the first tissue, 2: the normal there
   std::vector<ClipPlane> clip;
-  Vec3 light{0.0, 0.0, 1.0};
+  Vec3 light = SceneRenderer::kLight;
   std::optional<double> cut_HU;  // of what was removed, on the graphics card; nothing was: none
   Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
 
