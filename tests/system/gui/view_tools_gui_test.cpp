@@ -37,8 +37,7 @@ int differentPixels(const Picture& a, const Picture& b, int x_from = 0, int x_to
   return count;
 }
 
-// Mean brightness (0 to 255) of what lies left and right of a picture's middle, within the middle
-// half of it, where both pictures show the case.
+// Mean brightness (0 to 255) between two columns, within the middle half of a picture's height.
 double brightness(const Picture& picture, int x_from, int x_to) {
   double sum = 0.0;
   int count = 0;
