@@ -177,7 +177,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
   saveWhatWasAsked(arguments, options.recording, **session, progress, outcome);
   if (outcome.failure) return outcome;
   const fs::path picture = freshFile(out, "picture", ".png");
-  const Status drawn = writeExercisePicture(**session, picture);
+  const Status drawn = writeExercisePicture(**session, of->volume, picture);
   if (drawn) {
     outcome.report.picture = picture.string();
   } else if (isOfThisMachine(drawn.error())) {

@@ -186,6 +186,29 @@ vec2 g_runRange = vec2(0.0);
 vec3 g_runNormal = vec3(0.0);
 vec3 g_runColour = vec3(0.0);
 float g_runGain = 0.0;      // factor on the opacity of samples after the first
+bool g_runCut = false;      // it begins at the wall of a cut
+// Whether a removed voxel lies before a surface: they have a HU of their own, in_cut, give or take
+// the half of one.
+bool facesCut(vec3 normal)
+  {
+  if (in_cut.x > 1.5)
+    {
+    return false;
+    }
+  vec3 l_size = vec3(textureSize(in_volume[0], 0));
+  for (int i = 1; i <= 2; ++i)
+    {
+    vec3 l_at = (g_dataPos + normal * in_cutReach * (0.5 * float(i))) * l_size;
+    ivec3 l_voxel = ivec3(clamp(floor(l_at), vec3(0.0), l_size - 1.0));
+    float l_hu = texelFetch(in_volume[0], l_voxel, 0).r * in_volume_scale[0].r +
+                 in_volume_bias[0].r;
+    if (abs(l_hu - in_cut.x) < in_cut.y)
+      {
+      return true;
+      }
+    }
+  return false;
+  }
 )";
 
 // In VTK's place, at each visible sample that does not just go on in its run. A run of visible
@@ -246,10 +269,12 @@ inline const std::string kTruthShading = R"(
     if (l_begins && (l_enters || l_label_ends || length(l_sum) > 0.5 * in_edge))
       {
       g_runNormal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
+      g_runCut = facesCut(g_runNormal);
       }
     if (g_faceT == g_currentT)
       {
       g_runNormal = g_faceNormal;
+      g_runCut = false;
       l_seen = l_tissue >= 0;
       }
     if (l_seen)
@@ -263,7 +288,8 @@ inline const std::string kTruthShading = R"(
       vec3 l_normal = l_towards < 0.0 ? -g_runNormal : g_runNormal;
       float l_lit = max(dot(l_normal, in_light), 0.0);
       float l_shine = max(dot(l_normal, normalize(in_light + g_vdir[0])), 0.0);
-      g_runColour = in_lookColour[l_tissue] * (in_ambient[0] + in_diffuse[0] * l_lit) +
+      vec3 l_own = g_runCut ? in_cutColour[l_tissue] : in_lookColour[l_tissue];
+      g_runColour = l_own * (in_ambient[0] + in_diffuse[0] * l_lit) +
                     in_specular[0] * pow(l_shine, in_shininess[0]);
       float l_alpha = g_sure ? g_opacity : 0.0;
       g_runGain = 1.0;

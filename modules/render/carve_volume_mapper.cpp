@@ -21,8 +21,6 @@
 #include <vtkShaderProperty.h>
 #include <vtkShortArray.h>
 #include <vtkSmartPointer.h>
-#include <vtkTextureObject.h>
-#include <vtkUniforms.h>
 #include <vtkVolume.h>
 #include <vtkVolumeInputHelper.h>
 #include <vtkVolumeProperty.h>
@@ -30,16 +28,15 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
-#include "render/carve_shader.h"
 #include "render/carve_volume_mapper.h"
-#include "render/depth_shader.h"
+#include "render/cut_marks.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
 #include "render/label_shape.h"
-#include "render/look_table.h"
+#include "render/ray_shading.h"
+#include "render/send_box.h"
 
 namespace trephine {
 
@@ -62,58 +59,7 @@ class CarveMapper : public vtkOpenGLGPUVolumeRayCastMapper {
 };
 vtkStandardNewMacro(CarveMapper);
 
-// Tells OpenGL how the rows of a grid lie in memory, for as long as this lives.
-class UnpackRows {
- public:
-  explicit UnpackRows(const Index3& size) {
-    glGetIntegerv(GL_UNPACK_ALIGNMENT, &alignment_);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, size[0]);
-    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, size[1]);
-  }
-  ~UnpackRows() {
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, alignment_);
-  }
-  UnpackRows(const UnpackRows&) = delete;
-  UnpackRows& operator=(const UnpackRows&) = delete;
-
- private:
-  GLint alignment_ = 4;
-};
-
-// How values of a type lie in a texture.
-constexpr GLenum formatOf(const std::int16_t*) {
-  return GL_RED;
-}
-constexpr GLenum formatOf(const LabelShape*) {
-  return GL_RG;
-}
-constexpr GLenum formatOf(const std::uint8_t*) {
-  return GL_RED;
-}
-
-// Sends a part of `grid`, of this size, into a texture that holds all of it from this slice on.
-template <class Value>
-void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, const VoxelBox& box,
-             int slice = 0) {
-  const auto [i, j, k] = box.low;
-  const UnpackRows layout(size);
-  texture.Activate();
-  glTexSubImage3D(
-      GL_TEXTURE_3D, 0, i, j, slice + k, box.high[0] - i, box.high[1] - j, box.high[2] - k,
-      formatOf(grid), std::is_same_v<Value, std::int16_t> ? GL_SHORT : GL_UNSIGNED_BYTE,
-      grid + (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]) +
-          std::size_t(i));
-}
-
 }  // namespace
-
-// The contrast over the ball around a sample from which on it lies across an edge.
-constexpr double kEdge_HU = 30.0;
-// Between these a labelled structure fades into the air of a cut.
-constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 
 struct CarveVolume::Parts {
   vtkNew<CarveMapper> mapper;
@@ -132,28 +78,24 @@ struct CarveVolume::Parts {
   vtkNew<vtkTextureObject> no_depth;  // one pixel: nothing ends a ray
   vtkSmartPointer<vtkImageData> image;
   Volume* copy = nullptr;
+  const VolumeMirror* mirror = nullptr;  // what was cut
+  Index3 factors{1, 1, 1};               // of the mirror's voxels in one of the copy
+  std::int16_t mark = kAirHu;            // HU of removed voxels on the graphics card
   std::shared_ptr<const LabelMap> labels;
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
-  TissueSet seen;
-  TissueLooks tissue_looks;
   std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
   std::vector<std::vector<HuInterval>> visible;  // of each row
   std::vector<std::uint32_t> rows_of_bricks;
-  double low_HU = -1024.0;  // over which VTK spreads its tables
-  double high_HU = 3071.0;
+  RayShading shading;
   BrickRanges bricks;
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
   double smallest_edge_mm = 1.0;  // of a voxel
   double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
-  RayTruth truth;
-  std::vector<ClipPlane> clip;
-  Vec3 light{0.0, 0.0, 1.0};
-  int shows = 0;  // see kTruthDeclarations
-  Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
-  bool leaping = true;
   bool sent = false;           // VTK's texture holds the copy, but for `boxes`
+  bool drawn = false;          // VTK sends all once more when it draws for the first time
+  std::optional<CutMarks> marks_of_all;
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
   bool labels_stale = true;    // to be sent, or no longer there
@@ -207,7 +149,7 @@ struct CarveVolume::Parts {
   void updateLooks() {
     const std::size_t count = rowCount();
     std::vector<TransferPoint> points = looks[0];
-    if (count > 1) points = sideBySide(looks, low_HU, high_HU);
+    if (count > 1) points = sideBySide(looks, shading.low_HU, shading.high_HU);
     colour->RemoveAllPoints();
     opacity->RemoveAllPoints();
     for (const TransferPoint& point : points) {
@@ -220,133 +162,56 @@ struct CarveVolume::Parts {
     }
     // VTK makes its tables as fine as the two nearest points need, and at least 1024 wide.
     const double entries = std::min(1024.0 * double(count), 8192.0);
-    const double share_HU = (high_HU - low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
-    lookup_step_HU = (count > 1 ? share_HU : high_HU - low_HU) / (entries - 1.0);
+    const double share_HU =
+        (shading.high_HU - shading.low_HU) * double(count) / (1.0 - 2.0 * kSideMargin);
+    lookup_step_HU = (count > 1 ? share_HU : shading.high_HU - shading.low_HU) / (entries - 1.0);
     if (count > 1) {
       const TransferPoint& first = points.front();
-      const double near_HU = first.hu - (high_HU - low_HU) / entries;
+      const double near_HU = first.hu - (shading.high_HU - shading.low_HU) / entries;
       colour->AddRGBPoint(near_HU, first.colour.x, first.colour.y, first.colour.z);
       opacity->AddPoint(near_HU, first.opacity);
     }
+    setMark();
     visible.clear();
     for (std::size_t row = 0; row < count; ++row) visible.push_back(visibleIntervals(looks[row]));
     leap_map_stale = true;
-    updateShader();
+    buildShader();
+  }
+
+  // Where a tissue that is seen holds the mark too, what was cut would be seen: then there is none.
+  void setMark() {
+    if (!copy) return;
+    const std::int16_t before = mark;
+    mark = cutMark(bricks.whole().low);
+    const double looked_up = std::max(double(mark), shading.low_HU);
+    for (std::size_t row = 0; row < rowCount(); ++row) {
+      if (evaluate(looks[row], looked_up).opacity > 0.0) mark = kAirHu;
+    }
+    const VoxelBox cuts = boxOfCuts(*mirror, factors);
+    if (mark != before && voxelCount(cuts) > 0) boxes.push_back(cuts);
+  }
+
+  // Until VTK has sent everything.
+  void markAll() {
+    marks_of_all.emplace(*copy, VoxelBox{{0, 0, 0}, copy->geometry.size}, *mirror, factors, mark);
   }
 
   void startDraw() {
+    if (!drawn) markAll();
     if (part.empty()) return;
     state->vtkglEnable(GL_SCISSOR_TEST);
     state->vtkglScissor(part.low_x, part.low_y, part.width(), part.height());
   }
 
-  void endDraw() { sent = true; }
-
-  void updateShader() {
-    vtkShaderProperty* shader = prop->GetShaderProperty();
-    shader->ClearAllFragmentShaderReplacements();
-    const auto replace = [&](const char* tag, const std::string& text) {
-      shader->AddFragmentShaderReplacement(tag, true, text, false);
-    };
-    prop->GetShaderProperty()->GetFragmentCustomUniforms()->RemoveAllUniforms();
-    replace("//VTK::RenderToImage::Dec", kDepthDeclarations);
-    replace("//VTK::RenderToImage::Impl", kDepthSample);
-    replace("//VTK::RenderToImage::Exit", kDepthOutput);
-    const bool by_label = rowCount() > 1;
-    if (!leaping && !by_label && !isTrue()) return;
-    std::string declarations =
-        kLeapDeclarations + (by_label ? labelledLookUps(rowCount()) : kPlainLookUps);
-    if (by_label) {
-      replace("//VTK::ComputeOpacity::Dec", kLabelledOpacity);
-      replace("//VTK::ComputeColor::Dec", kLabelledColour);
-    }
-    if (leaping || isTrue()) {
-      replace("//VTK::Terminate::Init", isTrue() ? kLeapStart + kClipStart : kLeapStart);
-      replace("//VTK::Base::Impl", leapTo(isTrue() ? kGoOnInRun : kStopThere));
-    }
-    if (isTrue()) {
-      declarations += kTruthDeclarations + (by_label ? kLabelledShape : kPlainShape);
-      replace("//VTK::Shading::Impl", kTruthShading);
-      tellTissues();
-      tellView();
-    }
-    replace("//VTK::Base::Dec", declarations);
+  void endDraw() {
+    marks_of_all.reset();
+    sent = drawn = true;
   }
 
-  // Whether surfaces and classes are shown truly, or as VTK shows them.
-  bool isTrue() const {
-    return copy && (shows != 0 || (leaping && (truth.normals || truth.classes)));
-  }
-
-  static void set(float (&to_three)[3], const Vec3& v) {
-    for (int axis = 0; axis < 3; ++axis) to_three[axis] = float(v[axis]);
-  }
-
-  // Numbers of the tissues and the volume, that only updateShader() changes.
-  void tellTissues() {
-    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
-    const auto scaled = [&](double hu) { return float((hu - low_HU) / (high_HU - low_HU)); };
-    const GridGeometry& g = copy->geometry;
-
-    float look_of[kMaxTissues][4]{}, colour_of[kMaxTissues][3]{};
-    const std::vector<TissueShade> shades = tissueShades(seen, tissue_looks, high_HU);
-    for (std::size_t i = 0; i < shades.size(); ++i) {
-      look_of[i][0] = scaled(shades[i].low_HU);
-      look_of[i][1] = scaled(shades[i].high_HU);
-      look_of[i][2] = float(shades[i].row);
-      look_of[i][3] =
-          (truth.classes && shades[i].passed ? 1.0f : 0.0f) + (shades[i].ghosted ? 2.0f : 0.0f);
-      set(colour_of[i], shades[i].colour);
-    }
-    to->SetUniformi("in_lookCount", int(shades.size()));
-    to->SetUniform4fv("in_look", kMaxTissues, look_of);
-    to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
-
-    const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
-    float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
-      set(weight[i], around[i].weight);
-    }
-    to->SetUniformi("in_ballCount", int(around.size()));
-    to->SetUniform3fv("in_ball", kBallPlaces, ball);
-    to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
-    const float air[2] = {scaled(kAirEnds_HU),
-                          float((kTissueBegins_HU - kAirEnds_HU) / (high_HU - low_HU))};
-    to->SetUniform2f("in_air", air);
-    to->SetUniformf("in_edge", float(kEdge_HU / (high_HU - low_HU)));
-    to->SetUniformi("in_shows", shows);
-  }
-
-  // Numbers of the view, which may be others at each draw: the shader is not built anew for them.
-  void tellView() {
-    if (!isTrue()) return;
-    vtkUniforms* to = prop->GetShaderProperty()->GetFragmentCustomUniforms();
-    const GridGeometry& g = copy->geometry;
-    const Mat3 to_grid = glm::transpose(g.direction);
-    float planes[SceneRenderer::kMostClipPlanes][4]{}, normals[SceneRenderer::kMostClipPlanes][3]{};
-    const std::size_t count = std::min(clip.size(), SceneRenderer::kMostClipPlanes);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 normal = to_grid * clip[i].normal;
-      set(normals[i], normal);
-      double beyond = glm::dot(clip[i].normal, g.origin_mm - clip[i].point_mm);
-      for (int axis = 0; axis < 3; ++axis) {
-        const double edge_mm = g.spacing_mm[axis];
-        planes[i][axis] = float(normal[axis] * edge_mm * g.size[std::size_t(axis)]);
-        beyond -= 0.5 * normal[axis] * edge_mm;
-      }
-      planes[i][3] = float(beyond);
-    }
-    to->SetUniformi("in_clipCount", int(count));
-    to->SetUniform4fv("in_clip", int(SceneRenderer::kMostClipPlanes), planes);
-    to->SetUniform3fv("in_clipNormal", int(SceneRenderer::kMostClipPlanes), normals);
-
-    float axes[3][3], towards_light[3];
-    const Vec3 eye_axes[3] = {to_grid * eye_right, to_grid * eye_up, -(to_grid * eye_forward)};
-    for (int axis = 0; axis < 3; ++axis) set(axes[axis], eye_axes[axis]);
-    set(towards_light, eye_axes[0] * light.x + eye_axes[1] * light.y + eye_axes[2] * light.z);
-    to->SetUniform3fv("in_eye", 3, axes);
-    to->SetUniform3f("in_light", towards_light);
+  void buildShader() {
+    shading.rows = rowCount();
+    shading.geometry = copy ? &copy->geometry : nullptr;
+    shading.build(*prop->GetShaderProperty());
   }
 };
 
@@ -394,15 +259,17 @@ CarveVolume::CarveVolume() : parts_(std::make_unique<Parts>()) {
 CarveVolume::~CarveVolume() = default;
 
 void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
-                       vtkRenderer& renderer) {
+                       const VolumeMirror& mirror, const Index3& factors, vtkRenderer& renderer) {
   Parts& p = *parts_;
   const GridGeometry& g = copy.geometry;
   p.copy = &copy;
   p.labels = std::move(labels);
+  p.mirror = &mirror;
+  p.factors = factors;
   p.labels_stale = true;
   p.boxes.clear();
   p.complaint.clear();
-  p.sent = false;
+  p.sent = p.drawn = false;
   p.bricks = BrickRanges(copy);
 
   vtkNew<vtkShortArray> voxels;
@@ -421,8 +288,8 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   voxels->GetFiniteRange(0);
   last = kept.second;
   first = kept.first;
-  p.low_HU = low;
-  p.high_HU = high;
+  p.shading.low_HU = low;
+  p.shading.high_HU = high;
   p.updateLooks();
 
   p.image = vtkSmartPointer<vtkImageData>::New();
@@ -448,6 +315,8 @@ void CarveVolume::remove(vtkRenderer& renderer) {
   parts_->mapper->RemoveAllInputs();
   parts_->image = nullptr;
   parts_->copy = nullptr;
+  parts_->mirror = nullptr;
+  parts_->shading.geometry = nullptr;
   parts_->labels = nullptr;
   parts_->boxes.clear();
 }
@@ -458,10 +327,10 @@ void CarveVolume::setTissues(const TissueSet& seen, const TissueLooks& looks) {
   p.labels_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
-  p.seen = seen;
-  p.tissue_looks = looks;
+  p.shading.seen = seen;
+  p.shading.looks = looks;
   for (int row = 0; row < p.label_rows.count; ++row) {
-    p.looks.push_back(transferFunction(p.seen, p.label_rows.label[std::size_t(row)]));
+    p.looks.push_back(transferFunction(p.shading.seen, p.label_rows.label[std::size_t(row)]));
   }
   p.updateLooks();
 }
@@ -475,7 +344,9 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow());
   p.state = window->GetState();
   if (!p.copy) return;
-  p.tellView();
+  const bool marked = p.mark != kAirHu && voxelCount(boxOfCuts(*p.mirror, p.factors)) > 0;
+  p.shading.cut_HU = marked ? std::optional<double>(p.mark) : std::nullopt;
+  p.shading.tellView(*p.prop->GetShaderProperty());
   const std::vector<VoxelBox> boxes = mergeBoxes(std::exchange(p.boxes, {}));
   // Unless VTK is about to send everything.
   vtkTextureObject* texture = p.sent ? p.mapper->texture() : nullptr;
@@ -484,7 +355,9 @@ void CarveVolume::sendChanges(vtkRenderer& renderer) {
       if (!p.leap_map_stale) p.leap_map.update(p.bricks, *bricks);
       p.leaps_stale = true;
     }
-    if (texture) sendBox(*texture, p.copy->hu.data(), p.copy->geometry.size, box);
+    if (!texture) continue;
+    const CutMarks marks(*p.copy, box, *p.mirror, p.factors, p.mark);
+    sendBox(*texture, p.copy->hu.data(), p.copy->geometry.size, box);
   }
   if (texture) texture->Deactivate();
   // Takes the first texture unit before VTK takes any: a sampler's value is 0 until it is set, and
@@ -515,8 +388,10 @@ bool CarveVolume::sendAll(vtkRenderer& renderer) {
   p.image->Modified();
   while (glGetError() != GL_NO_ERROR) {  // of others
   }
+  p.markAll();
   p.sent = p.mapper->PreLoadData(&renderer, p.prop) && glGetError() == GL_NO_ERROR &&
            p.mapper->texture();
+  p.marks_of_all.reset();
   return p.sent;
 }
 
@@ -535,21 +410,21 @@ void CarveVolume::setPart(const PixelRect& part) {
 }
 
 void CarveVolume::setLeaping(bool on) {
-  parts_->leaping = on;
-  parts_->updateShader();
+  parts_->shading.leaping = on;
+  parts_->buildShader();
 }
 
 void CarveVolume::setClip(const std::vector<ClipPlane>& planes) {
-  parts_->clip = planes;
+  parts_->shading.clip = planes;
 }
 
 void CarveVolume::setLight(const Vec3& from) {
-  parts_->light = from;
+  parts_->shading.light = from;
 }
 
 void CarveVolume::setTruth(const RayTruth& truth) {
-  parts_->truth = truth;
-  parts_->updateShader();
+  parts_->shading.truth = truth;
+  parts_->buildShader();
 }
 
 void CarveVolume::setSampleDistance(double voxels) {
@@ -557,24 +432,24 @@ void CarveVolume::setSampleDistance(double voxels) {
 }
 
 void CarveVolume::setFirstTissue(bool on) {
-  parts_->shows = on ? 1 : 0;
-  parts_->updateShader();
+  parts_->shading.shows = on ? 1 : 0;
+  parts_->buildShader();
 }
 
 void CarveVolume::setNormalsAsColour(bool on) {
-  parts_->shows = on ? 2 : 0;
-  parts_->updateShader();
+  parts_->shading.shows = on ? 2 : 0;
+  parts_->buildShader();
 }
 
 void CarveVolume::lookFrom(const Vec3& right, const Vec3& up, const Vec3& forward) {
-  parts_->eye_right = right;
-  parts_->eye_up = up;
-  parts_->eye_forward = forward;
+  parts_->shading.eye_right = right;
+  parts_->shading.eye_up = up;
+  parts_->shading.eye_forward = forward;
 }
 
 void CarveVolume::releaseGraphics(vtkRenderer& renderer) {
   vtkWindow* window = renderer.GetRenderWindow();
-  parts_->sent = false;
+  parts_->sent = parts_->drawn = false;
   parts_->prop->ReleaseGraphicsResources(window);
   parts_->leaps->ReleaseGraphicsResources(window);
   parts_->no_depth->ReleaseGraphicsResources(window);

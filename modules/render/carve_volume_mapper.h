@@ -13,6 +13,7 @@
 #include "render/transfer_function.h"
 #include "volume/grid.h"
 #include "volume/label_map.h"
+#include "volume/volume_mirror.h"
 
 class vtkRenderer;
 
@@ -28,7 +29,9 @@ class CarveVolume {
   // Draws `copy`, which stays the caller's and must outlive its use here: VTK reads the voxels in
   // place. All of them are sent at the next draw.
   // `labels`, fitted to it, say where tissues of a label are; null: nowhere.
-  void show(Volume& copy, std::shared_ptr<const LabelMap> labels, vtkRenderer& renderer);
+  // `mirror`, the caller's too, knows what was cut; one of the copy stands for `factors` of its.
+  void show(Volume& copy, std::shared_ptr<const LabelMap> labels, const VolumeMirror& mirror,
+            const Index3& factors, vtkRenderer& renderer);
   void remove(vtkRenderer& renderer);
   // As seen: asSeen().
   void setTissues(const TissueSet& seen, const TissueLooks& looks);

@@ -1,5 +1,6 @@
 #include "render/look_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trephine {
@@ -24,10 +25,19 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
   return shades;
 }
 
-RayBall rayBall(const Vec3& spacing_mm) {
+Vec3 cutColour(const Vec3& colour) {
+  const double light = std::clamp(glm::dot(colour, Vec3(0.3, 0.59, 0.11)), 0.0, 1.0);
+  return glm::min(Vec3(1.0), colour * glm::mix(Vec3(0.8, 0.45, 0.45), Vec3(1.1, 0.8, 0.76), light));
+}
+
+Vec3 ballRadii_mm(const Vec3& spacing_mm) {
   // 1.5 mm at 0.8 x 0.8 x 1.0 mm.
   const double mean_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
-  const Vec3 radii_mm = glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+  return glm::max(Vec3(1.75 * mean_mm), spacing_mm);
+}
+
+RayBall rayBall(const Vec3& spacing_mm) {
+  const Vec3 radii_mm = ballRadii_mm(spacing_mm);
   const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
   const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
   RayBall ball;

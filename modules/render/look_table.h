@@ -26,6 +26,10 @@ struct TissueShade {
 std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& looks,
                                       double highest_HU);
 
+// The same tissue where a tool has cut it: light ones, as bone, in a warm pink, dark ones darker
+// and redder.
+Vec3 cutColour(const Vec3& colour);
+
 // A place around a sample, in mm along the grid's axes, and what its HU adds to the normal there.
 // The sum over a ball's places is as long as the contrast across a flat edge in its middle.
 struct RayPlace {
@@ -37,6 +41,7 @@ constexpr int kBallPlaces = 24;
 
 // Directions spread evenly (Fibonacci's spiral) at 1.75 voxels, or one where slices are far apart:
 // the sum of HU times direction is the normal of a surface.
+Vec3 ballRadii_mm(const Vec3& spacing_mm);
 RayBall rayBall(const Vec3& spacing_mm);
 // VTK's: the six neighbours.
 RayBall centralDifferences(const Vec3& spacing_mm);

@@ -1,5 +1,4 @@
-// Everything that one frame passes through in order, from boxes to pixels, and the methods that set
-// what it shows: each is a line or two, so it stands in one file, of over 500 lines.
+// The methods by which others set what is shown: each is a line or two.
 //
 // VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
 #if __has_include(<vtk_glad.h>)
@@ -9,37 +8,17 @@
 #endif
 //
 #include <vtkAutoInit.h>
-#include <vtkCallbackCommand.h>
-#include <vtkCamera.h>
 #include <vtkCommand.h>
 #include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkNew.h>
-#include <vtkOpenGLRenderWindow.h>
-#include <vtkOpenGLShaderCache.h>
-#include <vtkOpenGLState.h>
 #include <vtkRenderWindow.h>
-#include <vtkRenderer.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 #include <utility>
 
-#include "base/log.h"
-#include "render/canvas.h"
-#include "render/carve_volume_mapper.h"
-#include "render/composer.h"
 #include "render/display_probe.h"
-#include "render/display_volume.h"
-#include "render/orientation_cue.h"
-#include "render/scene_renderer.h"
-#include "render/tool_drawing.h"
-#include "render/tool_guide.h"
-#include "render/view_camera.h"
-#include "render/volume_pictures.h"
+#include "render/scene_parts.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2);
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2);
@@ -55,332 +34,6 @@ double msSince(Clock::time_point start) {
 }
 
 }  // namespace
-
-// VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
-// other the tools'. The picture is put together from both.
-struct SceneRenderer::Parts {
-  vtkNew<vtkRenderer> renderer;  // of the volume
-  vtkNew<vtkRenderer> tool_renderer;
-  vtkSmartPointer<vtkOpenGLRenderWindow> window;  // null while detached
-  vtkNew<vtkCallbackCommand> context_asked;
-  RenderHost host;
-  bool hosted = false;
-
-  std::shared_ptr<VolumeMirror> mirror = std::make_shared<VolumeMirror>();
-  std::unique_ptr<VolumeMirror::Reader> news = std::make_unique<VolumeMirror::Reader>(mirror);
-  GridGeometry place_shown;
-  CarveVolume volume;
-  std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
-  Index3 reduction{1, 1, 1};
-  bool fitted = false;   // what is shown has been sent, or refused
-  bool refused = false;  // and nothing is drawn of it
-  Status refusal;
-  ToolDrawing tools;
-  std::vector<ToolView> tool_views;
-  ScreenLines lines;
-
-  ViewCamera camera;
-  VolumePictures pictures;
-  Composer composer;
-  Canvas scene;       // the volume over the background, in the window's size
-  Canvas tool_layer;  // tools alone, colour and depth
-  Canvas frame;       // pictures that are read back
-  bool scene_stale = true;
-  bool moving = false;
-  int width = 1;
-  int height = 1;
-
-  Parts() {
-    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) {
-      each->EraseOff();
-      each->GetActiveCamera();
-    }
-    context_asked->SetClientData(this);
-    context_asked->SetCallback([](vtkObject*, unsigned long event, void* client, void* data) {
-      const RenderHost& lender = static_cast<Parts*>(client)->host;
-      if (event == vtkCommand::WindowIsCurrentEvent) {
-        *static_cast<bool*>(data) = lender.isCurrent();
-      } else if (!lender.isCurrent()) {
-        // Qt's makeCurrent binds its own framebuffer, which VTK must not meet amid a frame.
-        lender.makeCurrent();
-      }
-    });
-  }
-
-  void spoil() {
-    pictures.spoil();
-    scene_stale = true;
-  }
-
-  const Volume& voxels() const { return mirror->volume(); }
-  bool drawsVolume() const { return !mirror->empty() && !refused; }
-
-  // All voxels, as many as the card takes; sent with the next picture.
-  void show() {
-    reduced.reset();
-    reduction = {1, 1, 1};
-    fitted = refused = false;
-    refusal = {};
-    pictures.startAnew();
-    volume.show(mirror->lent(), mirror->labels(), *renderer);
-  }
-
-  void showReduced() {
-    volume.remove(*renderer);
-    reduced.emplace(voxels(), reduction);
-    const LabelMap* labels = mirror->labels().get();
-    volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *renderer);
-  }
-
-  void changed(const VoxelBox& box) {
-    volume.changed(reduced ? reduced->update(voxels(), box) : box);
-    cut(box);
-  }
-
-  // Halves it until the card takes it.
-  void fit() {
-    fitted = true;
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
-    if (most_edge > 0) most = std::min(most, most_edge);
-    const Index3 needed = reductionFor(voxels().geometry.size, most, mirror->labels() != nullptr);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      reduction[axis] = std::max(reduction[axis], needed[axis]);
-    }
-    constexpr int kMost = 16;  // beyond it there is too little left to see
-    for (;;) {
-      if (reduction != Index3{1, 1, 1}) showReduced();
-      handToVtk();
-      volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
-      if (volume.sendAll(*renderer) && most_edge >= 0) return;
-      if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (voxels().geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;
-      }
-    }
-    refused = true;
-    refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
-                    "Close other programs, or import the case with a part or fewer voxels"};
-    spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
-  }
-  int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
-
-  // `upwards`: what the picture spans upwards, in the window's height.
-  void place(vtkRenderer& in, double upwards) {
-    const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
-    vtkCamera* vtk = in.GetActiveCamera();
-    vtk->SetPosition(eye.x, eye.y, eye.z);
-    vtk->SetFocalPoint(focus.x, focus.y, focus.z);
-    vtk->SetViewUp(up.x, up.y, up.z);
-    vtk->SetParallelProjection(camera.parallel());
-    vtk->SetParallelScale(camera.halfHeight_mm() * upwards);
-    const double half = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0)) * upwards;
-    vtk->SetViewAngle(2.0 * glm::degrees(std::atan(half)));
-    in.ResetCameraClippingRange();
-  }
-
-  // OpenGL's state was changed behind VTK's back, by us and by the window's toolkit.
-  void handToVtk() {
-    window->SetSize(width, height);
-    window->GetState()->Reset();
-    window->GetState()->vtkglEnable(GL_DEPTH_TEST);
-    window->GetState()->vtkglDepthMask(GL_TRUE);
-    window->GetState()->vtkglDepthFunc(GL_LEQUAL);
-    window->GetShaderCache()->ReleaseCurrentShader();
-  }
-
-  // Into the framebuffer that is bound.
-  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(part.low_x, part.low_y, part.width(), part.height());
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kNever[4] = {1e9F, 1e9F, 0.0F, 0.0F};
-    glClearBufferfv(GL_COLOR, 0, kNothing);
-    glClearBufferfv(GL_COLOR, 1, kNever);
-    glClearBufferfv(GL_COLOR, 2, kNothing);
-    handToVtk();
-    renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
-    volume.lookFrom(camera.right(), camera.up(), camera.forward());
-    volume.sendChanges(*renderer);
-    volume.setQuality(1.0, ray_step);
-    volume.setPart(part);
-    place(*renderer, span.pixels.y / height);
-    renderer->Render();
-    glFinish();
-  }
-
-  VolumePictures::Cast caster() {
-    return [this](const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
-      cast(into, span, part, ray_step);
-    };
-  }
-
-  void drawAt(double level) {
-    if (!fitted && !mirror->empty()) fit();
-    if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
-    scene_stale = true;
-  }
-
-  bool work(double budget_ms) {
-    if (!fitted && !mirror->empty()) fit();
-    if (!drawsVolume()) return std::exchange(scene_stale, false);
-    const bool changed = pictures.work(budget_ms, moving, caster());
-    scene_stale |= changed;
-    const std::string& shader = composer.failure();
-    if (refusal && (!pictures.allocated() || !shader.empty())) {
-      refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
-                      "Make the window smaller, or update the graphics driver"};
-      spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
-    }
-    return changed;
-  }
-
-  // Around the points, in the window's pixels.
-  PixelRect around(const Vec3* points, std::size_t count, int margin) const {
-    PixelRect rect;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::optional<glm::dvec2> at = camera.pixelOf(points[i], width, height);
-      if (!at) return {0, 0, width, height};
-      const auto within = [](double value, int most) {
-        return int(std::floor(std::clamp(value, -1.0, double(most))));
-      };
-      const int x = within(at->x, width), y = within(at->y, height);
-      rect = bounding(rect, {x - margin, y - margin, x + margin + 1, y + margin + 1});
-    }
-    return {std::max(rect.low_x, 0), std::max(rect.low_y, 0), std::min(rect.high_x, width),
-            std::min(rect.high_y, height)};
-  }
-
-  void cut(const VoxelBox& box) {
-    // Shading and ambient light look this far from a sample.
-    constexpr double kReach_voxels = 4.0;
-    Vec3 corners[8];
-    for (int corner = 0; corner < 8; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto a = std::size_t(axis);
-        corners[corner][axis] =
-            corner & (1 << axis) ? box.high[a] - 1 + kReach_voxels : box.low[a] - kReach_voxels;
-      }
-      corners[corner] = voxels().geometry.toPatient_mm(corners[corner]);
-    }
-    pictures.cut(around(corners, 8, 1));
-  }
-
-  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span) {
-    std::vector<PixelRect> parts;
-    for (const auto& box : tools.boxes()) {
-      const PixelRect part = around(box.data(), box.size(), 2);
-      if (!part.empty()) parts.push_back(part);
-    }
-    if (parts.empty()) return;
-    tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
-    glEnable(GL_SCISSOR_TEST);
-    glDepthMask(GL_TRUE);
-    for (const PixelRect& part : parts) {
-      glScissor(part.low_x, part.low_y, part.width(), part.height());
-      constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kFar = 1.0F;
-      glClearBufferfv(GL_COLOR, 0, kNothing);
-      glClearBufferfv(GL_DEPTH, 0, &kFar);
-    }
-    handToVtk();
-    place(*tool_renderer, 1.0);
-    tool_renderer->Render();
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    DepthRange range;
-    tool_renderer->GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
-    range.parallel = camera.parallel();
-    // A part that lies in another would be drawn twice, which changes nothing: what is read is not
-    // what is written.
-    for (const PixelRect& part : parts) {
-      composer.drawTools(tool_layer, range, shown, span, part);
-    }
-  }
-
-  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
-    for (const ToolView& tool : tool_views) {
-      const PixelRect reach = guideReach(tool, camera, width, height);
-      std::optional<double> ahead_mm;
-      if (!tool.contact && !reach.empty()) {
-        DepthPatch patch;
-        patch.step = span.pixels / glm::dvec2(shown.width(), shown.height());
-        patch.beyond = span.beyond;
-        const auto ray = [&](int x, int y) {
-          return glm::ivec2(glm::floor((glm::dvec2(x, y) + span.beyond) / patch.step));
-        };
-        const glm::ivec2 low = ray(reach.low_x, reach.low_y),
-                         high = ray(reach.high_x, reach.high_y);
-        patch.rays = {std::max(low.x, 0), std::max(low.y, 0), std::min(high.x + 1, shown.width()),
-                      std::min(high.y + 1, shown.height())};
-        patch.depth_mm = shown.readDepth_mm(patch.rays);
-        if (!patch.depth_mm.empty()) {
-          ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
-        }
-      }
-      addGuide(tool, ahead_mm, camera, width, height, to);
-    }
-  }
-
-  void compose(unsigned int framebuffer) {
-    const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
-    const Span span = shown ? pictures.span() : Span{};
-    if (scene_stale || scene.width() != width || scene.height() != height) {
-      scene.bind(width, height, {Canvas::Image::colour});
-      composer.drawVolume(shown, span, width, height);
-      scene_stale = false;
-    }
-    scene.copyTo(framebuffer);
-    drawTools(framebuffer, shown, span);
-    ScreenLines all;
-    if (shown) {
-      addOrientationCue(camera, width, height, all);
-      addScaleBar(camera, width, height, all);
-      if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
-      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    }
-    all.insert(all.end(), lines.begin(), lines.end());
-    composer.drawLines(all, width, height);
-  }
-
-  // What is shown now.
-  Picture read() {
-    Picture picture;
-    if (!frame.bind(width, height, {Canvas::Image::colour})) return picture;
-    compose(frame.framebuffer());
-    frame.bind();
-    const std::size_t row = std::size_t(width) * 3;
-    std::vector<std::uint8_t> up(row * std::size_t(height));
-    while (glGetError() != GL_NO_ERROR) {  // of before
-    }
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, up.data());
-    if (glGetError() != GL_NO_ERROR) return picture;
-    picture.width = width;
-    picture.height = height;
-    picture.rgb.resize(up.size());
-    for (int y = 0; y < height; ++y) {  // OpenGL's rows go up
-      std::copy_n(up.data() + std::size_t(height - 1 - y) * row, row,
-                  picture.rgb.data() + std::size_t(y) * row);
-    }
-    return picture;
-  }
-
-  void release() {
-    if (!window) return;
-    window->MakeCurrent();
-    pictures.release();
-    composer.release();
-    scene.release();
-    tool_layer.release();
-    frame.release();
-    scene_stale = true;
-    fitted = refused = false;
-    volume.releaseGraphics(*renderer);
-    window->Finalize();
-    for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
-    window->RemoveObserver(context_asked);
-    window = nullptr;
-  }
-};
 
 SceneRenderer::SceneRenderer() : parts_(std::make_unique<Parts>()) {}
 
@@ -461,6 +114,13 @@ void SceneRenderer::setMirror(std::shared_ptr<VolumeMirror> mirror) {
 void SceneRenderer::setVolume(const Grid& grid) {
   auto mirror = std::make_shared<VolumeMirror>();
   mirror->show(grid.snapshot(), grid.labels());
+  setMirror(std::move(mirror));
+}
+
+void SceneRenderer::setVolume(Grid& grid, const std::shared_ptr<const Volume>& whole) {
+  auto mirror = std::make_shared<VolumeMirror>();
+  mirror->show(Volume(*whole), grid.labels(), whole);
+  mirror->pull(grid);
   setMirror(std::move(mirror));
 }
 

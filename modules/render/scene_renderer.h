@@ -73,13 +73,18 @@ class SceneRenderer {
   void setMirror(std::shared_ptr<VolumeMirror> mirror);
   // For a picture without a window: a mirror of the grid, of its own.
   void setVolume(const Grid& grid);
+  // The same of a grid that no mirror has read from yet and that began as `whole`, which the caller
+  // keeps: what was cut since is shown as cut.
+  void setVolume(Grid& grid, const std::shared_ptr<const Volume>& whole);
   bool hasVolume() const;
   // A tissue of the set that is not visible is shown all the same where a look says so (asSeen).
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   // At most kMostClipPlanes; what all of them leave is drawn, with a face where a plane cuts it.
   static constexpr std::size_t kMostClipPlanes = 8;
   void setClip(const std::vector<ClipPlane>& planes);
-  // Where the light comes from: right, up, towards the eye. It is fixed to the eye.
+  // Where the light comes from: right, up, towards the eye. It is fixed to the eye. From a little
+  // to the left and above at first, so that a hollow has a lit wall and a dark one.
+  static inline const Vec3 kLight = glm::normalize(Vec3(-0.3, 0.4, 1.0));
   void setLight(const Vec3& from);
   void setTruth(const RayTruth& truth);
   // Distance of the samples of a ray at full quality, in the smallest edge of a voxel.

@@ -5,17 +5,34 @@
 
 namespace trephine {
 
-void VolumeMirror::show(Volume copy, std::shared_ptr<const LabelMap> labels) {
-  volume_ = std::move(copy);
-  labels_ = std::move(labels);
-  renewAll();
+namespace {
+
+// Around `all` and the boxes.
+VoxelBox boundsOf(const std::vector<VoxelBox>& boxes, VoxelBox all) {
+  for (const VoxelBox& box : boxes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all.low[axis] = std::min(all.low[axis], box.low[axis]);
+      all.high[axis] = std::max(all.high[axis], box.high[axis]);
+    }
+  }
+  return all;
 }
 
-void VolumeMirror::refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels) {
+}  // namespace
+
+void VolumeMirror::show(Volume copy, std::shared_ptr<const LabelMap> labels,
+                        const std::shared_ptr<const Volume>& whole) {
+  volume_ = std::move(copy);
+  labels_ = std::move(labels);
+  renewAll(whole);
+}
+
+void VolumeMirror::refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels,
+                          const std::shared_ptr<const Volume>& whole) {
   if (empty() || !(voxels.geometry == volume_.geometry)) return;
   voxels.read(0, volume_.hu);
   labels_ = std::move(labels);
-  renewAll();
+  renewAll(whole);
 }
 
 bool VolumeMirror::pull(Grid& grid) {
@@ -23,11 +40,20 @@ bool VolumeMirror::pull(Grid& grid) {
   pulled_.clear();
   grid.copyChanges(volume_, pulled_);
   if (pulled_.empty()) return false;
+  if (touched_ == VoxelBox{}) touched_ = pulled_.front();
+  touched_ = boundsOf(pulled_, touched_);
   for (Reader* reader : readers_) reader->add(pulled_);
   return true;
 }
 
-void VolumeMirror::renewAll() {
+std::shared_ptr<const Volume> VolumeMirror::whole() const {
+  std::shared_ptr<const Volume> whole = whole_.lock();
+  return whole && whole->geometry == volume_.geometry ? whole : nullptr;
+}
+
+void VolumeMirror::renewAll(const std::shared_ptr<const Volume>& whole) {
+  whole_ = whole;
+  touched_ = {};
   for (Reader* reader : readers_) reader->news_ = {};
 }
 
@@ -47,14 +73,7 @@ void VolumeMirror::Reader::add(const std::vector<VoxelBox>& boxes) {
   if (news_.all) return;
   news_.boxes.insert(news_.boxes.end(), boxes.begin(), boxes.end());
   if (news_.boxes.size() <= kMostBoxes) return;
-  VoxelBox whole = news_.boxes.front();
-  for (const VoxelBox& box : news_.boxes) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      whole.low[axis] = std::min(whole.low[axis], box.low[axis]);
-      whole.high[axis] = std::max(whole.high[axis], box.high[axis]);
-    }
-  }
-  news_.boxes = {whole};
+  news_.boxes = {boundsOf(news_.boxes, news_.boxes.front())};
 }
 
 }  // namespace trephine

@@ -19,10 +19,13 @@ class VolumeMirror {
   VolumeMirror(const VolumeMirror&) = delete;
   VolumeMirror& operator=(const VolumeMirror&) = delete;
 
-  // These voxels from now on, and those labels of theirs (null: none). Everything is new.
-  void show(Volume copy, std::shared_ptr<const LabelMap> labels);
+  // These voxels from now on, and those labels of theirs (null: none). Everything is new. `whole`
+  // is what they were before anything was cut, while its owner keeps it; null: nobody knows.
+  void show(Volume copy, std::shared_ptr<const LabelMap> labels,
+            const std::shared_ptr<const Volume>& whole = nullptr);
   // All voxels again, from others of the same geometry; others are left alone. Allocates none.
-  void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels);
+  void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels,
+              const std::shared_ptr<const Volume>& whole = nullptr);
   // Copies what was changed since the last call. True where anything was. A grid of another
   // geometry is left alone.
   bool pull(Grid& grid);
@@ -32,6 +35,11 @@ class VolumeMirror {
   // For who draws in place with a library that asks for more than it needs, and for measurements.
   Volume& lent() { return volume_; }
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+
+  // With touched(): what was cut, for views that show it. Null where it is not known.
+  std::shared_ptr<const Volume> whole() const;
+  // A box of all that pull() took since show() or refill(); empty: nothing.
+  const VoxelBox& touched() const { return touched_; }
 
   // What a reader has not seen yet.
   struct News {
@@ -60,10 +68,12 @@ class VolumeMirror {
   };
 
  private:
-  void renewAll();
+  void renewAll(const std::shared_ptr<const Volume>& whole);
 
   Volume volume_;
   std::shared_ptr<const LabelMap> labels_;
+  std::weak_ptr<const Volume> whole_;
+  VoxelBox touched_;
   std::vector<Reader*> readers_;
   std::vector<VoxelBox> pulled_;
 };

@@ -176,9 +176,9 @@ void MainWindow::showCase() {
   carved_ = unsaved_cuts_ = false;
   showTools({});
   if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {
-    views_->showVolume(std::move(mirror), of->labels);
+    views_->showVolume(std::move(mirror), of->labels, of->volume);
   } else {
-    views_->refill(slabsOf(*of->volume), of->labels);
+    views_->refill(of->volume, of->labels);
   }
   QString about = sizeWords(of->volume->geometry);
   if (!of->name.empty()) about = toQt(of->name) + '\n' + about;
@@ -256,7 +256,7 @@ void MainWindow::sessionStarted() {
   rate_clock_.restart();
   // The view has the case already, unless an earlier exercise left its cuts there.
   const Case& of = *workstation_.currentCase();
-  if (carved_) views_->refill(slabsOf(*of.volume), of.labels);
+  if (carved_) views_->refill(of.volume, of.labels);
   carved_ = true;
   unsaved_cuts_ = false;
   placeHandPoints();

@@ -69,7 +69,7 @@ void MainWindow::showWholeCase() {
   carved_ = unsaved_cuts_ = false;
   workstation_.makeWhole();
   const Case& of = *workstation_.currentCase();
-  views_->refill(slabsOf(*of.volume), of.labels);
+  views_->refill(of.volume, of.labels);
   showPhase();
 }
 

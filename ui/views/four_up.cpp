@@ -122,9 +122,10 @@ QWidget* FourUp::box(int view) const {
 
 // --- The case ---
 
-void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels) {
+void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels,
+                        const std::shared_ptr<const Volume>& whole) {
   const bool same_place = copy.geometry == mirror_->volume().geometry;
-  mirror_->show(std::move(copy), labels);
+  mirror_->show(std::move(copy), labels, whole);
   changed();
   for (const Slices& of : slices_) {
     const QSignalBlocker quiet(of.slider);
@@ -134,8 +135,9 @@ void FourUp::showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labe
   setPoint(same_place || mirror_->empty() ? point_mm_ : mirror_->volume().geometry.centre_mm());
 }
 
-void FourUp::refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels) {
-  mirror_->refill(voxels, labels);
+void FourUp::refill(const std::shared_ptr<const Volume>& whole,
+                    const std::shared_ptr<const LabelMap>& labels) {
+  mirror_->refill(slabsOf(*whole), labels, whole);
   changed();
 }
 

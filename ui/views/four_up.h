@@ -30,9 +30,13 @@ class FourUp : public QWidget {
   SliceView& slice(SliceAxis axis) { return *slices_[std::size_t(axis)].view; }
   QList<QAction*> layoutActions() const { return {four_, one_large_, single_}; }
 
-  // These voxels from now on, in every view; or all of them again, of the same place.
-  void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels);
-  void refill(const VoxelSlabs& voxels, const std::shared_ptr<const LabelMap>& labels);
+  // These voxels from now on, in every view; or all of them again, of the same place. `whole` is
+  // what they are before anything is cut: what is cut from then on is shown as cut while it is
+  // kept.
+  void showVolume(Volume copy, const std::shared_ptr<const LabelMap>& labels,
+                  const std::shared_ptr<const Volume>& whole = nullptr);
+  void refill(const std::shared_ptr<const Volume>& whole,
+              const std::shared_ptr<const LabelMap>& labels);
   // What the writer changed since the last call, once for all views.
   void pullChanges(Grid& grid);
   const VolumeMirror& mirror() const { return *mirror_; }

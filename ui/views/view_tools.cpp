@@ -49,7 +49,7 @@ ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this))
                       tr("Drag to move the light"));
   connect(light_, &QAction::toggled, this, &ViewTools::lightWanted);
   reset_ = make("resetClip", tr("Reset box, plane and light"), tr("Reset"), Qt::Key_X,
-                tr("Show everything again, with the light at the eye"));
+                tr("Show everything again, with the light back in its place"));
   connect(reset_, &QAction::triggered, this, &ViewTools::resetWanted);
   for (const double way : {1.0, -1.0}) {
     auto* step = new QAction(this);

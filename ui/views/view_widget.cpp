@@ -166,7 +166,7 @@ void ViewWidget::throughTool() {
 void ViewWidget::resetTools() {
   clip_.reset();
   along_tool_ = false;
-  light_ = Vec3(0.0, 0.0, 1.0);
+  light_ = SceneRenderer::kLight;
   for (QAction* action : {strip_->box(), strip_->plane(), strip_->light()}) {
     action->setChecked(false);
   }

@@ -105,7 +105,7 @@ class ViewWidget : public QOpenGLWidget {
   std::optional<ClipTools::Handle> dragged_;
   bool along_tool_ = false;  // how the plane through the tool lies next
   bool moving_light_ = false;
-  Vec3 light_{0.0, 0.0, 1.0};
+  Vec3 light_ = SceneRenderer::kLight;
   QPointF last_;
   std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;

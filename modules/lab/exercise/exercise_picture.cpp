@@ -11,7 +11,8 @@ namespace {
 constexpr int kWidth = 1280, kHeight = 800;
 }
 
-Status writeExercisePicture(Session& session, const std::filesystem::path& file) {
+Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume>& whole,
+                            const std::filesystem::path& file) {
   const double needed_mb = shownMb(session.grid().geometry().voxelCount());
   if (Status enough = enoughMemory(needed_mb, "A picture", file.string()); !enough) return enough;
   Result<std::unique_ptr<SceneRenderer>> made = SceneRenderer::offscreen(kWidth, kHeight);
@@ -19,7 +20,7 @@ Status writeExercisePicture(Session& session, const std::filesystem::path& file)
   SceneRenderer& renderer = **made;
   const Scene& scene = session.scene();
   renderer.setTissues(scene.tissues, scene.view.looks);
-  renderer.setVolume(session.grid());
+  renderer.setVolume(session.grid(), whole);
   std::vector<ToolView> tools;
   const LoopState& state = session.state();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {

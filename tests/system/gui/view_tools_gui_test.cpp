@@ -37,6 +37,24 @@ int differentPixels(const Picture& a, const Picture& b, int x_from = 0, int x_to
   return count;
 }
 
+// Mean brightness (0 to 255) between two columns, within the middle half of a picture's height.
+double brightness(const Picture& picture, int x_from, int x_to) {
+  double sum = 0.0;
+  int count = 0;
+  for (int y = picture.height / 4; y < 3 * picture.height / 4; ++y) {
+    for (int x = x_from; x < x_to; ++x, ++count) {
+      const std::size_t at = (std::size_t(y) * std::size_t(picture.width) + std::size_t(x)) * 3;
+      sum += (picture.rgb[at] + picture.rgb[at + 1] + picture.rgb[at + 2]) / 3.0;
+    }
+  }
+  return sum / std::max(1, count);
+}
+// How much brighter the left of the picture's middle is than the right of it.
+double brighterLeft(const Picture& picture) {
+  const int middle = picture.width / 2, reach = picture.width / 6;
+  return brightness(picture, middle - reach, middle) - brightness(picture, middle, middle + reach);
+}
+
 }  // namespace
 
 class ViewToolsGuiTest : public QObject {
@@ -154,6 +172,28 @@ class ViewToolsGuiTest : public QObject {
     press(Qt::Key_X);
   }
 
+  // The plane faces the eye, in the middle of the head: the nose and brow before it are gone, and
+  // where it meets bone there is a flat face as bright as the light makes one that looks at the
+  // eye.
+  void thePlaneRemovesWhatLiesBeforeItAndLeavesWhatLiesBehind() {
+    press(Qt::Key_A);
+    const Picture whole = shot();
+    press(Qt::Key_C);
+    const Picture halved = shot();
+    const int changed = differentPixels(whole, halved);
+    QVERIFY2(changed > whole.width * whole.height / 20, qPrintable(QString::number(changed)));
+    // Moved to before the head it takes nothing away, moved behind it everything.
+    for (int i = 0; i < 200; ++i) press(Qt::Key_Period);
+    const Picture before_all = shot();
+    for (int i = 0; i < 400; ++i) press(Qt::Key_Comma);
+    const Picture behind_all = shot();
+    const int one = differentPixels(whole, before_all), other = differentPixels(whole, behind_all);
+    QVERIFY2(std::min(one, other) == 0, qPrintable(QString("%1 %2").arg(one).arg(other)));
+    QVERIFY2(std::max(one, other) > changed, qPrintable(QString("%1 %2").arg(one).arg(other)));
+    press(Qt::Key_X);
+    QCOMPARE(differentPixels(whole, shot()), 0);
+  }
+
   void thePlaneThroughTheToolNeedsATool() {
     QAction* through = view().findChild<QAction*>("clipThroughTool");
     QVERIFY(through && !through->isEnabled());
@@ -186,6 +226,21 @@ class ViewToolsGuiTest : public QObject {
     drag(middle, middle + QPoint(60, 0));
     QVERIFY(view().camera().forward() != forward);
     press(Qt::Key_A);
+  }
+
+  void theLitSideFollowsTheLight() {
+    press(Qt::Key_A);
+    const Picture before = shot();
+    const QPoint middle = view().rect().center();
+    press(Qt::Key_L, Qt::ShiftModifier);
+    drag(middle, middle - QPoint(300, 0));
+    const double from_left = brighterLeft(shot());
+    for (int i = 0; i < 2; ++i) drag(middle, middle + QPoint(300, 0));
+    const double from_right = brighterLeft(shot());
+    QVERIFY2(from_left > from_right + 20.0,
+             qPrintable(QString("%1 %2").arg(from_left).arg(from_right)));
+    press(Qt::Key_X);
+    QCOMPARE(differentPixels(before, shot()), 0);
   }
 
   void aToolMovesOverThePictureAtOnce() {

@@ -220,6 +220,23 @@ TEST(Truth, TheLightComesFromWhereItIsPutAndTurnsWithTheEye) {
   }
 }
 
+TEST(Truth, AtFirstTheLightComesFromTheUpperLeftSoThatAHollowHasALitAndADarkWall) {
+  RENDERER_OR_SKIP(renderer);
+  renderer.setTissues(tissues());
+  renderer.setVolume(Grid(round([](double r) { return -1000.0 + 2200.0 * edge(r, 24.0); })));
+  renderer.lookAt(Vec3(0.0), Vec3(0, 1, 0), Vec3(0, 0, 1), kEye_mm);
+  const Picture picture = renderer.picture();
+  const int aside = int(13.0 / renderer.mmPerPixelAt(Vec3(0.0)));
+  const auto at = [&](int right, int down) {
+    return brightness(pixel(picture, kWidth / 2 + right * aside, kHeight / 2 + down * aside));
+  };
+  EXPECT_GT(at(-1, 0), at(1, 0) + 40);
+  EXPECT_GT(at(0, -1), at(0, 1) + 40);
+  EXPECT_GT(at(1, 1), 100) << "nothing is black";
+  renderer.setLight(SceneRenderer::kLight);
+  EXPECT_EQ(renderer.picture(), picture);
+}
+
 TEST(Truth, ABadLightIsNoLight) {
   RENDERER_OR_SKIP(renderer);
   renderer.setTissues(tissues());

@@ -46,6 +46,25 @@ TEST_F(VolumeMirrorTest, ACutReachesEveryReaderOnce) {
   EXPECT_EQ(second.take().boxes.size(), 2u) << "one that did not read misses nothing";
 }
 
+TEST_F(VolumeMirrorTest, ItKnowsWhatWasTouchedSinceItWasWholeWhileTheWholeIsKept) {
+  auto whole = std::make_shared<const Volume>(block());
+  mirror_->show(block(), nullptr, whole);
+  EXPECT_EQ(mirror_->whole(), whole);
+  EXPECT_EQ(mirror_->touched(), VoxelBox{});
+  cut(grid_, 20, 3, 18);
+  mirror_->pull(grid_);
+  EXPECT_EQ(mirror_->touched(), (VoxelBox{{16, 0, 16}, {32, 16, 20}}));
+  cut(grid_, 0, 20, 0);
+  mirror_->pull(grid_);
+  EXPECT_EQ(mirror_->touched(), (VoxelBox{{0, 0, 0}, {32, 32, 20}}));
+  mirror_->refill(slabsOf(*whole), nullptr, whole);
+  EXPECT_EQ(mirror_->touched(), VoxelBox{});
+  whole = nullptr;
+  EXPECT_EQ(mirror_->whole(), nullptr) << "the mirror keeps no second copy alive";
+  mirror_->show(block(), nullptr, std::make_shared<const Volume>());
+  EXPECT_EQ(mirror_->whole(), nullptr) << "of another place";
+}
+
 TEST_F(VolumeMirrorTest, AReaderThatNeverReadsKeepsABoxThatHoldsAllOfThem) {
   VolumeMirror::Reader reader(mirror_);
   reader.take();

@@ -1,0 +1,65 @@
+// The volume, halved until the graphics card takes it, or refused.
+//
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
+#include <algorithm>
+
+#include "base/log.h"
+#include "render/scene_parts.h"
+
+namespace trephine {
+
+void SceneRenderer::Parts::show() {
+  reduced.reset();
+  reduction = {1, 1, 1};
+  fitted = refused = false;
+  refusal = {};
+  pictures.startAnew();
+  volume.show(mirror->lent(), mirror->labels(), *mirror, reduction, *renderer);
+}
+
+void SceneRenderer::Parts::showReduced() {
+  volume.remove(*renderer);
+  reduced.emplace(voxels(), reduction);
+  const LabelMap* labels = mirror->labels().get();
+  volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *mirror, reduction,
+              *renderer);
+}
+
+void SceneRenderer::Parts::changed(const VoxelBox& box) {
+  volume.changed(reduced ? reduced->update(voxels(), box) : box);
+  cut(box);
+}
+
+void SceneRenderer::Parts::fit() {
+  fitted = true;
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+  if (most_edge > 0) most = std::min(most, most_edge);
+  const Index3 needed = reductionFor(voxels().geometry.size, most, mirror->labels() != nullptr);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reduction[axis] = std::max(reduction[axis], needed[axis]);
+  }
+  constexpr int kMost = 16;  // beyond it there is too little left to see
+  for (;;) {
+    if (reduction != Index3{1, 1, 1}) showReduced();
+    handToVtk();
+    volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
+    if (volume.sendAll(*renderer) && most_edge >= 0) return;
+    if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (voxels().geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;
+    }
+  }
+  refused = true;
+  refusal = Error{"VOLUME_REFUSED", "The graphics card cannot show this volume", "3-D view",
+                  "Close other programs, or import the case with a part or fewer voxels"};
+  spdlog::warn("The graphics card refused a volume: {}", volume.complaint());
+}
+
+}  // namespace trephine

@@ -1,0 +1,102 @@
+// What a SceneRenderer is made of. For the .cpp files that draw, alone: VTK's headers come with it.
+#pragma once
+
+#include <vtkCallbackCommand.h>
+#include <vtkNew.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/canvas.h"
+#include "render/carve_volume_mapper.h"
+#include "render/composer.h"
+#include "render/display_volume.h"
+#include "render/scene_renderer.h"
+#include "render/tool_drawing.h"
+#include "render/view_camera.h"
+#include "render/volume_pictures.h"
+
+namespace trephine {
+
+// VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
+// other the tools'. The picture is put together from both.
+struct SceneRenderer::Parts {
+  vtkNew<vtkRenderer> renderer;  // of the volume
+  vtkNew<vtkRenderer> tool_renderer;
+  vtkSmartPointer<vtkOpenGLRenderWindow> window;  // null while detached
+  vtkNew<vtkCallbackCommand> context_asked;
+  RenderHost host;
+  bool hosted = false;
+
+  std::shared_ptr<VolumeMirror> mirror = std::make_shared<VolumeMirror>();
+  std::unique_ptr<VolumeMirror::Reader> news = std::make_unique<VolumeMirror::Reader>(mirror);
+  GridGeometry place_shown;
+  CarveVolume volume;
+  std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
+  Index3 reduction{1, 1, 1};
+  bool fitted = false;   // what is shown has been sent, or refused
+  bool refused = false;  // and nothing is drawn of it
+  Status refusal;
+  int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
+
+  ToolDrawing tools;
+  std::vector<ToolView> tool_views;
+  ScreenLines lines;
+
+  ViewCamera camera;
+  VolumePictures pictures;
+  Composer composer;
+  Canvas scene;       // the volume over the background, in the window's size
+  Canvas tool_layer;  // tools alone, colour and depth
+  Canvas frame;       // pictures that are read back
+  bool scene_stale = true;
+  bool moving = false;
+  int width = 1;
+  int height = 1;
+
+  Parts();
+
+  void spoil() {
+    pictures.spoil();
+    scene_stale = true;
+  }
+
+  const Volume& voxels() const { return mirror->volume(); }
+  bool drawsVolume() const { return !mirror->empty() && !refused; }
+
+  // ---- Fitting the volume to the graphics card: scene_fitting.cpp.
+  // All voxels, as many as the card takes; sent with the next picture.
+  void show();
+  void showReduced();
+  void changed(const VoxelBox& box);
+  // Halves it until the card takes it.
+  void fit();
+
+  // ---- Pictures of the volume, and all that is put together: scene_pictures.cpp.
+  // `upwards`: what the picture spans upwards, in the window's height.
+  void place(vtkRenderer& in, double upwards);
+  // OpenGL's state was changed behind VTK's back, by us and by the window's toolkit.
+  void handToVtk();
+  // Into the framebuffer that is bound.
+  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step);
+  VolumePictures::Cast caster();
+  void drawAt(double level);
+  bool work(double budget_ms);
+  // Around the points, in the window's pixels.
+  PixelRect around(const Vec3* points, std::size_t count, int margin) const;
+  void cut(const VoxelBox& box);
+  void compose(unsigned int framebuffer);
+  // What is shown now.
+  Picture read();
+  void release();
+
+  // ---- Tools over the picture: scene_tools.cpp.
+  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
+  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const;
+};
+
+}  // namespace trephine

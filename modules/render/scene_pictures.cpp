@@ -1,0 +1,200 @@
+// All that a picture passes through: rays, the canvas that the window shows, reading back.
+//
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
+#include <vtkCamera.h>
+#include <vtkCommand.h>
+#include <vtkOpenGLShaderCache.h>
+#include <vtkOpenGLState.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/log.h"
+#include "render/orientation_cue.h"
+#include "render/scene_parts.h"
+
+namespace trephine {
+
+SceneRenderer::Parts::Parts() {
+  for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) {
+    each->EraseOff();
+    each->GetActiveCamera();
+  }
+  context_asked->SetClientData(this);
+  context_asked->SetCallback([](vtkObject*, unsigned long event, void* client, void* data) {
+    const RenderHost& lender = static_cast<Parts*>(client)->host;
+    if (event == vtkCommand::WindowIsCurrentEvent) {
+      *static_cast<bool*>(data) = lender.isCurrent();
+    } else if (!lender.isCurrent()) {
+      // Qt's makeCurrent binds its own framebuffer, which VTK must not meet amid a frame.
+      lender.makeCurrent();
+    }
+  });
+}
+
+void SceneRenderer::Parts::place(vtkRenderer& in, double upwards) {
+  const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
+  vtkCamera* vtk = in.GetActiveCamera();
+  vtk->SetPosition(eye.x, eye.y, eye.z);
+  vtk->SetFocalPoint(focus.x, focus.y, focus.z);
+  vtk->SetViewUp(up.x, up.y, up.z);
+  vtk->SetParallelProjection(camera.parallel());
+  vtk->SetParallelScale(camera.halfHeight_mm() * upwards);
+  const double half = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0)) * upwards;
+  vtk->SetViewAngle(2.0 * glm::degrees(std::atan(half)));
+  in.ResetCameraClippingRange();
+}
+
+void SceneRenderer::Parts::handToVtk() {
+  window->SetSize(width, height);
+  window->GetState()->Reset();
+  window->GetState()->vtkglEnable(GL_DEPTH_TEST);
+  window->GetState()->vtkglDepthMask(GL_TRUE);
+  window->GetState()->vtkglDepthFunc(GL_LEQUAL);
+  window->GetShaderCache()->ReleaseCurrentShader();
+}
+
+void SceneRenderer::Parts::cast(const Canvas& into, const Span& span, const PixelRect& part,
+                                double ray_step) {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part.low_x, part.low_y, part.width(), part.height());
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kNever[4] = {1e9F, 1e9F, 0.0F, 0.0F};
+  glClearBufferfv(GL_COLOR, 0, kNothing);
+  glClearBufferfv(GL_COLOR, 1, kNever);
+  glClearBufferfv(GL_COLOR, 2, kNothing);
+  handToVtk();
+  renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
+  volume.lookFrom(camera.right(), camera.up(), camera.forward());
+  volume.sendChanges(*renderer);
+  volume.setQuality(1.0, ray_step);
+  volume.setPart(part);
+  place(*renderer, span.pixels.y / height);
+  renderer->Render();
+  glFinish();
+}
+
+VolumePictures::Cast SceneRenderer::Parts::caster() {
+  return [this](const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
+    cast(into, span, part, ray_step);
+  };
+}
+
+void SceneRenderer::Parts::drawAt(double level) {
+  if (!fitted && !mirror->empty()) fit();
+  if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
+  scene_stale = true;
+}
+
+bool SceneRenderer::Parts::work(double budget_ms) {
+  if (!fitted && !mirror->empty()) fit();
+  if (!drawsVolume()) return std::exchange(scene_stale, false);
+  const bool changed = pictures.work(budget_ms, moving, caster());
+  scene_stale |= changed;
+  const std::string& shader = composer.failure();
+  if (refusal && (!pictures.allocated() || !shader.empty())) {
+    refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
+                    "Make the window smaller, or update the graphics driver"};
+    spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
+  }
+  return changed;
+}
+
+PixelRect SceneRenderer::Parts::around(const Vec3* points, std::size_t count, int margin) const {
+  PixelRect rect;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::optional<glm::dvec2> at = camera.pixelOf(points[i], width, height);
+    if (!at) return {0, 0, width, height};
+    const auto within = [](double value, int most) {
+      return int(std::floor(std::clamp(value, -1.0, double(most))));
+    };
+    const int x = within(at->x, width), y = within(at->y, height);
+    rect = bounding(rect, {x - margin, y - margin, x + margin + 1, y + margin + 1});
+  }
+  return {std::max(rect.low_x, 0), std::max(rect.low_y, 0), std::min(rect.high_x, width),
+          std::min(rect.high_y, height)};
+}
+
+void SceneRenderer::Parts::cut(const VoxelBox& box) {
+  // Shading and ambient light look this far from a sample.
+  constexpr double kReach_voxels = 4.0;
+  Vec3 corners[8];
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = std::size_t(axis);
+      corners[corner][axis] =
+          corner & (1 << axis) ? box.high[a] - 1 + kReach_voxels : box.low[a] - kReach_voxels;
+    }
+    corners[corner] = voxels().geometry.toPatient_mm(corners[corner]);
+  }
+  pictures.cut(around(corners, 8, 1));
+}
+
+void SceneRenderer::Parts::compose(unsigned int framebuffer) {
+  const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
+  const Span span = shown ? pictures.span() : Span{};
+  if (scene_stale || scene.width() != width || scene.height() != height) {
+    scene.bind(width, height, {Canvas::Image::colour});
+    composer.drawVolume(shown, span, width, height);
+    scene_stale = false;
+  }
+  scene.copyTo(framebuffer);
+  drawTools(framebuffer, shown, span);
+  ScreenLines all;
+  if (shown) {
+    addOrientationCue(camera, width, height, all);
+    addScaleBar(camera, width, height, all);
+    if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  }
+  all.insert(all.end(), lines.begin(), lines.end());
+  composer.drawLines(all, width, height);
+}
+
+Picture SceneRenderer::Parts::read() {
+  Picture picture;
+  if (!frame.bind(width, height, {Canvas::Image::colour})) return picture;
+  compose(frame.framebuffer());
+  frame.bind();
+  const std::size_t row = std::size_t(width) * 3;
+  std::vector<std::uint8_t> up(row * std::size_t(height));
+  while (glGetError() != GL_NO_ERROR) {  // of before
+  }
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, up.data());
+  if (glGetError() != GL_NO_ERROR) return picture;
+  picture.width = width;
+  picture.height = height;
+  picture.rgb.resize(up.size());
+  for (int y = 0; y < height; ++y) {  // OpenGL's rows go up
+    std::copy_n(up.data() + std::size_t(height - 1 - y) * row, row,
+                picture.rgb.data() + std::size_t(y) * row);
+  }
+  return picture;
+}
+
+void SceneRenderer::Parts::release() {
+  if (!window) return;
+  window->MakeCurrent();
+  pictures.release();
+  composer.release();
+  scene.release();
+  tool_layer.release();
+  frame.release();
+  scene_stale = true;
+  fitted = refused = false;
+  volume.releaseGraphics(*renderer);
+  window->Finalize();
+  for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
+  window->RemoveObserver(context_asked);
+  window = nullptr;
+}
+
+}  // namespace trephine

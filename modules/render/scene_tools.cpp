@@ -1,0 +1,74 @@
+// Tools over the last picture of the volume, and the way from a tool to the surface.
+//
+// VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
+#if __has_include(<vtk_glad.h>)
+#include <vtk_glad.h>
+#else
+#include <vtk_glew.h>
+#endif
+//
+#include <vtkCamera.h>
+
+#include <optional>
+#include <vector>
+
+#include "render/scene_parts.h"
+#include "render/tool_guide.h"
+
+namespace trephine {
+
+void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* shown,
+                                     const Span& span) {
+  std::vector<PixelRect> parts;
+  for (const auto& box : tools.boxes()) {
+    const PixelRect part = around(box.data(), box.size(), 2);
+    if (!part.empty()) parts.push_back(part);
+  }
+  if (parts.empty()) return;
+  tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
+  glEnable(GL_SCISSOR_TEST);
+  glDepthMask(GL_TRUE);
+  for (const PixelRect& part : parts) {
+    glScissor(part.low_x, part.low_y, part.width(), part.height());
+    constexpr float kNothing[4] = {0.0F, 0.0F, 0.0F, 0.0F}, kFar = 1.0F;
+    glClearBufferfv(GL_COLOR, 0, kNothing);
+    glClearBufferfv(GL_DEPTH, 0, &kFar);
+  }
+  handToVtk();
+  place(*tool_renderer, 1.0);
+  tool_renderer->Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  DepthRange range;
+  tool_renderer->GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
+  range.parallel = camera.parallel();
+  // A part that lies in another would be drawn twice, which changes nothing: what is read is not
+  // what is written.
+  for (const PixelRect& part : parts) {
+    composer.drawTools(tool_layer, range, shown, span, part);
+  }
+}
+
+void SceneRenderer::Parts::addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
+  for (const ToolView& tool : tool_views) {
+    const PixelRect reach = guideReach(tool, camera, width, height);
+    std::optional<double> ahead_mm;
+    if (!tool.contact && !reach.empty()) {
+      DepthPatch patch;
+      patch.step = span.pixels / glm::dvec2(shown.width(), shown.height());
+      patch.beyond = span.beyond;
+      const auto ray = [&](int x, int y) {
+        return glm::ivec2(glm::floor((glm::dvec2(x, y) + span.beyond) / patch.step));
+      };
+      const glm::ivec2 low = ray(reach.low_x, reach.low_y), high = ray(reach.high_x, reach.high_y);
+      patch.rays = {std::max(low.x, 0), std::max(low.y, 0), std::min(high.x + 1, shown.width()),
+                    std::min(high.y + 1, shown.height())};
+      patch.depth_mm = shown.readDepth_mm(patch.rays);
+      if (!patch.depth_mm.empty()) {
+        ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
+      }
+    }
+    addGuide(tool, ahead_mm, camera, width, height, to);
+  }
+}
+
+}  // namespace trephine
