@@ -202,20 +202,36 @@ class Painter {
     }
   }
 
-  // The HU of a bin, wherever it lies; beyond the volume, of the last one within.
-  std::int16_t binHu(int a, int b, int c) {
-    a = std::clamp(a, 0, kBins * nx_ - 1);
-    b = std::clamp(b, 0, kBins * ny_ - 1);
-    c = std::clamp(c, 0, kBins * nz_ - 1);
-    return binsOf(c / kBins).values[binAt(a, b, c % kBins)];
+  // A bin and its six neighbours, HU; those beyond the volume are as the last ones within.
+  struct Around {
+    int own;
+    std::array<std::array<int, 2>, 3> beside;
+
+    bool differs() const {
+      for (const auto& [low, high] : beside) {
+        if (std::abs(low - own) > kSoftStep || std::abs(high - own) > kSoftStep) return true;
+      }
+      return false;
+    }
+  };
+  Around around(int a, int b, int c) {
+    const std::size_t row = std::size_t(nx_) * kBins, at = binAt(a, b, c % kBins);
+    const std::int16_t* here = &binsOf(c / kBins).values[at];
+    const auto beyond = [&](int layer) -> int {
+      layer = std::clamp(layer, 0, kBins * nz_ - 1);
+      return binsOf(layer / kBins).values[binAt(a, b, layer % kBins)];
+    };
+    const int last_a = kBins * nx_ - 1, last_b = kBins * ny_ - 1;
+    return {*here,
+            {{{a > 0 ? here[-1] : *here, a < last_a ? here[1] : *here},
+              {b > 0 ? *(here - row) : *here, b < last_b ? here[row] : *here},
+              {beyond(c - 1), beyond(c + 1)}}}};
   }
 
   // A bin's HU with the share of what lies beyond a boundary through it.
-  std::int16_t refined(int a, int b, int c) {
-    const int own = binHu(a, b, c);
-    const std::array<std::array<int, 2>, 3> beside{{{binHu(a - 1, b, c), binHu(a + 1, b, c)},
-                                                    {binHu(a, b - 1, c), binHu(a, b + 1, c)},
-                                                    {binHu(a, b, c - 1), binHu(a, b, c + 1)}}};
+  std::int16_t refined(int a, int b, int c, const Around& bins) {
+    const int own = bins.own;
+    const auto& beside = bins.beside;
     int axis = 0;
     double steepest = 0.0;
     for (int n = 0; n < 3; ++n) {
@@ -260,27 +276,14 @@ class Painter {
         for (int i = 0; i < nx_; ++i) {
           if (looks[i] == uniform) continue;
           for (int a = kBins * i; a < kBins * (i + 1); ++a) {
-            const auto at = std::size_t(a);
-            if (looks[i] == closely || differsAround(a, b, kBins * k + layer)) {
-              wide[at] = refined(a, b, kBins * k + layer);
-            }
+            const Around bins = around(a, b, kBins * k + layer);
+            if (bins.differs()) wide[std::size_t(a)] = refined(a, b, kBins * k + layer, bins);
           }
         }
         spreadRow(wide, looks, &narrow[std::size_t(b) * nx]);
       }
       spreadColumns(narrow, &out[std::size_t(layer) * nx * std::size_t(ny_)]);
     }
-  }
-
-  // In a voxel that is looked at softly, whether a bin borders on something else after all.
-  bool differsAround(int a, int b, int c) {
-    const int own = binHu(a, b, c);
-    return std::abs(binHu(a - 1, b, c) - own) > kSoftStep ||
-           std::abs(binHu(a + 1, b, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b - 1, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b + 1, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b, c - 1) - own) > kSoftStep ||
-           std::abs(binHu(a, b, c + 1) - own) > kSoftStep;
   }
 
   void spreadRow(const std::vector<std::int16_t>& bins, const std::uint8_t* looks,
