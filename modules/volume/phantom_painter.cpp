@@ -73,6 +73,28 @@ std::int16_t rounded(int weighted) {
   return std::int16_t((weighted + kOne / 2) >> 14);
 }
 
+// A bin of a voxel's 27 in the middle of an edge or a face, and the corners around it.
+struct Between {
+  std::size_t bin;
+  std::array<std::size_t, 4> corners;  // an edge's two twice
+  bool face;
+};
+constexpr std::array<Between, 18> betweenCorners() {
+  std::array<Between, 18> all{};
+  std::size_t n = 0;
+  for (std::size_t s = 0; s < 27; ++s) {
+    std::size_t across[2] = {0, 0}, middles = 0;
+    for (std::size_t stride : {1, 3, 9}) {
+      if (s / stride % 3 == 1 && middles++ < 2) across[middles - 1] = stride;
+    }
+    if (middles != 1 && middles != 2) continue;
+    const auto [u, v] = across;
+    all[n++] = {s, {s - u - v, s - u + v, s + u - v, s + u + v}, middles == 2};
+  }
+  return all;
+}
+constexpr std::array<Between, 18> kBetween = betweenCorners();
+
 class Painter {
  public:
   Painter(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
@@ -182,24 +204,43 @@ class Painter {
     }
   }
 
-  // The bins of a voxel, `hu` being that of its middle: of eight near its corners first.
+  // The bins of a voxel, `hu` being that of its middle. First the corners on the sides where its
+  // neighbours differ; between corners that are the same, nothing else is looked for.
   void look27(int i, int j, int k, std::array<std::int16_t, 27>& hu) const {
     const auto at = [&](int s) {
       return huAt(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0);
     };
+    const std::array<std::array<bool, 3>, 3> differs = sidesThatDiffer(i, j, k);
     int sum = hu[13], low = sum, high = sum;
     for (int s : {0, 2, 6, 8, 18, 20, 24, 26}) {
-      hu[std::size_t(s)] = at(s);
+      const auto x = std::size_t(s % 3), y = std::size_t(s / 3 % 3), z = std::size_t(s / 9);
+      if (differs[0][x] || differs[1][y] || differs[2][z]) hu[std::size_t(s)] = at(s);
       sum += hu[std::size_t(s)];
       low = std::min<int>(low, hu[std::size_t(s)]);
       high = std::max<int>(high, hu[std::size_t(s)]);
     }
-    if (low == high) return hu.fill(std::int16_t(low));  // the boundary is its neighbour's
+    if (low == high) return;  // the boundary is its neighbour's
     const bool close = high - low > kSoftStep;
     const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
-    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
-      hu[std::size_t(s)] = close ? at(s) : mean;
+    for (const Between& bin : kBetween) {
+      const std::int16_t corner = hu[bin.corners[0]];
+      const bool same = hu[bin.corners[1]] == corner && hu[bin.corners[2]] == corner &&
+                        hu[bin.corners[3]] == corner && (!bin.face || hu[13] == corner);
+      hu[bin.bin] = !close ? mean : same ? corner : at(int(bin.bin));
     }
+  }
+
+  // By axis, and 0 or 2 for the lower and the higher neighbour.
+  std::array<std::array<bool, 3>, 3> sidesThatDiffer(int i, int j, int k) const {
+    const std::size_t strides[] = {1, std::size_t(nx_), std::size_t(nx_) * std::size_t(ny_)};
+    const int at[] = {i, j, k}, size[] = {nx_, ny_, nz_};
+    const std::size_t index = volume_.geometry.indexOf(i, j, k);
+    std::array<std::array<bool, 3>, 3> differs{};
+    for (std::size_t n = 0; n < 3; ++n) {
+      differs[n][0] = at[n] > 0 && centres_[index - strides[n]] != centres_[index];
+      differs[n][2] = at[n] + 1 < size[n] && centres_[index + strides[n]] != centres_[index];
+    }
+    return differs;
   }
 
   // A bin and its six neighbours, HU; those beyond the volume are as the last ones within.

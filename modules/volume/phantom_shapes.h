@@ -119,25 +119,26 @@ struct Ellipsoid {
     return slope > 0.0 ? l * (l - 1.0) / slope : -std::min({a.x, a.y, a.z});
   }
 
-  // The exact distance. The closest point is v_i a_i with v_i = a_i q_i / (t + a_i^2), where t
-  // makes |v| = 1 (Eberly, "Distance from a point to an ellipsoid"). 1 / |v| is concave and nearly
-  // straight in t, so Newton's method on it needs two or three steps from the surface's t = 0 (the
-  // secular equation of More and Sorensen); `least` is left of the root and right of every pole.
+  // The exact distance. The closest point is v_i a_i with v_i = a_i q_i / (t + a_i^2), where t makes
+  // |v| = 1 (Eberly, "Distance from a point to an ellipsoid"). 1 / |v| is concave and nearly
+  // straight in t, so that Newton's method on it needs about two steps from the surface's t = 0 (the
+  // secular equation of More and Sorensen), each of which squares the error. `least_t` is left of
+  // the root and right of every pole.
   double distance(const Vec3& p) const {
     const Vec3 a = semiAxes(p - centre), a2 = a * a;
-    const Vec3 q = glm::max(glm::abs(p - centre), Vec3(1e-9));
-    const double least = std::max({a.x * (q.x - a.x), a.y * (q.y - a.y), a.z * (q.z - a.z)});
-    double t = std::max(0.0, least);
+    const Vec3 q = glm::max(glm::abs(p - centre), Vec3(1e-9)), aq = a * q, aq2 = aq * aq;
+    const double least_t = std::max({aq.x - a2.x, aq.y - a2.y, aq.z - a2.z});
+    double t = std::max(0.0, least_t);
     for (int step = 0; step < 40; ++step) {
       const Vec3 s(1.0 / (t + a2.x), 1.0 / (t + a2.y), 1.0 / (t + a2.z));
-      const Vec3 v = a * q * s, term = v * v;
-      const double norm2 = term.x + term.y + term.z, norm = std::sqrt(norm2);
-      if (std::abs(norm - 1.0) < 1e-7) break;
-      t = std::max(least, t + norm2 * (norm - 1.0) / (term.x * s.x + term.y * s.y + term.z * s.z));
+      const Vec3 term = aq2 * (s * s);
+      const double norm2 = term.x + term.y + term.z, off_one = std::sqrt(norm2) - 1.0;
+      t = std::max(least_t,
+                   t + norm2 * off_one / (term.x * s.x + term.y * s.y + term.z * s.z));
+      if (std::abs(off_one) < 1e-4) break;
     }
-    const Vec3 off(q.x * t / (t + a2.x), q.y * t / (t + a2.y), q.z * t / (t + a2.z));
-    const double d = std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
-    return t < 0.0 ? -d : d;
+    const Vec3 off(q.x / (t + a2.x), q.y / (t + a2.y), q.z / (t + a2.z));
+    return t * std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
   }
 };
 
