@@ -119,26 +119,44 @@ struct Ellipsoid {
     return slope > 0.0 ? l * (l - 1.0) / slope : -std::min({a.x, a.y, a.z});
   }
 
-  // The exact distance. The closest point is v_i a_i with v_i = a_i q_i / (t + a_i^2), where t makes
-  // |v| = 1 (Eberly, "Distance from a point to an ellipsoid"). 1 / |v| is concave and nearly
-  // straight in t, so that Newton's method on it needs about two steps from the surface's t = 0 (the
-  // secular equation of More and Sorensen), each of which squares the error. `least_t` is left of
-  // the root and right of every pole.
+  // The distance, exact to 0.01 mm at the surface and far better elsewhere. The closest point is
+  // v_i a_i with v_i = a_i q_i / (t + a_i^2), where t makes |v| = 1 (Eberly, "Distance from a point
+  // to an ellipsoid"). 1 / |v| is concave and nearly straight in t: a step of Halley's method on it
+  // from the surface's t = 0 is enough near the surface; elsewhere Newton's (the secular equation
+  // of More and Sorensen) goes on from there. `least_t` is left of the root, right of every pole.
   double distance(const Vec3& p) const {
-    const Vec3 a = semiAxes(p - centre), a2 = a * a;
-    const Vec3 q = glm::max(glm::abs(p - centre), Vec3(1e-9)), aq = a * q, aq2 = aq * aq;
-    const double least_t = std::max({aq.x - a2.x, aq.y - a2.y, aq.z - a2.z});
-    double t = std::max(0.0, least_t);
-    for (int step = 0; step < 40; ++step) {
-      const Vec3 s(1.0 / (t + a2.x), 1.0 / (t + a2.y), 1.0 / (t + a2.z));
-      const Vec3 term = aq2 * (s * s);
-      const double norm2 = term.x + term.y + term.z, off_one = std::sqrt(norm2) - 1.0;
-      t = std::max(least_t,
-                   t + norm2 * off_one / (term.x * s.x + term.y * s.y + term.z * s.z));
-      if (std::abs(off_one) < 1e-4) break;
+    const Vec3 q = glm::abs(p - centre), a = semiAxes(p - centre), a2 = a * a;
+    const Vec3 level_parts = q * q * per2(p - centre);
+    const Vec3 slope_parts = level_parts * per2(p - centre);
+    const Vec3 bend_parts = slope_parts * per2(p - centre);
+    const double level = level_parts.x + level_parts.y + level_parts.z;
+    const double slope = slope_parts.x + slope_parts.y + slope_parts.z;
+    const double bend = bend_parts.x + bend_parts.y + bend_parts.z;
+    const double off = level * (std::sqrt(level) - 1.0);
+    double t = off * level * slope /
+               (level * slope * slope + 1.5 * off * (slope * slope - level * bend));
+    if (std::abs(level - 1.0) > 0.1) {
+      const Vec3 aq = a * q, aq2 = aq * aq;
+      const double least_t = std::max({aq.x - a2.x, aq.y - a2.y, aq.z - a2.z, 1e-9 - least * least});
+      if (!(t > least_t)) t = std::max(0.0, least_t);
+      for (int step = 0; step < 40; ++step) {
+        const Vec3 s(1.0 / (t + a2.x), 1.0 / (t + a2.y), 1.0 / (t + a2.z));
+        const Vec3 term = aq2 * (s * s);
+        const double norm2 = term.x + term.y + term.z, off_one = std::sqrt(norm2) - 1.0;
+        const double down = term.x * s.x + term.y * s.y + term.z * s.z;
+        if (!(down > 0.0)) break;
+        t = std::max(least_t, t + norm2 * off_one / down);
+        if (std::abs(off_one) < 1e-3) break;
+      }
     }
-    const Vec3 off(q.x / (t + a2.x), q.y / (t + a2.y), q.z / (t + a2.z));
-    return t * std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
+    const Vec3 way(q.x / (t + a2.x), q.y / (t + a2.y), q.z / (t + a2.z));
+    return t * std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+  }
+
+ private:
+  Vec3 per2(const Vec3& q) const {
+    return {q.x < 0 ? low_per2.x : high_per2.x, q.y < 0 ? low_per2.y : high_per2.y,
+            q.z < 0 ? low_per2.z : high_per2.z};
   }
 };
 
