@@ -12,7 +12,7 @@ using T = PhantomTissue;
 
 constexpr double kScalp = 5.0, kOuter = 2.0, kDiploe = 3.0, kInner = 1.5, kDura = 0.5, kCsf = 2.0;
 constexpr double kSkull = kOuter + kDiploe + kInner;
-constexpr double kFloorBone = 5.0, kSinusWall = 1.4;
+constexpr double kFloorBone = 5.0, kSinusWall = 1.4, kCover = 4.6;
 
 // The outer surface of the outer table.
 constexpr Ellipsoid kVault({0, 4, 6}, {74, 82, 62}, {74, 87, 70});
@@ -115,7 +115,7 @@ bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
 
 // Eyes and what moves them. True when `tissue` is set.
 bool inOrbit(const Vec3& m, T& tissue) {
-  static constexpr Ellipsoid globe({31, -67, -28}, {12, 12, 12});
+  static constexpr Ellipsoid globe({31, -64.5, -28}, {12, 12, 12});
   static constexpr Rod nerve{{29, -56, -28}, {13, -26, -26}, 2.2, 2.2};
   static constexpr Rod muscles[] = {{{44, -62, -28}, {17, -32, -27}, 1.8, 1.5},
                                     {{19, -64, -28}, {13, -32, -27}, 1.8, 1.5},
@@ -189,7 +189,8 @@ PhantomTissue craniumTissue(const Vec3& p) {
     if (envelope > 12.0) return T::air;
     const double braincase = smoothIntersection(vault, -0.8 * (height + kFloorBone), 10.0);
     double bone = skull::bones(m, braincase);
-    envelope = smoothUnion(envelope, bone - 2.5, 2.5);  // skin covers all bone
+    // Soft tissue covers all bone, five millimetres thick over the face.
+    envelope = smoothUnion(envelope, bone - kCover, 0.1 + 5.0 * ramp(16, 0, m.z));
     if (envelope > 0.0) return T::air;
     T tissue = T::muscle;
     const double canal = canalDistance(m);
@@ -203,7 +204,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
     if (m.z < -46.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0) {
       const double vertebra = skull::vertebrae(m, canal);
       if (vertebra < 0.0 && bone > 0.0) return longBone(vertebra, 1.5);
-      }
+    }
       const bool shell = vault < 0.0 && vault > -kSkull && height > 0.0;
       if (bone < 0.0 && envelope < -2.5 && !shell) return T::facialBone;
       if (bone >= 0.0) {

@@ -133,11 +133,12 @@ struct Ellipsoid {
     const double slope = slope_parts.x + slope_parts.y + slope_parts.z;
     const double bend = bend_parts.x + bend_parts.y + bend_parts.z;
     const double off = level * (std::sqrt(level) - 1.0);
-    double t = off * level * slope /
-               (level * slope * slope + 1.5 * off * (slope * slope - level * bend));
+    double t =
+        off * level * slope / (level * slope * slope + 1.5 * off * (slope * slope - level * bend));
     if (std::abs(level - 1.0) > 0.1) {
       const Vec3 aq = a * q, aq2 = aq * aq;
-      const double least_t = std::max({aq.x - a2.x, aq.y - a2.y, aq.z - a2.z, 1e-9 - least * least});
+      const double least_t =
+          std::max({aq.x - a2.x, aq.y - a2.y, aq.z - a2.z, 1e-9 - least * least});
       if (!(t > least_t)) t = std::max(0.0, least_t);
       for (int step = 0; step < 40; ++step) {
         const Vec3 s(1.0 / (t + a2.x), 1.0 / (t + a2.y), 1.0 / (t + a2.z));

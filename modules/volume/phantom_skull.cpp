@@ -327,11 +327,13 @@ double skin(const Vec3& drawn, double scalp) {
   if (scalp < -18.0) return scalp;
   const Vec3 m = lifeSize(drawn);
   static constexpr Ellipsoid face({0, -30, -48}, {60, 50, 58});
-  static constexpr Ellipsoid jaw({0, -32, -89}, {57, 51, 34});
-  static constexpr Ellipsoid jowl({36, -30, -76}, {24, 38, 40});
+  static constexpr Ellipsoid jaw({0, -32, -89}, {53, 51, 34});
+  static constexpr Ellipsoid jowl({36, -30, -76}, {20, 38, 40});
   static constexpr Rod chin{{0, -71, -107}, {9, -69, -107}, 13, 12};
-  static constexpr Chain<2> brow{
-      {{{0, -77, -7}, {20, -76, -5}, 7.5, 7.5}, {{20, -76, -5}, {46, -62, -12}, 7.5, 6.5}}, 6};
+  static constexpr Chain<3> brow{{{{0, -77, -7}, {20, -76, -5}, 7.5, 7.5},
+                                  {{20, -76, -5}, {46, -62, -12}, 7.5, 7.5},
+                                  {{46, -62, -12}, {53, -54, -26}, 7.5, 8}},
+                                 6};
   static constexpr Chain<2> nose_parts{
       {{{0, -77, -16}, {0, -90, -46}, 6.5, 7.2}, {{0, -90, -46}, {0, -94, -55}, 7.2, 8.2}}, 6};
   static constexpr Rod wing{{9, -85, -58}, {11, -79, -57}, 5.5, 5};
@@ -341,7 +343,7 @@ double skin(const Vec3& drawn, double scalp) {
   static constexpr Ellipsoid muzzle({0, -61, -80}, {33, 25, 25});
   static constexpr Ellipsoid nose_base({0, -78, -50}, {10, 11, 17});
   static constexpr Ellipsoid cheek({37, -52, -60}, {21, 20, 24});
-  static constexpr Ellipsoid lid({31, -67, -28}, {16, 13.2, 12.5});
+  static constexpr Ellipsoid lid({31, -66, -28}, {17, 14.8, 14});
   // No seam at the height where the face begins.
   double d = smoothUnion(scalp, face.roughDistance(m), 0.1 + 12.0 * ramp(16, 0, m.z));
   if (m.z < -5.0) {
@@ -369,10 +371,20 @@ double skin(const Vec3& drawn, double scalp) {
     // The line between the lips, and that between the lids.
     const double mouth = std::sqrt(square(m.z + 87.0 - 0.02 * m.x) + square((m.y + 93.0) / 8.0));
     if (m.x < 24.0) d = std::max(d, 0.9 * bump(m.x / 26.0) + 0.3 - mouth);
-    d = joined(d, lid, m, 4);
-    const double slit = std::abs(m.z + 29.5 + 0.012 * square(m.x - 31.0) - 3.0);
-    if (std::abs(m.x - 31.0) < 15.0 && m.y < -74.0) d += 1.6 * bump(slit / 1.6);
+    d = joined(d, lid, m, 7);
+    if (m.y < -70.0 && m.z < -10.0 && m.z > -48.0) {
+      const double aside2 = square((m.x - 31.0) / 15.5);
+      if (aside2 < 1.0) {
+        // The closed lids meet along an arc below the pupil; the upper folds above it.
+        const double between = std::abs(m.z + 33.5 - 3.5 * aside2),
+                     fold = std::abs(m.z + 20.0 + 5.0 * aside2);
+        d += (1.0 - aside2) * (1.2 * bump(between / 1.9) + 0.8 * bump(fold / 2.0));
+      }
+    }
   }
+  // The muscle that fills the temporal fossa.
+  static constexpr Ellipsoid temple({40, -26, -18}, {28, 34, 23});
+  d = joined(d, temple, drawn, 8);
   if (m.x > 30.0 && m.z < 0.0) {
     // Over the cheek's arch and behind the ear.
     static constexpr Chain<2> arch_skin{
