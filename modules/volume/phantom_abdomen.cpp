@@ -16,7 +16,7 @@ using T = PhantomTissue;
 constexpr double kSkin = 2.0, kMuscleWall = 13.0, kCapsule = 1.0;
 constexpr double kDeep = 60.0;  // a depth that is past every wall
 
-const Ellipsoid kBody({0, 0, -10}, {160, 112, 560}, {160, 106, 520});
+constexpr Ellipsoid kBody({0, 0, -10}, {160, 112, 560}, {160, 106, 520});
 
 // Fat under the skin: thick in front, thin at the back.
 double fatThickness(const Vec3& p) {
@@ -109,11 +109,11 @@ double spineDistance(const Vec3& m, double canal) {
   double d =
       smoothIntersection(ellipseDistance(m.x, m.y - 47, 25 - waist, 18 - waist), end - 13.2, 5);
   const Vec3 local{m.x, m.y, high};
-  static const Rod pedicle{{13, 56, 4}, {15, 72, 2}, 6, 6.5};
-  static const Rod transverse{{15, 70, 2}, {42, 77, 3}, 5.5, 4};
-  static const Rod facet{{16, 72, 12}, {15, 76, -16}, 6, 6};
-  static const Rod lamina{{14, 74, 0}, {3, 86, -6}, 5.5, 5};
-  static const Rod spinous[] = {{{0, 85, -3}, {0, 100, -8}, 5, 5.5}};
+  static constexpr Rod pedicle{{13, 56, 4}, {15, 72, 2}, 6, 6.5};
+  static constexpr Rod transverse{{15, 70, 2}, {42, 77, 3}, 5.5, 4};
+  static constexpr Rod facet{{16, 72, 12}, {15, 76, -16}, 6, 6};
+  static constexpr Rod lamina{{14, 74, 0}, {3, 86, -6}, 5.5, 5};
+  static constexpr Rod spinous[] = {{{0, 85, -3}, {0, 100, -8}, 5, 5.5}};
   d = smoothUnion(d, pedicle.distance(local), 5);
   double back = smoothUnion(transverse.distance(local), facet.distance(local), 5);
   back = smoothUnion(back, lamina.distance(local), 5);
@@ -124,9 +124,9 @@ double spineDistance(const Vec3& m, double canal) {
 
 // Psoas, the muscles beside the spine, and quadratus lumborum.
 double deepMuscleDistance(const Vec3& m) {
-  static const Rod psoas{{30, 46, 10}, {52, 42, -130}, 10, 23};
-  static const Ellipsoid erector({31, 82, -10}, {25, 17, 400});
-  static const Ellipsoid quadratus({66, 70, -90}, {20, 9, 62});
+  static constexpr Rod psoas{{30, 46, 10}, {52, 42, -130}, 10, 23};
+  static constexpr Ellipsoid erector({31, 82, -10}, {25, 17, 400});
+  static constexpr Ellipsoid quadratus({66, 70, -90}, {20, 9, 62});
   return std::min({psoas.distance(m), erector.roughDistance(m), quadratus.roughDistance(m)});
 }
 
@@ -136,13 +136,13 @@ double deepMuscleDistance(const Vec3& m) {
 // ligaments, gallbladder and porta set off the quadrate lobe in front and the caudate behind.
 // Negative inside.
 double liverDistance(const Vec3& p, double depth, double fat) {
-  static const Ellipsoid right({-70, -4, 24}, {88, 90, 86}, {82, 88, 74});
-  static const Ellipsoid left({4, -36, 40}, {70, 56, 40}, {76, 48, 38});
-  static const Ellipsoid gallbladder({-52, -52, -22}, {15, 26, 22});
-  static const Ellipsoid kidneyBed({-66, 47, -34}, {34, 36, 58});
-  static const Ellipsoid caudate({-20, 30, 20}, {13, 15, 24});
-  static const Rod round_ligament{{-8, -110, -10}, {-14, -14, 8}, 7, 4};
-  static const Rod venous_ligament{{-10, 0, 20}, {-6, 34, 58}, 4, 5};
+  static constexpr Ellipsoid right({-70, -4, 24}, {88, 90, 86}, {82, 88, 74});
+  static constexpr Ellipsoid left({4, -36, 40}, {70, 56, 40}, {76, 48, 38});
+  static constexpr Ellipsoid gallbladder({-52, -52, -22}, {15, 26, 22});
+  static constexpr Ellipsoid kidneyBed({-66, 47, -34}, {34, 36, 58});
+  static constexpr Ellipsoid caudate({-20, 30, 20}, {13, 15, 24});
+  static constexpr Rod round_ligament{{-8, -110, -10}, {-14, -14, 8}, 7, 4};
+  static constexpr Rod venous_ligament{{-10, 0, 20}, {-6, 34, 58}, 4, 5};
   double d = smoothUnion(right.roughDistance(p), left.roughDistance(p), 36);
   if (d > 30.0) return d;
   const double visceral =
@@ -256,7 +256,7 @@ bool inLiverVessel(const Vec3& p) {
 
 // Aorta with its branches to the kidneys, vena cava, trunk of the portal vein.
 bool inGreatVessel(const Vec3& p) {
-  static const Rod vessels[] = {
+  static constexpr Rod vessels[] = {
       {{9, 20, -130}, {9, 22, 130}, 8.5, 10.5},   {{-16, 20, -130}, {-19, 24, 20}, 10.0, 11.0},
       {{-19, 24, 20}, {-24, 30, 90}, 11.0, 11.0}, {{-24, 30, 90}, {-22, 22, 130}, 11.0, 12.0},
       {{2, 22, -34}, {-34, 8, 8}, 7.5, 7.0},      {{9, 22, -28}, {44, 40, -38}, 3.5, 3.0},
@@ -269,10 +269,10 @@ bool inGreatVessel(const Vec3& p) {
 
 // True when `tissue` is set. A kidney leans out downwards and opens inwards at its sinus.
 bool inKidney(const Vec3& m, T& tissue) {
-  static const Ellipsoid sinus({51, 40, -36}, {15, 9, 24});
+  static constexpr Ellipsoid sinus({51, 40, -36}, {15, 9, 24});
   const double lean = 0.18 * (m.z + 36);
   const Vec3 upright{m.x + lean, m.y - 0.10 * (m.z + 36), m.z};
-  static const Ellipsoid whole({66, 43, -36}, {26, 22, 54});
+  static constexpr Ellipsoid whole({66, 43, -36}, {26, 22, 54});
   if (!whole.contains(upright)) return false;
   if (sinus.contains(upright)) {
     tissue = std::abs(upright.z + 36) < 5 && upright.x < 61 ? T::vessel : T::fat;
@@ -284,13 +284,13 @@ bool inKidney(const Vec3& m, T& tissue) {
 
 // Hollow organs: a muscle wall around gas, and around food where it has settled.
 bool inGut(const Vec3& p, T& tissue) {
-  static const Ellipsoid stomach({62, -30, 34}, {44, 38, 44});
-  static const Rod antrum{{40, -48, 8}, {-4, -50, -8}, 21, 13};
-  static const Rod colon[] = {{{-104, -2, -130}, {-104, -16, -66}, 23, 21},
-                              {{-98, -38, -62}, {-40, -72, -58}, 19, 17},
-                              {{-40, -72, -58}, {40, -72, -54}, 17, 17},
-                              {{40, -72, -54}, {98, -22, -22}, 17, 18},
-                              {{104, -4, -30}, {106, 6, -130}, 18, 17}};
+  static constexpr Ellipsoid stomach({62, -30, 34}, {44, 38, 44});
+  static constexpr Rod antrum{{40, -48, 8}, {-4, -50, -8}, 21, 13};
+  static constexpr Rod colon[] = {{{-104, -2, -130}, {-104, -16, -66}, 23, 21},
+                                  {{-98, -38, -62}, {-40, -72, -58}, 19, 17},
+                                  {{-40, -72, -58}, {40, -72, -54}, 17, 17},
+                                  {{40, -72, -54}, {98, -22, -22}, 17, 18},
+                                  {{104, -4, -30}, {106, 6, -130}, 18, 17}};
   const double belly = smoothUnion(stomach.roughDistance(p), antrum.distance(p), 16);
   if (belly < 0.0) {
     tissue = belly > -4.0 || p.y > -38 ? T::muscle : T::air;
@@ -305,7 +305,7 @@ bool inGut(const Vec3& p, T& tissue) {
     }
   }
   // Loops of small bowel, with fat between.
-  static const Ellipsoid loops({4, -28, -104}, {74, 50, 44});
+  static constexpr Ellipsoid loops({4, -28, -104}, {74, 50, 44});
   if (loops.contains(p)) {
     const double fold = wave((p.x + 8 * wave(p.z / 60)) / 56) +
                         wave((p.y + 6 * wave(p.x / 70)) / 50) +
@@ -353,7 +353,7 @@ PhantomTissue abdomenTissue(const Vec3& p) {
   const double above = p.z - diaphragm(p);
   if (above > 0.0 && inGreatVessel(p)) return T::vessel;
   if (above > 3.5) {
-    static const Ellipsoid heart({14, -34, 116}, {54, 44, 48});
+    static constexpr Ellipsoid heart({14, -34, 116}, {54, 44, 48});
     const bool mediastinum = ellipseDistance(p.x - 2, p.y - 4, 24, 44) < 0.0;
     return mediastinum || heart.contains(p) ? T::muscle : T::air;
   }
@@ -366,11 +366,11 @@ PhantomTissue abdomenTissue(const Vec3& p) {
     return liver < -3.0 && inLiverVessel(p) ? T::vessel : T::liver;
   }
   if (liver < 2.5) return T::fat;  // organs glide on it
-  static const Ellipsoid gallbladder({-52, -52, -22}, {12, 23, 19});
+  static constexpr Ellipsoid gallbladder({-52, -52, -22}, {12, 23, 19});
   if (gallbladder.contains(p)) return T::csf;
   T tissue = T::fat;
   if (inKidney(m, tissue)) return tissue;
-  static const Ellipsoid spleen({104, 38, 42}, {26, 42, 46});
+  static constexpr Ellipsoid spleen({104, 38, 42}, {26, 42, 46});
   if (spleen.contains(p) && above < -2.0) return T::spleen;
   if (inGut(p, tissue)) return tissue;
   return T::fat;

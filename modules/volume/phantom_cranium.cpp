@@ -12,10 +12,10 @@ using T = PhantomTissue;
 
 constexpr double kScalp = 5.0, kOuter = 2.0, kDiploe = 3.0, kInner = 1.5, kDura = 0.5, kCsf = 2.0;
 constexpr double kSkull = kOuter + kDiploe + kInner;
-constexpr double kFloorBone = 5.0;
+constexpr double kFloorBone = 5.0, kSinusWall = 1.4, kCover = 4.6;
 
 // The outer surface of the outer table.
-const Ellipsoid kVault({0, 4, 6}, {74, 82, 62}, {74, 87, 70});
+constexpr Ellipsoid kVault({0, 4, 6}, {74, 82, 62}, {74, 87, 70});
 
 // Height of the floor that the brain rests on: anterior, middle and posterior fossa, with sella,
 // petrous ridges and the groove between the orbits.
@@ -37,11 +37,11 @@ double toSulcus(const Vec3& p) {
 }
 
 bool inVentricle(const Vec3& m) {
-  static const Rod parts[] = {{{8, -27, 12}, {11, 2, 22}, 4.5, 5.0},
-                              {{11, 2, 22}, {20, 33, 16}, 5.0, 6.5},
-                              {{20, 33, 16}, {19, 55, 9}, 5.5, 2.5},
-                              {{20, 33, 16}, {32, 8, -13}, 5.0, 2.5}};
-  static const Ellipsoid third({0, 3, 3}, {2.2, 13, 9});
+  static constexpr Rod parts[] = {{{8, -27, 12}, {11, 2, 22}, 4.5, 5.0},
+                                  {{11, 2, 22}, {20, 33, 16}, 5.0, 6.5},
+                                  {{20, 33, 16}, {19, 55, 9}, 5.5, 2.5},
+                                  {{20, 33, 16}, {32, 8, -13}, 5.0, 2.5}};
+  static constexpr Ellipsoid third({0, 3, 3}, {2.2, 13, 9});
   for (const Rod& part : parts) {
     if (part.contains(m)) return true;
   }
@@ -49,14 +49,14 @@ bool inVentricle(const Vec3& m) {
 }
 
 bool inDeepGrey(const Vec3& m) {
-  static const Ellipsoid thalamus({12, 8, 7}, {8, 13, 8});
-  static const Ellipsoid lentiform({25, -6, 6}, {6, 15, 9});
-  static const Ellipsoid caudate({14, -22, 14}, {4, 9, 7});
+  static constexpr Ellipsoid thalamus({12, 8, 7}, {8, 13, 8});
+  static constexpr Ellipsoid lentiform({25, -6, 6}, {6, 15, 9});
+  static constexpr Ellipsoid caudate({14, -22, 14}, {4, 9, 7});
   return thalamus.contains(m) || lentiform.contains(m) || caudate.contains(m);
 }
 
 T cerebellum(const Vec3& m, double depth) {
-  static const Ellipsoid fourth({0, 31, -30}, {6, 5, 9});
+  static constexpr Ellipsoid fourth({0, 31, -30}, {6, 5, 9});
   if (fourth.contains(m)) return T::ventricle;
   // Folia: thin leaves that follow the surface.
   const double leaf = toNearest(m.z + 0.35 * m.y + 1.5 * wave(m.y / 30), 6.0);
@@ -66,8 +66,8 @@ T cerebellum(const Vec3& m, double depth) {
 
 // `depth` below the inner face of the dura.
 T insideDura(const Vec3& p, const Vec3& m, double depth) {
-  static const Rod stem{{0, 11, -12}, {0, 28, -50}, 12, 7};
-  static const Rod stemWater{{0, 11, -14}, {0, 28, -50}, 15, 11};
+  static constexpr Rod stem{{0, 11, -12}, {0, 28, -50}, 12, 7};
+  static constexpr Rod stemWater{{0, 11, -14}, {0, 28, -50}, 15, 11};
   const double below = depth - kCsf;
   if (stem.contains(m)) return T::whiteMatter;
   if (m.z < -8 && stemWater.contains(m)) return T::csf;
@@ -93,13 +93,15 @@ T insideDura(const Vec3& p, const Vec3& m, double depth) {
   return T::whiteMatter;
 }
 
-// Air in the bones of face and base; `wall` is how far the nearest sinus is.
+// Air in the bones of face and base; `wall` is how far a sinus is that is near.
 bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
-  static const Ellipsoid maxillary({25, -53, -53}, {11, 14, 9.5});
-  static const Ellipsoid frontal({10, -74, -6}, {7, 2.6, 6});
-  static const Ellipsoid sphenoid({8, -18, -36}, {7, 10, 7});
-  wall =
-      std::min({maxillary.roughDistance(m), frontal.roughDistance(m), sphenoid.roughDistance(m)});
+  static constexpr Ellipsoid maxillary({25, -53, -53}, {11, 14, 9.5});
+  static constexpr Ellipsoid frontal({10, -74, -6}, {7, 2.6, 6});
+  static constexpr Ellipsoid sphenoid({8, -18, -36}, {7, 10, 7});
+  wall = 1e3;
+  for (const Ellipsoid* sinus : {&maxillary, &frontal, &sphenoid}) {
+    if (!sinus->isBeyond(m, kSinusWall)) wall = std::min(wall, sinus->roughDistance(m));
+  }
   if (wall < 0.0) return true;
   // Ethmoid cells, thin walls between.
   if (m.x < 11 && m.y > -66 && m.y < -34 && m.z > -36 && m.z < -19) {
@@ -107,18 +109,18 @@ bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
     return m.x < 10 && toNearest(m.x, 5.8) > 0.6 && toNearest(p.y, 8.0) > 0.6 &&
            toNearest(p.z, 7.0) > 0.6;
   }
-  static const Ellipsoid mastoid({54, 25, -42}, {6.5, 9, 13});
+  static constexpr Ellipsoid mastoid({54, 25, -42}, {6.5, 9, 13});
   return mastoid.contains(m) && wave(m.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;
 }
 
 // Eyes and what moves them. True when `tissue` is set.
 bool inOrbit(const Vec3& m, T& tissue) {
-  static const Ellipsoid globe({31, -67, -28}, {12, 12, 12});
-  static const Rod nerve{{29, -56, -28}, {13, -26, -26}, 2.2, 2.2};
-  static const Rod muscles[] = {{{44, -62, -28}, {17, -32, -27}, 1.8, 1.5},
-                                {{19, -64, -28}, {13, -32, -27}, 1.8, 1.5},
-                                {{31, -62, -15}, {16, -32, -24}, 1.6, 1.5},
-                                {{31, -62, -41}, {16, -32, -30}, 1.6, 1.5}};
+  static constexpr Ellipsoid globe({31, -64.5, -28}, {12, 12, 12});
+  static constexpr Rod nerve{{29, -56, -28}, {13, -26, -26}, 2.2, 2.2};
+  static constexpr Rod muscles[] = {{{44, -62, -28}, {17, -32, -27}, 1.8, 1.5},
+                                    {{19, -64, -28}, {13, -32, -27}, 1.8, 1.5},
+                                    {{31, -62, -15}, {16, -32, -24}, 1.6, 1.5},
+                                    {{31, -62, -41}, {16, -32, -30}, 1.6, 1.5}};
   if (m.x > 54 || m.y > -24 || m.y < -84 || m.z > -8 || m.z < -50) return false;
   if (globe.contains(m)) {
     tissue = T::eye;
@@ -147,7 +149,7 @@ T softTissue(const Vec3& m, double depth) {
   if (depth < 2.5) return T::scalp;
   const double fat = 3.0 + 4.0 * bump((m.x - 40) / 22) * bump((m.y + 55) / 30);
   if (depth < 2.5 + fat) return T::fat;
-  static const Ellipsoid cheek({40, -56, -68}, {9, 14, 12});
+  static constexpr Ellipsoid cheek({40, -56, -68}, {9, 14, 12});
   if (cheek.contains(m)) return T::fat;
   // Thin sheets of fat part the muscles.
   const double sheet = depth + 3.0 * wave(m.x / 37 + m.z / 90) + 3.0 * wave(m.y / 43);
@@ -160,7 +162,8 @@ PhantomTissue craniumTissue(const Vec3& p) {
   const Vec3 m = mirrored(p);
   if (m.x > 93.0) return T::air;
   const double level = kVault.level(p);
-  const double height = m.z - floorHeight(m);
+  // No floor is as high as 36 mm, and what lies 24 mm above it does not depend on it.
+  const double height = m.z > 60.0 ? m.z - 36.0 : m.z - floorHeight(m);
   // At least 28 mm below the outer table.
   if (level < 0.3 && height > 8.0) return insideDura(p, m, 20.0);
   if (m.z > 14.0 && level > 1.4) return T::air;  // over 10 mm outside
@@ -175,28 +178,33 @@ PhantomTissue craniumTissue(const Vec3& p) {
     const double depth = std::min(within, 0.9 * height);
     return depth < kDura ? T::dura : insideDura(p, m, depth - kDura);
   }
-  double envelope = scalp;
-  if (m.z < 16.0) {
-    envelope = skull::skin(m, scalp);
+  // The vault's own bone lies under its scalp, and nothing else reaches into it.
+  const bool in_vault = vault < 0.0 && height >= -2.0;
+  if (in_vault && m.z < -35.0) {
+    const double canal = canalDistance(m);
+    if (canal < 0.0) return inCanal(canal);
+  }
+  if (m.z < 16.0 && !in_vault) {
+    double envelope = skull::skin(m, scalp);
     if (envelope > 12.0) return T::air;
     const double braincase = smoothIntersection(vault, -0.8 * (height + kFloorBone), 10.0);
     double bone = skull::bones(m, braincase);
-    envelope = smoothUnion(envelope, bone - 2.5, 2.5);  // skin covers all bone
+    // Soft tissue covers all bone, five millimetres thick over the face.
+    envelope = smoothUnion(envelope, bone - kCover, 0.1 + 5.0 * ramp(16, 0, m.z));
     if (envelope > 0.0) return T::air;
     T tissue = T::muscle;
     const double canal = canalDistance(m);
     if (m.z < -35.0 && canal < 0.0) return inCanal(canal);
-    if (vault >= 0.0 || height < -2.0) {  // bone stays between them and the dura
-      static const Rod nostril{{6, -86, -63}, {6, -76, -54}, 3.2, 3.6};
-      static const Rod pharynx{{0, -20, -56}, {0, -12, -126}, 8, 8};
-      double sinus_wall = 1e3;
-      const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);
-      if (airway && bone < -0.0) return T::air;
-      if (sinus_wall < 1.4 && m.z < 2.0) bone = std::min(bone, sinus_wall - 1.4);
-      if (m.z < -46.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0) {
-        const double vertebra = skull::vertebrae(m, canal);
-        if (vertebra < 0.0 && bone > 0.0) return longBone(vertebra, 1.5);
-      }
+    static constexpr Rod nostril{{6, -86, -63}, {6, -76, -54}, 3.2, 3.6};
+    static constexpr Rod pharynx{{0, -20, -56}, {0, -12, -126}, 8, 8};
+    double sinus_wall = 1e3;
+    const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);
+    if (airway && bone < -0.0) return T::air;
+    if (sinus_wall < kSinusWall && m.z < 2.0) bone = std::min(bone, sinus_wall - kSinusWall);
+    if (m.z < -46.0 && m.y > -10.0 && m.y < 72.0 && m.x < 42.0) {
+      const double vertebra = skull::vertebrae(m, canal);
+      if (vertebra < 0.0 && bone > 0.0) return longBone(vertebra, 1.5);
+    }
       const bool shell = vault < 0.0 && vault > -kSkull && height > 0.0;
       if (bone < 0.0 && envelope < -2.5 && !shell) return T::facialBone;
       if (bone >= 0.0) {
@@ -208,7 +216,6 @@ PhantomTissue craniumTissue(const Vec3& p) {
                    ? T::scalp
                    : softTissue(m, -envelope);
       }
-    }
   }
   const double groove = skull::suture(m);
   if (vault >= -groove) return T::scalp;

@@ -73,6 +73,28 @@ std::int16_t rounded(int weighted) {
   return std::int16_t((weighted + kOne / 2) >> 14);
 }
 
+// A bin of a voxel's 27 in the middle of an edge or a face, and the corners around it.
+struct Between {
+  std::size_t bin;
+  std::array<std::size_t, 4> corners;  // an edge's two twice
+  bool face;
+};
+constexpr std::array<Between, 18> betweenCorners() {
+  std::array<Between, 18> all{};
+  std::size_t n = 0;
+  for (std::size_t s = 0; s < 27; ++s) {
+    std::size_t across[2] = {0, 0}, middles = 0;
+    for (std::size_t stride : {1, 3, 9}) {
+      if (s / stride % 3 == 1 && middles++ < 2) across[middles - 1] = stride;
+    }
+    if (middles != 1 && middles != 2) continue;
+    const auto [u, v] = across;
+    all[n++] = {s, {s - u - v, s - u + v, s + u - v, s + u + v}, middles == 2};
+  }
+  return all;
+}
+constexpr std::array<Between, 18> kBetween = betweenCorners();
+
 class Painter {
  public:
   Painter(PhantomTruth truth, const std::vector<PhantomTissue>& centres, double noise_hu,
@@ -182,40 +204,75 @@ class Painter {
     }
   }
 
-  // The bins of a voxel, `hu` being that of its middle: of eight near its corners first.
+  // The bins of a voxel, `hu` being that of its middle. First the corners on the sides where its
+  // neighbours differ; between corners that are the same, nothing else is looked for.
   void look27(int i, int j, int k, std::array<std::int16_t, 27>& hu) const {
     const auto at = [&](int s) {
       return huAt(i + (s % 3 - 1) / 3.0, j + (s / 3 % 3 - 1) / 3.0, k + (s / 9 - 1) / 3.0);
     };
+    const std::array<std::array<bool, 3>, 3> differs = sidesThatDiffer(i, j, k);
     int sum = hu[13], low = sum, high = sum;
     for (int s : {0, 2, 6, 8, 18, 20, 24, 26}) {
-      hu[std::size_t(s)] = at(s);
+      const auto x = std::size_t(s % 3), y = std::size_t(s / 3 % 3), z = std::size_t(s / 9);
+      if (differs[0][x] || differs[1][y] || differs[2][z]) hu[std::size_t(s)] = at(s);
       sum += hu[std::size_t(s)];
       low = std::min<int>(low, hu[std::size_t(s)]);
       high = std::max<int>(high, hu[std::size_t(s)]);
     }
-    if (low == high) return hu.fill(std::int16_t(low));  // the boundary is its neighbour's
+    if (low == high) return;  // the boundary is its neighbour's
     const bool close = high - low > kSoftStep;
     const auto mean = std::int16_t(std::floor(sum / 9.0 + 0.5));
-    for (int s : {1, 3, 4, 5, 7, 9, 10, 11, 12, 14, 15, 16, 17, 19, 21, 22, 23, 25}) {
-      hu[std::size_t(s)] = close ? at(s) : mean;
+    for (const Between& bin : kBetween) {
+      const std::int16_t corner = hu[bin.corners[0]];
+      const bool same = hu[bin.corners[1]] == corner && hu[bin.corners[2]] == corner &&
+                        hu[bin.corners[3]] == corner && (!bin.face || hu[13] == corner);
+      hu[bin.bin] = !close ? mean : same ? corner : at(int(bin.bin));
     }
   }
 
-  // The HU of a bin, wherever it lies; beyond the volume, of the last one within.
-  std::int16_t binHu(int a, int b, int c) {
-    a = std::clamp(a, 0, kBins * nx_ - 1);
-    b = std::clamp(b, 0, kBins * ny_ - 1);
-    c = std::clamp(c, 0, kBins * nz_ - 1);
-    return binsOf(c / kBins).values[binAt(a, b, c % kBins)];
+  // By axis, and 0 or 2 for the lower and the higher neighbour.
+  std::array<std::array<bool, 3>, 3> sidesThatDiffer(int i, int j, int k) const {
+    const std::size_t strides[] = {1, std::size_t(nx_), std::size_t(nx_) * std::size_t(ny_)};
+    const int at[] = {i, j, k}, size[] = {nx_, ny_, nz_};
+    const std::size_t index = volume_.geometry.indexOf(i, j, k);
+    std::array<std::array<bool, 3>, 3> differs{};
+    for (std::size_t n = 0; n < 3; ++n) {
+      differs[n][0] = at[n] > 0 && centres_[index - strides[n]] != centres_[index];
+      differs[n][2] = at[n] + 1 < size[n] && centres_[index + strides[n]] != centres_[index];
+    }
+    return differs;
+  }
+
+  // A bin and its six neighbours, HU; those beyond the volume are as the last ones within.
+  struct Around {
+    int own;
+    std::array<std::array<int, 2>, 3> beside;
+
+    bool differs() const {
+      for (const auto& [low, high] : beside) {
+        if (std::abs(low - own) > kSoftStep || std::abs(high - own) > kSoftStep) return true;
+      }
+      return false;
+    }
+  };
+  Around around(int a, int b, int c) {
+    const std::size_t row = std::size_t(nx_) * kBins, at = binAt(a, b, c % kBins);
+    const std::int16_t* here = &binsOf(c / kBins).values[at];
+    const auto beyond = [&](int layer) -> int {
+      layer = std::clamp(layer, 0, kBins * nz_ - 1);
+      return binsOf(layer / kBins).values[binAt(a, b, layer % kBins)];
+    };
+    const int last_a = kBins * nx_ - 1, last_b = kBins * ny_ - 1;
+    return {*here,
+            {{{a > 0 ? here[-1] : *here, a < last_a ? here[1] : *here},
+              {b > 0 ? *(here - row) : *here, b < last_b ? here[row] : *here},
+              {beyond(c - 1), beyond(c + 1)}}}};
   }
 
   // A bin's HU with the share of what lies beyond a boundary through it.
-  std::int16_t refined(int a, int b, int c) {
-    const int own = binHu(a, b, c);
-    const std::array<std::array<int, 2>, 3> beside{{{binHu(a - 1, b, c), binHu(a + 1, b, c)},
-                                                    {binHu(a, b - 1, c), binHu(a, b + 1, c)},
-                                                    {binHu(a, b, c - 1), binHu(a, b, c + 1)}}};
+  std::int16_t refined(int a, int b, int c, const Around& bins) {
+    const int own = bins.own;
+    const auto& beside = bins.beside;
     int axis = 0;
     double steepest = 0.0;
     for (int n = 0; n < 3; ++n) {
@@ -260,27 +317,14 @@ class Painter {
         for (int i = 0; i < nx_; ++i) {
           if (looks[i] == uniform) continue;
           for (int a = kBins * i; a < kBins * (i + 1); ++a) {
-            const auto at = std::size_t(a);
-            if (looks[i] == closely || differsAround(a, b, kBins * k + layer)) {
-              wide[at] = refined(a, b, kBins * k + layer);
-            }
+            const Around bins = around(a, b, kBins * k + layer);
+            if (bins.differs()) wide[std::size_t(a)] = refined(a, b, kBins * k + layer, bins);
           }
         }
         spreadRow(wide, looks, &narrow[std::size_t(b) * nx]);
       }
       spreadColumns(narrow, &out[std::size_t(layer) * nx * std::size_t(ny_)]);
     }
-  }
-
-  // In a voxel that is looked at softly, whether a bin borders on something else after all.
-  bool differsAround(int a, int b, int c) {
-    const int own = binHu(a, b, c);
-    return std::abs(binHu(a - 1, b, c) - own) > kSoftStep ||
-           std::abs(binHu(a + 1, b, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b - 1, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b + 1, c) - own) > kSoftStep ||
-           std::abs(binHu(a, b, c - 1) - own) > kSoftStep ||
-           std::abs(binHu(a, b, c + 1) - own) > kSoftStep;
   }
 
   void spreadRow(const std::vector<std::int16_t>& bins, const std::uint8_t* looks,

@@ -8,12 +8,13 @@ namespace {
 
 using namespace shapes;
 
-// Rods one after another, joined over k.
-template <std::size_t N>
-double chain(const Rod (&rods)[N], const Vec3& p, double k) {
-  double d = rods[0].distance(p);
-  for (std::size_t n = 1; n < N; ++n) d = smoothUnion(d, rods[n].distance(p), k);
-  return d;
+// d joined with a shape over k; the shape is not looked at where it is too far away to matter.
+double joined(double d, const Ellipsoid& shape, const Vec3& m, double k) {
+  return shape.isBeyond(m, d + k) ? d : smoothUnion(d, shape.roughDistance(m), k);
+}
+template <class Rods>
+double joined(double d, const Rods& rods, const Vec3& m, double k) {
+  return rods.box().isBeyond(m, d + k) ? d : smoothUnion(d, rods.distance(m), k);
 }
 
 // A flat figure's rod: the distance of (y, z) alone.
@@ -60,17 +61,18 @@ double roots(const Arch& at) {
 }
 
 double upperJaw(const Vec3& m) {
-  static const Ellipsoid body({22, -50, -55}, {19, 23, 21});
-  static const Rod cheek{{24, -64, -56}, {42, -58, -49}, 6, 7};
-  static const Rod frontal_process[] = {{{9, -76, -18}, {14, -73, -34}, 3.5, 4},
-                                        {{14, -73, -34}, {17, -71, -50}, 4, 5},
-                                        {{17, -71, -50}, {14, -73, -66}, 5, 4}};
-  static const Rod rim[] = {{{15, -73, -38}, {24, -71, -48}, 3, 3.5},
-                            {{24, -71, -48}, {40, -64, -49}, 3.5, 4}};
-  static const Rod spine{{0, -72, -67}, {0, -80, -65}, 3, 1.3};
+  static constexpr Ellipsoid body({22, -50, -55}, {19, 23, 21});
+  static constexpr Rod cheek{{24, -64, -56}, {42, -58, -49}, 6, 7};
+  static constexpr Chain<3> frontal_process{{{{9, -76, -18}, {14, -73, -34}, 3.5, 4},
+                                             {{14, -73, -34}, {17, -71, -50}, 4, 5},
+                                             {{17, -71, -50}, {14, -73, -66}, 5, 4}},
+                                            5};
+  static constexpr Chain<2> rim{
+      {{{15, -73, -38}, {24, -71, -48}, 3, 3.5}, {{24, -71, -48}, {40, -64, -49}, 3.5, 4}}, 4};
+  static constexpr Rod spine{{0, -72, -67}, {0, -80, -65}, 3, 1.3};
   double d = smoothUnion(body.roughDistance(m), cheek.distance(m), 8);
-  d = smoothUnion(d, chain(frontal_process, m, 5), 6);
-  d = smoothUnion(d, chain(rim, m, 4), 5);
+  d = joined(d, frontal_process, m, 6);
+  d = joined(d, rim, m, 5);
   if (m.z < -54.0) {
     // The alveolar ridge, and the palate that it stands around.
     const Arch at = arch(m, -77);
@@ -80,7 +82,7 @@ double upperJaw(const Vec3& m) {
     const double palate =
         smoothIntersection(std::max(at.out, m.y + 26), std::abs(m.z + 66) - 2.2, 2);
     d = smoothUnion(smoothUnion(d, ridge, 6), palate, 4);
-    d = smoothUnion(d, spine.distance(m), 4);
+    d = joined(d, spine, m, 4);
     if (m.z < -76.0) d = smoothUnion(d, teeth(at, m.z, -77, -88.2), 0.8);
   }
   return d;
@@ -88,16 +90,17 @@ double upperJaw(const Vec3& m) {
 
 double lowerJaw(const Vec3& m) {
   // Body: bars from the chin to the angle.
-  static const Rod body[] = {{{0, -71, 0}, {15, -69, 0}, 5.8, 5.8},
-                             {{15, -69, 0}, {29, -54, 0}, 5.8, 5.6},
-                             {{29, -54, 0}, {40, -32, 0}, 5.6, 5.2},
-                             {{40, -32, 0}, {46, -13, 0}, 5.2, 4.6}};
-  static const Ellipsoid chin({0, -76.5, -110}, {10, 5, 6});
-  static const Ellipsoid tubercle({11, -72, -111}, {6, 4.5, 4.5});
+  static constexpr Chain<4> body{{{{0, -71, 0}, {15, -69, 0}, 5.8, 5.8},
+                                  {{15, -69, 0}, {29, -54, 0}, 5.8, 5.6},
+                                  {{29, -54, 0}, {40, -32, 0}, 5.6, 5.2},
+                                  {{40, -32, 0}, {46, -13, 0}, 5.2, 4.6}},
+                                 0.5};
+  static constexpr Ellipsoid chin({0, -76.5, -110}, {10, 5, 6});
+  static constexpr Ellipsoid tubercle({11, -72, -111}, {6, 4.5, 4.5});
   double d = 1e3;
   if (m.z < -80.0) {
     const double rises = m.z + 105.5 - 9.0 * ramp(-56, -8, m.y);
-    d = chain(body, Vec3(m.x, m.y, 0.5 * rises), 0.5);
+    d = body.distance({m.x, m.y, 0.5 * rises});
     d = smoothUnion(d, smoothUnion(chin.roughDistance(m), tubercle.roughDistance(m), 6), 7);
     const Arch at = arch(m, -75);
     double ridge = std::abs(at.out) - 4.4 - roots(at) * (at.out > 0.0 ? 0.8 : 0.0);
@@ -113,7 +116,7 @@ double lowerJaw(const Vec3& m) {
     plate = smoothUnion(plate, rod2(m.y, m.z, -19, -66, -24, -43, 6, 2.5), 9);
     const double middle = 46.5 + 0.07 * (m.z + 100.0);
     double ramus = smoothIntersection(plate, std::abs(m.x - middle) - 3.6, 7);
-    static const Ellipsoid condyle({50, 3, -43}, {9, 4.5, 4.5});
+    static constexpr Ellipsoid condyle({50, 3, -43}, {9, 4.5, 4.5});
     ramus = smoothUnion(ramus, condyle.roughDistance(m), 4);
     d = smoothUnion(d, ramus, 8);
   }
@@ -122,22 +125,24 @@ double lowerJaw(const Vec3& m) {
 
 // Brow, cheek bone and arch, bridge of the nose.
 double upperFace(const Vec3& m) {
-  static const Rod brow[] = {{{0, -75, -7}, {14, -76, -5}, 5.5, 5.5},
-                             {{14, -76, -5}, {32, -70, -3.5}, 5.5, 4.5},
-                             {{32, -70, -3.5}, {47, -60, -10}, 4.5, 4},
-                             {{47, -60, -10}, {52.5, -55, -22}, 4, 4}};
-  static const Rod cheek[] = {{{52.5, -55, -22}, {52, -55, -38}, 4, 5.5},
-                              {{52, -55, -38}, {45, -59, -48}, 6, 7.5}};
-  static const Rod arch_bones[] = {{{50, -54, -46}, {60, -38, -45}, 5, 4.2},
-                                   {{60, -38, -45}, {63.5, -20, -43.5}, 4.2, 3.2},
-                                   {{63.5, -20, -43.5}, {63.5, -4, -41}, 3.2, 3.4},
-                                   {{63.5, -4, -41}, {60, 10, -37}, 3.4, 5}};
-  static const Rod bridge[] = {{{0, -76, -12}, {1.2, -80, -24}, 4.8, 4.2},
-                               {{1.2, -80, -24}, {1.5, -87, -37}, 4.2, 3.0}};
-  static const Rod side{{6, -76, -16}, {9, -77, -38}, 4, 2.8};
-  static const Ellipsoid root({0, -70, -25}, {10.5, 11, 14});
-  double d = chain(brow, m, 6);
-  d = smoothUnion(d, chain(cheek, m, 6), 7);
+  static constexpr Chain<4> brow{{{{0, -75, -7}, {14, -76, -5}, 5.5, 5.5},
+                                  {{14, -76, -5}, {32, -70, -3.5}, 5.5, 4.5},
+                                  {{32, -70, -3.5}, {47, -60, -10}, 4.5, 4},
+                                  {{47, -60, -10}, {52.5, -55, -22}, 4, 4}},
+                                 6};
+  static constexpr Chain<2> cheek{
+      {{{52.5, -55, -22}, {52, -55, -38}, 4, 5.5}, {{52, -55, -38}, {45, -59, -48}, 6, 7.5}}, 6};
+  static constexpr Rod arch_bones[] = {{{50, -54, -46}, {60, -38, -45}, 5, 4.2},
+                                       {{60, -38, -45}, {63.5, -20, -43.5}, 4.2, 3.2},
+                                       {{63.5, -20, -43.5}, {63.5, -4, -41}, 3.2, 3.4},
+                                       {{63.5, -4, -41}, {60, 10, -37}, 3.4, 5}};
+  static constexpr Chain<2> bridge{
+      {{{0, -76, -12}, {1.2, -80, -24}, 4.8, 4.2}, {{1.2, -80, -24}, {1.5, -87, -37}, 4.2, 3.0}},
+      4};
+  static constexpr Rod side{{6, -76, -16}, {9, -77, -38}, 4, 2.8};
+  static constexpr Ellipsoid root({0, -70, -25}, {10.5, 11, 14});
+  double d = brow.distance(m);
+  d = joined(d, cheek, m, 7);
   if (m.x > 34.0 && m.z < -24.0) {
     double arch_mm = bar(arch_bones[0], m, -45, 0.72);
     for (int n = 1; n < 4; ++n) {
@@ -146,8 +151,10 @@ double upperFace(const Vec3& m) {
     d = smoothUnion(d, arch_mm, 5);
   }
   if (m.x < 24.0) {
-    d = smoothUnion(d, smoothUnion(chain(bridge, m, 4), side.distance(m), 4), 4);
-    d = smoothUnion(d, root.roughDistance(m), 4);
+    if (!bridge.box().isBeyond(m, d + 5) || !side.box().isBeyond(m, d + 5)) {
+      d = smoothUnion(d, smoothUnion(bridge.distance(m), side.distance(m), 4), 4);
+    }
+    d = joined(d, root, m, 4);
   }
   return d;
 }
@@ -181,15 +188,15 @@ double nose(const Vec3& drawn) {
 }
 
 double earCanal(const Vec3& m) {
-  static const Rod canal{{90, 8, -35}, {54, 12, -37}, 4.2, 2.8};
+  static constexpr Rod canal{{90, 8, -35}, {54, 12, -37}, 4.2, 2.8};
   return canal.distance(m);
 }
 
 double relief(const Vec3& m) {
   double out = 0.0;
   const auto swell = [&](double x, double y, double z, double reach, double high) {
-    const double r2 = (square(m.x - x) + square(m.y - y) + square(m.z - z)) / (reach * reach);
-    if (r2 < 1.0) out += high * square(1.0 - r2);
+    const double r2 = square(m.x - x) + square(m.y - y) + square(m.z - z), reach2 = reach * reach;
+    if (r2 < reach2) out += high * square(1.0 - r2 / reach2);
   };
   swell(56, 30, 44, 52, 4.5);    // parietal eminence
   swell(30, -64, 36, 40, 3.0);   // frontal eminence
@@ -198,10 +205,12 @@ double relief(const Vec3& m) {
   swell(62, -34, -4, 46, -7.0);  // temporal fossa, deepest behind the eye socket
   // The temporal line: what lies within it is sunk a little, with a low crest at its border.
   if (m.x > 30.0 && m.z > -40.0) {
-    const double line = std::sqrt(square((m.y - 2.0) / 62.0) + square((m.z + 14.0) / 54.0));
-    const double within = (1.0 - line) * 56.0;  // mm, about
-    const double fades = ramp(70.0, 10.0, m.y);
-    out += fades * (0.4 * bump(within / 6.0) - 1.3 * ramp(0.0, 20.0, within));
+    const double line2 = square((m.y - 2.0) / 62.0) + square((m.z + 14.0) / 54.0);
+    if (line2 < 1.3) {                                        // the crest ends where it is 1.226
+      const double within = (1.0 - std::sqrt(line2)) * 56.0;  // mm, about
+      const double fades = ramp(70.0, 10.0, m.y);
+      out += fades * (0.4 * bump(within / 6.0) - 1.3 * ramp(0.0, 20.0, within));
+    }
   }
   return out;
 }
@@ -229,28 +238,36 @@ double suture(const Vec3& m) {
 }
 
 double bones(const Vec3& m, double braincase) {
-  static const Ellipsoid mastoid({54, 24, -42}, {10, 13, 20});
-  static const Rod root{{56, 12, -31}, {62, 4, -36}, 6, 5};
-  static const Rod styloid{{46, 17, -46}, {41, 10, -70}, 2.6, 1.2};
-  static const Rod pterygoid[] = {{{16, -22, -38}, {19, -24, -57}, 4, 2.4},
-                                  {{16, -22, -38}, {10, -18, -56}, 4, 1.8}};
-  static const Ellipsoid sphenoid({0, -14, -36}, {22, 24, 13});
-  static const Ellipsoid clivus({0, 6, -48}, {13, 14, 14});
-  static const Ellipsoid condyle({15, 22, -44}, {6, 10, 6});
+  static constexpr Ellipsoid mastoid({54, 24, -42}, {10, 13, 20});
+  static constexpr Rod root{{56, 12, -31}, {62, 4, -36}, 6, 5};
+  static constexpr Rod styloid{{46, 17, -46}, {41, 10, -70}, 2.6, 1.2};
+  static constexpr Chain<2> pterygoid{
+      {{{16, -22, -38}, {19, -24, -57}, 4, 2.4}, {{16, -22, -38}, {10, -18, -56}, 4, 1.8}}, 2};
+  static constexpr Ellipsoid sphenoid({0, -14, -36}, {22, 24, 13});
+  static constexpr Ellipsoid clivus({0, 6, -48}, {13, 14, 14});
+  static constexpr Ellipsoid condyle({15, 22, -44}, {6, 10, 6});
   double d = braincase;
   if (m.z < 16.0 && m.y < 24.0 && m.z > -90.0) {
-    if (m.y < -20.0 || m.x > 34.0) d = smoothUnion(d, upperFace(m), 6);
+    static constexpr Box face{{-6, -96, -60}, {74, 21, 9}};
+    if ((m.y < -20.0 || m.x > 34.0) && !face.isBeyond(m, d + 6))
+      d = smoothUnion(d, upperFace(m), 6);
   }
-  if (m.y < -14.0 && m.z < -8.0 && m.z > -84.0) d = smoothUnion(d, upperJaw(lifeSize(m)), 5);
+  const Vec3 life = lifeSize(m);
+  static constexpr Box upper_jaw{{-6, -86, -95}, {56, -12, -10}};
+  if (m.y < -14.0 && m.z < -8.0 && m.z > -84.0 && !upper_jaw.isBeyond(life, d + 5)) {
+    d = smoothUnion(d, upperJaw(life), 5);
+  }
   if (m.z < -20.0 && m.y > -50.0 && m.y < 50.0) {
-    d = smoothUnion(d, sphenoid.roughDistance(m), 8);
-    d = smoothUnion(d, clivus.roughDistance(m), 8);
-    d = smoothUnion(d, condyle.roughDistance(m), 5);
+    d = joined(d, sphenoid, m, 8);
+    d = joined(d, clivus, m, 8);
+    d = joined(d, condyle, m, 5);
     if (m.x > 30.0) {
-      d = smoothUnion(d, smoothUnion(mastoid.roughDistance(m), root.distance(m), 6), 8);
-      d = smoothUnion(d, styloid.distance(m), 3);
+      if (!mastoid.isBeyond(m, d + 10) || !root.box().isBeyond(m, d + 10)) {
+        d = smoothUnion(d, smoothUnion(mastoid.roughDistance(m), root.distance(m), 6), 8);
+      }
+      d = joined(d, styloid, m, 3);
     }
-    d = smoothUnion(d, chain(pterygoid, m, 2), 4);
+    d = joined(d, pterygoid, m, 4);
   }
   // Hollows, with thin walls of their own further back.
   if (m.y < -20.0 && m.z > -66.0 && m.z < 6.0) {
@@ -265,13 +282,17 @@ double bones(const Vec3& m, double braincase) {
     d = smoothIntersection(d, -cavity, 2.5);
     if (cavity < 1.0 && m.y > -74.0 && m.y < -24.0) {
       // Septum and the lower conchae.
-      static const Rod concha[] = {{{8, -64, -53}, {8, -30, -53}, 2.2, 2.4},
-                                   {{7, -60, -45}, {7, -30, -45}, 1.6, 1.8}};
-      d = std::min({d, std::max(m.x - 0.8, -70.0 - m.y), chain(concha, m, 1)});
+      static constexpr Chain<2> concha{
+          {{{8, -64, -53}, {8, -30, -53}, 2.2, 2.4}, {{7, -60, -45}, {7, -30, -45}, 1.6, 1.8}}, 1};
+      d = std::min({d, std::max(m.x - 0.8, -70.0 - m.y), concha.distance(m)});
     }
   }
   if (m.x > 48.0 && m.z < -24.0) d = smoothIntersection(d, -earCanal(m), 2);
-  if (m.z < -38.0 && m.y < 16.0) d = std::min(d, lowerJaw(lifeSize(m)));
+  // Its distances are half of the true ones above and below.
+  static constexpr Box lower_jaw{{-8, -90, -126}, {68, 20, -30}};
+  if (m.z < -38.0 && m.y < 16.0 && !lower_jaw.isBeyond(life, 2.0 * d)) {
+    d = std::min(d, lowerJaw(life));
+  }
   return d;
 }
 
@@ -281,22 +302,23 @@ double vertebrae(const Vec3& m, double canal) {
   const Vec3 local{m.x, m.y, level - 18.0 * number};
   const double high = std::abs(local.z);
   double d = smoothIntersection(ellipseDistance(local.x, local.y - 9, 13, 9), high - 6.8, 4);
-  static const Ellipsoid mass({20, 21, 0}, {9, 8, 7});
-  static const Rod transverse{{20, 18, 0}, {33, 14, 1}, 4.5, 3.5};
-  static const Rod lamina{{17, 32, -1}, {3, 44, -3}, 4.2, 4};
-  static const Rod spinous{{0, 43, -2}, {0, 64, -7}, 4, 3};
-  d = smoothUnion(d, mass.roughDistance(local), 4);
-  d = smoothUnion(d, transverse.distance(local), 4);
+  static constexpr Ellipsoid mass({20, 21, 0}, {9, 8, 7});
+  static constexpr Rod transverse{{20, 18, 0}, {33, 14, 1}, 4.5, 3.5};
+  static constexpr Rod lamina{{17, 32, -1}, {3, 44, -3}, 4.2, 4};
+  static constexpr Rod spinous{{0, 43, -2}, {0, 64, -7}, 4, 3};
+  d = joined(d, mass, local, 4);
+  d = joined(d, transverse, local, 4);
   d = smoothUnion(d, smoothUnion(lamina.distance(local), spinous.distance(local), 4), 4);
   if (m.z > -57.0) {
     // The atlas is a ring without a body around the dens.
-    static const Rod dens{{0, 10, -62}, {0, 11, -51}, 5.0, 3.6};
-    static const Ellipsoid side({20, 22, -52}, {9, 9, 4.5});
-    static const Rod ring[] = {{{0, 3, -53}, {14, 9, -53}, 3.2, 3},
-                               {{22, 30, -52}, {14, 40, -52}, 3.2, 3},
-                               {{14, 40, -52}, {0, 45, -53}, 3, 3.6},
-                               {{24, 20, -52}, {40, 19, -51}, 4, 3}};
-    d = std::min(dens.distance(m), smoothUnion(side.roughDistance(m), chain(ring, m, 3), 4));
+    static constexpr Rod dens{{0, 10, -62}, {0, 11, -51}, 5.0, 3.6};
+    static constexpr Ellipsoid side({20, 22, -52}, {9, 9, 4.5});
+    static constexpr Chain<4> ring{{{{0, 3, -53}, {14, 9, -53}, 3.2, 3},
+                                    {{22, 30, -52}, {14, 40, -52}, 3.2, 3},
+                                    {{14, 40, -52}, {0, 45, -53}, 3, 3.6},
+                                    {{24, 20, -52}, {40, 19, -51}, 4, 3}},
+                                   3};
+    d = std::min(dens.distance(m), smoothUnion(side.roughDistance(m), ring.distance(m), 4));
   }
   return smoothIntersection(d, -canal, 2);
 }
@@ -304,61 +326,78 @@ double vertebrae(const Vec3& m, double canal) {
 double skin(const Vec3& drawn, double scalp) {
   if (scalp < -18.0) return scalp;
   const Vec3 m = lifeSize(drawn);
-  static const Ellipsoid face({0, -30, -48}, {60, 50, 58});
-  static const Ellipsoid jaw({0, -32, -89}, {57, 51, 34});
-  static const Ellipsoid jowl({36, -30, -76}, {24, 38, 40});
-  static const Rod chin{{0, -71, -107}, {9, -69, -107}, 13, 12};
-  static const Rod brow[] = {{{0, -77, -7}, {20, -76, -5}, 7.5, 7.5},
-                             {{20, -76, -5}, {46, -62, -12}, 7.5, 6.5}};
-  static const Rod nose_parts[] = {{{0, -77, -16}, {0, -90, -46}, 6.5, 7.2},
-                                   {{0, -90, -46}, {0, -94, -55}, 7.2, 8.2}};
-  static const Rod wing{{9, -85, -58}, {11, -79, -57}, 5.5, 5};
-  static const Rod column{{0, -93, -58}, {0, -82, -65}, 4.5, 5};
-  static const Rod upper_lip{{0, -85, -82}, {22, -77, -86}, 6, 2.5};
-  static const Rod lower_lip{{0, -84, -92}, {21, -77, -88}, 6.2, 2.5};
-  static const Ellipsoid muzzle({0, -61, -80}, {33, 25, 25});
-  static const Ellipsoid nose_base({0, -78, -50}, {10, 11, 17});
-  static const Ellipsoid cheek({37, -52, -60}, {21, 20, 24});
-  static const Ellipsoid lid({31, -67, -28}, {16, 13.2, 12.5});
+  static constexpr Ellipsoid face({0, -30, -48}, {60, 50, 58});
+  static constexpr Ellipsoid jaw({0, -32, -89}, {53, 51, 34});
+  static constexpr Ellipsoid jowl({36, -30, -76}, {20, 38, 40});
+  static constexpr Rod chin{{0, -71, -107}, {9, -69, -107}, 13, 12};
+  static constexpr Chain<3> brow{{{{0, -77, -7}, {20, -76, -5}, 7.5, 7.5},
+                                  {{20, -76, -5}, {46, -62, -12}, 7.5, 7.5},
+                                  {{46, -62, -12}, {53, -54, -26}, 7.5, 8}},
+                                 6};
+  static constexpr Chain<2> nose_parts{
+      {{{0, -77, -16}, {0, -90, -46}, 6.5, 7.2}, {{0, -90, -46}, {0, -94, -55}, 7.2, 8.2}}, 6};
+  static constexpr Rod wing{{9, -85, -58}, {11, -79, -57}, 5.5, 5};
+  static constexpr Rod column{{0, -93, -58}, {0, -82, -65}, 4.5, 5};
+  static constexpr Rod upper_lip{{0, -85, -82}, {22, -77, -86}, 6, 2.5};
+  static constexpr Rod lower_lip{{0, -84, -92}, {21, -77, -88}, 6.2, 2.5};
+  static constexpr Ellipsoid muzzle({0, -61, -80}, {33, 25, 25});
+  static constexpr Ellipsoid nose_base({0, -78, -50}, {10, 11, 17});
+  static constexpr Ellipsoid cheek({37, -52, -60}, {21, 20, 24});
+  static constexpr Ellipsoid lid({31, -66, -28}, {17, 14.8, 14});
   // No seam at the height where the face begins.
   double d = smoothUnion(scalp, face.roughDistance(m), 0.1 + 12.0 * ramp(16, 0, m.z));
   if (m.z < -5.0) {
     const double neck = smoothIntersection(ellipseDistance(m.x, m.y - 24, 53, 53), m.z + 18, 10);
     d = smoothUnion(d, neck, 16);
-    d = smoothUnion(d, jaw.roughDistance(m), 12);
-    d = smoothUnion(d, jowl.roughDistance(m), 14);
+    d = joined(d, jaw, m, 12);
+    d = joined(d, jowl, m, 14);
   }
   if (d > 32.0 || d < -18.0) return d;  // none of what follows reaches there
   if (m.y < -34.0) {
-    d = smoothUnion(d, chain(brow, m, 6), 7);
-    d = smoothUnion(d, smoothUnion(cheek.roughDistance(m), muzzle.roughDistance(m), 8), 8);
-    d = smoothUnion(d, chin.distance(m), 8);
-    double front = chain(nose_parts, m, 6);
-    front = smoothUnion(front, smoothUnion(wing.distance(m), column.distance(m), 3), 3);
-    front = smoothUnion(front, nose_base.roughDistance(m), 4);
-    d = smoothUnion(d, front, 8);
-    d = smoothUnion(d, upper_lip.distance(m), 4);
-    d = smoothUnion(d, lower_lip.distance(m), 3);
+    d = joined(d, brow, m, 7);
+    if (!cheek.isBeyond(m, d + 10) || !muzzle.isBeyond(m, d + 10)) {
+      d = smoothUnion(d, smoothUnion(cheek.roughDistance(m), muzzle.roughDistance(m), 8), 8);
+    }
+    d = joined(d, chin, m, 8);
+    static constexpr Box whole_nose{{-12, -106, -76}, {22, -64, -7}};
+    if (!whole_nose.isBeyond(m, d + 8)) {
+      double front = nose_parts.distance(m);
+      front = smoothUnion(front, smoothUnion(wing.distance(m), column.distance(m), 3), 3);
+      front = joined(front, nose_base, m, 4);
+      d = smoothUnion(d, front, 8);
+    }
+    d = joined(d, upper_lip, m, 4);
+    d = joined(d, lower_lip, m, 3);
     // The line between the lips, and that between the lids.
     const double mouth = std::sqrt(square(m.z + 87.0 - 0.02 * m.x) + square((m.y + 93.0) / 8.0));
     if (m.x < 24.0) d = std::max(d, 0.9 * bump(m.x / 26.0) + 0.3 - mouth);
-    d = smoothUnion(d, lid.roughDistance(m), 4);
-    const double slit = std::abs(m.z + 29.5 + 0.012 * square(m.x - 31.0) - 3.0);
-    if (std::abs(m.x - 31.0) < 15.0 && m.y < -74.0) d += 1.6 * bump(slit / 1.6);
+    d = joined(d, lid, m, 7);
+    if (m.y < -70.0 && m.z < -10.0 && m.z > -48.0) {
+      const double aside2 = square((m.x - 31.0) / 15.5);
+      if (aside2 < 1.0) {
+        // The closed lids meet along an arc below the pupil; the upper folds above it.
+        const double between = std::abs(m.z + 33.5 - 3.5 * aside2),
+                     fold = std::abs(m.z + 20.0 + 5.0 * aside2);
+        d += (1.0 - aside2) * (1.2 * bump(between / 1.9) + 0.8 * bump(fold / 2.0));
+      }
+    }
   }
+  // The muscle that fills the temporal fossa.
+  static constexpr Ellipsoid temple({40, -26, -18}, {28, 34, 23});
+  d = joined(d, temple, drawn, 8);
   if (m.x > 30.0 && m.z < 0.0) {
     // Over the cheek's arch and behind the ear.
-    static const Rod arch_skin[] = {{{44, -61, -42}, {60, -36, -42}, 10, 9},
-                                    {{60, -36, -42}, {62, 4, -40}, 9, 10}};
-    static const Ellipsoid behind({50, 22, -40}, {21, 24, 32});
-    d = smoothUnion(d, chain(arch_skin, drawn, 8), 22);
-    d = smoothUnion(d, behind.roughDistance(drawn), 10);
+    static constexpr Chain<2> arch_skin{
+        {{{44, -61, -42}, {60, -36, -42}, 10, 9}, {{60, -36, -42}, {62, 4, -40}, 9, 10}}, 8};
+    static constexpr Ellipsoid behind({50, 22, -40}, {21, 24, 32});
+    d = joined(d, arch_skin, drawn, 22);
+    d = joined(d, behind, drawn, 10);
   }
   if (m.x > 54.0) {
-    static const Ellipsoid ear({74, 17, -32}, {5, 15, 29}, {6, 19, 32});
-    static const Ellipsoid lobe({72, 8, -58}, {5, 8, 9});
-    static const Ellipsoid shell({83, 13, -33}, {7, 9, 15});
-    static const Ellipsoid scapha({83, 19, -20}, {6, 11, 17});
+    static constexpr Ellipsoid ear({74, 17, -32}, {5, 15, 29}, {6, 19, 32});
+    static constexpr Ellipsoid lobe({72, 8, -58}, {5, 8, 9});
+    static constexpr Ellipsoid shell({83, 13, -33}, {7, 9, 15});
+    static constexpr Ellipsoid scapha({83, 19, -20}, {6, 11, 17});
     // It stands off to the back.
     const Vec3 turned{m.x - 0.35 * (m.y - 8.0), m.y, drawn.z};
     double pinna = smoothUnion(ear.roughDistance(turned), lobe.roughDistance(turned), 5);
