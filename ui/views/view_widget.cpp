@@ -64,8 +64,7 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->setObjectName("viewLevel");
   level_->setAttribute(Qt::WA_TransparentForMouseEvents);
   level_->setProperty("quiet", true);
-  level_->move(10, 8);
-  level_->hide();
+  level_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   strip_->hide();
   connectTools();
   still_.setSingleShot(true);
@@ -182,6 +181,8 @@ glm::dvec2 ViewWidget::pixelAt(const QPointF& place) const {
 void ViewWidget::fitHint() {
   strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
+  // Always as large and never hidden: over a QOpenGLWidget, pixels that a child leaves stay.
+  level_->setGeometry(10, 8, std::max(0, strip_->x() - 20), 3 * fontMetrics().height());
 }
 
 void ViewWidget::paintGL() {
@@ -239,11 +240,7 @@ void ViewWidget::showLevel() {
                  .arg(k);
   }
   const QString text = words.join('\n');
-  if (text != level_->text()) {
-    level_->setText(text);
-    level_->adjustSize();
-  }
-  level_->setVisible(!text.isEmpty());
+  if (text != level_->text()) level_->setText(text);
 }
 
 void ViewWidget::redraw() {

@@ -3,6 +3,7 @@
 #include <QApplication>
 #include <QLabel>
 #include <QMouseEvent>
+#include <QScreen>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QVBoxLayout>
@@ -74,7 +75,7 @@ class ViewToolsGuiTest : public QObject {
   Picture seen() {
     QTest::qWait(300);
     const auto label = view().findChild<QLabel*>("viewLevel");
-    (void)QTest::qWaitFor([&] { return !label->isVisible(); }, kLong_ms);
+    (void)QTest::qWaitFor([&] { return label->text().isEmpty(); }, kLong_ms);
     const QImage image = view().grabFramebuffer().convertToFormat(QImage::Format_RGB888);
     Picture picture{image.width(), image.height(), {}};
     for (int y = 0; y < image.height(); ++y) {
@@ -254,8 +255,30 @@ class ViewToolsGuiTest : public QObject {
     view().setTools({tool});
     QSignalSpy painted(&view(), &ViewWidget::framePainted);
     QTRY_VERIFY(!painted.isEmpty());
-    QVERIFY2(!label->isVisible(), "no coarser picture of the volume was made");
+    QVERIFY2(label->text().isEmpty(), "no coarser picture of the volume was made");
     view().setTools({});
+  }
+
+  void nothingStaysOnTheScreenOfWhatWasSaidOfALevel() {
+    const auto label = view().findChild<QLabel*>("viewLevel");
+    press(Qt::Key_Left);
+    QTRY_VERIFY(!label->text().isEmpty());
+    QTest::qWait(100);  // it is drawn
+    seen();
+    const QRect place(view().mapTo(window_.get(), label->pos()), label->size());
+    QImage own = view().grabFramebuffer().copy(label->geometry());
+    own = own.convertToFormat(QImage::Format_RGB32);
+    QImage screen;
+    const auto alike = [&] {
+      QTest::qWait(200);
+      screen =
+          window_->screen()
+              ->grabWindow(window_->winId(), place.x(), place.y(), place.width(), place.height())
+              .toImage()
+              .convertToFormat(QImage::Format_RGB32);
+      return screen == own;
+    };
+    QVERIFY(QTest::qWaitFor(alike, 3000));
   }
 
   void aLostContextIsRebuilt() {
