@@ -48,6 +48,13 @@ class CarveMapper : public vtkOpenGLGPUVolumeRayCastMapper {
   static CarveMapper* New();
   vtkTypeMacro(CarveMapper, vtkOpenGLGPUVolumeRayCastMapper);
 
+  // VTK's first draw lets go of what was loaded before it, only to load it again: a whole volume.
+  // While a draw has begun, what is there stays.
+  void ReleaseGraphicsResources(vtkWindow* window) override {
+    if (!drawing) Superclass::ReleaseGraphicsResources(window);
+  }
+  bool drawing = false;
+
   // Asked only after a draw: VTK keeps dead pointers in here once it released its resources. Null
   // where the GPU refused the volume.
   vtkTextureObject* texture() {
@@ -197,6 +204,7 @@ struct CarveVolume::Parts {
   }
 
   void startDraw() {
+    mapper->drawing = sent;
     if (!drawn) markAll();
     if (part.empty()) return;
     state->vtkglEnable(GL_SCISSOR_TEST);
@@ -204,6 +212,7 @@ struct CarveVolume::Parts {
   }
 
   void endDraw() {
+    mapper->drawing = false;
     marks_of_all.reset();
     sent = drawn = true;
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/dirty_boxes.h"
+#include "volume/two_threads.h"
 
 namespace trephine {
 
@@ -66,11 +67,11 @@ BrickRanges::BrickRanges(const Volume& volume) {
     size_[axis] = (volume.geometry.size[axis] + kLeapEdge - 1) / kLeapEdge;
   }
   ranges_.resize(std::size_t(size_[0]) * std::size_t(size_[1]) * std::size_t(size_[2]));
-  for (int k = 0; k < size_[2]; ++k) {
+  onTwoThreads(size_[2], [&](int k) {
     for (int j = 0; j < size_[1]; ++j) {
       scanRow(volume, j, k, 0, size_[0], ranges_.data() + indexOf(0, j, k));
     }
-  }
+  });
 }
 
 std::optional<BrickBox> BrickRanges::update(const Volume& volume, const VoxelBox& box) {

@@ -8,12 +8,18 @@ namespace trephine {
 namespace {
 
 // A full picture that takes longer has one in between, which takes about the second time.
-constexpr double kLongWait_ms = 1100.0;
+constexpr double kLongWait_ms = 750.0;
 constexpr double kFirstRefined_ms = 350.0;
 
 // Quarter steps: every new level allocates its images again.
 double level(double step) {
   return std::clamp(std::ceil(step * 4.0) / 4.0, 1.0, LevelOfDetail::kCoarsest);
+}
+
+// From here on blocks disturb more than frames that take this long.
+constexpr double kCoarse = 4.0, kCoarse_ms = 80.0;
+double unlessTooCoarse(double step, double ms, double at) {
+  return step > kCoarse ? std::max(kCoarse, level(at * std::sqrt(ms / kCoarse_ms))) : step;
 }
 
 }  // namespace
@@ -34,17 +40,36 @@ void LevelOfDetail::stillFrameTook(double ms) {
   // Rays fall with the square of the step and samples with up to 2 of it.
   const double ratio = ms / kBudget_ms;
   pixel_step_ = level(ratio <= 8.0 ? std::cbrt(ratio) : std::sqrt(ratio / 2.0));
+  pixel_step_ = unlessTooCoarse(pixel_step_, 0.5 * ms, 1.0);
+  frames_ = 0;
 }
 
 void LevelOfDetail::movingFrameTook(double ms) {
   if (!std::isfinite(ms) || ms <= 0.0) return;
-  const double ratio = ms / kBudget_ms;
-  // Finer only when there is room for a whole level, or the level would change at every frame.
-  if (ratio > 1.0) {
-    pixel_step_ = level(pixel_step_ * std::sqrt(ratio));
-  } else if (ratio < 0.5) {
-    pixel_step_ = level(pixel_step_ * std::max(0.7, std::sqrt(ratio * 1.3)) - 0.25);
+  std::rotate(last_ms_.begin(), last_ms_.end() - 1, last_ms_.end());
+  last_ms_[0] = ms;
+  frames_ = std::min(frames_ + 1, int(last_ms_.size()));
+  // One slow frame may be another program's; one quick frame may look where there is little.
+  const auto known = last_ms_.begin() + frames_;
+  const double slow_ratio = frames_ > 1 ? std::min(last_ms_[0], last_ms_[1]) / kBudget_ms : 0.0;
+  const double quick_ratio = *std::max_element(last_ms_.begin(), known) / kBudget_ms;
+  double step = pixel_step_;
+  if (slow_ratio > 1.0) {
+    const double slow_ms = slow_ratio * kBudget_ms;
+    step = unlessTooCoarse(level(pixel_step_ * std::sqrt(slow_ratio)), slow_ms, pixel_step_);
+    step = std::max(step, pixel_step_);
+  } else if (frames_ == int(last_ms_.size())) {
+    // The finest at which it can hardly take longer than it may.
+    const auto cost = [](double at) { return 1.0 / (at * at * rayStepAt(at)); };
+    const auto allowed = [](double at) { return at >= kCoarse ? kCoarse_ms / kBudget_ms : 1.0; };
+    while (step > 1.0 &&
+           quick_ratio * cost(step - 0.25) / cost(pixel_step_) < 0.95 * allowed(step - 0.25)) {
+      step -= 0.25;
+    }
   }
+  if (step == pixel_step_) return;
+  pixel_step_ = step;
+  frames_ = 0;
 }
 
 void LevelOfDetail::pixelsChanged(double times) {

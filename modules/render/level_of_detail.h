@@ -1,12 +1,14 @@
 // How coarse a frame may be while something moves, from how long the last ones took. Pure.
 #pragma once
 
+#include <array>
+
 namespace trephine {
 
 class LevelOfDetail {
  public:
   // Of rays; leaves a share of a 15th of a second to putting the picture together and showing it.
-  static constexpr double kBudget_ms = 42.0;
+  static constexpr double kBudget_ms = 56.0;
   static constexpr double kCoarsest = 8.0;
 
   // Pixels between two rays, each way; 1 is full quality.
@@ -33,6 +35,8 @@ class LevelOfDetail {
  private:
   double pixel_step_ = 1.0;
   double still_frame_ms_ = 0.0;
+  std::array<double, 3> last_ms_{};  // of moving frames at this level, the last one first
+  int frames_ = 0;                   // how many of them there are
 };
 
 // How many pixels the next strip of a picture may have, so that it takes `left_ms`, when the last

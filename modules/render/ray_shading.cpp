@@ -15,7 +15,7 @@ namespace trephine {
 namespace {
 
 // The contrast over the ball around a sample from which on it lies across an edge.
-constexpr double kEdge_HU = 30.0;
+constexpr double kEdge_HU = 25.0;
 // Between these a labelled structure fades into the air of a cut.
 constexpr double kAirEnds_HU = -950.0, kTissueBegins_HU = -100.0;
 

@@ -119,7 +119,7 @@ void SceneRenderer::setVolume(const Grid& grid) {
 
 void SceneRenderer::setVolume(Grid& grid, const std::shared_ptr<const Volume>& whole) {
   auto mirror = std::make_shared<VolumeMirror>();
-  mirror->show(Volume(*whole), grid.labels(), whole);
+  mirror->show(copyOf(*whole), grid.labels(), whole);
   mirror->pull(grid);
   setMirror(std::move(mirror));
 }

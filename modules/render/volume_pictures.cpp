@@ -13,6 +13,7 @@ namespace {
 // while cuts follow each other no finer picture is made at which the next would take as long.
 constexpr double kCut_ms = 60.0;
 constexpr std::chrono::milliseconds kCutting(1000);
+constexpr double kCoarserWhenCut = 1.25;  // than when turned: the hand waits for it
 constexpr double kFirstStrip = 12000.0;  // pixels, before any was measured
 constexpr double kTelling = 4000.0;
 constexpr double kFirstStep = 4.0;  // of a volume of which nothing is known
@@ -103,17 +104,21 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   bool changed = false;
   const bool unknown = pixels_per_ms_ == 0.0 && budget_ms < kNoLimit;
   const bool whole = !moving && !unknown && level_.stillFrame_ms() <= budget_ms;
-  const bool costly = !stale_ && expected_ms(shown_) > kCut_ms &&
-                      shown_.step < level_.pixelStep() && budget_ms < kNoLimit;
+  const double cut_step = std::ceil(4.0 * kCoarserWhenCut * level_.pixelStep()) / 4.0;
+  const bool costly =
+      !stale_ && expected_ms(shown_) > kCut_ms && shown_.step < cut_step && budget_ms < kNoLimit;
   if (stale_ || costly) {
     next_.step = 0.0;
     const bool full = stale_ && whole;
-    const double step = std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0);
-    start(shown_, full ? 1.0 : step, full ? 1.0 : level_.rayStep());
+    const double moving_step = std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0);
+    const double step = full ? 1.0 : stale_ ? moving_step : cut_step;
+    start(shown_, step, full ? 1.0 : LevelOfDetail::rayStepAt(stale_ ? level_.pixelStep() : step));
     castSome(shown_, kNoLimit, cast);
-    stale_ = false;
+    const bool turned = std::exchange(stale_, false);
     changed = true;
-    if (!full) {
+    if (!turned) {
+      // A level of its own.
+    } else if (!full) {
       if (unknown) {
         level_.stillFrameTook(double(width_) * double(height_) / pixels_per_ms_);
       } else {

@@ -7,12 +7,13 @@ namespace trephine {
 namespace {
 
 // What a tissue is to a preset, by its id in a set.
-enum class Part { bone, skin, liver, liver_vessel, other };
-constexpr std::array<std::pair<std::string_view, Part>, 6> kParts{
+enum class Part { bone, skin, liver, capsule, liver_vessel, other };
+constexpr std::array<std::pair<std::string_view, Part>, 7> kParts{
     {{"bone", Part::bone},
      {"skin", Part::skin},
      {"scalp", Part::skin},
      {"liver", Part::liver},
+     {"capsule", Part::capsule},
      {"vessel", Part::liver_vessel},
      {"gallbladder", Part::liver_vessel}}};
 
@@ -51,6 +52,8 @@ TissueLook lookIn(ViewPreset preset, const Tissue& tissue) {
       return part == Part::bone ? TissueLook::ghosted : own;
     case ViewPreset::liver:
       if (part == Part::bone) return TissueLook::ghosted;
+      // By HU alone a capsule is the rim of much else.
+      if (part == Part::capsule && tissue.label) return TissueLook::shown;
       return part == Part::liver || part == Part::liver_vessel ? TissueLook::shown
                                                                : TissueLook::hidden;
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "volume/two_threads.h"
+
 namespace trephine {
 
 Grid::Grid(Volume volume, std::shared_ptr<const LabelMap> labels)
@@ -59,7 +61,12 @@ void Grid::copyChanges(Volume& copy, std::vector<VoxelBox>& boxes) {
 
 Volume Grid::snapshot() const {
   Volume copy{geometry(), Voxels(volume_.hu.size())};
-  for (std::size_t index = 0; index < copy.hu.size(); ++index) copy.hu[index] = hu(index);
+  const Index3& size = geometry().size;
+  const std::size_t slice = std::size_t(size[0]) * std::size_t(size[1]);
+  onTwoThreads(size[2], [&](int k) {
+    const std::size_t from = slice * std::size_t(k);
+    for (std::size_t index = from; index < from + slice; ++index) copy.hu[index] = hu(index);
+  });
   return copy;
 }
 

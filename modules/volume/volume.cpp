@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/sha256.h"
+#include "volume/two_threads.h"
 
 namespace trephine {
 
@@ -36,6 +37,17 @@ Vec3 GridGeometry::centre_mm() const {
 
 double GridGeometry::diagonal_mm() const {
   return glm::length(Vec3(size[0], size[1], size[2]) * spacing_mm);
+}
+
+Volume copyOf(const Volume& volume) {
+  Volume copy{volume.geometry, Voxels(volume.hu.size())};
+  constexpr std::size_t kBlock = std::size_t(1) << 21;
+  const std::size_t count = volume.hu.size();
+  onTwoThreads(int((count + kBlock - 1) / kBlock), [&](int n) {
+    const std::size_t from = std::size_t(n) * kBlock;
+    std::copy_n(volume.hu.data() + from, std::min(kBlock, count - from), copy.hu.data() + from);
+  });
+  return copy;
 }
 
 std::string volumeSha256(const Volume& volume) {

@@ -199,7 +199,7 @@ void Workstation::openInBackground(Opened opening) {
           return enough.error();
         }
         try {
-          opening.mirror = *opening.of->volume;
+          opening.mirror = copyOf(*opening.of->volume);
         } catch (const std::bad_alloc&) {
           return outOfMemory("to show the case", "the case");
         }

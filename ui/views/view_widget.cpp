@@ -16,9 +16,9 @@ namespace {
 constexpr int kStillAfter_ms = 120;
 // What one frame may spend on rays: on those of a cut before it is shown, and between two frames on
 // a finer picture. In an exercise the tools wait no longer than this.
-constexpr double kCut_ms = 25.0;
+constexpr double kCut_ms = 20.0;
 constexpr double kRefine_ms = 30.0;
-constexpr double kRefineInTraining_ms = 12.0;
+constexpr double kRefineInTraining_ms = 10.0;
 constexpr int kNothingToRefine_ms = 40;  // while cuts follow each other too fast for full quality
 constexpr double kTurn_deg_per_pixel = 0.4;
 constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel

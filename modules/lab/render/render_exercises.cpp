@@ -71,7 +71,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   if (!renderer_made) return renderer_made.error();
   SceneRenderer& renderer = **renderer_made;
   // As the window in an exercise: a picture at most this long, and so long for a finer one between.
-  constexpr double kFrame_ms = 25.0, kBetween_ms = 12.0;
+  constexpr double kFrame_ms = 20.0, kBetween_ms = 10.0;
   const double distance = options.sample_distances.front();
   renderer.setSampleDistance(distance);
   renderer.setTissues(scene->tissues, scene->view.looks);

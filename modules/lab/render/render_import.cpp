@@ -24,9 +24,10 @@ Status measureFirstPicture(const RenderOptions& options, const std::filesystem::
   renderer.setTissues(*tissues);
   const Result<Case> of = readCase((*folder / "int16").string(), Progress(progress, 0.6, 1.0));
   if (!of) return of.error();
-  const Grid grid(Volume(*of->volume));  // as a session would hold it
   const auto start = RenderClock::now();
-  renderer.setVolume(grid);
+  auto mirror = std::make_shared<VolumeMirror>();  // as in the window
+  mirror->show(copyOf(*of->volume), nullptr, of->volume);
+  renderer.setMirror(std::move(mirror));
   renderer.setMoving(true);  // as the window draws what is new
   renderer.paint(0, 50.0);
   result.first_picture_ms = msSince(start);

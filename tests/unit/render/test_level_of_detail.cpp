@@ -71,9 +71,39 @@ TEST(LevelOfDetail, AnEnlargedViewKeepsItsFramesFromTheFirstOne) {
   }
 }
 
+TEST(LevelOfDetail, OneSlowFrameChangesNothingAndTwoAreFollowedByFinerOnesAgain) {
+  LevelOfDetail level;
+  level.stillFrameTook(600.0);
+  for (int frame = 0; frame < 30; ++frame) level.movingFrameTook(frame_ms(600.0, level));
+  const double settled = level.pixelStep();
+  level.movingFrameTook(400.0);
+  level.movingFrameTook(frame_ms(600.0, level));
+  EXPECT_EQ(level.pixelStep(), settled);
+  for (int frame = 0; frame < 2; ++frame) level.movingFrameTook(400.0);
+  EXPECT_GT(level.pixelStep(), settled);
+  for (int frame = 0; frame < 30; ++frame) level.movingFrameTook(frame_ms(600.0, level));
+  EXPECT_LE(level.pixelStep(), settled + 0.25);
+}
+
+TEST(LevelOfDetail, BlocksOfOverFourPixelsComeOnlyWhereTwelveFramesASecondNeedThem) {
+  for (const double full_ms : {2200.0, 1200.0, 6000.0}) {
+    LevelOfDetail level;
+    level.stillFrameTook(full_ms);
+    for (int frame = 0; frame < 40; ++frame) level.movingFrameTook(frame_ms(full_ms, level));
+    const double ms = frame_ms(full_ms, level);
+    EXPECT_LE(ms, 85.0) << full_ms;
+    if (level.pixelStep() > 4.0) {
+      EXPECT_GT(3.0 + full_ms / 32.0, 80.0) << full_ms;
+    }
+    const double settled = level.pixelStep();
+    for (int frame = 0; frame < 10; ++frame) level.movingFrameTook(frame_ms(full_ms, level));
+    EXPECT_EQ(level.pixelStep(), settled) << full_ms;
+  }
+}
+
 TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
   LevelOfDetail level;
-  level.movingFrameTook(1e9);
+  for (int frame = 0; frame < 2; ++frame) level.movingFrameTook(1e9);
   EXPECT_EQ(level.pixelStep(), LevelOfDetail::kCoarsest);
   level.movingFrameTook(std::nan(""));
   level.stillFrameTook(-1.0);
@@ -85,7 +115,7 @@ TEST(LevelOfDetail, ItNeverLeavesItsBounds) {
 
 TEST(LevelOfDetail, AfterMovementAPictureInBetweenComesOnlyWhereFullQualityWouldTakeLong) {
   LevelOfDetail quick, slow;
-  quick.stillFrameTook(900.0);
+  quick.stillFrameTook(700.0);
   EXPECT_EQ(quick.finerThan(quick.pixelStep()), 1.0);
   slow.stillFrameTook(4000.0);
   const double between = slow.finerThan(slow.pixelStep());

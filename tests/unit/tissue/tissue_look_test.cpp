@@ -92,5 +92,14 @@ TEST(ViewPresets, BoneIsAloneSkinIsSolidAndTheLiverIsSeenThroughGhostsOfBone) {
   EXPECT_EQ(presetLooks(set, ViewPreset::soft_tissue)->at("bone"), TissueLook::ghosted);
 }
 
+TEST(ViewPresets, TheLiverHasItsCapsuleWhereALabelTellsItFromWhatHasTheSameHu) {
+  const auto capsule = [](const char* file) {
+    const TissueSet set = *readTissueSet(resourceFolder() / "tissues" / file);
+    return presetLooks(set, ViewPreset::liver)->at("capsule");
+  };
+  EXPECT_EQ(capsule("abdomen.json"), TissueLook::hidden);
+  EXPECT_EQ(capsule("abdomen-labels.json"), TissueLook::shown);
+}
+
 }  // namespace
 }  // namespace trephine

@@ -44,6 +44,16 @@ TEST(Volume, HashIsThatOfTheBytesInMemoryOrder) {
             "1b6dd05c65b015573ced7de8b6bbd987291aa3b0b0a5a1fbd840a4cbcd5f61c1");
 }
 
+TEST(Volume, ACopyHasEveryVoxel) {
+  for (const Index3& size : {Index3{5, 6, 7}, Index3{130, 131, 129}}) {  // more than one block
+    const Volume volume = obliqueVolume(size);
+    const Volume copy = copyOf(volume);
+    EXPECT_TRUE(copy.geometry == volume.geometry);
+    EXPECT_TRUE(copy.hu == volume.hu);
+    EXPECT_NE(copy.hu.data(), volume.hu.data());
+  }
+}
+
 TEST(Volume, AnImpossibleSizeIsRefusedBeforeAnythingIsAllocated) {
   EXPECT_TRUE(checkSize({512, 512, 300}, "f"));
   EXPECT_EQ(checkSize({0, 5, 5}, "f").error().code, "BAD_SIZE");
