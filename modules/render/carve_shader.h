@@ -246,10 +246,6 @@ inline const std::string kTruthShading = R"(
       l_there = l_there * in_volume_scale[0].r + in_volume_bias[0].r;
       l_low = min(l_low, l_there);
       l_high = max(l_high, l_there);
-      if (l_between && l_high > l_look.y && l_low < l_look.x && g_faceT != g_currentT)
-        {
-        break;  // passed by, whatever the rest is
-        }
       l_sum -= l_there * in_ballWeight[i];
       l_shape -= shapeAt(g_dataPos + in_ball[i], l_there) * in_ballWeight[i];
       }
@@ -270,7 +266,7 @@ inline const std::string kTruthShading = R"(
       l_sum = length(l_sum) > in_edge && abs(l_along) > 0.8 ? l_sum * sign(l_along) : l_shape;
       }
     bool l_begins = l_fresh || !g_sure;
-    if (l_seen && l_begins && (l_enters || l_label_ends || length(l_sum) > 0.5 * in_edge))
+    if (l_begins && (l_enters || l_label_ends || length(l_sum) > 0.5 * in_edge))
       {
       g_runNormal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
       g_runCut = facesCut(g_runNormal);

@@ -41,9 +41,7 @@ RayBall rayBall(const Vec3& spacing_mm) {
   const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
   const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
   RayBall ball;
-  for (int place = 0; place < kBallPlaces; ++place) {
-    // In leaps around the ball, so that the first few already lie on all sides.
-    const int n = place * 7 % kBallPlaces;
+  for (int n = 0; n < kBallPlaces; ++n) {
     const double z = 1.0 - (n + 0.5) * 2.0 / kBallPlaces, r = std::sqrt(1.0 - z * z);
     const Vec3 direction(std::cos(turn * n) * r, std::sin(turn * n) * r, z);
     // Half of the directions are beyond an edge, on average by half of the reach.
