@@ -113,7 +113,7 @@ TEST_F(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
 }
 
 TEST_F(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
-  hosted_.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
+  hosted_.setSampleDistance(0.03);  // so that a picture takes longer than a moving one may
   EXPECT_EQ(hosted_.shareOfRays(), 0.0);
   EXPECT_TRUE(hosted_.paint(screen_->id()));
   EXPECT_EQ(hosted_.shareOfRays(), 1.0);
@@ -134,6 +134,7 @@ TEST_F(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
 }
 
 TEST_F(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
+  hosted_.setSampleDistance(0.03);  // so that a picture takes longer than a moving one may
   hosted_.paint(screen_->id());
   const Picture without = screen_->read();
   hosted_.setTools({needle(Vec3(0, -40, 0))});
@@ -158,7 +159,7 @@ TEST_F(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
 }
 
 TEST_F(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
-  hosted_.setSampleDistance(0.05);  // so that a picture takes longer than a moving one may
+  hosted_.setSampleDistance(0.03);  // so that a picture takes longer than a moving one may
   hosted_.paint(screen_->id());
   carve(grid_, Vec3(-5, -24, 0), 6.0);
   ASSERT_TRUE(hosted_.pullChanges(grid_));
