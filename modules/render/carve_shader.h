@@ -246,7 +246,7 @@ inline const std::string kTruthShading = R"(
       l_there = l_there * in_volume_scale[0].r + in_volume_bias[0].r;
       l_low = min(l_low, l_there);
       l_high = max(l_high, l_there);
-      l_sum -= l_there * in_ballWeight[i];
+      l_sum -= (l_there - g_hu) * in_ballWeight[i];  // nothing where all are alike
       l_shape -= shapeAt(g_dataPos + in_ball[i], l_there) * in_ballWeight[i];
       }
     if (l_between)
@@ -268,7 +268,7 @@ inline const std::string kTruthShading = R"(
     bool l_begins = l_fresh || !g_sure;
     if (l_begins && (l_enters || l_label_ends || length(l_sum) > 0.5 * in_edge))
       {
-      g_runNormal = length(l_sum) > 0.0 ? normalize(l_sum) : g_vdir[0];
+      g_runNormal = length(l_sum) > 1e-4 ? normalize(l_sum) : g_vdir[0];
       g_runCut = facesCut(g_runNormal);
       }
     if (g_faceT == g_currentT)
