@@ -109,23 +109,22 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
       !stale_ && expected_ms(shown_) > kCut_ms && shown_.step < cut_step && budget_ms < kNoLimit;
   if (stale_ || costly) {
     next_.step = 0.0;
-    const bool full = stale_ && whole;
-    const double moving_step = std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0);
-    const double step = full ? 1.0 : stale_ ? moving_step : cut_step;
-    start(shown_, step, full ? 1.0 : LevelOfDetail::rayStepAt(stale_ ? level_.pixelStep() : step));
-    castSome(shown_, kNoLimit, cast);
-    const bool turned = std::exchange(stale_, false);
-    changed = true;
-    if (!turned) {
-      // A level of its own.
-    } else if (!full) {
-      if (unknown) {
-        level_.stillFrameTook(double(width_) * double(height_) / pixels_per_ms_);
-      } else {
-        level_.movingFrameTook(msSince(begun));
-      }
+    const bool turned = std::exchange(stale_, false), full = turned && whole;
+    if (full) {
+      start(shown_, 1.0, 1.0);
+    } else if (turned) {
+      start(shown_, std::max(level_.pixelStep(), unknown ? kFirstStep : 1.0), level_.rayStep());
     } else {
+      start(shown_, cut_step, LevelOfDetail::rayStepAt(cut_step));
+    }
+    castSome(shown_, kNoLimit, cast);
+    changed = true;
+    if (full) {
       level_.stillFrameTook(shown_.took_ms);
+    } else if (turned && unknown) {
+      level_.stillFrameTook(double(width_) * double(height_) / pixels_per_ms_);
+    } else if (turned) {  // a cut's level is another
+      level_.movingFrameTook(msSince(begun));
     }
   } else if (!shown_.plan.done()) {
     castSome(shown_, budget_ms, cast);

@@ -294,17 +294,30 @@ TEST(SliceMeasure, ARulerIsTrueToHalfAVoxelAndAnAngleToHalfADegreeInAnyGrid) {
   EXPECT_NEAR(angle_deg({Measure::Kind::angle, {{1, 0, 0}, {0, 0, 0}, {0, 2, 0}}}), 90.0, 1e-9);
 }
 
-TEST(SliceColours, ShowTissuesAsTouchClassifiesThemAndLabelsAsTheyAre) {
-  Tissue soft, organ;
+namespace {
+
+// Red by its HU, and blue by its label, with the same HU.
+Tissue softTissue() {
+  Tissue soft;
   soft.id = "soft";
   soft.hu_min = 0;
   soft.hu_max = 100;
   soft.colour = {1, 0, 0};
   soft.opacity = 1.0;
-  organ = soft;
+  return soft;
+}
+Tissue organTissue() {
+  Tissue organ = softTissue();
   organ.id = "organ";
   organ.label = 3;
   organ.colour = {0, 0, 1};
+  return organ;
+}
+
+}  // namespace
+
+TEST(SliceColours, ShowTissuesAsTouchClassifiesThemAndLabelsAsTheyAre) {
+  const Tissue soft = softTissue(), organ = organTissue();
   SliceColours colours;
   colours.setTissues({"set", {soft, organ}});
   colours.setWindow({50.0, 400.0});
@@ -329,17 +342,7 @@ TEST(SliceColours, ShowTissuesAsTouchClassifiesThemAndLabelsAsTheyAre) {
 }
 
 TEST(SliceColours, FollowTheLooksOfTheTissues) {
-  Tissue soft, organ, vessel;
-  soft.id = "soft";
-  soft.hu_min = 0;
-  soft.hu_max = 100;
-  soft.colour = {1, 0, 0};
-  soft.opacity = 1.0;
-  organ = soft;
-  organ.id = "organ";
-  organ.label = 3;
-  organ.colour = {0, 0, 1};
-  vessel = organ;
+  Tissue soft = softTissue(), organ = organTissue(), vessel = organ;
   vessel.id = "vessel";
   vessel.hu_min = 101;
   vessel.hu_max = 200;
