@@ -56,6 +56,22 @@ void Canvas::bind() const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
 }
 
+void Canvas::take(const Canvas& from, const PixelRect& part, const PixelRect& into) const {
+  constexpr GLenum kAll[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+  glDisable(GL_SCISSOR_TEST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer_);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
+  for (const GLenum image : kAll) {
+    glReadBuffer(image);
+    glDrawBuffers(1, &image);
+    glBlitFramebuffer(part.low_x, part.low_y, part.high_x, part.high_y, into.low_x, into.low_y,
+                      into.high_x, into.high_y, GL_COLOR_BUFFER_BIT,
+                      image == GL_COLOR_ATTACHMENT1 ? GL_NEAREST : GL_LINEAR);
+  }
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glDrawBuffers(3, kAll);
+}
+
 void Canvas::copyTo(unsigned int framebuffer) const {
   glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);

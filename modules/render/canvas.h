@@ -28,6 +28,9 @@ class Canvas {
   unsigned int texture(std::size_t image) const { return textures_[image]; }
   int width() const { return width_; }
   int height() const { return height_; }
+  // Takes a part of another canvas with the same images into a part of this one, spread where that
+  // is larger: colours evenly, depths from the nearest.
+  void take(const Canvas& from, const PixelRect& part, const PixelRect& into) const;
   // Copies the first image into another framebuffer of the same size, and leaves that one bound.
   void copyTo(unsigned int framebuffer) const;
   // The second channel of the depths, which are the second image; rows go up. Empty for no pixels.

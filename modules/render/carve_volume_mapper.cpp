@@ -410,6 +410,7 @@ const std::string& CarveVolume::complaint() const {
 
 void CarveVolume::setQuality(double pixel_step, double ray_step) {
   Parts& p = *parts_;
+  p.shading.coarse = ray_step > 1.0;
   p.mapper->SetImageSampleDistance(float(pixel_step));
   p.mapper->SetSampleDistance(float(ray_step * p.sample_distance * p.smallest_edge_mm));
 }

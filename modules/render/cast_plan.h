@@ -33,6 +33,7 @@ class CastPlan {
   std::optional<PixelRect> next(double pixels);
 
   bool done() const { return rects_.empty(); }
+  const std::vector<PixelRect>& left() const { return rects_; }
   double pixels() const;  // left
 
  private:

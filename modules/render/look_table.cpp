@@ -36,16 +36,16 @@ Vec3 ballRadii_mm(const Vec3& spacing_mm) {
   return glm::max(Vec3(1.75 * mean_mm), spacing_mm);
 }
 
-RayBall rayBall(const Vec3& spacing_mm) {
+RayBall rayBall(const Vec3& spacing_mm, int places) {
   const Vec3 radii_mm = ballRadii_mm(spacing_mm);
   const double reach_mm = std::cbrt(radii_mm.x * radii_mm.y * radii_mm.z);
   const double turn = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
   RayBall ball;
-  for (int n = 0; n < kBallPlaces; ++n) {
-    const double z = 1.0 - (n + 0.5) * 2.0 / kBallPlaces, r = std::sqrt(1.0 - z * z);
+  for (int n = 0; n < places; ++n) {
+    const double z = 1.0 - (n + 0.5) * 2.0 / places, r = std::sqrt(1.0 - z * z);
     const Vec3 direction(std::cos(turn * n) * r, std::sin(turn * n) * r, z);
     // Half of the directions are beyond an edge, on average by half of the reach.
-    ball.push_back({direction * radii_mm, direction * (4.0 / kBallPlaces * reach_mm) / radii_mm});
+    ball.push_back({direction * radii_mm, direction * (4.0 / places * reach_mm) / radii_mm});
   }
   return ball;
 }

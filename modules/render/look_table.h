@@ -38,11 +38,12 @@ struct RayPlace {
 };
 using RayBall = std::vector<RayPlace>;
 constexpr int kBallPlaces = 24;
+constexpr int kFewPlaces = 12;  // where pictures are coarse
 
 // Directions spread evenly (Fibonacci's spiral) at 1.75 voxels, or one where slices are far apart:
 // the sum of HU times direction is the normal of a surface.
 Vec3 ballRadii_mm(const Vec3& spacing_mm);
-RayBall rayBall(const Vec3& spacing_mm);
+RayBall rayBall(const Vec3& spacing_mm, int places = kBallPlaces);
 // VTK's: the six neighbours.
 RayBall centralDifferences(const Vec3& spacing_mm);
 

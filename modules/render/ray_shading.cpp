@@ -79,15 +79,6 @@ void RayShading::tellTissues(vtkShaderProperty& shader) const {
   to->SetUniform3fv("in_lookColour", kMaxTissues, colour_of);
   to->SetUniform3fv("in_cutColour", kMaxTissues, cut_of);
 
-  const RayBall around = truth.normals ? rayBall(g.spacing_mm) : centralDifferences(g.spacing_mm);
-  float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
-    set(weight[i], around[i].weight);
-  }
-  to->SetUniformi("in_ballCount", int(around.size()));
-  to->SetUniform3fv("in_ball", kBallPlaces, ball);
-  to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
   float reach[3];
   set(reach, ballRadii_mm(g.spacing_mm) / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
   to->SetUniform3f("in_cutReach", reach);
@@ -130,6 +121,17 @@ void RayShading::tellView(vtkShaderProperty& shader) const {
   const double cut_at = cut_HU ? (*cut_HU - low_HU) / (high_HU - low_HU) : kNone;
   const float cut[2] = {float(cut_at), float(0.5 / (high_HU - low_HU))};
   to->SetUniform2f("in_cut", cut);
+
+  const RayBall around = truth.normals ? rayBall(g.spacing_mm, coarse ? kFewPlaces : kBallPlaces)
+                                       : centralDifferences(g.spacing_mm);
+  float ball[kBallPlaces][3]{}, weight[kBallPlaces][3]{};
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    set(ball[i], around[i].from_mm / g.spacing_mm / Vec3(g.size[0], g.size[1], g.size[2]));
+    set(weight[i], around[i].weight);
+  }
+  to->SetUniformi("in_ballCount", int(around.size()));
+  to->SetUniform3fv("in_ball", kBallPlaces, ball);
+  to->SetUniform3fv("in_ballWeight", kBallPlaces, weight);
 }
 
 }  // namespace trephine

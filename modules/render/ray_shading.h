@@ -30,13 +30,14 @@ struct RayShading {
   int shows = 0;  // 0: the picture, 1: the first tissue, 2: the normal there
   std::vector<ClipPlane> clip;
   Vec3 light = SceneRenderer::kLight;
+  bool coarse = false;           // fewer samples are taken, and fewer places around each
   std::optional<double> cut_HU;  // of what was removed, on the graphics card; nothing was: none
   Vec3 eye_right{1.0, 0.0, 0.0}, eye_up{0.0, 0.0, 1.0}, eye_forward{0.0, 1.0, 0.0};
 
   // Anew, after anything above changed that is not of the view.
   void build(vtkShaderProperty& shader) const;
-  // Numbers of the view (clip, light, cuts, eye), which may be others at each draw: the shader is
-  // not built anew for them.
+  // Numbers of the view (clip, light, cuts, eye, coarseness), which may be others at each draw: the
+  // shader is not built anew for them.
   void tellView(vtkShaderProperty& shader) const;
 
  private:

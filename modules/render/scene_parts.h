@@ -36,6 +36,7 @@ struct SceneRenderer::Parts {
   std::unique_ptr<VolumeMirror::Reader> news = std::make_unique<VolumeMirror::Reader>(mirror);
   GridGeometry place_shown;
   CarveVolume volume;
+  TissueLooks looks;
   std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
   Index3 reduction{1, 1, 1};
   bool fitted = false;   // what is shown has been sent, or refused

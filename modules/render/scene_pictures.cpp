@@ -73,8 +73,8 @@ void SceneRenderer::Parts::cast(const Canvas& into, const Span& span, const Pixe
   handToVtk();
   renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
   volume.lookFrom(camera.right(), camera.up(), camera.forward());
-  volume.sendChanges(*renderer);
   volume.setQuality(1.0, ray_step);
+  volume.sendChanges(*renderer);
   volume.setPart(part);
   place(*renderer, span.pixels.y / height);
   renderer->Render();

@@ -145,8 +145,11 @@ bool SceneRenderer::hasVolume() const {
 }
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
-  parts_->spoil();
-  parts_->volume.setTissues(asSeen(tissues, looks), looks);
+  Parts& p = *parts_;
+  p.spoil();
+  // What is seen through and what is not says how long a picture takes.
+  if (std::exchange(p.looks, looks) != looks) p.pictures.startAnew();
+  p.volume.setTissues(asSeen(tissues, looks), looks);
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {

@@ -1,10 +1,12 @@
-// The picture of the volume that is shown, and the finer one that is being made behind it. A cut
-// mends the part of both that it falls on; whatever else changes starts anew, coarse first. Only
-// whole pictures are shown, so no seam runs between coarse and fine.
+// The picture of the volume that is shown, and the finer one that is being made behind it. Whatever
+// changes but a cut starts anew, coarse first; only whole pictures are shown, so no seam runs
+// between coarse and fine. A cut mends the part of the shown one that it falls on: at once, more
+// coarsely where its rays would take too long, and as fine as the rest when cuts pause.
 #pragma once
 
 #include <chrono>
 #include <functional>
+#include <vector>
 
 #include "render/canvas.h"
 #include "render/cast_plan.h"
@@ -23,7 +25,7 @@ class VolumePictures {
   void resize(int width, int height);
   // The camera, the looks or all voxels changed.
   void spoil() { stale_ = true; }
-  // Another volume: what the last one's pictures took says nothing of its.
+  // Another volume or other looks: what the last pictures took says nothing of the next.
   void startAnew();
   // Voxels changed whose picture lies in here. Window pixels, from below.
   void cut(const PixelRect& part);
@@ -39,7 +41,8 @@ class VolumePictures {
 
   const Canvas& canvas() const { return shown_.canvas; }
   const Span& span() const { return shown_.span; }
-  double pixelStep() const { return shown_.step; }  // between two rays of the shown picture
+  // Between two rays of the shown picture, of its coarsest part.
+  double pixelStep() const { return shown_.step * (shown_.plan.done() ? 1 : coarser_); }
   LevelOfDetail& level() { return level_; }
   // False once the GPU refused a picture.
   bool allocated() const { return allocated_; }
@@ -53,22 +56,31 @@ class VolumePictures {
     double step = 0.0;  // 0: none
     double ray_step = 1.0;
     double took_ms = 0.0;
+    double strip_pixels = 0.0;  // of the last strip
   };
   using Clock = std::chrono::steady_clock;
 
   void start(Picture& picture, double step, double ray_step);
   void castSome(Picture& picture, double budget_ms, const Cast& cast);
-  void add(Picture& picture, const PixelRect& part);
-  double expected_ms(const Picture& picture) const;  // of the rest of its plan
+  void addCut(const PixelRect& part);  // to the shown one
+  void sketchCuts(double budget_ms, const Cast& cast);
+  void readySketches();
+  void finishNext();
+  double expected_ms(const CastPlan& plan) const;  // of the shown one
 
   Picture shown_, next_;
+  CastPlan fresh_;                 // of the shown one: cuts that it does not show yet
+  std::vector<PixelRect> missed_;  // cuts that may have come behind the rays of the next one
+  Canvas sketch_;                  // of cuts, with fewer rays
+  int coarser_ = 1;                // by how much, each way
+  bool sketches_ready_ = false;
   LevelOfDetail level_;
   int width_ = 1;
   int height_ = 1;
   bool stale_ = true;
+  bool resized_ = false;
   bool allocated_ = true;
   double pixels_per_ms_ = 0.0;  // of the last strip, at usual steps
-  double cut_pixels_ = 0.0;     // the window's, of the larger of the last cuts
   Clock::time_point last_cut_{};
 };
 

@@ -109,6 +109,13 @@ void ViewWidget::fitRenderer() {
                    int(std::lround(height() * devicePixelRatioF())));
 }
 
+// Qt paints within it, for a layout more than once, and once more when all is in its place.
+void ViewWidget::resizeEvent(QResizeEvent* event) {
+  resizing_ = true;
+  QOpenGLWidget::resizeEvent(event);
+  resizing_ = false;
+}
+
 void ViewWidget::resizeGL(int, int) {
   fitRenderer();
   fitHint();
@@ -186,6 +193,7 @@ void ViewWidget::fitHint() {
 }
 
 void ViewWidget::paintGL() {
+  if (resizing_) return;
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window

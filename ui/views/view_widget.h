@@ -67,6 +67,7 @@ class ViewWidget : public QOpenGLWidget {
 
  protected:
   void initializeGL() override;
+  void resizeEvent(QResizeEvent* event) override;
   void resizeGL(int width, int height) override;
   void paintGL() override;
   void mousePressEvent(QMouseEvent* event) override;
@@ -110,6 +111,7 @@ class ViewWidget : public QOpenGLWidget {
   std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;
   bool training_ = false;
+  bool resizing_ = false;
   bool moving_ = false;
   bool refusal_said_ = false;
 };

@@ -158,6 +158,50 @@ TEST_F(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
   EXPECT_GE(psnr_dB(screen_->read(), without), 60.0);
 }
 
+TEST_F(Window, ACutIsSeenAtOnceWithFewerRaysAndAsFineAsTheRestWhenCutsPause) {
+  hosted_.setSampleDistance(0.03);
+  hosted_.paint(screen_->id());
+  const Picture before = screen_->read();
+  carve(grid_, Vec3(-5, -24, 0), 6.0);
+  ASSERT_TRUE(hosted_.pullChanges(grid_));
+  EXPECT_FALSE(hosted_.paint(screen_->id(), kTiny_ms));
+  const Picture sketched = screen_->read();
+  EXPECT_LT(hosted_.shareOfRays(), 1.0);
+  // Beside it all is as it was.
+  const Difference seen = difference(before, sketched);
+  EXPECT_GT(seen.pixels, 50);
+  EXPECT_LT(seen.pixels, kWidth * kHeight / 3);
+  hosted_.paint(screen_->id(), kTiny_ms);
+  EXPECT_EQ(screen_->read(), sketched) << "while cuts may follow";
+  finish(hosted_, screen_->id());
+  EXPECT_EQ(hosted_.shareOfRays(), 1.0);
+  const Picture fine = screen_->read();
+  const double near_dB = psnr_dB(sketched, fine), far_dB = psnr_dB(before, fine);
+  EXPECT_GT(near_dB, far_dB + 3.0) << near_dB << " and " << far_dB;
+}
+
+TEST_F(Window, ACutDoesNotComeBackWithAFinerPictureThatWasBegunBeforeIt) {
+  hosted_.setSampleDistance(0.03);
+  hosted_.paint(screen_->id());
+  hosted_.orbit(10, 0);
+  for (int strip = 0; strip < 6; ++strip) hosted_.paint(screen_->id(), kTiny_ms);
+  const double coarse = hosted_.shareOfRays();
+  ASSERT_LT(coarse, 1.0);
+  carve(grid_, Vec3(0, -24, 9), 6.0);  // where the rays of the finer picture are cast by now
+  ASSERT_TRUE(hosted_.pullChanges(grid_));
+  hosted_.paint(screen_->id(), kTiny_ms);
+  ASSERT_EQ(hosted_.shareOfRays() <= coarse, true);
+  Picture last = screen_->read();
+  while (!hosted_.complete()) {
+    const Picture now = (hosted_.paint(screen_->id(), kTiny_ms), screen_->read());
+    EXPECT_GT(psnr_dB(last, now), 22.0);
+    last = now;
+  }
+  hosted_.setTruth({});
+  hosted_.paint(screen_->id());
+  EXPECT_EQ(screen_->read(), last);
+}
+
 TEST_F(Window, ACutMendsItsPartOfAPictureThatIsWhole) {
   hosted_.setSampleDistance(0.03);  // so that a picture takes longer than a moving one may
   hosted_.paint(screen_->id());
