@@ -283,8 +283,11 @@ void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
 }
 
 void SceneRenderer::lookFrom(StandardView side) {
-  parts_->camera.lookFrom(side);
+  ViewCamera& camera = parts_->camera;
+  const Vec3 forward = camera.forward(), up = camera.up();
+  camera.lookFrom(side);
   parts_->spoil();
+  if (camera.forward() == forward && camera.up() == up) resetCamera(forward, up);
 }
 
 void SceneRenderer::setParallel(bool parallel) {

@@ -128,6 +128,7 @@ class SceneRenderer {
   void orbit(double azimuth_deg, double elevation_deg);
   void zoom(double factor);
   void pan(double dx_pixels, double dy_pixels);  // the picture moves right and down, as a mouse
+  // At the focus; from a side from which it looks already, at the whole volume.
   void lookFrom(StandardView side);
   void setParallel(bool parallel);
   const ViewCamera& camera() const;

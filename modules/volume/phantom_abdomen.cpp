@@ -256,13 +256,22 @@ bool inLiverVessel(const Vec3& p) {
 
 // Aorta with its branches to the kidneys, vena cava, trunk of the portal vein.
 bool inGreatVessel(const Vec3& p) {
-  static constexpr Rod vessels[] = {
-      {{9, 20, -130}, {9, 22, 130}, 8.5, 10.5},   {{-16, 20, -130}, {-19, 24, 20}, 10.0, 11.0},
-      {{-19, 24, 20}, {-24, 30, 90}, 11.0, 11.0}, {{-24, 30, 90}, {-22, 22, 130}, 11.0, 12.0},
-      {{2, 22, -34}, {-34, 8, 8}, 7.5, 7.0},      {{9, 22, -28}, {44, 40, -38}, 3.5, 3.0},
-      {{-16, 22, -30}, {-44, 42, -38}, 3.5, 3.0}};
+  static constexpr Rod vessels[] = {{{9, 20, -130}, {9, 22, 130}, 8.5, 10.5},
+                                    {{-16, 20, -130}, {-19, 24, 20}, 10.0, 11.0},
+                                    {{-19, 24, 20}, {-24, 30, 90}, 11.0, 11.0},
+                                    {{-24, 30, 90}, {-22, 22, 130}, 11.0, 12.0},
+                                    {{2, 22, -34}, {-34, 8, 8}, 7.5, 7.0}};
+  // In front of the psoas to the kidney's opening, and within.
+  static constexpr Rod of_kidney[] = {{{10, 21, -28}, {34, 23, -34}, 3.8, 3.6},
+                                      {{34, 23, -34}, {55, 35, -37}, 3.6, 3.4},
+                                      {{55, 35, -37}, {62, 42, -26}, 3.2, 2.6},
+                                      {{55, 35, -37}, {62, 42, -46}, 3.2, 2.6}};
   for (const Rod& vessel : vessels) {
     if (vessel.contains(p)) return true;
+  }
+  const Vec3 m = mirrored(p);
+  for (const Rod& vessel : of_kidney) {
+    if (vessel.contains(m)) return true;
   }
   return false;
 }
@@ -275,7 +284,7 @@ bool inKidney(const Vec3& m, T& tissue) {
   static constexpr Ellipsoid whole({66, 43, -36}, {26, 22, 54});
   if (!whole.contains(upright)) return false;
   if (sinus.contains(upright)) {
-    tissue = std::abs(upright.z + 36) < 5 && upright.x < 61 ? T::vessel : T::fat;
+    tissue = T::fat;
   } else {
     tissue = T::kidney;
   }

@@ -28,7 +28,8 @@ ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this))
       {StandardView::superior, "viewSuperior", Qt::Key_S, tr("S"), tr("From above")},
       {StandardView::inferior, "viewInferior", Qt::Key_I, tr("I"), tr("From below")}};
   for (const auto& side : sides) {
-    QAction* action = make(side.name, side.text, side.letter, side.key, side.text);
+    QAction* action = make(side.name, side.text, side.letter, side.key,
+                           tr("%1; again: all of it").arg(side.text));
     connect(action, &QAction::triggered, this, [this, at = side.side] { emit viewWanted(at); });
   }
   all_.append(nullptr);

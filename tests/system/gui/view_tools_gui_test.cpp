@@ -130,6 +130,15 @@ class ViewToolsGuiTest : public QObject {
     QCOMPARE(differentPixels(front, shot()), 0);
   }
 
+  void theSameKeyAgainShowsTheWholeCase() {
+    press(Qt::Key_L);
+    for (int n = 0; n < 3; ++n) press(Qt::Key_PageDown);
+    press(Qt::Key_A);
+    QVERIFY(differentPixels(opened_, shot()) > 2000);
+    press(Qt::Key_A);
+    QCOMPARE(differentPixels(opened_, shot()), 0);
+  }
+
   void orthographicChangesThePictureAndComesBack() {
     const Picture before = shot();
     press(Qt::Key_O);
