@@ -12,7 +12,7 @@ using T = PhantomTissue;
 
 constexpr double kScalp = 5.0, kOuter = 2.0, kDiploe = 3.0, kInner = 1.5, kDura = 0.5, kCsf = 2.0;
 constexpr double kSkull = kOuter + kDiploe + kInner;
-constexpr double kFloorBone = 5.0, kSinusWall = 1.4, kCover = 4.6, kMucosa = 2.2;
+constexpr double kFloorBone = 5.0, kSinusWall = 1.4, kCover = 4.6;
 
 // The outer surface of the outer table.
 constexpr Ellipsoid kVault({0, 4, 6}, {74, 82, 62}, {74, 87, 70});
@@ -195,7 +195,7 @@ PhantomTissue craniumTissue(const Vec3& p) {
     T tissue = T::muscle;
     const double canal = canalDistance(m);
     if (m.z < -35.0 && canal < 0.0) return inCanal(canal);
-    static constexpr Rod nostril{{6, -86, -63}, {6, -76, -54}, 3.2, 3.6};
+    static constexpr Rod nostril{{5.5, -90, -62}, {4.8, -83, -53}, 2.7, 2.4};
     static constexpr Rod pharynx{{0, -20, -56}, {0, -12, -126}, 8, 8};
     double sinus_wall = 1e3;
     const bool airway = m.z < 2.0 && inSinus(p, m, sinus_wall);
@@ -209,10 +209,9 @@ PhantomTissue craniumTissue(const Vec3& p) {
       if (bone < 0.0 && envelope < -2.5 && !shell) return T::facialBone;
       if (bone >= 0.0) {
         if (skull::earCanal(m) < -0.8 && m.x > 52.0) return T::air;
-        // Towards the nostrils the walls are soft: no bone is seen through them.
-        const bool lined = bone < kMucosa && m.y < -64.0;
-        if ((nostril.contains(m) && !lined) || pharynx.contains(m)) return T::air;
-        if (skull::nose(m) < -1.0 && !lined && m.y > -76.0 && m.y < -22.0) return T::air;
+        // Nostrils end blind, so that no bone is seen through them.
+        if ((nostril.contains(m) && bone > kCover) || pharynx.contains(m)) return T::air;
+        if (skull::nose(m) < -1.0 && m.y > -76.0 && m.y < -22.0) return T::air;
         if (inOrbit(m, tissue)) return tissue;
         return vault >= 0.0 && height > -kFloorBone && envelope > -kScalp
                    ? T::scalp

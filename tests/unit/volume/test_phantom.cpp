@@ -457,13 +457,14 @@ TEST(Cranium, NoBoneIsSeenThroughTheNostrils) {
   // From the front and from below the nose, into both.
   for (const Vec3& way : {Vec3(0, 1, 0), Vec3(0, 1, 0.4), Vec3(0, 0.7, 0.7)}) {
     for (double x = -10.0; x <= 10.0; x += 0.5) {
-      for (double z = -68.0; z <= -54.0; z += 0.5) {
+      for (double z = -68.0; z <= -50.0; z += 0.5) {
         Vec3 p = Vec3(x, -88.0, z) - way * 30.0;
         const Vec3 step = glm::normalize(way) * 0.2;
-        int air = 0;
-        T met = T::air;
-        while (met == T::air && ++air < 400) met = truth(p += step);
-        ASSERT_NE(met, T::facialBone) << p.x << " " << p.y << " " << p.z;
+        for (int air = 0; truth(p += step) == T::air && air < 400;) ++air;
+        // Less soft tissue than this is an edge of HU that rise from air to bone.
+        for (int n = 0; n < 17; ++n) {
+          ASSERT_NE(truth(p += step), T::facialBone) << p.x << " " << p.y << " " << p.z;
+        }
       }
     }
   }
@@ -565,7 +566,7 @@ TEST(Abdomen, TheLiverHasTwoLobesAndRisesToTheLeft) {
 TEST(Phantom, IsTheSameEveryTime) {
   // One hash a phantom: a change of truth, noise or arithmetic must be meant, and shows here.
   EXPECT_EQ(volumeSha256(phantom("cranium")),
-            "7161ac1fdc75238e0c3b896b99eff3e8d7aed2fc460a990af64ac36e9dad945f");
+            "4805597340f53374bc1b3ed52f855b6f61273c47ca8f1fd0cfa43725d8f7be1c");
   EXPECT_EQ(volumeSha256(phantom("abdomen")),
             "7d810ff532357f6baa4183fb777344fc32c21cdcffad02b8d1a6b3512fa747f3");
 }
