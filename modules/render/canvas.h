@@ -28,8 +28,8 @@ class Canvas {
   unsigned int texture(std::size_t image) const { return textures_[image]; }
   int width() const { return width_; }
   int height() const { return height_; }
-  // Takes a part of another canvas with the same images into a part of this one, spread where that
-  // is larger: colours evenly, depths from the nearest.
+  // Takes a part of another canvas into a part of this one, spread where that is larger: colours
+  // evenly, depths from the nearest. Both hold colour, depths, colour.
   void take(const Canvas& from, const PixelRect& part, const PixelRect& into) const;
   // Copies the first image into another framebuffer of the same size, and leaves that one bound.
   void copyTo(unsigned int framebuffer) const;

@@ -158,7 +158,12 @@ inline const std::string kClipStart = R"(
     {
     float l_at = dot(in_clip[i].xyz, g_start) + in_clip[i].w;
     float l_per_step = dot(in_clip[i].xyz, g_dirStep);
-    float l_t = -l_at / (abs(l_per_step) > 1e-12 ? l_per_step : 1e-12);
+    if (abs(l_per_step) < 1e-6)  // along the plane: all of the ray is on one side
+      {
+      g_lastT = l_at > 0.0 ? -1.0 : g_lastT;
+      continue;
+      }
+    float l_t = -l_at / l_per_step;
     if (l_per_step > 0.0)
       {
       g_lastT = min(g_lastT, l_t);

@@ -35,19 +35,20 @@ void addOrientationCue(const ViewCamera& camera, int width, int height, ScreenLi
     const glm::dvec2 way(glm::dot(direction, camera.right()), glm::dot(direction, camera.up()));
     // What points away from the eye is dimmer.
     const Vec3 colour = glm::mix(kFar, kNear, 0.5 + 0.5 * nearness);
-    const bool end_on = glm::length(way) < 0.2;
-    if (!end_on || nearness > 0.0) {
+    const double length = glm::length(way);
+    if (length >= 0.2 || nearness > 0.0) {
       to.push_back({centre, centre + way * radius, 0.75 * colour, line});
     }
-    if (end_on) continue;  // its letter would lie on the cross
+    if (length < 0.4) continue;  // its letter would lie on the cross
     const glm::dvec2 middle = centre + way * (radius + 0.95 * letter);
     addWords(kNames.substr(i, 1), middle - glm::dvec2(0.3, 0.5) * letter, letter, colour, line, to);
   }
 }
 
-void addScaleBar(const ViewCamera& camera, int width, int height, ScreenLines& to) {
+void addScaleBar(const ViewCamera& camera, const Vec3& at_mm, int width, int height,
+                 ScreenLines& to) {
   if (std::min(width, height) < kRoomForCues) return;
-  const double mm = camera.mmPerPixelAt(camera.focus(), height);
+  const double mm = camera.mmPerPixelAt(at_mm, height);
   const std::optional<double> length_mm = scaleBar_mm(mm, 0.22 * width);
   if (!length_mm) return;
   const double line = std::clamp(height / 500.0, 1.5, 4.0);

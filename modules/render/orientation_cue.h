@@ -11,7 +11,8 @@ namespace trephine {
 constexpr int kRoomForCues = 240;
 
 void addOrientationCue(const ViewCamera& camera, int width, int height, ScreenLines& to);
-// Its length holds in the focus's plane, orthographic everywhere.
-void addScaleBar(const ViewCamera& camera, int width, int height, ScreenLines& to);
+// Its length holds in the plane of this place, orthographic everywhere.
+void addScaleBar(const ViewCamera& camera, const Vec3& at_mm, int width, int height,
+                 ScreenLines& to);
 
 }  // namespace trephine

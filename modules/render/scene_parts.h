@@ -91,6 +91,8 @@ struct SceneRenderer::Parts {
   PixelRect around(const Vec3* points, std::size_t count, int margin) const;
   void cut(const VoxelBox& box);
   void compose(unsigned int framebuffer);
+  // The surface in the middle of the picture; the camera's focus where nothing is seen there.
+  Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
   // What is shown now.
   Picture read();
   void release();

@@ -150,12 +150,22 @@ void SceneRenderer::Parts::compose(unsigned int framebuffer) {
   ScreenLines all;
   if (shown) {
     addOrientationCue(camera, width, height, all);
-    addScaleBar(camera, width, height, all);
+    addScaleBar(camera, inTheMiddle(*shown, span), width, height, all);
     if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   }
   all.insert(all.end(), lines.begin(), lines.end());
   composer.drawLines(all, width, height);
+}
+
+Vec3 SceneRenderer::Parts::inTheMiddle(const Canvas& shown, const Span& span) const {
+  if (camera.parallel()) return camera.focus();
+  const glm::dvec2 step = span.pixels / glm::dvec2(shown.width(), shown.height());
+  const glm::ivec2 ray = glm::floor((0.5 * glm::dvec2(width, height) + span.beyond) / step);
+  const std::vector<float> depth_mm = shown.readDepth_mm({ray.x, ray.y, ray.x + 1, ray.y + 1});
+  constexpr float kSomewhere_mm = 1e8F;
+  if (depth_mm.empty() || depth_mm[0] > kSomewhere_mm) return camera.focus();
+  return camera.eye() + camera.forward() * double(depth_mm[0]);
 }
 
 Picture SceneRenderer::Parts::read() {

@@ -67,7 +67,8 @@ void SceneRenderer::Parts::addGuides(const Canvas& shown, const Span& span, Scre
         ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
       }
     }
-    addGuide(tool, ahead_mm, camera, width, height, to);
+    const bool first_of_more = tool_views.size() > 1 && &tool == &tool_views.front();
+    addGuide(tool, ahead_mm, camera, width, height, first_of_more, to);
   }
 }
 

@@ -68,7 +68,7 @@ std::optional<double> surfaceAhead_mm(const ToolView& tool, const DepthPatch& de
 }
 
 void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCamera& camera,
-              int width, int height, ScreenLines& to) {
+              int width, int height, bool at_left, ScreenLines& to) {
   if (!usable(tool)) return;
   const auto tip = camera.pixelOf(tool.pose_mm.position, width, height);
   if (!tip) return;
@@ -94,7 +94,8 @@ void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCa
   char words[32];
   std::snprintf(words, sizeof words, "%.0f mm", *ahead_mm);
   const double letter = std::clamp(0.016 * height, 10.0, 24.0);
-  addWords(words, *met + glm::dvec2(6.0 * line, -0.5 * letter), letter, kAhead, line, to);
+  const double aside = at_left ? -6.0 * line - widthOfWords(words, letter) : 6.0 * line;
+  addWords(words, *met + glm::dvec2(aside, -0.5 * letter), letter, kAhead, line, to);
 }
 
 }  // namespace trephine

@@ -123,7 +123,7 @@ void VolumePictures::sketchCuts(double budget_ms, const Cast& cast) {
     allocated_ = sketch_.bind(fewer.x, fewer.y, {Image::colour, Image::depths_mm, Image::colour}) &&
                  allocated_;
   }
-  for (const PixelRect& rays : std::vector<PixelRect>(fresh_.left())) {
+  for (const PixelRect& rays : fresh_.left()) {
     if (by == 1) {
       shown_.canvas.bind();
       cast(shown_.canvas, shown_.span, rays, shown_.ray_step);

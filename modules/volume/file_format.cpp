@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -20,6 +21,9 @@ namespace {
 
 // zlib and gzip cannot shrink data further than this, so a small file with a huge size is a lie.
 constexpr double kMostCompression = 1040.0;
+
+// From a micrometre to a metre; beyond, a unit was mistaken.
+constexpr double kSmallestVoxel_mm = 1e-3, kLargestVoxel_mm = 1e3, kFarthest_mm = 1e6;
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
@@ -77,9 +81,10 @@ Status checkGeometry(const GridGeometry& geometry, const fs::path& file) {
   const Mat3& d = geometry.direction;
   for (int axis = 0; axis < 3; ++axis) {
     const double spacing = geometry.spacing_mm[axis];
-    if (!std::isfinite(spacing) || spacing <= 0.0) {
-      return badGeometry("A voxel size of " + std::to_string(spacing) + " mm is not possible",
-                         file);
+    if (!(spacing >= kSmallestVoxel_mm && spacing <= kLargestVoxel_mm)) {
+      char words[64];
+      std::snprintf(words, sizeof words, "A voxel size of %g mm is not possible", spacing);
+      return badGeometry(words, file);
     }
     const double length = glm::length(d[axis]), dot = glm::dot(d[axis], d[(axis + 1) % 3]);
     // Also false for anything not finite.
@@ -88,6 +93,9 @@ Status checkGeometry(const GridGeometry& geometry, const fs::path& file) {
     }
   }
   if (!isFinite(geometry.origin_mm)) return badGeometry("The image's position is no number", file);
+  if (glm::length(geometry.origin_mm) > kFarthest_mm) {
+    return badGeometry("The image lies over a kilometre from the scanner's middle", file);
+  }
   return {};
 }
 

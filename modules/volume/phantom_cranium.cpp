@@ -104,10 +104,11 @@ bool inSinus(const Vec3& p, const Vec3& m, double& wall) {
   }
   if (wall < 0.0) return true;
   // Ethmoid cells, thin walls between.
-  if (m.x < 11 && m.y > -66 && m.y < -34 && m.z > -36 && m.z < -19) {
+  static constexpr Ellipsoid ethmoid({3, -50, -27.5}, {8.5, 16, 9});
+  if (ethmoid.contains(m)) {
     wall = 0.0;
-    return m.x < 10 && toNearest(m.x, 5.8) > 0.6 && toNearest(p.y, 8.0) > 0.6 &&
-           toNearest(p.z, 7.0) > 0.6;
+    return ethmoid.roughDistance(m) < -1.0 && toNearest(m.x, 5.8) > 0.6 &&
+           toNearest(p.y, 8.0) > 0.6 && toNearest(p.z, 7.0) > 0.6;
   }
   static constexpr Ellipsoid mastoid({54, 25, -42}, {6.5, 9, 13});
   return mastoid.contains(m) && wave(m.x / 6) + wave(p.y / 7) + wave(p.z / 6) > 0.4;

@@ -350,7 +350,10 @@ void SliceView::focusInEvent(QFocusEvent*) {
   emit focused();
 }
 
-void SliceView::focusOutEvent(QFocusEvent*) {
+void SliceView::focusOutEvent(QFocusEvent* event) {
+  // What was begun here is not what is wanted next; another program's window is no next.
+  const Qt::FocusReason why = event->reason();
+  if (why != Qt::ActiveWindowFocusReason && why != Qt::PopupFocusReason) drawing_.reset();
   update();
 }
 

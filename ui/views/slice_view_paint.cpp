@@ -161,9 +161,14 @@ void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
   if (angle && line.size() < 3) return;
   const QString words = angle ? tr("%1\u00b0").arg(angle_deg(measure), 0, 'f', 1)
                               : tr("%1 mm").arg(length_mm(measure), 0, 'f', 1);
-  const QPointF beside = angle ? line[1] : (line[0] + line[1]) / 2.0;
-  QRectF box(beside + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
-  box.moveRight(std::min(box.right(), width() - 4.0));
+  QRectF box((line[0] + line[1]) / 2.0 + QPointF(8.0, -20.0), QSizeF(90.0, 18.0));
+  if (angle) {  // outside of its arms
+    const QLineF a(line[1], line[0]), b(line[1], line[2]);
+    const QPointF between = a.unitVector().p2() + b.unitVector().p2() - 2.0 * line[1];
+    box.moveTopLeft(line[1] +
+                    QPointF(between.x() > 0.0 ? -52.0 : 8.0, between.y() > 0.0 ? -22.0 : 4.0));
+  }
+  box.moveLeft(std::max(4.0, std::min(box.left(), width() - 4.0 - box.width())));
   box.moveTop(std::clamp(box.top(), 2.0, std::max(2.0, height() - 20.0)));
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignVCenter, words, colours::kCaution);
 }
@@ -171,8 +176,15 @@ void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
 void SliceView::paintText(QPainter& painter) const {
   const double line = painter.fontMetrics().height();
   const bool narrow = width() < kNarrow_pixels;
-  QRectF box = QRectF(rect()).adjusted(7, 4 + (narrow ? line : 0), -7, -(6 + (narrow ? line : 0)));
-  const QString place = tr("%1 %2/%3").arg(nameOf(axis_)).arg(slice_ + 1).arg(slices());
+  // Its letters at the edges do not say from which side a slice is seen.
+  const QString place = tr("%1 %2/%3, from %4")
+                            .arg(nameOf(axis_))
+                            .arg(slice_ + 1)
+                            .arg(slices())
+                            .arg(QLatin1Char(patientLetter(-stack_.direction[2])));
+  const bool long_place = painter.fontMetrics().horizontalAdvance(place) > 0.5 * width() - 20.0;
+  QRectF box = QRectF(rect()).adjusted(7, 4 + (narrow || long_place ? line : 0), -7,
+                                       -(6 + (narrow ? line : 0)));
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignTop, place, colourOf(axis_));
   const HuWindow& window = colours_.window();
   const QString shades = tr("W %1 L %2").arg(window.width_hu).arg(window.centre_hu);

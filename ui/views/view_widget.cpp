@@ -65,6 +65,7 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->setAttribute(Qt::WA_TransparentForMouseEvents);
   level_->setProperty("quiet", true);
   level_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  level_->setWordWrap(true);
   strip_->hide();
   connectTools();
   still_.setSingleShot(true);
@@ -189,7 +190,7 @@ void ViewWidget::fitHint() {
   strip_->place();
   hint_->setGeometry(rect().adjusted(20, 20, -20, -20));
   // Always as large and never hidden: over a QOpenGLWidget, pixels that a child leaves stay.
-  level_->setGeometry(10, 8, std::max(0, strip_->x() - 20), 3 * fontMetrics().height());
+  level_->setGeometry(10, 8, std::max(0, strip_->x() - 20), 6 * fontMetrics().height());
 }
 
 void ViewWidget::paintGL() {

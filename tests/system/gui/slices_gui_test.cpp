@@ -367,6 +367,12 @@ class SlicesGuiTest : public test::WindowTest {
     QVERIFY(!drawn(0.3 * c + 0.7 * b));
     key(axial(), Qt::Key_Delete);
     QVERIFY(!drawn(0.7 * a + 0.3 * b));
+
+    // An angle that was begun is gone when one goes on elsewhere.
+    for (const Vec3& at : {a, b}) click(axial(), axial().fromPatient(at));
+    QVERIFY(drawn(0.7 * a + 0.3 * b));
+    axial().clearFocus();
+    QVERIFY(!drawn(0.7 * a + 0.3 * b));
     key(axial(), Qt::Key_Escape);
     doubleClick(axial());
   }

@@ -131,12 +131,14 @@ class ViewToolsGuiTest : public QObject {
   }
 
   void theSameKeyAgainShowsTheWholeCase() {
+    for (int n = 0; n < 2; ++n) press(Qt::Key_A);
+    const Picture whole = shot();
     press(Qt::Key_L);
     for (int n = 0; n < 3; ++n) press(Qt::Key_PageDown);
     press(Qt::Key_A);
-    QVERIFY(differentPixels(opened_, shot()) > 2000);
+    QVERIFY(differentPixels(whole, shot()) > 2000);
     press(Qt::Key_A);
-    QCOMPARE(differentPixels(opened_, shot()), 0);
+    QCOMPARE(differentPixels(whole, shot()), 0);
   }
 
   void orthographicChangesThePictureAndComesBack() {

@@ -195,6 +195,22 @@ TEST(Truth, AClipPlaneTakesAwayItsSideAndShowsAFaceWhereItCuts) {
   EXPECT_EQ(renderer.picture(), whole);
 }
 
+TEST(Truth, APlaneAlongTheRaysTakesAwayItsSideToo) {
+  RENDERER_OR_SKIP(renderer);
+  renderer.setTissues(tissues());
+  renderer.setVolume(Grid(round([](double r) { return -1000.0 + 2200.0 * edge(r, 24.0); })));
+  // Orthographic and along an axis, no ray crosses the plane.
+  renderer.lookFrom(StandardView::anterior);
+  renderer.setParallel(true);
+  const Picture whole = renderer.picture();
+  for (const double side : {1.0, -1.0}) {
+    renderer.setClip({{Vec3(0.0), Vec3(side, 0, 0)}});
+    const Difference gone = difference(whole, renderer.picture());
+    EXPECT_GT(gone.pixels, 500);
+    EXPECT_GT(side * (gone.centre.x - kWidth / 2.0), 5.0);
+  }
+}
+
 TEST(Truth, APlaneThatLeavesNothingLeavesTheBackground) {
   RENDERER_OR_SKIP(renderer);
   renderer.setTissues(tissues(0.0, 0.0));

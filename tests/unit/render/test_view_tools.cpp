@@ -130,13 +130,13 @@ TEST(ScaleBar, ItsLengthIsRoundAndFitsTheRoomThereIs) {
 TEST(ScaleBar, TheBarThatIsDrawnIsAsLongAsItSaysInTheFocussPlane) {
   const ViewCamera camera = fromTheFront();
   ScreenLines lines;
-  addScaleBar(camera, kWide, kHigh, lines);
+  addScaleBar(camera, camera.focus(), kWide, kHigh, lines);
   ASSERT_GT(lines.size(), 3U);
   const double pixels = glm::distance(lines[0].from, lines[0].to);
   EXPECT_NEAR(pixels * camera.mmPerPixelAt(camera.focus(), kHigh),
               *scaleBar_mm(camera.mmPerPixelAt(camera.focus(), kHigh), 0.22 * kWide), 1e-6);
   ScreenLines none;
-  addScaleBar(camera, 100, 100, none);
+  addScaleBar(camera, camera.focus(), 100, 100, none);
   EXPECT_TRUE(none.empty()) << "no room";
 }
 
@@ -241,8 +241,18 @@ TEST(ToolGuide, TheWayToASurfaceIsMeasuredAlongTheTool) {
   tool.pose_mm.orientation = glm::angleAxis(glm::radians(90.0), Vec3(1, 0, 0));  // points away
   EXPECT_NEAR(*surfaceAhead_mm(tool, wall, camera, kWide, kHigh), 30.0, 0.3);
   ScreenLines lines;
-  addGuide(tool, 30.0, camera, kWide, kHigh, lines);
+  addGuide(tool, 30.0, camera, kWide, kHigh, false, lines);
   EXPECT_GT(lines.size(), 5U) << "a line, a square, and words";
+  // Words at the right, or at the left.
+  const auto middle = [](const ScreenLines& drawn) {
+    double sum = 0.0;
+    for (const ScreenLine& line : drawn) sum += line.from.x / double(drawn.size());
+    return sum;
+  };
+  ScreenLines at_left;
+  addGuide(tool, 30.0, camera, kWide, kHigh, true, at_left);
+  EXPECT_GT(middle(lines), kWide / 2.0 + 5.0);
+  EXPECT_LT(middle(at_left), kWide / 2.0 - 5.0);
   // Hidden behind the wall there is no way to show, nor where the tool points past it.
   tool.pose_mm.position = Vec3(0, 50, 0);
   EXPECT_FALSE(surfaceAhead_mm(tool, wall, camera, kWide, kHigh));

@@ -112,6 +112,9 @@ TEST_F(BadVolumeFiles, MetaImageHeadersThatCannotBe) {
   EXPECT_EQ(codeOfMeta("ElementSpacing", "1 0 1"), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfMeta("ElementSpacing", "1 1 -1"), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfMeta("ElementSpacing", "1 1 nan"), "BAD_GEOMETRY");
+  EXPECT_EQ(codeOfMeta("ElementSpacing", "1e9 1e9 1e9"), "BAD_GEOMETRY");
+  EXPECT_EQ(codeOfMeta("ElementSpacing", "1e-9 1e-9 1e-9"), "BAD_GEOMETRY");
+  EXPECT_EQ(codeOfMeta("Offset", "1e12 0 0"), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfMeta("TransformMatrix", "1 0 0 0 1 0 0 0.5 1"), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfMeta("TransformMatrix", "2 0 0 0 1 0 0 0 1"), "BAD_GEOMETRY");
   EXPECT_EQ(codeOfMeta("TransformMatrix", "0 0 0 0 0 0 0 0 0"), "BAD_GEOMETRY");
