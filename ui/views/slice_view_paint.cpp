@@ -176,18 +176,15 @@ void SliceView::paintMeasure(QPainter& painter, const Measure& measure) const {
 void SliceView::paintText(QPainter& painter) const {
   const double line = painter.fontMetrics().height();
   const bool narrow = width() < kNarrow_pixels;
-  // Its letters at the edges do not say from which side a slice is seen.
-  const QString place = tr("%1 %2/%3, from %4")
-                            .arg(nameOf(axis_))
-                            .arg(slice_ + 1)
-                            .arg(slices())
-                            .arg(QLatin1Char(patientLetter(-stack_.direction[2])));
-  const bool long_place = painter.fontMetrics().horizontalAdvance(place) > 0.5 * width() - 20.0;
-  QRectF box = QRectF(rect()).adjusted(7, 4 + (narrow || long_place ? line : 0), -7,
-                                       -(6 + (narrow ? line : 0)));
+  QRectF box = QRectF(rect()).adjusted(7, 4 + (narrow ? line : 0), -7, -(6 + (narrow ? line : 0)));
+  const QString place = tr("%1 %2/%3").arg(nameOf(axis_)).arg(slice_ + 1).arg(slices());
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignTop, place, colourOf(axis_));
   const HuWindow& window = colours_.window();
-  const QString shades = tr("W %1 L %2").arg(window.width_hu).arg(window.centre_hu);
+  // The letters at the edges do not say from which side a slice is seen.
+  const QString shades = tr("from %1, W %2 L %3")
+                             .arg(QLatin1Char(patientLetter(-stack_.direction[2])))
+                             .arg(window.width_hu)
+                             .arg(window.centre_hu);
   paintWords(painter, box.adjusted(0, line, 0, 0), Qt::AlignLeft | Qt::AlignTop, shades,
              colours::kText);
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
