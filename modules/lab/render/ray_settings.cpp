@@ -37,7 +37,8 @@ Status addPictures(const Volume& cranium, const RaySettingOptions& options,
         continue;
       }
       renderer.setSampleDistance(setting.distance_voxels);
-      if (setting.plain) renderer.picture();  // VTK's shader comes and goes with the truths
+      renderer.picture();                                   // shaders come and go with the truths
+      renderer.setSampleDistance(setting.distance_voxels);  // all rays anew
       const auto start = RenderClock::now();
       renderer.picture();
       ms[n].push_back(msSince(start));
