@@ -91,6 +91,8 @@ struct SceneRenderer::Parts {
   PixelRect around(const Vec3* points, std::size_t count, int margin) const;
   void cut(const VoxelBox& box);
   void compose(unsigned int framebuffer);
+  // The ray of that picture at a pixel of the window, which may lie beyond it.
+  static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);
   // The surface in the middle of the picture; the camera's focus where nothing is seen there.
   Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
   // What is shown now.

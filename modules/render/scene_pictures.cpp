@@ -158,10 +158,15 @@ void SceneRenderer::Parts::compose(unsigned int framebuffer) {
   composer.drawLines(all, width, height);
 }
 
+glm::ivec2 SceneRenderer::Parts::rayAt(const glm::dvec2& pixel, const Canvas& shown,
+                                       const Span& span) {
+  const glm::dvec2 step = span.pixels / glm::dvec2(shown.width(), shown.height());
+  return glm::floor((pixel + span.beyond) / step);
+}
+
 Vec3 SceneRenderer::Parts::inTheMiddle(const Canvas& shown, const Span& span) const {
   if (camera.parallel()) return camera.focus();
-  const glm::dvec2 step = span.pixels / glm::dvec2(shown.width(), shown.height());
-  const glm::ivec2 ray = glm::floor((0.5 * glm::dvec2(width, height) + span.beyond) / step);
+  const glm::ivec2 ray = rayAt(0.5 * glm::dvec2(width, height), shown, span);
   const std::vector<float> depth_mm = shown.readDepth_mm({ray.x, ray.y, ray.x + 1, ray.y + 1});
   constexpr float kSomewhere_mm = 1e8F;
   if (depth_mm.empty() || depth_mm[0] > kSomewhere_mm) return camera.focus();

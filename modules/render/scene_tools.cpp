@@ -56,10 +56,8 @@ void SceneRenderer::Parts::addGuides(const Canvas& shown, const Span& span, Scre
       DepthPatch patch;
       patch.step = span.pixels / glm::dvec2(shown.width(), shown.height());
       patch.beyond = span.beyond;
-      const auto ray = [&](int x, int y) {
-        return glm::ivec2(glm::floor((glm::dvec2(x, y) + span.beyond) / patch.step));
-      };
-      const glm::ivec2 low = ray(reach.low_x, reach.low_y), high = ray(reach.high_x, reach.high_y);
+      const glm::ivec2 low = rayAt({reach.low_x, reach.low_y}, shown, span),
+                       high = rayAt({reach.high_x, reach.high_y}, shown, span);
       patch.rays = {std::max(low.x, 0), std::max(low.y, 0), std::min(high.x + 1, shown.width()),
                     std::min(high.y + 1, shown.height())};
       patch.depth_mm = shown.readDepth_mm(patch.rays);

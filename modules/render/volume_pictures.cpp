@@ -14,6 +14,7 @@ namespace {
 constexpr std::chrono::milliseconds kPause(150);
 constexpr double kFirstStrip = 12000.0;  // pixels, before any was measured
 constexpr double kTelling = 4000.0;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kWary = 0.4;  // of the first strip: what lies there may be dearer than the last
 // Where nothing is known of what a picture takes, or the whole window is put in order with it.
 constexpr double kFirstStep = 5.0;
@@ -62,10 +63,12 @@ void VolumePictures::castSome(Picture& picture, double budget_ms, const Cast& ca
   const Clock::time_point start = Clock::now();
   // Where the last strip met air alone, this one need not.
   const double most = std::max(kFirstStrip, 1.5 * picture.strip_pixels);
-  double pixels = pixels_per_ms_ > 0.0
-                      ? std::min(kWary * pixels_per_ms_ * picture.ray_step * budget_ms, most)
-                      : kFirstStrip;
-  if (budget_ms == std::numeric_limits<double>::infinity()) pixels = budget_ms;
+  double pixels = kFirstStrip;
+  if (budget_ms == kNoLimit) {
+    pixels = kNoLimit;
+  } else if (pixels_per_ms_ > 0.0) {
+    pixels = std::min(kWary * pixels_per_ms_ * picture.ray_step * budget_ms, most);
+  }
   while (const std::optional<PixelRect> strip = picture.plan.next(pixels)) {
     const Clock::time_point begun = Clock::now();
     picture.canvas.bind();
@@ -167,7 +170,6 @@ double VolumePictures::expected_ms(const CastPlan& plan) const {
 
 bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   const Clock::time_point begun = Clock::now();
-  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   bool changed = false;
   const bool unknown = pixels_per_ms_ == 0.0 && budget_ms < kNoLimit;
   if (std::exchange(stale_, false)) {
@@ -216,7 +218,7 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
 void VolumePictures::castAt(double step, double ray_step, const Cast& cast) {
   next_.step = 0.0;
   start(shown_, step, ray_step);
-  castSome(shown_, std::numeric_limits<double>::infinity(), cast);
+  castSome(shown_, kNoLimit, cast);
   stale_ = true;
 }
 

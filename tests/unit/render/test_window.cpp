@@ -190,7 +190,7 @@ TEST_F(Window, ACutDoesNotComeBackWithAFinerPictureThatWasBegunBeforeIt) {
   carve(grid_, Vec3(0, -24, 9), 6.0);  // where the rays of the finer picture are cast by now
   ASSERT_TRUE(hosted_.pullChanges(grid_));
   hosted_.paint(screen_->id(), kTiny_ms);
-  ASSERT_EQ(hosted_.shareOfRays() <= coarse, true);
+  ASSERT_LE(hosted_.shareOfRays(), coarse);
   Picture last = screen_->read();
   while (!hosted_.complete()) {
     const Picture now = (hosted_.paint(screen_->id(), kTiny_ms), screen_->read());
