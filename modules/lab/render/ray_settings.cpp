@@ -1,50 +1,74 @@
 #include "lab/render/ray_settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lab/render/render_parts.h"
-#include "volume/phantom.h"
 
 namespace trephine {
 
 namespace {
 
-// The bone of the cranium, each setting timed in turns.
-Status addPictures(const Volume& cranium, const RaySettingOptions& options,
+struct Side {
+  Vec3 towards, up;
+};
+// Ahead of the eye, in the patient's frame: from the front, from behind, from both sides, from
+// above.
+const std::vector<Side> kSides{{Vec3(0, 1, 0), Vec3(0, 0, 1)},
+                               {Vec3(0, -1, 0), Vec3(0, 0, 1)},
+                               {Vec3(1, 0, 0), Vec3(0, 0, 1)},
+                               {Vec3(-1, 0, 0), Vec3(0, 0, 1)},
+                               {Vec3(0, 0, -1), Vec3(0, 1, 0)}};
+
+// A picture's time is its own, from all rays anew.
+Picture pictureWith(const RaySetting& setting, SceneRenderer& renderer, double* ms = nullptr) {
+  renderer.setSampleDistance(setting.distance_voxels);
+  const auto start = RenderClock::now();
+  Picture picture = renderer.picture();
+  if (ms) *ms = msSince(start);
+  return picture;
+}
+
+// Of settings with the truths that are on, as the renderer stands: how far each is from the finest.
+void addErrors(bool plain, SceneRenderer& renderer, std::vector<RaySettingFigures>& figures) {
+  const Picture finest = pictureWith({kReferenceDistance, plain}, renderer);
+  for (RaySettingFigures& f : figures) {
+    if (f.setting.plain != plain) continue;
+    const double dB = psnr_dB(finest, pictureWith(f.setting, renderer));
+    f.picture_rms_percent = std::max(f.picture_rms_percent, 100.0 * std::pow(10.0, -dB / 20.0));
+  }
+}
+
+// The settings of a subject in turns, shaders changing as seldom as may be; `ms` is of its own
+// view.
+Status addPictures(const RenderSubject& subject, const RaySettingOptions& options,
                    const Progress& progress, std::vector<RaySettingFigures>& figures) {
-  const Result<TissueSet> tissues = shippedTissues("cranium");
-  if (!tissues) return tissues.error();
   auto made = SceneRenderer::offscreen(options.size[0], options.size[1]);
   if (!made) return made.error();
   SceneRenderer& renderer = **made;
-  renderer.setTissues(*tissues, presetLooks(*tissues, ViewPreset::bone).value_or(TissueLooks()));
-  renderer.setVolume(Grid(Volume(cranium)));
-  renderer.resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
-  std::vector<std::vector<double>> ms(figures.size());
-  for (int turn = 0; turn <= options.repeats; ++turn) {  // the first is not timed
-    for (std::size_t n = 0; n < figures.size(); ++n) {
+  show(subject, true, renderer);
+  for (const bool plain : {false, true}) {
+    renderer.setTruth({!plain, !plain});
+    placeCamera(subject, renderer);
+    addErrors(plain, renderer, figures);
+    std::vector<std::vector<double>> ms(figures.size());
+    for (int turn = 0; turn < options.repeats; ++turn) {
       if (progress.cancelled()) return renderCancelled();
-      progress.at(double(turn) / (options.repeats + 1), "pictures");
-      const RaySetting& setting = figures[n].setting;
-      const bool truth = !setting.plain;
-      renderer.setTruth({truth, truth});
-      if (turn == 0) {
-        renderer.setSampleDistance(kReferenceDistance);
-        const Picture reference = renderer.picture();
-        renderer.setSampleDistance(setting.distance_voxels);
-        const double psnr = psnr_dB(reference, renderer.picture());
-        figures[n].picture_rms_percent = 100.0 * std::pow(10.0, -psnr / 20.0);
-        continue;
+      for (std::size_t n = 0; n < figures.size(); ++n) {
+        if (figures[n].setting.plain != plain) continue;
+        pictureWith(figures[n].setting, renderer, &ms[n].emplace_back());
       }
-      renderer.setSampleDistance(setting.distance_voxels);
-      renderer.picture();                                   // shaders come and go with the truths
-      renderer.setSampleDistance(setting.distance_voxels);  // all rays anew
-      const auto start = RenderClock::now();
-      renderer.picture();
-      ms[n].push_back(msSince(start));
+    }
+    for (std::size_t n = 0; n < figures.size(); ++n) {
+      if (figures[n].setting.plain == plain) figures[n].ms += medianOf(ms[n]);
+    }
+    for (std::size_t n = 0; n < kSides.size(); ++n) {
+      if (progress.cancelled()) return renderCancelled();
+      progress.at(0.5 * ((plain ? 1.0 : 0.0) + double(n) / double(kSides.size())), "pictures");
+      renderer.resetCamera(kSides[n].towards, kSides[n].up);
+      addErrors(plain, renderer, figures);
     }
   }
-  for (std::size_t n = 0; n < figures.size(); ++n) figures[n].ms = medianOf(ms[n]);
   return {};
 }
 
@@ -56,21 +80,20 @@ Result<std::vector<RaySettingFigures>> measureRaySettings(const std::vector<RayS
   if (auto display = SceneRenderer::offscreen(16, 16); !display) return display.error();
   std::vector<RaySettingFigures> figures;
   for (const RaySetting& setting : settings) figures.push_back({setting, 0.0, 0.0, 0.0, 0.0});
-  Result<Volume> made = makePhantom("cranium", Progress(progress, 0.0, 0.1));
-  if (!made) return made.error();
-  const auto cranium = std::make_shared<const Volume>(*std::move(made));
-  const Progress pictures(progress, 0.1, 0.4);
-  if (Status drawn = addPictures(*cranium, options, pictures, figures); !drawn) {
-    return drawn.error();
+  const auto subjects = renderSubjects("", Progress(progress, 0.0, 0.1));
+  if (!subjects) return subjects.error();
+  for (std::size_t n = 0; n < subjects->size(); ++n) {
+    const double count = double(subjects->size());
+    const Progress part(progress, 0.1 + 0.5 * double(n) / count, 0.1 + 0.5 * double(n + 1) / count);
+    const Status drawn = addPictures((*subjects)[n], options, part, figures);
+    if (!drawn) return drawn.error();
   }
-  RenderOptions of_truth;
-  of_truth.truth_edge = options.truth_edge;
-  of_truth.truth_step = options.truth_step;
-  of_truth.surface_edge = options.surface_edge;
-  const auto classes =
-      craniumWrongPercent(cranium, settings, of_truth, Progress(progress, 0.4, 0.8));
+  for (RaySettingFigures& f : figures) f.ms /= double(subjects->size());
+  const RenderOptions of_truth;  // the wrong tissues of `measure render`
+  const auto classes = craniumWrongPercent(subjects->front().volume, settings, of_truth,
+                                           Progress(progress, 0.6, 0.9));
   if (!classes) return classes.error();
-  const auto luminance = shellLuminancePercent(settings, of_truth, Progress(progress, 0.8, 1.0));
+  const auto luminance = shellLuminancePercent(settings, of_truth, Progress(progress, 0.9, 1.0));
   if (!luminance) return luminance.error();
   for (std::size_t n = 0; n < figures.size(); ++n) {
     figures[n].wrong_class_percent = (*classes)[n];

@@ -16,19 +16,20 @@ struct RaySetting {
 
 struct RaySettingFigures {
   RaySetting setting;
-  double ms = 0.0;                       // of a picture of the cranium's bone
-  double picture_rms_percent = 0.0;      // of 255, against a sample every 0.25 voxels
+  double ms = 0.0;                       // of a picture: the mean of bone, skin and liver
+  double picture_rms_percent = 0.0;      // of 255, of the worst picture, against 0.25 voxels
   double wrong_class_percent = 0.0;      // of the cranium's pixels
   double luminance_error_percent = 0.0;  // of a shell of bone
 };
 
 struct RaySettingOptions {
   std::array<int, 2> size{800, 600};
-  int repeats = 5;
-  int truth_edge = 232, truth_step = 4, surface_edge = 480;
+  int repeats = 3;
 };
 
-// Errors: NO_DISPLAY, NO_OPENGL, CANCELLED.
+// Pictures are of bone, of skin and of the shipped liver, each from its own view and from every
+// side but below, where a head is one cut through the neck. Errors: NO_DISPLAY, NO_OPENGL,
+// CANCELLED.
 Result<std::vector<RaySettingFigures>> measureRaySettings(const std::vector<RaySetting>& settings,
                                                           const RaySettingOptions& options,
                                                           const Progress& progress = Progress());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/file.h"
+#include "base/system.h"
 #include "lab/exercise/explain.h"
 #include "support.h"
 
@@ -70,6 +71,19 @@ TEST(SceneSettings, AreThoseOfItsToolsForceAndRateEachOnce) {
                                                                   {"rate_hz", "2000"},
                                                                   {"ray_casting", "0.5 voxels"}};
   EXPECT_EQ(sceneSettings(scene), expected);
+}
+
+TEST(Recommended, IsWhatTheViewIsDrawnWith) {
+  const auto shipped = readRecommended(resourceFolder() / "recommended.json");
+  ASSERT_TRUE(shipped) << shipped.error().sentence();
+  const std::pair<std::string, std::string> view = sceneSettings(Scene()).back();
+  ASSERT_EQ(view.first, "ray_casting");
+  for (const RecommendedSetting& knob : *shipped) {
+    if (knob.knob != view.first) continue;
+    EXPECT_EQ(knob.setting, view.second);
+    return;
+  }
+  ADD_FAILURE() << "no row for " << view.first;
 }
 
 }  // namespace

@@ -93,6 +93,15 @@ TEST(Recommend, HoldsPointsToTheirVolumeToo) {
             Chosen{"more"});
 }
 
+TEST(Recommend, HoldsRaysToTheWorstPicture) {
+  const auto rays = [](const char* setting, double cost, double rms_percent) {
+    return row("ray_casting", setting, 2.0, cost,
+               {{"luminance_error_percent", 1.5}, {"picture_rms_percent", rms_percent}});
+  };
+  EXPECT_EQ(chosen({rays("fine", 3.0, 0.6), rays("coarse", 1.0, 1.1), rays("next", 2.0, 1.0)}),
+            Chosen{"next"});
+}
+
 TEST(Recommend, MarksExactlyOneOfEachKnobAndNoneOfAnUnknownOne) {
   EXPECT_EQ(chosen({row("points_burr", "x", 0.1, 1.0), row("points_burr", "y", 0.1, 1.0),
                     row("force_at", "z", 1.0, 1.0), row("colour", "red", 0.0, 0.0)}),
