@@ -89,7 +89,8 @@ Result<std::vector<RaySettingFigures>> measureRaySettings(const std::vector<RayS
     if (!drawn) return drawn.error();
   }
   for (RaySettingFigures& f : figures) f.ms /= double(subjects->size());
-  const RenderOptions of_truth;  // the wrong tissues of `measure render`
+  RenderOptions of_truth;
+  of_truth.truth_step = options.truth_step;
   const auto classes = craniumWrongPercent(subjects->front().volume, settings, of_truth,
                                            Progress(progress, 0.6, 0.9));
   if (!classes) return classes.error();

@@ -25,6 +25,7 @@ struct RaySettingFigures {
 struct RaySettingOptions {
   std::array<int, 2> size{800, 600};
   int repeats = 3;
+  int truth_step = 3;  // every so many pixels, as `measure render` looks
 };
 
 // Pictures are of bone, of skin and of the shipped liver, each from its own view and from every

@@ -21,6 +21,7 @@ TradeRows tradeRayCasting(const TradesOptions& options, const Progress& progress
   }
   RaySettingOptions of;
   of.size = options.ray_picture;
+  of.truth_step = options.ray_truth_step;
   const auto figures = measureRaySettings(settings, of, progress);
   std::vector<TradeRow> rows;
   if (!figures && (figures.error().code == "NO_DISPLAY" || figures.error().code == "NO_OPENGL")) {

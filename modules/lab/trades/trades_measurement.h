@@ -66,6 +66,7 @@ struct TradesOptions {
   double stroke_s = 2.0;  // 0.2 to 20
   std::vector<double> ray_distances{0.25, 0.5, 0.75, 1.0, 2.0};  // voxels, 0.1 to 8
   std::array<int, 2> ray_picture{800, 600};
+  int ray_truth_step = 3;  // pixels
 };
 
 struct TradesMeasurement {
