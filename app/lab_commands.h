@@ -43,6 +43,18 @@ struct ImportArguments {
   std::string report;  // an HTML file
 };
 
+struct GrowArguments {
+  std::string case_source;
+  std::string seed;  // "X,Y,Z", mm, LPS
+  std::string hu;    // "A,B"; empty: proposed
+  std::string box;   // "X0,X1,Y0,Y1,Z0,Z1", mm, LPS; empty: the scan
+  std::optional<double> open_mm;
+  std::string name;
+  std::string write;
+};
+
+int growCommand(const GrowArguments& arguments, bool json, const Progress&);
+int compareCommand(const std::string& a, const std::string& b, bool json, const Progress&);
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
 int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 int runCommand(const RunArguments& arguments, bool json, const Progress&);

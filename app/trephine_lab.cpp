@@ -86,6 +86,32 @@ int run(int argc, char** argv) {
       with_json(app.add_subcommand("explain", "What a scene instantiates and what it costs"));
   explain_command->add_option("scene", file, "A scene file")->required();
 
+  auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
+  structures_command->require_subcommand(1);
+  GrowArguments growing;
+  auto* grow_command = with_json(structures_command->add_subcommand(
+      "grow", "A structure from one place in it, as a label map on the CT's own grid"));
+  grow_command
+      ->add_option("case", growing.case_source,
+                   "A folder of CT, a volume file, phantom:cranium or phantom:abdomen")
+      ->required();
+  grow_command->add_option("--seed", growing.seed, "X,Y,Z: a place in it, mm in the patient's LPS")
+      ->required();
+  grow_command->add_option("--hu", growing.hu,
+                           "A,B: its HU; proposed from around the seed unless given");
+  grow_command->add_option("--open", growing.open_mm,
+                           "Radius of the ball that has room in all of it, mm; 7 unless given");
+  grow_command->add_option("--box", growing.box,
+                           "X0,X1,Y0,Y1,Z0,Z1: nothing outside of it, mm, LPS");
+  grow_command->add_option("--name", growing.name, "What it is called")->required()->check(named);
+  grow_command->add_option("--write", growing.write, "The label map: .nii, .nii.gz or .mha")
+      ->required();
+  auto* compare_command = with_json(structures_command->add_subcommand(
+      "compare", "How alike two label maps of one grid are, label by label"));
+  std::string other;
+  compare_command->add_option("a", file, "A label map")->required();
+  compare_command->add_option("b", other, "Another")->required();
+
   auto* measure_command = app.add_subcommand("measure", "Measurements");
   measure_command->require_subcommand(1);
   auto* upload_command =
@@ -158,7 +184,10 @@ int run(int argc, char** argv) {
     // The flag itself may stand behind what could not be parsed.
     if (error.get_exit_code() == 0) return app.exit(error);
     // Of a word that is no command the parser says only that a command is missing.
-    const bool missing = (*measure_command ? *measure_command : app).get_subcommands().empty();
+    const CLI::App& of = *measure_command      ? *measure_command
+                         : *structures_command ? *structures_command
+                                               : app;
+    const bool missing = of.get_subcommands().empty();
     const std::vector<std::string> words = app.remaining(true);
     const auto word = std::find_if(words.begin(), words.end(),
                                    [](const std::string& w) { return !w.starts_with('-'); });
@@ -177,6 +206,8 @@ int run(int argc, char** argv) {
   if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, json, progress);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
+  if (*grow_command) return growCommand(growing, json, progress);
+  if (*compare_command) return compareCommand(file, other, json, progress);
   if (*explain_command) return explainCommand(file, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(stability, json, progress);

@@ -29,6 +29,15 @@ constexpr std::string_view kBlanks = " \t\r\n";
 
 }  // namespace
 
+std::span<const std::byte> storedAs(VoxelType type, std::span<const std::int16_t> slab,
+                                    std::vector<std::byte>& narrow) {
+  if (type != VoxelType::uint8) return std::as_bytes(slab);
+  narrow.resize(slab.size());
+  std::transform(slab.begin(), slab.end(), narrow.begin(),
+                 [](std::int16_t value) { return std::byte(value); });
+  return narrow;
+}
+
 Error unreadable(const std::string& what, const fs::path& file) {
   return Error{"UNREADABLE", what, file.string(), "Copy or export the file again"};
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +22,15 @@ Result<VolumeFileHeader> readRawHeader(const std::filesystem::path& file);
 std::optional<std::filesystem::path> sibling(const std::filesystem::path& file,
                                              const std::string& ending);
 
-// To `temporary`, for a right-handed grid that was checked; errors name `target`. A NIfTI that is
-// cancelled ends early with any answer.
-Status writeMetaImage(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
-                      const std::filesystem::path& target);
-Status writeNifti(const VoxelSlabs& voxels, const std::filesystem::path& temporary,
+// To `temporary`, for a grid that was checked; `type` is int16 or uint8; errors name `target`. A
+// NIfTI that is cancelled ends early with any answer.
+Status writeMetaImage(const VoxelSlabs& voxels, VoxelType type,
+                      const std::filesystem::path& temporary, const std::filesystem::path& target);
+Status writeNifti(const VoxelSlabs& voxels, VoxelType type, const std::filesystem::path& temporary,
                   const std::filesystem::path& target, const Progress& progress);
+// The voxels of a slab as they go to a file: `narrow` holds those that are bytes there.
+std::span<const std::byte> storedAs(VoxelType type, std::span<const std::int16_t> slab,
+                                    std::vector<std::byte>& narrow);
 
 // ---- Errors, by code.
 Error unreadable(const std::string& what, const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include "base/sha256.h"
 #include "volume/case_memory.h"
 #include "volume/volume_files.h"
+#include "volume/voxel_slabs.h"
 
 namespace trephine {
 
@@ -43,6 +44,17 @@ Result<LabelMap> readLabelMap(const std::filesystem::path& file) {
     return enough.error();
   }
   return LabelMap{read->volume.geometry, {values.begin(), values.end()}};
+}
+
+Status writeLabelMap(const LabelMap& map, const std::filesystem::path& file, bool reversed_slices,
+                     const Progress& progress) {
+  VoxelSlabs slabs;
+  slabs.geometry = map.geometry;
+  slabs.read = [&](std::size_t first, std::span<std::int16_t> into) {
+    const auto from = map.labels.begin() + std::ptrdiff_t(first);
+    std::copy(from, from + std::ptrdiff_t(into.size()), into.begin());
+  };
+  return writeVolume(slabs, file, progress, {VoxelType::uint8, reversed_slices});
 }
 
 Result<LabelMap> fitTo(const LabelMap& map, const GridGeometry& ct) {

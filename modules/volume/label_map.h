@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "base/result.h"
 #include "volume/volume.h"
 
@@ -19,6 +20,11 @@ struct LabelMap {
 // Any volume file. Errors: those of readVolumeFile, and NOT_LABELS where a voxel is no whole number
 // from 0 to 255.
 Result<LabelMap> readLabelMap(const std::filesystem::path& file);
+
+// A byte a voxel, .mha, .nii or .nii.gz. `reversed_slices`: of the CT's file that it goes beside
+// (VolumeFileHeader), so that both are alike voxel by voxel. Errors: those of writeVolume.
+Status writeLabelMap(const LabelMap& map, const std::filesystem::path& file,
+                     bool reversed_slices = false, const Progress& progress = Progress());
 
 // The label of each voxel of a CT: that of the label map's voxel which its centre lies in, by their
 // places in the patient. So a grid that is the same but for flipped or permuted axes comes out

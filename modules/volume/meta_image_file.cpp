@@ -162,7 +162,7 @@ std::string exact(const Vec3& v) {
 }
 
 // Numbers keep all their digits.
-std::string headerText(const GridGeometry& g) {
+std::string headerText(const GridGeometry& g, VoxelType type) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
@@ -170,7 +170,9 @@ std::string headerText(const GridGeometry& g) {
       << exact(g.direction[1]) << " " << exact(g.direction[2])
       << "\nOffset = " << exact(g.origin_mm) << "\nCenterOfRotation = 0 0 0\n"
       << "ElementSpacing = " << exact(g.spacing_mm) << "\nDimSize = " << g.size[0] << " "
-      << g.size[1] << " " << g.size[2] << "\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+      << g.size[1] << " " << g.size[2]
+      << "\nElementType = " << (type == VoxelType::uint8 ? "MET_UCHAR" : "MET_SHORT")
+      << "\nElementDataFile = LOCAL\n";
   return out.str();
 }
 
@@ -212,11 +214,14 @@ Result<VolumeFileHeader> readMetaImageHeader(const fs::path& file) {
   return header;
 }
 
-Status writeMetaImage(const VoxelSlabs& voxels, const fs::path& temporary, const fs::path& target) {
+Status writeMetaImage(const VoxelSlabs& voxels, VoxelType type, const fs::path& temporary,
+                      const fs::path& target) {
   std::ofstream out(temporary, std::ios::binary);
-  out << headerText(voxels.geometry);
+  out << headerText(voxels.geometry, type);
+  std::vector<std::byte> narrow;
   voxels.forEach([&](std::span<const std::int16_t> slab) {
-    out.write(reinterpret_cast<const char*>(slab.data()), std::streamsize(slab.size_bytes()));
+    const std::span<const std::byte> stored = storedAs(type, slab, narrow);
+    out.write(reinterpret_cast<const char*>(stored.data()), std::streamsize(stored.size()));
     return bool(out);
   });
   out.close();

@@ -149,22 +149,27 @@ Result<Index3> sizeOf(const Header& h, const fs::path& file) {
 }
 
 // The 348 bytes of a version 1 header and the four that say that no extension follows, for HU as
-// int16. What is not put is 0: no slope, no time, no intent.
-std::string headerFor(const GridGeometry& g) {
+// int16 or labels as uint8. What is not put is 0: no slope, no time, no intent.
+std::string headerFor(const GridGeometry& g, VoxelType type) {
   std::string bytes(kVoxelsFrom, '\0');
   const auto put = [&bytes](std::size_t at, const auto& value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
   };
   const Mat4 ras = kFlipXy * g.voxelToPatient();
   // The right-handed axes' rotation; of a quaternion and its negative, the one without a < 0.
-  Quat q = glm::quat_cast(Mat3(kFlipXy) * g.direction);
+  Mat3 axes = Mat3(kFlipXy) * g.direction;
+  const bool left_handed = glm::determinant(axes) < 0.0;
+  if (left_handed) axes[2] = -axes[2];
+  Quat q = glm::quat_cast(axes);
   if (q.w < 0.0) q = -q;
   put(0, std::int32_t(348));
   put(40, std::array<std::int16_t, 8>{3, std::int16_t(g.size[0]), std::int16_t(g.size[1]),
                                       std::int16_t(g.size[2]), 1, 1, 1, 1});
-  put(70, std::array<std::int16_t, 2>{4, 16});  // int16, of 16 bits
-  put(76, std::array<float, 8>{1, float(g.spacing_mm.x), float(g.spacing_mm.y),
-                               float(g.spacing_mm.z), 1, 1, 1, 1});
+  const bool bytes_only = type == VoxelType::uint8;
+  put(70, std::array<std::int16_t, 2>{std::int16_t(bytes_only ? 2 : 4),  // uint8 or int16, in bits
+                                      std::int16_t(bytes_only ? 8 : 16)});
+  put(76, std::array<float, 8>{left_handed ? -1.0f : 1.0f, float(g.spacing_mm.x),
+                               float(g.spacing_mm.y), float(g.spacing_mm.z), 1, 1, 1, 1});
   put(108, float(kVoxelsFrom));
   put(123, std::uint8_t(2));  // mm
   put(148, std::array{'T', 'r', 'e', 'p', 'h', 'i', 'n', 'e'});
@@ -224,8 +229,8 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
   return header;
 }
 
-Status writeNifti(const VoxelSlabs& voxels, const fs::path& temporary, const fs::path& target,
-                  const Progress& progress) {
+Status writeNifti(const VoxelSlabs& voxels, VoxelType type, const fs::path& temporary,
+                  const fs::path& target, const Progress& progress) {
   for (const std::int32_t edge : voxels.geometry.size) {
     if (edge > kMostAlongEdge) {
       return Error{"CANNOT_WRITE", "NIfTI holds at most 32767 voxels along an edge",
@@ -242,11 +247,12 @@ Status writeNifti(const VoxelSlabs& voxels, const fs::path& temporary, const fs:
     return gzip ? gzip->write(bytes)
                 : std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   };
-  const std::string header = headerFor(voxels.geometry);
+  const std::string header = headerFor(voxels.geometry, type);
+  std::vector<std::byte> narrow;
   const bool written = write(std::as_bytes(std::span(header))) &&
                        voxels.forEach(
                            [&](std::span<const std::int16_t> slab) {
-                             return !progress.cancelled() && write(std::as_bytes(slab));
+                             return !progress.cancelled() && write(storedAs(type, slab, narrow));
                            },
                            GzipWriter::kAtOnce / sizeof(std::int16_t)) &&
                        (!gzip || gzip->finish());

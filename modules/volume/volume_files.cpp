@@ -99,11 +99,14 @@ Status checkVolumeFileName(const fs::path& file) {
                        "Give the file one of these endings");
 }
 
-Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progress& progress) {
+Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progress& progress,
+                   const VolumeWriting& writing) {
   if (auto status = checkVolumeFileName(file); !status) return status;
   if (auto status = checkSize(voxels.geometry.size, file.string()); !status) return status;
   if (auto status = checkGeometry(voxels.geometry, file); !status) return status;
-  if (leftHanded(voxels.geometry)) return writeVolume(reversedSlices(voxels), file, progress);
+  if (leftHanded(voxels.geometry) != writing.reversed_slices) {
+    return writeVolume(reversedSlices(voxels), file, progress, writing);
+  }
   VoxelSlabs told = voxels;
   told.read = [&](std::size_t first, std::span<std::int16_t> into) {
     progress.at(double(first) / double(voxels.geometry.voxelCount()), "Saving the volume");
@@ -111,8 +114,9 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
   };
   Status saved = replaceFile(file, [&](const fs::path& temporary) -> Status {
     try {
-      const Status written = endsWith(file, ".mha") ? writeMetaImage(told, temporary, file)
-                                                    : writeNifti(told, temporary, file, progress);
+      const Status written = endsWith(file, ".mha")
+                                 ? writeMetaImage(told, writing.type, temporary, file)
+                                 : writeNifti(told, writing.type, temporary, file, progress);
       if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
       return written;
     } catch (const std::bad_alloc&) {

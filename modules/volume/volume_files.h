@@ -82,6 +82,13 @@ Result<VolumeFileReading> readVolumeFile(const std::filesystem::path& file,
 // The volume alone.
 Result<Volume> readVolume(const std::filesystem::path& file, const Progress& progress = Progress());
 
+// How voxels are written: as int16, or as uint8 where all are 0 to 255; with slices in the order of
+// a left-handed file, so that an image goes beside that file voxel by voxel.
+struct VolumeWriting {
+  VoxelType type = VoxelType::int16;
+  bool reversed_slices = false;  // VolumeFileHeader's
+};
+
 // .mha (uncompressed), .nii or .nii.gz by extension; written beside the target and renamed, so a
 // full disk loses nothing. NIfTI keeps the affine as float; .nii.gz is packed on two threads, the
 // same bytes for the same volume. Errors: UNKNOWN_FORMAT, BAD_GEOMETRY, BAD_SIZE, TOO_LARGE,
@@ -90,7 +97,7 @@ Result<Volume> readVolume(const std::filesystem::path& file, const Progress& pro
 Status checkVolumeFileName(const std::filesystem::path& file);
 // Cancelled in between, nothing was written: CANCELLED; a NIfTI ends at once, the rest at its end.
 Status writeVolume(const VoxelSlabs& voxels, const std::filesystem::path& file,
-                   const Progress& progress = Progress());
+                   const Progress& progress = Progress(), const VolumeWriting& writing = {});
 Status writeVolume(const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace trephine

@@ -19,7 +19,7 @@ endif()
 if(TREPHINE_WINDOW)
   find_package(MPI QUIET COMPONENTS C) # Debian's VTK targets name MPI::MPI_C
   find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel CommonExecutionModel
-               CommonTransforms FiltersCore FiltersSources InteractionStyle IOGeometry IOImage
+               CommonTransforms FiltersCore FiltersSources ImagingGeneral ImagingMorphological InteractionStyle IOGeometry IOImage
                RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 vtksys)
   find_package(OpenGL REQUIRED)
   find_package(GLEW REQUIRED)

@@ -27,10 +27,11 @@ ROOMS = {
     "scene": {"base", "volume", "tissue", "haptics"},
     "training": {"base", "volume", "tissue", "device", "haptics", "scene"},
     "session": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training"},
+    "structures": {"base", "volume"},
     "render": {"base", "volume", "tissue", "scene"},
     "plot": {"base"},
     "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training",
-            "session", "render", "plot"},
+            "session", "structures", "render", "plot"},
 }
 MODULES = set(ROOMS)
 ROOMS["ui"] = MODULES
@@ -80,6 +81,7 @@ MAY_USE = {
     "scene": set(),
     "training": {"hdf5"},
     "session": set(),
+    "structures": {"vtk-filters"},
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
     "plot": {"qt-gui"},
     "lab": set(),
@@ -99,6 +101,7 @@ HEADERS = {
     "openjpeg": r"openjpeg.*",
     "hdf5": r"hdf5(_hl)?\.h|H5.+\.h",
     "vtk-image": r"vtk[A-Z]\w*\.h",
+    "vtk-filters": r"vtk[A-Z]\w*\.h",
     "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h|vtksys/\w+\.hxx",
     "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
     # Pictures and texts, no widgets and no events.

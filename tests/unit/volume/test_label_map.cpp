@@ -50,6 +50,28 @@ LabelMap reordered(const LabelMap& map, const std::array<int, 3>& order, int fli
   return out;
 }
 
+TEST(LabelMap, IsWrittenAsBytesAndReadBackTheSame) {
+  const test::TemporaryFolder folder;
+  const LabelMap map = patternOn(obliqueVolume({6, 5, 4}).geometry);
+  for (const char* name : {"a.nii.gz", "a.nii", "a.mha"}) {
+    for (const bool reversed : {false, true}) {
+      ASSERT_TRUE(writeLabelMap(map, folder / name, reversed));
+      const auto header = readVolumeFileHeader(folder / name);
+      ASSERT_TRUE(header) << header.error().sentence();
+      EXPECT_EQ(header->type, VoxelType::uint8);
+      EXPECT_EQ(header->reversed_slices, reversed) << name;
+      const auto back = readLabelMap(folder / name);
+      ASSERT_TRUE(back) << back.error().sentence();
+      EXPECT_EQ(back->labels, map.labels) << name;
+      const Vec3 corner(5, 4, 3);
+      EXPECT_LT(
+          glm::length(back->geometry.toPatient_mm(corner) - map.geometry.toPatient_mm(corner)),
+          1e-3);
+    }
+  }
+  EXPECT_EQ(writeLabelMap(map, folder / "a.png").error().code, "UNKNOWN_FORMAT");
+}
+
 TEST(LabelMap, ReadsTheLabelsOfEveryVolumeFile) {
   const test::TemporaryFolder folder;
   Volume volume = obliqueVolume({6, 5, 4});

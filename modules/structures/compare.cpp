@@ -1,0 +1,96 @@
+#include "structures/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "structures/work_grid.h"
+
+namespace trephine {
+
+namespace {
+
+// Voxels of it with one across a face that is not; the grid's end is no border.
+std::vector<std::size_t> borderOf(const LabelMap& map, std::uint8_t label) {
+  std::vector<std::size_t> border;
+  const GridGeometry& g = map.geometry;
+  for (int k = 0; k < g.size[2]; ++k) {
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i) {
+        const std::size_t at = g.indexOf(i, j, k);
+        if (map.labels[at] != label) continue;
+        const auto out = [&](int x, int y, int z) {
+          return g.contains(x, y, z) && map.labels[g.indexOf(x, y, z)] != label;
+        };
+        if (out(i - 1, j, k) || out(i + 1, j, k) || out(i, j - 1, k) || out(i, j + 1, k) ||
+            out(i, j, k - 1) || out(i, j, k + 1)) {
+          border.push_back(at);
+        }
+      }
+    }
+  }
+  return border;
+}
+
+double percentile95_mm(const std::vector<std::size_t>& from, const std::vector<std::size_t>& to,
+                       const GridGeometry& g) {
+  WorkGrid grid;
+  grid.size = g.size;
+  grid.block_mm = g.spacing_mm;
+  BlockMask in(g.voxelCount());
+  for (const std::size_t at : to) in[at] = 1;
+  const std::vector<float> away = distance_mm(in, grid);
+  std::vector<float> mm;
+  mm.reserve(from.size());
+  for (const std::size_t at : from) mm.push_back(away[at]);
+  const auto at = mm.begin() + std::ptrdiff_t(0.95 * double(mm.size() - 1));
+  std::nth_element(mm.begin(), at, mm.end());
+  return *at;
+}
+
+// A file's float affine and the CT's may differ in the last digits.
+bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
+  if (a.size != b.size) return false;
+  const Vec3 corner(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
+  const double within = 1e-3 * std::min({a.spacing_mm.x, a.spacing_mm.y, a.spacing_mm.z});
+  const auto near = [&](const Vec3& at) {
+    return glm::length(a.toPatient_mm(at) - b.toPatient_mm(at)) <= within;
+  };
+  return near(Vec3(0.0)) && near(Vec3(corner.x, 0, 0)) && near(Vec3(0, corner.y, 0)) &&
+         near(Vec3(0, 0, corner.z));
+}
+
+}  // namespace
+
+Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& b,
+                          std::uint8_t of_b) {
+  if (!sameGrid(a.geometry, b.geometry)) {
+    return Error{"OTHER_GRID", "The two label maps are not of the same grid", "",
+                 "Compare label maps of one CT"};
+  }
+  std::size_t in_a = 0, in_b = 0, both = 0;
+  for (std::size_t n = 0; n < a.labels.size(); ++n) {
+    const bool is_a = a.labels[n] == of_a, is_b = b.labels[n] == of_b;
+    in_a += is_a;
+    in_b += is_b;
+    both += is_a && is_b;
+  }
+  Likeness of;
+  const double voxel_ml = a.geometry.voxelVolume_mm3() / 1000.0;
+  of.ml_a = double(in_a) * voxel_ml;
+  of.ml_b = double(in_b) * voxel_ml;
+  of.dice = in_a + in_b == 0 ? 1.0 : 2.0 * double(both) / double(in_a + in_b);
+  of.hd95_mm = std::numeric_limits<double>::quiet_NaN();
+  if (in_a == 0 || in_b == 0) return of;
+  const std::vector<std::size_t> a_border = borderOf(a, of_a), b_border = borderOf(b, of_b);
+  if (a_border.empty() || b_border.empty()) {  // the whole grid
+    of.hd95_mm = a_border.empty() && b_border.empty() ? 0.0 : of.hd95_mm;
+    return of;
+  }
+  of.hd95_mm = std::max(percentile95_mm(a_border, b_border, a.geometry),
+                        percentile95_mm(b_border, a_border, a.geometry));
+  return of;
+}
+
+}  // namespace trephine

@@ -1,0 +1,23 @@
+// How alike two label maps of one grid are, structure by structure.
+#pragma once
+
+#include <cstdint>
+
+#include "base/result.h"
+#include "volume/label_map.h"
+
+namespace trephine {
+
+struct Likeness {
+  double dice = 0.0;     // 2 |A and B| / (|A| + |B|); 1 where both are empty
+  double hd95_mm = 0.0;  // the greater of the two 95th percentiles, border to border; NaN where one
+                         // of them is empty
+  double ml_a = 0.0, ml_b = 0.0;
+};
+
+// Of the voxels with the label `of_a` in `a` and `of_b` in `b`. Errors: OTHER_GRID where the grids
+// differ.
+Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& b,
+                          std::uint8_t of_b);
+
+}  // namespace trephine

@@ -1,0 +1,454 @@
+#include "structures/grow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/memory.h"
+#include "structures/work_grid.h"
+#include "volume/two_threads.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kClickCube_mm = 21.0;
+constexpr int kMostEstimates = 6;       // of the range, after the first
+constexpr double kSettled_HU = 0.5;     // between two of them
+constexpr double kCoreSpreads = 3.0;    // of the range, to both sides
+constexpr double kLeastHalf_HU = 15.0;  // of the range
+constexpr double kCoreMostHalf_HU = 45.0, kMostHalf_HU = 90.0;
+constexpr double kReach_mm = 6.0;   // beyond the core's ball: two blocks
+constexpr double kBridge_mm = 3.5;  // narrower ones are cut off
+constexpr double kNotch_mm = 4.0;   // narrower ones are closed
+constexpr double kFromSeed_mm = 20.0;
+
+struct Spread {
+  double middle = 0.0, deviation = 0.0;
+};
+
+Spread spreadOf(std::vector<float> values) {
+  if (values.empty()) return {};
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const float median = *middle;
+  for (float& value : values) value = std::abs(value - median);
+  std::nth_element(values.begin(), middle, values.end());
+  return {median, 1.4826 * double(*middle)};
+}
+
+Spread spreadOf(const Blocks& blocks, const BlockMask& in) {
+  std::vector<float> values;
+  for (std::size_t n = 0; n < in.size(); ++n) {
+    if (in[n]) values.push_back(blocks[n]);
+  }
+  return spreadOf(std::move(values));
+}
+
+HuSpan around(const Spread& of, double most_half) {
+  const double half = std::clamp(kCoreSpreads * of.deviation, kLeastHalf_HU, most_half);
+  return {of.middle - half, of.middle + half};
+}
+
+Spread aboutClick(const Blocks& blocks, const WorkGrid& grid, const Index3& at) {
+  std::vector<float> values;
+  Index3 half;
+  for (int axis = 0; axis < 3; ++axis) {
+    half[std::size_t(axis)] =
+        std::max(1, int(std::lround(0.5 * kClickCube_mm / grid.block_mm[axis])));
+  }
+  for (int k = at[2] - half[2]; k <= at[2] + half[2]; ++k) {
+    for (int j = at[1] - half[1]; j <= at[1] + half[1]; ++j) {
+      for (int i = at[0] - half[0]; i <= at[0] + half[0]; ++i) {
+        if (grid.holds(i, j, k)) values.push_back(blocks[grid.indexOf(i, j, k)]);
+      }
+    }
+  }
+  return spreadOf(std::move(values));
+}
+
+// The piece at the click, or the nearest; 0 where none is near.
+std::int32_t pieceAt(const std::vector<std::int32_t>& piece, const WorkGrid& grid,
+                     const Index3& at) {
+  std::int32_t found = 0;
+  double nearest = kFromSeed_mm * kFromSeed_mm;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const std::int32_t here = piece[grid.indexOf(i, j, k)];
+        if (here == 0) continue;
+        const Vec3 away = Vec3(i - at[0], j - at[1], k - at[2]) * grid.block_mm;
+        const double square = glm::dot(away, away);
+        if (square > nearest) continue;
+        nearest = square;
+        found = here;
+      }
+    }
+  }
+  return found;
+}
+
+BlockMask only(const std::vector<std::int32_t>& piece, std::int32_t which) {
+  BlockMask in(piece.size());
+  for (std::size_t n = 0; n < piece.size(); ++n) in[n] = piece[n] == which;
+  return in;
+}
+
+void keepInside(BlockMask& in, const WorkGrid& grid, const std::optional<VoxelBox>& box) {
+  if (!box) return;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Index3 low{i * grid.factor[0], j * grid.factor[1], k * grid.factor[2]};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          if (low[axis] + grid.factor[axis] <= box->low[axis] || low[axis] >= box->high[axis]) {
+            in[grid.indexOf(i, j, k)] = 0;
+          }
+        }
+      }
+    }
+  }
+}
+
+// The piece that shares most with `core`; 0 where none does.
+std::int32_t pieceSharing(const BlockMask& core, const std::vector<std::int32_t>& piece) {
+  std::vector<std::size_t> shared(std::size_t(*std::max_element(piece.begin(), piece.end())) + 1);
+  for (std::size_t n = 0; n < core.size(); ++n) {
+    if (core[n] && piece[n]) ++shared[std::size_t(piece[n])];
+  }
+  const auto most = std::max_element(shared.begin(), shared.end());
+  return *most ? std::int32_t(most - shared.begin()) : 0;
+}
+
+// What a block and the 26 around it say: none is in, some are, all are.
+enum Near : std::uint8_t { kNone, kSome, kAll };
+std::vector<std::uint8_t> nearOf(const BlockMask& in, const WorkGrid& grid) {
+  std::vector<std::uint8_t> near(in.size(), kSome);
+  const Index3& n = grid.size;
+  onTwoThreads(n[2], [&](int k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        int count = 0, of = 0;
+        for (int z = std::max(k - 1, 0); z <= std::min(k + 1, n[2] - 1); ++z) {
+          for (int y = std::max(j - 1, 0); y <= std::min(j + 1, n[1] - 1); ++y) {
+            for (int x = std::max(i - 1, 0); x <= std::min(i + 1, n[0] - 1); ++x) {
+              count += in[grid.indexOf(x, y, z)];
+              ++of;
+            }
+          }
+        }
+        if (count == 0 || count == of) near[grid.indexOf(i, j, k)] = count ? kAll : kNone;
+      }
+    }
+  });
+  return near;
+}
+
+// The mean of the voxels around one, nearer ones weighing more (1 2 1), along axes on which a block
+// has several voxels: as much noise as a block's, at a third of its width.
+double smoothHu(const Volume& volume, const WorkGrid& grid, int i, int j, int k) {
+  const GridGeometry& g = volume.geometry;
+  const int wide_i = grid.factor[0] > 1, wide_j = grid.factor[1] > 1, wide_k = grid.factor[2] > 1;
+  int sum = 0, weights = 0;
+  for (int dk = -wide_k; dk <= wide_k; ++dk) {
+    for (int dj = -wide_j; dj <= wide_j; ++dj) {
+      for (int di = -wide_i; di <= wide_i; ++di) {
+        if (!g.contains(i + di, j + dj, k + dk)) continue;
+        const int weight = (di ? 1 : 2) * (dj ? 1 : 2) * (dk ? 1 : 2);
+        sum += weight * volume.at(i + di, j + dj, k + dk);
+        weights += weight;
+      }
+    }
+  }
+  return double(sum) / weights;
+}
+
+// A structure's blocks as voxels.
+class Border {
+ public:
+  Border(const BlockMask& in, const WorkGrid& grid, const Volume& volume, const HuSpan& hu,
+         const std::optional<VoxelBox>& box)
+      : in_(in),
+        near_(nearOf(in, grid)),
+        grid_(grid),
+        volume_(volume),
+        g_(volume.geometry),
+        hu_(hu) {
+    inside_ = box ? *box : VoxelBox{{0, 0, 0}, g_.size};
+  }
+
+  std::vector<std::uint8_t> voxels() {
+    std::vector<std::uint8_t> mask(g_.voxelCount()), before;
+    byRange(mask);
+    before = mask;
+    const bool blocks = grid_.factor != Index3{1, 1, 1};
+    if (!blocks) return mask;  // the range's smoothing was of about a voxel: it is at half-way
+    asMost(before, mask);
+    const double edge_mm = std::min({g_.spacing_mm.x, g_.spacing_mm.y, g_.spacing_mm.z});
+    const int layers = std::clamp(int(std::lround(kBlur_mm / edge_mm)), 1, 3);
+    for (int layer = 0; layer < layers; ++layer) {
+      before = mask;
+      addHalf(before, mask);
+    }
+    return mask;
+  }
+
+ private:
+  // take(x, y, z, all around are in) of the voxels of blocks that are in or beside one that is, of
+  // those whose neighbours are all in only where asked for.
+  template <class Take>
+  void forVoxels(bool inner, const Take& take) const {
+    onTwoThreads(grid_.size[2], [&](int k) {
+      for (int j = 0; j < grid_.size[1]; ++j) {
+        for (int i = 0; i < grid_.size[0]; ++i) {
+          const std::uint8_t near = near_[grid_.indexOf(i, j, k)];
+          if (near == kNone || (near == kAll && !inner)) continue;
+          const Index3 at{i, j, k};
+          Index3 low, high;
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = std::max(at[axis] * grid_.factor[axis], inside_.low[axis]);
+            high[axis] = std::min((at[axis] + 1) * grid_.factor[axis], inside_.high[axis]);
+          }
+          for (int z = low[2]; z < high[2]; ++z) {
+            for (int y = low[1]; y < high[1]; ++y) {
+              for (int x = low[0]; x < high[0]; ++x) take(x, y, z, near == kAll);
+            }
+          }
+        }
+      }
+    });
+  }
+
+  // Blocks whose neighbours are all in stay; the others' voxels are asked one by one. Blocks of one
+  // voxel were asked before.
+  void byRange(std::vector<std::uint8_t>& mask) const {
+    const bool blocks = grid_.factor != Index3{1, 1, 1};
+    forVoxels(true, [&](int x, int y, int z, bool all) {
+      const std::size_t at = g_.indexOf(x, y, z);
+      if (!blocks) {
+        mask[at] = in_[at];
+      } else if (all) {
+        mask[at] = 1;
+      } else {
+        const double hu = smoothHu(volume_, grid_, x, y, z);
+        mask[at] = hu >= hu_.low && hu <= hu_.high;
+      }
+    });
+  }
+
+  // Each as most of its 27 are.
+  void asMost(const std::vector<std::uint8_t>& before, std::vector<std::uint8_t>& mask) const {
+    forVoxels(false, [&](int x, int y, int z, bool) {
+      int votes = 0, voters = 0;
+      for (int dz = -1; dz <= 1; ++dz) {
+        for (int dy = -1; dy <= 1; ++dy) {
+          for (int dx = -1; dx <= 1; ++dx) {
+            if (!g_.contains(x + dx, y + dy, z + dz)) continue;
+            ++voters;
+            votes += before[g_.indexOf(x + dx, y + dy, z + dz)];
+          }
+        }
+      }
+      mask[g_.indexOf(x, y, z)] = 2 * votes > voters;
+    });
+  }
+
+  // A voxel beside one that is in, towards something lighter or denser, is in where its HU are at
+  // most half-way there: that is where a scanner's blur leaves the border.
+  void addHalf(const std::vector<std::uint8_t>& before, std::vector<std::uint8_t>& mask) const {
+    const double middle = 0.5 * (hu_.low + hu_.high);
+    Index3 beyond;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      beyond[axis] = std::max(1, int(std::lround(kBeyond_mm / g_.spacing_mm[int(axis)])));
+    }
+    forVoxels(false, [&](int x, int y, int z, bool) {
+      const std::size_t at = g_.indexOf(x, y, z);
+      if (before[at]) return;
+      const Index3 voxel{x, y, z};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const int towards : {-1, 1}) {
+          Index3 from = voxel, to = voxel;
+          from[axis] -= towards;
+          to[axis] += towards * beyond[axis];
+          if (!g_.contains(from[0], from[1], from[2]) || !g_.contains(to[0], to[1], to[2]) ||
+              !before[g_.indexOf(from[0], from[1], from[2])]) {
+            continue;
+          }
+          const double there = smoothHu(volume_, grid_, to[0], to[1], to[2]);
+          if (there >= hu_.low && there <= hu_.high) continue;
+          const double part = (smoothHu(volume_, grid_, x, y, z) - middle) / (there - middle);
+          if (part > 0.5) continue;
+          mask[at] = 1;
+          return;
+        }
+      }
+    });
+  }
+
+  static constexpr double kBlur_mm = 1.3, kBeyond_mm = 2.5;
+  const BlockMask& in_;
+  std::vector<std::uint8_t> near_;
+  const WorkGrid& grid_;
+  const Volume& volume_;
+  const GridGeometry& g_;
+  HuSpan hu_;
+  VoxelBox inside_;
+};
+
+bool reachesBorder(const LabelMap& mask) {
+  const GridGeometry& g = mask.geometry;
+  const auto any = [&](std::size_t axis, int at) {
+    Index3 low{0, 0, 0}, high = g.size;
+    low[axis] = at;
+    high[axis] = at + 1;
+    for (int k = low[2]; k < high[2]; ++k) {
+      for (int j = low[1]; j < high[1]; ++j) {
+        for (int i = low[0]; i < high[0]; ++i) {
+          if (mask.labels[g.indexOf(i, j, k)]) return true;
+        }
+      }
+    }
+    return false;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // A scan of one slice has nothing but a border there.
+    if (g.size[axis] > 1 && (any(axis, 0) || any(axis, g.size[axis] - 1))) return true;
+  }
+  return false;
+}
+
+std::string said(const char* text, double a, double b = 0.0) {
+  char line[120];
+  std::snprintf(line, sizeof line, text, a, b);
+  return line;
+}
+
+Error nothingGrown(const HuSpan& hu, double open_mm) {
+  return {"NOTHING_GROWN",
+          said("Within 20 mm of the seed nothing of %.0f to %.0f HU", hu.low, hu.high) +
+              said(" is as wide as %.0f mm", 2.0 * open_mm),
+          "seed", "Click farther inside, widen the HU range or open by less"};
+}
+
+// Steps 1 to 3, in blocks; what they found of the range and what they did goes to `growth`.
+Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const Index3& voxel,
+                             const GrowOptions& options, const Progress& progress, Growth& growth) {
+  const Error cancelled{"CANCELLED", "Growing was cancelled", "", ""};
+  const auto on = [&](double fraction, const char* step) {
+    progress.at(fraction, step);
+    return !progress.cancelled();
+  };
+  if (!on(0.0, "blocks")) return cancelled;
+  const Blocks means = blockMeans(volume, grid);
+  const double noise_HU = softTissueNoise_HU(means, grid);
+  // Of 20 HU a core needs no more than 2.7 mm; its border keeps its place as far as noise allows.
+  const double core_mm = std::clamp(noise_HU / 20.0, 0.9, 1.3) * kBlock_mm;
+  const double border_mm = std::clamp(0.03 * noise_HU - 0.3, 0.3, 0.8) * kBlock_mm;
+  const Blocks smooth = smoothed(means, grid, core_mm);
+  const Blocks border = smoothed(means, grid, border_mm);
+  growth.steps = {said("noise of %.0f HU in blocks of %.1f mm", noise_HU, grid.block_mm.x),
+                  said("smoothed by %.1f mm, its border by %.1f mm", core_mm, border_mm)};
+
+  const Index3 at = grid.blockOf(voxel);
+  BlockMask core(grid.count()), ranged;
+  HuSpan hu = options.hu ? *options.hu : around(aboutClick(smooth, grid, at), kCoreMostHalf_HU);
+  for (int estimate = 0;; ++estimate) {
+    if (!on(0.1 + 0.08 * estimate, "core")) return cancelled;
+    ranged = within(smooth, hu.low, hu.high);
+    keepInside(ranged, grid, options.box);
+    const std::vector<std::int32_t> piece = pieces(eroded(ranged, grid, options.open_mm), grid);
+    // After the first, what goes on from the last one: at the click it may be a little too dark or
+    // too bright for the whole.
+    std::int32_t here = estimate == 0 ? 0 : pieceSharing(core, piece);
+    if (here == 0) here = pieceAt(piece, grid, at);
+    if (here == 0) return nothingGrown(hu, options.open_mm);
+    core = only(piece, here);
+    if (options.hu || estimate == kMostEstimates) break;
+    const HuSpan next = around(spreadOf(smooth, core), kCoreMostHalf_HU);
+    const double moved = std::max(std::abs(next.low - hu.low), std::abs(next.high - hu.high));
+    if (moved < kSettled_HU) break;
+    hu = next;
+  }
+  growth.steps.push_back(said("core within %.0f to %.0f HU", hu.low, hu.high) +
+                         said(", opened by %.1f mm", options.open_mm));
+
+  if (!on(0.7, "border")) return cancelled;
+  const std::vector<float> from_core = distance_mm(core, grid);
+  BlockMask body(core.size());
+  for (std::size_t n = 0; n < body.size(); ++n) {
+    body[n] = ranged[n] && from_core[n] <= options.open_mm + 0.5;
+  }
+  if (options.hu) {
+    growth.hu = *options.hu;
+  } else {
+    growth.hu = around(spreadOf(border, eroded(body, grid, kBlock_mm)), kMostHalf_HU);
+  }
+  BlockMask wider = within(border, growth.hu.low, growth.hu.high);
+  keepInside(wider, grid, options.box);
+  for (std::size_t n = 0; n < wider.size(); ++n) {
+    wider[n] = body[n] || (wider[n] && from_core[n] <= options.open_mm + kReach_mm);
+  }
+  wider = majority(wider, grid);
+  const BlockMask wide = dilated(eroded(wider, grid, kBridge_mm), grid, kBridge_mm);
+  for (std::size_t n = 0; n < wider.size(); ++n) wider[n] = wider[n] && wide[n];
+  const std::vector<std::int32_t> piece = pieces(wider, grid);
+  const std::int32_t with_core = pieceSharing(core, piece);
+  if (with_core == 0) return nothingGrown(growth.hu, options.open_mm);
+  BlockMask found = only(piece, with_core);
+  const BlockMask closed = eroded(dilated(found, grid, kNotch_mm), grid, kNotch_mm);
+  for (std::size_t n = 0; n < found.size(); ++n) found[n] = found[n] || closed[n];
+  fillHoles(found, grid);
+  growth.steps.push_back(said("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
+  return found;
+}
+
+}  // namespace
+
+Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options,
+                    const Progress& progress) {
+  const GridGeometry& g = volume.geometry;
+  if (!(options.open_mm >= 0.0 && options.open_mm <= 50.0)) {
+    return Error{"BAD_ARGUMENT", "The opening's radius is from 0 to 50 mm", "open", ""};
+  }
+  if (options.hu && !(options.hu->low <= options.hu->high)) {
+    return Error{"BAD_ARGUMENT", "The HU range ends below where it begins", "hu", ""};
+  }
+  const Vec3 place = Vec3(g.patientToVoxel() * glm::dvec4(seed_mm, 1.0)) + 0.5;
+  const VoxelBox whole{{0, 0, 0}, g.size};
+  const VoxelBox& inside = options.box ? *options.box : whole;
+  Index3 voxel;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = place[int(axis)];
+    if (!(at >= inside.low[axis] && at < inside.high[axis])) {
+      return Error{
+          "BAD_SEED",
+          options.box ? "The seed lies outside of the box" : "The seed lies outside of the scan",
+          "seed", "Give x, y and z in the patient's frame (LPS, mm)"};
+    }
+    voxel[axis] = int(at);
+  }
+  const double needed_mb = 2.0 * double(g.voxelCount()) / (1 << 20) + 100.0;
+  if (Status enough = enoughMemory(needed_mb, "Growing a structure", ""); !enough) {
+    return enough.error();
+  }
+  Growth growth;
+  growth.mask.geometry = g;
+  const WorkGrid grid = workGridOf(g);
+  const Result<BlockMask> found = growBlocks(volume, grid, voxel, options, progress, growth);
+  if (!found) return found.error();
+  progress.at(0.85, "voxels");
+  try {
+    growth.mask.labels = Border(*found, grid, volume, growth.hu, options.box).voxels();
+  } catch (const std::bad_alloc&) {
+    return outOfMemory("for the structure", "");
+  }
+  for (const std::uint8_t label : growth.mask.labels) growth.voxels += label;
+  growth.ml = double(growth.voxels) * g.voxelVolume_mm3() / 1000.0;
+  growth.leaked =
+      reachesBorder(growth.mask) || double(growth.voxels) > kMostOfScan * double(g.voxelCount());
+  if (growth.voxels == 0) return nothingGrown(growth.hu, options.open_mm);
+  return growth;
+}
+
+}  // namespace trephine

@@ -1,0 +1,54 @@
+// A structure grown from a click: what hangs together with it at about its HU, without what only
+// narrow bridges lead to. By HU and shape alone.
+//
+// 1. The range of HU: median and spread (1.4826 MAD) of a cube about the click, so that a vessel
+//    under the click does not matter; taken anew from what was found, until it settles, so that
+//    where one clicks does not matter either.
+// 2. The core: blocks of about 3 mm (work_grid.h), smoothed by the noise, that lie in the range and
+//    have room for a ball of `open_mm` around them; the piece at the click. This is what stops
+//    leaks.
+// 3. Around the core, as far as the ball and two blocks reach, what lies in the wider range of the
+//    less smoothed blocks; small holes and notches are closed.
+// 4. Its border at the CT's own resolution.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "volume/label_map.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+struct HuSpan {
+  double low = 0.0, high = 0.0;
+  friend bool operator==(const HuSpan&, const HuSpan&) = default;
+};
+
+struct GrowOptions {
+  std::optional<HuSpan> hu;     // instead of step 1
+  double open_mm = 7.0;         // 0 to 50
+  std::optional<VoxelBox> box;  // nothing outside of it
+};
+
+struct Growth {
+  LabelMap mask;  // 0 and 1, on the volume's grid
+  HuSpan hu;      // of step 3
+  std::size_t voxels = 0;
+  double ml = 0.0;
+  // It reaches the scan's border, or over kMostOfScan of it: perhaps not the structure alone.
+  bool leaked = false;
+  std::vector<std::string> steps;  // what was done, in words
+};
+constexpr double kMostOfScan = 0.15;
+
+// `seed_mm` in the patient's LPS frame. Two threads inside; takes two bytes a voxel beside the
+// volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT, NOTHING_GROWN (no
+// room for the ball within 20 mm of the seed), CANCELLED, OUT_OF_MEMORY.
+Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options = {},
+                    const Progress& progress = Progress());
+
+}  // namespace trephine

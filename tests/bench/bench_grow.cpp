@@ -1,0 +1,93 @@
+// Growing a liver from a click: how like the known one it is, from where, and what it takes.
+//   bench_grow [CLICKS]    (the real abdomen where TREPHINE_TEST_DATA says)
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/memory.h"
+#include "liver_case.h"
+#include "structures/grow.h"
+
+namespace {
+
+using namespace trephine;
+
+void print(const char* name, const test::LiverCase& of, int clicks) {
+  std::vector<double> dice, seconds;
+  int leaked = 0, unsaid = 0, refused = 0;
+  double hd95_mm = 0.0;
+  for (const Vec3& click : of.clicks(clicks)) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto growth = grow(of.volume, click);
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (!growth) {
+      ++refused;
+      continue;
+    }
+    const Likeness like = of.against(growth->mask);
+    dice.push_back(like.dice);
+    hd95_mm = std::max(hd95_mm, like.hd95_mm);
+    leaked += growth->leaked;
+    unsaid += like.dice < 0.75 && !growth->leaked;
+  }
+  std::sort(dice.begin(), dice.end());
+  std::sort(seconds.begin(), seconds.end());
+  std::printf(
+      "%-28s %3zu clicks: Dice median %.3f, least %.3f; hd95 at most %.1f mm; %d leaked, "
+      "%d below 0.75 without, %d refused; %.2f s\n",
+      name, dice.size(), dice.empty() ? 0.0 : dice[dice.size() / 2],
+      dice.empty() ? 0.0 : dice.front(), hd95_mm, leaked, unsaid, refused,
+      seconds[seconds.size() / 2]);
+  std::fflush(stdout);
+}
+
+void printAll(const char* name, const test::LiverCase& of, int clicks) {
+  const std::string text = name;
+  print(name, of, clicks);
+  test::LiverCase other = of;
+  other.addNoise(25.0);
+  print((text + ", 25 HU of noise").c_str(), other, clicks);
+  other = of;
+  other.addContrast(50.0);
+  print((text + ", +50 HU").c_str(), other, clicks);
+  print((text + ", 1.5 mm").c_str(), of.withSlices(1.5), clicks);
+  print((text + ", 5 mm").c_str(), of.withSlices(5.0), clicks);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int clicks = argc > 1 ? std::max(1, std::atoi(argv[1])) : 50;
+  const test::LiverCase built_in = test::builtInLiver();
+  printAll("built-in", built_in, clicks);
+  if (const char* data = std::getenv("TREPHINE_TEST_DATA")) {
+    printAll("real", test::realLiver(data), clicks);
+  }
+  GridGeometry g = built_in.volume.geometry;
+  const Vec3 extent = Vec3(g.size[0], g.size[1], g.size[2]) * g.spacing_mm;
+  const Vec3 first = g.toPatient_mm(Vec3(-0.5));
+  g.size = {512, 512, 300};
+  g.spacing_mm = extent / Vec3(512, 512, 300);
+  g.origin_mm = first + 0.5 * (g.direction * g.spacing_mm);
+  test::LiverCase large{makePhantomOn(*phantomTruth("abdomen"), g, kPhantomNoiseHu),
+                        *fitTo(built_in.liver, g), 0, 300};
+  // The peak so far is forgotten (proc(5), clear_refs).
+  if (std::FILE* refs = std::fopen("/proc/self/clear_refs", "w")) {
+    std::fputs("5", refs);
+    std::fclose(refs);
+  }
+  const double before_mb = residentMb();
+  const Vec3 click = built_in.clicks(1).front();
+  for (int turn = 0; turn < 3; ++turn) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto growth = grow(large.volume, click);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double more_mb = peakResidentMb() - before_mb;  // of the first turn alone
+    std::printf("512x512x300: %.2f s", seconds);
+    if (turn == 0) std::printf(", %.0f MB more at its peak (a byte a voxel: 75 MB)", more_mb);
+    std::printf("; Dice %.3f\n", growth ? large.against(growth->mask).dice : 0.0);
+  }
+}

@@ -1,0 +1,146 @@
+// A CT with its liver known, for tests and figures of what is grown: the built-in abdomen, the real
+// one, and either with more noise, contrast or other slices.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include "structures/compare.h"
+#include "structures/work_grid.h"
+#include "volume/label_map.h"
+#include "volume/phantom.h"
+#include "volume/volume_files.h"
+
+namespace trephine::test {
+
+struct LiverCase {
+  Volume volume;
+  LabelMap liver;        // 1
+  int from = 0, to = 0;  // slices in which it is known
+
+  // Of a mask of the volume's grid, in those slices.
+  Likeness against(LabelMap mask) const {
+    const GridGeometry& g = mask.geometry;
+    for (std::size_t n = 0; n < mask.labels.size(); ++n) {
+      const int k = g.indicesOf(n)[2];
+      if (k < from || k >= to) mask.labels[n] = 0;
+    }
+    return *likeness(mask, 1, liver, 1);
+  }
+
+  // Places at least 15 mm inside; the known slices' ends count as its border.
+  std::vector<Vec3> clicks(int count, unsigned seed = 1) const {
+    WorkGrid grid;
+    grid.size = liver.geometry.size;
+    grid.block_mm = liver.geometry.spacing_mm;
+    const BlockMask deep = eroded(liver.labels, grid, 15.0);
+    std::vector<std::size_t> places;
+    for (std::size_t n = 0; n < deep.size(); ++n) {
+      if (deep[n]) places.push_back(n);
+    }
+    std::mt19937 random(seed);
+    std::vector<Vec3> out;
+    for (int n = 0; n < count; ++n) {
+      const Index3 at = liver.geometry.indicesOf(places[random() % places.size()]);
+      out.push_back(liver.geometry.toPatient_mm(Vec3(at[0], at[1], at[2])));
+    }
+    return out;
+  }
+
+  void addNoise(double sigma_HU) {
+    std::mt19937 random(17);
+    std::normal_distribution<double> noise(0.0, sigma_HU);
+    for (auto& hu : volume.hu) hu = std::int16_t(std::clamp(hu + noise(random), -1024.0, 3071.0));
+  }
+  // Of the liver alone, as contrast in its late phase has it.
+  void addContrast(double more_HU) {
+    for (std::size_t n = 0; n < liver.labels.size(); ++n) {
+      if (liver.labels[n]) volume.hu[n] = std::int16_t(volume.hu[n] + more_HU);
+    }
+  }
+  // The same from slices so far apart: means of what lies between them where they are farther.
+  LiverCase withSlices(double step_mm) const {
+    GridGeometry g = volume.geometry;
+    const double before_mm = g.spacing_mm.z;
+    g.spacing_mm.z = step_mm;
+    g.size[2] = int((volume.geometry.size[2] - 1) * before_mm / step_mm) + 1;
+    LiverCase out;
+    out.volume.geometry = g;
+    out.volume.hu.resize(g.voxelCount());
+    const int parts = std::max(1, int(std::lround(step_mm / before_mm)));
+    for (int k = 0; k < g.size[2]; ++k) {
+      for (int j = 0; j < g.size[1]; ++j) {
+        for (int i = 0; i < g.size[0]; ++i) {
+          double sum = 0.0;
+          int count = 0;
+          for (int part = 0; part < parts; ++part) {
+            const double at = (k + (part + 0.5) / parts - 0.5) * step_mm / before_mm;
+            const int low = int(std::floor(at));
+            if (low < 0 || low + 1 >= volume.geometry.size[2]) continue;
+            sum += volume.at(i, j, low) +
+                   (at - low) * (volume.at(i, j, low + 1) - volume.at(i, j, low));
+            ++count;
+          }
+          if (count == 0) {
+            sum = volume.at(i, j, k == 0 ? 0 : volume.geometry.size[2] - 1);
+            count = 1;
+          }
+          out.volume.hu[g.indexOf(i, j, k)] = std::int16_t(std::lround(sum / count));
+        }
+      }
+    }
+    out.liver = *fitTo(liver, g);
+    out.from = int(std::ceil(from * before_mm / step_mm));
+    out.to = std::min(g.size[2], int(to * before_mm / step_mm));
+    for (std::size_t n = 0; n < out.liver.labels.size(); ++n) {
+      const int k = g.indicesOf(n)[2];
+      if (k < out.from || k >= out.to) out.liver.labels[n] = 0;
+    }
+    return out;
+  }
+};
+
+// Its liver, the capsule and the vessels that run inside.
+inline LiverCase builtInLiver() {
+  Phantom phantom = *makePhantomWithLabels("abdomen");
+  LiverCase of{std::move(phantom.volume), phantom.labels.value_or(LabelMap()), 0, 0};
+  of.to = of.liver.geometry.size[2];
+  WorkGrid grid;
+  grid.size = of.liver.geometry.size;
+  for (auto& label : of.liver.labels) label = label == 1 || label == 2;
+  fillHoles(of.liver.labels, grid);
+  return of;
+}
+
+// In slices 82 to 111, where its label map belongs; the map's own header puts it elsewhere.
+inline LiverCase realLiver(const std::filesystem::path& data) {
+  const std::filesystem::path folder = data / "abdomen-ct-totalsegmentator";
+  LiverCase of;
+  const VolumeFileReading ct = *readVolumeFile(folder / "example_ct.nii.gz");
+  const VolumeFileReading map = *readVolumeFile(folder / "example_seg.nii.gz");
+  const GridGeometry &g = ct.volume.geometry, &small = map.volume.geometry;
+  of.liver.geometry = g;
+  of.liver.labels.resize(g.voxelCount());
+  const bool reversed = ct.header.reversed_slices;
+  const auto slice = [&](int in_file) { return reversed ? g.size[2] - 1 - in_file : in_file; };
+  constexpr int kFirst = 82;
+  of.from = reversed ? slice(kFirst + small.size[2] - 1) : kFirst;
+  of.to = of.from + small.size[2];
+  for (int k = 0; k < small.size[2]; ++k) {
+    const int in_map = map.header.reversed_slices ? small.size[2] - 1 - k : k;
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i) {
+        of.liver.labels[g.indexOf(i, j, slice(kFirst + k))] =
+            map.volume.at(i, j, in_map) == 5 ? 1 : 0;
+      }
+    }
+  }
+  of.volume = ct.volume;
+  return of;
+}
+
+}  // namespace trephine::test

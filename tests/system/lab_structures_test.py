@@ -1,0 +1,152 @@
+"""`trephine-lab structures`: what is grown, where it is written, what is refused."""
+
+import gzip
+import struct
+import subprocess
+import unittest
+
+from lab_support import LAB, LabTest, data_folder, lab
+
+GROWN = {"schema", "build", "name", "voxels", "ml", "seconds", "leaked", "hu", "steps"}
+IN_LIVER = "-60,-20,20"  # of the built-in abdomen
+
+
+def nifti(file):
+    """Size, type, slope of the slices' axis, sform and qform as matrices, voxels as stored."""
+    raw = gzip.decompress(file.read_bytes()) if file.suffix == ".gz" else file.read_bytes()
+    size = struct.unpack_from("<3h", raw, 42)
+    kind = struct.unpack_from("<h", raw, 70)[0]
+    pixdim = struct.unpack_from("<8f", raw, 76)
+    rows = [struct.unpack_from("<4f", raw, 280 + 16 * row) for row in range(3)]
+    b, c, d, x, y, z = struct.unpack_from("<6f", raw, 256)
+    a = max(0.0, 1 - b * b - c * c - d * d) ** 0.5
+    turn = [[a*a + b*b - c*c - d*d, 2*b*c - 2*a*d, 2*b*d + 2*a*c],
+            [2*b*c + 2*a*d, a*a + c*c - b*b - d*d, 2*c*d - 2*a*b],
+            [2*b*d - 2*a*c, 2*c*d + 2*a*b, a*a + d*d - b*b - c*c]]
+    handed = -1 if pixdim[0] < 0 else 1
+    steps = (pixdim[1], pixdim[2], handed * pixdim[3])
+    qform = [[turn[row][axis] * steps[axis] for axis in range(3)] + [(x, y, z)[row]]
+             for row in range(3)]
+    begin = int(struct.unpack_from("<f", raw, 108)[0])
+    return size, kind, rows, qform, raw[begin:]
+
+
+class Grow(LabTest):
+    def test_a_liver_is_grown_compared_and_said(self):
+        grown = lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "liver",
+                    "--write", self.folder / "a.nii.gz")
+        self.assertEqual(set(grown), GROWN)
+        self.assertEqual(grown["name"], "liver")
+        self.assertFalse(grown["leaked"])
+        self.assertGreater(grown["ml"], 1100)
+        self.assertLess(grown["ml"], 1200)
+        self.assertLess(grown["hu"][0], 50)
+        self.assertGreater(grown["hu"][1], 50)
+        size, kind, sform, qform, voxels = nifti(self.folder / "a.nii.gz")
+        self.assertEqual((size, kind), ((256, 256, 160), 2))
+        self.assertEqual(len(voxels), 256 * 256 * 160)
+        self.assertEqual(set(voxels), {0, 1})
+        self.assertEqual(voxels.count(1), grown["voxels"])
+        for row in range(3):
+            for s, q in zip(sform[row], qform[row]):
+                self.assertAlmostEqual(s, q, delta=1e-4)
+
+        again = lab("structures", "grow", "phantom:abdomen", f"--seed={IN_LIVER}", "--name", "liver",
+                    "--hu", f"{grown['hu'][0]},{grown['hu'][1]}", "--open", 9,
+                    "--box=-200,0,-200,200,-100,100", "--write", self.folder / "b.mha")
+        self.assertEqual(again["hu"], grown["hu"])
+        self.assertLess(again["voxels"], grown["voxels"])
+        alike = lab("structures", "compare", self.folder / "a.nii.gz", self.folder / "b.mha")
+        (row,) = alike["rows"]
+        self.assertEqual(set(row), {"name", "dice", "hd95_mm", "ml"})
+        self.assertAlmostEqual(row["ml"][0], grown["ml"], delta=1e-3)
+        self.assertAlmostEqual(row["ml"][1], again["ml"], delta=1e-3)
+        self.assertGreater(row["dice"], 0.5)
+        self.assertLess(row["dice"], 0.99)
+
+    def test_what_cannot_be_meant_is_refused_and_nothing_is_written(self):
+        def refused(code, *words, **options):
+            asked = {"seed": IN_LIVER, "name": "liver", "write": self.folder / "x.nii.gz", **options}
+            answer = lab("structures", "grow", "phantom:abdomen",
+                         *(f"--{key}={value}" for key, value in asked.items()), expect=1)
+            self.assert_error(answer, code, *words)
+            self.assertEqual(list(self.folder.iterdir()), [])
+
+        refused("BAD_SEED", "outside of the scan", seed="9999,0,0")
+        refused("NOTHING_GROWN", "300 to 900 HU", "14 mm", hu="300,900")
+        refused("BAD_ARGUMENT", "--seed", seed="1,2")
+        refused("BAD_ARGUMENT", "--seed", seed="1,2,nan")
+        refused("BAD_ARGUMENT", "--hu", hu="40")
+        refused("BAD_ARGUMENT", "ends below", hu="60,40")
+        refused("BAD_ARGUMENT", "--box", box="1,2,3,4,5")
+        refused("BAD_SEED", "outside of the box", box="0,10,0,10,0,10")
+        refused("BAD_ARGUMENT", "0 to 50 mm", open=80)
+        refused("CANNOT_WRITE", "no such folder", write=self.folder / "none" / "x.nii.gz")
+        refused("UNKNOWN_FORMAT", "x.png", write=self.folder / "x.png")
+
+    def test_the_case_is_never_written_over(self):
+        for name in ("ct.nii", "ct/ct.nii"):
+            (self.folder / "ct").mkdir(exist_ok=True)
+            file = self.folder / name
+            lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "liver",
+                "--write", file)
+            before = file.read_bytes()
+            answer = lab("structures", "grow", file if name == "ct.nii" else file.parent,
+                         "--seed", IN_LIVER, "--name", "liver", "--write", file, expect=1)
+            self.assert_error(answer, "CANNOT_WRITE", "would be lost")
+            self.assertEqual(file.read_bytes(), before)
+
+    def test_words_say_what_was_grown(self):
+        done = subprocess.run(
+            [LAB, "structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "liver",
+             "--write", self.folder / "a.nii"], capture_output=True, text=True, check=True)
+        self.assertRegex(done.stdout, r"^liver: 11\d\d\.\d mL, \d+ voxels of about ")
+        answer = lab("structures", "compare", self.folder / "a.nii", self.folder / "none.nii", expect=1)
+        self.assert_error(answer, "MISSING_FILE", "none.nii")
+        answer = lab("structures", "shrink", expect=1)
+        self.assert_error(answer, "BAD_ARGUMENT", "shrink")
+
+
+@unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set: this test needs the real CT data")
+class GrowReal(LabTest):
+    def test_a_label_map_lies_on_the_files_own_grid_also_on_a_left_handed_one(self):
+        case = data_folder() / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz"
+        seed = "-92,-161,406"
+        lab("structures", "grow", case, f"--seed={seed}", "--name", "liver",
+            "--write", self.folder / "a.nii.gz")
+        size, _, sform, _, voxels = nifti(case)
+        own_size, kind, own, qform, own_voxels = nifti(self.folder / "a.nii.gz")
+        self.assertEqual((own_size, kind), (size, 2))
+        for row in range(3):
+            for theirs, ours, q in zip(sform[row], own[row], qform[row]):
+                self.assertAlmostEqual(theirs, ours, delta=1e-3)
+                self.assertAlmostEqual(ours, q, delta=1e-3)
+
+        # The same CT with its rows the other way round: left-handed.
+        raw = bytearray(gzip.decompress(case.read_bytes()))
+        begin = int(struct.unpack_from("<f", raw, 108)[0])
+        bytes_each = struct.unpack_from("<h", raw, 72)[0] // 8
+        wide = size[0] * bytes_each
+        for at in range(begin, len(raw), wide):
+            row = raw[at:at + wide]
+            raw[at:at + wide] = b"".join(
+                row[i:i + bytes_each] for i in range(wide - bytes_each, -1, -bytes_each))
+        step, start = sform[0][0], sform[0][3]
+        struct.pack_into("<4f", raw, 280, -step, 0, 0, start + step * (size[0] - 1))
+        struct.pack_into("<h", raw, 252, 0)
+        (self.folder / "left.nii").write_bytes(bytes(raw))
+        lab("structures", "grow", self.folder / "left.nii", f"--seed={seed}", "--name", "liver",
+            "--write", self.folder / "b.nii.gz")
+        left_size, _, left, qform, left_voxels = nifti(self.folder / "b.nii.gz")
+        self.assertEqual(left_size, size)
+        self.assertAlmostEqual(left[0][0], -step, delta=1e-4)
+        for row in range(3):
+            for ours, q in zip(left[row], qform[row]):
+                self.assertAlmostEqual(ours, q, delta=1e-3)
+        turned = b"".join(left_voxels[at:at + size[0]][::-1]
+                          for at in range(0, len(left_voxels), size[0]))
+        self.assertEqual(turned, own_voxels)
+
+
+if __name__ == "__main__":
+    unittest.main()

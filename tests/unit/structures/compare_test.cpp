@@ -1,0 +1,55 @@
+#include "structures/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace trephine {
+namespace {
+
+LabelMap boxOf(const Index3& low, const Index3& high, std::uint8_t label) {
+  LabelMap map;
+  map.geometry.size = {30, 20, 20};
+  map.geometry.spacing_mm = Vec3(1.0, 2.0, 3.0);
+  map.labels.resize(map.geometry.voxelCount());
+  for (int k = low[2]; k < high[2]; ++k) {
+    for (int j = low[1]; j < high[1]; ++j) {
+      for (int i = low[0]; i < high[0]; ++i) map.labels[map.geometry.indexOf(i, j, k)] = label;
+    }
+  }
+  return map;
+}
+
+TEST(Likeness, OfTwoBoxesIsKnown) {
+  const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1), b = boxOf({8, 5, 5}, {18, 15, 15}, 4);
+  const auto of = likeness(a, 1, b, 4);
+  ASSERT_TRUE(of);
+  EXPECT_NEAR(of->dice, 0.7, 1e-9);
+  EXPECT_NEAR(of->hd95_mm, 3.0, 1e-5);  // they are 3 mm apart along i
+  EXPECT_NEAR(of->ml_a, 6.0, 1e-9);     // 1000 voxels of 6 mm3
+  EXPECT_NEAR(of->ml_b, 6.0, 1e-9);
+  const auto same = likeness(a, 1, a, 1);
+  EXPECT_EQ(same->dice, 1.0);
+  EXPECT_EQ(same->hd95_mm, 0.0);
+}
+
+TEST(Likeness, OfNothingHasNoDistance) {
+  const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1);
+  const auto none = likeness(a, 1, a, 2);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->dice, 0.0);
+  EXPECT_TRUE(std::isnan(none->hd95_mm));
+  EXPECT_EQ(likeness(a, 3, a, 2)->dice, 1.0);
+}
+
+TEST(Likeness, IsOfOneGridOnly) {
+  const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1);
+  LabelMap moved = a;
+  moved.geometry.origin_mm.x += 0.5;
+  EXPECT_EQ(likeness(a, 1, moved, 1).error().code, "OTHER_GRID");
+  moved.geometry.origin_mm.x = 1e-5;  // a file's float
+  EXPECT_TRUE(likeness(a, 1, moved, 1));
+}
+
+}  // namespace
+}  // namespace trephine

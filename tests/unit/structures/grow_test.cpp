@@ -1,0 +1,169 @@
+#include "structures/grow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "liver_case.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+class GrowInAbdomen : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { of_ = new test::LiverCase(test::builtInLiver()); }
+  static void TearDownTestSuite() { delete of_; }
+  static const test::LiverCase& of() { return *of_; }
+  static double diceOf(const Result<Growth>& growth) {
+    EXPECT_TRUE(growth) << growth.error().sentence();
+    return growth ? of().against(growth->mask).dice : 0.0;
+  }
+
+ private:
+  static inline test::LiverCase* of_ = nullptr;
+};
+
+TEST_F(GrowInAbdomen, FindsTheLiverFromAnyClickInIt) {
+  for (const Vec3& click : of().clicks(4)) {
+    const auto growth = grow(of().volume, click);
+    EXPECT_GE(diceOf(growth), 0.97);
+    EXPECT_FALSE(growth->leaked);
+    EXPECT_NEAR(growth->ml, double(growth->voxels) * 1.4 * 1.4 * 1.5 / 1000.0, 1e-6);
+    EXPECT_EQ(std::size_t(std::count(growth->mask.labels.begin(), growth->mask.labels.end(), 1)),
+              growth->voxels);
+    EXPECT_EQ(growth->mask.geometry, of().volume.geometry);
+  }
+}
+
+TEST_F(GrowInAbdomen, StillFindsLiverWhereTheClickMetAVessel) {
+  // The built-in liver has no vessel so wide: one is put into it.
+  const GridGeometry& g = of().volume.geometry;
+  test::LiverCase with = of();
+  const Vec3 click = of().clicks(1).front();
+  for (std::size_t n = 0; n < with.volume.hu.size(); ++n) {
+    const Index3 at = g.indicesOf(n);
+    const Vec3 away = g.toPatient_mm(Vec3(at[0], at[1], at[2])) - click;
+    if (std::hypot(away.x, away.y) < 4.0 && std::abs(away.z) < 15.0) with.volume.hu[n] = 146;
+  }
+  EXPECT_GE(diceOf(grow(with.volume, click)), 0.97);
+}
+
+TEST_F(GrowInAbdomen, NoiseContrastAndSlicesDoNotLoseIt) {
+  test::LiverCase other = of();
+  other.addNoise(25.0);
+  EXPECT_GE(other.against(grow(other.volume, of().clicks(1).front())->mask).dice, 0.95);
+  other = of();
+  other.addContrast(50.0);
+  EXPECT_GE(other.against(grow(other.volume, of().clicks(1).front())->mask).dice, 0.95);
+  other = of().withSlices(5.0);
+  EXPECT_GE(other.against(grow(other.volume, of().clicks(1).front())->mask).dice, 0.95);
+}
+
+TEST_F(GrowInAbdomen, KeepsInsideABox) {
+  const GridGeometry& g = of().volume.geometry;
+  const Vec3 click = of().clicks(1).front();
+  const Vec3 voxel = Vec3(g.patientToVoxel() * glm::dvec4(click, 1.0));
+  GrowOptions options;
+  options.box = VoxelBox{{0, 0, int(voxel.z) - 11}, {g.size[0], g.size[1], int(voxel.z) + 12}};
+  const auto growth = grow(of().volume, click, options);
+  ASSERT_TRUE(growth) << growth.error().sentence();
+  EXPECT_GT(growth->voxels, 10000u);
+  for (std::size_t n = 0; n < growth->mask.labels.size(); ++n) {
+    const int k = g.indicesOf(n)[2];
+    if (k < options.box->low[2] || k >= options.box->high[2]) {
+      ASSERT_EQ(growth->mask.labels[n], 0) << "slice " << k;
+    }
+  }
+  options.box->high[2] = int(voxel.z) - 3;
+  EXPECT_EQ(grow(of().volume, click, options).error().code, "BAD_SEED");
+}
+
+TEST_F(GrowInAbdomen, TakesTheRangeThatIsGiven) {
+  GrowOptions options;
+  options.hu = HuSpan{30.0, 70.0};
+  const auto growth = grow(of().volume, of().clicks(1).front(), options);
+  EXPECT_EQ(growth->hu, *options.hu);
+  EXPECT_GE(diceOf(growth), 0.97);
+  options.hu = HuSpan{300.0, 900.0};
+  const auto none = grow(of().volume, of().clicks(1).front(), options);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, "NOTHING_GROWN");
+  EXPECT_NE(none.error().sentence().find("300 to 900 HU"), std::string::npos);
+}
+
+TEST_F(GrowInAbdomen, SaysWhenItReachesTheScansBorder) {
+  // The liver is cut by the border of this scan.
+  const GridGeometry& g = of().volume.geometry;
+  const Vec3 click = of().clicks(1).front();
+  const int k = int(std::lround((g.patientToVoxel() * glm::dvec4(click, 1.0)).z));
+  Volume part;
+  part.geometry = g;
+  part.geometry.size[2] = k + 12;
+  part.hu.assign(of().volume.hu.begin(),
+                 of().volume.hu.begin() + std::ptrdiff_t(part.geometry.voxelCount()));
+  const auto growth = grow(part, click);
+  ASSERT_TRUE(growth) << growth.error().sentence();
+  EXPECT_TRUE(growth->leaked);
+  // Soft tissue of any kind, with no room asked for: all that hangs together.
+  GrowOptions all;
+  all.hu = HuSpan{-150.0, 3000.0};
+  all.open_mm = 0.0;
+  const auto body = grow(of().volume, click, all);
+  ASSERT_TRUE(body);
+  EXPECT_TRUE(body->leaked);
+}
+
+TEST_F(GrowInAbdomen, RefusesWhatCannotBeMeant) {
+  const Vec3 click = of().clicks(1).front();
+  EXPECT_EQ(grow(of().volume, Vec3(1e4, 0, 0)).error().code, "BAD_SEED");
+  EXPECT_EQ(grow(of().volume, Vec3(std::nan(""), 0, 0)).error().code, "BAD_SEED");
+  GrowOptions options;
+  options.open_mm = -1.0;
+  EXPECT_EQ(grow(of().volume, click, options).error().code, "BAD_ARGUMENT");
+  options.open_mm = 7.0;
+  options.hu = HuSpan{60.0, 40.0};
+  EXPECT_EQ(grow(of().volume, click, options).error().code, "BAD_ARGUMENT");
+}
+
+TEST_F(GrowInAbdomen, CanBeCancelledAtAnyStep) {
+  for (const std::string step : {"blocks", "core", "border"}) {
+    Progress* told = nullptr;
+    Progress progress([&](double, const std::string& now) {
+      if (now == step) told->cancel();
+    });
+    told = &progress;
+    const auto growth = grow(of().volume, of().clicks(1).front(), {}, progress);
+    ASSERT_FALSE(growth) << step;
+    EXPECT_EQ(growth.error().code, "CANCELLED");
+  }
+}
+
+TEST(Grow, OfScansThatAreHardlyAnyNeverFails) {
+  for (const Index3& size :
+       {Index3{1, 1, 1}, Index3{2, 2, 2}, Index3{64, 64, 1}, Index3{1, 1, 300}}) {
+    Volume volume;
+    volume.geometry.size = size;
+    volume.hu.resize(volume.geometry.voxelCount(), 50);
+    const auto growth = grow(volume, Vec3(0.0));
+    ASSERT_TRUE(growth) << growth.error().sentence();
+    EXPECT_EQ(growth->voxels, volume.geometry.voxelCount());
+    EXPECT_TRUE(growth->leaked);
+  }
+}
+
+TEST(GrowInRealAbdomen, FindsTheLiverInTheSlicesInWhichItIsKnown) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  const test::LiverCase of = test::realLiver(data);
+  for (const Vec3& click : of.clicks(4)) {
+    const auto growth = grow(of.volume, click);
+    ASSERT_TRUE(growth) << growth.error().sentence();
+    const Likeness like = of.against(growth->mask);
+    EXPECT_GE(like.dice, 0.92);
+    EXPECT_LE(like.hd95_mm, 9.5);
+    EXPECT_TRUE(growth->leaked) << "the scan ends in the liver's dome";
+  }
+}
+
+}  // namespace
+}  // namespace trephine
