@@ -18,15 +18,11 @@
 
 #include "base/progress.h"
 #include "base/result.h"
+#include "structures/work_grid.h"
 #include "volume/label_map.h"
 #include "volume/volume.h"
 
 namespace trephine {
-
-struct HuSpan {
-  double low = 0.0, high = 0.0;
-  friend bool operator==(const HuSpan&, const HuSpan&) = default;
-};
 
 struct GrowOptions {
   std::optional<HuSpan> hu;     // instead of step 1
