@@ -3,6 +3,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "app/out_folder.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "imaging/importer.h"
@@ -117,12 +118,7 @@ Status checkTargets(const ImportArguments& arguments) {
                  "Give the file this ending; the window also saves PDF"};
   }
   for (const std::string& target : {arguments.write, arguments.report}) {
-    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-    std::error_code error;
-    if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-      return Error{"CANNOT_WRITE", "There is no such folder", folder.string(),
-                   "Make the folder first, or choose another"};
-    }
+    if (Status there = checkFolderOf(target); !there) return there;
   }
   return {};
 }

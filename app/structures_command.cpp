@@ -8,6 +8,7 @@
 
 #include "app/answer.h"
 #include "app/lab_commands.h"
+#include "app/out_folder.h"
 #include "session/case.h"
 #include "structures/compare.h"
 #include "structures/grow.h"
@@ -55,7 +56,8 @@ VoxelBox boxOf(const std::vector<double>& mm, const GridGeometry& g) {
   return box;
 }
 
-Result<GrowOptions> optionsOf(const GrowArguments& arguments, const GridGeometry& g) {
+// All but the box, whose voxels the case tells: its mm go to `box_mm`.
+Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double>& box_mm) {
   GrowOptions options;
   if (!arguments.hu.empty()) {
     const auto hu = numbersOf(arguments.hu, 2, "--hu", "A,B in HU");
@@ -63,9 +65,9 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, const GridGeometry
     options.hu = HuSpan{(*hu)[0], (*hu)[1]};
   }
   if (!arguments.box.empty()) {
-    const auto mm = numbersOf(arguments.box, 6, "--box", "X0,X1,Y0,Y1,Z0,Z1 in mm");
+    auto mm = numbersOf(arguments.box, 6, "--box", "X0,X1,Y0,Y1,Z0,Z1 in mm");
     if (!mm) return mm.error();
-    options.box = boxOf(*mm, g);
+    box_mm = *std::move(mm);
   }
   options.open_mm = arguments.open_mm.value_or(options.open_mm);
   return options;
@@ -75,12 +77,8 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, const GridGeometry
 Status checkTarget(const std::string& target, const std::string& case_source) {
   namespace fs = std::filesystem;
   if (Status name = checkVolumeFileName(target); !name) return name;
+  if (Status there = checkFolderOf(target); !there) return there;
   std::error_code ec;
-  const fs::path folder = fs::path(target).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder, ec)) {
-    return Error{"CANNOT_WRITE", "There is no such folder", folder.string(),
-                 "Make the folder first, or choose another"};
-  }
   if (!fs::exists(target, ec) || !fs::exists(case_source, ec)) return {};
   const fs::path to = fs::canonical(target, ec), from = fs::canonical(case_source, ec);
   const auto differs = std::mismatch(from.begin(), from.end(), to.begin(), to.end());
@@ -100,13 +98,14 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
     return failed(target.error());
   }
   // What is asked for wrongly is said before a CT is read.
-  if (const auto asked = optionsOf(arguments, GridGeometry()); !asked) return failed(asked.error());
+  std::vector<double> box_mm;
+  auto options = optionsOf(arguments, box_mm);
+  if (!options) return failed(options.error());
 
   const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.5));
   if (!of) return failed(of.error());
   const GridGeometry& g = of->volume->geometry;
-  const auto options = optionsOf(arguments, g);
-  if (!options) return failed(options.error());
+  if (!box_mm.empty()) options->box = boxOf(box_mm, g);
   const auto start = std::chrono::steady_clock::now();
   const Result<Growth> growth = grow(*of->volume, Vec3((*seed)[0], (*seed)[1], (*seed)[2]),
                                      *options, Progress(progress, 0.5, 0.9));

@@ -69,9 +69,9 @@ class Border {
   std::vector<std::uint8_t> voxels() {
     std::vector<std::uint8_t> mask(g_.voxelCount()), before;
     byRange(mask);
-    before = mask;
     const bool blocks = grid_.factor != Index3{1, 1, 1};
     if (!blocks) return mask;  // the range's smoothing was of about a voxel: it is at half-way
+    before = mask;
     asMost(before, mask);
     const double edge_mm = std::min({g_.spacing_mm.x, g_.spacing_mm.y, g_.spacing_mm.z});
     const int layers = std::clamp(int(std::lround(kBlur_mm / edge_mm)), 1, 3);

@@ -176,7 +176,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
                   said("smoothed by %.1f mm, its border by %.1f mm", core_mm, border_mm)};
 
   const Index3 at = grid.blockOf(voxel);
-  BlockMask core(grid.count()), ranged;
+  BlockMask core, ranged;
   HuSpan hu = options.hu ? *options.hu : around(aboutClick(smooth, grid, at), kCoreMostHalf_HU);
   for (int estimate = 0;; ++estimate) {
     if (!on(0.1 + 0.08 * estimate, "core")) return cancelled;

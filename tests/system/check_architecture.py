@@ -31,7 +31,7 @@ ROOMS = {
     "render": {"base", "volume", "tissue", "scene"},
     "plot": {"base"},
     "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training",
-            "session", "structures", "render", "plot"},
+            "session", "render", "plot"},
 }
 MODULES = set(ROOMS)
 ROOMS["ui"] = MODULES

@@ -12,7 +12,7 @@ IN_LIVER = "-60,-20,20"  # of the built-in abdomen
 
 
 def nifti(file):
-    """Size, type, slope of the slices' axis, sform and qform as matrices, voxels as stored."""
+    """Size, type, sform and qform as rows of matrices, voxels as stored."""
     raw = gzip.decompress(file.read_bytes()) if file.suffix == ".gz" else file.read_bytes()
     size = struct.unpack_from("<3h", raw, 42)
     kind = struct.unpack_from("<h", raw, 70)[0]
@@ -114,7 +114,7 @@ class GrowReal(LabTest):
         seed = "-92,-161,406"
         lab("structures", "grow", case, f"--seed={seed}", "--name", "liver",
             "--write", self.folder / "a.nii.gz")
-        size, _, sform, _, voxels = nifti(case)
+        size, _, sform, _, _ = nifti(case)
         own_size, kind, own, qform, own_voxels = nifti(self.folder / "a.nii.gz")
         self.assertEqual((own_size, kind), (size, 2))
         for row in range(3):

@@ -62,7 +62,8 @@ Status addPictures(const RenderSubject& subject, const RaySettingOptions& option
     for (std::size_t n = 0; n < figures.size(); ++n) {
       if (figures[n].setting.plain == plain) figures[n].ms += medianOf(ms[n]);
     }
-    for (std::size_t n = 0; n < kSides.size(); ++n) {
+    // Without a place of its own, a subject was just seen from the front.
+    for (std::size_t n = subject.at ? 0 : 1; n < kSides.size(); ++n) {
       if (progress.cancelled()) return renderCancelled();
       progress.at(0.5 * ((plain ? 1.0 : 0.0) + double(n) / double(kSides.size())), "pictures");
       renderer.resetCamera(kSides[n].towards, kSides[n].up);
