@@ -107,8 +107,8 @@ int replayCommand(const std::string& file, const std::string& case_source,
     if (!read) return printError("replay", read.error(), json);
     labels = *std::move(read);
   }
-  Result<ReplayResult> result =
-      replay(**recording, *of->volume, labels ? &*labels : of->labels.get(), progress, of->sha256);
+  Result<ReplayResult> result = replay(
+      **recording, *of->volume, labels ? &*labels : of->structures.get(), progress, of->sha256);
   if (!result) return printError("replay", result.error(), json);
   if (result->cut_short) spdlog::warn("The recording was cut short; what it holds was replayed");
   Json difference = nullptr;

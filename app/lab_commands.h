@@ -53,8 +53,26 @@ struct GrowArguments {
   std::string write;
 };
 
+struct StructureImportArguments {
+  std::string case_source;
+  std::string file;
+  std::vector<std::string> choices;  // CODE=OPTION
+  std::string write;                 // a label map; empty: none
+};
+
+struct StructureExportArguments {
+  std::string case_source;
+  std::string structures;            // a segmentation; empty: the case's own
+  std::vector<std::string> names;    // empty: all
+  std::vector<std::string> choices;  // CODE=OPTION
+  std::string write;                 // a label map or a surface
+  std::string dicom;                 // or a folder
+};
+
 int growCommand(const GrowArguments& arguments, bool json, const Progress&);
 int compareCommand(const std::string& a, const std::string& b, bool json, const Progress&);
+int importStructuresCommand(const StructureImportArguments& arguments, bool json, const Progress&);
+int exportStructuresCommand(const StructureExportArguments& arguments, bool json, const Progress&);
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
 int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 int runCommand(const RunArguments& arguments, bool json, const Progress&);

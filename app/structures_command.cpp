@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -9,9 +11,13 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
+#include "imaging/dicom/seg_writer.h"
+#include "imaging/structure_importer.h"
 #include "session/case.h"
 #include "structures/compare.h"
 #include "structures/grow.h"
+#include "structures/surface.h"
+#include "volume/segmentation.h"
 #include "volume/volume_files.h"
 
 namespace trephine {
@@ -74,9 +80,11 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double
 }
 
 // The patient's own scan is never written over.
-Status checkTarget(const std::string& target, const std::string& case_source) {
+Status checkStructureTarget(const std::string& target, const std::string& case_source) {
   namespace fs = std::filesystem;
-  if (Status name = checkVolumeFileName(target); !name) return name;
+  if (!target.ends_with(".nrrd")) {
+    if (Status name = checkVolumeFileName(target); !name) return name;
+  }
   if (Status there = checkFolderOf(target); !there) return there;
   std::error_code ec;
   if (!fs::exists(target, ec) || !fs::exists(case_source, ec)) return {};
@@ -87,6 +95,13 @@ Status checkTarget(const std::string& target, const std::string& case_source) {
                "Choose another name"};
 }
 
+// Whether the case's file has its slices the other way round, so that what goes beside it has too.
+bool reversedSlicesOf(const std::string& case_source, const Case& of) {
+  if (!isVolumeFile(case_source)) return false;
+  const auto header = readVolumeFileHeader(case_source);
+  return header && header->geometry.size == of.volume->geometry.size && header->reversed_slices;
+}
+
 }  // namespace
 
 int growCommand(const GrowArguments& arguments, bool json, const Progress& progress) {
@@ -94,7 +109,7 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   const auto failed = [&](const Error& error) { return printError(kName, error, json); };
   const auto seed = numbersOf(arguments.seed, 3, "--seed", "X,Y,Z in mm");
   if (!seed) return failed(seed.error());
-  if (Status target = checkTarget(arguments.write, arguments.case_source); !target) {
+  if (Status target = checkStructureTarget(arguments.write, arguments.case_source); !target) {
     return failed(target.error());
   }
   // What is asked for wrongly is said before a CT is read.
@@ -107,18 +122,15 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   const GridGeometry& g = of->volume->geometry;
   if (!box_mm.empty()) options->box = boxOf(box_mm, g);
   const auto start = std::chrono::steady_clock::now();
-  const Result<Growth> growth = grow(*of->volume, Vec3((*seed)[0], (*seed)[1], (*seed)[2]),
-                                     *options, Progress(progress, 0.5, 0.9));
+  Result<Growth> growth = grow(*of->volume, Vec3((*seed)[0], (*seed)[1], (*seed)[2]), *options,
+                               Progress(progress, 0.5, 0.9));
   if (!growth) return failed(growth.error());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  bool reversed = false;
-  if (isVolumeFile(arguments.case_source)) {
-    const auto header = readVolumeFileHeader(arguments.case_source);
-    reversed = header && header->geometry.size == g.size && header->reversed_slices;
-  }
-  const Status written = writeLabelMap(growth->mask, arguments.write, reversed, progress);
+  growth->mask.structures = {{1, arguments.name, labelColour(1)}};
+  const Status written = writeSegmentation(growth->mask, arguments.write,
+                                           reversedSlicesOf(arguments.case_source, *of), progress);
   if (!written) return failed(written.error());
 
   if (json) {
@@ -143,32 +155,240 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   return 0;
 }
 
+namespace {
+
+// Which label of each of two maps is one structure: by name, and by number where one of them has no
+// names.
+struct Pair {
+  std::string name;
+  std::uint8_t a = 0, b = 0;  // 0: it is not there
+};
+
+std::vector<Pair> pairsOf(const LabelMap& a, const LabelMap& b) {
+  const auto unnamed = [](const Structure& s) {
+    return s.name == "label " + std::to_string(s.label);
+  };
+  std::vector<Pair> pairs;
+  std::set<int> taken;
+  for (const Structure& s : a.structures) {
+    const Structure* other = b.find(s.name);
+    const Structure* numbered = b.find(s.label);
+    if (!other && numbered && !a.find(numbered->name) && (unnamed(s) || unnamed(*numbered))) {
+      other = numbered;
+    }
+    const std::string& name = other && unnamed(s) ? other->name : s.name;
+    pairs.push_back({name, std::uint8_t(s.label), std::uint8_t(other ? other->label : 0)});
+    if (other) taken.insert(other->label);
+  }
+  for (const Structure& s : b.structures) {
+    if (!taken.contains(s.label)) pairs.push_back({s.name, 0, std::uint8_t(s.label)});
+  }
+  return pairs;
+}
+
+}  // namespace
+
 int compareCommand(const std::string& a, const std::string& b, bool json, const Progress&) {
   const char* kName = "structures_compare";
   const Result<LabelMap> map_a = readLabelMap(a), map_b = map_a ? readLabelMap(b) : map_a;
   if (!map_b) return printError(kName, map_b.error(), json);
-  std::set<std::uint8_t> labels(map_a->labels.begin(), map_a->labels.end());
-  labels.insert(map_b->labels.begin(), map_b->labels.end());
-  labels.erase(0);
   Json rows = Json::array();
   std::string text;
-  for (const std::uint8_t label : labels) {
-    const Result<Likeness> of = likeness(*map_a, label, *map_b, label);
+  for (const Pair& pair : pairsOf(*map_a, *map_b)) {
+    const Result<Likeness> of =
+        likeness(*map_a, pair.a ? pair.a : std::uint8_t(unusedLabel(*map_a)), *map_b,
+                 pair.b ? pair.b : std::uint8_t(unusedLabel(*map_b)));
     if (!of) return printError(kName, of.error(), json);
-    const std::string name = "label " + std::to_string(label);
     const bool both = std::isfinite(of->hd95_mm);
-    rows.push_back({{"name", name},
+    rows.push_back({{"name", pair.name},
                     {"dice", of->dice},
                     {"hd95_mm", both ? Json(of->hd95_mm) : Json()},
                     {"ml", {of->ml_a, of->ml_b}}});
-    char line[160];
-    std::snprintf(line, sizeof line, "%-10s Dice %.4f, hd95 %s, %.1f and %.1f mL\n", name.c_str(),
-                  of->dice, both ? (std::to_string(of->hd95_mm) + " mm").c_str() : "none", of->ml_a,
+    char line[512];
+    std::snprintf(line, sizeof line, "%-10s Dice %.4f, hd95 %s, %.1f and %.1f mL\n",
+                  pair.name.c_str(), of->dice,
+                  both ? (std::to_string(of->hd95_mm) + " mm").c_str() : "none", of->ml_a,
                   of->ml_b);
     text += line;
   }
-  if (labels.empty()) text = "Neither label map has a label\n";
+  if (rows.empty()) text = "Neither label map has a label\n";
   return printOutcome(kName, {{"rows", rows}}, text, std::nullopt, json);
+}
+
+namespace {
+
+// "CODE=OPTION" each.
+Result<Answers> answersOf(const std::vector<std::string>& choices) {
+  Answers answers;
+  for (const std::string& choice : choices) {
+    const std::size_t equals = choice.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      return Error{"BAD_ARGUMENT", "It is written CODE=OPTION, not '" + choice + "'", "--choice",
+                   ""};
+    }
+    answers[choice.substr(0, equals)] = choice.substr(equals + 1);
+  }
+  return answers;
+}
+
+void print(const StructureFit& fit) {
+  for (const StructureCard& card : fit.structures) {
+    std::printf("%-24s %9.1f mL", card.name.c_str(), card.ml);
+    if (card.hu)
+      std::printf("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
+    std::printf("\n");
+    for (const Finding& f : card.findings) {
+      std::printf("    %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+    }
+  }
+  for (const Finding& f : fit.findings) {
+    std::printf("%s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+  }
+}
+
+}  // namespace
+
+int importStructuresCommand(const StructureImportArguments& arguments, bool json,
+                            const Progress& progress) {
+  const char* kName = "structures_import";
+  const auto failed = [&](const Error& error) { return printError(kName, error, json); };
+  const auto answers = answersOf(arguments.choices);
+  if (!answers) return failed(answers.error());
+  if (!arguments.write.empty()) {
+    if (Status target = checkStructureTarget(arguments.write, arguments.case_source); !target) {
+      return failed(target.error());
+    }
+  }
+  const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.5));
+  if (!of) return failed(of.error());
+  const auto fit = importStructures(arguments.file, *of->volume, {*answers, true, sourceOf(*of)},
+                                    Progress(progress, 0.5, 0.9));
+  if (!fit) return failed(fit.error());
+  if (!arguments.write.empty()) {
+    const Status written = writeSegmentation(
+        fit->map, arguments.write, reversedSlicesOf(arguments.case_source, *of), progress);
+    if (!written) return failed(written.error());
+  }
+  if (json) {
+    printAnswer(kName, toJson(*fit));
+  } else {
+    print(*fit);
+  }
+  return 0;
+}
+
+namespace {
+
+// The structures of the case: of a file where one is given, else its own.
+Result<std::shared_ptr<const LabelMap>> structuresOf(const StructureExportArguments& arguments,
+                                                     const Answers& answers, const Case& of,
+                                                     const Progress& progress) {
+  if (arguments.structures.empty()) {
+    if (of.structures) return of.structures;
+    return Error{"NO_STRUCTURE", "The case brings no structures of its own", "--structures",
+                 "Give a label map or a segmentation of it"};
+  }
+  auto fit =
+      importStructures(arguments.structures, *of.volume, {answers, true, sourceOf(of)}, progress);
+  if (!fit) return fit.error();
+  return std::make_shared<const LabelMap>(std::move(fit->map));
+}
+
+// Those that were asked for, all unless any was.
+Result<LabelMap> chosenOf(const LabelMap& map, const std::vector<std::string>& names) {
+  if (names.empty()) return map;
+  std::array<bool, 256> wanted{};
+  for (const std::string& name : names) {
+    const Structure* found = map.find(name);
+    if (!found) {
+      std::string all;
+      for (const Structure& s : map.structures) all += (all.empty() ? "" : ", ") + s.name;
+      return Error{"NO_STRUCTURE", "The case has no structure '" + name + "'", "--name",
+                   "Choose among " + all};
+    }
+    wanted[std::size_t(found->label)] = true;
+  }
+  LabelMap chosen = map;
+  for (std::uint8_t& label : chosen.labels) {
+    if (!wanted[label]) label = 0;
+  }
+  std::erase_if(chosen.structures,
+                [&](const Structure& s) { return !wanted[std::size_t(s.label)]; });
+  return chosen;
+}
+
+// One surface a structure: "FILE.stl" of one, "FILE-liver.stl" of several. Letters that a file
+// system or another program could trip over become "_".
+std::string surfaceFile(const std::string& file, const std::string& name, bool several) {
+  if (!several) return file;
+  std::string plain;
+  for (const char c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || (c & 0x80);
+    plain += good ? c : '_';
+  }
+  return file.substr(0, file.size() - 4) + "-" + plain + ".stl";
+}
+
+}  // namespace
+
+int exportStructuresCommand(const StructureExportArguments& arguments, bool json,
+                            const Progress& progress) {
+  const char* kName = "structures_export";
+  const auto failed = [&](const Error& error) { return printError(kName, error, json); };
+  const auto answers = answersOf(arguments.choices);
+  if (!answers) return failed(answers.error());
+  const bool stl = arguments.write.ends_with(".stl");
+  if (arguments.write.empty() == arguments.dicom.empty()) {
+    return failed({"BAD_ARGUMENT", "Where to is not said, or twice", "--write, --dicom",
+                   "Give --write FILE or --dicom FOLDER"});
+  }
+  if (Status target = !arguments.dicom.empty() ? Status()
+                      : stl                    ? checkFolderOf(arguments.write)
+                            : checkStructureTarget(arguments.write, arguments.case_source);
+      !target) {
+    return failed(target.error());
+  }
+  const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.4));
+  if (!of) return failed(of.error());
+  const auto all = structuresOf(arguments, *answers, *of, Progress(progress, 0.4, 0.6));
+  if (!all) return failed(all.error());
+  const Result<LabelMap> chosen = chosenOf(**all, arguments.names);
+  if (!chosen) return failed(chosen.error());
+
+  std::array<std::size_t, 256> voxels{};
+  for (const std::uint8_t label : chosen->labels) ++voxels[label];
+  const double voxel_ml = chosen->geometry.voxelVolume_mm3() / 1000.0;
+  Json rows = Json::array(), files = Json::array();
+  std::string text;
+  for (const Structure& s : chosen->structures) {
+    const std::size_t count = voxels[std::size_t(s.label)];
+    Json row = {{"name", s.name}, {"voxels", count}, {"ml", double(count) * voxel_ml}};
+    char line[512];
+    std::snprintf(line, sizeof line, "%-24s %9.1f mL\n", s.name.c_str(), double(count) * voxel_ml);
+    text += line;
+    if (stl && count > 0) {
+      const std::string file = surfaceFile(arguments.write, s.name, chosen->structures.size() > 1);
+      const auto surface = writeSurface(*chosen, s.label, file, Progress(progress, 0.6, 1.0));
+      if (!surface) return failed(surface.error());
+      row["triangles"] = surface->triangles;
+      row["surface_ml"] = surface->ml;
+      files.push_back(file);
+    }
+    rows.push_back(std::move(row));
+  }
+  if (!arguments.dicom.empty()) {
+    const auto written = writeStructuresAsDicom(*of->volume, *chosen, arguments.dicom, {},
+                                                Progress(progress, 0.6, 1.0));
+    if (!written) return failed(written.error());
+    for (const std::string& note : written->notes) text += note + "\n";
+    files.push_back(arguments.dicom);
+  } else if (!stl) {
+    const Status written = writeSegmentation(
+        *chosen, arguments.write, reversedSlicesOf(arguments.case_source, *of), progress);
+    if (!written) return failed(written.error());
+    files.push_back(arguments.write);
+  }
+  return printOutcome(kName, {{"structures", rows}, {"files", files}}, text, std::nullopt, json);
 }
 
 }  // namespace trephine

@@ -104,10 +104,44 @@ int run(int argc, char** argv) {
   grow_command->add_option("--box", growing.box,
                            "X0,X1,Y0,Y1,Z0,Z1: nothing outside of it, mm, LPS");
   grow_command->add_option("--name", growing.name, "What it is called")->required()->check(named);
-  grow_command->add_option("--write", growing.write, "The label map: .nii, .nii.gz or .mha")
+  grow_command->add_option("--write", growing.write, "The label map: .nii, .nii.gz, .mha or .nrrd")
       ->required();
+  StructureImportArguments structures;
+  auto* import_structures_command = with_json(structures_command->add_subcommand(
+      "import", "Structures of a case from a segmentation: what they are and where they lie"));
+  import_structures_command
+      ->add_option("case", structures.case_source,
+                   "A folder of CT, a volume file, phantom:cranium or phantom:abdomen")
+      ->required();
+  import_structures_command
+      ->add_option("file", structures.file,
+                   "DICOM SEG, .seg.nrrd, or a label map with its names beside it")
+      ->required();
+  import_structures_command->add_option("--choice", structures.choices,
+                                        "CODE=OPTION: the answer to a question of its");
+  import_structures_command->add_option(
+      "--write", structures.write,
+      "As a label map on the CT's own grid: .nii, .nii.gz, .mha or .nrrd");
+  StructureExportArguments exported;
+  auto* export_structures_command = with_json(structures_command->add_subcommand(
+      "export", "Structures of a case for other programs, and how many mL each has"));
+  export_structures_command
+      ->add_option("case", exported.case_source,
+                   "A folder of CT, a volume file, phantom:cranium or phantom:abdomen")
+      ->required();
+  export_structures_command->add_option(
+      "--structures", exported.structures,
+      "A label map or segmentation of it; a built-in case has its own");
+  export_structures_command->add_option("--name", exported.names, "These alone");
+  export_structures_command->add_option("--choice", exported.choices,
+                                        "CODE=OPTION: the answer to a question of the import's");
+  export_structures_command->add_option(
+      "--write", exported.write, "A label map (.nii, .nii.gz, .mha, .nrrd) or the surfaces (.stl)");
+  export_structures_command->add_option(
+      "--dicom", exported.dicom,
+      "Instead: a folder for a DICOM SEG and the CT beside it, under new UIDs and of nobody");
   auto* compare_command = with_json(structures_command->add_subcommand(
-      "compare", "How alike two label maps of one grid are, label by label"));
+      "compare", "How alike two label maps of one grid are, structure by structure"));
   std::string other;
   compare_command->add_option("a", file, "A label map")->required();
   compare_command->add_option("b", other, "Another")->required();
@@ -207,6 +241,8 @@ int run(int argc, char** argv) {
   if (*run_command) return runCommand(arguments, json, progress);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);
+  if (*import_structures_command) return importStructuresCommand(structures, json, progress);
+  if (*export_structures_command) return exportStructuresCommand(exported, json, progress);
   if (*compare_command) return compareCommand(file, other, json, progress);
   if (*explain_command) return explainCommand(file, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);

@@ -9,10 +9,9 @@
 
 namespace trephine::test {
 
-inline Case placed(const Scene& scene, Volume volume,
-                   std::shared_ptr<const LabelMap> labels = nullptr) {
+inline Case placed(Scene scene, Volume volume, std::shared_ptr<const LabelMap> labels = nullptr) {
   Case of = caseOf(std::make_shared<const Volume>(std::move(volume)));
-  of.labels = std::move(labels);
+  of.structures = std::move(labels);
   return *placedIn(scene, std::move(of));
 }
 

@@ -50,6 +50,12 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
+// What a person should know of something that went on all the same. `code` as of an Error, `text` a
+// sentence.
+struct Warning {
+  std::string code, text;
+};
+
 // Success, or an Error.
 class [[nodiscard]] Status {
  public:

@@ -167,6 +167,27 @@ Status roomToRead(const SeriesReport& series, const ImportRequest& request) {
                       request.most_memory_mb.value_or(usableMemoryMb()));
 }
 
+// What is found out while a series is read.
+struct Reading {
+  int slices_used = 0;  // of DICOM
+  SourceIds ids;
+  HuLook look;
+};
+
+// Of slices that are one scan; what they do not agree on stays empty.
+SourceIds idsOf(const std::vector<DicomHeader>& slices, const std::vector<std::size_t>& used) {
+  const auto common = [&](std::string DicomHeader::*uid) {
+    const std::string& first = slices[used.front()].*uid;
+    const bool same =
+        std::ranges::all_of(used, [&](std::size_t n) { return slices[n].*uid == first; });
+    return same ? hashOrNone(first) : "";
+  };
+  if (used.empty()) return {};
+  const bool named = slices[used.front()].series_key.empty();
+  return {common(&DicomHeader::study_uid), named ? common(&DicomHeader::series_uid) : "",
+          common(&DicomHeader::frame_of_reference)};
+}
+
 // A series of DICOM slices, or a volume file.
 struct Source {
   Series series;
@@ -200,14 +221,13 @@ struct CtFolder::Contents {
   }
 
   Result<Volume> readDicom(Series& series, const ImportRequest& request, const Progress& progress,
-                           int& slices_used, HuLook& look);
+                           Reading& reading);
 };
 
 // Slices that turn out to be unreadable are missing slices: they are marked, and the series is
 // looked at again, until it is read or refused.
 Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest& request,
-                                             const Progress& progress, int& slices_used,
-                                             HuLook& look) {
+                                             const Progress& progress, Reading& reading) {
   const Answers& answers = request.answers;
   while (true) {
     const SeriesPlan plan = assessSeries(series, answers);
@@ -227,8 +247,9 @@ Result<Volume> CtFolder::Contents::readDicom(Series& series, const ImportRequest
     addValueFindings(assembly->counts, series.report);
     series.report.hu_min = assembly->counts.hu_min;
     series.report.hu_max = assembly->counts.hu_max;
-    slices_used = int(plan.sources.size());
-    look = std::move(assembly->look);
+    reading.slices_used = int(plan.sources.size());
+    reading.ids = idsOf(series.slices, plan.sources);
+    reading.look = std::move(assembly->look);
     return std::move(assembly->volume);
   }
 }
@@ -416,9 +437,8 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   };
 
   const auto start = Clock::now();
-  int slices_used = 0;
   std::uintmax_t bytes = 0;  // of a volume file
-  HuLook look;
+  Reading reading;
   if (!source->file.empty()) {
     std::error_code error;
     bytes = std::filesystem::file_size(source->file, error);
@@ -428,10 +448,9 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
     if (series.verdict == Verdict::refused) return fail(refusalOf(series));
     if (Status enough = roomToRead(series, request); !enough) return fail(enough.error());
   }
-  Result<Volume> volume =
-      source->file.empty()
-          ? contents_->readDicom(source->series, request, progress, slices_used, look)
-          : readFileSeries(source->file, progress, series, look);
+  Result<Volume> volume = source->file.empty()
+                              ? contents_->readDicom(source->series, request, progress, reading)
+                              : readFileSeries(source->file, progress, series, reading.look);
   if (!volume && !source->file.empty() && volume.error().code != "CANCELLED" &&
       isGone(source->file, bytes)) {
     return fail(refuseVanished(series));
@@ -441,7 +460,7 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
     return fail(refusalOf(series));
   }
   if (!volume) return fail(volume.error());
-  checkHu(look, request.answers, series);
+  checkHu(reading.look, request.answers, series);
   series.verdict = verdictOf(series.findings);
   if (series.verdict == Verdict::refused) {
     const Status valid = fits(optionsOf(series), request.answers);
@@ -465,7 +484,8 @@ Result<Volume> CtFolder::read(const std::string& uid, const ImportRequest& reque
   const auto loss = provenance.loss;
   provenance = provenanceOf(series, request);
   provenance.loss = loss;
-  provenance.slices_used = source->file.empty() ? slices_used : series.slices;
+  provenance.slices_used = source->file.empty() ? reading.slices_used : series.slices;
+  provenance.source_ids = reading.ids;
   provenance.volume_sha256 = *series.volume_sha256;
   contents_->publish(*source);
   report.provenance = std::move(provenance);

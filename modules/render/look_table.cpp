@@ -11,7 +11,7 @@ std::vector<TissueShade> tissueShades(const TissueSet& seen, const TissueLooks& 
   std::vector<TissueShade> shades;
   for (const bool labelled : {false, true}) {
     for (const Tissue& tissue : seen.tissues) {
-      if (tissue.opacity <= 0.0 || tissue.label.has_value() != labelled) continue;
+      if (tissue.opacity <= 0.0 || tissue.isAnywhere() == labelled) continue;
       TissueShade shade;
       shade.low_HU = tissue.hu_min - 0.5;
       shade.high_HU = tissue.hu_max + 0.5;

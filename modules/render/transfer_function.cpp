@@ -25,7 +25,7 @@ std::vector<const Tissue*> tissuesOf(const TissueSet& set, int label) {
     if (tissue.label && *tissue.label == label) result.push_back(&tissue);
   }
   for (const Tissue& tissue : set.tissues) {
-    if (!tissue.label) result.push_back(&tissue);
+    if (tissue.isAnywhere()) result.push_back(&tissue);
   }
   return result;
 }

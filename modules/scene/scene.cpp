@@ -20,14 +20,19 @@ void useCase(Scene& scene, const std::string& case_source) {
   if (case_source == scene.case_source) return;
   if (!scene.case_source.empty()) {
     scene.labels_file.clear();
-    if (scene.tissues_elsewhere) scene.tissues = *std::exchange(scene.tissues_elsewhere, {});
+    const auto& tissues = scene.tissues.tissues;
+    const bool by_number = std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
+      return tissue.label && tissue.structure.empty();
+    });
+    if (scene.tissues_elsewhere && by_number)
+      scene.tissues = *std::exchange(scene.tissues_elsewhere, {});
   }
   scene.case_source = case_source;
 }
 
 Status checkLabels(const TissueSet& tissues, const LabelMap* labels) {
   for (const Tissue& tissue : tissues.tissues) {
-    if (!tissue.label || labels) continue;
+    if (!tissue.label || !tissue.structure.empty() || labels) continue;
     return Error{"NO_LABELS",
                  "The tissue '" + tissue.id + "' is restricted to label " +
                      std::to_string(*tissue.label) + ", and no label map was given",

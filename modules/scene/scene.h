@@ -50,8 +50,11 @@ struct Scene {
   std::string anatomy;        // "cranium", "abdomen": which cases the scene fits
   std::string case_source;    // "phantom:cranium", a path, or empty: given when it is run
   std::string labels_file;    // label map of that case, empty for none or given when it is run
+  std::vector<std::string> structures;  // names of those that the exercise needs
   TissueSet tissues;
-  std::optional<TissueSet> tissues_elsewhere;  // on another case than its own; none: these
+  // On a case that lacks a structure which is needed, or of which labels are not known; none:
+  // these.
+  std::optional<TissueSet> tissues_elsewhere;
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
@@ -68,8 +71,9 @@ struct Scene {
 };
 
 // The scene is run on this case instead ("" is one that has no name): a label map that the scene
-// names beside its own case is of that one, and so are its tissues where it has others for
-// elsewhere.
+// names beside its own case is of that one, and so are tissues that are known by a number of it,
+// where the scene has others for elsewhere. What is known by a structure's name holds anywhere
+// (scene_structures.h).
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,

@@ -168,6 +168,7 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   }
   const std::string labels = reader.text("labels", "");
   if (!labels.empty()) scene.labels_file = (folder / labels).lexically_normal().string();
+  if (reader.has("structures")) scene.structures = reader.texts("structures", kMostInAList);
   Result<TissueSet> tissues = readTissues(reader.raw("tissues"), folder, file.string());
   if (reader.ok() && !tissues) return tissues.error();
   if (tissues) scene.tissues = *std::move(tissues);
@@ -269,6 +270,7 @@ Json toJson(const Scene& scene) {
   Json json = {{"format", "trephine.scene"}, {"version", 1}, {"name", scene.name},
                {"anatomy", scene.anatomy}};
   if (phantomNamed(scene.case_source)) json["case"] = scene.case_source;
+  if (!scene.structures.empty()) json["structures"] = scene.structures;
   json["tissues"] = toJson(scene.tissues);
   json["landmarks"] = landmarks;
   json["tools"] = tools;

@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 #include "imaging/importer.h"
+#include "imaging/structure_importer.h"
+#include "scene/scene_structures.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
 
@@ -45,13 +47,35 @@ Result<Case> read(const std::string& source, const Progress& progress) {
     if (!made) return made.error();
     Case built_in = caseOf(std::make_shared<const Volume>(std::move(made->volume)));
     built_in.built_in = true;
-    built_in.labels_built_in = made->labels.has_value();
-    if (made->labels) built_in.labels = std::make_shared<const LabelMap>(*std::move(made->labels));
+    built_in.structures_built_in = made->labels.has_value();
+    if (made->labels) {
+      built_in.structures = std::make_shared<const LabelMap>(*std::move(made->labels));
+      built_in.labels = built_in.structures;
+    }
     return built_in;
   }
   Result<Volume> volume = readVolume(source, progress);
   if (!volume) return volume.error();
   return caseOf(std::make_shared<const Volume>(*std::move(volume)));
+}
+
+// Where the case shows something else than the exercise is for.
+std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<Anatomy>& anatomy) {
+  if (!anatomy || anatomy->region == BodyRegion::not_sure) return {};
+  const std::string shown = bodyRegionName(anatomy->region);
+  if (scene.anatomy != exerciseAnatomy(anatomy->region)) {
+    const bool known = scene.anatomy == "cranium" || scene.anatomy == "abdomen";
+    if (!known) return {};
+    return Warning{"OTHER_ANATOMY", "The case shows " +
+                                        std::string(shown == "head" ? "a " : "an ") + shown +
+                                        ", and the exercise is for the " + scene.anatomy};
+  }
+  if (anatomy->region == BodyRegion::head && !anatomy->vault) {
+    return Warning{"NO_VAULT",
+                   "The case shows a head whose vault is not whole in the scan: the exercise may "
+                   "begin in another bone"};
+  }
+  return {};
 }
 
 }  // namespace
@@ -63,39 +87,63 @@ Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256) {
   return of;
 }
 
+const char* exerciseAnatomy(BodyRegion region) {
+  return region == BodyRegion::head ? "cranium" : region == BodyRegion::abdomen ? "abdomen" : "";
+}
+
 Result<Case> readCase(const std::string& source, const Progress& progress) {
   if (source.empty()) {
     return Error{"NO_CASE", "The scene names no case and none was given", "--case",
                  "Give a folder of CT, or phantom:cranium or phantom:abdomen"};
   }
   try {
-    return read(source, progress);
+    Result<Case> of = read(source, Progress(progress, 0.0, 0.9));
+    if (of) of->anatomy = anatomyOf(*of->volume, Progress(progress, 0.9, 1.0));
+    return of;
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the case", "the case");
   }
 }
 
-Result<Case> withLabels(Case of, const std::string& file) {
-  of.labels.reset();
-  of.labels_built_in = false;
+Result<Case> withLabels(Case of, const std::string& file, const Progress& progress) {
+  of = withStructures(std::move(of), nullptr);
   if (file.empty()) return of;
-  try {
-    const Result<LabelMap> map = readLabelMap(file);
-    if (!map) return map.error();
-    Result<LabelMap> fitted = fitTo(*map, of.volume->geometry);
-    if (!fitted) return fitted.error();
-    of.labels = std::make_shared<const LabelMap>(*std::move(fitted));
-  } catch (const std::bad_alloc&) {
-    return outOfMemory("for the label map", file);
+  StructureRequest request;
+  request.ask_all = false;
+  request.ct = sourceOf(of);
+  Result<StructureFit> fit = importStructures(file, *of.volume, request, progress);
+  if (!fit) return fit.error();
+  return withFit(std::move(of), *std::move(fit));
+}
+
+SourceIds sourceOf(const Case& of) {
+  return of.provenance ? of.provenance->source_ids : SourceIds();
+}
+
+Case withFit(Case of, StructureFit fit) {
+  of = withStructures(std::move(of), std::make_shared<const LabelMap>(std::move(fit.map)));
+  for (const Finding& finding : fit.findings) {
+    std::string text = finding.text + ".";
+    if (!finding.action.empty()) text += " " + finding.action + ".";
+    of.structure_warnings.push_back({finding.code, std::move(text)});
   }
   return of;
 }
 
-Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress) {
+Case withStructures(Case of, std::shared_ptr<const LabelMap> structures) {
+  of.structures = std::move(structures);
+  of.labels = of.structures;
+  of.structures_built_in = false;
+  of.structure_warnings.clear();
+  return of;
+}
+
+Result<Case> placedIn(Scene& scene, Case of, const Progress& progress) {
   progress.at(0.0, "Finding landmarks");
   of.landmarks.clear();
   of.misfit.reset();
-  if (!scene.labels_file.empty() && (!of.labels || of.labels_built_in)) {
+  of.warnings.clear();
+  if (!scene.labels_file.empty() && (!of.structures || of.structures_built_in)) {
     Result<Case> labelled = withLabels(of, scene.labels_file);
     if (!labelled) {
       of.misfit = labelled.error();
@@ -103,6 +151,16 @@ Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress) {
     }
     of = *std::move(labelled);
   }
+  of.labels = of.structures;
+  auto structures = placeStructures(scene, of.structures);
+  if (!structures) {
+    of.misfit = structures.error();
+    return of;
+  }
+  of.labels = std::move(structures->labels);
+  of.warnings = of.structure_warnings;
+  if (const auto warning = anatomyWarning(scene, of.anatomy)) of.warnings.push_back(*warning);
+  of.warnings.insert(of.warnings.end(), structures->warnings.begin(), structures->warnings.end());
   auto placed = placeLandmarks(scene, *of.volume, of.labels.get(), progress);
   if (placed) {
     of.landmarks = *std::move(placed);
@@ -114,7 +172,7 @@ Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress) {
   return of;
 }
 
-Result<Case> openCase(const Scene& scene, const Progress& progress) {
+Result<Case> openCase(Scene& scene, const Progress& progress) {
   Result<Case> read = readCase(scene.case_source, Progress(progress, 0.0, kReadShare));
   if (!read) return read;
   return placedIn(scene, *std::move(read), Progress(progress, kReadShare, 1.0));

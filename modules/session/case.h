@@ -10,6 +10,8 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "imaging/report/report.h"
+#include "imaging/segmentation/structure_fit.h"
+#include "imaging/steps/anatomy.h"
 #include "scene/scene.h"
 #include "volume/label_map.h"
 #include "volume/volume.h"
@@ -22,34 +24,48 @@ struct Case {
   std::optional<Provenance> provenance;  // of what was imported
   std::string name;                      // for the screen alone: it may be a series' description
   bool built_in = false;
-  std::shared_ptr<const LabelMap> labels;  // fitted to the volume; null: none
-  bool labels_built_in = false;            // they came with it, and one that is given replaces them
+  std::optional<Anatomy> anatomy;              // what it shows; none where it was not asked
+  std::shared_ptr<const LabelMap> structures;  // fitted to the volume; null: none
+  bool structures_built_in = false;  // they came with it, and a file that is given replaces them
+  std::vector<Warning> structure_warnings;  // of the file that they are from
 
-  // In the scene that it was placed in: where its landmarks are, or why not. It can be looked at
-  // all the same.
+  // In the scene that it was placed in: its structures and the shells that the scene's tissues
+  // need; where its landmarks are, or why not. It can be looked at all the same.
+  std::shared_ptr<const LabelMap> labels;
   std::vector<PlacedLandmark> landmarks;
+  std::vector<Warning> warnings;
   std::optional<Error> misfit;
 };
+
+// The exercises that a region of the body is for: "cranium", "abdomen"; "" where it is not known.
+const char* exerciseAnatomy(BodyRegion region);
 
 // Voxels that are in memory. `sha256` is theirs, or empty: then it is taken here.
 Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256 = "");
 
 // `source` is "phantom:cranium", "phantom:abdomen", a DICOM folder or file, or a volume file
 // (volume/volume_files.h); from a folder the best CT series is taken. Without landmarks, and
-// without labels but those of a built-in case.
+// without structures but those of a built-in case.
 // Errors are those of the importer and the readers, OUT_OF_MEMORY, and NO_CASE for an empty source.
 // Any thread, as all of these; reports progress and can be cancelled.
 Result<Case> readCase(const std::string& source, const Progress& progress = Progress());
 
-// The label map of a file, instead of what it had; "" for none. Errors: those of readLabelMap and
-// fitTo.
-Result<Case> withLabels(Case of, const std::string& file);
+// The structures of a file, instead of what it had; "" for none. What a person would be asked is
+// taken as it is and said in `structure_warnings`. Errors: those of importStructures.
+Result<Case> withLabels(Case of, const std::string& file, const Progress& progress = Progress());
+// What it was read from, as far as it is known.
+SourceIds sourceOf(const Case& of);
+// Those that were put on its grid, with what is to be said of them.
+Case withFit(Case of, StructureFit fit);
+// These structures, which are on the volume's grid, instead of what it had; null for none.
+Case withStructures(Case of, std::shared_ptr<const LabelMap> structures);
 
-// Placed in a scene: with the label map that it names, unless one was given, and its landmarks.
+// Placed in a scene: with the label map that it names, unless one was given, and its landmarks. The
+// scene's tissues get the labels of the case's structures (placeStructures).
 // Error: CANCELLED; all others are the case's `misfit`.
-Result<Case> placedIn(const Scene& scene, Case of, const Progress& progress = Progress());
+Result<Case> placedIn(Scene& scene, Case of, const Progress& progress = Progress());
 
 // The scene's own case, placed in it.
-Result<Case> openCase(const Scene& scene, const Progress& progress = Progress());
+Result<Case> openCase(Scene& scene, const Progress& progress = Progress());
 
 }  // namespace trephine

@@ -47,7 +47,7 @@ Error memoryNotLocked(const std::string& reason) {
       "in again"};
 }
 
-RunWarning startsInTissue(const std::string& arm, bool barrier) {
+Warning startsInTissue(const std::string& arm, bool barrier) {
   return {
       "STARTS_IN_TISSUE",
       "The tool of the " + arm + " arm starts in tissue: " +
@@ -73,7 +73,7 @@ Json toJson(const RunReport& report) {
                       {"fault", nameOf(f.fault).name}});
   }
   Json warnings = Json::array();
-  for (const RunWarning& w : report.warnings) {
+  for (const Warning& w : report.warnings) {
     warnings.push_back({{"code", w.code}, {"text", w.text}});
   }
   const auto file = [](const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); };
@@ -130,7 +130,7 @@ std::string toText(const RunReport& report) {
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
       report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
       static_cast<unsigned long long>(report.missed_deadlines));
-  for (const RunWarning& warning : report.warnings) text += "  " + warning.text + "\n";
+  for (const Warning& warning : report.warnings) text += "  " + warning.text + "\n";
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < report.faults.size(); ++i) {
     if (i == kShown) {

@@ -26,13 +26,8 @@ struct ArmFault {
   std::uint32_t fault = 0;  // a bit of Fault
 };
 
-// What a person should know of a run that went on all the same.
-struct RunWarning {
-  std::string code, text;
-};
-
 // Of a scene whose tool begins in tissue.
-RunWarning startsInTissue(const std::string& arm, bool barrier);
+Warning startsInTissue(const std::string& arm, bool barrier);
 
 struct RunReport {
   std::vector<std::string> controllers;  // one after the other, at least one
@@ -46,7 +41,7 @@ struct RunReport {
   std::vector<Arm> arms;
   std::vector<std::pair<std::string, double>> removed_mm3;  // by tissue
   std::vector<ArmFault> faults;  // in the order in which they came
-  std::vector<RunWarning> warnings;
+  std::vector<Warning> warnings;
   std::optional<bool> memory_locked;  // in real time
   std::string memory_not_locked;      // why not
   std::uint64_t removed_voxels = 0;

@@ -36,7 +36,7 @@ constexpr double kMouseDamping_Ns_per_m = 4.0;
 void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
   if (!labels) return;
   for (const Tissue& tissue : tissues.tissues) {
-    if (!tissue.label) continue;
+    if (!tissue.label || !tissue.structure.empty()) continue;
     const auto& all = labels->labels;
     if (std::find(all.begin(), all.end(), std::uint8_t(*tissue.label)) == all.end()) {
       spdlog::warn("No voxel of the case has the label {} of '{}'", *tissue.label, tissue.id);
@@ -97,6 +97,10 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
                  "Crop it or export it at a lower resolution"};
   }
   if (Status known = checkLabels(scene.tissues, of.labels.get()); !known) return known;
+  for (const Warning& warning : of.warnings) {
+    warnings_.push_back(warning);
+    spdlog::warn("{}", warning.text);
+  }
   landmarks_ = of.landmarks;
   scene_ = withFixedMaps(scene, landmarks_);
   controllers_.emplace_back(controllerName(scene.controller));

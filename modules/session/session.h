@@ -146,7 +146,7 @@ class Session {
   std::unique_ptr<JournalFile> journal_file_;
   std::vector<ArmStatistics> statistics_;
   std::vector<ArmFault> faults_;
-  std::vector<RunWarning> warnings_;
+  std::vector<Warning> warnings_;
   std::vector<std::string> controllers_;                       // one after the other
   std::uint64_t unflushed_ticks_ = 0, most_behind_ticks_ = 0;  // the recorder's
   std::atomic<std::uint64_t> flushed_ticks_{0};

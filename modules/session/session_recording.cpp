@@ -73,7 +73,7 @@ void Session::note(const Event& event) {
     if (name != controllers_.back()) controllers_.push_back(name);
   }
   if (event.arm < 0) return;
-  const auto warn = [&](const RunWarning& warning) {
+  const auto warn = [&](const Warning& warning) {
     if (warnings_.size() < kMostFaults) warnings_.push_back(warning);
     spdlog::warn("{}", warning.text);
   };

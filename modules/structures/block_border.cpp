@@ -52,6 +52,30 @@ double smoothHu(const Volume& volume, const WorkGrid& grid, int i, int j, int k)
   return double(sum) / weights;
 }
 
+// A mask as it was, a bit a voxel: a copy of its bytes would take as much as the mask again.
+class BitsOf {
+ public:
+  explicit BitsOf(const std::vector<std::uint8_t>& mask) : words_((mask.size() + 63) / 64) {}
+
+  void take(const std::vector<std::uint8_t>& mask) {
+    constexpr std::size_t kWords = 16384;  // at a time
+    onTwoThreads(int((words_.size() + kWords - 1) / kWords), [&](int part) {
+      const std::size_t end = std::min((std::size_t(part) + 1) * kWords, words_.size());
+      for (std::size_t n = std::size_t(part) * kWords; n < end; ++n) {
+        const std::uint8_t* at = mask.data() + 64 * n;
+        const int count = int(std::min<std::size_t>(64, mask.size() - 64 * n));
+        std::uint64_t word = 0;
+        for (int bit = 0; bit < count; ++bit) word |= std::uint64_t(at[bit]) << bit;
+        words_[n] = word;
+      }
+    });
+  }
+  bool operator[](std::size_t at) const { return words_[at / 64] >> (at % 64) & 1; }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
 // A structure's blocks as voxels.
 class Border {
  public:
@@ -67,16 +91,17 @@ class Border {
   }
 
   std::vector<std::uint8_t> voxels() {
-    std::vector<std::uint8_t> mask(g_.voxelCount()), before;
+    std::vector<std::uint8_t> mask(g_.voxelCount());
     byRange(mask);
     const bool blocks = grid_.factor != Index3{1, 1, 1};
     if (!blocks) return mask;  // the range's smoothing was of about a voxel: it is at half-way
-    before = mask;
+    BitsOf before(mask);
+    before.take(mask);
     asMost(before, mask);
     const double edge_mm = std::min({g_.spacing_mm.x, g_.spacing_mm.y, g_.spacing_mm.z});
     const int layers = std::clamp(int(std::lround(kBlur_mm / edge_mm)), 1, 3);
     for (int layer = 0; layer < layers; ++layer) {
-      before = mask;
+      before.take(mask);
       addHalf(before, mask);
     }
     return mask;
@@ -126,7 +151,7 @@ class Border {
   }
 
   // Each as most of its 27 are.
-  void asMost(const std::vector<std::uint8_t>& before, std::vector<std::uint8_t>& mask) const {
+  void asMost(const BitsOf& before, std::vector<std::uint8_t>& mask) const {
     forVoxels(false, [&](int x, int y, int z, bool) {
       int votes = 0, voters = 0;
       for (int dz = -1; dz <= 1; ++dz) {
@@ -144,7 +169,7 @@ class Border {
 
   // A voxel beside one that is in, towards something lighter or denser, is in where its HU are at
   // most half-way there: that is where a scanner's blur leaves the border.
-  void addHalf(const std::vector<std::uint8_t>& before, std::vector<std::uint8_t>& mask) const {
+  void addHalf(const BitsOf& before, std::vector<std::uint8_t>& mask) const {
     const double middle = 0.5 * (hu_.low + hu_.high);
     Index3 beyond;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -12,7 +12,7 @@
 namespace trephine {
 
 // 0 or 1 a voxel. Blocks whose neighbours are all in stay as they are; `hu` is the structure's, for
-// the others; nothing outside of `box`. Two threads; two bytes a voxel. std::bad_alloc where there
+// the others; nothing outside of `box`. Two threads; 9 bits a voxel. std::bad_alloc where there
 // is no memory.
 std::vector<std::uint8_t> voxelsOf(const BlockMask& in, const WorkGrid& grid, const Volume& volume,
                                    const HuSpan& hu, const std::optional<VoxelBox>& box);

@@ -253,7 +253,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
     }
     voxel[axis] = int(at);
   }
-  const double needed_mb = 2.0 * double(g.voxelCount()) / (1 << 20) + 100.0;
+  const double needed_mb = 1.5 * double(g.voxelCount()) / (1 << 20) + 100.0;
   if (Status enough = enoughMemory(needed_mb, "Growing a structure", ""); !enough) {
     return enough.error();
   }

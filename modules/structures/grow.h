@@ -41,9 +41,9 @@ struct Growth {
 };
 constexpr double kMostOfScan = 0.15;
 
-// `seed_mm` in the patient's LPS frame. Two threads inside; takes two bytes a voxel beside the
-// volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT, NOTHING_GROWN (no
-// room for the ball within 20 mm of the seed), CANCELLED, OUT_OF_MEMORY.
+// `seed_mm` in the patient's LPS frame. Two threads inside; takes one and a half bytes a voxel
+// beside the volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT,
+// NOTHING_GROWN (no room for the ball within 20 mm of the seed), CANCELLED, OUT_OF_MEMORY.
 Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options = {},
                     const Progress& progress = Progress());
 

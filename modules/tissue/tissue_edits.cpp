@@ -11,7 +11,7 @@ bool sameSet(const TissueSet& a, const TissueSet& b) {
 std::vector<HuRange> freeHu(const TissueSet& set, HuRange span) {
   std::vector<HuRange> held, free;
   for (const Tissue& t : set.tissues) {
-    if (!t.label) held.push_back({t.hu_min, t.hu_max});
+    if (t.isAnywhere()) held.push_back({t.hu_min, t.hu_max});
   }
   std::ranges::sort(held, {}, &HuRange::low);
   int next = span.low;  // all below is accounted for

@@ -53,7 +53,7 @@ TissueLook lookIn(ViewPreset preset, const Tissue& tissue) {
     case ViewPreset::liver:
       if (part == Part::bone) return TissueLook::ghosted;
       // By HU alone a capsule is the rim of much else.
-      if (part == Part::capsule && tissue.label) return TissueLook::shown;
+      if (part == Part::capsule && !tissue.isAnywhere()) return TissueLook::shown;
       return part == Part::liver || part == Part::liver_vessel ? TissueLook::shown
                                                                : TissueLook::hidden;
   }

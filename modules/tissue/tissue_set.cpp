@@ -17,7 +17,9 @@ std::string range(const Tissue& t) {
 }
 
 bool sameVoxels(const Tissue& a, const Tissue& b) {
-  return a.label == b.label && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
+  const bool same_place =
+      a.structure == b.structure && (!a.structure.empty() || a.label == b.label);
+  return same_place && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
 }
 
 std::string shown(double value) {
@@ -98,6 +100,16 @@ Status validate(const TissueSet& set, const std::string& file) {
                  "The label " + std::to_string(*t.label) + " is not between 1 and 255",
                  "Give a label of the label map, or none for every voxel");
     }
+    if (t.shell && t.structure.empty()) {
+      return bad(file, field + ".shell", "The shell has no structure that it stands in for",
+                 "Give the tissue a structure");
+    }
+    if (t.shell && (t.shell->of.empty() || !kShellRange.holds(t.shell->thickness_mm))) {
+      return bad(file, field + ".shell",
+                 "The shell of '" + t.shell->of + "', " + shown(t.shell->thickness_mm) +
+                     " mm thick, is not possible",
+                 "Name a structure and a thickness of " + kShellRange.words());
+    }
     if (!kShareRange.holds(t.opacity)) {
       return bad(file, field + ".opacity",
                  "The opacity " + shown(t.opacity) + " is not between 0 and 1");
@@ -121,7 +133,7 @@ Status validate(const TissueSet& set, const std::string& file) {
         return bad(file, field + ".hu",
                    "The HU ranges " + range(other) + " of '" + other.id + "' and " + range(t) +
                        " of '" + t.id + "' overlap",
-                   "Separate the ranges or give them different labels");
+                   "Separate the ranges or give them different structures or labels");
       }
     }
   }
@@ -143,6 +155,11 @@ Result<TissueSet> parseTissueSet(const Json& json, const std::string& file) {
     t.hu_max = int(hu[1]);
     t.hu_source = item.text("hu_source");
     if (item.has("label")) t.label = int(item.integer("label", kLabelRange));
+    t.structure = item.text("structure", "");
+    if (item.has("shell")) {
+      JsonReader shell = item.object("shell");
+      t.shell = Tissue::Shell{shell.text("of"), shell.number("thickness_mm", kShellRange)};
+    }
     t.colour = item.vec3("colour", kShareRange);
     t.opacity = item.number("opacity", kShareRange);
     readMechanics(item.object("mechanics"), t);
@@ -174,6 +191,8 @@ Json toJson(const TissueSet& set) {
                  {"opacity", t.opacity},
                  {"mechanics", mechanicsOf(t)}};
     if (t.label) item["label"] = *t.label;
+    if (!t.structure.empty()) item["structure"] = t.structure;
+    if (t.shell) item["shell"] = {{"of", t.shell->of}, {"thickness_mm", t.shell->thickness_mm}};
     tissues.push_back(std::move(item));
   }
   return {{"format", "trephine.tissues"}, {"version", 1}, {"name", set.name}, {"tissues", tissues}};
@@ -189,7 +208,7 @@ TissueTable tissueTable(const TissueSet& set) {
     c.hu_min = t.hu_min;
     c.hu_max = t.hu_max;
     c.cuttable = t.cuttable ? 1 : 0;
-    c.label = t.label.value_or(0);
+    c.label = t.label.value_or(t.structure.empty() ? 0 : -1);  // -1: not placed in a case yet
     c.solid = t.isSolid() ? 1 : 0;
   }
   return table;

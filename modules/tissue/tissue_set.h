@@ -22,6 +22,7 @@ namespace trephine {
 constexpr Range kHuRange{-32768, 32767, "HU"};
 constexpr Range kLabelRange{1, 255};
 constexpr Range kShareRange{0, 1};  // opacity, colour
+constexpr Range kShellRange{0.1, 20, "mm"};
 
 // What is as stiff as this stops a tool, unless the set says otherwise: no soft tissue comes near it,
 // and no arm lets it be told from bone.
@@ -35,6 +36,16 @@ struct Tissue : SetNumbers {
   int hu_max = 0;
   std::string hu_source;
   std::optional<int> label;  // 1..255: only voxels with this label of a label map; absent: any voxel
+  // Only voxels of the case's structure of this name, whose `label` a scene finds when it is placed
+  // in a case (scene/scene_structures.h); empty: as `label` says.
+  std::string structure{};
+  // Where a case lacks that structure, it is the outermost layer of another.
+  struct Shell {
+    std::string of;
+    double thickness_mm = 1.0;
+  };
+  std::optional<Shell> shell{};
+  bool isAnywhere() const { return !label && structure.empty(); }
   Vec3 colour{1.0};          // r, g, b in [0, 1]
   double opacity = 0.0;      // [0, 1] per millimetre of depth; 0 hides the tissue
   bool cuttable = true;
@@ -55,8 +66,9 @@ struct TissueSet {
 
 // Every rule that a set must keep, whether read from a file or typed in a panel: 1 to kMaxTissues
 // tissues, unique ids, hu_min <= hu_max within int16, labels from 1 to 255, no two ranges that
-// overlap under the same label or both without one, finite numbers, none of the mechanics negative,
-// opacity and colour in [0, 1], a source for each number. The Error names `file`, field and value.
+// overlap in the same structure or label or both in none, finite numbers, none of the mechanics
+// negative, opacity and colour in [0, 1], a source for each number. The Error names `file`, field
+// and value.
 Status validate(const TissueSet& set, const std::string& file);
 
 Result<TissueSet> readTissueSet(const std::filesystem::path& file);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "haptics/haptic_core.h"
 #include "scene/scene.h"
+#include "scene/scene_structures.h"
 #include "training/recording_layout.h"
 #include "volume/case_memory.h"
 #include "volume/journal_file.h"
@@ -130,6 +131,7 @@ Status serveJournal(HapticCore& core, JournalFile& journal_file, std::uint64_t t
 
 // The label map as the session had it; null where it had none.
 Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& header,
+                                                       const TissueSet& tissues,
                                                        const LabelMap* given) {
   const auto wrong = [](const char* what, const char* next) {
     return Error{"WRONG_LABELS", what, "--labels", next};
@@ -145,11 +147,13 @@ Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& he
   if (!given) return std::shared_ptr<const LabelMap>();
   Result<LabelMap> fitted = fitTo(*given, header.geometry);
   if (!fitted) return fitted.error();
-  if (labelsSha256(*fitted) != header.labels_sha256) {
+  // As they were placed: with the shells that its tissues asked for.
+  auto labels = withShells(tissues, std::make_shared<const LabelMap>(*std::move(fitted)));
+  if (labelsSha256(*labels) != header.labels_sha256) {
     return wrong("The label map is not the one that was recorded: its labels differ",
                  "Give the label map that the session was run with");
   }
-  return std::make_shared<const LabelMap>(*std::move(fitted));
+  return labels;
 }
 
 }  // namespace
@@ -176,7 +180,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
-  Result<std::shared_ptr<const LabelMap>> fitted = recordedLabels(header, labels);
+  Result<std::shared_ptr<const LabelMap>> fitted = recordedLabels(header, scene->tissues, labels);
   if (!fitted) return fitted.error();
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());

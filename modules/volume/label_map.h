@@ -1,4 +1,7 @@
-// A label map: which structure of a segmentation each voxel belongs to. A plain value.
+// A label map: which structure of a patient each voxel belongs to. A plain value.
+//
+// Tissues, landmarks and scenes name a structure; the number that stands for it is of this map
+// alone. A voxel is of one structure or of none.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +15,51 @@
 
 namespace trephine {
 
-struct LabelMap {
-  GridGeometry geometry;
-  std::vector<std::uint8_t> labels;  // i fastest, then j, then k; 0: none
+struct Structure {
+  int label = 0;         // 1 to 255
+  std::string name;      // UTF-8, one of its own in a map: sameName()
+  Vec3 colour{1.0};      // r, g, b in [0, 1]
+  std::string tissue{};  // the id of what it is made of; empty: not said
+
+  friend bool operator==(const Structure&, const Structure&) = default;
 };
 
-// Any volume file. Errors: those of readVolumeFile, and NOT_LABELS where a voxel is no whole number
-// from 0 to 255.
+struct LabelMap {
+  GridGeometry geometry;
+  std::vector<std::uint8_t> labels;     // i fastest, then j, then k; 0: none
+  std::vector<Structure> structures{};  // what labels stand for, in the order of a list
+
+  // By its name; null: none.
+  const Structure* find(const std::string& name) const;
+  const Structure* find(int label) const;
+};
+
+// A map has no more, so that there is always a label that it does not use.
+constexpr int kMostStructures = 250;
+
+// Letters in either case, blanks and underscores alike: "Left_Kidney" is "left kidney". ASCII
+// alone; other letters are compared as they are.
+bool sameName(const std::string& a, const std::string& b);
+// A colour to tell a label from its neighbours, where a file gives none.
+Vec3 labelColour(int label);
+// The lowest label that neither a structure nor a voxel has; 0: none.
+int unusedLabel(const LabelMap& map);
+
+// Gives each label that voxels have and that has no row the name "label 7". In rising order.
+void nameTheRest(LabelMap& map);
+
+// The same voxels, without rows of structures that have none.
+LabelMap withoutEmpty(const LabelMap& map);
+
+// The outermost layer of a structure, as a capsule or the outer table is: its voxels whose middle
+// lies within `thickness_mm` of its surface, and at least those with one neighbour, of their 26,
+// outside, so that no ray passes it. The border of the scan is no surface, nor is that of a
+// structure which lies within this one (more than half of whose neighbours are of it). 1 for a
+// voxel of the layer.
+std::vector<std::uint8_t> shellOf(const LabelMap& map, int label, double thickness_mm);
+
+// Any file of readSegmentation() (segmentation.h), by its errors; of segments that share voxels the
+// smaller has them.
 Result<LabelMap> readLabelMap(const std::filesystem::path& file);
 
 // A byte a voxel, .mha, .nii or .nii.gz. `reversed_slices`: of the CT's file that it goes beside

@@ -6,12 +6,14 @@
 // bytes of big-endian gzip, takes a first axis of up to nine voxels for a vector, refuses a byte
 // skip, and gives out a file that is cut short.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <set>
 
 #include "volume/file_format.h"
+#include "volume/label_map.h"
 
 namespace trephine::file_format {
 
@@ -56,6 +58,7 @@ const std::map<std::string, double> kUnits_mm{
 
 struct Fields {
   std::map<std::string, std::string> values;  // by a name of kFields
+  std::map<std::string, std::string> segments;  // key:=value, as 3D Slicer names segments
   std::size_t length = 0;                     // of the header, with the blank line that ends it
   bool ended = false;                         // there is such a line
 
@@ -66,6 +69,17 @@ struct Fields {
   }
   std::string word(const std::string& name) const { return lowerCase(text(name)); }
 };
+
+// A value of anyone's own, in which a line's end and a backslash are written with one.
+std::string unescaped(const std::string& text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool escape = text[at] == '\\' && at + 1 < text.size();
+    if (escape) ++at;
+    out += escape && text[at] == 'n' ? '\n' : text[at];
+  }
+  return out;
+}
 
 Result<Fields> fieldsOf(const std::string& text, const fs::path& file) {
   if (!text.starts_with("NRRD000")) return unreadable("The file is not a NRRD file", file);
@@ -82,7 +96,12 @@ Result<Fields> fieldsOf(const std::string& text, const fs::path& file) {
     }
     // "field: what it is", or "key:=value", which is anyone's own and left alone.
     const std::size_t colon = std::min(line.find(": "), line.find(":="));
-    if (line[0] == '#' || (colon < line.size() && line[colon + 1] == '=')) continue;
+    if (line[0] == '#') continue;
+    if (colon < line.size() && line[colon + 1] == '=') {
+      const std::string key = line.substr(0, colon);
+      if (key.starts_with("Segment")) fields.segments[key] = unescaped(line.substr(colon + 2));
+      continue;
+    }
     if (colon > line.size()) {
       return unreadable("A line of the header is not understood: " + shown(line), file);
     }
@@ -154,10 +173,28 @@ Result<double> unitOf(const Fields& fields, const fs::path& file) {
   return found->second;
 }
 
+// 3D Slicer keeps segments that overlap in layers: a first axis that is a list, no space.
+bool isLayered(const Fields& fields) {
+  const std::vector<std::string> kinds = wordsIn(fields.text("kinds"));
+  return !fields.segments.empty() && numberIn(fields.text("dimension")) == 4.0 && !kinds.empty() &&
+         kinds[0] == "list";
+}
+
 Result<GridGeometry> geometryOf(const Fields& fields, VolumeFileHeader& header,
                                 const fs::path& file) {
-  const auto sizes = numbersIn(fields.text("sizes"));
+  auto sizes = numbersIn(fields.text("sizes"));
   if (!sizes) return unreadable("The header's sizes are not numbers", file);
+  if (isLayered(fields)) {
+    if (sizes->size() != 4) return unreadable("The image's size is not four numbers", file);
+    const double layers = sizes->front();
+    if (!(layers >= 1.0 && layers <= kMostStructures) || layers != std::floor(layers)) {
+      return unreadable(
+          "The header's number of layers is not from 1 to " + std::to_string(kMostStructures),
+          file);
+    }
+    header.layers = int(layers);
+    sizes->erase(sizes->begin());
+  }
   const auto size = sizeFrom(*sizes, file);
   if (!size) return size.error();
   if (!fields.has("space") || !fields.has("spacedirections")) {
@@ -176,7 +213,8 @@ Result<GridGeometry> geometryOf(const Fields& fields, VolumeFileHeader& header,
   }
   const auto unit_mm = unitOf(fields, file);
   if (!unit_mm) return unit_mm.error();
-  const auto axes = vectorsIn(fields.text("spacedirections"));
+  auto axes = vectorsIn(fields.text("spacedirections"));
+  if (isLayered(fields) && axes && axes->size() == 4 && !axes->front()) axes->erase(axes->begin());
   if (!axes || axes->size() != 3) {
     return badGeometry("The header's space directions are not three vectors", file);
   }
@@ -205,12 +243,15 @@ Status checkKind(const Fields& fields, const fs::path& file) {
   if (!dimension || *dimension < 3.0) {
     return unreadable("The image is not three-dimensional", file);
   }
-  if (*dimension != 3.0) {
+  const bool layered = isLayered(fields);
+  if (*dimension != 3.0 && !layered) {
     return notHu("The image has " + fields.text("dimension").substr(0, 8) +
                      " dimensions: colour, vectors and time are not read",
                  file);
   }
-  for (const std::string& kind : wordsIn(fields.text("kinds"))) {
+  std::vector<std::string> kinds = wordsIn(fields.text("kinds"));
+  if (layered) kinds.erase(kinds.begin());
+  for (const std::string& kind : kinds) {
     if (kind != "domain" && kind != "space" && kind != "???" && kind != "none") {
       return notHu("An axis of the image is of the kind " + shown(kind) + ", not space", file);
     }
@@ -307,6 +348,7 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
   const auto geometry = geometryOf(*fields, header, file);
   if (!geometry) return geometry.error();
   header.geometry = *geometry;
+  header.segments = fields->segments;
   if (auto status = settle(header, file); !status) return status.error();
   if (auto status = findVoxels(*fields, file, header); !status) return status.error();
   return header;

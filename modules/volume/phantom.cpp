@@ -184,7 +184,13 @@ Result<Phantom> makePhantomWithLabels(const std::string& name, const Progress& p
       !paintPhantom(built_in.truth, centres, kPhantomNoiseHu, progress, volume)) {
     return Error{"CANCELLED", "Making the built-in case was cancelled", name, ""};
   }
-  if (built_in.labelled) phantom.labels = labelsOf(centres, volume.geometry);
+  if (built_in.labelled) {
+    phantom.labels = labelsOf(centres, volume.geometry);
+    for (const LabelRow& row : kLabels) {
+      const std::string tissue = phantomTissueName(row.tissue);
+      phantom.labels->structures.push_back({row.label, tissue, labelColour(row.label), tissue});
+    }
+  }
   progress.at(1.0, "Making the built-in case");
   return phantom;
 }

@@ -82,6 +82,9 @@ Result<VolumeFileHeader> readVolumeFileHeader(const fs::path& file) {
 Result<VolumeFileReading> readVolumeFile(const fs::path& file, const Progress& progress) {
   auto header = readVolumeFileHeader(file);
   if (!header) return header.error();
+  if (header->layers > 1) {
+    return notHu("The image has several values a voxel: it is a segmentation in layers", file);
+  }
   return caught(file, [&] { return readVoxels(*std::move(header), file, progress); });
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ struct VolumeFileHeader {
   double slope = 1.0;  // HU = slope * stored + intercept
   double intercept = 0.0;
   std::vector<std::string> notes;  // what the file leaves unsaid, and what is taken instead
+  // Of a NRRD of segments: so many values a voxel, one after another (segmentation.h reads those,
+  // readVolumeFile() one alone), and what 3D Slicer says of them, by its keys ("Segment0_Name").
+  int layers = 1;
+  std::map<std::string, std::string> segments;
 
   // Where the voxels lie: `bytes` bytes of `file` from `offset`, unpacked by zlib if `packed`, less
   // the first `skip` of what comes out.
@@ -44,7 +49,9 @@ struct VolumeFileHeader {
     std::uint64_t skip = 0;
   } data;
 
-  std::uint64_t storedBytes() const { return geometry.voxelCount() * std::uint64_t(bytesOf(type)); }
+  std::uint64_t storedBytes() const {
+    return geometry.voxelCount() * std::uint64_t(layers) * std::uint64_t(bytesOf(type));
+  }
 };
 
 // A volume and what was done to its values. Values are HU as the file's slope and intercept give

@@ -51,10 +51,14 @@ std::shared_ptr<const Volume> VolumeMirror::whole() const {
   return whole && whole->geometry == volume_.geometry ? whole : nullptr;
 }
 
+void VolumeMirror::renew() {
+  for (Reader* reader : readers_) reader->news_ = {};
+}
+
 void VolumeMirror::renewAll(const std::shared_ptr<const Volume>& whole) {
   whole_ = whole;
   touched_ = {};
-  for (Reader* reader : readers_) reader->news_ = {};
+  renew();
 }
 
 VolumeMirror::Reader::Reader(std::shared_ptr<VolumeMirror> mirror) : mirror_(std::move(mirror)) {

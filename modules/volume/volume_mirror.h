@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "volume/grid.h"
@@ -26,6 +27,9 @@ class VolumeMirror {
   // All voxels again, from others of the same geometry; others are left alone. Allocates none.
   void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels,
               const std::shared_ptr<const Volume>& whole = nullptr);
+  // Other labels of the same voxels. No reader is told of it; renew() makes everything new to all.
+  void setLabels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
+  void renew();
   // Copies what was changed since the last call. True where anything was. A grid of another
   // geometry is left alone.
   bool pull(Grid& grid);

@@ -17,7 +17,7 @@ set(TREPHINE_LIBRARY_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::Com
     VTK::RenderingCore VTK::RenderingOpenGL2 VTK::RenderingVolume VTK::RenderingVolumeOpenGL2
     VTK::vtksys)
 set(TREPHINE_LIBRARY_vtk-filters VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel
-    VTK::ImagingGeneral VTK::ImagingMorphological)
+    VTK::FiltersCore VTK::IOGeometry VTK::ImagingGeneral VTK::ImagingMorphological)
 set(TREPHINE_LIBRARY_opengl OpenGL::GL GLEW::GLEW)
 set(TREPHINE_LIBRARY_qt-gui Qt6::Gui)
 set(TREPHINE_LIBRARY_qt Qt6::Widgets Qt6::OpenGLWidgets)

@@ -48,6 +48,7 @@ INNER = {
         "series": {"common", "dicom", "report"},
         "steps": {"common", "report", "series"},
         "files": {"common", "report", "series"},
+        "segmentation": {"common", "report"},
     },
     "lab": {
         "common": set(),
@@ -63,9 +64,10 @@ INNER = {
         "common": set(),
         "views": {"common"},
         "tissue": {"common"},
+        "structures": {"common", "views"},
         "training": {"common"},
         "cases": {"common", "views"},
-        "frame": {"common", "views", "tissue", "training", "cases"},
+        "frame": {"common", "views", "tissue", "structures", "training", "cases"},
     },
 }
 

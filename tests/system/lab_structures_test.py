@@ -5,7 +5,7 @@ import struct
 import subprocess
 import unittest
 
-from lab_support import LAB, LabTest, data_folder, lab
+from lab_support import LAB, SCENES, LabTest, data_folder, lab
 
 GROWN = {"schema", "build", "name", "voxels", "ml", "seconds", "leaked", "hu", "steps"}
 IN_LIVER = "-60,-20,20"  # of the built-in abdomen
@@ -105,6 +105,80 @@ class Grow(LabTest):
         self.assert_error(answer, "MISSING_FILE", "none.nii")
         answer = lab("structures", "shrink", expect=1)
         self.assert_error(answer, "BAD_ARGUMENT", "shrink")
+
+
+class Import(LabTest):
+    def setUp(self):
+        super().setUp()
+        self.liver = self.folder / "liver.nii.gz"
+        lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "Liver",
+            "--write", self.liver)
+
+    def test_a_name_goes_with_the_label_map_and_comes_back(self):
+        answer = lab("structures", "import", "phantom:abdomen", self.liver)
+        (row,) = answer["structures"]
+        self.assertEqual(row["name"], "Liver")
+        self.assertGreater(row["ml"], 1100)
+        self.assertAlmostEqual(row["hu"][1], 50, delta=5)
+        self.assertEqual(answer["covers_percent"], 100)
+        self.assertEqual(answer["findings"], [])
+        again = lab("structures", "import", "phantom:abdomen", self.liver, "--write",
+                    self.folder / "b.seg.nrrd")
+        self.assertEqual(again["structures"], answer["structures"])
+        (row,) = lab("structures", "compare", self.liver, self.folder / "b.seg.nrrd")["rows"]
+        self.assertEqual((row["name"], row["dice"]), ("Liver", 1.0))
+
+    def test_a_liver_of_air_is_refused_unless_it_is_kept(self):
+        names = self.folder / "liver.structures.json"
+        names.write_text(names.read_text().replace("Liver", "left lung"))
+        answer = lab("structures", "import", "phantom:abdomen", self.liver, expect=1)
+        self.assert_error(answer, "HU_NOT_TISSUE", "left lung", "HU_NOT_TISSUE=keep")
+        kept = lab("structures", "import", "phantom:abdomen", self.liver,
+                   "--choice", "HU_NOT_TISSUE=keep")
+        self.assertEqual([f["code"] for f in kept["findings"]], ["HU_NOT_TISSUE"])
+
+    def test_another_patients_label_map_is_refused(self):
+        answer = lab("structures", "import", "phantom:cranium", self.liver, expect=1)
+        self.assertIn(answer["error"]["code"], ("HALF_OUTSIDE", "LABELS_ELSEWHERE", "HU_NOT_TISSUE"))
+
+    def test_structures_go_out_as_label_maps_surfaces_and_dicom(self):
+        out = lab("structures", "export", "phantom:abdomen", "--name", "liver", "--name", "vessel",
+                  "--write", self.folder / "two.seg.nrrd")
+        self.assertEqual([row["name"] for row in out["structures"]], ["liver", "vessel"])
+        stl = lab("structures", "export", "phantom:abdomen", "--name", "liver",
+                  "--write", self.folder / "liver.stl")
+        (row,) = stl["structures"]
+        self.assertAlmostEqual(row["surface_ml"] / row["ml"], 1, delta=0.05)
+        self.assertEqual((self.folder / "liver.stl").stat().st_size, 84 + 50 * row["triangles"])
+        lab("structures", "export", "phantom:abdomen", "--name", "liver",
+            "--dicom", self.folder / "dicom")
+        self.assertTrue((self.folder / "dicom" / "structures.dcm").is_file())
+        back = lab("structures", "import", self.folder / "dicom" / "CT",
+                   self.folder / "dicom" / "structures.dcm")
+        (row,) = back["structures"]
+        self.assertEqual(row["name"], "liver")
+        self.assertAlmostEqual(row["ml"], stl["structures"][0]["ml"], delta=1e-3)
+        answer = lab("structures", "export", "phantom:abdomen", "--name", "foot",
+                     "--write", self.folder / "x.nii", expect=1)
+        self.assert_error(answer, "NO_STRUCTURE", "'foot'", "liver")
+
+    def test_an_exercise_runs_on_them_in_words_or_with_a_warning(self):
+        ct = self.folder / "ct"
+        lab("phantom", "abdomen", "--out", ct)
+        scene = SCENES / "liver.json"
+        with_liver = lab("run", scene, "--case", ct, "--labels", self.liver, "--seconds", 10,
+                         "--out", self.folder / "a")
+        self.assertEqual(with_liver["warnings"], [])
+        self.assertGreater(with_liver["removed_mm3"]["liver"] + with_liver["removed_mm3"]["capsule"],
+                           0)
+        without = lab("run", scene, "--case", ct, "--seconds", 1, "--out", self.folder / "b")
+        self.assertEqual([w["code"] for w in without["warnings"]], ["LACKS_STRUCTURE"])
+        again = lab("replay", self.folder / "a" / "session.h5", "--case", ct,
+                    "--labels", self.liver)
+        self.assertTrue(again["identical"])
+        other = lab("run", SCENES / "cranium.json", "--case", ct, "--seconds", 1,
+                    "--out", self.folder / "c")
+        self.assertIn("OTHER_ANATOMY", [w["code"] for w in other["warnings"]])
 
 
 @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set: this test needs the real CT data")

@@ -105,7 +105,9 @@ void MainWindow::askForScene() {
 void MainWindow::askForLabels() {
   QFileDialog* dialog = fileDialog("labelsDialog", tr("Open the case's label map"));
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
-    unlessCutsAreLost([this, file] { workstation_.useLabels(toPath(file)); });
+    unlessStructuresAreLost([this, file] {
+      unlessCutsAreLost([this, file] { workstation_.useLabels(toPath(file)); });
+    });
   });
   dialog->open();
 }
@@ -126,7 +128,9 @@ void MainWindow::dropEvent(QDropEvent* event) {
 
 void MainWindow::open(const std::filesystem::path& path) {
   const auto go_on = [this, path] { workstation_.openPath(path); };
-  if (Workstation::isScene(path)) return unlessSceneIsLost(go_on);
+  if (Workstation::isScene(path)) {
+    return unlessStructuresAreLost([this, go_on] { unlessSceneIsLost(go_on); });
+  }
   go_on();
 }
 
@@ -154,6 +158,7 @@ void MainWindow::showScene() {
   showInUse();
   setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
   tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
+  structures_->setWanted(scene->structures);
   showRenderable(scene->controller);
   tissues_->setLooks(workstation_.looks());
   view_->setTissues(scene->tissues, workstation_.looks());
@@ -180,13 +185,37 @@ void MainWindow::showCase() {
   } else {
     views_->refill(of->volume, of->labels);
   }
-  QString about = sizeWords(of->volume->geometry);
-  if (!of->name.empty()) about = toQt(of->name) + '\n' + about;
-  if (of->labels) about += tr("\nwith a label map");
-  case_->showCase(about);
+  showCaseCard(*of);
   tissues_->setLabelsOpen(of->labels != nullptr);
+  openStructures();
   lookAtCase();
   showPhase();
+}
+
+void MainWindow::showCaseCard(const Case& of) {
+  QString about = sizeWords(of.volume->geometry);
+  if (!of.name.empty()) about = toQt(of.name) + '\n' + about;
+  if (of.anatomy) {
+    switch (of.anatomy->region) {
+      case BodyRegion::head:
+        about += of.anatomy->vault ? tr("\nA head") : tr("\nA head whose vault is not whole");
+        break;
+      case BodyRegion::abdomen:
+        about += tr("\nAn abdomen");
+        break;
+      case BodyRegion::not_sure:
+        about += tr("\nWhat it shows is not known");
+    }
+  }
+  if (of.structures && !of.structures->structures.empty()) {
+    QStringList names;
+    for (const Structure& s : of.structures->structures) names << toQt(s.name);
+    constexpr int kMost = 6;
+    const int more = int(names.size()) - kMost;
+    about += tr("\nwith %1").arg(QStringList(names.mid(0, kMost)).join(", "));
+    if (more > 0) about += tr(" and %1 more").arg(more);
+  }
+  case_->showCase(about);
 }
 
 void MainWindow::lookAtCase() {
@@ -217,10 +246,14 @@ void MainWindow::showPhase() {
   scenes_->setEnabled(may_open);
   case_->setOpeningAllowed(may_open);
   start_->setEnabled(ready);
+  editor_.setLocked(phase == Phase::ready || phase == Phase::empty
+                        ? QString()
+                        : tr("Structures cannot be changed while an exercise runs: it was started "
+                             "on them."));
   for (QAction* action : {stop_, pause_}) action->setEnabled(running);
   if (!running) {
     pause_->setChecked(false);
-    for (QAction* action : {undo_, redo_}) action->setEnabled(false);
+    showUndo();
     rewind_->showIdle();
     notice_->showIdle();
   }

@@ -1,7 +1,7 @@
 // The workstation's window: case and tissues at the left, the 3-D view, the arms at the right. It
 // connects the widgets with the workstation; neither knows the other. (main_window_layout.cpp
-// builds it, main_window_tissues.cpp is what it does with tissues, main_window_losses.cpp what it
-// asks before work is lost, main_window.cpp the rest.)
+// builds it, main_window_tissues.cpp and main_window_structures.cpp are what it does with those,
+// main_window_losses.cpp what it asks before work is lost, main_window.cpp the rest.)
 #pragma once
 
 #include <QComboBox>
@@ -18,6 +18,7 @@
 #include "ui/common/icons.h"
 #include "ui/common/slip_guard.h"
 #include "ui/frame/workstation.h"
+#include "ui/structures/structure_panel.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/training/arms_panel.h"
 #include "ui/training/rewind_bar.h"
@@ -60,11 +61,13 @@ class MainWindow : public QMainWindow {
 
  private:
   static constexpr double kNoEnd_s = 1e9;
+  static constexpr int kCaseTab = 0, kStructureTab = 2;
 
   void buildActions();
   void buildBars();
   void buildPanels();
   void connectParts();
+  void connectStructures();
   QAction* makeAction(Symbol symbol, const char* name, const QString& text, const QKeySequence& key,
                       const QString& tip);
   void fillScenes();
@@ -80,9 +83,26 @@ class MainWindow : public QMainWindow {
   void askWhereToSave(const QString& title, const QString& suggestion, const QString& filter,
                       void (MainWindow::*save)(const QString&));
   void showAbout();
+  void showCaseCard(const Case& of);  // in the panel of the case
   void open(const std::filesystem::path& path);
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
   void unlessTissuesStay(std::function<void()> go_on);
+  // The structures that are made (main_window_structures.cpp).
+  bool structuresShown() const;
+  bool takeStructures();
+  void openStructures();
+  void showStructures();
+  void showStructureTab();
+  void structureToolChanged(SliceTool tool);
+  void structureKey(int key);
+  void showUndo();
+  void askAboutStructures(const Error& error, const std::filesystem::path& file,
+                          const Answers& answers, const std::string& option);
+  void askToSaveStructures();
+  void saveStructuresThen(std::function<void()> then);
+  void unlessStructuresAreLost(std::function<void()> go_on);
+  // Goes on with the exercise; where the case is not what it is for it asks first.
+  void unlessItDoesNotFit(std::function<void()> go_on);
   void showScene();
   void showInUse();
   void showOpening(const Scene& scene, const std::filesystem::path& file);
@@ -117,6 +137,10 @@ class MainWindow : public QMainWindow {
 
   SlipGuard slip_guard_;
   Workstation workstation_;
+  StructureEditor editor_;
+  std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
+  QTimer settled_;
+  bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;
   QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_,
       *picture_, *volume_, *look_;
@@ -124,6 +148,7 @@ class MainWindow : public QMainWindow {
   QTabWidget* left_;
   CasePanel* case_;
   ImportDialog* import_;
+  StructurePanel* structures_;
   TissuePanel* tissues_;
   ArmsPanel* arms_;
   FourUp* views_;

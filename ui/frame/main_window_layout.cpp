@@ -19,7 +19,6 @@ namespace trephine {
 namespace {
 constexpr int kLeftWidth = 300, kRightWidth = 270;
 constexpr int kFrame_ms = 16;
-constexpr int kCaseTab = 0;
 }  // namespace
 
 MainWindow::MainWindow(std::filesystem::path recordings, QWidget* parent)
@@ -87,7 +86,9 @@ void MainWindow::buildPanels() {
   left_->setObjectName("leftTabs");
   left_->setDocumentMode(true);
   left_->insertTab(kCaseTab, scrolled(case_, "casePage"), tr("Case"));
+  structures_ = new StructurePanel(editor_);
   left_->addTab(scrolled(tissues_, "tissuePage"), tr("Tissues"));
+  left_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
   left_->setMinimumWidth(260);
   views_ = new FourUp;
   view_ = &views_->threeD();
@@ -184,8 +185,10 @@ void MainWindow::connectParts() {
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
   connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
-  connect(undo_, &QAction::triggered, this, [this] { command(CommandKind::undo); });
-  connect(redo_, &QAction::triggered, this, [this] { command(CommandKind::redo); });
+  connect(undo_, &QAction::triggered, this,
+          [this] { workstation_.session() ? command(CommandKind::undo) : editor_.undo(); });
+  connect(redo_, &QAction::triggered, this,
+          [this] { workstation_.session() ? command(CommandKind::redo) : editor_.redo(); });
   connect(reset_, &QAction::triggered, this, &MainWindow::reset);
   connect(rewind_, &RewindBar::rewindAsked, this, &MainWindow::rewind);
   connect(look_, &QAction::triggered, this, &MainWindow::lookAtCase);
@@ -203,8 +206,10 @@ void MainWindow::connectParts() {
   connect(open_file_, &QAction::triggered, this, &MainWindow::askForFile);
   connect(case_, &CasePanel::phantomWanted, this, [this](const QString& name) {
     const auto go_on = [this, name] { workstation_.openPhantom(name.toStdString()); };
-    if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
-    unlessSceneIsLost(go_on);
+    unlessStructuresAreLost([this, name, go_on] {
+      if (workstation_.sceneFits(name.toStdString())) return unlessCutsAreLost(go_on);
+      unlessSceneIsLost(go_on);
+    });
   });
   connect(case_, &CasePanel::seriesWanted, import_, &ImportDialog::open);
   connect(import_, &ImportDialog::folderWanted, this, &MainWindow::askForFolder);
@@ -217,7 +222,9 @@ void MainWindow::connectParts() {
           [this](const QString& path) { open(toPath(path)); });
   connect(import_, &ImportDialog::caseRead, this,
           [this](const Case& read, const std::filesystem::path& labels) {
-            unlessCutsAreLost([this, read, labels] { workstation_.openImported(read, labels); });
+            unlessStructuresAreLost([this, read, labels] {
+              unlessCutsAreLost([this, read, labels] { workstation_.openImported(read, labels); });
+            });
           });
   connect(&workstation_.import(), &ImportTask::scanned, this,
           [this] { case_->setSeriesAtHand(true); });
@@ -241,7 +248,12 @@ void MainWindow::connectParts() {
   connect(scenes_, &QComboBox::activated, this, [this](int index) {
     const auto file = toPath(scenes_->itemData(index).toString());
     showInUse();  // until the other is on its way: it may be asked about, or not be had
-    unlessSceneIsLost([this, file] { workstation_.useScene(file); });
+    // A built-in case changes with the exercise, and its structures with it.
+    const std::optional<Case>& of = workstation_.currentCase();
+    const auto go_on = [this, file] {
+      unlessSceneIsLost([this, file] { workstation_.useScene(file); });
+    };
+    of && of->built_in ? unlessStructuresAreLost(go_on) : go_on();
     view_->setFocus();
   });
 
@@ -253,6 +265,7 @@ void MainWindow::connectParts() {
 
   connect(&workstation_, &Workstation::openingProgressed, this,
           [this](double fraction, const QString& step) {
+            if (workstation_.isPlacing()) return;  // a moment, of what is on the screen
             case_->showProgress(fraction, step);
             left_->setCurrentIndex(kCaseTab);
             tissues_->setEnabled(false);  // they may be about to go
@@ -285,6 +298,7 @@ void MainWindow::connectParts() {
   connect(&workstation_, &Workstation::failed, this, &MainWindow::report);
   connect(&workstation_, &Workstation::recordingFailed, this, &MainWindow::askToGoOn);
   connect(&frame_timer_, &QTimer::timeout, this, &MainWindow::tick);
+  connectStructures();
 }
 
 void MainWindow::fillScenes() {

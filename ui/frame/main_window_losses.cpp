@@ -49,7 +49,15 @@ void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
 }
 
 void MainWindow::start() {
-  unlessCutsAreLost([this] { startExercise(); });
+  if (editor_.preview()) editor_.takePreview();
+  if (!takeStructures())
+    return say(tr("The structures are being put in place: try again in a moment."));
+  if (workstation_.isOpening()) {  // what was made a moment ago, first
+    connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::start,
+            Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
+    return;
+  }
+  unlessItDoesNotFit([this] { unlessCutsAreLost([this] { startExercise(); }); });
 }
 
 void MainWindow::reset() {
@@ -82,14 +90,17 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     return say(tr("A file is being saved; the window closes when it is written."));
   }
   const bool running = phase != Phase::empty && phase != Phase::ready;
-  if (may_close_ || !(running || unsaved_cuts_ || workstation_.tissuesEdited())) {
+  if (may_close_ ||
+      !(running || unsaved_cuts_ || workstation_.tissuesEdited() || editor_.edited())) {
     return QMainWindow::closeEvent(event);
   }
   event->ignore();
   const auto for_good = [this] {
-    unlessTissuesStay([this] {
-      may_close_ = true;
-      close();
+    unlessStructuresAreLost([this] {
+      unlessTissuesStay([this] {
+        may_close_ = true;
+        close();
+      });
     });
   };
   if (!running) return unlessCutsAreLost(for_good);

@@ -2,12 +2,15 @@
 
 #include <QDateTime>
 #include <QTimer>
+#include <map>
 #include <new>
 
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
+#include "imaging/structure_importer.h"
+#include "scene/scene_structures.h"
 #include "session/arm_devices.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
@@ -23,6 +26,9 @@ struct Workstation::Opened {
   std::optional<Case> of;   // none: the scene's own is read
   bool same_scene = false;  // its tissues stay as they are edited
   std::string labels_file{};  // instead of what the case has; empty: that stays
+  Answers answers{};          // about them
+  bool structures_alone = false;     // the open case with others of them
+  bool any_scene = false;            // nobody chose the scene: one that fits what the case shows
   std::optional<Error> no_labels{};  // why the case opened without them
   Volume mirror{};
 };
@@ -96,6 +102,7 @@ void Workstation::openPath(const std::filesystem::path& path) {
   if (isScene(path)) {
     std::optional<Scene> scene = readSceneOrFail(path);
     if (!scene) return;
+    scene_chosen_ = true;
     const std::string source = scene->case_source;
     openSource(*std::move(scene), path, source);
     return;
@@ -110,23 +117,14 @@ void Workstation::openPhantom(const std::string& name) {
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   useCase(*scene, phantomSource(name));
-  const bool same = fits && keepTissues(*scene);
-  openSource(*std::move(scene), file, phantomSource(name), same);
-}
-
-// What was edited holds on the next case too, unless the scene has other tissues there.
-bool Workstation::keepTissues(Scene& scene) const {
-  if (!scene_ || scene_->tissues_elsewhere.has_value() != scene.tissues_elsewhere.has_value()) {
-    return false;
-  }
-  scene.tissues = scene_->tissues;
-  return true;
+  openSource(*std::move(scene), file, phantomSource(name), fits);
 }
 
 void Workstation::useScene(const std::filesystem::path& file) {
   if (!mayOpen()) return;
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
+  scene_chosen_ = true;
   if (case_ && (!case_->built_in || scene->case_source.empty())) {
     useCase(*scene, scene_->case_source);
     openInBackground({*std::move(scene), file, case_});
@@ -136,14 +134,32 @@ void Workstation::useScene(const std::filesystem::path& file) {
   }
 }
 
-void Workstation::useLabels(const std::filesystem::path& file) {
+void Workstation::useLabels(const std::filesystem::path& file, const Answers& answers) {
   if (!mayOpen()) return;
   if (!case_) {
     fail({"NO_CASE", "There is no case that a label map could belong to", "",
           "Open the case first, then its label map"});
     return;
   }
-  openInBackground({*scene_, scene_file_, case_, true, file.string()});
+  // As its file has it: with structures it may have other tissues.
+  std::optional<Scene> scene = readSceneOrFail(scene_file_);
+  if (!scene) return;
+  useCase(*scene, scene_->case_source);
+  Opened opening{*std::move(scene), scene_file_, case_, true, file.string(), answers};
+  opening.structures_alone = true;
+  openInBackground(std::move(opening));
+}
+
+bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structures) {
+  if (!case_ || phase_ != Phase::ready || isOpening()) return false;
+  Result<Scene> scene = readScene(scene_file_);
+  if (!scene) return false;
+  (void)readArmDynamics(*scene);
+  useCase(*scene, scene_->case_source);
+  Opened opening{*std::move(scene), scene_file_, withStructures(*case_, structures), true};
+  opening.structures_alone = true;
+  openInBackground(std::move(opening));
+  return true;
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
@@ -170,22 +186,51 @@ void Workstation::openImported(const Case& read, const std::filesystem::path& la
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   useCase(*scene, "");
-  const bool same = keepTissues(*scene);
-  openInBackground({*std::move(scene), file, read, same, labels.string()});
+  Opened opening{*std::move(scene), file, read, scene_.has_value(), labels.string()};
+  opening.any_scene = !scene_chosen_;
+  openInBackground(std::move(opening));
+}
+
+Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening,
+                                       const Progress& progress) {
+  Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume,
+                                              {opening.answers, true, sourceOf(of)}, progress);
+  if (!fit) return fit.error();
+  return withFit(of, *std::move(fit));
 }
 
 void Workstation::openInBackground(Opened opening) {
   if (!opening.same_scene) emit sceneOpening(opening.scene, opening.scene_file);
+  placing_ = opening.structures_alone && opening.labels_file.empty();
+  const std::filesystem::path labels = opening.labels_file;
+  const Answers answers = opening.answers;
   const std::shared_ptr<const Volume> shown = case_ ? case_->volume : nullptr;
   opening_.run(
       [opening = std::move(opening), shown](const Progress& progress) mutable -> Result<Opened> {
         if (opening.of && !opening.labels_file.empty()) {
-          Result<Case> labelled = withLabels(*opening.of, opening.labels_file);
+          Result<Case> labelled = opening.structures_alone
+                                      ? withAnswered(*opening.of, opening, progress)
+                                      : withLabels(*opening.of, opening.labels_file, progress);
           if (!labelled && opening.of->volume == shown) return labelled.error();
           if (labelled) {
             opening.of = *std::move(labelled);
           } else {
             opening.no_labels = labelled.error();
+          }
+        }
+        if (opening.of && !opening.of->anatomy) {
+          opening.of->anatomy = anatomyOf(*opening.of->volume, progress);
+        }
+        const std::string fits =
+            opening.any_scene ? exerciseAnatomy(opening.of->anatomy->region) : "";
+        if (!fits.empty() && fits != opening.scene.anatomy) {
+          const std::filesystem::path file = defaultScene(fits);
+          if (Result<Scene> other = readScene(file)) {
+            (void)readArmDynamics(*other);
+            useCase(*other, "");
+            opening.scene = *std::move(other);
+            opening.scene_file = file;
+            opening.same_scene = false;
           }
         }
         Result<Case> placed = opening.of ? placedIn(opening.scene, *opening.of, progress)
@@ -205,14 +250,31 @@ void Workstation::openInBackground(Opened opening) {
         }
         return std::move(opening);
       },
-      [this](Result<Opened> outcome) { opened(std::move(outcome)); });
+      [this, labels, answers](Result<Opened> outcome) {
+        placing_ = false;
+        // A choice that has an option beside refusing is a question.
+        static const std::map<std::string, std::string> kQuestions{{"HU_NOT_TISSUE", "keep"},
+                                                                   {"OTHER_FRAME", "keep"}};
+        if (!outcome && kQuestions.contains(outcome.error().code)) {
+          emit structuresAsked(outcome.error(), labels, answers,
+                               kQuestions.at(outcome.error().code));
+          return;
+        }
+        opened(std::move(outcome));
+      });
 }
 
 void Workstation::opened(Result<Opened> outcome) {
   if (!outcome) return fail(outcome.error());
+  const bool structures_alone = outcome->structures_alone;
   placed_with_ = tissueTable(outcome->scene.tissues);
-  if (outcome->same_scene) {
+  // What was edited holds on the next case too, unless the scene has other tissues there.
+  if (outcome->same_scene &&
+      scene_->tissues_elsewhere.has_value() == outcome->scene.tissues_elsewhere.has_value()) {
     outcome->scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
+    for (TissueSet* set : {&outcome->scene.tissues, &declared_tissues_}) {
+      placeTissues(*set, outcome->of->labels.get());
+    }
   } else {
     declared_tissues_ = outcome->scene.tissues;
     looks_ = outcome->scene.view.looks;
@@ -220,6 +282,11 @@ void Workstation::opened(Result<Opened> outcome) {
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
   case_ = std::move(outcome->of);
+  if (structures_alone) {
+    emit sceneChanged();
+    emit structuresChanged();
+    return;
+  }
   mirror_ = std::move(outcome->mirror);
   carved_.reset();
   tellGivenBack();
@@ -250,8 +317,8 @@ void Workstation::start(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = *scene_, of = *case_, again, recordings, stem,
-       script = std::move(script)](const Progress& progress) -> Result<std::unique_ptr<Session>> {
+      [scene = *scene_, of = *case_, again, recordings, stem, script = std::move(script)](
+          const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
         if (!placed) return placed.error();
@@ -343,7 +410,7 @@ bool Workstation::tissuesEdited() const {
 void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {
   save(
       tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
-      [text = toJson(scene_->tissues).dump(1) + '\n', file](const Progress&) {
+      [text = toJson(unplaced(scene_->tissues)).dump(1) + '\n', file](const Progress&) {
         return writeTextFile(file, text);
       },
       [this, tissues = scene_->tissues, then = std::move(then)] {

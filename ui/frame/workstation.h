@@ -34,8 +34,15 @@ class Workstation : public QObject {
   void openImported(const Case& read, const std::filesystem::path& labels = {});
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
-  // The label map of the open case. Another case has none until it is given.
-  void useLabels(const std::filesystem::path& file);
+  // The structures of the open case from a file; what a person has to decide comes as
+  // structuresAsked(), to be called again with the answer. Another case has none until they are
+  // given.
+  void useLabels(const std::filesystem::path& file, const Answers& answers = {});
+  // Structures that were made or changed here, on the case's grid: the scene is placed in them.
+  // False: not now (something is being opened or runs).
+  bool useStructures(const std::shared_ptr<const LabelMap>& structures);
+  // While that is being done: the case itself stays as it is.
+  bool isPlacing() const { return placing_; }
   void cancelOpening() { opening_.cancel(); }
   bool isOpening() const { return opening_.busy(); }
   ImportTask& import() { return import_; }
@@ -99,6 +106,12 @@ class Workstation : public QObject {
   void sceneOpening(const trephine::Scene& scene, const std::filesystem::path& file);
   void sceneChanged();
   void caseOpened();
+  // The case that is open has other structures, from a file or made here; sceneChanged() came
+  // before.
+  void structuresChanged();
+  // The file was not used: its `error` names a choice, whose option that uses it is `option`.
+  void structuresAsked(const trephine::Error& error, const std::filesystem::path& file,
+                       const trephine::Answers& answers, const std::string& option);
   void phaseChanged();  // or isOpening()
   void sessionStarted();
   // Once an exercise, which goes on; stop() does not say it again.
@@ -113,8 +126,8 @@ class Workstation : public QObject {
   void failed(const trephine::Error& error);
 
  private:
-  bool keepTissues(Scene& scene) const;
   struct Opened;
+  static Result<Case> withAnswered(const Case& of, const Opened& opening, const Progress& progress);
   bool mayOpen();
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
@@ -140,6 +153,8 @@ class Workstation : public QObject {
   std::shared_ptr<const Grid> carved_;
   std::optional<Error> recording_failure_;  // said of this exercise
   bool save_waits_ = false;                 // until the haptic thread stands still
+  bool scene_chosen_ = false;               // by a person
+  bool placing_ = false;                    // structures alone are being opened
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
   BackgroundTask opening_, running_, saving_;

@@ -264,7 +264,7 @@ void TissuePanel::showGaps() {
   HuRange span{std::numeric_limits<int>::max(), std::numeric_limits<int>::lowest()};
   for (const TissueSet* set : {&tissues_, &declared_}) {
     for (const Tissue& tissue : set->tissues) {
-      if (tissue.label) continue;
+      if (!tissue.isAnywhere()) continue;
       span = {std::min(span.low, tissue.hu_min), std::max(span.high, tissue.hu_max)};
     }
   }

@@ -102,6 +102,11 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
     const int kinds = mirror_->labels() ? 3 : 2;
     setOverlay(Overlay((int(colours_.overlay()) + 1) % kinds), colours_.opacity());
   });
+  connect(made.view, &SliceView::structureClicked, this, &FourUp::structureClicked);
+  connect(made.view, &SliceView::strokeBegan, this, &FourUp::strokeBegan);
+  connect(made.view, &SliceView::strokeMoved, this, &FourUp::strokeMoved);
+  connect(made.view, &SliceView::strokeEnded, this, &FourUp::strokeEnded);
+  connect(made.view, &SliceView::structureKey, this, &FourUp::structureKey);
   connect(made.view, &SliceView::enlargeWanted, this, [this, axis] { enlarge(int(axis) + 1); });
   connect(made.view, &SliceView::sliceShown, made.slider, [slider = made.slider](int k) {
     const QSignalBlocker quiet(slider);
@@ -111,7 +116,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   connect(made.view, &SliceView::focused, this, [this] {
     emit helpChanged(
         tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
-           "1\u20135: presets. M: ruler. N: angle. O: colours."));
+           "1\u20135: presets. M: ruler. N: angle. O: colours. G: grow. B: brush."));
   });
   return made;
 }
@@ -145,7 +150,23 @@ void FourUp::pullChanges(Grid& grid) {
   if (mirror_->pull(grid)) changed();
 }
 
+void FourUp::showLabels(const std::shared_ptr<const LabelMap>& labels, Views views) {
+  mirror_->setLabels(labels);
+  if (views == Views::all) {
+    mirror_->renew();
+    return changed();
+  }
+  bar_->setLabelsAtHand(labels != nullptr);
+  colours_.setStructures(labels.get());
+  for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
+void FourUp::labelsChanged(const VoxelBox& box) {
+  for (const Slices& of : slices_) of.view->labelsChanged(box);
+}
+
 void FourUp::changed() {
+  colours_.setStructures(mirror_->labels().get());
   bar_->setLabelsAtHand(mirror_->labels() != nullptr);
   three_d_->takeChanges();
   for (const Slices& of : slices_) of.view->takeChanges();
@@ -182,8 +203,14 @@ void FourUp::setWindow(const HuWindow& window) {
 }
 
 void FourUp::setTool(SliceTool tool) {
+  const bool another = std::exchange(tool_, tool) != tool;
   bar_->showTool(tool);
   for (const Slices& of : slices_) of.view->setTool(tool);
+  if (another) emit toolChanged(tool);
+}
+
+void FourUp::setBrushRadius(double mm) {
+  for (const Slices& of : slices_) of.view->setBrushRadius(mm);
 }
 
 void FourUp::setOverlay(Overlay overlay, double opacity) {

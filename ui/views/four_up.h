@@ -53,6 +53,17 @@ class FourUp : public QWidget {
   // While an exercise runs a double click in the 3-D view is a hand's.
   void setTraining(bool training) { training_ = training; }
 
+  // What the mouse does in the slices; `mm`: the ring of the brush.
+  void setTool(SliceTool tool);
+  SliceTool tool() const { return tool_; }
+  void setBrushRadius(double mm);
+  void setOverlay(Overlay overlay, double opacity);
+  // Other labels of the same voxels: in the slices alone, while they are being changed (then
+  // labelsChanged() of each box), or in the 3-D view as well, which sends all of them anew.
+  enum class Views { slices, all };
+  void showLabels(const std::shared_ptr<const LabelMap>& labels, Views views);
+  void labelsChanged(const VoxelBox& box);
+
   // Not remembered: that is the user's choice alone. The layout that is, comes once the 3-D view
   // has painted for the first time, unless another was set by then.
   void setLayout(const ViewLayout& layout);
@@ -61,6 +72,13 @@ class FourUp : public QWidget {
  signals:
   // What mouse and keys do where the focus went; empty in the 3-D view.
   void helpChanged(const QString& words);
+  void toolChanged(trephine::SliceTool tool);
+  // Of the slices, as SliceView has them.
+  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
+  void strokeBegan(const trephine::Vec3& patient_mm, int across);
+  void strokeMoved(const trephine::Vec3& patient_mm);
+  void strokeEnded();
+  void structureKey(int key);
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
@@ -84,8 +102,6 @@ class FourUp : public QWidget {
   void focusLarge();
   void changed();
   void setWindow(const HuWindow& window);
-  void setTool(SliceTool tool);
-  void setOverlay(Overlay overlay, double opacity);
 
   std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   SliceColours colours_;
@@ -98,6 +114,7 @@ class FourUp : public QWidget {
   ViewLayout layout_, before_{ViewLayout::Kind::four, 0};
   bool restored_ = false;
   bool training_ = false;
+  SliceTool tool_ = SliceTool::window;
 };
 
 }  // namespace trephine

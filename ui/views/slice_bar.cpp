@@ -45,6 +45,8 @@ QIcon toolIcon(SliceTool tool) {
       painter.drawPolyline(QPolygonF({{14.0, 3.0}, {3.0, 15.0}, {16.0, 15.0}}));
       painter.drawArc(QRectF(-4, 8, 14, 14), 0, 47 * 16);
       break;
+    default:  // of structures: in their panel
+      break;
   }
   return pixmap;
 }
@@ -99,7 +101,7 @@ SliceBar::SliceBar(QWidget* parent) : QWidget(parent) {
   }
   windows_->setPlaceholderText(tr("own"));
   overlays_ = list("sliceOverlay", tr("What is coloured over the slices (O)"));
-  overlays_->addItems({tr("Plain"), tr("Tissues"), tr("Labels")});
+  overlays_->addItems({tr("Plain"), tr("Tissues"), tr("Structures")});
   opacity_ = new QSlider(Qt::Horizontal, this);
   opacity_->setObjectName("sliceOpacity");
   opacity_->setRange(0, 100);
@@ -123,7 +125,12 @@ SliceBar::SliceBar(QWidget* parent) : QWidget(parent) {
 }
 
 void SliceBar::showTool(SliceTool tool) {
-  tools_->button(int(tool))->setChecked(true);
+  // Those for structures are in their panel: then none here is down.
+  tools_->setExclusive(false);
+  for (QAbstractButton* button : tools_->buttons()) {
+    button->setChecked(tools_->id(button) == int(tool));
+  }
+  tools_->setExclusive(true);
 }
 
 void SliceBar::showWindow(const HuWindow& window) {

@@ -19,13 +19,6 @@ struct GreyRamp {
 
 constexpr double kGhostShare = 0.5;  // of the overlay's opacity
 
-// Colours of labels that no tissue names, each far from the one before.
-Vec3 labelColour(int label) {
-  const QColor colour =
-      QColor::fromHsvF(float(std::fmod(label * 0.618033988749895, 1.0)), 0.75f, 1.0f);
-  return {colour.redF(), colour.greenF(), colour.blueF()};
-}
-
 // Voxel coordinates as whole numbers of 2^-32 voxels, so that a step is an addition and a voxel's
 // number the upper half.
 constexpr double kUnit = 4294967296.0;
@@ -175,6 +168,22 @@ void SliceColours::mix() {
     of_label_[std::size_t(label)] = named ? tintOf(named->colour, lookOf(*named, looks_))
                                           : tintOf(labelColour(label), TissueLook::shown);
   }
+  for (const Structure& s : structures_) {
+    const Tissue* of = nullptr;
+    for (const Tissue& tissue : tissues_.tissues) {
+      if (tissue.label == s.label && sameName(tissue.structure, s.name)) of = &tissue;
+    }
+    of_label_[std::size_t(s.label)] =
+        tintOf(s.colour, of ? lookOf(*of, looks_) : TissueLook::shown);
+  }
+}
+
+void SliceColours::setStructures(const LabelMap* labels) {
+  std::vector<Structure> structures;
+  if (labels) structures = labels->structures;
+  if (structures == structures_) return;
+  structures_ = std::move(structures);
+  mix();
 }
 
 void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry& stack, int k,

@@ -57,6 +57,8 @@ class SliceColours {
   void setWindow(const HuWindow& window);
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   void setOverlay(Overlay overlay, double opacity);  // opacity in [0, 1]
+  // Whose colours its structures have; null: none.
+  void setStructures(const LabelMap* labels);
 
   const HuWindow& window() const { return window_; }
   Overlay overlay() const { return overlay_; }
@@ -90,6 +92,7 @@ class SliceColours {
   double opacity_ = 0.35;
   TissueSet tissues_;
   TissueLooks looks_;
+  std::vector<Structure> structures_;
   TissueLookup lookup_;
   std::vector<std::uint8_t> grey_;
   std::array<Tint, kMaxTissues + 1> of_class_{};  // the first: of no tissue

@@ -54,6 +54,12 @@ void SliceView::coloursChanged() {
   update();
 }
 
+void SliceView::labelsChanged(const VoxelBox& box) {
+  if (!hasSlice() || !touches(stack_, slice_, mirror_->volume().geometry, box)) return;
+  stale_ = true;
+  update();
+}
+
 // Where the slice stays only the lines of the other views move.
 void SliceView::setPoint(const Vec3& patient_mm) {
   const QPointF before = fromPatient(point_mm_);
@@ -93,6 +99,28 @@ void SliceView::setTools(const std::vector<ToolView>& tools) {
   update(before | toolsRect());
 }
 
+void SliceView::setBrushRadius(double mm) {
+  brush_mm_ = mm;
+  if (isBrush(tool_)) update();
+}
+
+// Slices of a stack lie along axes of the grid.
+int SliceView::gridAxis() const {
+  const Mat3& grid = mirror_->volume().geometry.direction;
+  int most = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    const auto along = [&](int a) { return std::abs(glm::dot(grid[a], stack_.direction[2])); };
+    if (along(axis) > along(most)) most = axis;
+  }
+  return most;
+}
+
+QRect SliceView::brushRect() const {
+  if (!pointer_ || !isBrush(tool_)) return {};
+  const double more = brush_mm_ * pixelsPerMm() + 4.0;
+  return QRectF(*pointer_, *pointer_).adjusted(-more, -more, more, more).toAlignedRect();
+}
+
 Vec3 SliceView::toPatient_mm(const QPointF& in_widget) const {
   const QPointF at = toSlice(in_widget);
   return stack_.toPatient_mm(Vec3(at.x() - 0.5, at.y() - 0.5, slice_));
@@ -115,7 +143,10 @@ QString SliceView::readout() const {
   if (const int tissue = colours_.classOf(hu, label); tissue >= 0) {
     words += " \u00b7 " + toQt(colours_.tissues().tissues[std::size_t(tissue)].name);
   }
-  if (label != 0) words += " \u00b7 " + tr("label %1").arg(label);
+  if (label != 0) {
+    const Structure* of = mirror_->labels()->find(label);
+    words += " \u00b7 " + (of ? toQt(of->name) : tr("label %1").arg(label));
+  }
   return words;
 }
 
@@ -190,6 +221,13 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   } else if (tool_ == SliceTool::window) {
     drag_ = Drag::window;
     window_before_ = colours_.window();
+  } else if (isBrush(tool_)) {
+    drag_ = Drag::stroke;
+    emit strokeBegan(toPatient_mm(event->position()), gridAxis());
+  } else if (isForStructures(tool_)) {
+    if (target().contains(event->position())) {
+      emit structureClicked(tool_, toPatient_mm(event->position()));
+    }
   } else {
     if (tool_ == SliceTool::ruler) drag_ = Drag::ruler;
     addMeasurePoint(event->position());
@@ -197,14 +235,21 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
 }
 
 void SliceView::mouseMoveEvent(QMouseEvent* event) {
+  const QRect ring = brushRect();
   pointer_ = event->position();
+  if (isBrush(tool_)) update(ring | brushRect());
   const QPointF moved = event->position() - pressed_;
-  if (!(event->buttons() & Qt::LeftButton)) drag_ = Drag::none;
+  if (!(event->buttons() & Qt::LeftButton)) {
+    if (drag_ == Drag::stroke) emit strokeEnded();
+    drag_ = Drag::none;
+  }
   if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
   if (drag_ == Drag::point) {
     placePoint(event->position());
   } else if (drag_ == Drag::lines) {
     if (!moved.isNull()) dragLines(moved);
+  } else if (drag_ == Drag::stroke) {
+    emit strokeMoved(toPatient_mm(event->position()));
   } else if (drag_ == Drag::window && !moved.isNull()) {
     const double width = window_before_.width_hu * std::exp(kWidthPerPixel * moved.x());
     const double centre =
@@ -222,6 +267,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
 
 void SliceView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
+  if (drag_ == Drag::stroke) emit strokeEnded();
   if (drag_ == Drag::ruler && drawing_) {
     const QPointF moved = event->position() - pressed_;
     if (std::hypot(moved.x(), moved.y()) >= kShortestRuler_pixels) {
@@ -235,7 +281,7 @@ void SliceView::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void SliceView::mouseDoubleClickEvent(QMouseEvent* event) {
-  if (tool_ == SliceTool::angle || event->button() != Qt::LeftButton) {
+  if (tool_ == SliceTool::angle || isForStructures(tool_) || event->button() != Qt::LeftButton) {
     return mousePressEvent(event);
   }
   drag_ = Drag::none;
@@ -289,6 +335,26 @@ bool SliceView::handleKey(int key) {
     case Qt::Key_O:
       emit overlayWanted();
       break;
+    case Qt::Key_G:
+      emit toolChosen(SliceTool::grow);
+      break;
+    case Qt::Key_B:
+      emit toolChosen(SliceTool::brush);
+      break;
+    case Qt::Key_E:
+      emit toolChosen(SliceTool::eraser);
+      break;
+    case Qt::Key_P:
+      emit toolChosen(SliceTool::piece);
+      break;
+    case Qt::Key_K:
+    case Qt::Key_S:
+    case Qt::Key_Return:
+    case Qt::Key_Enter:
+    case Qt::Key_BracketLeft:
+    case Qt::Key_BracketRight:
+      emit structureKey(key);
+      break;
     case Qt::Key_Delete:
     case Qt::Key_Backspace: {
       const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
@@ -306,6 +372,8 @@ bool SliceView::handleKey(int key) {
         drawing_.reset();
         drag_ = Drag::none;
         update();
+      } else if (isForStructures(tool_)) {
+        emit structureKey(key);  // what was grown goes first
       } else if (tool_ != SliceTool::window) {
         emit toolChosen(SliceTool::window);
       } else {
@@ -341,7 +409,7 @@ void SliceView::keyPressEvent(QKeyEvent* event) {
 }
 
 void SliceView::leaveEvent(QEvent*) {
-  pointer_.reset();
+  if (drag_ != Drag::stroke) pointer_.reset();
   update();
 }
 

@@ -5,7 +5,8 @@
 // (three clicks), common point; with Shift it moves the common point with any tool. Where the
 // window is in hand, a line of another view is dragged to another slice of that view. Wheel, Page
 // Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
-// a tool up.
+// a tool up. The tools for structures only say where they are used; what comes of it is not the
+// view's.
 #pragma once
 
 #include <QImage>
@@ -18,7 +19,14 @@
 
 namespace trephine {
 
-enum class SliceTool { window, point, ruler, angle };
+enum class SliceTool { window, point, ruler, angle, grow, brush, eraser, piece };
+// Of those by which structures are made.
+constexpr bool isForStructures(SliceTool tool) {
+  return tool >= SliceTool::grow;
+}
+constexpr bool isBrush(SliceTool tool) {
+  return tool == SliceTool::brush || tool == SliceTool::eraser;
+}
 
 // The colour of the lines that stand for slices of that axis in the other views.
 QColor colourOf(SliceAxis axis);
@@ -33,10 +41,12 @@ class SliceView : public SlicePane {
   // What is new in the mirror. Draws only where the slice shows a voxel that changed.
   void takeChanges();
   void coloursChanged();
+  void labelsChanged(const VoxelBox& box);  // of the mirror's labels
   // All three views show the slice that holds it.
   void setPoint(const Vec3& patient_mm);
   void setTool(SliceTool tool);
   void setTools(const std::vector<ToolView>& tools);  // of the exercise
+  void setBrushRadius(double mm);                     // of the ring that shows it
   void setSlice(int k);                               // asks for the point that lies in it
 
   SliceAxis axis() const { return axis_; }
@@ -58,6 +68,12 @@ class SliceView : public SlicePane {
   void windowChosen(const trephine::HuWindow& window);
   void toolChosen(trephine::SliceTool tool);
   void overlayWanted();  // the next kind of overlay
+  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
+  // `across`: the axis of the grid that this view's slices lie across.
+  void strokeBegan(const trephine::Vec3& patient_mm, int across);
+  void strokeMoved(const trephine::Vec3& patient_mm);
+  void strokeEnded();
+  void structureKey(int key);  // K, S, Return, [ and ]; Esc with a tool for them
   void sliceShown(int k);
   void enlargeWanted();
   void focused();
@@ -78,6 +94,9 @@ class SliceView : public SlicePane {
 
  private:
   bool handleKey(int key);
+  int gridAxis() const;
+  QRect brushRect() const;
+  void paintBrush(QPainter& painter) const;
   void placePoint(const QPointF& in_widget);
   struct Lines {  // of the other views
     bool across = false, down = false;
@@ -119,7 +138,8 @@ class SliceView : public SlicePane {
   std::optional<Measure> drawing_;  // its last point follows the pointer
   std::optional<QPointF> pointer_;
   QPointF pressed_;
-  enum class Drag { none, window, point, lines, ruler } drag_ = Drag::none;
+  enum class Drag { none, window, point, lines, ruler, stroke } drag_ = Drag::none;
+  double brush_mm_ = 5.0;
   HuWindow window_before_;
   Lines held_;
   Vec3 point_before_mm_{0.0};

@@ -66,6 +66,7 @@ void SliceView::paintOver(QPainter& painter) {
   painter.setRenderHint(QPainter::Antialiasing);
   paintTools(painter);
   paintMeasures(painter);
+  paintBrush(painter);
   paintText(painter);
   if (hasFocus()) {
     painter.setRenderHint(QPainter::Antialiasing, false);
@@ -137,6 +138,18 @@ void SliceView::paintTools(QPainter& painter) const {
     painter.setPen(Qt::NoPen);
     painter.setBrush(colour);
     painter.drawEllipse(mark.tip, 2.0, 2.0);
+  }
+}
+
+// As large as what it takes.
+void SliceView::paintBrush(QPainter& painter) const {
+  if (!pointer_ || !isBrush(tool_)) return;
+  const double pixels = std::max(1.5, brush_mm_ * pixelsPerMm());
+  painter.setBrush(Qt::NoBrush);
+  const QColor colour = tool_ == SliceTool::brush ? colours::kText : colours::kCaution;
+  for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), 3.0), {colour, 1.2}}) {
+    painter.setPen(QPen(with, thick));
+    painter.drawEllipse(*pointer_, pixels, pixels);
   }
 }
 

@@ -4,14 +4,13 @@
 #include <dcmtk/dcmdata/dctk.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <set>
 
-#include "base/sha256.h"
 #include "imaging/common/text.h"
+#include "imaging/dicom/written_values.h"
 
 namespace trephine {
 
@@ -19,50 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPatientName = "TREPHINE^PHANTOM";
 constexpr int kUnsignedOffset = 1024;
-
-// A DS value: the shortest text that reads back as `value`, or as near as 16 characters allow.
-std::string decimalText(double value) {
-  if (value == 0.0) value = 0.0;  // no "-0"
-  char buffer[64];
-  auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  for (int digits = 16; end - buffer > 16 && digits > 0; --digits) {
-    end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits)
-              .ptr;
-  }
-  return std::string(buffer, end);
-}
-
-std::string decimalsText(std::initializer_list<double> values) {
-  std::string text;
-  for (const double value : values) {
-    if (!text.empty()) text += '\\';
-    text += decimalText(value);
-  }
-  return text;
-}
-
-// A UID under 2.25 (PS3.5 B.2) from the first 128 bits of a SHA-256.
-std::string uidOf(const std::string& content) {
-  const std::string hex = sha256Hex(content.data(), content.size());
-  unsigned __int128 number = 0;
-  for (int i = 0; i < 32; ++i) {
-    const char c = hex[std::size_t(i)];
-    number = number * 16 + unsigned(c <= '9' ? c - '0' : c - 'a' + 10);
-  }
-  std::string digits;
-  do {
-    digits.insert(digits.begin(), char('0' + int(number % 10)));
-    number /= 10;
-  } while (number != 0);
-  return "2.25." + digits;
-}
 
 struct Writing {
   const Volume& volume;
   CtSeriesText text;
-  std::string identity;  // what all UIDs are derived from
+  CtSeriesUids uids;
   bool is_unsigned;
 };
 
@@ -91,12 +52,12 @@ OFCondition fillSlice(DcmDataset& data, const Writing& writing, int k, std::vect
   // SOP Common, Patient, General Study, General Series, Frame of Reference, General Equipment.
   put(DCM_SpecificCharacterSet, "ISO_IR 192");
   put(DCM_SOPClassUID, UID_CTImageStorage);
-  put(DCM_SOPInstanceUID, uidOf(writing.identity + "\nslice " + std::to_string(k)));
-  put(DCM_StudyInstanceUID, uidOf(writing.identity + "\nstudy"));
-  put(DCM_SeriesInstanceUID, uidOf(writing.identity + "\nseries"));
-  put(DCM_FrameOfReferenceUID, uidOf(writing.identity + "\nframe"));
-  put(DCM_PatientName, kPatientName);
-  put(DCM_PatientID, "PHANTOM");
+  put(DCM_SOPInstanceUID, writing.uids.slices[std::size_t(k)]);
+  put(DCM_StudyInstanceUID, writing.uids.study);
+  put(DCM_SeriesInstanceUID, writing.uids.series);
+  put(DCM_FrameOfReferenceUID, writing.uids.frame_of_reference);
+  put(DCM_PatientName, writing.text.patient_name);
+  put(DCM_PatientID, writing.text.patient_id);
   for (const DcmTagKey& empty :
        {DCM_PatientBirthDate, DCM_PatientSex, DCM_StudyDate, DCM_StudyTime, DCM_StudyID,
         DCM_AccessionNumber, DCM_ReferringPhysicianName, DCM_PositionReferenceIndicator, DCM_KVP,
@@ -142,29 +103,24 @@ Error cannotWrite(const std::string& what, const fs::path& where, const std::str
   return Error{"CANNOT_WRITE", what, cleanUtf8(where.string()), next};
 }
 
-bool isOurs(const fs::path& file) {
+bool isOurs(const fs::path& file, const std::string& patient_name) {
   std::ifstream in(file, std::ios::binary);
   std::string head(4096, '\0');
   in.read(head.data(), std::streamsize(head.size()));
   head.resize(std::size_t(in.gcount()));
-  return head.find(kPatientName) != head.npos;
+  return !patient_name.empty() && head.find(patient_name) != head.npos;
 }
 
-std::string sliceFileName(int k) {
-  char name[32];
-  std::snprintf(name, sizeof name, "IM%04d.dcm", k + 1);
-  return name;
-}
-
-// Slices of an earlier phantom in `folder`, which make room for the new ones; anything else called
-// like one of ours forbids writing.
-Result<std::set<fs::path>> earlierSlices(const fs::path& folder, int slices) {
+// Slices in `folder` that were written for a patient of that name, a phantom, make room for the new
+// ones; anything else called like one of ours forbids writing.
+Result<std::set<fs::path>> earlierSlices(const fs::path& folder, int slices,
+                                         const std::string& patient_name) {
   std::set<fs::path> earlier;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (!name.starts_with("IM") || !name.ends_with(".dcm")) continue;
-    if (isOurs(it->path())) earlier.insert(it->path());
+    if (isOurs(it->path(), patient_name)) earlier.insert(it->path());
   }
   if (error) return cannotWrite("The folder cannot be read", folder, "Choose another folder");
   for (int k = 0; k < slices; ++k) {
@@ -176,7 +132,9 @@ Result<std::set<fs::path>> earlierSlices(const fs::path& folder, int slices) {
   return earlier;
 }
 
-Status checkVolume(const Volume& volume, const fs::path& folder) {
+}  // namespace
+
+Status checkCtSeries(const Volume& volume, const fs::path& folder) {
   const GridGeometry& g = volume.geometry;
   if (const Status size = checkSize(g.size, ""); !size) {
     return cannotWrite(size.error().what, folder, "");
@@ -196,16 +154,30 @@ Status checkVolume(const Volume& volume, const fs::path& folder) {
   return {};
 }
 
-}  // namespace
+std::string sliceFileName(int k) {
+  char name[32];
+  std::snprintf(name, sizeof name, "IM%04d.dcm", k + 1);
+  return name;
+}
+
+CtSeriesUids ctSeriesUids(const Volume& volume, const CtSeriesText& text) {
+  const std::string identity = identityOf(volume, text);
+  CtSeriesUids uids{uidOf(identity + "\nstudy"), uidOf(identity + "\nseries"),
+                    uidOf(identity + "\nframe")};
+  for (int k = 0; k < volume.geometry.size[2]; ++k) {
+    uids.slices.push_back(uidOf(identity + "\nslice " + std::to_string(k)));
+  }
+  return uids;
+}
 
 Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::path& folder,
                      const Progress& progress) {
-  if (const Status valid = checkVolume(volume, folder); !valid) return valid;
+  if (const Status valid = checkCtSeries(volume, folder); !valid) return valid;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return cannotWrite("The folder cannot be made", folder, "Choose another place");
   const int slices = volume.geometry.size[2];
-  const auto earlier = earlierSlices(folder, slices);
+  const auto earlier = earlierSlices(folder, slices, text.patient_name);
   if (!earlier) return earlier.error();
 
   // All slices first go to a folder beside the targets, on the same disk, so that a full disk or a
@@ -221,8 +193,9 @@ Status writeCtSeries(const Volume& volume, const CtSeriesText& text, const fs::p
   };
 
   const Writing writing{volume,
-                        {cleanUtf8(text.series_description), cleanUtf8(text.body_part)},
-                        identityOf(volume, text),
+                        {cleanUtf8(text.series_description), cleanUtf8(text.body_part),
+                         cleanUtf8(text.patient_name), cleanUtf8(text.patient_id)},
+                        ctSeriesUids(volume, text),
                         *std::ranges::min_element(volume.hu) >= -kUnsignedOffset};
   std::vector<Uint16> words(std::size_t(volume.geometry.size[0]) * volume.geometry.size[1]);
   for (int k = 0; k < slices; ++k) {

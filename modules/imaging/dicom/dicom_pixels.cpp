@@ -185,17 +185,18 @@ std::optional<std::vector<std::uint8_t>> readBytes(const std::filesystem::path& 
   return read;
 }
 
-Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const DicomHeader& header) {
+Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const DicomHeader& header,
+                                                                        std::uint64_t needed,
+                                                                        bool keep) {
   const std::lock_guard lock(mutex_);  // a second reader of the file waits for the first
   if (const auto it = inflated_.find(header.file); it != inflated_.end()) return it->second;
-  DicomStream stream(header.file);
+  DicomStream stream(header.file, bounds_, &progress_);
   DcmFileFormat dicom;
   dicom.transferInit();
   if (dicom.readUntilTag(stream, EXS_Unknown, EGL_noChange, kLongestValue, DCM_PixelData).bad()) {
     return failed("its file is cut short or damaged");
   }
   const std::uint8_t* head = stream.newest().data();
-  const std::uint64_t needed = header.frameBytes() * std::uint64_t(header.frames);
   if (tagOf(head, false) != kPixelData || number32(head + 8, false) == kUndefined) {
     return failed("its pixels are not stored as its transfer syntax says");
   }
@@ -211,8 +212,25 @@ Result<std::shared_ptr<const PixelReader::Bytes>> PixelReader::inflated(const Di
     if (count <= 0) return failed("its pixels are cut short");
     all->resize(before + std::size_t(count));
   }
-  if (header.frames > 1) inflated_[header.file] = all;
+  if (keep) inflated_[header.file] = all;
   return std::shared_ptr<const Bytes>(all);
+}
+
+Status PixelReader::read(const DicomHeader& header, std::uint64_t from, std::uint64_t bytes,
+                         std::uint8_t* to) {
+  const TransferSyntax* syntax = findTransferSyntax(header.transfer_syntax);
+  if (!syntax || !header.pixels) return failed("its transfer syntax cannot be read");
+  if (header.pixels->encapsulated || from + bytes > header.pixels->bytes) {
+    return failed("its pixels are not stored as its header says");
+  }
+  if (syntax->codec == Codec::deflated) {
+    const auto all = inflated(header, header.pixels->bytes, true);
+    if (!all) return all.error();
+    std::memcpy(to, (*all)->data() + from, bytes);
+  } else if (!File(header.file, &progress_).read(header.pixels->offset + from, to, bytes)) {
+    return failed("its file vanished, changed or is cut short");
+  }
+  return {};
 }
 
 Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
@@ -250,7 +268,8 @@ Status PixelReader::read(const DicomHeader& header, std::int16_t* words) {
   // 8-bit pixels go to the upper half of the words' memory and are widened from there.
   auto* to = reinterpret_cast<std::uint8_t*>(words) + (narrow ? bytes : 0);
   if (syntax->codec == Codec::deflated) {
-    const auto all = inflated(header);
+    const std::uint64_t needed = bytes * std::uint64_t(header.frames);
+    const auto all = inflated(header, needed, header.frames > 1);
     if (!all) return all.error();
     if ((*all)->size() < skipped + bytes) return failed("its pixels are cut short");
     std::memcpy(to, (*all)->data() + skipped, bytes);

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "imaging/dicom/dicom_file.h"
+#include "imaging/dicom/stream_bounds.h"
 
 namespace trephine {
 
@@ -33,18 +34,26 @@ std::optional<std::vector<std::uint8_t>> readBytes(const std::filesystem::path& 
 // Reads frames of one series. Any number of threads at once.
 class PixelReader {
  public:
-  // Cancelled with `progress`, which outlives it: what is being read then fails.
-  explicit PixelReader(const Progress& progress) : progress_(progress) {}
+  // Cancelled with `progress`, which outlives it: what is being read then fails. `bounds` are those
+  // that the headers were read with.
+  explicit PixelReader(const Progress& progress, const StreamBounds& bounds = kSliceBounds)
+      : progress_(progress), bounds_(bounds) {}
 
   // The frame's words in native byte order into `words` (rows * columns; 8-bit pixels widened).
   // Fails, with the reason in `what`, unless the file holds exactly what `header` said.
   Status read(const DicomHeader& header, std::int16_t* words);
+  // `bytes` of Pixel Data as they stand, from the `from`th, where they are not encapsulated.
+  // `header` says how many there are (pixels->bytes). A deflated file is inflated by the first
+  // call, on a thread of forEachFile (deep recursion).
+  Status read(const DicomHeader& header, std::uint64_t from, std::uint64_t bytes, std::uint8_t* to);
 
  private:
   using Bytes = std::vector<std::uint8_t>;
-  Result<std::shared_ptr<const Bytes>> inflated(const DicomHeader& header);
+  Result<std::shared_ptr<const Bytes>> inflated(const DicomHeader& header, std::uint64_t needed,
+                                                bool keep);
 
   const Progress& progress_;
+  const StreamBounds bounds_;
   std::mutex mutex_;
   std::map<std::filesystem::path, std::shared_ptr<const Bytes>> inflated_;  // multi-frame files
 };

@@ -31,10 +31,14 @@ class NoValue : public DcmInputStreamFactory {
   DcmInputStreamFactoryType ident() const override { return DFT_DcmInputFileStreamFactory; }
 };
 
+std::uintptr_t stackPlace() {
+  return reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+}
+
 }  // namespace
 
-FileBlocks::FileBlocks(const std::filesystem::path& file)
-    : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+FileBlocks::FileBlocks(const std::filesystem::path& file, const Progress* progress)
+    : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)), progress_(progress) {
   struct stat status {};
   good_ = file_ >= 0 && ::fstat(file_, &status) == 0;
   end_ = good_ ? offile_off_t(status.st_size) : 0;
@@ -61,8 +65,10 @@ offile_off_t FileBlocks::avail() {
 }
 
 void FileBlocks::fill(offile_off_t from) {
-  held_ = std::max<offile_off_t>(::pread(file_, block_.data(), block_.size(), off_t(from)), 0);
   block_at_ = from;
+  held_ = 0;
+  if (progress_ && progress_->cancelled()) return;
+  held_ = std::max<offile_off_t>(::pread(file_, block_.data(), block_.size(), off_t(from)), 0);
 }
 
 offile_off_t FileBlocks::read(void* to, offile_off_t bytes) {
@@ -98,11 +104,18 @@ std::string_view FileBlocks::beginning(std::size_t most) {
   return {block_.data(), std::min(most, std::size_t(held_))};
 }
 
-DicomStream::DicomStream(const std::filesystem::path& file)
-    : DcmInputStream(&blocks_), blocks_(file), path_(file) {}
+DicomStream::DicomStream(const std::filesystem::path& file, const StreamBounds& bounds,
+                         const Progress* progress)
+    : DcmInputStream(&blocks_),
+      blocks_(file, progress),
+      path_(file),
+      bounds_(bounds),
+      stack_(stackPlace()) {}
 
 offile_off_t DicomStream::avail() {
-  if (std::uint64_t(read_) > kSafeBytes || skipped_ > kMostSkipped) return 0;
+  const std::uintptr_t now = stackPlace();
+  const std::size_t taken = std::max(now, stack_) - std::min(now, stack_);
+  if (taken > bounds_.stack || read_ > bounds_.inflated || skipped_ > kMostSkipped) return 0;
   return DcmInputStream::avail();
 }
 

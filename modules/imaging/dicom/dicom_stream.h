@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "base/progress.h"
+#include "imaging/dicom/stream_bounds.h"
 
 namespace trephine {
 
@@ -20,7 +21,8 @@ constexpr Uint32 kLongestValue = 16384;
 // The bytes of a file, a block at a time: DCMTK asks for a few at once, and often where it stands.
 class FileBlocks : public DcmProducer {
  public:
-  explicit FileBlocks(const std::filesystem::path& file);
+  // Once `progress` is cancelled, the file ends. It may be null, or outlives this.
+  explicit FileBlocks(const std::filesystem::path& file, const Progress* progress = nullptr);
   ~FileBlocks() override;
   FileBlocks(const FileBlocks&) = delete;
   FileBlocks& operator=(const FileBlocks&) = delete;
@@ -40,6 +42,7 @@ class FileBlocks : public DcmProducer {
   void fill(offile_off_t from);
 
   int file_ = -1;
+  const Progress* progress_;
   bool good_ = false;
   offile_off_t at_ = 0, end_ = 0;
   offile_off_t block_at_ = 0, held_ = 0;
@@ -47,11 +50,12 @@ class FileBlocks : public DcmProducer {
 };
 
 // DCMTK leaves long values in a file, but takes those of a deflated one into memory, gigabytes if
-// it says so. This stream has them skipped, and ends a deflated header after what a worker's stack
-// can bear (16 bytes make a level of nesting).
+// it says so. This stream has them skipped, and ends at its bounds.
 class DicomStream : public DcmInputStream {
  public:
-  explicit DicomStream(const std::filesystem::path& file);
+  // Made in the function that has it parsed. `progress`: as that of FileBlocks.
+  explicit DicomStream(const std::filesystem::path& file, const StreamBounds& bounds = kSliceBounds,
+                       const Progress* progress = nullptr);
 
   // What the file begins with, `most` bytes or less. Until the next call of any other member.
   std::string_view beginning(std::size_t most) { return blocks_.beginning(most); }
@@ -68,13 +72,15 @@ class DicomStream : public DcmInputStream {
  private:
   FileBlocks blocks_;
   std::filesystem::path path_;
+  StreamBounds bounds_;
+  std::uintptr_t stack_;  // where it was made
   bool deflated_ = false;
   offile_off_t read_ = 0, skipped_ = 0;  // of a deflated data set
   std::array<std::uint8_t, 12> newest_{};
 };
 
-// Whether sequences in the file might nest so deep that no worker's stack holds them. Deflated ones
-// are bounded by DicomStream. True as well where it was cancelled.
+// Whether sequences in the file might nest so deep that no worker's stack holds them, told by the
+// number of its items. True as well where it was cancelled.
 bool nestsTooDeeply(const std::filesystem::path& file, std::uint64_t file_bytes,
                     const Progress& progress = Progress());
 

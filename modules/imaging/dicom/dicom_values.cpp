@@ -128,10 +128,15 @@ std::string trimmedText(const DicomItem& item, const DcmTagKey& tag) {
 }
 
 std::string decodedText(const DicomItem& item, const DcmTagKey& tag) {
+  return decodedText(item, tag, item);
+}
+
+std::string decodedText(const DicomItem& item, const DcmTagKey& tag, const DicomItem& whole) {
   const std::string raw = valueText(item, tag);
   const bool plain = std::ranges::all_of(raw, [](char c) { return c >= 0x20 && c < 0x7F; });
   if (plain) return cleanUtf8(raw);
-  const std::string charset = valueText(item, DCM_SpecificCharacterSet);
+  std::string charset = valueText(item, DCM_SpecificCharacterSet);
+  if (charset.empty()) charset = valueText(whole, DCM_SpecificCharacterSet);
   DcmSpecificCharacterSet converter;
   OFString utf8;
   if (!charset.empty() &&

@@ -43,6 +43,8 @@ std::string valueText(const DicomItem& item, const DcmTagKey& tag);
 std::string trimmedText(const DicomItem& item, const DcmTagKey& tag);
 // Decoded by the item's Specific Character Set; never fails.
 std::string decodedText(const DicomItem& item, const DcmTagKey& tag);
+// The same of an item that lies in `whole`, whose character set it has unless it names its own.
+std::string decodedText(const DicomItem& item, const DcmTagKey& tag, const DicomItem& whole);
 // A UID, or nothing where it holds what no UID can.
 std::string uidText(const DicomItem& item, const DcmTagKey& tag);
 // A count: `fallback` where absent, 0 where it is negative or more than `most`, so that products of

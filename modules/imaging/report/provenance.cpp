@@ -33,6 +33,10 @@ Json toJson(const Provenance& provenance) {
           {"reduction", provenance.reduction},
           {"loss", std::move(loss)},
           {"volume_sha256", provenance.volume_sha256},
+          {"source_ids",
+           {{"study", provenance.source_ids.study},
+            {"series", provenance.source_ids.series},
+            {"frame_of_reference", provenance.source_ids.frame_of_reference}}},
           {"build", provenance.build}};
 }
 

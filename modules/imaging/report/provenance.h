@@ -1,5 +1,6 @@
 // What became of a source on its way to a volume, as JSON: in the import's answer, and in a file
-// beside a volume that is written. It names no patient, path or UID.
+// beside a volume that is written. It names no patient, path or UID: "source_ids" are hashes of
+// UIDs.
 #pragma once
 
 #include <filesystem>

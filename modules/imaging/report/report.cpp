@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/sha256.h"
 #include "imaging/common/text.h"
 #include "imaging/report/provenance.h"
 #include "volume/case_memory.h"
@@ -98,14 +97,6 @@ double readingMb(const SeriesReport& series, const ImportRequest& request) {
 
 double memoryMb(const SeriesReport& series, const ImportRequest& request) {
   return kWindow_mb + std::max(readingMb(series, request), openedMb(voxelsOf(series, request)));
-}
-
-std::string seriesHash(const std::string& uid) {
-  constexpr std::size_t kDigits = 32;
-  std::size_t end = std::min(uid.rfind('#'), uid.size());
-  // A file's name may hold one, too.
-  if (uid.find_first_not_of("0123456789#.") != uid.npos) end = uid.size();
-  return sha256Hex(uid.data(), end).substr(0, kDigits) + uid.substr(end);
 }
 
 Json toJson(const ImportReport& report, Identity identity) {

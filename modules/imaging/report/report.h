@@ -12,6 +12,7 @@
 
 #include "base/json.h"
 #include "base/result.h"
+#include "imaging/common/source_ids.h"
 #include "volume/volume.h"
 
 namespace trephine {
@@ -59,7 +60,8 @@ struct MeasuredLoss {
   double bone_volume_change_percent = 0.0;
 };
 
-// What became of the source: written beside the volume, so it names no patient, path or UID.
+// What became of the source: written beside the volume, so it names no patient, path or UID. Hashes
+// of UIDs say no more than whether something else is of the same source.
 struct Provenance {
   std::string source;           // "DICOM", "NIfTI", ...
   std::string transfer_syntax;  // its name; empty where there is none
@@ -73,6 +75,7 @@ struct Provenance {
   int reduction = 1;
   std::optional<MeasuredLoss> loss;
   std::string volume_sha256;
+  SourceIds source_ids;  // of the slices that were used, where all agree; none of a volume file
   std::string build;
 };
 
@@ -122,10 +125,6 @@ struct ImportReport {
   } seconds;
   double start_rss_mb = 0.0, peak_rss_mb = 0.0;
 };
-
-// Stands for a series where its UID may not: 32 hexadecimal digits, the same on every machine, with
-// the "#2" of a part. From SHA-256 of the UID.
-std::string seriesHash(const std::string& uid);
 
 // Whether a report names its source: path, UIDs, descriptions and formats. Where it is hidden, UIDs
 // are their hashes, and the others empty.

@@ -91,7 +91,7 @@ double removalNs() {
 }
 
 // What a run of the scene's own script in its own case would warn of: the first tick, alone.
-Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
+Result<Json> warningsAtStart(Scene& scene, const Progress& progress) {
   if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
   Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
   if (!script) return script.error();
@@ -117,8 +117,8 @@ Result<Json> warningsAtStart(const Scene& scene, const Progress& progress) {
   Json warnings = Json::array();
   for (const Event& event : core.events()) {
     if (event.kind != EventKind::starts_in_tissue) continue;
-    const RunWarning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,
-                                              names(scene.laws, LawKind::elastic));
+    const Warning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,
+                                           names(scene.laws, LawKind::elastic));
     warnings.push_back({{"code", warning.code}, {"text", warning.text}});
   }
   return warnings;

@@ -59,7 +59,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   if (!scene) return scene.error();
   Case known = caseOf(subject.volume);
   known.built_in = true;
-  known.labels = subject.labels;
+  known.structures = subject.labels;
   const Result<Case> of = placedIn(*scene, std::move(known), Progress(progress, 0.0, 0.2));
   if (!of) return of.error();
   Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);

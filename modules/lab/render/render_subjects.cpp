@@ -59,7 +59,7 @@ Result<std::vector<RenderSubject>> renderSubjects(const std::string& case_source
   subjects.push_back(subjectOf(*cranium, name, ViewPreset::bone, "bone", *tissues));
   subjects.push_back(subjectOf(*cranium, name, ViewPreset::skin, "skin", *tissues));
 
-  const Result<Scene> liver = readScene(resourceFolder() / "scenes" / "liver.json");
+  Result<Scene> liver = readScene(resourceFolder() / "scenes" / "liver.json");
   if (!liver) return liver.error();
   const Result<Case> abdomen = openCase(*liver, Progress(progress, 0.3, 0.8));
   if (!abdomen) return abdomen.error();

@@ -476,7 +476,7 @@ class ImportGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase() && workstation().currentCase()->labels,
                              kLong_ms);
     closeError();
-    QVERIFY(find<QLabel>("caseLabel")->text().contains("with a label map"));
+    QVERIFY(find<QLabel>("caseLabel")->text().contains("with label"));
     QVERIFY(QDir(folder).removeRecursively());
   }
 

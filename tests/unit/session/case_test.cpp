@@ -19,7 +19,8 @@ TEST(Case, CanBeCancelledWhileItsLandmarksAreFound) {
   Progress progress([&](double, const std::string&) { running->cancel(); });
   running = &progress;
   const Case of = caseOf(std::make_shared<const Volume>(smallHead()));
-  const auto placed = placedIn(cranium(), of, progress);
+  Scene scene = cranium();
+  const auto placed = placedIn(scene, of, progress);
   ASSERT_FALSE(placed.ok());
   EXPECT_EQ(placed.error().code, "CANCELLED");
 }
@@ -94,8 +95,9 @@ TEST(Case, FitsALabelMapToItsVoxels) {
   const auto labelled = withLabels(head, file("turned.mha"));
   ASSERT_TRUE(labelled.ok()) << labelled.error().sentence();
   EXPECT_EQ(labelled->labels->labels, straight->labels);
-  const Case of = *placedIn(craniumOfLabels(), *labelled);
-  auto session = Session::create(craniumOfLabels(), of, scripted(folder / "s.h5"));
+  Scene scene = craniumOfLabels();
+  const Case of = *placedIn(scene, *labelled);
+  auto session = Session::create(scene, of, scripted(folder / "s.h5"));
   ASSERT_TRUE(session.ok()) << session.error().sentence();
   ASSERT_TRUE((*session)->freewheel(0.5).ok());
   EXPECT_TRUE(replay(**SessionReader::open(folder / "s.h5"), smallHead(), &turned)->identical);
@@ -167,16 +169,17 @@ TEST(Case, ABuiltInAbdomenBringsItsLabelMapAndAnotherReplacesIt) {
   const Case other = *placedIn(scene, read);
   ASSERT_TRUE(other.labels);
   EXPECT_EQ(other.labels->labels.front(), 1);
-  EXPECT_FALSE(other.labels_built_in);
+  EXPECT_FALSE(other.structures_built_in);
   EXPECT_EQ(placedIn(scene, other)->labels, other.labels) << "read once";
 }
 
 TEST(Case, IsHashedOnceAndKeepsItsVoxelsWhenTheExerciseCutsThem) {
   const auto voxels = std::make_shared<const Volume>(smallHead());
-  const Case of = *placedIn(cranium(), caseOf(voxels));
+  Scene scene = cranium();
+  const Case of = *placedIn(scene, caseOf(voxels));
   EXPECT_EQ(of.sha256, volumeSha256(smallHead()));
   EXPECT_EQ(caseOf(voxels, "known").sha256, "known");
-  auto session = *Session::create(cranium(), of, scripted());
+  auto session = *Session::create(scene, of, scripted());
   ASSERT_TRUE(session->freewheel(10.0).ok());
   EXPECT_EQ(session->report().volume_sha256_before, of.sha256);
   EXPECT_EQ(session->report().volume_sha256, volumeSha256(session->grid().snapshot()));

@@ -4,6 +4,7 @@
 
 #include "base/system.h"
 #include "cases.h"
+#include "scene/scene_structures.h"
 #include "session/hand_start.h"
 #include "session/session.h"
 #include "shells.h"
@@ -64,7 +65,8 @@ TEST(HandStart, WhatLiesFartherOutDoesNotKeepItFromTheAirBetween) {
 
 Scene liver() {
   Scene scene = *readScene(resourceFolder() / "scenes" / "liver-one-arm.json");
-  useCase(scene, "");                       // which has no labels
+  useCase(scene, "");
+  EXPECT_TRUE(placeStructures(scene, nullptr).ok());  // by HU: it has no labels
   Landmark& landmark = scene.landmarks[0];  // found by a ray, in a belly that is quick to make
   landmark.bulk_radius_mm = 0.0;
   landmark.from = {0.5, -0.2, 0.5};

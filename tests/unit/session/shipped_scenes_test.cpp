@@ -8,6 +8,7 @@
 
 #include "base/system.h"
 #include "haptics/bounded_controller.h"
+#include "scene/scene_structures.h"
 #include "session/case.h"
 #include "session/energy_watch.h"
 #include "session/run_statistics.h"
@@ -32,7 +33,7 @@ const Case& caseOf(const Scene& scene) {
   }
   return all[source];
 }
-Case placed(const Scene& scene) {
+Case placed(Scene& scene) {
   return *placedIn(scene, caseOf(scene));
 }
 
@@ -54,7 +55,7 @@ struct Recorded {
 
 Recorded record(const std::string& name, const std::string& case_source) {
   const test::TemporaryFolder folder;
-  const Scene scene = shipped(name, case_source);
+  Scene scene = shipped(name, case_source);
   Recorded out;
   const Case of = placed(scene);
   out.before = *of.volume;
@@ -226,27 +227,30 @@ TEST(ShippedScenes, TouchAndRemoveTissueOfRealCasesToo) {
 }
 TEST(ShippedScenes, CutTheLiverInTheLiverScenes) {
   for (const char* name : {"liver", "liver-one-arm"}) {
-    const Scene scene = shipped(name, "");
-    EXPECT_TRUE(scene.tissues.find("liver")->label);
+    EXPECT_EQ(shipped(name, "").tissues.find("liver")->structure, "liver");
     for (const Seen& seen : seenOf(name, "")) {
       EXPECT_GE(seen.liver_mm3, 50.0) << name;
       EXPECT_FALSE(seen.sent_N.contains("bone")) << name << ", " << seen.arm;
     }
   }
 }
-// The labels of the built-in case are no patient's.
+// Where a patient's case has no liver.
 TEST(ShippedScenes, KnowTissueByHuOnOtherCasesThanTheirOwn) {
   Scene scene = shipped("liver", "");
   useCase(scene, "/some/ct");
-  for (const Tissue& tissue : scene.tissues.tissues) EXPECT_FALSE(tissue.label) << tissue.id;
+  const auto placed = placeStructures(scene, nullptr);
+  ASSERT_TRUE(placed.ok());
+  EXPECT_EQ(placed->warnings.size(), 1u);
+  for (const Tissue& tissue : scene.tissues.tissues) EXPECT_TRUE(tissue.isAnywhere()) << tissue.id;
   EXPECT_TRUE(checkLabels(scene.tissues, nullptr).ok());
 }
 // The window's hands, which no script moves.
 TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
-    const Scene scene = shipped(name, "");
-    auto session = Session::create(scene, placed(scene), {{}, {}, true});
+    Scene scene = shipped(name, "");
+    const Case of = placed(scene);
+    auto session = Session::create(scene, of, {{}, {}, true});
     ASSERT_TRUE(session.ok()) << session.error().sentence();
     ASSERT_TRUE((*session)->freewheel(0.5).ok());
     EXPECT_EQ((*session)->report().removed_voxels, 0u) << name;
@@ -345,7 +349,7 @@ Probed probe(const Scene& placed, std::size_t arm, const LandmarkFrame& frame, c
 }
 
 std::vector<Probed> probesOf(const std::string& name, const std::string& case_source) {
-  const Scene scene = shipped(name, case_source);
+  Scene scene = shipped(name, case_source);
   const Case of = placed(scene);
   auto session = Session::create(scene, of, {});
   EXPECT_TRUE(session.ok()) << session.error().sentence();

@@ -1,0 +1,34 @@
+// Where the frames of a segmentation lie: one grid for all of them, and the slice of each. Pure.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+// As the file says it, in LPS.
+struct FramePlane {
+  Vec3 position_mm{0.0};
+  std::array<double, 6> orientation{};               // row's cosines, then column's
+  std::array<double, 2> pixel_spacing_mm{0.0, 0.0};  // between rows, between columns
+};
+
+struct FrameStack {
+  GridGeometry geometry;    // right-handed; from the first to the last place that has a frame
+  std::vector<int> slices;  // k of each frame; several may have the same
+  std::vector<std::string> notes{};  // sentences
+};
+
+// `between_mm` and `thickness_mm` are what the file states beside positions: slices that no frame
+// stands for show in them alone, and so does the step of a single slice. There is a frame at least.
+// Errors, without `where`: NO_GEOMETRY, FRAMES_DIFFER, UNEVEN_SPACING, TOO_LARGE.
+Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int columns, int rows,
+                               std::optional<double> between_mm,
+                               std::optional<double> thickness_mm);
+
+}  // namespace trephine

@@ -1,0 +1,43 @@
+// A DICOM Segmentation: structures that were outlined elsewhere, on the grid of their frames.
+//
+// Read are binary and fractional ones, in the transfer syntaxes of the room's README; frames in any
+// order, with none where a structure has no voxel. Nothing is guessed: what leaves in doubt where a
+// frame lies is refused.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "imaging/common/source_ids.h"
+#include "volume/segmentation.h"
+
+namespace trephine {
+
+struct DicomSegmentation {
+  // Format "DICOM SEG". Axes i = rows' direction, j = columns' direction, k = i x j, in LPS; from
+  // the first to the last place that has a frame. A segment's value is its number in the file, or
+  // its place in the list where a number is over kMostStructures.
+  Segmentation segmentation;
+  SourceIds of;                     // `series` where it refers to one alone
+  std::vector<std::string> series;  // hashes of those that it refers to, each once
+};
+
+// Whether the file says that it is one, by its SOP class. Cheap, on any thread; false for what
+// cannot be read.
+bool isDicomSegmentation(const std::filesystem::path& file);
+
+// A voxel of a fractional segmentation is of a segment where its share of the highest value is at
+// least `threshold`, of 0 to 1, and not 0. Errors: UNREADABLE (not there, no DICOM, cut, damaged),
+// NOT_SEGMENTATION, UNSUPPORTED_SEGMENTATION (of another kind), UNSUPPORTED_TRANSFER_SYNTAX,
+// SIZE_MISMATCH, NO_FRAMES, NO_GEOMETRY (a frame's place, orientation or pixel spacing is not there
+// or no such thing), FRAMES_DIFFER (they do not lie in one straight stack), UNEVEN_SPACING,
+// TOO_LARGE, TOO_MANY_STRUCTURES, BAD_THRESHOLD, OUT_OF_MEMORY, CANCELLED. Memory is taken for one
+// layer more than come out.
+Result<DicomSegmentation> readDicomSegmentation(const std::filesystem::path& file,
+                                                double threshold = 0.5,
+                                                const Progress& progress = Progress());
+
+}  // namespace trephine

@@ -1,0 +1,507 @@
+#include "imaging/segmentation/structure_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "base/memory.h"
+#include "imaging/common/text.h"
+
+namespace trephine {
+
+namespace {
+
+// A structure of which more lies beyond the CT is another patient's, or in another place.
+constexpr double kMostOutside_percent = 50.0;
+// Turned about, the same structures would have HU that lie this much closer together.
+constexpr double kMirrorIsBetter = 0.6;
+// And no further apart than an organ with its vessels: what is mirrored lies on something.
+constexpr double kMostMirrored_HU = 200.0;
+// Structures that are this close in HU anywhere say nothing about their place.
+constexpr double kLeastSpread_HU = 25.0;
+// Of a structure's voxels so many have HU of its kind, or nearly (noise, blur).
+constexpr double kLeastOfKind = 0.8, kNearKind_HU = 60.0;
+constexpr int kHuBins = 4096;  // of -1024 to 3071
+
+std::string number(double value, int digits = 0) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+struct NamedKind {
+  std::vector<const char*> words;
+  HuOfKind hu;
+};
+
+// Broad: with and without contrast, whatever the scanner. A word is one of the name's own.
+const std::vector<NamedKind>& kinds() {
+  static const std::vector<NamedKind> all = {
+      {{"lung", "lungs", "trachea", "bronchus", "airway", "sinus"},
+       {"lung or airway", -1024, -300}},
+      {{"fat", "adipose"}, {"fat", -200, 0}},
+      {{"bone", "bones", "skull", "cranium", "mandible", "vertebra", "vertebrae", "rib", "ribs",
+        "femur", "humerus", "sacrum", "hip", "pelvis", "clavicula", "scapula", "sternum", "table"},
+       {"bone", 100, 3071}},
+      {{"liver", "spleen", "pancreas", "kidney", "kidneys", "prostate", "thyroid"},
+       {"a solid organ", -20, 300}},
+      {{"tumour", "tumor", "lesion", "metastasis"}, {"a tumour", -50, 300}},
+      {{"muscle", "autochthon", "iliopsoas", "gluteus", "heart", "myocardium"},
+       {"muscle", -50, 300}},
+      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {"a vessel", -10, 700}},
+      {{"brain", "cerebellum", "ventricle", "ventricles"}, {"brain", -10, 120}},
+      {{"bladder", "gallbladder"}, {"a bladder", -50, 700}},
+      {{"skin", "scalp", "capsule"}, {"skin or a capsule", -300, 300}}};
+  return all;
+}
+
+std::vector<std::string> wordsOf(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : name) {
+    const bool letter = std::isalnum(static_cast<unsigned char>(c)) || (c & 0x80);
+    if (letter) {
+      words.back() += char(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  return words;
+}
+
+struct Counts {
+  std::vector<std::uint32_t> bins = std::vector<std::uint32_t>(kHuBins);
+  std::size_t total = 0;
+
+  void add(std::int16_t hu) {
+    ++bins[std::size_t(std::clamp(int(hu) + 1024, 0, kHuBins - 1))];
+    ++total;
+  }
+  double percentile(double share) const {
+    const double wanted = share * double(total);
+    double seen = 0.0;
+    for (int bin = 0; bin < kHuBins; ++bin) {
+      seen += bins[std::size_t(bin)];
+      if (seen >= wanted && seen > 0.0) return bin - 1024.0;
+    }
+    return kHuBins - 1025.0;
+  }
+  double shareIn(double low, double high) const {
+    double in = 0.0;
+    for (int bin = 0; bin < kHuBins; ++bin) {
+      if (bin - 1024 >= low && bin - 1024 <= high) in += bins[std::size_t(bin)];
+    }
+    return in / double(total);
+  }
+};
+
+using CountsByLabel = std::array<std::optional<Counts>, 256>;
+
+// HU of each label's voxels, as the map lies or turned about along one of its axes.
+CountsByLabel countHu(const LabelMap& map, const Volume& ct, int turned_axis = -1) {
+  CountsByLabel counts;
+  const Index3& size = map.geometry.size;
+  std::size_t voxel = 0;
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i, ++voxel) {
+        const std::uint8_t label = map.labels[voxel];
+        if (label == 0) continue;
+        if (!counts[label]) counts[label].emplace();
+        const int a = turned_axis == 0 ? size[0] - 1 - i : i;
+        const int b = turned_axis == 1 ? size[1] - 1 - j : j;
+        const int c = turned_axis == 2 ? size[2] - 1 - k : k;
+        counts[label]->add(ct.hu[map.geometry.indexOf(a, b, c)]);
+      }
+    }
+  }
+  return counts;
+}
+
+// How far HU lie apart within structures: the mean over voxels of their structure's 10th to 90th
+// percentile.
+double spread_HU(const CountsByLabel& counts) {
+  double sum = 0.0, total = 0.0;
+  for (const auto& of : counts) {
+    if (!of) continue;
+    sum += double(of->total) * (of->percentile(0.9) - of->percentile(0.1));
+    total += double(of->total);
+  }
+  return total > 0.0 ? sum / total : 0.0;
+}
+
+// Along which axis of the CT structures would have to be turned about to lie on what they are of;
+// -1: none.
+int mirroredAxis(const LabelMap& map, const Volume& ct, double spread) {
+  if (spread < kLeastSpread_HU) return -1;
+  int best = -1;
+  double least = std::min(kMirrorIsBetter * spread, kMostMirrored_HU);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double turned = spread_HU(countHu(map, ct, axis));
+    if (turned < least) {
+      least = turned;
+      best = axis;
+    }
+  }
+  return best;
+}
+
+// The patient's axis that a grid's axis runs along most.
+const char* sidesAlong(const GridGeometry& g, int axis) {
+  static const char* const kSides[] = {"left and right", "front and back", "head and foot"};
+  int most = 0;
+  for (int p = 1; p < 3; ++p) {
+    if (std::abs(g.direction[axis][p]) > std::abs(g.direction[axis][most])) most = p;
+  }
+  return kSides[most];
+}
+
+// Voxels [low, high) of the CT whose middles lie in the other grid's box, by their extremes.
+VoxelBox coveredBy(const GridGeometry& of, const GridGeometry& ct) {
+  const Mat4 to_ct = ct.patientToVoxel() * of.voxelToPatient();
+  Vec3 low(1e30), high(-1e30);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at(corner & 1 ? of.size[0] - 0.5 : -0.5, corner & 2 ? of.size[1] - 0.5 : -0.5,
+                  corner & 4 ? of.size[2] - 0.5 : -0.5);
+    const Vec3 v = Vec3(to_ct * glm::dvec4(at, 1.0));
+    low = glm::min(low, v);
+    high = glm::max(high, v);
+  }
+  VoxelBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double n = ct.size[a];
+    box.low[a] = int(std::clamp(std::ceil(low[int(a)] - 1e-3), 0.0, n));
+    box.high[a] = int(std::clamp(std::floor(high[int(a)] - 1e-3) + 1.0, double(box.low[a]), n));
+  }
+  return box;
+}
+
+// Whether voxels of the one lie on voxels of the other: same axes but for order and sense, same
+// spacing, middles within a hundredth of a voxel.
+bool sharesVoxels(const GridGeometry& of, const GridGeometry& ct) {
+  const Mat4 to_ct = ct.patientToVoxel() * of.voxelToPatient();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double across = of.size[std::size_t(axis)];
+    for (int p = 0; p < 3; ++p) {
+      const double step = to_ct[axis][p];
+      if (std::abs(step - std::round(step)) * across > 0.01 || std::abs(step) > 1.01) return false;
+    }
+  }
+  for (int p = 0; p < 3; ++p) {
+    if (std::abs(to_ct[3][p] - std::round(to_ct[3][p])) > 0.01) return false;
+  }
+  return true;
+}
+
+// Of each segment: voxels in the file, and how many of them have their middle beyond the CT.
+struct SegmentShare {
+  std::size_t voxels = 0, outside = 0;
+};
+
+std::vector<SegmentShare> sharesOf(const Segmentation& of, const GridGeometry& ct) {
+  std::vector<std::array<SegmentShare, 256>> by_value(of.layers.size());
+  const Mat4 to_ct = ct.patientToVoxel() * of.geometry.voxelToPatient();
+  const Vec3 step(to_ct[0]);
+  const Index3& size = of.geometry.size;
+  const auto beyond = [&](const Vec3& v) {
+    for (int a = 0; a < 3; ++a) {
+      if (v[a] < -0.5 - 1e-3 || v[a] > ct.size[std::size_t(a)] - 0.5 + 1e-3) return true;
+    }
+    return false;
+  };
+  for (std::size_t l = 0; l < of.layers.size(); ++l) {
+    std::size_t voxel = 0;
+    for (int k = 0; k < size[2]; ++k) {
+      for (int j = 0; j < size[1]; ++j) {
+        const Vec3 row(to_ct * glm::dvec4(0, j, k, 1));
+        for (int i = 0; i < size[0]; ++i, ++voxel) {
+          const std::uint8_t value = of.layers[l][voxel];
+          if (value == 0) continue;
+          SegmentShare& share = by_value[l][value];
+          ++share.voxels;
+          share.outside += beyond(row + double(i) * step);
+        }
+      }
+    }
+  }
+  std::vector<SegmentShare> shares;
+  for (const Segmentation::Segment& s : of.segments) shares.push_back(by_value[s.layer][s.value]);
+  return shares;
+}
+
+// "slices 1 to 30 of 112", "the whole of it".
+std::string partWords(const VoxelBox& box, const GridGeometry& ct) {
+  static const char* const kAxes[] = {"columns", "rows", "slices"};
+  std::string words;
+  for (std::size_t a = 3; a-- > 0;) {
+    if (box.low[a] == 0 && box.high[a] == ct.size[a]) continue;
+    if (!words.empty()) words += ", ";
+    const double mm = (box.high[a] - box.low[a]) * ct.spacing_mm[int(a)];
+    words += std::string(kAxes[a]) + " " + std::to_string(box.low[a] + 1) + " to " +
+             std::to_string(box.high[a]) + " of " + std::to_string(ct.size[a]) + " (" +
+             number(mm, 0) + " of " + number(ct.size[a] * ct.spacing_mm[int(a)], 0) + " mm)";
+  }
+  return words;
+}
+
+// What is done about a choice.
+class Asking {
+ public:
+  Asking(const Answers& answers, bool ask_all, StructureFit& fit)
+      : answers_(answers), ask_all_(ask_all), fit_(fit) {}
+
+  // The option that was chosen, or the one for nobody's answer.
+  Result<std::string> ask(Choice choice) {
+    const auto given = answers_.find(choice.code);
+    std::string option = choice.options.front();
+    if (given != answers_.end()) {
+      if (std::ranges::find(choice.options, given->second) == choice.options.end()) {
+        return Error{
+            "BAD_CHOICE",
+            "The choice " + choice.code + " has no option '" + cleanUtf8(given->second) + "'", "",
+            "Choose " + listed(choice.options, "or")};
+      }
+      option = given->second;
+    } else if (option == "refuse" && !ask_all_) {
+      option = choice.options.back();
+    }
+    if (option == "refuse") {
+      return Error{choice.code, choice.question, "the segmentation",
+                   "Choose another file, or answer " + choice.code + "=" + choice.options.back()};
+    }
+    fit_.choices.push_back(std::move(choice));
+    return option;
+  }
+
+ private:
+  const Answers& answers_;
+  bool ask_all_;
+  StructureFit& fit_;
+};
+
+Result<std::vector<std::size_t>> orderOf(const Segmentation& of, Asking& asking,
+                                         StructureFit& fit) {
+  std::vector<std::size_t> order = smallerFirst(of);
+  const std::vector<Overlap> shared = overlaps(of);
+  if (shared.empty()) return order;
+  const auto most =
+      std::max_element(shared.begin(), shared.end(),
+                       [](const auto& a, const auto& b) { return a.voxels < b.voxels; });
+  const double voxel_ml = of.geometry.voxelVolume_mm3() / 1000.0;
+  const auto name = [&](std::size_t s) { return "'" + of.segments[s].name + "'"; };
+  const std::string what =
+      counted(shared.size(), "pair") + " of structures share voxels, most of all " + name(most->a) +
+      " and " + name(most->b) + " with " + number(double(most->voxels) * voxel_ml, 1) + " mL";
+  const Result<std::string> chosen =
+      asking.ask({"OVERLAP",
+                  what + ". Which of them has those voxels?",
+                  {"smaller", "first", "last"},
+                  {"The smaller one, as a vessel in the liver", "The one that the file has first",
+                   "The one that the file has last"}});
+  if (!chosen) return chosen.error();
+  if (*chosen != "smaller") {
+    for (std::size_t s = 0; s < order.size(); ++s) {
+      order[s] = *chosen == "first" ? s : order.size() - 1 - s;
+    }
+  }
+  fit.findings.push_back({"OVERLAP",
+                          "notice",
+                          what,
+                          {},
+                          *chosen == "smaller" ? "The smaller one has them"
+                                               : "The one that comes " + *chosen + " has them"});
+  return order;
+}
+
+Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answers& answers,
+                            bool ask_all, const Progress& progress) {
+  const GridGeometry& g = ct.geometry;
+  const Error cancelled{"CANCELLED", "Reading the segmentation was cancelled", "", ""};
+  StructureFit fit;
+  fit.format = of.format;
+  for (const std::string& note : of.notes)
+    fit.findings.push_back({"FILE_NOTE", "notice", note, {}, ""});
+  progress.at(0.0, "Placing the structures");
+  const std::vector<SegmentShare> shares = sharesOf(of, g);
+  std::size_t all = 0, outside = 0;
+  for (const SegmentShare& share : shares) {
+    all += share.voxels;
+    outside += share.outside;
+  }
+  if (all == 0) {
+    return Error{"EMPTY_SEGMENTATION", "The file has no voxel of any structure", "the segmentation",
+                 "Export it again, with its structures"};
+  }
+  if (progress.cancelled()) return cancelled;
+  if (outside == all) {
+    return Error{"LABELS_ELSEWHERE", "The segmentation and the case do not overlap in the patient",
+                 "the segmentation", "Choose the one that was made from this CT"};
+  }
+  for (std::size_t s = 0; s < shares.size(); ++s) {
+    if (shares[s].voxels == 0) continue;
+    const double percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
+    if (percent < kMostOutside_percent) continue;
+    return Error{"HALF_OUTSIDE",
+                 "Of the structure '" + of.segments[s].name + "' " + number(percent) +
+                     " % lie outside of the CT",
+                 "the segmentation", "Choose the one that was made from this CT"};
+  }
+  Asking asking(answers, ask_all, fit);
+  const auto order = orderOf(of, asking, fit);
+  if (!order) return order.error();
+  progress.at(0.3, "Placing the structures");
+  const LabelMap own = merged(of, *order);
+  auto map = fitTo(own, g);
+  if (!map) return map.error();
+  fit.map = *std::move(map);
+  fit.resampled = !sharesVoxels(of.geometry, g);
+  fit.covers = coveredBy(of.geometry, g);
+  double covered = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    covered *= double(fit.covers.high[a] - fit.covers.low[a]) / g.size[a];
+  }
+  fit.covers_percent = 100.0 * covered;
+  if (covered < 1.0) {
+    fit.findings.push_back({"PART_OF_CT",
+                            "notice",
+                            "The file covers " + number(fit.covers_percent) +
+                                " % of the CT: " + partWords(fit.covers, g),
+                            {},
+                            "The rest of the CT has no structure"});
+  }
+  if (progress.cancelled()) return cancelled;
+  progress.at(0.6, "Looking at the structures' HU");
+  const CountsByLabel counts = countHu(fit.map, ct);
+  const int mirrored = mirroredAxis(fit.map, ct, spread_HU(counts));
+  if (mirrored >= 0) {
+    return Error{"MIRRORED",
+                 std::string("The segmentation is mirrored: its structures lie on what they are of "
+                             "when ") +
+                     sidesAlong(g, mirrored) + " change places",
+                 "the segmentation", "Export it again with its orientation"};
+  }
+  if (progress.cancelled()) return cancelled;
+
+  const double file_ml = of.geometry.voxelVolume_mm3() / 1000.0;
+  const double ct_ml = g.voxelVolume_mm3() / 1000.0;
+  std::vector<std::string> doubtful;
+  for (std::size_t s = 0; s < of.segments.size(); ++s) {
+    const Structure& structure = fit.map.structures[s];
+    StructureCard card;
+    card.name = structure.name;
+    card.label = structure.label;
+    card.colour = structure.colour;
+    card.ml_in_file = double(shares[s].voxels) * file_ml;
+    const auto& of_it = counts[std::size_t(structure.label)];
+    card.voxels = of_it ? of_it->total : 0;
+    card.ml = double(card.voxels) * ct_ml;
+    if (shares[s].voxels > 0) {
+      card.outside_percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
+    }
+    if (card.outside_percent > 0.0) {
+      card.findings.push_back({"OUTSIDE",
+                               "notice",
+                               number(card.outside_percent, 1) + " % of it lie outside of the CT",
+                               {},
+                               "They are left out"});
+    }
+    if (card.voxels == 0) {
+      card.findings.push_back({"EMPTY_STRUCTURE", "notice", "It has no voxel on the CT", {}, ""});
+    } else {
+      card.hu = {of_it->percentile(0.05), of_it->percentile(0.5), of_it->percentile(0.95)};
+      const auto kind = huOfKind(structure.name, structure.tissue);
+      const double median = (*card.hu)[1];
+      const double of_kind =
+          kind ? of_it->shareIn(kind->low - kNearKind_HU, kind->high + kNearKind_HU) : 1.0;
+      if (kind && (median < kind->low || median > kind->high || of_kind < kLeastOfKind)) {
+        doubtful.push_back("'" + structure.name + "' has a median of " + number(median) + " HU, " +
+                           number((*card.hu)[0]) + " to " + number((*card.hu)[2]) +
+                           " but for a "
+                           "tenth, and " +
+                           kind->kind + " has " + number(kind->low) + " to " + number(kind->high));
+        card.findings.push_back({"HU_NOT_TISSUE", "notice", doubtful.back(), {}, ""});
+      }
+    }
+    fit.structures.push_back(std::move(card));
+  }
+  if (!doubtful.empty()) {
+    const std::string more =
+        doubtful.size() > 1 ? ", and " + counted(doubtful.size() - 1, "other") + " alike" : "";
+    const auto chosen = asking.ask({"HU_NOT_TISSUE",
+                                    "The HU cannot be the tissue: " + doubtful.front() + more +
+                                        ". The segmentation may lie in a wrong place",
+                                    {"refuse", "keep"},
+                                    {"Do not use the segmentation", "Use it all the same"}});
+    if (!chosen) return chosen.error();
+    fit.findings.push_back({"HU_NOT_TISSUE", "notice", doubtful.front() + more, {}, "It was kept"});
+  }
+  progress.at(1.0, "Placing the structures");
+  return fit;
+}
+
+Json toJson(const StructureCard& card);
+Json toJson(const Choice& choice);
+
+Json toJson(const Finding& finding) {
+  return {{"code", finding.code}, {"text", finding.text}, {"action", finding.action}};
+}
+
+template <class List>
+Json listOf(const List& list) {
+  Json all = Json::array();
+  for (const auto& item : list) all.push_back(toJson(item));
+  return all;
+}
+
+Json toJson(const StructureCard& card) {
+  Json hu = nullptr;
+  if (card.hu) hu = {(*card.hu)[0], (*card.hu)[1], (*card.hu)[2]};
+  return {{"name", card.name},
+          {"label", card.label},
+          {"voxels", card.voxels},
+          {"ml", card.ml},
+          {"ml_in_file", card.ml_in_file},
+          {"outside_percent", card.outside_percent},
+          {"hu", hu},
+          {"findings", listOf(card.findings)}};
+}
+
+Json toJson(const Choice& choice) {
+  return {{"code", choice.code}, {"question", choice.question}, {"options", choice.options}};
+}
+
+}  // namespace
+
+std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tissue) {
+  for (const std::string* text : {&name, &tissue}) {
+    const std::vector<std::string> words = wordsOf(*text);
+    for (const NamedKind& kind : kinds()) {
+      for (const char* word : kind.words) {
+        if (std::ranges::find(words, word) != words.end()) return kind.hu;
+      }
+    }
+  }
+  return {};
+}
+
+Result<StructureFit> fitStructures(const Segmentation& segmentation, const Volume& ct,
+                                   const Answers& answers, bool ask_all, const Progress& progress) {
+  try {
+    return fitted(segmentation, ct, answers, ask_all, progress);
+  } catch (const std::bad_alloc&) {
+    return outOfMemory("for the segmentation", "the segmentation");
+  }
+}
+
+Json toJson(const StructureFit& fit) {
+  return {{"format", fit.format},
+          {"structures", listOf(fit.structures)},
+          {"covers_percent", fit.covers_percent},
+          {"covers", {{"low", fit.covers.low}, {"high", fit.covers.high}}},
+          {"resampled", fit.resampled},
+          {"findings", listOf(fit.findings)},
+          {"choices", listOf(fit.choices)}};
+}
+
+}  // namespace trephine

@@ -1,0 +1,90 @@
+#include "imaging/structure_importer.h"
+
+#include <cmath>
+#include <optional>
+
+#include "imaging/dicom/seg_reader.h"
+#include "volume/segmentation.h"
+
+namespace trephine {
+
+namespace {
+
+// Whether the grid's voxels are the CT's, each within half a voxel; both are straight, so its axes
+// and corners decide.
+bool liesOn(const GridGeometry& of, const GridGeometry& ct) {
+  const Mat4 to_ct = ct.patientToVoxel() * of.voxelToPatient();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A step is a whole number of steps of the CT.
+    Vec3 drift(to_ct[axis]);
+    for (int p = 0; p < 3; ++p) drift[p] -= std::round(drift[p]);
+    const double steps = of.size[std::size_t(axis)] - 1;
+    if (glm::length(Vec3(to_ct[axis])) < 0.5 || steps * glm::length(drift) > 0.5) return false;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at(corner & 1 ? of.size[0] - 1 : 0, corner & 2 ? of.size[1] - 1 : 0,
+                  corner & 4 ? of.size[2] - 1 : 0);
+    const Vec3 voxel(to_ct * glm::dvec4(at, 1.0));
+    for (int p = 0; p < 3; ++p) {
+      if (voxel[p] < -0.5 || voxel[p] > ct.size[std::size_t(p)] - 0.5) return false;
+    }
+  }
+  return true;
+}
+
+// A choice about where the file belongs, as those of fitStructures().
+Status match(const DicomSegmentation& seg, const Volume& ct, const StructureRequest& request,
+             std::optional<Choice>& asked) {
+  const SourceIds &of = seg.of, &to = request.ct;
+  const bool frames = !of.frame_of_reference.empty() && !to.frame_of_reference.empty();
+  if (frames && of.frame_of_reference == to.frame_of_reference) return {};
+  const bool other_study = !of.study.empty() && !to.study.empty() && of.study != to.study;
+  // Of a CT that says nothing of itself only the place can speak, which is looked at later.
+  if (!frames && !other_study) return {};
+  if (!liesOn(seg.segmentation.geometry, ct.geometry)) {
+    const std::string whose =
+        other_study ? "of another study, of this patient or another," : "of another scan";
+    return Error{other_study ? "OTHER_PATIENT" : "OTHER_FRAME",
+                 "The segmentation is " + whose + " and does not lie on this CT",
+                 "the segmentation", "Choose the one that was made from this CT"};
+  }
+  Choice choice{"OTHER_FRAME",
+                std::string("The segmentation is of another ") +
+                    (other_study ? "study, perhaps of another patient," : "frame of reference") +
+                    " though its voxels lie on those of this CT",
+                {"refuse", "keep"},
+                {"Do not use the segmentation", "Use it: it is of this patient"}};
+  const auto given = request.answers.find(choice.code);
+  const bool keep = given != request.answers.end() ? given->second == "keep" : !request.ask_all;
+  if (!keep) {
+    return Error{choice.code, choice.question, "the segmentation",
+                 "Choose another file, or answer OTHER_FRAME=keep"};
+  }
+  asked = std::move(choice);
+  return {};
+}
+
+}  // namespace
+
+Result<StructureFit> importStructures(const std::filesystem::path& file, const Volume& ct,
+                                      const StructureRequest& request, const Progress& progress) {
+  const Progress reading(progress, 0.0, 0.5), fitting(progress, 0.5, 1.0);
+  if (!isDicomSegmentation(file)) {
+    const Result<Segmentation> read = readSegmentation(file, reading);
+    if (!read) return read.error();
+    return fitStructures(*read, ct, request.answers, request.ask_all, fitting);
+  }
+  const Result<DicomSegmentation> read = readDicomSegmentation(file, request.threshold, reading);
+  if (!read) return read.error();
+  std::optional<Choice> asked;
+  if (Status of = match(*read, ct, request, asked); !of) return of.error();
+  Result<StructureFit> fit =
+      fitStructures(read->segmentation, ct, request.answers, request.ask_all, fitting);
+  if (fit && asked) {
+    fit->findings.push_back({asked->code, "notice", asked->question, {}, "It was kept"});
+    fit->choices.push_back(*std::move(asked));
+  }
+  return fit;
+}
+
+}  // namespace trephine

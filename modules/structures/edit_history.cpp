@@ -1,0 +1,66 @@
+#include "structures/edit_history.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+namespace {
+
+VoxelBox both(const VoxelBox& a, const VoxelBox& b) {
+  VoxelBox box = a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::min(a.low[axis], b.low[axis]);
+    box.high[axis] = std::max(a.high[axis], b.high[axis]);
+  }
+  return box;
+}
+
+VoxelBox boxOf(const std::vector<LabelEdit>& edits) {
+  VoxelBox box = edits.front().box;
+  for (const LabelEdit& edit : edits) box = both(box, edit.box);
+  return box;
+}
+
+}  // namespace
+
+void EditHistory::add(const std::string& name, LabelEdit edit, bool joins) {
+  if (edit.empty()) return;
+  while (steps_.size() > done_) {
+    bytes_ -= steps_.back().bytes;
+    steps_.pop_back();
+  }
+  if (!joins || steps_.empty()) steps_.push_back({name, {}, 0});
+  Step& step = steps_.back();
+  edit.runs.shrink_to_fit();
+  step.bytes += edit.bytes();
+  bytes_ += edit.bytes();
+  step.edits.push_back(std::move(edit));
+  while (bytes_ > most_bytes_) {
+    bytes_ -= steps_.front().bytes;
+    steps_.pop_front();
+    ++dropped_;
+  }
+  done_ = steps_.size();
+}
+
+std::optional<VoxelBox> EditHistory::undo(LabelMap& map) {
+  if (done_ == 0) return std::nullopt;
+  const Step& step = steps_[--done_];
+  for (auto edit = step.edits.rbegin(); edit != step.edits.rend(); ++edit) {
+    trephine::undo(map, *edit);
+  }
+  return boxOf(step.edits);
+}
+
+std::optional<VoxelBox> EditHistory::redo(LabelMap& map) {
+  if (done_ == steps_.size()) return std::nullopt;
+  const Step& step = steps_[done_++];
+  for (const LabelEdit& edit : step.edits) apply(map, edit);
+  return boxOf(step.edits);
+}
+
+void EditHistory::clear() {
+  *this = EditHistory(most_bytes_);
+}
+
+}  // namespace trephine

@@ -1,0 +1,328 @@
+// Structures in the real window, by mouse and keys, as a clinician makes them: open a CT, grow the
+// liver, mend it by two strokes, start the exercise on it, cut, save it. On the real abdomen where
+// it is, else on the built-in one without its labels. The steps build on each other, in order.
+#include <QApplication>
+#include <QComboBox>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QFile>
+#include <QFileDialog>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QTabWidget>
+#include <QToolButton>
+#include <QTreeWidget>
+#include <QWindow>
+#include <QtTest>
+
+#include "gui_support.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "volume/segmentation.h"
+
+using namespace trephine;
+
+namespace {
+constexpr int kLong_ms = 240000;
+}
+
+class StructuresGuiTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  std::filesystem::path file_;
+  Vec3 in_liver_mm_{-60, -20, 20};
+  int clicks_ = 0;  // and strokes and keys, of the clinician's path
+  qint64 computing_ms_ = 0;
+
+  FourUp& views() { return window_->views(); }
+  SliceView& axial() { return views().slice(SliceAxis::axial); }
+  QWindow* handle() { return window_->windowHandle(); }
+  QPoint inWindow(const Vec3& mm) {
+    return axial().mapTo(window_.get(), axial().fromPatient(mm).toPoint());
+  }
+  void clickAt(const Vec3& mm) {
+    QTest::mouseClick(handle(), Qt::LeftButton, {}, inWindow(mm));
+    ++clicks_;
+  }
+  void drag(const Vec3& from, const Vec3& to) {
+    QTest::mousePress(handle(), Qt::LeftButton, {}, inWindow(from));
+    for (int i = 1; i <= 8; ++i) {
+      QTest::mouseMove(handle(), inWindow(from + (to - from) * (i / 8.0)));
+      QTest::qWait(10);
+    }
+    QTest::mouseRelease(handle(), Qt::LeftButton, {}, inWindow(to));
+    QTest::qWait(30);
+    ++clicks_;
+  }
+  void key(Qt::Key of) {
+    QApplication::setActiveWindow(window_.get());
+    axial().setFocus();
+    QTest::keyClick(handle(), of);
+    ++clicks_;
+  }
+  void press(const char* name) {
+    auto* button = find<QAbstractButton>(name);
+    QVERIFY2(button->isEnabled() && button->isVisible(), name);
+    QTest::mouseClick(button, Qt::LeftButton);
+    ++clicks_;
+  }
+  QTreeWidget* list() { return find<QTreeWidget>("structureList"); }
+  double ml(const char* name) {
+    for (int i = 0; i < list()->topLevelItemCount(); ++i) {
+      if (list()->topLevelItem(i)->text(0) == name)
+        return list()->topLevelItem(i)->text(1).toDouble();
+    }
+    return -1.0;
+  }
+  void keepGrab(const char* name) {
+    QTest::qWait(400);
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/%1").arg(name)));
+  }
+  QString said() { return find<QLabel>("structureSaid")->text(); }
+
+ private slots:
+  void initTestCase() {
+    QApplication::setApplicationName("trephine-test-structures");
+    QFile::remove(windowSettings().fileName());
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    if (const char* data = std::getenv("TREPHINE_TEST_DATA")) {
+      file_ = std::filesystem::path(data) / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz";
+      in_liver_mm_ = {-92, -161, 406};
+    } else {
+      file_ = toPath(temporary_.filePath("abdomen.mha"));
+      const auto volume = makePhantom("abdomen");
+      QVERIFY(volume.ok() && writeVolume(*volume, file_).ok());
+    }
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+  }
+  void cleanupTestCase() {
+    window_.reset();
+    QFile::remove(windowSettings().fileName());
+  }
+
+  void anAbdomenOpensUnderAnExerciseForAbdomens() {
+    QElapsedTimer clock;
+    clock.start();
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPath(file_);  // 1: the folder's dialog
+    ++clicks_;
+    auto* import = find<QPushButton>("import");
+    QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
+    press("import");
+    QTRY_VERIFY_WITH_TIMEOUT(opened.count() == 1 || find<QPushButton>("openCase")->isVisible(),
+                             kLong_ms);
+    if (opened.isEmpty()) {
+      for (QRadioButton* keep : window_->findChildren<QRadioButton*>()) {
+        if (keep->objectName().endsWith("_keep") && keep->isVisible()) {
+          keep->click();
+          ++clicks_;
+        }
+      }
+      press("openCase");
+      QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    }
+    computing_ms_ += clock.elapsed();
+    QCOMPARE(QString::fromStdString(workstation().scene()->anatomy), QString("abdomen"));
+    const QString about = find<QLabel>("caseLabel")->text();
+    QVERIFY2(about.contains("abdomen"), qPrintable(about));
+    QVERIFY(!workstation().currentCase()->structures);
+    // The liver that the exercise needs is offered to be made.
+    QVERIFY2(said().contains("liver"), qPrintable(said()));
+    QVERIFY(views().tool() == SliceTool::grow);
+    views().setTool(SliceTool::window);
+  }
+
+  void anExerciseThatNeedsALiverAsksAndLeadsToMakingIt() {
+    window_->findChild<QAction*>("start")->trigger();
+    auto* question = window_->findChild<QMessageBox*>("misfitQuestion");
+    QVERIFY(question);
+    QVERIFY2(question->text().contains("liver"), qPrintable(question->text()));
+    QVERIFY(workstation().phase() == Workstation::Phase::ready);
+    auto* make = question->findChild<QPushButton*>("makeStructure");
+    QVERIFY(make);
+    QTest::mouseClick(make, Qt::LeftButton);
+    QTRY_VERIFY(views().tool() == SliceTool::grow);
+    QVERIFY(list()->topLevelItemCount() == 0);
+    QCOMPARE(find<QComboBox>("structureName")->currentText(), QString("liver"));
+    QVERIFY(views().viewLayout().kind == ViewLayout::Kind::four);
+  }
+
+  void aClickGrowsTheLiverAndShowsItBeforeItCounts() {
+    views().setPoint(in_liver_mm_);
+    QTest::qWait(100);
+    QElapsedTimer clock;
+    clock.start();
+    clickAt(in_liver_mm_);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("takePreview")->isVisible(), kLong_ms);
+    computing_ms_ += clock.elapsed();
+    QVERIFY2(ml("liver") > 800.0 && ml("liver") < 2500.0, qPrintable(QString::number(ml("liver"))));
+    QVERIFY(!workstation().currentCase()->structures);
+    keepGrab("structures-preview.png");
+    key(Qt::Key_Escape);  // no: it goes again
+    --clicks_;
+    QTRY_VERIFY(!find<QPushButton>("takePreview")->isVisible());
+    QCOMPARE(list()->topLevelItemCount(), 0);
+    views().setTool(SliceTool::grow);
+    clickAt(in_liver_mm_);
+    --clicks_;
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("takePreview")->isVisible(), kLong_ms);
+    key(Qt::Key_Return);
+    --clicks_;  // a first stroke takes it as well
+    QTRY_VERIFY(!find<QPushButton>("takePreview")->isVisible());
+    QVERIFY(ml("liver") > 800.0);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->structures, kLong_ms);
+  }
+
+  void twoStrokesMendItAndEachCanBeUndone() {
+    const double before = ml("liver");
+    key(Qt::Key_E);
+    QVERIFY(views().tool() == SliceTool::eraser);
+    drag(in_liver_mm_, in_liver_mm_ + Vec3(20, 0, 0));
+    const double erased = ml("liver");
+    QVERIFY(erased < before - 0.5);
+    key(Qt::Key_B);
+    --clicks_;  // to see that it comes back; a person erases twice
+    drag(in_liver_mm_, in_liver_mm_ + Vec3(20, 0, 0));
+    QVERIFY(std::abs(ml("liver") - before) < 0.3 * (before - erased) + 1.0);
+    auto* undo = window_->findChild<QAction*>("undo");
+    QVERIFY(undo->isEnabled());
+    undo->trigger();
+    QCOMPARE(ml("liver"), erased);
+    undo->trigger();
+    QCOMPARE(ml("liver"), before);
+    window_->findChild<QAction*>("redo")->trigger();
+    QCOMPARE(ml("liver"), erased);
+    window_->findChild<QAction*>("redo")->trigger();
+    keepGrab("structures-mended.png");
+  }
+
+  // Where the brush was the slice changes at once.
+  void aStrokeIsSeenAtOnce() {
+    views().setTool(SliceTool::eraser);
+    const QPoint at = axial().fromPatient(in_liver_mm_ + Vec3(5, 25, 0)).toPoint();
+    QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));
+    QTest::qWait(100);
+    const QColor before = axial().grab().toImage().pixelColor(at);
+    QElapsedTimer clock;
+    clock.start();
+    const int drawn = axial().drawn();
+    QTest::mousePress(handle(), Qt::LeftButton, {}, axial().mapTo(window_.get(), at));
+    while (axial().drawn() == drawn && clock.elapsed() < 5000) QCoreApplication::processEvents();
+    const qint64 ms = clock.elapsed();
+    QTest::mouseRelease(handle(), Qt::LeftButton, {}, axial().mapTo(window_.get(), at));
+    QTest::mouseMove(handle(), axial().mapTo(window_.get(), at + QPoint(60, 0)));
+    QTest::qWait(50);
+    const QColor after = axial().grab().toImage().pixelColor(at);
+    std::printf("a stroke's first voxels and the slice with them: %lld ms\n",
+                static_cast<long long>(ms));
+    QVERIFY2(before != after, qPrintable(before.name() + " " + after.name()));
+    window_->findChild<QAction*>("undo")->trigger();
+  }
+
+  void theExerciseStartsOnItWithItsCapsule() {
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    QElapsedTimer clock;
+    clock.start();
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->findChild<QAction*>("start")->trigger();
+    ++clicks_;
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    computing_ms_ += clock.elapsed();
+    QVERIFY(!window_->findChild<QMessageBox*>("misfitQuestion"));
+    const Case& of = *workstation().currentCase();
+    QVERIFY(of.warnings.empty());
+    QVERIFY(of.labels->find("capsule"));
+    QVERIFY(!of.structures->find("capsule"));
+    QCOMPARE(int(*workstation().scene()->tissues.find("liver")->label),
+             of.labels->find("liver")->label);
+    ++clicks_;  // a cut: a drag in the 3-D view
+  }
+
+  void whileItRunsStructuresStayAndSayWhy() {
+    const double before = ml("liver");
+    drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
+    --clicks_;
+    QCOMPARE(ml("liver"), before);
+    QVERIFY2(said().contains("exercise runs"), qPrintable(said()));
+    QTest::qWait(500);
+    workstation().stop();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+  }
+
+  void itIsSavedWithItsName() {
+    left()->setCurrentIndex(2);
+    press("saveStructures");
+    auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
+    QVERIFY(dialog);
+    const QString file = temporary_.filePath("mine.nii.gz");
+    QSignalSpy saved(&workstation(), &Workstation::saved);
+    emit dialog->fileSelected(file);
+    ++clicks_;
+    dialog->close();
+    QVERIFY(saved.count() == 1 || saved.wait(kLong_ms));
+    const auto back = readLabelMap(toPath(file));
+    QVERIFY(back.ok());
+    QVERIFY(back->find("liver"));
+    const Case& of = *workstation().currentCase();
+    QCOMPARE(std::count(back->labels.begin(), back->labels.end(), back->find("liver")->label),
+             std::count(of.structures->labels.begin(), of.structures->labels.end(),
+                        of.structures->find("liver")->label));
+  }
+
+  void thePathIsShort() {
+    std::printf("the clinician's path: %d clicks, strokes and keys, %.1f s of computing\n", clicks_,
+                double(computing_ms_) / 1000.0);
+    QVERIFY(clicks_ <= 12);
+    QVERIFY(computing_ms_ < 30000);
+  }
+
+  void whatWasReadFromElsewhereIsListed() {
+    const QString file = temporary_.filePath("mine.nii.gz");
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(toPath(file));
+    QVERIFY(changed.wait(kLong_ms));
+    QVERIFY(ml("liver") > 800.0);
+    // A liver that lies in air and fat is asked about.
+    LabelMap wrong = *readLabelMap(toPath(file));
+    std::fill(wrong.labels.begin(), wrong.labels.end(), std::uint8_t(0));
+    for (std::size_t n = 0; n < 20000; ++n) wrong.labels[n] = 1;
+    wrong.structures = {{1, "liver", Vec3(1.0)}};
+    QVERIFY(writeSegmentation(wrong, toPath(temporary_.filePath("wrong.nii.gz"))).ok());
+    workstation().useLabels(toPath(temporary_.filePath("wrong.nii.gz")));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>("structuresQuestion"), kLong_ms);
+    auto* question = window_->findChild<QMessageBox*>("structuresQuestion");
+    QVERIFY2(question->text().contains("HU"), qPrintable(question->text()));
+    question->reject();
+    QVERIFY(ml("liver") > 800.0);
+  }
+
+  void unsavedStructuresAreAskedAboutBeforeTheyGo() {
+    views().setTool(SliceTool::eraser);
+    drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
+    QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
+    auto* question = window_->findChild<QMessageBox*>("structuresUnsaved");
+    QVERIFY(question);
+    question->reject();
+    QTest::qWait(100);
+    QVERIFY(!workstation().isOpening() || workstation().isPlacing());
+    QVERIFY(ml("liver") > 800.0);
+    window_->close();
+    QVERIFY(window_->isVisible());
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));
+    window_->findChild<QMessageBox*>("structuresUnsaved")->reject();
+  }
+
+ private:
+  QTabWidget* left() { return find<QTabWidget>("leftTabs"); }
+};
+
+int main(int argc, char** argv) {
+  return test::runInWindow<StructuresGuiTest>(argc, argv);
+}
+
+#include "structures_gui_test.moc"

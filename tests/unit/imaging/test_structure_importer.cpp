@@ -1,0 +1,96 @@
+#include "imaging/dicom/seg_writer.h"
+#include "imaging/importer.h"
+#include "imaging/structure_importer.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+// Soft tissue with an organ in it.
+Volume belly(const Vec3& origin_mm = Vec3(0.0), std::int16_t corner_HU = 0) {
+  Volume volume;
+  volume.geometry.size = {24, 20, 12};
+  volume.geometry.spacing_mm = {2.0, 2.0, 5.0};
+  volume.geometry.origin_mm = origin_mm;
+  volume.hu.assign(volume.geometry.voxelCount(), -80);
+  for (int k = 3; k < 9; ++k) {
+    for (int j = 4; j < 14; ++j) {
+      for (int i = 5; i < 15; ++i) volume.hu[volume.geometry.indexOf(i, j, k)] = 50;
+    }
+  }
+  volume.hu[0] = corner_HU;
+  return volume;
+}
+
+LabelMap liverOf(const Volume& volume) {
+  LabelMap map{volume.geometry, std::vector<std::uint8_t>(volume.hu.size()), {}};
+  for (std::size_t v = 0; v < map.labels.size(); ++v) map.labels[v] = volume.hu[v] == 50 ? 4 : 0;
+  map.structures = {{4, "liver", Vec3(0.5, 0.25, 0.25)}};
+  return map;
+}
+
+struct Written {
+  Volume volume;
+  SourceIds ids;
+  std::filesystem::path seg;
+};
+
+Written write(const Volume& volume, const std::filesystem::path& folder) {
+  EXPECT_TRUE(writeStructuresAsDicom(volume, liverOf(volume), folder).ok());
+  auto scanned = CtFolder::scan(folder / "CT", Progress());
+  auto read = scanned->read(*scanned->bestSeries(), {}, Progress());
+  EXPECT_TRUE(read.ok());
+  return {*std::move(read), scanned->report().provenance->source_ids, folder / "structures.dcm"};
+}
+
+StructureRequest of(const SourceIds& ids, const Answers& answers = {}) {
+  StructureRequest request;
+  request.ct = ids;
+  request.answers = answers;
+  return request;
+}
+
+TEST(StructureImporter, ASegmentationOfThisCtIsTakenWithoutAWord) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  EXPECT_FALSE(own.ids.frame_of_reference.empty());
+  const auto fit = importStructures(own.seg, own.volume, of(own.ids));
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  EXPECT_EQ(fit->structures[0].voxels, 600u);
+  EXPECT_TRUE(fit->choices.empty());
+  for (const Finding& f : fit->findings) EXPECT_EQ(f.code, "PART_OF_CT") << f.text;
+  const LabelMap liver = liverOf(own.volume);
+  for (std::size_t v = 0; v < liver.labels.size(); ++v) {
+    ASSERT_EQ(fit->map.labels[v] != 0, liver.labels[v] != 0) << v;
+  }
+}
+
+TEST(StructureImporter, AnotherStudyThatLiesOnTheCtIsAskedAbout) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  const Written other = write(belly(Vec3(0.4, 0.0, 0.0), 7), folder / "b");
+  const auto asked = importStructures(other.seg, own.volume, of(own.ids));
+  ASSERT_FALSE(asked);
+  EXPECT_EQ(asked.error().code, "OTHER_FRAME");
+  EXPECT_NE(asked.error().what.find("another study"), std::string::npos);
+  const auto kept = importStructures(other.seg, own.volume, of(own.ids, {{"OTHER_FRAME", "keep"}}));
+  ASSERT_TRUE(kept) << kept.error().sentence();
+  EXPECT_EQ(kept->choices.size(), 1u);
+  EXPECT_FALSE(importStructures(other.seg, own.volume, of(own.ids, {{"OTHER_FRAME", "refuse"}})));
+  // Of a volume file nothing is known: its place alone speaks.
+  EXPECT_TRUE(importStructures(other.seg, own.volume, of({})));
+}
+
+TEST(StructureImporter, ASegmentationOfAnotherPatientIsRefused) {
+  const test::TemporaryFolder folder;
+  const Written own = write(belly(), folder / "a");
+  const Written other = write(belly(Vec3(13.0, 2.0, 31.0), 7), folder / "b");
+  for (const Answers& answers : {Answers(), Answers{{"OTHER_FRAME", "keep"}}}) {
+    const auto refused = importStructures(other.seg, own.volume, of(own.ids, answers));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, "OTHER_PATIENT");
+  }
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,179 @@
+// Structures while they are made, without a window: the editor alone.
+#include "ui/structures/structure_editor.h"
+
+#include <gtest/gtest.h>
+
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QSignalSpy>
+
+#include "qt_support.h"
+
+namespace trephine {
+namespace {
+
+// Liver of 50 HU, a ball of 25 mm in fat.
+std::shared_ptr<const Volume> ballOfLiver() {
+  auto volume = std::make_shared<Volume>();
+  volume->geometry.size = {60, 60, 60};
+  volume->geometry.spacing_mm = Vec3(1.5);
+  volume->hu.assign(volume->geometry.voxelCount(), -100);
+  for (std::size_t v = 0; v < volume->hu.size(); ++v) {
+    const Index3 at = volume->geometry.indicesOf(v);
+    const Vec3 mm = volume->geometry.toPatient_mm(Vec3(at[0], at[1], at[2]));
+    if (glm::length(mm - volume->geometry.centre_mm()) < 25.0) volume->hu[v] = 50;
+  }
+  return volume;
+}
+
+class Editor : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { test::application(); }
+  Editor() : volume_(ballOfLiver()), middle_(volume_->geometry.centre_mm()) {
+    editor_.setCase(volume_, nullptr);
+    QObject::connect(&editor_, &StructureEditor::said, [this](const QString& w) { said_ = w; });
+    QObject::connect(&editor_, &StructureEditor::failed,
+                     [this](const Error& e) { failed_ = e.code; });
+  }
+  void wait() {
+    QElapsedTimer clock;
+    clock.start();
+    while (editor_.busy() && clock.elapsed() < 60000) QCoreApplication::processEvents();
+  }
+  double ml(const char* name) {
+    const Structure* of = editor_.map()->find(name);
+    return of ? editor_.millilitres(of->label) : -1.0;
+  }
+  void stroke(const Vec3& from, const Vec3& to, bool erase = false) {
+    Brush brush;
+    brush.radius_mm = 5.0;
+    brush.erase = erase;
+    editor_.beginStroke(from, brush, "made");
+    editor_.moveStroke(to);
+    editor_.endStroke();
+  }
+
+  std::shared_ptr<const Volume> volume_;
+  Vec3 middle_;
+  StructureEditor editor_;
+  QString said_;
+  std::string failed_;
+};
+
+constexpr double kBall_ml = 65.4;
+
+TEST_F(Editor, WhatWasGrownCountsOnceItIsTaken) {
+  editor_.growAt(middle_, "liver");
+  EXPECT_TRUE(editor_.busy());
+  wait();
+  ASSERT_TRUE(editor_.preview()) << failed_;
+  EXPECT_NEAR(ml("liver"), kBall_ml, 2.0);
+  EXPECT_FALSE(editor_.edited());
+  EXPECT_EQ(editor_.takeEdited(), nullptr);
+  editor_.leavePreview();
+  EXPECT_EQ(ml("liver"), -1.0);
+  EXPECT_TRUE(editor_.map()->structures.empty());
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  EXPECT_TRUE(editor_.edited());
+  const auto made = editor_.takeEdited();
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->find("liver"));
+  EXPECT_EQ(editor_.takeEdited(), nullptr) << "it was taken";
+  EXPECT_TRUE(editor_.edited()) << "but not saved";
+}
+
+TEST_F(Editor, EveryStepIsUndoneAndDoneAgain) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  const auto grown = editor_.map()->labels;
+  stroke(middle_, middle_ + Vec3(10, 0, 0), true);
+  const auto erased = editor_.map()->labels;
+  EXPECT_NE(grown, erased);
+  editor_.fillHoles();
+  wait();
+  const auto filled = editor_.map()->labels;
+  EXPECT_EQ(filled, grown);
+  editor_.undo();
+  EXPECT_EQ(editor_.map()->labels, erased);
+  editor_.undo();
+  EXPECT_EQ(editor_.map()->labels, grown);
+  editor_.undo();
+  EXPECT_EQ(ml("liver"), 0.0);
+  EXPECT_FALSE(editor_.undoText());
+  for (int n = 0; n < 3; ++n) editor_.redo();
+  EXPECT_EQ(editor_.map()->labels, filled);
+  EXPECT_NEAR(ml("liver"), kBall_ml, 2.0);
+  EXPECT_FALSE(editor_.redoText());
+}
+
+TEST_F(Editor, AStrokeIsOneStepHoweverManyPieces) {
+  Brush brush;
+  editor_.beginStroke(middle_, brush, "made");
+  for (int n = 0; n < 20; ++n) editor_.moveStroke(middle_ + Vec3(n, 0, 0));
+  editor_.endStroke();
+  EXPECT_GT(ml("made"), 1.0);
+  editor_.undo();
+  EXPECT_EQ(ml("made"), 0.0);
+}
+
+TEST_F(Editor, AShellOfTheChosenOneIsAStructureOfItsOwn) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  const double before = ml("liver");
+  editor_.makeShell(1.0, "capsule");
+  wait();
+  EXPECT_GT(ml("capsule"), 3.0);
+  EXPECT_NEAR(ml("capsule") + ml("liver"), before, 1e-6);
+}
+
+TEST_F(Editor, WhileItIsLockedNothingChangesAndItSaysWhy) {
+  stroke(middle_, middle_);
+  const auto before = editor_.map()->labels;
+  editor_.setLocked("An exercise runs.");
+  stroke(middle_ + Vec3(10, 0, 0), middle_ + Vec3(20, 0, 0));
+  editor_.undo();
+  editor_.remove(editor_.current());
+  editor_.growAt(middle_, "liver");
+  EXPECT_FALSE(editor_.busy());
+  EXPECT_EQ(editor_.map()->labels, before);
+  EXPECT_EQ(said_, "An exercise runs.");
+}
+
+TEST_F(Editor, NamesAreItsOwnAndWhatIsDeletedComesBack) {
+  stroke(middle_, middle_);
+  const int first = editor_.current();
+  EXPECT_TRUE(editor_.rename(first, " Leber \u809d ").ok());
+  EXPECT_EQ(editor_.map()->find(first)->name, "Leber \xe8\x82\x9d");
+  editor_.setCurrent(0);
+  stroke(middle_ + Vec3(20, 0, 0), middle_ + Vec3(20, 0, 0));
+  EXPECT_EQ(editor_.rename(editor_.current(), QString::fromUtf8("leber \xe8\x82\x9d")).error().code,
+            "BAD_NAME");
+  EXPECT_EQ(editor_.rename(editor_.current(), "  ").error().code, "BAD_NAME");
+  const double before = editor_.millilitres(first);
+  editor_.remove(first);
+  EXPECT_EQ(editor_.millilitres(first), 0.0);
+  editor_.undo();
+  EXPECT_NEAR(editor_.millilitres(first), before, 1e-9);
+}
+
+TEST_F(Editor, AnInterruptedGrowLosesNothing) {
+  stroke(middle_, middle_);
+  const auto before = editor_.map()->labels;
+  editor_.growAt(middle_, "liver");
+  editor_.cancel();
+  wait();
+  EXPECT_EQ(editor_.map()->labels, before);
+  EXPECT_FALSE(editor_.preview());
+  EXPECT_TRUE(failed_.empty());
+  editor_.growAt(middle_ + Vec3(1000, 0, 0), "liver");
+  wait();
+  EXPECT_EQ(failed_, "BAD_SEED");
+  EXPECT_EQ(editor_.map()->labels, before);
+}
+
+}  // namespace
+}  // namespace trephine

@@ -1,0 +1,250 @@
+// The structures in the window: between their panel, the editor, the slices and the workstation.
+#include <QFileDialog>
+#include <QMessageBox>
+#include <QPushButton>
+
+#include "ui/common/question.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
+#include "volume/segmentation.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kSettled_ms = 500;  // after the last change the exercise is placed in them
+constexpr double kStructureOpacity = 0.4;
+}  // namespace
+
+void MainWindow::connectStructures() {
+  connect(structures_, &StructurePanel::toolChosen, views_, &FourUp::setTool);
+  connect(structures_, &StructurePanel::brushChanged, this,
+          [this] { views_->setBrushRadius(structures_->brushRadius_mm()); });
+  connect(structures_, &StructurePanel::openWanted, this, &MainWindow::askForLabels);
+  connect(structures_, &StructurePanel::saveWanted, this, &MainWindow::askToSaveStructures);
+  connect(views_, &FourUp::toolChanged, this, &MainWindow::structureToolChanged);
+  connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
+    if (tool == SliceTool::grow) {
+      editor_.growAt(at_mm, structures_->name(), structures_->growing());
+    } else {
+      editor_.keepPieceAt(at_mm);
+    }
+  });
+  connect(views_, &FourUp::strokeBegan, this, [this](const Vec3& at_mm, int across) {
+    editor_.beginStroke(at_mm, structures_->brush(views_->tool(), across), structures_->name());
+  });
+  connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
+  connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
+  connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
+  connect(&editor_, &StructureEditor::changed, this, [this](const VoxelBox& box) {
+    views_->labelsChanged(box);
+    settled_.start();
+  });
+  connect(&editor_, &StructureEditor::listChanged, this, [this] {
+    if (structuresShown() && editor_.map()) {
+      views_->showLabels(editor_.map(), FourUp::Views::slices);
+    }
+    settled_.start();
+  });
+  connect(&editor_, &StructureEditor::stateChanged, this, [this] {
+    showUndo();
+    settled_.start();
+  });
+  connect(&editor_, &StructureEditor::failed, this, &MainWindow::report);
+  settled_.setSingleShot(true);
+  settled_.setInterval(kSettled_ms);
+  connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
+  connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::showStructures);
+  connect(&workstation_, &Workstation::structuresAsked, this, &MainWindow::askAboutStructures);
+  connect(left_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
+  views_->setBrushRadius(structures_->brushRadius_mm());
+}
+
+bool MainWindow::structuresShown() const {
+  return left_->currentIndex() == kStructureTab && editor_.hasCase();
+}
+
+// What was made or changed is what the next exercise runs on. True where nothing waits any more.
+bool MainWindow::takeStructures() {
+  if (!editor_.hasCase() || workstation_.isOpening()) return false;
+  if (workstation_.phase() != Workstation::Phase::ready) return true;
+  const std::shared_ptr<const LabelMap> made = editor_.takeEdited();
+  if (!made) return true;
+  own_structures_ = made;
+  return workstation_.useStructures(made);
+}
+
+// The scene was placed in other structures: made here, or read.
+void MainWindow::showStructures() {
+  const Case& of = *workstation_.currentCase();
+  if (of.structures != own_structures_) {
+    editor_.setCase(of.volume, of.structures);
+    own_structures_ = of.structures;
+    QStringList words;
+    for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
+    structures_->say(words.join('\n'));
+    left_->setCurrentIndex(kStructureTab);
+  }
+  if (carved_) showWholeCase();
+  views_->showLabels(of.labels, FourUp::Views::all);
+  tissues_->setLabelsOpen(of.labels != nullptr);
+  showCaseCard(of);
+  showStructureTab();
+}
+
+// Of a case that was opened.
+void MainWindow::openStructures() {
+  const Case& of = *workstation_.currentCase();
+  own_structures_ = of.structures;
+  editor_.setCase(of.volume, of.structures);
+  structures_->setWanted(workstation_.scene()->structures);
+  warned_ = false;
+  showStructureTab();
+  for (const Warning& warning : of.warnings) {
+    if (warning.code != "LACKS_STRUCTURE") continue;
+    // What is missing is offered to be made at once.
+    left_->setCurrentIndex(kStructureTab);
+    views_->setTool(SliceTool::grow);
+    structures_->say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
+                        "it, well inside. Or start at once: tissue is then told by its HU.")
+                         .arg(structures_->name()));
+  }
+}
+
+// The slices show what the panel lists while it is in front, else what the exercise runs on.
+void MainWindow::showStructureTab() {
+  if (structuresShown()) {
+    if (editor_.map()) views_->showLabels(editor_.map(), FourUp::Views::slices);
+    if (views_->colours().overlay() != Overlay::labels) {
+      views_->setOverlay(Overlay::labels, kStructureOpacity);
+    }
+    if (views_->viewLayout().kind == ViewLayout::Kind::single && views_->viewLayout().large == 0) {
+      views_->setLayout({ViewLayout::Kind::four, 0});  // they are made in slices
+    }
+  } else if (isForStructures(views_->tool())) {
+    views_->setTool(SliceTool::window);
+  }
+}
+
+void MainWindow::structureToolChanged(SliceTool tool) {
+  if (isForStructures(tool) && left_->currentIndex() != kStructureTab) {
+    left_->setCurrentIndex(kStructureTab);
+  }
+  structures_->showTool(tool);
+}
+
+void MainWindow::structureKey(int key) {
+  switch (key) {
+    case Qt::Key_K:
+      left_->setCurrentIndex(kStructureTab);
+      return editor_.makeSkull();
+    case Qt::Key_S:
+      left_->setCurrentIndex(kStructureTab);
+      return structures_->makeSkin();
+    case Qt::Key_Escape:
+      return editor_.preview() ? editor_.leavePreview() : views_->setTool(SliceTool::window);
+    case Qt::Key_BracketLeft:
+    case Qt::Key_BracketRight:
+      return structures_->stepRadius(key == Qt::Key_BracketRight ? 1 : -1);
+    default:
+      editor_.takePreview();
+  }
+}
+
+void MainWindow::showUndo() {
+  if (workstation_.phase() == Workstation::Phase::running) return;
+  undo_->setEnabled(editor_.undoText().has_value());
+  redo_->setEnabled(editor_.redoText().has_value());
+}
+
+void MainWindow::askAboutStructures(const Error& error, const std::filesystem::path& file,
+                                    const Answers& answers, const std::string& option) {
+  ask(front(), "structuresQuestion", toQt(error.what) + '.',
+      tr("What is used as it is may be felt and cut in the wrong place."),
+      tr("&Use it all the same"),
+      [this, file, answers = answers, code = error.code, option]() mutable {
+        answers[code] = option;
+        workstation_.useLabels(file, answers);
+      });
+}
+
+void MainWindow::askToSaveStructures() {
+  saveStructuresThen({});
+}
+
+void MainWindow::saveStructuresThen(std::function<void()> then) {
+  QFileDialog* dialog = saveDialog(
+      tr("Save structures"), "structures.nii.gz",
+      tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
+         "with names beside it (*.mha)"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, then = std::move(then)](const QString& file) {
+            auto copy = std::make_shared<const LabelMap>(withoutEmpty(*editor_.map()));
+            workstation_.save(
+                tr("The structures are saved."),
+                [copy, path = toPath(file)](const Progress& progress) {
+                  return writeSegmentation(*copy, path, false, progress);
+                },
+                [this, then] {
+                  editor_.markSaved();
+                  if (then) then();
+                });
+          });
+  dialog->open();
+}
+
+void MainWindow::unlessStructuresAreLost(std::function<void()> go_on) {
+  if (!editor_.edited()) return go_on();
+  QMessageBox* question = ask(
+      front(), "structuresUnsaved", tr("The structures have been made or changed and not saved."),
+      tr("Going on takes them away with the case."), tr("&Go on without them"), go_on);
+  auto* save = question->addButton(tr("&Save structures\u2026"), QMessageBox::AcceptRole);
+  save->setObjectName("saveFirst");
+  connect(
+      save, &QPushButton::clicked, this,
+      [this, go_on = std::move(go_on)] { saveStructuresThen(go_on); }, Qt::QueuedConnection);
+}
+
+// Before an exercise starts on a case that is not what it is for, once a case and exercise.
+void MainWindow::unlessItDoesNotFit(std::function<void()> go_on) {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || of->warnings.empty() || warned_) return go_on();
+  QStringList words;
+  bool lacks = false;
+  std::string fits;
+  for (const Warning& warning : of->warnings) {
+    words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
+    lacks = lacks || warning.code == "LACKS_STRUCTURE";
+    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->anatomy->region);
+  }
+  QMessageBox* question =
+      ask(this, "misfitQuestion", words.join('\n'),
+          lacks && fits.empty() ? tr("Make the structure in the slices first, or go on as it is.")
+                                : tr("Choose an exercise that fits, or go on as it is."),
+          tr("&Go on as it is"), [this, go_on] {
+            warned_ = true;
+            go_on();
+          });
+  if (!fits.empty()) {
+    const std::filesystem::path file = defaultScene(fits);
+    const int index = scenes_->findData(toQt(file));
+    auto* other = question->addButton(tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
+                                      QMessageBox::AcceptRole);
+    other->setObjectName("changeExercise");
+    connect(
+        other, &QPushButton::clicked, this,
+        [this, file] { unlessSceneIsLost([this, file] { workstation_.useScene(file); }); },
+        Qt::QueuedConnection);
+  } else if (lacks) {
+    auto* make = question->addButton(tr("&Make it"), QMessageBox::AcceptRole);
+    make->setObjectName("makeStructure");
+    connect(
+        make, &QPushButton::clicked, this,
+        [this] {
+          left_->setCurrentIndex(kStructureTab);
+          views_->setTool(SliceTool::grow);
+        },
+        Qt::QueuedConnection);
+  }
+}
+
+}  // namespace trephine

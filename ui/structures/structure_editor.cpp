@@ -1,0 +1,434 @@
+#include "ui/structures/structure_editor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "base/memory.h"
+#include "structures/skin.h"
+#include "structures/skull.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+StructureEditor::StructureEditor(QObject* parent) : QObject(parent) {
+  connect(&work_, &BackgroundTask::progressed, this, &StructureEditor::progressed);
+  connect(&work_, &BackgroundTask::began, this, &StructureEditor::stateChanged);
+  connect(&work_, &BackgroundTask::ended, this, &StructureEditor::stateChanged);
+}
+
+void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
+                              const std::shared_ptr<const LabelMap>& structures) {
+  work_.cancel();
+  volume_ = std::move(volume);
+  map_.reset();
+  given_ = structures;
+  history_.clear();
+  preview_.reset();
+  stroke_.reset();
+  edited_ = untaken_ = false;
+  current_ = given_ && !given_->structures.empty() ? given_->structures.front().label : 0;
+  countAll();
+  emit listChanged();
+  emit stateChanged();
+}
+
+void StructureEditor::setLocked(const QString& why) {
+  if (std::exchange(locked_, why) == why) return;
+  stroke_.reset();
+  emit stateChanged();
+}
+
+std::shared_ptr<const LabelMap> StructureEditor::takeEdited() {
+  if (preview_ || stroke_ || busy() || !std::exchange(untaken_, false)) return nullptr;
+  return std::make_shared<const LabelMap>(*map_);
+}
+
+bool StructureEditor::mayChange() {
+  if (!volume_) {
+    emit said(tr("Open a case first."));
+  } else if (!locked_.isEmpty()) {
+    emit said(locked_);
+  } else if (busy()) {
+    emit said(tr("Wait for what is being done, or cancel it."));
+  } else {
+    return makeOwn();
+  }
+  return false;
+}
+
+// A map of its own, where there is none yet.
+bool StructureEditor::makeOwn() {
+  if (map_) return true;
+  try {
+    if (given_) {
+      map_ = std::make_shared<LabelMap>(*given_);
+    } else {
+      const std::size_t voxels = volume_->geometry.voxelCount();
+      map_ = std::make_shared<LabelMap>(
+          LabelMap{volume_->geometry, std::vector<std::uint8_t>(voxels)});
+    }
+  } catch (const std::bad_alloc&) {
+    emit failed(outOfMemory("to change structures", "the case"));
+    return false;
+  }
+  given_.reset();
+  emit listChanged();  // it is another that is shown now
+  return true;
+}
+
+const Structure* StructureEditor::structure(int label) const {
+  const LabelMap* shown = map_ ? map_.get() : given_.get();
+  return shown ? shown->find(label) : nullptr;
+}
+
+// --- The list ---
+
+void StructureEditor::setCurrent(int label) {
+  if ((label != 0 && !structure(label)) || current_ == label) return;
+  current_ = label;
+  emit listChanged();
+}
+
+Status StructureEditor::rename(int label, const QString& name) {
+  const std::string wanted = name.trimmed().toStdString();
+  if (wanted.empty()) {
+    return Error{"BAD_NAME", "A structure needs a name", "", "Type one"};
+  }
+  if (!mayChange()) return {};
+  for (const Structure& s : map_->structures) {
+    if (s.label != label && sameName(s.name, wanted)) {
+      return Error{"BAD_NAME", "Another structure is called '" + s.name + "'", "",
+                   "Choose another name"};
+    }
+  }
+  for (Structure& s : map_->structures) {
+    if (s.label == label) s.name = wanted;
+  }
+  edited_ = untaken_ = true;
+  emit listChanged();
+  return {};
+}
+
+void StructureEditor::setColour(int label, const Vec3& colour) {
+  if (!mayChange()) return;
+  for (Structure& s : map_->structures) {
+    if (s.label == label) s.colour = colour;
+  }
+  edited_ = untaken_ = true;
+  emit listChanged();
+}
+
+// Its voxels go, which undo brings back; its row stays in the list, empty, for that.
+void StructureEditor::remove(int label) {
+  if (!mayChange() || !map_->find(label)) return;
+  leavePreview();
+  const std::vector<std::uint8_t> nothing(map_->labels.size());
+  put(tr("Delete").toStdString(), maskEdit(*map_, nothing, label));
+}
+
+std::string StructureEditor::freeName(const QString& wanted) const {
+  const std::string base =
+      wanted.trimmed().isEmpty() ? tr("structure").toStdString() : wanted.trimmed().toStdString();
+  std::string name = base;
+  for (int n = 2;; ++n) {
+    const Structure* there = map_->find(name);
+    if (!there || ml_[std::size_t(there->label)] == 0.0) return name;
+    name = base + " " + std::to_string(n);
+  }
+}
+
+// The label of a structure of this name, which is made where there is none; 0: there are too many.
+int StructureEditor::addStructure(const std::string& name) {
+  if (const Structure* there = map_->find(name)) return there->label;
+  const int label = int(map_->structures.size()) < kMostStructures ? unusedLabel(*map_) : 0;
+  if (label == 0) {
+    emit failed({"TOO_MANY_STRUCTURES",
+                 "The case has " + std::to_string(map_->structures.size()) +
+                     " structures, no more "
+                     "can be made",
+                 "", "Delete one first"});
+    return 0;
+  }
+  map_->structures.push_back({label, name, labelColour(label)});
+  return label;
+}
+
+// --- What changes voxels ---
+
+void StructureEditor::countAll() {
+  ml_.fill(0.0);
+  const std::shared_ptr<const LabelMap> shown = map();
+  if (!shown) return;
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t label : shown->labels) ++counts[label];
+  const double voxel_ml = shown->geometry.voxelVolume_mm3() / 1000.0;
+  for (std::size_t n = 1; n < 256; ++n) ml_[n] = double(counts[n]) * voxel_ml;
+}
+
+void StructureEditor::count(const LabelEdit& edit, bool added) {
+  const double voxel_ml = map_->geometry.voxelVolume_mm3() / 1000.0;
+  for (const LabelEdit::Run& run : edit.runs) {
+    const double ml = double(run.count) * voxel_ml * (added ? 1.0 : -1.0);
+    ml_[run.after] += ml;
+    ml_[run.before] -= ml;
+  }
+  for (double& ml : ml_) {
+    if (std::abs(ml) < 0.1 * voxel_ml) ml = 0.0;  // what adding and taking away leaves
+  }
+}
+
+void StructureEditor::applied(const LabelEdit& edit, bool added) {
+  count(edit, added);
+  edited_ = untaken_ = true;
+  emit changed(edit.box);
+}
+
+void StructureEditor::put(const std::string& step, const Result<LabelEdit>& edit, bool joins) {
+  if (!edit) {
+    emit failed(edit.error());
+    return;
+  }
+  if (edit->empty()) {
+    if (!joins && !stroke_) emit said(tr("Nothing was changed."));
+    return;
+  }
+  trephine::apply(*map_, *edit);
+  applied(*edit, true);
+  const std::size_t dropped = history_.dropped();
+  history_.add(step, *edit, joins);
+  if (history_.dropped() > dropped) {
+    emit said(tr("The first steps can no longer be undone: their memory is full."));
+  }
+  if (stroke_) return;  // the list and what can be undone follow at its end
+  emit listChanged();
+  emit stateChanged();
+}
+
+template <class Make>
+void StructureEditor::inBackground(Make make, const std::string& step) {
+  using Made = std::invoke_result_t<Make&, const Progress&>;
+  work_.run(std::move(make), [this, step, own = map_](Made made) {
+    if (map_ != own) return;  // of a case that is gone
+    if (!made) {
+      if (made.error().code != "CANCELLED") emit failed(made.error());
+      emit said(made.error().code == "CANCELLED" ? tr("Cancelled: nothing was changed.")
+                                                 : QString());
+    } else {
+      put(step, *made);
+    }
+  });
+}
+
+void StructureEditor::growAt(const Vec3& patient_mm, const QString& name,
+                             const GrowOptions& options) {
+  if (!mayChange()) return;
+  leavePreview();
+  const std::string wanted = freeName(name);
+  work_.run(
+      [volume = volume_, patient_mm, options](const Progress& progress) {
+        return grow(*volume, patient_mm, options, progress);
+      },
+      [this, wanted, patient_mm, own = map_](Result<Growth> grown) {
+        if (map_ != own) return;  // of a case that is gone
+        if (!grown) {
+          if (grown.error().code == "CANCELLED") {
+            emit said(tr("Cancelled: nothing was grown."));
+          } else {
+            emit failed(grown.error());
+          }
+          return;
+        }
+        const int label = addStructure(wanted);
+        if (label == 0) return;
+        // Only what no other structure has.
+        auto edit = maskEdit(*map_, grown->mask.labels, label);
+        if (!edit) {
+          emit failed(edit.error());
+          return;
+        }
+        preview_edit_ = *std::move(edit);
+        trephine::apply(*map_, preview_edit_);
+        count(preview_edit_, true);
+        preview_ = Preview{label, ml_[std::size_t(label)], grown->hu, grown->leaked, patient_mm};
+        current_ = label;
+        emit changed(preview_edit_.box);
+        emit listChanged();
+        emit stateChanged();
+      });
+}
+
+void StructureEditor::takePreview() {
+  if (!preview_) return;
+  const Structure* grown = map_->find(preview_->label);
+  preview_.reset();
+  edited_ = untaken_ = true;
+  history_.add(tr("Grow %1").arg(toQt(grown->name)).toStdString(),
+               std::exchange(preview_edit_, {}));
+  emit listChanged();
+  emit stateChanged();
+}
+
+void StructureEditor::leavePreview() {
+  if (!preview_) return;
+  const int label = preview_->label;
+  preview_.reset();
+  trephine::undo(*map_, preview_edit_);
+  count(preview_edit_, false);
+  const VoxelBox box = preview_edit_.box;
+  preview_edit_ = {};
+  if (ml_[std::size_t(label)] == 0.0) {
+    std::erase_if(map_->structures, [&](const Structure& s) { return s.label == label; });
+  }
+  if (!map_->find(current_)) {
+    current_ = map_->structures.empty() ? 0 : map_->structures.front().label;
+  }
+  emit changed(box);
+  emit listChanged();
+  emit stateChanged();
+}
+
+void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::string& name) {
+  const int label = addStructure(name);
+  if (label == 0) return;
+  put(name, maskEdit(*map_, mask, label));
+  setCurrent(label);
+}
+
+void StructureEditor::makeSkull() {
+  if (!mayChange()) return;
+  leavePreview();
+  work_.run([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
+            [this, own = map_](Result<Skull> made) {
+              if (map_ != own) return;
+              if (made) return putMask(made->mask.labels, "skull");
+              if (made.error().code != "CANCELLED") emit failed(made.error());
+            });
+}
+
+void StructureEditor::makeSkin(double thickness_mm) {
+  if (!mayChange()) return;
+  leavePreview();
+  work_.run([volume = volume_, thickness_mm](
+                const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
+            [this, own = map_](Result<Skin> made) {
+              if (map_ != own) return;
+              if (made) return putMask(made->mask.labels, "skin");
+              if (made.error().code != "CANCELLED") emit failed(made.error());
+            });
+}
+
+void StructureEditor::makeShell(double thickness_mm, const QString& name) {
+  if (!mayChange() || current_ == 0) return;
+  leavePreview();
+  const int of = current_;
+  const int into = addStructure(freeName(name));
+  if (into == 0) return;
+  inBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
+                into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
+               tr("Shell").toStdString());
+}
+
+void StructureEditor::fillHoles() {
+  if (!mayChange() || current_ == 0) return;
+  leavePreview();
+  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_](
+                   const Progress& p) { return holesEdit(*map, of, std::nullopt, {}, p); },
+               tr("Fill holes").toStdString());
+}
+
+void StructureEditor::smooth(double radius_mm) {
+  if (!mayChange() || current_ == 0) return;
+  leavePreview();
+  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
+                radius_mm](const Progress& p) { return smoothEdit(*map, of, radius_mm, {}, p); },
+               tr("Smooth").toStdString());
+}
+
+void StructureEditor::keepPieceAt(const Vec3& patient_mm) {
+  if (!mayChange() || current_ == 0) return;
+  leavePreview();
+  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
+                patient_mm](const Progress&) { return keepPieceEdit(*map, of, patient_mm); },
+               tr("Keep the piece").toStdString());
+}
+
+// --- The brush ---
+
+void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name) {
+  if (!mayChange()) return;
+  if (preview_) takePreview();  // it is what one mends
+  if (current_ == 0) {
+    if (brush.erase) return emit said(tr("Choose the structure to erase from."));
+    current_ = addStructure(freeName(name));
+    if (current_ == 0) return;
+    emit listChanged();
+  }
+  stroke_ = Stroke{brush, patient_mm};
+  moveStroke(patient_mm);
+}
+
+void StructureEditor::moveStroke(const Vec3& patient_mm) {
+  if (!stroke_) return;
+  const std::array path{stroke_->last_mm, patient_mm};
+  const auto edit =
+      brushEdit(*map_, current_, path, stroke_->brush, stroke_->brush.hu ? volume_.get() : nullptr);
+  stroke_->last_mm = patient_mm;
+  if (!edit) {
+    stroke_.reset();
+    emit failed(edit.error());
+    return;
+  }
+  if (edit->empty()) return;
+  const QString step = stroke_->brush.erase ? tr("Erase") : tr("Brush");
+  put(step.toStdString(), edit, std::exchange(stroke_->any, true));
+}
+
+void StructureEditor::endStroke() {
+  if (!stroke_) return;
+  stroke_.reset();
+  emit listChanged();
+  emit stateChanged();
+}
+
+// --- Undo ---
+
+std::optional<QString> StructureEditor::undoText() const {
+  if (preview_) return tr("Grow");
+  const std::string* name = history_.toUndo();
+  return name ? std::optional(toQt(*name)) : std::nullopt;
+}
+
+std::optional<QString> StructureEditor::redoText() const {
+  const std::string* name = preview_ ? nullptr : history_.toRedo();
+  return name ? std::optional(toQt(*name)) : std::nullopt;
+}
+
+void StructureEditor::undo() {
+  if (!mayChange()) return;
+  if (preview_) return leavePreview();
+  stroke_.reset();
+  if (const auto box = history_.undo(*map_)) {
+    countAll();
+    edited_ = untaken_ = true;
+    emit changed(*box);
+    emit listChanged();
+    emit stateChanged();
+  }
+}
+
+void StructureEditor::redo() {
+  if (!mayChange() || preview_) return;
+  stroke_.reset();
+  if (const auto box = history_.redo(*map_)) {
+    countAll();
+    edited_ = untaken_ = true;
+    emit changed(*box);
+    emit listChanged();
+    emit stateChanged();
+  }
+}
+
+}  // namespace trephine

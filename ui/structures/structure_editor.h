@@ -1,0 +1,134 @@
+// The structures of the open case while a person makes and mends them. No widget: it holds the
+// label map that all views show meanwhile, its history, and the work in the background; the panel
+// and the slices tell it what to do.
+//
+// Everything is on the window's thread but growing and what else takes over a second, which only
+// reads the map; while that runs (busy()) nothing else is changed.
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <memory>
+#include <optional>
+
+#include "structures/edit_history.h"
+#include "structures/grow.h"
+#include "structures/shape_tools.h"
+#include "ui/common/background_task.h"
+#include "volume/label_map.h"
+#include "volume/volume.h"
+
+namespace trephine {
+
+class StructureEditor : public QObject {
+  Q_OBJECT
+ public:
+  explicit StructureEditor(QObject* parent = nullptr);
+
+  // Another case, or none (null); `structures` are on its grid, null for none yet. Forgets what was
+  // done to those before.
+  void setCase(std::shared_ptr<const Volume> volume,
+               const std::shared_ptr<const LabelMap>& structures);
+  // While an exercise runs, is started or ended nothing may change: `why` says so. Empty: it may.
+  void setLocked(const QString& why);
+  bool hasCase() const { return volume_ != nullptr; }
+
+  // What the views show; null: the case has none and nothing was made. From the first change on it
+  // is the editor's own, which changes in place, with changed() for each box.
+  std::shared_ptr<const LabelMap> map() const { return map_ ? map_ : given_; }
+  double millilitres(int label) const { return ml_[std::size_t(label)]; }
+  // Since setCase() or markSaved().
+  bool edited() const { return edited_; }
+  void markSaved() { edited_ = false; }
+  // Since setCase() or the last call; a copy of the map then, else null. Not while a preview
+  // stands.
+  std::shared_ptr<const LabelMap> takeEdited();
+
+  // The one that tools work on: its label; 0: none.
+  int current() const { return current_; }
+  void setCurrent(int label);
+  // Refuses a name that another has or that is empty, in words.
+  Status rename(int label, const QString& name);
+  void setColour(int label, const Vec3& colour);
+  void remove(int label);
+
+  struct Preview {
+    int label = 0;
+    double ml = 0.0;
+    HuSpan hu;
+    bool leaked = false;
+    Vec3 seed_mm{0.0};
+  };
+  // A structure that was grown and does not count yet.
+  const std::optional<Preview>& preview() const { return preview_; }
+  // Grows one from a place in it; instead of the preview, where there is one.
+  void growAt(const Vec3& patient_mm, const QString& name, const GrowOptions& options = {});
+  void takePreview();
+  void leavePreview();
+
+  // Skull and skin, as structures of those names; what had these names is replaced.
+  void makeSkull();
+  void makeSkin(double thickness_mm);
+  // The outermost layer of the current one becomes a structure of that name.
+  void makeShell(double thickness_mm, const QString& name);
+  void fillHoles();
+  void smooth(double radius_mm);
+  void keepPieceAt(const Vec3& patient_mm);
+
+  // A stroke of the brush over the slices; makes a structure of that name where none is current.
+  void beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name);
+  void moveStroke(const Vec3& patient_mm);
+  void endStroke();
+  bool inStroke() const { return stroke_.has_value(); }
+
+  std::optional<QString> undoText() const;  // what would be taken back
+  std::optional<QString> redoText() const;
+  void undo();
+  void redo();
+
+  bool busy() const { return work_.busy(); }
+  void cancel() { work_.cancel(); }
+
+ signals:
+  void changed(const trephine::VoxelBox& box);  // voxels of the map
+  void listChanged();                           // names, colours, mL, the current one
+  void stateChanged();                          // busy, preview, history, locked
+  void progressed(double fraction, const QString& step);
+  void said(const QString& words);
+  void failed(const trephine::Error& error);
+
+ private:
+  struct Stroke {
+    Brush brush;
+    Vec3 last_mm{0.0};
+    bool any = false;
+  };
+  bool mayChange();
+  bool makeOwn();
+  const Structure* structure(int label) const;
+  int addStructure(const std::string& name);
+  std::string freeName(const QString& wanted) const;
+  void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
+  void applied(const LabelEdit& edit, bool added);
+  void count(const LabelEdit& edit, bool added);
+  void countAll();
+  template <class Make>
+  void inBackground(Make make, const std::string& step);
+  // A mask of 0 and 1 as a structure of that name, which is made or replaced.
+  void putMask(const std::vector<std::uint8_t>& mask, const std::string& name);
+
+  std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const LabelMap> given_;  // the case's, until something is changed
+  std::shared_ptr<LabelMap> map_;
+  std::array<double, 256> ml_{};
+  EditHistory history_;
+  int current_ = 0;
+  std::optional<Preview> preview_;
+  LabelEdit preview_edit_;
+  std::optional<Stroke> stroke_;
+  QString locked_;
+  bool edited_ = false, untaken_ = false;
+  BackgroundTask work_;  // last: joined before what it reads goes
+};
+
+}  // namespace trephine

@@ -1,0 +1,78 @@
+// The structures of the case: what there is, with mL; the tools that make and mend them; the way in
+// and out for those from elsewhere. It shows what the editor holds and tells it what to do; the
+// slices hold the tool that is chosen here.
+#pragma once
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QToolButton>
+#include <QTreeWidget>
+#include <array>
+
+#include "ui/common/number_field.h"
+#include "ui/structures/structure_editor.h"
+#include "ui/views/slice_view.h"
+
+namespace trephine {
+
+class StructurePanel : public QWidget {
+  Q_OBJECT
+ public:
+  // The editor outlives it.
+  explicit StructurePanel(StructureEditor& editor, QWidget* parent = nullptr);
+
+  // Names that the exercise needs and the case lacks come first among those that are offered.
+  void setWanted(const std::vector<std::string>& names);
+  void showTool(SliceTool tool);
+  // What a click or a stroke of the chosen tool does.
+  Brush brush(SliceTool tool, int across) const;
+  GrowOptions growing() const;
+  QString name() const;  // of what is made next
+  double brushRadius_mm() const { return radius_->wanted(); }
+  void stepRadius(int steps);
+  void makeSkin();  // as thick as is set
+  // One line: what the tool in hand does, or what was said last.
+  void say(const QString& words);
+
+ signals:
+  void toolChosen(trephine::SliceTool tool);
+  void brushChanged();
+  void openWanted();
+  void saveWanted();
+
+ private:
+  void build();
+  QLayout* buildTools();
+  QLayout* buildShaping();
+  void showList();
+  void showState();
+  void rename(QTreeWidgetItem* item);
+  void chooseColour(int label);
+  void regrow();
+  QToolButton* button(const char* name, const QString& text, const QString& tip);
+
+  StructureEditor& editor_;
+  QTreeWidget* list_;
+  QComboBox* name_;
+  std::array<QToolButton*, 4> tools_;  // grow, brush, eraser, piece
+  DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;
+  WholeNumberField *hu_low_, *hu_high_;
+  QComboBox* shape_;
+  QCheckBox* only_hu_;
+  QToolButton *skull_button_, *skin_button_, *fill_, *smooth_button_, *shell_button_, *delete_,
+      *undo_, *redo_;
+  QPushButton *take_, *leave_, *open_file_, *save_, *cancel_;
+  QWidget* preview_box_;
+  QLabel *preview_, *said_, *empty_;
+  QWidget* progress_box_;
+  QProgressBar* progress_;
+  std::vector<std::string> wanted_;
+  bool listing_ = false;
+  SliceTool tool_ = SliceTool::window;
+};
+
+}  // namespace trephine
