@@ -206,6 +206,16 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
                                    const TissueSet& tissues, const LabelMap* labels,
                                    const Progress& progress) {
   const std::string where = "landmark '" + landmark.id + "'";
+  if (landmark.is_place) {
+    const Vec3 at = Vec3(volume.geometry.patientToVoxel() * glm::dvec4(landmark.at_mm, 1.0));
+    const Index3& size = volume.geometry.size;
+    const Vec3 high = Vec3(size[0], size[1], size[2]) - 0.5;
+    if (!glm::all(glm::greaterThanEqual(at, Vec3(-0.5))) || !glm::all(glm::lessThan(at, high))) {
+      return Error{"NO_PLACE", "The place lies outside of the scan", where,
+                   "Give one inside, in the patient's frame (LPS, mm)"};
+    }
+    return LandmarkFrame{landmark.at_mm, frameAlong(landmark.outward)};
+  }
   const Tissue* tissue = tissues.find(landmark.tissue);
   if (!tissue) {
     return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",

@@ -12,12 +12,13 @@
 
 namespace trephine {
 
-// A ray that meets a tissue, given in one of two ways:
+// A ray that meets a tissue, given in one of two ways, or a place itself:
 // - between two points, as fractions of the box that holds the tissue (its 1st to 99th percentile
 //   on each patient axis, so that a table or noise does not count): (0, 0, 0) is right, anterior,
 //   inferior and (1, 1, 1) left, posterior, superior. For a shell such as the vault.
 // - towards the place with most of the tissue within `bulk_radius_mm`, from the direction
 //   `outward`. For an organ, whatever else of the body the scan holds.
+// - `at_mm`, of the patient's LPS frame, and from it `outward`: where a person clicked.
 struct Landmark {
   std::string id;
   std::string tissue;           // a tissue's id
@@ -25,6 +26,8 @@ struct Landmark {
   Vec3 towards{0.5};
   double bulk_radius_mm = 0.0;  // above 0: the second way
   Vec3 outward{0.0, -1.0, 0.0};
+  bool is_place = false;  // the third way
+  Vec3 at_mm{0.0};
   double run_mm = 1.0;          // how long the ray must stay in the tissue to count
 };
 
@@ -47,7 +50,7 @@ Quat frameAlong(const Vec3& outward);
 // HU are averaged over a quarter of `run_mm`, at most 3 mm, so that noise does not break a run.
 // `labels`, where there are any, are fitted to the volume.
 // Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray,
-// CANCELLED.
+// NO_PLACE outside of the scan, CANCELLED.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues, const LabelMap* labels = nullptr,
                                    const Progress& progress = Progress());

@@ -62,7 +62,11 @@ Landmark readLandmark(JsonReader& item) {
   Landmark landmark;
   landmark.id = item.text("id");
   landmark.tissue = item.text("tissue");
-  if (item.has("bulk_radius_mm")) {
+  if (item.has("at_mm")) {
+    landmark.is_place = true;
+    readNumbers(item, kPlaceNumbers, landmark);
+    landmark.outward = item.direction("outward");
+  } else if (item.has("bulk_radius_mm")) {
     readNumbers(item, kBulkNumbers, landmark);
     landmark.outward = item.direction("outward");
   } else {
@@ -239,7 +243,10 @@ Json toJson(const Scene& scene) {
   Json landmarks = Json::array(), tools = Json::array(), arms = Json::array(), laws = Json::array();
   for (const Landmark& l : scene.landmarks) {
     Json landmark = {{"id", l.id}, {"tissue", l.tissue}};
-    if (l.bulk_radius_mm > 0.0) {
+    if (l.is_place) {
+      writeNumbers(landmark, kPlaceNumbers, l);
+      landmark["outward"] = vec(l.outward);
+    } else if (l.bulk_radius_mm > 0.0) {
       writeNumbers(landmark, kBulkNumbers, l);
       landmark["outward"] = vec(l.outward);
     } else {

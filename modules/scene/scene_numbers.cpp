@@ -7,6 +7,7 @@ std::string sceneNumbersPage() {
          schemaLines<SceneView>("`view`", kViewNumbers) +
          schemaLines<Landmark>("landmark, ray", kRayNumbers) +
          schemaLines<Landmark>("landmark, organ", kBulkNumbers) +
+         schemaLines<Landmark>("landmark, place", kPlaceNumbers) +
          schemaLines<Landmark>("landmark", kLandmarkNumbers) +
          schemaLines<SceneArm>("arm, `device`", kDeviceNumbers) +
          schemaLines<SceneArm>("arm", kArmNumbers) +

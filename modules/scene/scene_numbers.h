@@ -17,6 +17,7 @@ namespace trephine {
 constexpr Range kBoxFraction{-10, 10};
 constexpr Range kBulkRadius_mm{3, 300, "mm"};
 constexpr Range kRun_mm{0.01, 300, "mm"};
+constexpr Range kPlace_mm{-10'000, 10'000, "mm"};
 constexpr Range kOffset_mm{-1000, 1000, "mm"};
 constexpr Range kRate_hz{100, 20'000, "Hz"};
 constexpr Range kViewDistance_mm{10, 5000, "mm"};
@@ -41,6 +42,10 @@ inline constexpr NumberOf<Landmark> kBulkNumbers[] = {
     {{"bulk_radius_mm", kBulkRadius_mm, Given::always,
       "the ray goes to the place with most of the tissue within this radius"},
      &Landmark::bulk_radius_mm},
+};
+inline constexpr NumberOf<Landmark> kPlaceNumbers[] = {
+    {{"at_mm", kPlace_mm, Given::always, "the place itself, in the patient's LPS frame"},
+     &Landmark::at_mm},
 };
 inline constexpr NumberOf<Landmark> kLandmarkNumbers[] = {
     {{"run_mm", kRun_mm, Given::may_be, "how long the ray must stay in the tissue"},

@@ -7,7 +7,9 @@
 
 #include "base/memory.h"
 #include "structures/block_border.h"
+#include "structures/voxel_runs.h"
 #include "structures/work_grid.h"
+#include "volume/two_threads.h"
 
 namespace trephine {
 
@@ -95,6 +97,47 @@ BlockMask only(const std::vector<std::int32_t>& piece, std::int32_t which) {
   return in;
 }
 
+// Blocks that hold a voxel with a label; empty without others.
+BlockMask blocksOf(const LabelMap* others, const WorkGrid& grid) {
+  if (!others) return {};
+  const GridGeometry& g = others->geometry;
+  BlockMask taken(grid.count());
+  onTwoThreads(grid.size[2], [&](int layer) {
+    const int end = std::min((layer + 1) * grid.factor[2], g.size[2]);
+    for (int k = layer * grid.factor[2]; k < end; ++k) {
+      for (int j = 0; j < g.size[1]; ++j) {
+        const std::uint8_t* row = &others->labels[g.indexOf(0, j, k)];
+        for (int i = 0; i < g.size[0]; ++i) {
+          if (row[i]) taken[grid.indexOf(i / grid.factor[0], j / grid.factor[1], layer)] = 1;
+        }
+      }
+    }
+  });
+  return taken;
+}
+
+void keepFree(BlockMask& in, const BlockMask& taken) {
+  for (std::size_t n = 0; n < taken.size(); ++n) in[n] = in[n] && !taken[n];
+}
+
+// What others have goes, and with it what they cut off: beyond a wall the border's blocks reach on.
+// std::bad_alloc.
+void leaveToOthers(LabelMap& mask, const LabelMap& others) {
+  const GridGeometry& g = mask.geometry;
+  VoxelRuns runs(g.size, [&](int i, int j, int k) {
+    const std::size_t at = g.indexOf(i, j, k);
+    return mask.labels[at] && !others.labels[at];
+  });
+  std::ranges::fill(mask.labels, std::uint8_t(0));
+  runs.join(Touching::faces);
+  if (runs.pieces().empty()) return;
+  const std::uint32_t largest = runs.largest();
+  runs.forRuns([&](int begin, int end, int j, int k, std::uint32_t piece) {
+    if (piece != largest) return;
+    std::fill_n(&mask.labels[g.indexOf(begin, j, k)], end - begin, std::uint8_t(1));
+  });
+}
+
 void keepInside(BlockMask& in, const WorkGrid& grid, const std::optional<VoxelBox>& box) {
   if (!box) return;
   for (int k = 0; k < grid.size[2]; ++k) {
@@ -175,6 +218,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   growth.steps = {said("noise of %.0f HU in blocks of %.1f mm", noise_HU, grid.block_mm.x),
                   said("smoothed by %.1f mm, its border by %.1f mm", core_mm, border_mm)};
 
+  const BlockMask taken = blocksOf(options.others.get(), grid);
   const Index3 at = grid.blockOf(voxel);
   BlockMask core, ranged;
   HuSpan hu = options.hu ? *options.hu : around(aboutClick(smooth, grid, at), kCoreMostHalf_HU);
@@ -182,6 +226,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     if (!on(0.1 + 0.08 * estimate, "core")) return cancelled;
     ranged = within(smooth, hu.low, hu.high);
     keepInside(ranged, grid, options.box);
+    keepFree(ranged, taken);
     const std::vector<std::int32_t> piece = pieces(eroded(ranged, grid, options.open_mm), grid);
     // After the first, what goes on from the last one: at the click it may be a little too dark or
     // too bright for the whole.
@@ -211,6 +256,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   }
   BlockMask wider = within(border, growth.hu.low, growth.hu.high);
   keepInside(wider, grid, options.box);
+  keepFree(wider, taken);
   for (std::size_t n = 0; n < wider.size(); ++n) {
     wider[n] = body[n] || (wider[n] && from_core[n] <= options.open_mm + kReach_mm);
   }
@@ -253,6 +299,10 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
     }
     voxel[axis] = int(at);
   }
+  if (options.others && (options.others->geometry.size != g.size ||
+                         options.others->labels.size() != g.voxelCount())) {
+    return Error{"OTHER_GRID", "The other structures are of another grid than the scan", "", ""};
+  }
   const double needed_mb = 1.5 * double(g.voxelCount()) / (1 << 20) + 100.0;
   if (Status enough = enoughMemory(needed_mb, "Growing a structure", ""); !enough) {
     return enough.error();
@@ -265,6 +315,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   progress.at(0.85, "voxels");
   try {
     growth.mask.labels = voxelsOf(*found, grid, volume, growth.hu, options.box);
+    if (options.others) leaveToOthers(growth.mask, *options.others);
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the structure", "");
   }

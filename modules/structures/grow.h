@@ -12,6 +12,7 @@
 // 4. Its border at the CT's own resolution.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct GrowOptions {
   std::optional<HuSpan> hu;     // instead of step 1
   double open_mm = 7.0;         // 0 to 50
   std::optional<VoxelBox> box;  // nothing outside of it
+  // What has a label here is neither taken nor passed: other structures, a wall that was drawn.
+  // Null: none. A block of step 2 that holds one such voxel stops the core.
+  std::shared_ptr<const LabelMap> others{};
 };
 
 struct Growth {
@@ -43,7 +47,8 @@ constexpr double kMostOfScan = 0.15;
 
 // `seed_mm` in the patient's LPS frame. Two threads inside; takes one and a half bytes a voxel
 // beside the volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT,
-// NOTHING_GROWN (no room for the ball within 20 mm of the seed), CANCELLED, OUT_OF_MEMORY.
+// OTHER_GRID (of the others), NOTHING_GROWN (no room for the ball within 20 mm of the seed),
+// CANCELLED, OUT_OF_MEMORY.
 Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options = {},
                     const Progress& progress = Progress());
 

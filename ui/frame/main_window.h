@@ -96,6 +96,10 @@ class MainWindow : public QMainWindow {
   void structureToolChanged(SliceTool tool);
   void structureKey(int key);
   void showUndo();
+  // Where the exercise enters (main_window_structures.cpp); from nowhere: out of what was clicked.
+  void placeEntry(const Vec3& at_mm, const Vec3& from_mm);
+  void leaveEntry();
+  void showEntry();
   void askAboutStructures(const Error& error, const std::filesystem::path& file,
                           const Answers& answers, const std::string& option);
   void askToSaveStructures();
@@ -140,6 +144,7 @@ class MainWindow : public QMainWindow {
   StructureEditor editor_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   QTimer settled_;
+  bool entry_asked_ = false;  // and the case is being placed with it
   bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;
   QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_,

@@ -2,7 +2,9 @@
 #include <QFileDialog>
 #include <QMessageBox>
 #include <QPushButton>
+#include <utility>
 
+#include "scene/entry_point.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
@@ -29,9 +31,16 @@ void MainWindow::connectStructures() {
       editor_.keepPieceAt(at_mm);
     }
   });
+  connect(views_, &FourUp::boxDrawn, &editor_, &StructureEditor::limitTo);
+  connect(&editor_, &StructureEditor::boxChanged, this, [this] { views_->setBox(editor_.box()); });
   connect(views_, &FourUp::strokeBegan, this, [this](const Vec3& at_mm, int across) {
-    editor_.beginStroke(at_mm, structures_->brush(views_->tool(), across), structures_->name());
+    const SliceTool tool = views_->tool();
+    const Brush brush = structures_->brush(tool, across);
+    if (tool == SliceTool::wall) return editor_.beginWall(at_mm, brush);
+    editor_.beginStroke(at_mm, brush, structures_->name());
   });
+  connect(views_, &FourUp::entryChosen, this, &MainWindow::placeEntry);
+  connect(views_, &FourUp::entryLeft, this, &MainWindow::leaveEntry);
   connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
   connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
@@ -89,6 +98,8 @@ void MainWindow::showStructures() {
   tissues_->setLabelsOpen(of.labels != nullptr);
   showCaseCard(of);
   showStructureTab();
+  showEntry();
+  if (std::exchange(entry_asked_, false)) lookAtCase();
 }
 
 // Of a case that was opened.
@@ -99,6 +110,7 @@ void MainWindow::openStructures() {
   structures_->setWanted(workstation_.scene()->structures);
   warned_ = false;
   showStructureTab();
+  showEntry();
   for (const Warning& warning : of.warnings) {
     if (warning.code != "LACKS_STRUCTURE") continue;
     // What is missing is offered to be made at once.
@@ -130,6 +142,46 @@ void MainWindow::structureToolChanged(SliceTool tool) {
     left_->setCurrentIndex(kStructureTab);
   }
   structures_->showTool(tool);
+  if (tool == SliceTool::entry) {
+    say(
+        tr("Click where the exercise enters; drag to where the instrument comes from. Del: back to "
+           "its own place."));
+  }
+}
+
+// --- The entry point ---
+
+void MainWindow::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (workstation_.phase() != Workstation::Phase::ready || !of) {
+    return say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
+  }
+  const Scene& scene = *workstation_.scene();
+  const Landmark* landmark = entryLandmark(scene);
+  if (!landmark) return say(tr("This exercise is fixed in its own patient."));
+  Vec3 outward = from_mm - at_mm;
+  if (!(glm::length(outward) > 0.0)) {
+    const auto out =
+        outwardAt(*of->volume, scene.tissues, of->labels.get(), landmark->tissue, at_mm);
+    const auto before = workstation_.viewLandmark();
+    outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
+  }
+  entry_asked_ = workstation_.placeEntry(placedAt(*landmark, at_mm, glm::normalize(outward)));
+  say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
+                   : tr("Busy: try again in a moment."));
+}
+
+void MainWindow::leaveEntry() {
+  if (!workstation_.entry()) return say(tr("The exercise enters at its own place."));
+  entry_asked_ = workstation_.placeEntry({});
+  say(entry_asked_ ? tr("The exercise enters at its own place again.")
+                   : tr("Busy: try again in a moment."));
+}
+
+void MainWindow::showEntry() {
+  const auto frame = workstation_.viewLandmark();
+  if (!frame) return views_->setEntry({});
+  views_->setEntry(SliceView::Entry{frame->position_mm, frame->rotation * Vec3(0.0, 0.0, 1.0)});
 }
 
 void MainWindow::structureKey(int key) {
@@ -178,7 +230,7 @@ void MainWindow::saveStructuresThen(std::function<void()> then) {
          "with names beside it (*.mha)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, then = std::move(then)](const QString& file) {
-            auto copy = std::make_shared<const LabelMap>(withoutEmpty(*editor_.map()));
+            const std::shared_ptr<const LabelMap> copy = editor_.finished();
             workstation_.save(
                 tr("The structures are saved."),
                 [copy, path = toPath(file)](const Progress& progress) {

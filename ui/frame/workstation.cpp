@@ -145,18 +145,40 @@ void Workstation::useLabels(const std::filesystem::path& file, const Answers& an
   std::optional<Scene> scene = readSceneOrFail(scene_file_);
   if (!scene) return;
   useCase(*scene, scene_->case_source);
+  enterAt(*scene);
   Opened opening{*std::move(scene), scene_file_, case_, true, file.string(), answers};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
 }
 
 bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structures) {
+  return case_ && phase_ == Phase::ready && !isOpening() && placeAgain(structures);
+}
+
+bool Workstation::placeEntry(const std::optional<Landmark>& entry) {
   if (!case_ || phase_ != Phase::ready || isOpening()) return false;
+  const std::optional<Landmark> before = std::exchange(entry_, entry);
+  if (placeAgain(case_->structures)) return true;
+  entry_ = before;
+  return false;
+}
+
+void Workstation::enterAt(Scene& scene) const {
+  for (Landmark& landmark : scene.landmarks) {
+    if (entry_ && landmark.id == entry_->id) landmark = *entry_;
+  }
+}
+
+// The open case in its scene, as that is on disk.
+bool Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
   Result<Scene> scene = readScene(scene_file_);
   if (!scene) return false;
   (void)readArmDynamics(*scene);
   useCase(*scene, scene_->case_source);
-  Opened opening{*std::move(scene), scene_file_, withStructures(*case_, structures), true};
+  enterAt(*scene);
+  const bool same = structures == case_->structures;
+  Opened opening{*std::move(scene), scene_file_, same ? *case_ : withStructures(*case_, structures),
+                 true};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
   return true;
@@ -288,6 +310,7 @@ void Workstation::opened(Result<Opened> outcome) {
     return;
   }
   mirror_ = std::move(outcome->mirror);
+  entry_.reset();
   carved_.reset();
   tellGivenBack();
   emit sceneChanged();

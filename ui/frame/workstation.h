@@ -41,6 +41,10 @@ class Workstation : public QObject {
   // Structures that were made or changed here, on the case's grid: the scene is placed in them.
   // False: not now (something is being opened or runs).
   bool useStructures(const std::shared_ptr<const LabelMap>& structures);
+  // Where the exercise enters: at a place that was clicked, from the direction `outward`, or, for
+  // nothing, where the scene's file says. Holds for this case in this exercise. False: not now.
+  bool placeEntry(const std::optional<Landmark>& entry);
+  const std::optional<Landmark>& entry() const { return entry_; }
   // While that is being done: the case itself stays as it is.
   bool isPlacing() const { return placing_; }
   void cancelOpening() { opening_.cancel(); }
@@ -132,6 +136,8 @@ class Workstation : public QObject {
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
                   bool same_scene = false);
+  void enterAt(Scene& scene) const;
+  bool placeAgain(const std::shared_ptr<const LabelMap>& structures);
   void openInBackground(Opened opening);
   void opened(Result<Opened> outcome);
   void started(std::unique_ptr<Session> session, double seconds);
@@ -147,6 +153,7 @@ class Workstation : public QObject {
   TissueSet declared_tissues_;
   TissueLooks looks_;
   std::optional<Case> case_;
+  std::optional<Landmark> entry_;  // instead of the scene's landmark of that id
   TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;

@@ -10,8 +10,30 @@
 #include "structures/skin.h"
 #include "structures/skull.h"
 #include "ui/common/words.h"
+#include "ui/views/slice_plane.h"
 
 namespace trephine {
+
+namespace {
+
+const Vec3 kWallColour(0.93);
+
+QString wallName() {
+  return StructureEditor::tr("wall");
+}
+
+bool isIn(const VoxelBox& box, const Index3& voxel) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (voxel[axis] < box.low[axis] || voxel[axis] >= box.high[axis]) return false;
+  }
+  return true;
+}
+
+const Structure* wallOf(const LabelMap& map) {
+  return map.find(wallName().toStdString());
+}
+
+}  // namespace
 
 StructureEditor::StructureEditor(QObject* parent) : QObject(parent) {
   connect(&work_, &BackgroundTask::progressed, this, &StructureEditor::progressed);
@@ -27,10 +49,12 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
   given_ = structures;
   history_.clear();
   preview_.reset();
+  box_.reset();
   stroke_.reset();
   edited_ = untaken_ = false;
   current_ = given_ && !given_->structures.empty() ? given_->structures.front().label : 0;
   countAll();
+  emit boxChanged();
   emit listChanged();
   emit stateChanged();
 }
@@ -43,7 +67,21 @@ void StructureEditor::setLocked(const QString& why) {
 
 std::shared_ptr<const LabelMap> StructureEditor::takeEdited() {
   if (preview_ || stroke_ || busy() || !std::exchange(untaken_, false)) return nullptr;
-  return std::make_shared<const LabelMap>(*map_);
+  return withoutWall();
+}
+
+std::shared_ptr<LabelMap> StructureEditor::withoutWall() const {
+  auto copy = std::make_shared<LabelMap>(*map());
+  const Structure* wall = wallOf(*copy);
+  if (!wall) return copy;
+  const int label = wall->label;
+  std::ranges::replace(copy->labels, std::uint8_t(label), std::uint8_t(0));
+  std::erase_if(copy->structures, [&](const Structure& s) { return s.label == label; });
+  return copy;
+}
+
+std::shared_ptr<const LabelMap> StructureEditor::finished() const {
+  return std::make_shared<const LabelMap>(withoutEmpty(*withoutWall()));
 }
 
 bool StructureEditor::mayChange() {
@@ -222,14 +260,29 @@ void StructureEditor::inBackground(Make make, const std::string& step) {
   });
 }
 
-void StructureEditor::growAt(const Vec3& patient_mm, const QString& name,
-                             const GrowOptions& options) {
+void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOptions& options) {
   if (!mayChange()) return;
   leavePreview();
+  const std::optional<Index3> voxel = voxelAt(map_->geometry, patient_mm);
+  if (!voxel) return emit said(tr("Click inside the scan."));
+  if (const int label =
+          map_->labels[map_->geometry.indexOf((*voxel)[0], (*voxel)[1], (*voxel)[2])]) {
+    const Structure* there = map_->find(label);
+    return emit said(tr("This place is of \"%1\" already: click beside it, or delete that one to "
+                        "grow it anew.")
+                         .arg(there ? toQt(there->name) : tr("label %1").arg(label)));
+  }
+  if (box_ && !isIn(*box_, *voxel)) {
+    return emit said(tr("Click inside the box, or take the box away."));
+  }
   const std::string wanted = freeName(name);
+  grown_with_ = options;
+  GrowOptions within = options;
+  within.box = box_;
+  within.others = map_;
   work_.run(
-      [volume = volume_, patient_mm, options](const Progress& progress) {
-        return grow(*volume, patient_mm, options, progress);
+      [volume = volume_, patient_mm, within](const Progress& progress) {
+        return grow(*volume, patient_mm, within, progress);
       },
       [this, wanted, patient_mm, own = map_](Result<Growth> grown) {
         if (map_ != own) return;  // of a case that is gone
@@ -288,6 +341,48 @@ void StructureEditor::leavePreview() {
   emit changed(box);
   emit listChanged();
   emit stateChanged();
+}
+
+void StructureEditor::growAnew() {
+  if (!preview_ || busy()) return;
+  const Structure* grown = map_->find(preview_->label);
+  growAt(preview_->seed_mm, grown ? toQt(grown->name) : QString(), grown_with_);
+}
+
+void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across) {
+  if (!volume_) return;
+  const GridGeometry& g = volume_->geometry;
+  const Vec3 from = toVoxel(g, from_mm), to = toVoxel(g, to_mm);
+  VoxelBox box = box_.value_or(VoxelBox{{0, 0, 0}, g.size});
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == across) continue;
+    const auto a = std::size_t(axis);
+    const double last = g.size[a];
+    box.low[a] = int(std::clamp(std::ceil(std::min(from[axis], to[axis])), 0.0, last));
+    box.high[a] = int(std::clamp(std::floor(std::max(from[axis], to[axis])) + 1.0, 0.0, last));
+    if (box.low[a] >= box.high[a]) return emit said(tr("The box lies outside of the scan."));
+  }
+  box_ = box;
+  emit boxChanged();
+  emit stateChanged();
+  growAnew();
+}
+
+std::optional<Vec3> StructureEditor::boxSize_mm() const {
+  if (!box_) return {};
+  Vec3 mm = volume_->geometry.spacing_mm;
+  for (int axis = 0; axis < 3; ++axis) {
+    mm[axis] *= box_->high[std::size_t(axis)] - box_->low[std::size_t(axis)];
+  }
+  return mm;
+}
+
+void StructureEditor::leaveBox() {
+  if (!box_) return;
+  box_.reset();
+  emit boxChanged();
+  emit stateChanged();
+  growAnew();
 }
 
 void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::string& name) {
@@ -366,15 +461,29 @@ void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, co
     if (current_ == 0) return;
     emit listChanged();
   }
-  stroke_ = Stroke{brush, patient_mm};
+  stroke_ = Stroke{current_, brush, patient_mm};
+  moveStroke(patient_mm);
+}
+
+void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
+  if (!mayChange()) return;
+  leavePreview();  // it ran through here
+  const bool is_new = !wallOf(*map_);
+  const int label = addStructure(wallName().toStdString());
+  if (label == 0) return;
+  if (is_new) {
+    map_->structures.back().colour = kWallColour;
+    emit listChanged();
+  }
+  stroke_ = Stroke{label, brush, patient_mm};
   moveStroke(patient_mm);
 }
 
 void StructureEditor::moveStroke(const Vec3& patient_mm) {
   if (!stroke_) return;
   const std::array path{stroke_->last_mm, patient_mm};
-  const auto edit =
-      brushEdit(*map_, current_, path, stroke_->brush, stroke_->brush.hu ? volume_.get() : nullptr);
+  const auto edit = brushEdit(*map_, stroke_->label, path, stroke_->brush,
+                              stroke_->brush.hu ? volume_.get() : nullptr);
   stroke_->last_mm = patient_mm;
   if (!edit) {
     stroke_.reset();

@@ -40,9 +40,11 @@ class StructureEditor : public QObject {
   // Since setCase() or markSaved().
   bool edited() const { return edited_; }
   void markSaved() { edited_ = false; }
-  // Since setCase() or the last call; a copy of the map then, else null. Not while a preview
-  // stands.
+  // Since setCase() or the last call; a copy of the map then, without the wall, else null. Not
+  // while a preview stands.
   std::shared_ptr<const LabelMap> takeEdited();
+  // Such a copy, for a file: without rows that have no voxel either. Only where there is a map.
+  std::shared_ptr<const LabelMap> finished() const;
 
   // The one that tools work on: its label; 0: none.
   int current() const { return current_; }
@@ -61,10 +63,17 @@ class StructureEditor : public QObject {
   };
   // A structure that was grown and does not count yet.
   const std::optional<Preview>& preview() const { return preview_; }
-  // Grows one from a place in it; instead of the preview, where there is one.
-  void growAt(const Vec3& patient_mm, const QString& name, const GrowOptions& options = {});
+  // Grows one from a place in it; instead of the preview, where there is one. It neither takes nor
+  // passes what other structures have, the wall, and the box's faces.
+  void growAt(Vec3 patient_mm, const QString& name, const GrowOptions& options = {});
   void takePreview();
   void leavePreview();
+  // The box's sides along the two axes of a slice, which lies across `across` of the grid, between
+  // two corners; the third side stays. A preview is grown anew.
+  void limitTo(const Vec3& from_mm, const Vec3& to_mm, int across);
+  void leaveBox();
+  const std::optional<VoxelBox>& box() const { return box_; }
+  std::optional<Vec3> boxSize_mm() const;  // along the grid's axes
 
   // Skull and skin, as structures of those names; what had these names is replaced.
   void makeSkull();
@@ -77,6 +86,9 @@ class StructureEditor : public QObject {
 
   // A stroke of the brush over the slices; makes a structure of that name where none is current.
   void beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name);
+  // One of the wall: a row of its own in the list, which holds growing back, and which neither an
+  // exercise nor a file gets.
+  void beginWall(const Vec3& patient_mm, const Brush& brush);
   void moveStroke(const Vec3& patient_mm);
   void endStroke();
   bool inStroke() const { return stroke_.has_value(); }
@@ -92,6 +104,7 @@ class StructureEditor : public QObject {
  signals:
   void changed(const trephine::VoxelBox& box);  // voxels of the map
   void listChanged();                           // names, colours, mL, the current one
+  void boxChanged();                            // that growing keeps to
   void stateChanged();                          // busy, preview, history, locked
   void progressed(double fraction, const QString& step);
   void said(const QString& words);
@@ -99,6 +112,7 @@ class StructureEditor : public QObject {
 
  private:
   struct Stroke {
+    int label = 0;
     Brush brush;
     Vec3 last_mm{0.0};
     bool any = false;
@@ -106,6 +120,8 @@ class StructureEditor : public QObject {
   bool mayChange();
   bool makeOwn();
   const Structure* structure(int label) const;
+  std::shared_ptr<LabelMap> withoutWall() const;
+  void growAnew();
   int addStructure(const std::string& name);
   std::string freeName(const QString& wanted) const;
   void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
@@ -125,6 +141,8 @@ class StructureEditor : public QObject {
   int current_ = 0;
   std::optional<Preview> preview_;
   LabelEdit preview_edit_;
+  GrowOptions grown_with_;  // of the preview
+  std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;
   bool edited_ = false, untaken_ = false;

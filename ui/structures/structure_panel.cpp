@@ -19,7 +19,7 @@ namespace {
 constexpr int kNameColumn = 0, kMlColumn = 1;
 constexpr int kProgressSteps = 1000;
 constexpr SliceTool kTools[] = {SliceTool::grow, SliceTool::brush, SliceTool::eraser,
-                                SliceTool::piece};
+                                SliceTool::piece, SliceTool::wall};
 
 QIcon swatch(const Vec3& colour) {
   QPixmap pixmap(16, 16);
@@ -53,12 +53,14 @@ StructurePanel::StructurePanel(StructureEditor& editor, QWidget* parent)
   build();
   connect(&editor_, &StructureEditor::listChanged, this, &StructurePanel::showList);
   connect(&editor_, &StructureEditor::stateChanged, this, &StructurePanel::showState);
+  connect(&editor_, &StructureEditor::boxChanged, this, &StructurePanel::showBox);
   connect(&editor_, &StructureEditor::said, this, &StructurePanel::say);
   connect(&editor_, &StructureEditor::progressed, this, [this](double fraction, const QString&) {
     progress_->setValue(int(fraction * kProgressSteps));
   });
   showList();
   showState();
+  showBox();
 }
 
 QToolButton* StructurePanel::button(const char* name, const QString& text, const QString& tip) {
@@ -177,14 +179,17 @@ void StructurePanel::build() {
 
 QLayout* StructurePanel::buildTools() {
   tools_ = {button("structureGrow", tr("Grow"),
-                   tr("Click into an organ: what hangs together with it is taken (G)")),
+                   tr("Click into an organ: what hangs together with it is taken. Drag a box that "
+                      "it keeps to (G)")),
             button("structureBrush", tr("Brush"), tr("Paint the chosen structure (B)")),
             button("structureEraser", tr("Eraser"), tr("Take away from the chosen one (E)")),
             button("structurePiece", tr("Keep piece"),
-                   tr("Click the piece that stays; the rest of the chosen one goes (P)"))};
+                   tr("Click the piece that stays; the rest of the chosen one goes (P)")),
+            button("structureWall", tr("Wall"),
+                   tr("Paint where growing stops; it is in no exercise and no file (L)"))};
   auto* row = new QGridLayout;
   row->setSpacing(4);
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < int(tools_.size()); ++n) {
     QToolButton* tool = tools_[std::size_t(n)];
     tool->setCheckable(true);
     row->addWidget(tool, 0, n);
@@ -242,9 +247,19 @@ QLayout* StructurePanel::buildTools() {
   form->setVerticalSpacing(6);
   form->addRow(tr("Room for a ball"), open_->withReason());
   form->addRow(tr("Brush"), brush_row);
+  box_line_ = new QWidget(this);
+  box_ = words("growBox", box_line_);
+  no_box_ = new QPushButton(tr("No bo&x"), box_line_);
+  no_box_->setObjectName("noGrowBox");
+  auto* box_layout = new QHBoxLayout(box_line_);
+  box_layout->setContentsMargins(0, 0, 0, 0);
+  box_layout->addWidget(box_, 1);
+  box_layout->addWidget(no_box_);
+  connect(no_box_, &QPushButton::clicked, &editor_, &StructureEditor::leaveBox);
   auto* column = new QVBoxLayout;
   column->setSpacing(6);
   column->addLayout(row);
+  column->addWidget(box_line_);
   column->addLayout(form);
   column->addLayout(hu_row);
   return column;
@@ -302,11 +317,14 @@ void StructurePanel::showTool(SliceTool tool) {
   for (std::size_t n = 0; n < tools_.size(); ++n) tools_[n]->setChecked(kTools[n] == tool);
   switch (tool) {
     case SliceTool::grow:
-      say(tr("Click into the organ, well inside."));
+      say(tr("Click into the organ, well inside. Drag a box first where it runs on."));
       break;
     case SliceTool::brush:
     case SliceTool::eraser:
       say(tr("Drag in a slice; [ and ] change the size."));
+      break;
+    case SliceTool::wall:
+      say(tr("Paint where growing has to stop, then grow again (G)."));
       break;
     case SliceTool::piece:
       say(tr("Click the piece that stays."));
@@ -386,6 +404,15 @@ void StructurePanel::say(const QString& text) {
 }
 
 // --- What is shown ---
+
+void StructurePanel::showBox() {
+  const std::optional<Vec3> mm = editor_.boxSize_mm();
+  box_line_->setVisible(mm.has_value());
+  if (!mm) return;
+  QStringList sides;
+  for (int axis = 0; axis < 3; ++axis) sides << QString::number((*mm)[axis], 'f', 0);
+  box_->setText(tr("Grows inside of a box of %1 mm").arg(sides.join(QStringLiteral(" \u00d7 "))));
+}
 
 void StructurePanel::showList() {
   listing_ = true;

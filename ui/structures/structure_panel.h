@@ -50,6 +50,7 @@ class StructurePanel : public QWidget {
   QLayout* buildShaping();
   void showList();
   void showState();
+  void showBox();
   void rename(QTreeWidgetItem* item);
   void chooseColour(int label);
   void regrow();
@@ -58,16 +59,16 @@ class StructurePanel : public QWidget {
   StructureEditor& editor_;
   QTreeWidget* list_;
   QComboBox* name_;
-  std::array<QToolButton*, 4> tools_;  // grow, brush, eraser, piece
+  std::array<QToolButton*, 5> tools_;  // grow, brush, eraser, piece, wall
   DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;
   WholeNumberField *hu_low_, *hu_high_;
   QComboBox* shape_;
   QCheckBox* only_hu_;
   QToolButton *skull_button_, *skin_button_, *fill_, *smooth_button_, *shell_button_, *delete_,
       *undo_, *redo_;
-  QPushButton *take_, *leave_, *open_file_, *save_, *cancel_;
-  QWidget* preview_box_;
-  QLabel *preview_, *said_, *empty_;
+  QPushButton *take_, *leave_, *open_file_, *save_, *cancel_, *no_box_;
+  QWidget *preview_box_, *box_line_;
+  QLabel *preview_, *said_, *empty_, *box_;
   QWidget* progress_box_;
   QProgressBar* progress_;
   std::vector<std::string> wanted_;

@@ -103,6 +103,9 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
     setOverlay(Overlay((int(colours_.overlay()) + 1) % kinds), colours_.opacity());
   });
   connect(made.view, &SliceView::structureClicked, this, &FourUp::structureClicked);
+  connect(made.view, &SliceView::boxDrawn, this, &FourUp::boxDrawn);
+  connect(made.view, &SliceView::entryChosen, this, &FourUp::entryChosen);
+  connect(made.view, &SliceView::entryLeft, this, &FourUp::entryLeft);
   connect(made.view, &SliceView::strokeBegan, this, &FourUp::strokeBegan);
   connect(made.view, &SliceView::strokeMoved, this, &FourUp::strokeMoved);
   connect(made.view, &SliceView::strokeEnded, this, &FourUp::strokeEnded);
@@ -116,7 +119,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   connect(made.view, &SliceView::focused, this, [this] {
     emit helpChanged(
         tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
-           "1\u20135: presets. M: ruler. N: angle. O: colours. G: grow. B: brush."));
+           "1\u20135: presets. M: ruler. N: angle. O: colours. G: grow. B: brush. I: entry."));
   });
   return made;
 }
@@ -211,6 +214,14 @@ void FourUp::setTool(SliceTool tool) {
 
 void FourUp::setBrushRadius(double mm) {
   for (const Slices& of : slices_) of.view->setBrushRadius(mm);
+}
+
+void FourUp::setBox(const std::optional<VoxelBox>& box) {
+  for (const Slices& of : slices_) of.view->setBox(box);
+}
+
+void FourUp::setEntry(const std::optional<SliceView::Entry>& entry) {
+  for (const Slices& of : slices_) of.view->setEntry(entry);
 }
 
 void FourUp::setOverlay(Overlay overlay, double opacity) {

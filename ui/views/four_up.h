@@ -57,6 +57,9 @@ class FourUp : public QWidget {
   void setTool(SliceTool tool);
   SliceTool tool() const { return tool_; }
   void setBrushRadius(double mm);
+  // Of the slices, as SliceView has them.
+  void setBox(const std::optional<VoxelBox>& box);
+  void setEntry(const std::optional<SliceView::Entry>& entry);
   void setOverlay(Overlay overlay, double opacity);
   // Other labels of the same voxels: in the slices alone, while they are being changed (then
   // labelsChanged() of each box), or in the 3-D view as well, which sends all of them anew.
@@ -75,6 +78,9 @@ class FourUp : public QWidget {
   void toolChanged(trephine::SliceTool tool);
   // Of the slices, as SliceView has them.
   void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
+  void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
+  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
+  void entryLeft();
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
   void strokeMoved(const trephine::Vec3& patient_mm);
   void strokeEnded();

@@ -45,6 +45,11 @@ QIcon toolIcon(SliceTool tool) {
       painter.drawPolyline(QPolygonF({{14.0, 3.0}, {3.0, 15.0}, {16.0, 15.0}}));
       painter.drawArc(QRectF(-4, 8, 14, 14), 0, 47 * 16);
       break;
+    case SliceTool::entry:  // an arrow into a surface
+      painter.drawArc(QRectF(-1.0, 10.0, 20.0, 20.0), 30 * 16, 120 * 16);
+      painter.drawLine(QPointF(9, 1.5), QPointF(9, 9));
+      painter.drawPolyline(QPolygonF({{6.0, 6.0}, {9.0, 9.5}, {12.0, 6.0}}));
+      break;
     default:  // of structures: in their panel
       break;
   }
@@ -77,6 +82,8 @@ SliceBar::SliceBar(QWidget* parent) : QWidget(parent) {
   tool(SliceTool::ruler, "sliceRulerTool", tr("Ruler: drag from end to end (M; Del removes it)"));
   tool(SliceTool::angle, "sliceAngleTool",
        tr("Angle: click an end, the corner, the other end (N; Del removes it)"));
+  tool(SliceTool::entry, "sliceEntryTool",
+       tr("Where the exercise enters: click, and drag to where the instrument comes from (I)"));
 
   const auto list = [&](const char* name, const QString& tip) {
     auto* box = new QComboBox(this);

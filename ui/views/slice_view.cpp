@@ -4,6 +4,7 @@
 #include <QMouseEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ui/common/words.h"
 
@@ -11,7 +12,7 @@ namespace trephine {
 
 namespace {
 constexpr int kPageOfSlices = 10;
-constexpr double kShortestRuler_pixels = 3.0;   // less is a click
+constexpr double kShortestDrag_pixels = 3.0;    // less is a click
 constexpr double kWidthPerPixel = 0.006;        // natural logarithm
 constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width
 constexpr double kWidest_HU = 8000.0;
@@ -102,6 +103,15 @@ void SliceView::setTools(const std::vector<ToolView>& tools) {
 void SliceView::setBrushRadius(double mm) {
   brush_mm_ = mm;
   if (isBrush(tool_)) update();
+}
+
+void SliceView::setBox(const std::optional<VoxelBox>& box) {
+  box_ = box;
+  update();
+}
+
+void SliceView::setEntry(const std::optional<Entry>& entry) {
+  if (std::exchange(entry_, entry) != entry) update();
 }
 
 // Slices of a stack lie along axes of the grid.
@@ -224,6 +234,10 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   } else if (isBrush(tool_)) {
     drag_ = Drag::stroke;
     emit strokeBegan(toPatient_mm(event->position()), gridAxis());
+  } else if (tool_ == SliceTool::grow || tool_ == SliceTool::entry) {
+    if (target().contains(event->position())) {
+      drag_ = tool_ == SliceTool::grow ? Drag::box : Drag::entry;
+    }
   } else if (isForStructures(tool_)) {
     if (target().contains(event->position())) {
       emit structureClicked(tool_, toPatient_mm(event->position()));
@@ -243,6 +257,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     if (drag_ == Drag::stroke) emit strokeEnded();
     drag_ = Drag::none;
   }
+  if (drag_ == Drag::box || drag_ == Drag::entry) update();
   if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
   if (drag_ == Drag::point) {
     placePoint(event->position());
@@ -268,9 +283,15 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
 void SliceView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
   if (drag_ == Drag::stroke) emit strokeEnded();
+  const Vec3 from = toPatient_mm(pressed_);
+  const bool click = isClick(event->position());
+  const Vec3 to = click ? from : toPatient_mm(event->position());
+  if (drag_ == Drag::box) {
+    click ? emit structureClicked(tool_, from) : emit boxDrawn(from, to, gridAxis());
+  }
+  if (drag_ == Drag::entry) emit entryChosen(from, to);
   if (drag_ == Drag::ruler && drawing_) {
-    const QPointF moved = event->position() - pressed_;
-    if (std::hypot(moved.x(), moved.y()) >= kShortestRuler_pixels) {
+    if (!isClick(event->position())) {
       addMeasurePoint(event->position());
     } else {
       drawing_.reset();
@@ -278,10 +299,17 @@ void SliceView::mouseReleaseEvent(QMouseEvent* event) {
     }
   }
   drag_ = Drag::none;
+  if (tool_ == SliceTool::grow || tool_ == SliceTool::entry) update();
+}
+
+bool SliceView::isClick(const QPointF& released) const {
+  const QPointF moved = released - pressed_;
+  return std::hypot(moved.x(), moved.y()) < kShortestDrag_pixels;
 }
 
 void SliceView::mouseDoubleClickEvent(QMouseEvent* event) {
-  if (tool_ == SliceTool::angle || isForStructures(tool_) || event->button() != Qt::LeftButton) {
+  if (tool_ == SliceTool::angle || tool_ == SliceTool::entry || isForStructures(tool_) ||
+      event->button() != Qt::LeftButton) {
     return mousePressEvent(event);
   }
   drag_ = Drag::none;
@@ -335,6 +363,12 @@ bool SliceView::handleKey(int key) {
     case Qt::Key_O:
       emit overlayWanted();
       break;
+    case Qt::Key_I:
+      emit toolChosen(SliceTool::entry);
+      break;
+    case Qt::Key_L:
+      emit toolChosen(SliceTool::wall);
+      break;
     case Qt::Key_G:
       emit toolChosen(SliceTool::grow);
       break;
@@ -359,7 +393,9 @@ bool SliceView::handleKey(int key) {
     case Qt::Key_Backspace: {
       const auto last = std::find_if(measures_.rbegin(), measures_.rend(),
                                      [&](const Measure& m) { return isShown(m); });
-      if (drawing_) {
+      if (tool_ == SliceTool::entry) {
+        emit entryLeft();
+      } else if (drawing_) {
         drawing_.reset();
       } else if (last != measures_.rend()) {
         measures_.erase(std::next(last).base());
@@ -368,7 +404,7 @@ bool SliceView::handleKey(int key) {
       break;
     }
     case Qt::Key_Escape:
-      if (drawing_) {
+      if (drawing_ || drag_ == Drag::box || drag_ == Drag::entry) {
         drawing_.reset();
         drag_ = Drag::none;
         update();

@@ -5,8 +5,9 @@
 // (three clicks), common point; with Shift it moves the common point with any tool. Where the
 // window is in hand, a line of another view is dragged to another slice of that view. Wheel, Page
 // Up/Down, arrow keys, Home, End go through the slices. Del takes the last measure away, Esc gives
-// a tool up. The tools for structures only say where they are used; what comes of it is not the
-// view's.
+// a tool up. The tools for structures and the entry point only say where they are used; what comes
+// of it is not the view's. Where one grows, a drag draws a box; where the entry point is placed, it
+// goes to where the instrument comes from.
 #pragma once
 
 #include <QImage>
@@ -19,13 +20,13 @@
 
 namespace trephine {
 
-enum class SliceTool { window, point, ruler, angle, grow, brush, eraser, piece };
+enum class SliceTool { window, point, ruler, angle, entry, grow, brush, eraser, piece, wall };
 // Of those by which structures are made.
 constexpr bool isForStructures(SliceTool tool) {
   return tool >= SliceTool::grow;
 }
 constexpr bool isBrush(SliceTool tool) {
-  return tool == SliceTool::brush || tool == SliceTool::eraser;
+  return tool == SliceTool::brush || tool == SliceTool::eraser || tool == SliceTool::wall;
 }
 
 // The colour of the lines that stand for slices of that axis in the other views.
@@ -47,6 +48,13 @@ class SliceView : public SlicePane {
   void setTool(SliceTool tool);
   void setTools(const std::vector<ToolView>& tools);  // of the exercise
   void setBrushRadius(double mm);                     // of the ring that shows it
+  void setBox(const std::optional<VoxelBox>& box);  // of the mirror's voxels, that growing keeps to
+  // Where the exercise enters, and the direction from which: an arrow.
+  struct Entry {
+    Vec3 at_mm{0.0}, outward{0.0};
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+  void setEntry(const std::optional<Entry>& entry);
   void setSlice(int k);                               // asks for the point that lies in it
 
   SliceAxis axis() const { return axis_; }
@@ -69,6 +77,11 @@ class SliceView : public SlicePane {
   void toolChosen(trephine::SliceTool tool);
   void overlayWanted();  // the next kind of overlay
   void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
+  // Two corners of a rectangle in the slice.
+  void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
+  // Of the exercise; `from_mm` is where the drag ended, the same place after a click.
+  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
+  void entryLeft();  // back to where the scene says
   // `across`: the axis of the grid that this view's slices lie across.
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
   void strokeMoved(const trephine::Vec3& patient_mm);
@@ -97,6 +110,9 @@ class SliceView : public SlicePane {
   int gridAxis() const;
   QRect brushRect() const;
   void paintBrush(QPainter& painter) const;
+  void paintBox(QPainter& painter) const;
+  void paintEntry(QPainter& painter) const;
+  bool isClick(const QPointF& released) const;
   void placePoint(const QPointF& in_widget);
   struct Lines {  // of the other views
     bool across = false, down = false;
@@ -138,8 +154,10 @@ class SliceView : public SlicePane {
   std::optional<Measure> drawing_;  // its last point follows the pointer
   std::optional<QPointF> pointer_;
   QPointF pressed_;
-  enum class Drag { none, window, point, lines, ruler, stroke } drag_ = Drag::none;
+  enum class Drag { none, window, point, lines, ruler, stroke, box, entry } drag_ = Drag::none;
   double brush_mm_ = 5.0;
+  std::optional<VoxelBox> box_;
+  std::optional<Entry> entry_;
   HuWindow window_before_;
   Lines held_;
   Vec3 point_before_mm_{0.0};

@@ -67,6 +67,8 @@ void SliceView::paintOver(QPainter& painter) {
   paintTools(painter);
   paintMeasures(painter);
   paintBrush(painter);
+  if (tool_ == SliceTool::grow) paintBox(painter);
+  if (tool_ == SliceTool::entry) paintEntry(painter);
   paintText(painter);
   if (hasFocus()) {
     painter.setRenderHint(QPainter::Antialiasing, false);
@@ -146,11 +148,62 @@ void SliceView::paintBrush(QPainter& painter) const {
   if (!pointer_ || !isBrush(tool_)) return;
   const double pixels = std::max(1.5, brush_mm_ * pixelsPerMm());
   painter.setBrush(Qt::NoBrush);
-  const QColor colour = tool_ == SliceTool::brush ? colours::kText : colours::kCaution;
+  const QColor colour = tool_ == SliceTool::eraser ? colours::kCaution : colours::kText;
   for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), 3.0), {colour, 1.2}}) {
     painter.setPen(QPen(with, thick));
     painter.drawEllipse(*pointer_, pixels, pixels);
   }
+}
+
+// What growing keeps to, and the one that is being drawn: dotted in slices outside of it.
+void SliceView::paintBox(QPainter& painter) const {
+  const auto draw = [&](const QRectF& sides, Qt::PenStyle style) {
+    painter.setBrush(Qt::NoBrush);
+    for (const auto& [with, thick] :
+         {std::pair(QColor(0, 0, 0, 180), 3.0), std::pair(QColor(colours::kText), 1.2)}) {
+      painter.setPen(QPen(with, thick, style));
+      painter.drawRect(sides);
+    }
+  };
+  if (drag_ == Drag::box && pointer_ && !isClick(*pointer_)) {
+    draw(QRectF(pressed_, *pointer_).normalized(), Qt::DashLine);
+  }
+  if (!box_ || !hasSlice()) return;
+  const GridGeometry& grid = mirror_->volume().geometry;
+  const Vec3 low = Vec3(box_->low[0], box_->low[1], box_->low[2]) - 0.5;
+  const Vec3 high = Vec3(box_->high[0], box_->high[1], box_->high[2]) - 0.5;
+  const int axis = gridAxis();
+  const double here = toVoxel(grid, stack_.toPatient_mm(Vec3(0.0, 0.0, slice_)))[axis];
+  draw(QRectF(fromPatient(grid.toPatient_mm(low)), fromPatient(grid.toPatient_mm(high)))
+           .normalized(),
+       here >= low[axis] && here <= high[axis] ? Qt::DashLine : Qt::DotLine);
+}
+
+// A ring where the exercise enters and an arrow along which the instrument comes: thin and broken
+// where that is before or behind the slice.
+void SliceView::paintEntry(QPainter& painter) const {
+  constexpr double kArrow_mm = 30.0, kHead_pixels = 7.0;
+  const auto draw = [&](const QPointF& at, const QPointF& from, bool in_slice) {
+    const QPointF along = from - at;
+    const double long_pixels = std::hypot(along.x(), along.y());
+    painter.setBrush(Qt::NoBrush);
+    for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), in_slice ? 4.5 : 2.5),
+                                      std::pair(QColor(colours::kAccent), in_slice ? 2.0 : 1.2)}) {
+      painter.setPen(QPen(with, thick, in_slice ? Qt::SolidLine : Qt::DotLine));
+      painter.drawEllipse(at, 5.0, 5.0);
+      if (long_pixels < 2.0 * kHead_pixels) continue;
+      const QPointF unit = along / long_pixels, aside(-unit.y(), unit.x());
+      const QPointF tip = at + 6.0 * unit;
+      painter.drawLine(tip, from);
+      painter.drawPolyline(QPolygonF({tip + kHead_pixels * (unit + 0.6 * aside), tip,
+                                      tip + kHead_pixels * (unit - 0.6 * aside)}));
+    }
+  };
+  if (drag_ == Drag::entry && pointer_) return draw(pressed_, *pointer_, true);
+  if (!entry_ || !hasSlice()) return;
+  const double off_mm = std::abs(toVoxel(stack_, entry_->at_mm).z - slice_) * stack_.spacing_mm.z;
+  draw(fromPatient(entry_->at_mm), fromPatient(entry_->at_mm + kArrow_mm * entry_->outward),
+       off_mm <= std::max(1.0, 0.5 * stack_.spacing_mm.z));
 }
 
 void SliceView::paintMeasures(QPainter& painter) const {

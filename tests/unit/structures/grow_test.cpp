@@ -126,6 +126,58 @@ TEST_F(GrowInAbdomen, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(grow(of().volume, click, options).error().code, "BAD_ARGUMENT");
 }
 
+// Two balls of 20 mm of liver in fat, their middles 30 mm apart to both sides of the grid's, and a
+// bar of 24 mm between them.
+Volume twoBallsAndABar() {
+  Volume volume;
+  volume.geometry.size = {120, 70, 70};
+  volume.geometry.spacing_mm = Vec3(1.0);
+  volume.hu.assign(volume.geometry.voxelCount(), -100);
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    const Index3 at = volume.geometry.indicesOf(n);
+    const Vec3 off = Vec3(at[0], at[1], at[2]) - Vec3(60.0, 35.0, 35.0);
+    const bool ball = glm::length(Vec3(std::abs(off.x) - 30.0, off.y, off.z)) < 20.0;
+    const bool bar = std::abs(off.x) < 30.0 && std::hypot(off.y, off.z) < 12.0;
+    if (ball || bar) volume.hu[n] = 50;
+  }
+  return volume;
+}
+
+TEST(Grow, DoesNotPassAWallNorTakeWhatOthersHave) {
+  const Volume volume = twoBallsAndABar();
+  const GridGeometry& g = volume.geometry;
+  const Vec3 left = g.toPatient_mm({30.0, 35.0, 35.0});
+  const auto of = [&](const LabelMap& map, int i) {
+    std::size_t voxels = 0;
+    for (std::size_t n = 0; n < map.labels.size(); ++n) {
+      voxels += map.labels[n] && (g.indicesOf(n)[0] > 60) == (i > 60);
+    }
+    return voxels;
+  };
+  GrowOptions options;
+  options.open_mm = 5.0;
+  const auto both = grow(volume, left, options);
+  ASSERT_TRUE(both) << both.error().sentence();
+  EXPECT_GT(of(both->mask, 90), 30000u);
+
+  // A wall of one voxel, in the bar's middle, open at its sides by two.
+  LabelMap others{g, std::vector<std::uint8_t>(g.voxelCount())};
+  for (int k = 25; k <= 45; ++k) {
+    for (int j = 25; j <= 45; ++j) others.labels[g.indexOf(60, j, k)] = 7;
+  }
+  options.others = std::make_shared<const LabelMap>(others);
+  const auto one = grow(volume, left, options);
+  ASSERT_TRUE(one) << one.error().sentence();
+  EXPECT_EQ(of(one->mask, 90), 0u);
+  EXPECT_NEAR(double(of(one->mask, 30)), double(of(both->mask, 30)), 0.06 * of(both->mask, 30));
+  for (std::size_t n = 0; n < others.labels.size(); ++n) {
+    if (others.labels[n]) ASSERT_EQ(one->mask.labels[n], 0);
+  }
+  others.geometry.size = {60, 70, 140};
+  options.others = std::make_shared<const LabelMap>(others);
+  EXPECT_EQ(grow(volume, left, options).error().code, "OTHER_GRID");
+}
+
 TEST_F(GrowInAbdomen, CanBeCancelledAtAnyStep) {
   for (const std::string step : {"blocks", "core", "border"}) {
     Progress* told = nullptr;
