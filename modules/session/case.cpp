@@ -122,6 +122,7 @@ SourceIds sourceOf(const Case& of) {
 
 Case withFit(Case of, StructureFit fit) {
   of = withStructures(std::move(of), std::make_shared<const LabelMap>(std::move(fit.map)));
+  of.structure_cards = std::move(fit.structures);
   for (const Finding& finding : fit.findings) {
     std::string text = finding.text + ".";
     if (!finding.action.empty()) text += " " + finding.action + ".";
@@ -134,6 +135,7 @@ Case withStructures(Case of, std::shared_ptr<const LabelMap> structures) {
   of.structures = std::move(structures);
   of.labels = of.structures;
   of.structures_built_in = false;
+  of.structure_cards.clear();
   of.structure_warnings.clear();
   return of;
 }

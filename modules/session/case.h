@@ -27,7 +27,8 @@ struct Case {
   std::optional<Anatomy> anatomy;              // what it shows; none where it was not asked
   std::shared_ptr<const LabelMap> structures;  // fitted to the volume; null: none
   bool structures_built_in = false;  // they came with it, and a file that is given replaces them
-  std::vector<Warning> structure_warnings;  // of the file that they are from
+  std::vector<StructureCard> structure_cards;  // of the file that they are from, and what is to be
+  std::vector<Warning> structure_warnings;     // said of it
 
   // In the scene that it was placed in: its structures and the shells that the scene's tissues
   // need; where its landmarks are, or why not. It can be looked at all the same.

@@ -92,6 +92,7 @@ class MainWindow : public QMainWindow {
   bool takeStructures();
   void openStructures();
   void showStructures();
+  void showStructureReport();
   void showStructureTab();
   void structureToolChanged(SliceTool tool);
   void structureKey(int key);

@@ -8,6 +8,7 @@
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
+#include "ui/structures/structure_report.h"
 #include "volume/segmentation.h"
 
 namespace trephine {
@@ -92,6 +93,7 @@ void MainWindow::showStructures() {
     for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
     structures_->say(words.join('\n'));
     left_->setCurrentIndex(kStructureTab);
+    showStructureReport();
   }
   if (carved_) showWholeCase();
   views_->showLabels(of.labels, FourUp::Views::all);
@@ -102,9 +104,17 @@ void MainWindow::showStructures() {
   if (std::exchange(entry_asked_, false)) lookAtCase();
 }
 
+// Of those that came from a file: beside the window, which goes on.
+void MainWindow::showStructureReport() {
+  const Case& of = *workstation_.currentCase();
+  if (of.structure_cards.empty()) return;
+  (new StructureReport(of, this))->show();
+}
+
 // Of a case that was opened.
 void MainWindow::openStructures() {
   const Case& of = *workstation_.currentCase();
+  if (of.structures != own_structures_) showStructureReport();
   own_structures_ = of.structures;
   editor_.setCase(of.volume, of.structures);
   structures_->setWanted(workstation_.scene()->structures);

@@ -454,6 +454,7 @@ void StructureEditor::keepPieceAt(const Vec3& patient_mm) {
 
 void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name) {
   if (!mayChange()) return;
+  regrow_.reset();
   if (preview_) takePreview();  // it is what one mends
   if (current_ == 0) {
     if (brush.erase) return emit said(tr("Choose the structure to erase from."));
@@ -467,7 +468,12 @@ void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, co
 
 void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
   if (!mayChange()) return;
-  leavePreview();  // it ran through here
+  std::optional<Regrow> again;
+  if (preview_) {  // it ran through here
+    const Structure* grown = map_->find(preview_->label);
+    again = Regrow{preview_->seed_mm, grown ? toQt(grown->name) : QString()};
+  }
+  leavePreview();
   const bool is_new = !wallOf(*map_);
   const int label = addStructure(wallName().toStdString());
   if (label == 0) return;
@@ -476,6 +482,7 @@ void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
     emit listChanged();
   }
   stroke_ = Stroke{label, brush, patient_mm};
+  regrow_ = again;
   moveStroke(patient_mm);
 }
 
@@ -500,6 +507,9 @@ void StructureEditor::endStroke() {
   stroke_.reset();
   emit listChanged();
   emit stateChanged();
+  if (const auto again = std::exchange(regrow_, {})) {
+    growAt(again->seed_mm, again->name, grown_with_);
+  }
 }
 
 // --- Undo ---

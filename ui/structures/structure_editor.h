@@ -87,7 +87,7 @@ class StructureEditor : public QObject {
   // A stroke of the brush over the slices; makes a structure of that name where none is current.
   void beginStroke(const Vec3& patient_mm, const Brush& brush, const QString& name);
   // One of the wall: a row of its own in the list, which holds growing back, and which neither an
-  // exercise nor a file gets.
+  // exercise nor a file gets. A preview is grown anew at the stroke's end.
   void beginWall(const Vec3& patient_mm, const Brush& brush);
   void moveStroke(const Vec3& patient_mm);
   void endStroke();
@@ -142,6 +142,11 @@ class StructureEditor : public QObject {
   std::optional<Preview> preview_;
   LabelEdit preview_edit_;
   GrowOptions grown_with_;  // of the preview
+  struct Regrow {
+    Vec3 seed_mm{0.0};
+    QString name;
+  };
+  std::optional<Regrow> regrow_;  // once the wall's stroke ends
   std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;

@@ -170,9 +170,80 @@ TEST_F(Editor, AnInterruptedGrowLosesNothing) {
   EXPECT_FALSE(editor_.preview());
   EXPECT_TRUE(failed_.empty());
   editor_.growAt(middle_ + Vec3(1000, 0, 0), "liver");
-  wait();
-  EXPECT_EQ(failed_, "BAD_SEED");
+  EXPECT_NE(said_.indexOf("inside the scan"), -1);
   EXPECT_EQ(editor_.map()->labels, before);
+}
+
+TEST_F(Editor, AWallHoldsGrowingBackAndIsInNoExerciseAndNoFile) {
+  Brush brush;
+  brush.radius_mm = 30.0;
+  brush.shape = Brush::Shape::disc;
+  brush.across = 0;
+  editor_.beginWall(middle_, brush);
+  editor_.endStroke();
+  ASSERT_GT(ml("wall"), 0.0);
+  EXPECT_EQ(editor_.current(), 0);  // a help, not what one works on
+  editor_.growAt(middle_ + Vec3(10, 0, 0), "liver");
+  wait();
+  ASSERT_TRUE(editor_.preview()) << failed_ << said_.toStdString();
+  EXPECT_NEAR(ml("liver"), kBall_ml / 2.0, 0.1 * kBall_ml);
+  editor_.takePreview();
+  const auto made = editor_.takeEdited();
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->find("liver"));
+  EXPECT_FALSE(made->find("wall"));
+  const int wall = editor_.map()->find("wall")->label;
+  EXPECT_EQ(std::count(made->labels.begin(), made->labels.end(), wall), 0);
+  EXPECT_FALSE(editor_.finished()->find("wall"));
+  // Its voxels can be taken back as any stroke.
+  editor_.undo();
+  editor_.undo();
+  EXPECT_EQ(ml("wall"), 0.0);
+}
+
+TEST_F(Editor, AWallThroughAPreviewGrowsItAnew) {
+  editor_.growAt(middle_ + Vec3(10, 0, 0), "liver");
+  wait();
+  ASSERT_NEAR(ml("liver"), kBall_ml, 2.0);
+  Brush brush;
+  brush.radius_mm = 30.0;
+  brush.shape = Brush::Shape::disc;
+  brush.across = 0;
+  editor_.beginWall(middle_, brush);
+  EXPECT_FALSE(editor_.preview());
+  editor_.endStroke();
+  wait();
+  ASSERT_TRUE(editor_.preview());
+  EXPECT_NEAR(ml("liver"), kBall_ml / 2.0, 0.1 * kBall_ml);
+}
+
+TEST_F(Editor, GrowsInsideOfABoxThatIsDrawnAndAnewWhereItChanges) {
+  editor_.limitTo(middle_ + Vec3(-60, -60, 0), middle_ + Vec3(0.7, 60, 0), 2);
+  ASSERT_TRUE(editor_.box());
+  EXPECT_NEAR(editor_.boxSize_mm()->z, 90.0, 1e-9);
+  editor_.growAt(middle_ + Vec3(20, 0, 0), "liver");
+  EXPECT_FALSE(editor_.busy());
+  EXPECT_NE(said_.indexOf("inside the box"), -1);
+  editor_.growAt(middle_ - Vec3(10, 0, 0), "liver");
+  wait();
+  ASSERT_TRUE(editor_.preview()) << failed_;
+  EXPECT_NEAR(ml("liver"), kBall_ml / 2.0, 0.1 * kBall_ml);
+  editor_.leaveBox();  // the preview is grown anew
+  EXPECT_TRUE(editor_.busy());
+  wait();
+  ASSERT_TRUE(editor_.preview());
+  EXPECT_NEAR(ml("liver"), kBall_ml, 2.0);
+  EXPECT_EQ(editor_.map()->structures.size(), 1u);
+}
+
+TEST_F(Editor, AClickIntoWhatIsThereSaysSo) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  editor_.growAt(middle_, "second");
+  EXPECT_FALSE(editor_.busy());
+  EXPECT_NE(said_.indexOf("liver"), -1);
+  EXPECT_EQ(ml("second"), -1.0);
 }
 
 }  // namespace
