@@ -26,9 +26,9 @@ struct Landmark {
   Vec3 towards{0.5};
   double bulk_radius_mm = 0.0;  // above 0: the second way
   Vec3 outward{0.0, -1.0, 0.0};
+  double run_mm = 1.0;    // how long the ray must stay in the tissue to count
   bool is_place = false;  // the third way
   Vec3 at_mm{0.0};
-  double run_mm = 1.0;          // how long the ray must stay in the tissue to count
 };
 
 // Origin on the surface; +z back along the ray, out of the patient; +y towards the patient's head

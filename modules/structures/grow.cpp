@@ -270,6 +270,7 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   const BlockMask closed = eroded(dilated(found, grid, kNotch_mm), grid, kNotch_mm);
   for (std::size_t n = 0; n < found.size(); ++n) found[n] = found[n] || closed[n];
   fillHoles(found, grid);
+  keepFree(found, taken);
   growth.steps.push_back(said("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
   return found;
 }

@@ -18,8 +18,9 @@ namespace {
 
 constexpr int kNameColumn = 0, kMlColumn = 1;
 constexpr int kProgressSteps = 1000;
-constexpr SliceTool kTools[] = {SliceTool::grow, SliceTool::brush, SliceTool::eraser,
-                                SliceTool::piece, SliceTool::wall};
+constexpr SliceTool kTools[] = {SliceTool::grow, SliceTool::wall, SliceTool::piece,
+                                SliceTool::brush, SliceTool::eraser};
+constexpr int kToolsInARow = 3;
 
 QIcon swatch(const Vec3& colour) {
   QPixmap pixmap(16, 16);
@@ -181,18 +182,18 @@ QLayout* StructurePanel::buildTools() {
   tools_ = {button("structureGrow", tr("Grow"),
                    tr("Click into an organ: what hangs together with it is taken. Drag a box that "
                       "it keeps to (G)")),
-            button("structureBrush", tr("Brush"), tr("Paint the chosen structure (B)")),
-            button("structureEraser", tr("Eraser"), tr("Take away from the chosen one (E)")),
+            button("structureWall", tr("Wall"),
+                   tr("Paint where growing stops; it is in no exercise and no file (L)")),
             button("structurePiece", tr("Keep piece"),
                    tr("Click the piece that stays; the rest of the chosen one goes (P)")),
-            button("structureWall", tr("Wall"),
-                   tr("Paint where growing stops; it is in no exercise and no file (L)"))};
+            button("structureBrush", tr("Brush"), tr("Paint the chosen structure (B)")),
+            button("structureEraser", tr("Eraser"), tr("Take away from the chosen one (E)"))};
   auto* row = new QGridLayout;
   row->setSpacing(4);
   for (int n = 0; n < int(tools_.size()); ++n) {
     QToolButton* tool = tools_[std::size_t(n)];
     tool->setCheckable(true);
-    row->addWidget(tool, 0, n);
+    row->addWidget(tool, n / kToolsInARow, n % kToolsInARow);
     connect(tool, &QToolButton::clicked, this,
             [this, n](bool on) { emit toolChosen(on ? kTools[n] : SliceTool::window); });
   }

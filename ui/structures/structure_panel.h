@@ -59,7 +59,7 @@ class StructurePanel : public QWidget {
   StructureEditor& editor_;
   QTreeWidget* list_;
   QComboBox* name_;
-  std::array<QToolButton*, 5> tools_;  // grow, brush, eraser, piece, wall
+  std::array<QToolButton*, 5> tools_;  // as kTools
   DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;
   WholeNumberField *hu_low_, *hu_high_;
   QComboBox* shape_;

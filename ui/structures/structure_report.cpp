@@ -4,7 +4,6 @@
 #include <QHeaderView>
 #include <QImage>
 #include <QLabel>
-#include <QPainter>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -119,11 +118,8 @@ void StructureReport::showPictures(const Pictures& pictures) {
     const ColourPicture& picture = pictures[std::size_t(row)];
     const QImage image(picture.rgb.data(), picture.width, picture.height, 3 * picture.width,
                        QImage::Format_RGB888);
-    QPixmap pixmap(kPicture_pixels, kPicture_pixels);
-    pixmap.fill(Qt::transparent);
-    QPainter(&pixmap).drawImage((kPicture_pixels - picture.width) / 2,
-                                (kPicture_pixels - picture.height) / 2, image);
-    list_->topLevelItem(row)->setIcon(kName, pixmap);
+    list_->topLevelItem(row)->setIcon(kName, QPixmap::fromImage(image));
+    list_->setIconSize(image.size());  // one for all: they show the same scan
   }
 }
 
