@@ -286,21 +286,37 @@ void Workstation::openInBackground(Opened opening) {
       });
 }
 
+// What was edited holds on the next case too. Where the scene has other tissues there, it waits for
+// a case on which these hold again.
+void Workstation::keepEdits(Opened& opened) {
+  const LabelMap* labels = opened.of->labels.get();
+  const bool same_set = opened.same_scene && scene_->tissues_elsewhere.has_value() ==
+                                                 opened.scene.tissues_elsewhere.has_value();
+  if (same_set) {
+    opened.scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
+    for (TissueSet* set : {&opened.scene.tissues, &declared_tissues_}) placeTissues(*set, labels);
+    return;
+  }
+  std::optional<TissueSet> edited;
+  if (opened.same_scene && tissuesEdited()) edited = scene_->tissues;
+  declared_tissues_ = opened.scene.tissues;
+  if (!opened.same_scene) {
+    looks_ = opened.scene.view.looks;
+    edited_other_.reset();
+    return;
+  }
+  if (edited_other_) {
+    opened.scene.tissues = *edited_other_;
+    placeTissues(opened.scene.tissues, labels);
+  }
+  edited_other_ = std::move(edited);
+}
+
 void Workstation::opened(Result<Opened> outcome) {
   if (!outcome) return fail(outcome.error());
   const bool structures_alone = outcome->structures_alone;
   placed_with_ = tissueTable(outcome->scene.tissues);
-  // What was edited holds on the next case too, unless the scene has other tissues there.
-  if (outcome->same_scene &&
-      scene_->tissues_elsewhere.has_value() == outcome->scene.tissues_elsewhere.has_value()) {
-    outcome->scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
-    for (TissueSet* set : {&outcome->scene.tissues, &declared_tissues_}) {
-      placeTissues(*set, outcome->of->labels.get());
-    }
-  } else {
-    declared_tissues_ = outcome->scene.tissues;
-    looks_ = outcome->scene.view.looks;
-  }
+  keepEdits(*outcome);
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
   case_ = std::move(outcome->of);

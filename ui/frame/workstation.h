@@ -139,6 +139,7 @@ class Workstation : public QObject {
   void enterAt(Scene& scene) const;
   bool placeAgain(const std::shared_ptr<const LabelMap>& structures);
   void openInBackground(Opened opening);
+  void keepEdits(Opened& opened);
   void opened(Result<Opened> outcome);
   void started(std::unique_ptr<Session> session, double seconds);
   void notStarted(const Error& error);
@@ -151,6 +152,7 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   TissueSet declared_tissues_;
+  std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;
   std::optional<Case> case_;
   std::optional<Landmark> entry_;  // instead of the scene's landmark of that id

@@ -375,6 +375,25 @@ TEST_F(EditedTissuesTest, StayWithTheirSceneWhateverTheCaseAndAreKnownToBeEdited
   EXPECT_FALSE(workstation_.tissuesEdited());
 }
 
+TEST_F(WorkstationTest, TissuesThatWereEditedComeBackWithTheStructuresThatTheyAreOf) {
+  workstation_.openPhantom("abdomen");
+  ASSERT_TRUE(wait()) << failed_->sentence();
+  const auto structures = workstation_.currentCase()->structures;
+  TissueSet tissues = workstation_.scene()->tissues;
+  tissues.tissues.front().opacity = 0.123;
+  workstation_.setTissues(tissues);
+  ASSERT_TRUE(workstation_.useStructures(nullptr));
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(workstation_.scene()->tissues_elsewhere) << "those by HU are in force";
+  EXPECT_FALSE(workstation_.tissuesEdited());
+  ASSERT_TRUE(workstation_.useStructures(structures));
+  ASSERT_TRUE(wait());
+  EXPECT_TRUE(workstation_.tissuesEdited());
+  EXPECT_EQ(workstation_.scene()->tissues.tissues.front().opacity, 0.123);
+  EXPECT_EQ(workstation_.scene()->tissues.find("liver")->label,
+            workstation_.declaredTissues().find("liver")->label);
+}
+
 TEST_F(EditedTissuesTest, AreSavedAsASetThatScenesCanName) {
   bool then = false;
   workstation_.saveTissues(folder_ / "mine.json", [&] { then = true; });
