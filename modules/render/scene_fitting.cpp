@@ -37,6 +37,7 @@ void SceneRenderer::Parts::otherLabels() {
   reduced_labels = reduced && labels ? reduced->labels(*labels) : nullptr;
   volume.setLabels(reduced ? reduced_labels : labels);
   labels_held = true;
+  may_need_more = labels != nullptr;
   if (volume.labelsSent()) spoilLooks();  // there are none any more
 }
 
@@ -51,15 +52,24 @@ void SceneRenderer::Parts::changed(const VoxelBox& box) {
   cut(box);
 }
 
-void SceneRenderer::Parts::fit() {
-  fitted = true;
+bool SceneRenderer::Parts::reduceAsNeeded() {
   GLint most = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
   if (most_edge > 0) most = std::min(most, most_edge);
+  const Index3 before = reduction;
   const Index3 needed = reductionFor(voxels().geometry.size, most, mirror->labels() != nullptr);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     reduction[axis] = std::max(reduction[axis], needed[axis]);
   }
+  return reduction != before;
+}
+
+void SceneRenderer::Parts::fit() {
+  may_need_more = false;
+  // Labels that came later need slices of their own.
+  if (!reduceAsNeeded() && fitted) return;
+  if (fitted) spoil();
+  fitted = true;
   constexpr int kMost = 16;  // beyond it there is too little left to see
   for (;;) {
     if (reduction != Index3{1, 1, 1}) showReduced();

@@ -41,6 +41,7 @@ struct SceneRenderer::Parts {
   std::shared_ptr<LabelMap> reduced_labels;
   Index3 reduction{1, 1, 1};
   bool labels_held = false;  // the last picture stays until other labels are there as a whole
+  bool may_need_more = false;  // of what is fitted: it has labels now
   bool fitted = false;   // what is shown has been sent, or refused
   bool refused = false;  // and nothing is drawn of it
   Status refusal;
@@ -84,6 +85,7 @@ struct SceneRenderer::Parts {
   void labelsChanged(const VoxelBox& box);
   // Halves it until the card takes it.
   void fit();
+  bool reduceAsNeeded();  // true where it has to be reduced more than it is
 
   // ---- Pictures of the volume, and all that is put together: scene_pictures.cpp.
   // `upwards`: what the picture spans upwards, in the window's height.

@@ -89,14 +89,14 @@ VolumePictures::Cast SceneRenderer::Parts::caster() {
 }
 
 void SceneRenderer::Parts::drawAt(double level) {
-  if (!fitted && !mirror->empty()) fit();
+  if ((!fitted || may_need_more) && !mirror->empty()) fit();
   if (drawsVolume() && !volume.labelsSent()) sendLabels(std::numeric_limits<double>::infinity());
   if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
   scene_stale = true;
 }
 
 bool SceneRenderer::Parts::work(double budget_ms) {
-  if (!fitted && !mirror->empty()) fit();
+  if ((!fitted || may_need_more) && !mirror->empty()) fit();
   if (!drawsVolume()) return std::exchange(scene_stale, false);
   if (!volume.labelsSent()) {
     sendLabels(budget_ms);
