@@ -31,10 +31,10 @@ float lookOf(float hu) { return hu; }
 )";
 inline const std::string kPlainShape = "float shapeAt(vec3 place, float hu) { return 0.0; }\n";
 
-// The same texture holds the labels first and the leaps in the slices above: one texture, since
-// only the first of all is where a shader that was just built looks for it. Of a voxel it holds the
-// row of its label, or of a neighbour's where it has none, and how much of what surrounds it has a
-// label: from a half on it is inside (label_shape.h).
+// The same texture holds the labels first, the leaps in the slices above, and above these the row
+// of each label: one texture, since only the first of all is where a shader that was just built
+// looks for it. Of a voxel it holds its label, or a neighbour's where it has none, and how much of
+// what surrounds it has a label: from a half on it is inside (label_shape.h).
 inline std::string labelledLookUps(std::size_t rows) {
   static_assert(kSideMargin == 0.01, "written out below");
   return "const float kRows = " + std::to_string(rows) + R"(.0;
@@ -55,7 +55,12 @@ float lookOf(float hu)
   if (insideAt(g_dataPos) > 0.5)
     {
     vec3 l_voxel = clamp(floor(g_dataPos * voxels()), vec3(0.0), voxels() - 1.0);
-    g_row = floor(texelFetch(in_leaps, ivec3(l_voxel), 0).r * 255.0 + 0.5);
+    int l_label = int(texelFetch(in_leaps, ivec3(l_voxel), 0).r * 255.0 + 0.5);
+    ivec3 l_size = ivec3(voxels());
+    int l_slice = l_size.x * l_size.y;
+    ivec3 l_at = ivec3(l_label % l_size.x, (l_label % l_slice) / l_size.x,
+                       l_size.z + int(lastBrick().z) + 1 + l_label / l_slice);
+    g_row = floor(texelFetch(in_leaps, l_at, 0).r * 255.0 + 0.5);
     }
   return (g_row + mix(0.01, 0.99, clamp(hu, 0.0, 1.0))) / kRows;
   }

@@ -34,7 +34,7 @@
 #include "render/cut_marks.h"
 #include "render/dirty_boxes.h"
 #include "render/empty_space.h"
-#include "render/label_shape.h"
+#include "render/label_sender.h"
 #include "render/ray_shading.h"
 #include "render/send_box.h"
 
@@ -92,8 +92,7 @@ struct CarveVolume::Parts {
   std::vector<VoxelBox> boxes;
   LabelRows label_rows;
   std::vector<std::vector<TransferPoint>> looks{{}};  // of each row
-  std::vector<std::vector<HuInterval>> visible;  // of each row
-  std::vector<std::uint32_t> rows_of_bricks;
+  std::vector<std::vector<HuInterval>> visible;       // of each row
   RayShading shading;
   BrickRanges bricks;
   LeapMap leap_map;
@@ -105,29 +104,36 @@ struct CarveVolume::Parts {
   std::optional<CutMarks> marks_of_all;
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
-  bool labels_stale = true;    // to be sent, or no longer there
+  LabelSender sender;          // of the labels
+  bool kind_stale = true;      // the texture is to be made anew, with or without labels
+  bool rows_stale = true;      // of labels, to be sent
 
   // Looks that are told apart: without a label map all voxels are of the first row.
   std::size_t rowCount() const { return labels ? looks.size() : 1; }
 
-  // Leaves the texture active.
+  // Leaves the texture active. Labels that are to be sent follow with sendLabels().
   void sendLeaps(vtkRenderer& renderer) {
     const Index3& n = bricks.size();
     const bool by_label = rowCount() > 1;
-    if (labels_stale) {
-      rows_of_bricks.clear();
-      if (by_label) rows_of_bricks = rowsOfBricks(*labels, label_rows);
+    const bool anew = kind_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
+    if (anew && by_label) sender.start(labels);
+    if (leap_map_stale) {
+      std::vector<std::uint32_t> rows;
+      if (by_label) rows = sender.bricks().rows(label_rows);
+      leap_map = LeapMap(bricks, visible, std::move(rows), 2.0 * lookup_step_HU);
     }
-    if (leap_map_stale) leap_map = LeapMap(bricks, visible, rows_of_bricks, 2.0 * lookup_step_HU);
     const std::uint8_t* distances = leap_map.distances().data();
-    const bool anew = labels_stale || !leaps->GetHandle() || (leap_map_stale && !by_label);
     if (anew) {
       leaps->SetContext(vtkOpenGLRenderWindow::SafeDownCast(renderer.GetRenderWindow()));
       leaps->ResetFormatAndType();                             // one or two bytes
       leaps->SetMinificationFilter(vtkTextureObject::Linear);  // of labels; leaps are fetched
       leaps->SetMagnificationFilter(vtkTextureObject::Linear);
     }
-    if (anew && by_label) sendLabels();
+    if (anew && by_label) {
+      const Index3& size = copy->geometry.size;
+      leaps->Create3DFromRaw(unsigned(size[0]), unsigned(size[1]),
+                             unsigned(size[2] + n[2] + rowSlices()), 2, VTK_UNSIGNED_CHAR, nullptr);
+    }
     if (anew && !by_label) {
       const UnpackRows layout(n);
       // VTK takes a pointer to what it only reads.
@@ -136,20 +142,47 @@ struct CarveVolume::Parts {
     } else if (anew || leap_map_stale || leaps_stale) {
       sendBox(*leaps, distances, n, {{0, 0, 0}, n}, by_label ? copy->geometry.size[2] : 0);
     }
-    leap_map_stale = leaps_stale = labels_stale = false;
+    if (by_label && (anew || rows_stale)) sendRows();
+    leap_map_stale = leaps_stale = kind_stale = rows_stale = false;
     leaps->Activate();
   }
 
-  // Makes the texture of labels and leaps, and fills in the row of each voxel's label.
-  void sendLabels() {
+  // The row of each label, in the slices above the leaps.
+  int rowSlices() const {
     const Index3& size = copy->geometry.size;
-    leaps->Create3DFromRaw(unsigned(size[0]), unsigned(size[1]),
-                           unsigned(size[2] + bricks.size()[2]), 2, VTK_UNSIGNED_CHAR, nullptr);
-    LabelShapes shapes(*labels, label_rows);
-    for (int k = 0; k < size[2]; ++k) {
-      sendBox(*leaps, shapes.next().data(), {size[0], size[1], 1},
-              {{0, 0, 0}, {size[0], size[1], 1}}, k);
+    return (256 + size[0] * size[1] - 1) / (size[0] * size[1]);
+  }
+  void sendRows() {
+    const Index3& size = copy->geometry.size;
+    const Index3 above{size[0], size[1], rowSlices()};
+    std::vector<std::uint8_t> row(std::size_t(size[0]) * std::size_t(size[1]) *
+                                  std::size_t(above[2]));
+    std::ranges::copy(label_rows.row, row.begin());
+    sendBox(*leaps, row.data(), above, {{0, 0, 0}, above}, size[2] + bricks.size()[2]);
+  }
+
+  // After labels in this box were sent: what can be leapt over there. One of much is quicker anew.
+  void useLabels(const VoxelBox& box) {
+    constexpr std::size_t kMany = 4096;  // bricks
+    BrickBox of;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      of.low[axis] = box.low[axis] / kLeapEdge;
+      of.high[axis] = std::min(bricks.size()[axis], (box.high[axis] - 1) / kLeapEdge + 1);
     }
+    if (leap_map_stale || voxelCount(of) > kMany) {
+      leap_map_stale = true;
+      return;
+    }
+    for (int k = of.low[2]; k < of.high[2]; ++k) {
+      for (int j = of.low[1]; j < of.high[1]; ++j) {
+        for (int i = of.low[0]; i < of.high[0]; ++i) {
+          const std::size_t brick = bricks.indexOf(i, j, k);
+          leap_map.setRows(brick, sender.bricks().rowsOf(brick, label_rows));
+        }
+      }
+    }
+    leap_map.update(bricks, of);
+    leaps_stale = true;
   }
 
   // Tells VTK the colours and what is visible.
@@ -275,7 +308,7 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   p.labels = std::move(labels);
   p.mirror = &mirror;
   p.factors = factors;
-  p.labels_stale = true;
+  p.kind_stale = true;
   p.boxes.clear();
   p.complaint.clear();
   p.sent = p.drawn = false;
@@ -333,7 +366,8 @@ void CarveVolume::remove(vtkRenderer& renderer) {
 void CarveVolume::setTissues(const TissueSet& seen, const TissueLooks& looks) {
   Parts& p = *parts_;
   const LabelRows rows(tissueTable(seen));
-  p.labels_stale |= rows.row != p.label_rows.row;
+  const bool by_label = p.rowCount() > 1;
+  p.rows_stale |= rows.row != p.label_rows.row;
   p.label_rows = rows;
   p.looks.clear();
   p.shading.seen = seen;
@@ -341,7 +375,38 @@ void CarveVolume::setTissues(const TissueSet& seen, const TissueLooks& looks) {
   for (int row = 0; row < p.label_rows.count; ++row) {
     p.looks.push_back(transferFunction(p.shading.seen, p.label_rows.label[std::size_t(row)]));
   }
+  p.kind_stale |= by_label != (p.rowCount() > 1);
   p.updateLooks();
+}
+
+void CarveVolume::setLabels(std::shared_ptr<const LabelMap> labels) {
+  Parts& p = *parts_;
+  const bool by_label = p.rowCount() > 1;
+  p.labels = std::move(labels);
+  if (by_label != (p.rowCount() > 1)) {
+    p.kind_stale = true;
+    p.updateLooks();
+  } else if (by_label) {
+    p.sender.start(p.labels);
+  }
+}
+
+void CarveVolume::labelsChanged(const VoxelBox& box) {
+  if (parts_->labels && parts_->rowCount() > 1) parts_->sender.add(box);
+}
+
+bool CarveVolume::labelsSent() const {
+  const Parts& p = *parts_;
+  return !p.copy || p.rowCount() < 2 || (p.sender.done() && !p.kind_stale);
+}
+
+std::vector<VoxelBox> CarveVolume::sendLabels(vtkRenderer& renderer, double budget_ms) {
+  Parts& p = *parts_;
+  if (labelsSent()) return {};
+  p.sendLeaps(renderer);  // the texture, where there is none yet
+  const std::vector<VoxelBox> sent = p.sender.send(*p.leaps, budget_ms);
+  for (const VoxelBox& box : sent) p.useLabels(box);
+  return sent;
 }
 
 void CarveVolume::changed(const VoxelBox& box) {

@@ -33,6 +33,14 @@ class CarveVolume {
   void show(Volume& copy, std::shared_ptr<const LabelMap> labels, const VolumeMirror& mirror,
             const Index3& factors, vtkRenderer& renderer);
   void remove(vtkRenderer& renderer);
+  // Other labels of the same voxels, and a box of labels that changed in place: on their way until
+  // labelsSent().
+  void setLabels(std::shared_ptr<const LabelMap> labels);
+  void labelsChanged(const VoxelBox& box);
+  bool labelsSent() const;
+  // Sends labels for about so long. The boxes that are there as a whole from now on. Context
+  // current.
+  std::vector<VoxelBox> sendLabels(vtkRenderer& renderer, double budget_ms);
   // As seen: asSeen().
   void setTissues(const TissueSet& seen, const TissueLooks& looks);
   void setClip(const std::vector<ClipPlane>& planes);

@@ -17,7 +17,7 @@ Index3 reductionFor(const Index3& size, int most, bool labels) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto edge = [&] {
       const int voxels = shareOf(size[axis], factors[axis]);
-      return labels && axis == 2 ? voxels + shareOf(voxels, 8) : voxels;
+      return labels && axis == 2 ? voxels + shareOf(voxels, 8) + 1 : voxels;
     };
     while (edge() > std::max(most, 16)) factors[axis] *= 2;
   }
@@ -40,14 +40,19 @@ DisplayVolume::DisplayVolume(const Volume& full, const Index3& factors) : factor
   fill(full, {{0, 0, 0}, to.size});
 }
 
-VoxelBox DisplayVolume::update(const Volume& full, const VoxelBox& box) {
+VoxelBox DisplayVolume::mine(const VoxelBox& box) const {
   VoxelBox mine;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     mine.low[axis] = box.low[axis] / factors_[axis];
     mine.high[axis] = shareOf(box.high[axis], factors_[axis]);
   }
-  fill(full, mine);
   return mine;
+}
+
+VoxelBox DisplayVolume::update(const Volume& full, const VoxelBox& box) {
+  const VoxelBox changed = mine(box);
+  fill(full, changed);
+  return changed;
 }
 
 void DisplayVolume::fill(const Volume& full, const VoxelBox& box) {
@@ -71,22 +76,33 @@ void DisplayVolume::fill(const Volume& full, const VoxelBox& box) {
   }
 }
 
-std::shared_ptr<const LabelMap> DisplayVolume::labels(const LabelMap& full) const {
-  LabelMap map{volume_.geometry, {}};
-  map.labels.reserve(volume_.geometry.voxelCount());
+std::shared_ptr<LabelMap> DisplayVolume::labels(const LabelMap& full) const {
+  auto map = std::make_shared<LabelMap>(
+      LabelMap{volume_.geometry, std::vector<std::uint8_t>(volume_.geometry.voxelCount())});
+  fillLabels(full, {{0, 0, 0}, volume_.geometry.size}, *map);
+  return map;
+}
+
+VoxelBox DisplayVolume::updateLabels(const LabelMap& full, const VoxelBox& box,
+                                     LabelMap& labels) const {
+  const VoxelBox changed = mine(box);
+  fillLabels(full, changed, labels);
+  return changed;
+}
+
+void DisplayVolume::fillLabels(const LabelMap& full, const VoxelBox& box, LabelMap& labels) const {
   const Index3& from = full.geometry.size;
-  for (int k = 0; k < map.geometry.size[2]; ++k) {
-    for (int j = 0; j < map.geometry.size[1]; ++j) {
-      for (int i = 0; i < map.geometry.size[0]; ++i) {
-        const auto middle = [&](int at, std::size_t axis) {
-          return std::min(at * factors_[axis] + factors_[axis] / 2, from[axis] - 1);
-        };
-        map.labels.push_back(
-            full.labels[full.geometry.indexOf(middle(i, 0), middle(j, 1), middle(k, 2))]);
+  const auto middle = [&](int at, std::size_t axis) {
+    return std::min(at * factors_[axis] + factors_[axis] / 2, from[axis] - 1);
+  };
+  for (int k = box.low[2]; k < box.high[2]; ++k) {
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+      for (int i = box.low[0]; i < box.high[0]; ++i) {
+        labels.labels[labels.geometry.indexOf(i, j, k)] =
+            full.labels[full.geometry.indexOf(middle(i, 0), middle(j, 1), middle(k, 2))];
       }
     }
   }
-  return std::make_shared<const LabelMap>(std::move(map));
 }
 
 }  // namespace trephine

@@ -10,7 +10,7 @@
 namespace trephine {
 
 // How many voxels become one along i, j and k, powers of two, so that no edge of a texture exceeds
-// `most`. With labels their texture is to fit too, which needs an eighth more slices.
+// `most`. With labels their texture is to fit too, which needs an eighth more slices and one.
 Index3 reductionFor(const Index3& size, int most, bool labels);
 
 // Means of blocks of `full`, at the blocks' middles; those at the far faces may hold fewer voxels.
@@ -22,9 +22,13 @@ class DisplayVolume {
   // These voxels of `full` changed: which of the display's did.
   VoxelBox update(const Volume& full, const VoxelBox& box);
   // The label that the most voxels of a block have would need a count; its middle's is taken.
-  std::shared_ptr<const LabelMap> labels(const LabelMap& full) const;
+  std::shared_ptr<LabelMap> labels(const LabelMap& full) const;
+  // The same of labels that changed: which of the display's did.
+  VoxelBox updateLabels(const LabelMap& full, const VoxelBox& box, LabelMap& labels) const;
 
  private:
+  VoxelBox mine(const VoxelBox& box) const;  // of the display's voxels
+  void fillLabels(const LabelMap& full, const VoxelBox& box, LabelMap& labels) const;
   void fill(const Volume& full, const VoxelBox& box);  // of the display's voxels
 
   Index3 factors_;

@@ -1,6 +1,7 @@
 #include "render/empty_space.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <utility>
 
@@ -109,19 +110,54 @@ BrickRanges::Range BrickRanges::whole() const {
   return whole;
 }
 
-std::vector<std::uint32_t> rowsOfBricks(const LabelMap& labels, const LabelRows& rows) {
+BrickLabels::BrickLabels(const Index3& voxels) : voxels_(voxels) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size_[axis] = (voxels[axis] + kLeapEdge - 1) / kLeapEdge;
+  }
+  labels_.resize(std::size_t(size_[0]) * std::size_t(size_[1]) * std::size_t(size_[2]),
+                 Labels{1, 0, 0, 0});
+}
+
+void BrickLabels::update(const LabelMap& labels, const VoxelBox& box) {
+  BrickBox reach;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reach.low[axis] = box.low[axis] / kLeapEdge;
+    reach.high[axis] = std::min(size_[axis], (box.high[axis] + kLeapEdge - 1) / kLeapEdge);
+  }
+  forEachBrick(reach, [&](int i, int j, int k) {
+    Labels& of =
+        labels_[(std::size_t(k) * std::size_t(size_[1]) + std::size_t(j)) * std::size_t(size_[0]) +
+                std::size_t(i)];
+    of = {};
+    const int i0 = i * kLeapEdge, i1 = std::min(voxels_[0], i0 + kLeapEdge);
+    int last = -1;
+    for (int z = k * kLeapEdge, z1 = std::min(voxels_[2], z + kLeapEdge); z < z1; ++z) {
+      for (int y = j * kLeapEdge, y1 = std::min(voxels_[1], y + kLeapEdge); y < y1; ++y) {
+        const std::uint8_t* label = labels.labels.data() + labels.geometry.indexOf(i0, y, z);
+        for (int x = i0; x < i1; ++x, ++label) {
+          if (*label == last) continue;
+          last = *label;
+          of[std::size_t(last) / 64] |= std::uint64_t(1) << (last % 64);
+        }
+      }
+    }
+  });
+}
+
+std::uint32_t BrickLabels::rowsOf(std::size_t brick, const LabelRows& rows) const {
   static_assert(LabelRows::kMost <= 32);
-  const Index3& n = labels.geometry.size;
-  const auto count = [](int size) { return std::size_t((size + kLeapEdge - 1) / kLeapEdge); };
-  std::vector<std::uint32_t> bits(count(n[0]) * count(n[1]) * count(n[2]));
-  const std::uint8_t* label = labels.labels.data();
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      std::uint32_t* row = bits.data() + (std::size_t(k / kLeapEdge) * count(n[1]) +
-                                          std::size_t(j / kLeapEdge)) * count(n[0]);
-      for (int i = 0; i < n[0]; ++i, ++label) row[i / kLeapEdge] |= 1u << rows.row[*label];
+  std::uint32_t bits = 0;
+  for (std::size_t word = 0; word < 4; ++word) {
+    for (std::uint64_t left = labels_[brick][word]; left != 0; left &= left - 1) {
+      bits |= 1u << rows.row[word * 64 + std::size_t(std::countr_zero(left))];
     }
   }
+  return bits;
+}
+
+std::vector<std::uint32_t> BrickLabels::rows(const LabelRows& rows) const {
+  std::vector<std::uint32_t> bits(labels_.size());
+  for (std::size_t brick = 0; brick < bits.size(); ++brick) bits[brick] = rowsOf(brick, rows);
   return bits;
 }
 

@@ -1,6 +1,7 @@
 // Which parts of a volume a ray may leap over, at a resolution of 8^3 voxels. Pure.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -45,9 +46,26 @@ class BrickRanges {
   std::vector<Range> ranges_;
 };
 
-// Which rows of labels the voxels of each 8^3 brick have, a bit a row. A ray takes the label of the
-// voxel it is in, so that what lies beyond a brick does not count.
-std::vector<std::uint32_t> rowsOfBricks(const LabelMap& labels, const LabelRows& rows);
+// Which labels the voxels of each 8^3 brick have; none (0) until they were looked at. A ray takes
+// the label of the voxel it is in, so that what lies beyond a brick does not count.
+class BrickLabels {
+ public:
+  BrickLabels() = default;
+  explicit BrickLabels(const Index3& voxels);
+
+  // After labels in `box` were set or changed.
+  void update(const LabelMap& labels, const VoxelBox& box);
+
+  const Index3& voxels() const { return voxels_; }
+  // The rows of these labels, a bit a row, of each brick and of one.
+  std::vector<std::uint32_t> rows(const LabelRows& rows) const;
+  std::uint32_t rowsOf(std::size_t brick, const LabelRows& rows) const;
+
+ private:
+  using Labels = std::array<std::uint64_t, 4>;  // a bit a label
+  Index3 voxels_{0, 0, 0}, size_{0, 0, 0};
+  std::vector<Labels> labels_;
+};
 
 // One byte a brick, i fastest: 0 where a visible HU can be met, else at most the number of bricks
 // (in the largest of the three axes, up to 255) to the nearest brick where one can. From a brick
@@ -57,13 +75,17 @@ class LeapMap {
   LeapMap() = default;
   // `margin_HU` widens the intervals, for a lookup table whose entries smear.
   LeapMap(const BrickRanges& bricks, std::vector<HuInterval> visible, double margin_HU);
-  // The same where each row of labels has its own visible HU; `rows`: rowsOfBricks().
+  // The same where each row of labels has its own visible HU; `rows`: BrickLabels::rows().
   LeapMap(const BrickRanges& bricks, std::vector<std::vector<HuInterval>> visible_by_row,
           std::vector<std::uint32_t> rows, double margin_HU);
 
   // After the ranges in `changed` did. Only the bricks around them are looked at, so that a cut
   // costs the same in any volume; distances stay true, but where matter went they may stay short.
   void update(const BrickRanges& bricks, const BrickBox& changed);
+  // The same after a brick has other rows, with update() of it.
+  void setRows(std::size_t brick, std::uint32_t rows) {
+    if (!rows_.empty()) rows_[brick] = rows;
+  }
 
   const std::vector<std::uint8_t>& distances() const { return distances_; }
 

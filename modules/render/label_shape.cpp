@@ -1,66 +1,92 @@
 #include "render/label_shape.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace trephine {
 
-LabelShapes::LabelShapes(const LabelMap& labels, const LabelRows& rows)
-    : labels_(labels), rows_(rows) {
-  const std::size_t slice =
-      std::size_t(labels.geometry.size[0]) * std::size_t(labels.geometry.size[1]);
-  marks_.resize(slice);
-  shapes_.resize(slice);
-  for (int n = 0; n < 3; ++n) {
-    folded_[n].assign(slice, 0);
-    neighbour_[n].assign(slice, 0);
+LabelShapes::LabelShapes(const LabelMap& labels, const VoxelBox& box)
+    : labels_(labels),
+      box_(box),
+      k_(box.low[2]),
+      width_(std::size_t(box.high[0] - box.low[0])),
+      height_(std::size_t(box.high[1] - box.low[1])) {
+  marks_.resize((width_ + 2) * (height_ + 2));
+  across_.resize(width_ * (height_ + 2));
+  most_.resize(width_ * (height_ + 2));
+  shapes_.resize(width_ * height_);
+  for (Plane& plane : planes_) {
+    plane.folded.resize(width_ * height_);
+    plane.highest.resize(width_ * height_);
   }
-  addSlice(0);
-  addSlice(1);
+  for (int k = k_ - 1; k <= k_ + 1; ++k) addSlice(k);
 }
 
 // Becomes the last of the three; outside of the map there is no label.
 void LabelShapes::addSlice(int k) {
-  std::swap(folded_[0], folded_[1]);
-  std::swap(folded_[1], folded_[2]);
-  std::swap(neighbour_[0], neighbour_[1]);
-  std::swap(neighbour_[1], neighbour_[2]);
-  std::vector<std::uint8_t>&sum = folded_[2], &largest = neighbour_[2];
-  std::ranges::fill(sum, std::uint8_t(0));
-  std::ranges::fill(largest, std::uint8_t(0));
+  std::swap(planes_[0], planes_[1]);
+  std::swap(planes_[1], planes_[2]);
+  Plane& plane = planes_[2];
+  plane.any = false;
   const Index3& n = labels_.geometry.size;
-  if (k >= n[2]) return;
-  const auto width = std::size_t(n[0]);
-  const std::uint8_t* label = labels_.labels.data() + std::size_t(k) * marks_.size();
-  std::transform(label, label + marks_.size(), marks_.begin(),
-                 [&](std::uint8_t l) { return rows_.row[l]; });
-  for (int j = 0; j < n[1]; ++j) {
-    for (int dj = -1; dj <= 1; ++dj) {
-      if (j + dj < 0 || j + dj >= n[1]) continue;
-      const std::uint8_t* from = marks_.data() + std::size_t(j + dj) * width;
-      std::uint8_t* to = sum.data() + std::size_t(j) * width;
-      std::uint8_t* most = largest.data() + std::size_t(j) * width;
-      const int weight = 2 - std::abs(dj);
-      for (std::size_t i = 0; i < width; ++i) {
-        const std::uint8_t left = i > 0 ? from[i - 1] : 0, right = i + 1 < width ? from[i + 1] : 0;
-        to[i] = std::uint8_t(to[i] + weight * ((left != 0) + 2 * (from[i] != 0) + (right != 0)));
-        most[i] = std::max({most[i], left, from[i], right});
-      }
+  if (k < 0 || k >= n[2]) return;
+  const std::size_t wide = width_ + 2;
+  const int low = std::max(box_.low[0] - 1, 0), high = std::min(box_.high[0] + 1, n[0]);
+  std::uint8_t any = 0;
+  for (std::size_t row = 0; row < height_ + 2; ++row) {
+    const int j = box_.low[1] - 1 + int(row);
+    std::uint8_t* marks = marks_.data() + row * wide;
+    std::memset(marks, 0, wide);
+    if (j < 0 || j >= n[1]) continue;
+    const std::uint8_t* from = labels_.labels.data() + labels_.geometry.indexOf(low, j, k);
+    std::uint8_t* to = marks + (low - (box_.low[0] - 1));
+    const auto count = std::size_t(high - low);
+    std::memcpy(to, from, count);
+    for (std::size_t i = 0; i < count; ++i) any |= to[i];
+  }
+  if (any == 0) return;
+  plane.any = true;
+  for (std::size_t row = 0; row < height_ + 2; ++row) {
+    const std::uint8_t* m = marks_.data() + row * wide;
+    std::uint8_t *sum = across_.data() + row * width_, *most = most_.data() + row * width_;
+    for (std::size_t i = 0; i < width_; ++i) {
+      sum[i] = std::uint8_t((m[i] != 0) + 2 * (m[i + 1] != 0) + (m[i + 2] != 0));
+      most[i] = std::max(std::max(m[i], m[i + 1]), m[i + 2]);
     }
+  }
+  for (std::size_t v = 0; v < width_ * height_; ++v) {  // rows follow each other
+    const std::uint8_t *sum = across_.data() + v, *most = most_.data() + v;
+    plane.folded[v] = std::uint8_t(sum[0] + 2 * sum[width_] + sum[2 * width_]);
+    plane.highest[v] = std::max(std::max(most[0], most[width_]), most[2 * width_]);
   }
 }
 
 const std::vector<LabelShape>& LabelShapes::next() {
-  const std::uint8_t* label = labels_.labels.data() + std::size_t(k_) * shapes_.size();
-  for (std::size_t v = 0; v < shapes_.size(); ++v) {
-    const int of_64 = folded_[0][v] + 2 * folded_[1][v] + folded_[2][v];
-    const int inside = of_64 * 255 / 64;
-    const std::uint8_t own = rows_.row[label[v]];
-    shapes_[v].row = own ? own : std::max({neighbour_[0][v], neighbour_[1][v], neighbour_[2][v]});
-    shapes_[v].inside = std::uint8_t(own ? std::max(inside, 128) : std::min(inside, 127));
+  if (!planes_[0].any && !planes_[1].any && !planes_[2].any) {
+    std::ranges::fill(shapes_, LabelShape{0, 0});
+  } else {
+    for (Plane& plane : planes_) {
+      if (plane.any) continue;
+      std::ranges::fill(plane.folded, std::uint8_t(0));
+      std::ranges::fill(plane.highest, std::uint8_t(0));
+    }
+    const auto& [below, here, above] = planes_;
+    for (std::size_t j = 0, v = 0; j < height_; ++j) {
+      const std::uint8_t* own =
+          labels_.labels.data() + labels_.geometry.indexOf(box_.low[0], box_.low[1] + int(j), k_);
+      for (std::size_t i = 0; i < width_; ++i, ++v) {
+        const int of_64 = below.folded[v] + 2 * here.folded[v] + above.folded[v];
+        const int inside = of_64 * 255 / 64;
+        const std::uint8_t nearest =
+            std::max(std::max(below.highest[v], here.highest[v]), above.highest[v]);
+        shapes_[v].label = own[i] ? own[i] : nearest;
+        shapes_[v].inside = std::uint8_t(own[i] ? std::max(inside, 128) : std::min(inside, 127));
+      }
+    }
   }
   ++k_;
-  addSlice(k_ + 1);
+  if (!done()) addSlice(k_ + 1);
   return shapes_;
 }
 

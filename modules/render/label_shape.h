@@ -5,36 +5,44 @@
 #include <cstdint>
 #include <vector>
 
-#include "tissue/tissue_set.h"
 #include "volume/label_map.h"
 
 namespace trephine {
 
-// The row of its label, or without one that of a neighbour which has one; and how much of the 27
+// Its label, or without one that of a neighbour which has one (the highest); and how much of the 27
 // voxels around it has a label, in 255ths, nearer ones weighing more (1 2 1): over a half for a
-// voxel with a label, else less. "A label" is one that has a row of its own.
+// voxel with a label, else less. It knows no tissues, so that it stays when those change.
 struct LabelShape {
-  std::uint8_t row;
+  std::uint8_t label;
   std::uint8_t inside;
 };
 
-// Slice by slice, from below.
+// Of a box of voxels, slice by slice, from below.
 class LabelShapes {
  public:
   // The map outlives this.
-  LabelShapes(const LabelMap& labels, const LabelRows& rows);
-  // Of the next slice, as many as it has voxels; valid until the next call.
+  LabelShapes(const LabelMap& labels, const VoxelBox& box);
+  // The slice of the grid that next() is of.
+  int slice() const { return k_; }
+  bool done() const { return k_ >= box_.high[2]; }
+  // Of the next slice, as wide and high as the box; valid until the next call.
   const std::vector<LabelShape>& next();
 
  private:
+  // Of a slice: sums over 3 x 3, at most 16, and the highest label there. Empty: all are 0.
+  struct Plane {
+    std::vector<std::uint8_t> folded, highest;
+    bool any = false;
+  };
   void addSlice(int k);
 
   const LabelMap& labels_;
-  const LabelRows& rows_;
-  int k_ = 0;
-  std::vector<std::uint8_t> marks_;         // rows of a slice
-  std::vector<std::uint8_t> folded_[3];     // of slices k-1, k, k+1: sums over 3 x 3, at most 16
-  std::vector<std::uint8_t> neighbour_[3];  // the largest row of 3 x 3
+  VoxelBox box_;
+  int k_;
+  std::size_t width_, height_;
+  std::vector<std::uint8_t> marks_;          // labels of a slice of the box and one voxel around it
+  std::vector<std::uint8_t> across_, most_;  // of its rows: sums over 3, and the highest
+  Plane planes_[3];                          // of slices k-1, k, k+1
   std::vector<LabelShape> shapes_;
 };
 

@@ -16,6 +16,7 @@ namespace trephine {
 
 void SceneRenderer::Parts::show() {
   reduced.reset();
+  reduced_labels.reset();
   reduction = {1, 1, 1};
   fitted = refused = false;
   refusal = {};
@@ -27,8 +28,23 @@ void SceneRenderer::Parts::showReduced() {
   volume.remove(*renderer);
   reduced.emplace(voxels(), reduction);
   const LabelMap* labels = mirror->labels().get();
-  volume.show(reduced->volume(), labels ? reduced->labels(*labels) : nullptr, *mirror, reduction,
-              *renderer);
+  reduced_labels = labels ? reduced->labels(*labels) : nullptr;
+  volume.show(reduced->volume(), reduced_labels, *mirror, reduction, *renderer);
+}
+
+void SceneRenderer::Parts::otherLabels() {
+  const std::shared_ptr<const LabelMap> labels = mirror->labels();
+  reduced_labels = reduced && labels ? reduced->labels(*labels) : nullptr;
+  volume.setLabels(reduced ? reduced_labels : labels);
+  labels_held = true;
+  may_need_more = labels != nullptr;
+  if (volume.labelsSent()) spoilLooks();  // there are none any more
+}
+
+void SceneRenderer::Parts::labelsChanged(const VoxelBox& box) {
+  if (!mirror->labels()) return;
+  volume.labelsChanged(reduced ? reduced->updateLabels(*mirror->labels(), box, *reduced_labels)
+                               : box);
 }
 
 void SceneRenderer::Parts::changed(const VoxelBox& box) {
@@ -36,21 +52,34 @@ void SceneRenderer::Parts::changed(const VoxelBox& box) {
   cut(box);
 }
 
-void SceneRenderer::Parts::fit() {
-  fitted = true;
+bool SceneRenderer::Parts::reduceAsNeeded() {
   GLint most = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
   if (most_edge > 0) most = std::min(most, most_edge);
+  const Index3 before = reduction;
   const Index3 needed = reductionFor(voxels().geometry.size, most, mirror->labels() != nullptr);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     reduction[axis] = std::max(reduction[axis], needed[axis]);
   }
+  return reduction != before;
+}
+
+void SceneRenderer::Parts::fit() {
+  may_need_more = false;
+  // Labels that came later need slices of their own.
+  if (!reduceAsNeeded() && fitted) return;
+  if (fitted) spoil();
+  fitted = true;
   constexpr int kMost = 16;  // beyond it there is too little left to see
   for (;;) {
     if (reduction != Index3{1, 1, 1}) showReduced();
     handToVtk();
     volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
-    if (volume.sendAll(*renderer) && most_edge >= 0) return;
+    if (volume.sendAll(*renderer) && most_edge >= 0) {
+      constexpr double kNoEnd_ms = 1e9;
+      volume.sendLabels(*renderer, kNoEnd_ms);
+      return;
+    }
     if (*std::max_element(reduction.begin(), reduction.end()) >= kMost) break;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (voxels().geometry.size[axis] > 2 * reduction[axis]) reduction[axis] *= 2;

@@ -38,7 +38,10 @@ struct SceneRenderer::Parts {
   CarveVolume volume;
   TissueLooks looks;
   std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
+  std::shared_ptr<LabelMap> reduced_labels;
   Index3 reduction{1, 1, 1};
+  bool labels_held = false;  // the last picture stays until other labels are there as a whole
+  bool may_need_more = false;  // of what is fitted: it has labels now
   bool fitted = false;   // what is shown has been sent, or refused
   bool refused = false;  // and nothing is drawn of it
   Status refusal;
@@ -62,6 +65,10 @@ struct SceneRenderer::Parts {
   Parts();
 
   void spoil() {
+    spoilLooks();
+    labels_held = false;  // who moves the camera wants to see it
+  }
+  void spoilLooks() {
     pictures.spoil();
     scene_stale = true;
   }
@@ -74,8 +81,11 @@ struct SceneRenderer::Parts {
   void show();
   void showReduced();
   void changed(const VoxelBox& box);
+  void otherLabels();
+  void labelsChanged(const VoxelBox& box);
   // Halves it until the card takes it.
   void fit();
+  bool reduceAsNeeded();  // true where it has to be reduced more than it is
 
   // ---- Pictures of the volume, and all that is put together: scene_pictures.cpp.
   // `upwards`: what the picture spans upwards, in the window's height.
@@ -90,6 +100,8 @@ struct SceneRenderer::Parts {
   // Around the points, in the window's pixels.
   PixelRect around(const Vec3* points, std::size_t count, int margin) const;
   void cut(const VoxelBox& box);
+  PixelRect partOf(const VoxelBox& box) const;
+  void sendLabels(double budget_ms);
   void compose(unsigned int framebuffer);
   // The ray of that picture at a pixel of the window, which may lie beyond it.
   static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);

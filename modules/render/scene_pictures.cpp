@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/log.h"
@@ -88,14 +89,19 @@ VolumePictures::Cast SceneRenderer::Parts::caster() {
 }
 
 void SceneRenderer::Parts::drawAt(double level) {
-  if (!fitted && !mirror->empty()) fit();
+  if ((!fitted || may_need_more) && !mirror->empty()) fit();
+  if (drawsVolume() && !volume.labelsSent()) sendLabels(std::numeric_limits<double>::infinity());
   if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
   scene_stale = true;
 }
 
 bool SceneRenderer::Parts::work(double budget_ms) {
-  if (!fitted && !mirror->empty()) fit();
+  if ((!fitted || may_need_more) && !mirror->empty()) fit();
   if (!drawsVolume()) return std::exchange(scene_stale, false);
+  if (!volume.labelsSent()) {
+    sendLabels(budget_ms);
+    if (labels_held && !volume.labelsSent() && pictures.pixelStep() > 0.0) return false;
+  }
   const bool changed = pictures.work(budget_ms, moving, caster());
   scene_stale |= changed;
   const std::string& shader = composer.failure();
@@ -105,6 +111,26 @@ bool SceneRenderer::Parts::work(double budget_ms) {
     spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
   }
   return changed;
+}
+
+// Where labels have changed the picture is made again: of the part that they lie in, or, where that
+// is much of it, coarse first.
+void SceneRenderer::Parts::sendLabels(double budget_ms) {
+  constexpr double kMuch = 0.15;  // of the window
+  handToVtk();
+  for (const VoxelBox& box : volume.sendLabels(*renderer, budget_ms)) {
+    VoxelBox of = box;  // of the mirror's voxels
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      of.low[axis] *= reduction[axis];
+      of.high[axis] = std::min(of.high[axis] * reduction[axis], voxels().geometry.size[axis]);
+    }
+    const PixelRect part = partOf(of);
+    if (part.pixels() > kMuch * width * height) {
+      spoilLooks();
+    } else {
+      pictures.cut(part);
+    }
+  }
 }
 
 PixelRect SceneRenderer::Parts::around(const Vec3* points, std::size_t count, int margin) const {
@@ -123,6 +149,11 @@ PixelRect SceneRenderer::Parts::around(const Vec3* points, std::size_t count, in
 }
 
 void SceneRenderer::Parts::cut(const VoxelBox& box) {
+  labels_held = false;
+  pictures.cut(partOf(box));
+}
+
+PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
   // Shading and ambient light look this far from a sample.
   constexpr double kReach_voxels = 4.0;
   Vec3 corners[8];
@@ -134,7 +165,7 @@ void SceneRenderer::Parts::cut(const VoxelBox& box) {
     }
     corners[corner] = voxels().geometry.toPatient_mm(corners[corner]);
   }
-  pictures.cut(around(corners, 8, 1));
+  return around(corners, 8, 1);
 }
 
 void SceneRenderer::Parts::compose(unsigned int framebuffer) {

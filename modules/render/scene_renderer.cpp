@@ -129,6 +129,8 @@ bool SceneRenderer::takeChanges() {
   const VolumeMirror::News news = p.news->take();
   if (!news.any()) return false;
   for (const VoxelBox& box : news.boxes) p.changed(box);
+  if (news.other_labels) p.otherLabels();
+  for (const VoxelBox& box : news.label_boxes) p.labelsChanged(box);
   if (!news.all) return true;
   p.spoil();
   p.volume.remove(*p.renderer);
@@ -146,10 +148,11 @@ bool SceneRenderer::hasVolume() const {
 
 void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   Parts& p = *parts_;
-  p.spoil();
+  p.spoilLooks();
   // What is seen through and what is not says how long a picture takes.
   if (std::exchange(p.looks, looks) != looks) p.pictures.startAnew();
   p.volume.setTissues(asSeen(tissues, looks), looks);
+  p.labels_held |= !p.volume.labelsSent();
 }
 
 void SceneRenderer::setClip(const std::vector<ClipPlane>& planes) {
@@ -225,7 +228,8 @@ bool SceneRenderer::refine(double budget_ms) {
 }
 
 bool SceneRenderer::complete() const {
-  return !parts_->drawsVolume() || parts_->pictures.complete();
+  const Parts& p = *parts_;
+  return !p.drawsVolume() || (p.pictures.complete() && p.volume.labelsSent());
 }
 
 Index3 SceneRenderer::reduction() const {

@@ -58,4 +58,14 @@ void sendBox(vtkTextureObject& texture, const Value* grid, const Index3& size, c
           std::size_t(i));
 }
 
+// Sends values that lie tight, those of this box of one slice alone.
+template <class Value>
+void sendSlice(vtkTextureObject& texture, const Value* values, const VoxelBox& box) {
+  const int wide = box.high[0] - box.low[0], high = box.high[1] - box.low[1];
+  const UnpackRows layout({wide, high, 1});
+  texture.Activate();
+  glTexSubImage3D(GL_TEXTURE_3D, 0, box.low[0], box.low[1], box.low[2], wide, high, 1,
+                  formatOf(values), GL_UNSIGNED_BYTE, values);
+}
+
 }  // namespace trephine

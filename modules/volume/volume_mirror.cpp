@@ -51,6 +51,19 @@ std::shared_ptr<const Volume> VolumeMirror::whole() const {
   return whole && whole->geometry == volume_.geometry ? whole : nullptr;
 }
 
+void VolumeMirror::setLabels(std::shared_ptr<const LabelMap> labels) {
+  if (std::exchange(labels_, labels) == labels) return;
+  for (Reader* reader : readers_) {
+    if (reader->news_.all) continue;
+    reader->news_.other_labels = true;
+    reader->news_.label_boxes.clear();
+  }
+}
+
+void VolumeMirror::labelsChanged(const VoxelBox& box) {
+  for (Reader* reader : readers_) reader->addLabels(box);
+}
+
 void VolumeMirror::renew() {
   for (Reader* reader : readers_) reader->news_ = {};
 }
@@ -70,7 +83,14 @@ VolumeMirror::Reader::~Reader() {
 }
 
 VolumeMirror::News VolumeMirror::Reader::take() {
-  return std::exchange(news_, {false, {}});
+  return std::exchange(news_, {.all = false, .boxes = {}});
+}
+
+void VolumeMirror::Reader::addLabels(const VoxelBox& box) {
+  if (news_.all || news_.other_labels) return;
+  news_.label_boxes.push_back(box);
+  if (news_.label_boxes.size() <= kMostBoxes) return;
+  news_.label_boxes = {boundsOf(news_.label_boxes, box)};
 }
 
 void VolumeMirror::Reader::add(const std::vector<VoxelBox>& boxes) {

@@ -27,9 +27,10 @@ class VolumeMirror {
   // All voxels again, from others of the same geometry; others are left alone. Allocates none.
   void refill(const VoxelSlabs& voxels, std::shared_ptr<const LabelMap> labels,
               const std::shared_ptr<const Volume>& whole = nullptr);
-  // Other labels of the same voxels. No reader is told of it; renew() makes everything new to all.
-  void setLabels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
-  void renew();
+  // Other labels of the same voxels.
+  void setLabels(std::shared_ptr<const LabelMap> labels);
+  // Who changes them in place says where.
+  void labelsChanged(const VoxelBox& box);
   // Copies what was changed since the last call. True where anything was. A grid of another
   // geometry is left alone.
   bool pull(Grid& grid);
@@ -49,7 +50,9 @@ class VolumeMirror {
   struct News {
     bool all = true;  // everything, the geometry perhaps too; then there are no boxes
     std::vector<VoxelBox> boxes;
-    bool any() const { return all || !boxes.empty(); }
+    bool other_labels = false;  // a whole map of them; then there are no boxes of labels
+    std::vector<VoxelBox> label_boxes{};
+    bool any() const { return all || other_labels || !boxes.empty() || !label_boxes.empty(); }
   };
 
   // A view's place in the changes. Everything is new to it at first.
@@ -67,11 +70,13 @@ class VolumeMirror {
     // A reader that has not read for so many boxes gets one that holds them all.
     static constexpr std::size_t kMostBoxes = 4096;
     void add(const std::vector<VoxelBox>& boxes);
+    void addLabels(const VoxelBox& box);
     std::shared_ptr<VolumeMirror> mirror_;
     News news_;
   };
 
  private:
+  void renew();
   void renewAll(const std::shared_ptr<const Volume>& whole);
 
   Volume volume_;

@@ -64,7 +64,7 @@ INNER = {
         "common": set(),
         "views": {"common"},
         "tissue": {"common"},
-        "structures": {"common", "views"},
+        "structures": {"common", "views", "tissue"},
         "training": {"common"},
         "cases": {"common", "views"},
         "frame": {"common", "views", "tissue", "structures", "training", "cases"},

@@ -161,8 +161,9 @@ void MainWindow::showScene() {
   structures_->setWanted(scene->structures);
   showRenderable(scene->controller);
   tissues_->setLooks(workstation_.looks());
-  view_->setTissues(scene->tissues, workstation_.looks());
+  editor_.setTissues(scene->tissues);
   views_->setTissues(scene->tissues, workstation_.looks());
+  showSeen();
   views_->setAnatomy(scene->anatomy);
   arms_->setScene(*scene);
 }
@@ -261,6 +262,7 @@ void MainWindow::showPhase() {
   for (QAction* action : {picture_, volume_, look_}) action->setEnabled(phase != Phase::empty);
   view_->setTraining(running);
   views_->setTraining(running);
+  showLabelsInUse();
   switch (phase) {
     case Phase::starting:
       hint_->setText(tr("Starting\u2026"));

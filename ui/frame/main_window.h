@@ -108,6 +108,11 @@ class MainWindow : public QMainWindow {
   void unlessStructuresAreLost(std::function<void()> go_on);
   // Goes on with the exercise; where the case is not what it is for it asks first.
   void unlessItDoesNotFit(std::function<void()> go_on);
+  // The structures in 3-D (main_window_tissues.cpp): which labels are shown, and how.
+  void showLabelsInUse();
+  void showSeen();
+  void tissuesEdited(const TissueSet& set);
+  void structureLookWanted(int label, TissueLook look);
   void showScene();
   void showInUse();
   void showOpening(const Scene& scene, const std::filesystem::path& file);
@@ -145,7 +150,9 @@ class MainWindow : public QMainWindow {
   StructureEditor editor_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   QTimer settled_;
-  bool entry_asked_ = false;  // and the case is being placed with it
+  bool entry_asked_ = false;         // and the case is being placed with it
+  StructureLooks structure_looks_;   // of the view alone
+  std::optional<SeenTissues> seen_;  // what the 3-D view was told last
   bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;
   QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_,

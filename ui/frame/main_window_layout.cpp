@@ -230,15 +230,12 @@ void MainWindow::connectParts() {
           [this] { case_->setSeriesAtHand(true); });
   connect(case_, &CasePanel::labelsWanted, this, &MainWindow::askForLabels);
   connect(case_, &CasePanel::cancelWanted, &workstation_, &Workstation::cancelOpening);
-  connect(tissues_, &TissuePanel::tissuesChanged, this, [this](const TissueSet& set) {
-    workstation_.setTissues(set);
-    view_->setTissues(set, workstation_.looks());
-    views_->setTissues(set, workstation_.looks());
-  });
+  connect(tissues_, &TissuePanel::tissuesChanged, this,
+          [this](const TissueSet& set) { tissuesEdited(set); });
   connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
     workstation_.setLooks(looks);
-    view_->setTissues(tissues_->tissues(), looks);
     views_->setTissues(tissues_->tissues(), looks);
+    showSeen();
   });
   connect(arms_, &ArmsPanel::controllerWanted, this, [this](ControllerKind kind) {
     workstation_.setController(kind);

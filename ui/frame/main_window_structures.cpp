@@ -45,14 +45,20 @@ void MainWindow::connectStructures() {
   connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
   connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
+  connect(views_, &FourUp::nothingThere, this,
+          [this] { structures_->say(tr("Nothing is seen there.")); });
+  connect(structures_, &StructurePanel::lookWanted, this, &MainWindow::structureLookWanted);
+  connect(structures_, &StructurePanel::opacityWanted, this, [this](int label, double per_mm) {
+    structure_looks_[label].opacity = per_mm;
+    showSeen();
+  });
   connect(&editor_, &StructureEditor::changed, this, [this](const VoxelBox& box) {
-    views_->labelsChanged(box);
+    if (views_->mirror().labels() == editor_.map()) views_->labelsChanged(box);
     settled_.start();
   });
   connect(&editor_, &StructureEditor::listChanged, this, [this] {
-    if (structuresShown() && editor_.map()) {
-      views_->showLabels(editor_.map(), FourUp::Views::slices);
-    }
+    if (views_->mirror().labels() == editor_.map()) views_->showLabels(editor_.map());  // colours
+    showLabelsInUse();
     settled_.start();
   });
   connect(&editor_, &StructureEditor::stateChanged, this, [this] {
@@ -87,6 +93,7 @@ bool MainWindow::takeStructures() {
 void MainWindow::showStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) {
+    structure_looks_.clear();
     editor_.setCase(of.volume, of.structures);
     own_structures_ = of.structures;
     QStringList words;
@@ -96,7 +103,6 @@ void MainWindow::showStructures() {
     showStructureReport();
   }
   if (carved_) showWholeCase();
-  views_->showLabels(of.labels, FourUp::Views::all);
   tissues_->setLabelsOpen(of.labels != nullptr);
   showCaseCard(of);
   showStructureTab();
@@ -116,6 +122,7 @@ void MainWindow::openStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) showStructureReport();
   own_structures_ = of.structures;
+  structure_looks_.clear();
   editor_.setCase(of.volume, of.structures);
   structures_->setWanted(workstation_.scene()->structures);
   warned_ = false;
@@ -134,8 +141,8 @@ void MainWindow::openStructures() {
 
 // The slices show what the panel lists while it is in front, else what the exercise runs on.
 void MainWindow::showStructureTab() {
+  showLabelsInUse();
   if (structuresShown()) {
-    if (editor_.map()) views_->showLabels(editor_.map(), FourUp::Views::slices);
     if (views_->colours().overlay() != Overlay::labels) {
       views_->setOverlay(Overlay::labels, kStructureOpacity);
     }
@@ -202,6 +209,8 @@ void MainWindow::structureKey(int key) {
     case Qt::Key_S:
       left_->setCurrentIndex(kStructureTab);
       return structures_->makeSkin();
+    case Qt::Key_V:
+      return structures_->nextLook();
     case Qt::Key_Escape:
       return editor_.preview() ? editor_.leavePreview() : views_->setTool(SliceTool::window);
     case Qt::Key_BracketLeft:

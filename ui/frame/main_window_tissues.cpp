@@ -1,9 +1,11 @@
-// The tissue panel in the window: what it says of the arms, and edits that would be lost.
+// The tissue panel in the window: what it says of the arms, and edits that would be lost; tissues
+// and structures in the 3-D view.
 #include <QFileDialog>
 #include <QKeyEvent>
 #include <QMessageBox>
 #include <algorithm>
 
+#include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 
@@ -23,6 +25,64 @@ void MainWindow::showRenderable(ControllerKind in_force) {
   tissues_->setRenderable(
       most, [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
   controller_shown_ = in_force;
+}
+
+// The views show what the panel of structures lists while it is in front, else what the exercise
+// runs on, with the shells that its tissues asked for.
+void MainWindow::showLabelsInUse() {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || !(views_->mirror().volume().geometry == of->volume->geometry)) return;
+  const bool exercise = workstation_.phase() != Workstation::Phase::ready;
+  const std::shared_ptr<const LabelMap> wanted =
+      structuresShown() && !exercise ? editor_.map() : of->labels;
+  if (wanted != views_->mirror().labels()) views_->showLabels(wanted);
+  showSeen();
+}
+
+void MainWindow::showSeen() {
+  if (!workstation_.scene()) return;
+  const std::shared_ptr<const LabelMap>& map = views_->mirror().labels();
+  std::vector<Structure> rows;
+  for (const Structure& s : map ? map->structures : std::vector<Structure>{}) {
+    // One that has no voxel needs no room, unless it is about to be painted.
+    const bool any = map != editor_.map() || editor_.millilitres(s.label) > 0.0;
+    if (any || s.label == editor_.current()) rows.push_back(s);
+  }
+  const TissueSet& set = tissues_->tissues();
+  TissueLooks looks = workstation_.looks();
+  handToTissues(structure_looks_, looks, set, rows);
+  if (looks != workstation_.looks()) {
+    workstation_.setLooks(looks);
+    tissues_->setLooks(looks);
+    views_->setTissues(set, looks);
+  }
+  SeenTissues seen = withStructures(set, looks, rows, structure_looks_);
+  structures_->showLooks(seen.structures);
+  if (seen_ && sameSet(seen_->tissues, seen.tissues) && seen_->looks == seen.looks) return;
+  seen_ = std::move(seen);
+  view_->setTissues(seen_->tissues, seen_->looks);
+}
+
+// An opacity that was set for a tissue goes before one that was set for its structure.
+void MainWindow::tissuesEdited(const TissueSet& set) {
+  const std::shared_ptr<const LabelMap> map = editor_.map();
+  for (auto& [label, look] : structure_looks_) {
+    const Structure* of = map ? map->find(label) : nullptr;
+    if (!of) continue;
+    for (const std::string& id : tissuesOf(set, *of)) {
+      const Tissue* before = workstation_.scene()->tissues.find(id);
+      if (before && before->opacity != set.find(id)->opacity) look.opacity.reset();
+    }
+  }
+  workstation_.setTissues(set);
+  editor_.setTissues(set);
+  views_->setTissues(set, workstation_.looks());
+  showSeen();
+}
+
+void MainWindow::structureLookWanted(int label, TissueLook look) {
+  structure_looks_[label].look = look;
+  showSeen();  // which hands it to a tissue of the scene, where one is of it
 }
 
 // Return and Esc, where nobody else wants them, give the keys back to the hands.

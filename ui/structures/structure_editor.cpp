@@ -179,7 +179,7 @@ std::string StructureEditor::freeName(const QString& wanted) const {
 }
 
 // The label of a structure of this name, which is made where there is none; 0: there are too many.
-int StructureEditor::addStructure(const std::string& name) {
+int StructureEditor::addStructure(const std::string& name, const std::string& like) {
   if (const Structure* there = map_->find(name)) return there->label;
   const int label = int(map_->structures.size()) < kMostStructures ? unusedLabel(*map_) : 0;
   if (label == 0) {
@@ -190,7 +190,9 @@ int StructureEditor::addStructure(const std::string& name) {
                  "", "Delete one first"});
     return 0;
   }
-  map_->structures.push_back({label, name, labelColour(label)});
+  Vec3 colour = colourOfNew(tissues_, name, label);
+  if (colour == labelColour(label) && !like.empty()) colour = colourOfNew(tissues_, like, label);
+  map_->structures.push_back({label, name, colour});
   return label;
 }
 
@@ -385,8 +387,9 @@ void StructureEditor::leaveBox() {
   growAnew();
 }
 
-void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::string& name) {
-  const int label = addStructure(name);
+void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::string& name,
+                              const std::string& like) {
+  const int label = addStructure(name, like);
   if (label == 0) return;
   put(name, maskEdit(*map_, mask, label));
   setCurrent(label);
@@ -398,7 +401,7 @@ void StructureEditor::makeSkull() {
   work_.run([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
             [this, own = map_](Result<Skull> made) {
               if (map_ != own) return;
-              if (made) return putMask(made->mask.labels, "skull");
+              if (made) return putMask(made->mask.labels, "skull", "bone");
               if (made.error().code != "CANCELLED") emit failed(made.error());
             });
 }
@@ -410,7 +413,7 @@ void StructureEditor::makeSkin(double thickness_mm) {
                 const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
             [this, own = map_](Result<Skin> made) {
               if (map_ != own) return;
-              if (made) return putMask(made->mask.labels, "skin");
+              if (made) return putMask(made->mask.labels, "skin", "scalp");
               if (made.error().code != "CANCELLED") emit failed(made.error());
             });
 }

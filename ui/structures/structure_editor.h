@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "scene/structure_view.h"
 #include "structures/edit_history.h"
 #include "structures/grow.h"
 #include "structures/shape_tools.h"
@@ -29,6 +30,8 @@ class StructureEditor : public QObject {
   // done to those before.
   void setCase(std::shared_ptr<const Volume> volume,
                const std::shared_ptr<const LabelMap>& structures);
+  // Those of the exercise, whose colours new structures of their names take.
+  void setTissues(const TissueSet& tissues) { tissues_ = tissues; }
   // While an exercise runs, is started or ended nothing may change: `why` says so. Empty: it may.
   void setLocked(const QString& why);
   bool hasCase() const { return volume_ != nullptr; }
@@ -122,7 +125,8 @@ class StructureEditor : public QObject {
   const Structure* structure(int label) const;
   std::shared_ptr<LabelMap> withoutWall() const;
   void growAnew();
-  int addStructure(const std::string& name);
+  // `like`: the tissue whose colour it takes where none is called as it is.
+  int addStructure(const std::string& name, const std::string& like = {});
   std::string freeName(const QString& wanted) const;
   void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
   void applied(const LabelEdit& edit, bool added);
@@ -131,9 +135,11 @@ class StructureEditor : public QObject {
   template <class Make>
   void inBackground(Make make, const std::string& step);
   // A mask of 0 and 1 as a structure of that name, which is made or replaced.
-  void putMask(const std::vector<std::uint8_t>& mask, const std::string& name);
+  void putMask(const std::vector<std::uint8_t>& mask, const std::string& name,
+               const std::string& like);
 
   std::shared_ptr<const Volume> volume_;
+  TissueSet tissues_;
   std::shared_ptr<const LabelMap> given_;  // the case's, until something is changed
   std::shared_ptr<LabelMap> map_;
   std::array<double, 256> ml_{};

@@ -5,6 +5,7 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QShortcut>
 #include <QSignalBlocker>
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kNameColumn = 0, kMlColumn = 1;
+constexpr int kNameColumn = 0, kMlColumn = 1, kLookColumn = 2;
 constexpr int kProgressSteps = 1000;
 constexpr SliceTool kTools[] = {SliceTool::grow, SliceTool::wall, SliceTool::piece,
                                 SliceTool::brush, SliceTool::eraser};
@@ -77,16 +78,22 @@ QToolButton* StructurePanel::button(const char* name, const QString& text, const
 void StructurePanel::build() {
   list_ = new QTreeWidget(this);
   list_->setObjectName("structureList");
-  list_->setColumnCount(2);
-  list_->setHeaderLabels({tr("Structure"), tr("mL")});
+  list_->setColumnCount(3);
+  list_->setHeaderLabels({tr("Structure"), tr("mL"), tr("3-D")});
   list_->setRootIsDecorated(false);
   list_->setUniformRowHeights(true);
   list_->setEditTriggers(QAbstractItemView::EditKeyPressed);
   list_->header()->setStretchLastSection(false);
   list_->header()->setSectionResizeMode(kNameColumn, QHeaderView::Stretch);
   list_->header()->setSectionResizeMode(kMlColumn, QHeaderView::ResizeToContents);
+  list_->header()->setSectionResizeMode(kLookColumn, QHeaderView::ResizeToContents);
   list_->setMinimumHeight(110);
-  list_->setToolTip(tr("F2 renames, a double click on the colour changes it, Del deletes"));
+  list_->setToolTip(
+      tr("F2 renames, a double click on the colour changes it, Del deletes; V, or a click under "
+         "3-D, shows, ghosts and hides it in the 3-D view"));
+  look_ = new StructureLookRow(this);
+  no_room_ = words("structureNoRoom", this);
+  colours::setText(*no_room_, colours::kCaution);
   empty_ = words("structuresEmpty", this);
   empty_->setProperty("quiet", true);
 
@@ -149,6 +156,8 @@ void StructurePanel::build() {
   layout->setSpacing(8);
   layout->addWidget(list_);
   layout->addWidget(empty_);
+  layout->addWidget(look_);
+  layout->addWidget(no_room_);
   layout->addLayout(steps);
   layout->addWidget(preview_box_);
   layout->addWidget(progress_box_);
@@ -165,9 +174,18 @@ void StructurePanel::build() {
   connect(list_, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem* item) {
     if (!listing_) rename(item);
   });
-  connect(list_, &QTreeWidget::itemDoubleClicked, this, [this](QTreeWidgetItem* item) {
-    chooseColour(item->data(kNameColumn, Qt::UserRole).toInt());
+  connect(list_, &QTreeWidget::itemDoubleClicked, this, [this](QTreeWidgetItem* item, int column) {
+    if (column != kLookColumn) chooseColour(item->data(kNameColumn, Qt::UserRole).toInt());
   });
+  connect(list_, &QTreeWidget::itemClicked, this, [this](QTreeWidgetItem* item, int column) {
+    if (column == kLookColumn) nextLook(item->data(kNameColumn, Qt::UserRole).toInt());
+  });
+  auto* next_look = new QShortcut(Qt::Key_V, list_, nullptr, nullptr, Qt::WidgetShortcut);
+  connect(next_look, &QShortcut::activated, this, [this] { nextLook(); });
+  connect(look_, &StructureLookRow::lookChosen, this,
+          [this](TissueLook look) { emit lookWanted(editor_.current(), look); });
+  connect(look_, &StructureLookRow::opacityChosen, this,
+          [this](double per_mm) { emit opacityWanted(editor_.current(), per_mm); });
   connect(take_, &QPushButton::clicked, &editor_, &StructureEditor::takePreview);
   connect(leave_, &QPushButton::clicked, &editor_, &StructureEditor::leavePreview);
   connect(cancel_, &QPushButton::clicked, &editor_, &StructureEditor::cancel);
@@ -322,7 +340,7 @@ void StructurePanel::showTool(SliceTool tool) {
       break;
     case SliceTool::brush:
     case SliceTool::eraser:
-      say(tr("Drag in a slice; [ and ] change the size."));
+      say(tr("Drag in a slice or over what is seen in 3-D; [ and ] change the size."));
       break;
     case SliceTool::wall:
       say(tr("Paint where growing has to stop, then grow again (G)."));
@@ -417,7 +435,6 @@ void StructurePanel::showBox() {
 
 void StructurePanel::showList() {
   listing_ = true;
-  list_->clear();
   const std::shared_ptr<const LabelMap> map = editor_.map();
   std::vector<std::string> offered;
   for (const std::string& name : wanted_) {
@@ -425,21 +442,23 @@ void StructurePanel::showList() {
     if (!there || editor_.millilitres(there->label) == 0.0) offered.push_back(name);
   }
   bool any = false;
+  const int rows = map ? int(map->structures.size()) : 0;
+  while (list_->topLevelItemCount() > rows) delete list_->takeTopLevelItem(rows);
+  while (list_->topLevelItemCount() < rows) new QTreeWidgetItem(list_);
   if (map) {
-    for (const Structure& s : map->structures) {
+    for (int row = 0; row < rows; ++row) {
+      const Structure& s = map->structures[std::size_t(row)];
       const double ml = editor_.millilitres(s.label);
-      auto* item = new QTreeWidgetItem(list_);
+      QTreeWidgetItem* item = list_->topLevelItem(row);
       item->setText(kNameColumn, toQt(s.name));
       item->setIcon(kNameColumn, swatch(s.colour));
       item->setData(kNameColumn, Qt::UserRole, s.label);
       item->setFlags(item->flags() | Qt::ItemIsEditable);
       item->setText(kMlColumn, ml > 0.0 ? QString::number(ml, 'f', ml < 10.0 ? 2 : 0) : tr("none"));
       item->setTextAlignment(kMlColumn, Qt::AlignRight | Qt::AlignVCenter);
-      if (editor_.preview() && editor_.preview()->label == s.label) {
-        QFont font = item->font(kNameColumn);
-        font.setItalic(true);
-        item->setFont(kNameColumn, font);
-      }
+      QFont font = item->font(kNameColumn);
+      font.setItalic(editor_.preview() && editor_.preview()->label == s.label);
+      item->setFont(kNameColumn, font);
       if (s.label == editor_.current()) list_->setCurrentItem(item);
       any = true;
     }
@@ -462,7 +481,55 @@ void StructurePanel::showList() {
     if (!was_offered) name_->setEditText(typed);
   }
   listing_ = false;
+  showLooks();
   showState();
+}
+
+// --- How the 3-D view shows them ---
+
+std::optional<SeenStructure> StructurePanel::seen(int label) const {
+  for (const SeenStructure& s : seen_) {
+    if (s.label == label) return s;
+  }
+  return {};
+}
+
+void StructurePanel::showLooks(const std::vector<SeenStructure>& seen) {
+  seen_ = seen;
+  showLooks();
+}
+
+void StructurePanel::showLooks() {
+  const std::shared_ptr<const LabelMap> map = editor_.map();
+  listing_ = true;
+  QStringList without;
+  for (int row = 0; row < list_->topLevelItemCount(); ++row) {
+    QTreeWidgetItem* item = list_->topLevelItem(row);
+    const auto of = seen(item->data(kNameColumn, Qt::UserRole).toInt());
+    item->setText(kLookColumn, of ? StructureLookRow::wordOf(*of) : QString());
+    if (of && !of->has_room) without << item->text(kNameColumn);
+  }
+  listing_ = false;
+  const Structure* chosen = map ? map->find(editor_.current()) : nullptr;
+  look_->show(chosen ? toQt(chosen->name) : QString(), seen(editor_.current()));
+  look_->setVisible(chosen);
+  constexpr int kMost = 3;
+  QString names = QStringList(without.mid(0, kMost)).join(tr(", ", "between structures"));
+  if (without.size() > kMost) names += tr(" and %1 more").arg(without.size() - kMost);
+  no_room_->setText(tr("A 3-D picture tells %1 tissues and structures apart: %2 has no room. Hide "
+                       "others to see it.")
+                        .arg(kMaxTissues)
+                        .arg(names));
+  no_room_->setVisible(!without.isEmpty());
+}
+
+void StructurePanel::nextLook() {
+  nextLook(editor_.current());
+}
+
+void StructurePanel::nextLook(int label) {
+  const auto of = seen(label);
+  if (of && of->has_room) emit lookWanted(label, StructureLookRow::after(of->look));
 }
 
 void StructurePanel::showState() {

@@ -15,6 +15,7 @@
 
 #include "ui/common/number_field.h"
 #include "ui/structures/structure_editor.h"
+#include "ui/structures/structure_look_row.h"
 #include "ui/views/slice_view.h"
 
 namespace trephine {
@@ -28,6 +29,9 @@ class StructurePanel : public QWidget {
   // Names that the exercise needs and the case lacks come first among those that are offered.
   void setWanted(const std::vector<std::string>& names);
   void showTool(SliceTool tool);
+  // How the 3-D view shows them.
+  void showLooks(const std::vector<SeenStructure>& seen);
+  void nextLook();  // of the chosen one: shown, ghosted, hidden
   // What a click or a stroke of the chosen tool does.
   Brush brush(SliceTool tool, int across) const;
   GrowOptions growing() const;
@@ -41,6 +45,8 @@ class StructurePanel : public QWidget {
  signals:
   void toolChosen(trephine::SliceTool tool);
   void brushChanged();
+  void lookWanted(int label, trephine::TissueLook look);
+  void opacityWanted(int label, double per_mm);
   void openWanted();
   void saveWanted();
 
@@ -51,6 +57,9 @@ class StructurePanel : public QWidget {
   void showList();
   void showState();
   void showBox();
+  void showLooks();
+  void nextLook(int label);
+  std::optional<SeenStructure> seen(int label) const;
   void rename(QTreeWidgetItem* item);
   void chooseColour(int label);
   void regrow();
@@ -58,6 +67,9 @@ class StructurePanel : public QWidget {
 
   StructureEditor& editor_;
   QTreeWidget* list_;
+  StructureLookRow* look_;
+  QLabel* no_room_;
+  std::vector<SeenStructure> seen_;
   QComboBox* name_;
   std::array<QToolButton*, 5> tools_;  // as kTools
   DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;

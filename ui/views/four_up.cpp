@@ -39,6 +39,14 @@ FourUp::FourUp(QWidget* parent) : QWidget(parent) {
   three_d_->setMirror(mirror_);
   three_d_->installEventFilter(this);
   setFocusProxy(three_d_);
+  connect(three_d_, &ViewWidget::structureClicked, this, &FourUp::structureClicked);
+  connect(three_d_, &ViewWidget::strokeBegan, this, &FourUp::strokeBegan);
+  connect(three_d_, &ViewWidget::strokeMoved, this, &FourUp::strokeMoved);
+  connect(three_d_, &ViewWidget::strokeEnded, this, &FourUp::strokeEnded);
+  connect(three_d_, &ViewWidget::structureKey, this, &FourUp::structureKey);
+  connect(three_d_, &ViewWidget::entryChosen, this, &FourUp::entryChosen);
+  connect(three_d_, &ViewWidget::entryLeft, this, &FourUp::entryLeft);
+  connect(three_d_, &ViewWidget::nothingThere, this, &FourUp::nothingThere);
   for (SliceAxis axis : kSliceAxes) slices_[std::size_t(axis)] = makeSlices(axis);
   bar_ = new SliceBar(this);
   bar_->setObjectName("sliceBar");
@@ -153,18 +161,17 @@ void FourUp::pullChanges(Grid& grid) {
   if (mirror_->pull(grid)) changed();
 }
 
-void FourUp::showLabels(const std::shared_ptr<const LabelMap>& labels, Views views) {
+void FourUp::showLabels(const std::shared_ptr<const LabelMap>& labels) {
   mirror_->setLabels(labels);
-  if (views == Views::all) {
-    mirror_->renew();
-    return changed();
-  }
+  three_d_->takeChanges();
   bar_->setLabelsAtHand(labels != nullptr);
   colours_.setStructures(labels.get());
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 
 void FourUp::labelsChanged(const VoxelBox& box) {
+  mirror_->labelsChanged(box);
+  three_d_->takeChanges();
   for (const Slices& of : slices_) of.view->labelsChanged(box);
 }
 
@@ -209,11 +216,13 @@ void FourUp::setTool(SliceTool tool) {
   const bool another = std::exchange(tool_, tool) != tool;
   bar_->showTool(tool);
   for (const Slices& of : slices_) of.view->setTool(tool);
+  three_d_->setTool(tool);
   if (another) emit toolChanged(tool);
 }
 
 void FourUp::setBrushRadius(double mm) {
   for (const Slices& of : slices_) of.view->setBrushRadius(mm);
+  three_d_->setBrushRadius(mm);
 }
 
 void FourUp::setBox(const std::optional<VoxelBox>& box) {
@@ -339,6 +348,7 @@ void FourUp::paintEvent(QPaintEvent*) {
 bool FourUp::eventFilter(QObject* watched, QEvent* event) {
   if (watched == three_d_ && event->type() == QEvent::FocusIn) emit helpChanged({});
   if (watched == three_d_ && event->type() == QEvent::MouseButtonDblClick && !training_ &&
+      !isForStructures(tool_) && tool_ != SliceTool::entry &&
       static_cast<QMouseEvent*>(event)->button() == Qt::LeftButton) {
     enlarge(0);
     return true;

@@ -53,7 +53,7 @@ class FourUp : public QWidget {
   // While an exercise runs a double click in the 3-D view is a hand's.
   void setTraining(bool training) { training_ = training; }
 
-  // What the mouse does in the slices; `mm`: the ring of the brush.
+  // What the mouse does in the slices and, of those for structures, in 3-D; `mm`: of the brush.
   void setTool(SliceTool tool);
   SliceTool tool() const { return tool_; }
   void setBrushRadius(double mm);
@@ -61,10 +61,8 @@ class FourUp : public QWidget {
   void setBox(const std::optional<VoxelBox>& box);
   void setEntry(const std::optional<SliceView::Entry>& entry);
   void setOverlay(Overlay overlay, double opacity);
-  // Other labels of the same voxels: in the slices alone, while they are being changed (then
-  // labelsChanged() of each box), or in the 3-D view as well, which sends all of them anew.
-  enum class Views { slices, all };
-  void showLabels(const std::shared_ptr<const LabelMap>& labels, Views views);
+  // Other labels of the same voxels; labelsChanged() of each box that is changed in them.
+  void showLabels(const std::shared_ptr<const LabelMap>& labels);
   void labelsChanged(const VoxelBox& box);
 
   // Not remembered: that is the user's choice alone. The layout that is, comes once the 3-D view
@@ -76,7 +74,7 @@ class FourUp : public QWidget {
   // What mouse and keys do where the focus went; empty in the 3-D view.
   void helpChanged(const QString& words);
   void toolChanged(trephine::SliceTool tool);
-  // Of the slices, as SliceView has them.
+  // Of the slices, as SliceView has them, and of the 3-D view.
   void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
   void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
   void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
@@ -85,6 +83,7 @@ class FourUp : public QWidget {
   void strokeMoved(const trephine::Vec3& patient_mm);
   void strokeEnded();
   void structureKey(int key);
+  void nothingThere();  // in 3-D, where a tool was to work
 
  protected:
   void resizeEvent(QResizeEvent* event) override;

@@ -383,6 +383,7 @@ bool SliceView::handleKey(int key) {
       break;
     case Qt::Key_K:
     case Qt::Key_S:
+    case Qt::Key_V:
     case Qt::Key_Return:
     case Qt::Key_Enter:
     case Qt::Key_BracketLeft:

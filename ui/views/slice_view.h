@@ -17,17 +17,9 @@
 #include "ui/views/slice_image.h"
 #include "ui/views/slice_measure.h"
 #include "ui/views/slice_pane.h"
+#include "ui/views/slice_tool.h"
 
 namespace trephine {
-
-enum class SliceTool { window, point, ruler, angle, entry, grow, brush, eraser, piece, wall };
-// Of those by which structures are made.
-constexpr bool isForStructures(SliceTool tool) {
-  return tool >= SliceTool::grow;
-}
-constexpr bool isBrush(SliceTool tool) {
-  return tool == SliceTool::brush || tool == SliceTool::eraser || tool == SliceTool::wall;
-}
 
 // The colour of the lines that stand for slices of that axis in the other views.
 QColor colourOf(SliceAxis axis);
@@ -86,7 +78,7 @@ class SliceView : public SlicePane {
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
   void strokeMoved(const trephine::Vec3& patient_mm);
   void strokeEnded();
-  void structureKey(int key);  // K, S, Return, [ and ]; Esc with a tool for them
+  void structureKey(int key);  // K, S, V, Return, [ and ]; Esc with a tool for them
   void sliceShown(int k);
   void enlargeWanted();
   void focused();

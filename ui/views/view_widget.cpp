@@ -148,7 +148,7 @@ void ViewWidget::connectTools() {
   });
   connect(strip_, &ViewTools::lightWanted, this, [this](bool on) {
     moving_light_ = on;
-    setCursor(on ? Qt::CrossCursor : Qt::ArrowCursor);
+    showCursor();
     update();
   });
   connect(strip_, &ViewTools::resetWanted, this, &ViewWidget::resetTools);
@@ -260,6 +260,7 @@ void ViewWidget::redraw() {
 }
 
 void ViewWidget::setMirror(std::shared_ptr<VolumeMirror> mirror) {
+  mirror_ = mirror;
   renderer_.setMirror(std::move(mirror));
   showNews();
 }
@@ -288,6 +289,8 @@ void ViewWidget::showNews() {
 }
 
 void ViewWidget::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
+  seen_ = tissues;
+  looks_ = looks;
   renderer_.setTissues(tissues, looks);
   redraw();
 }
@@ -315,6 +318,8 @@ void ViewWidget::setTools(const std::vector<ToolView>& tools) {
 
 void ViewWidget::setTraining(bool training) {
   training_ = training;
+  if (training) endStroke();
+  showCursor();
 }
 
 void ViewWidget::setHandPoint(Hand hand, const Vec3& point_mm) {
@@ -360,11 +365,13 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
   const double ratio = devicePixelRatioF();
   dragged_ = clip_.handleAt(pixelAt(last_), renderer_.camera(), int(std::lround(width() * ratio)),
                             int(std::lround(height() * ratio)), kReach_pixels * ratio);
+  if (!dragged_ && hasTool()) useTool(last_);
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
-  const QPointF moved = event->position() - last_;
+  const QPointF before = last_, moved = event->position() - last_;
   last_ = event->position();
+  if (!(event->buttons() & Qt::LeftButton)) endStroke();
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
   const double ratio = devicePixelRatioF();
   const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
@@ -385,12 +392,15 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
     redraw();
   } else if (training_ && left) {
     moveHand(handFor(event->modifiers()), moved.x(), -moved.y());
-  } else {
+  } else if (left && stroke_at_mm_) {
+    moveStroke(before, last_);
+  } else if (!left || !hasTool()) {
     turn(moved.x(), moved.y());
   }
 }
 
-void ViewWidget::mouseReleaseEvent(QMouseEvent*) {
+void ViewWidget::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton) endStroke();
   dragged_.reset();
 }
 
@@ -430,7 +440,7 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
       deeper = -1;
       break;
     default:
-      QOpenGLWidget::keyPressEvent(event);
+      if (!toolKey(event->key())) QOpenGLWidget::keyPressEvent(event);
       return;
   }
   if (!renderer_.hasVolume()) return;

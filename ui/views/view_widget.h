@@ -7,7 +7,8 @@
 // The squares of the crop box and the clip plane are dragged with the left button, and while the
 // light is to be moved, the light.
 // Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
-// left button, the wheel and the keys move the camera too.
+// left button, the wheel and the keys move the camera too. With a tool for structures in hand the
+// left button works at what is seen under the pointer instead; what comes of it is not the view's.
 #pragma once
 
 #include <QElapsedTimer>
@@ -19,8 +20,10 @@
 
 #include "base/result.h"
 #include "render/clip_tools.h"
+#include "render/pick.h"
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
+#include "ui/views/slice_tool.h"
 
 namespace trephine {
 
@@ -48,10 +51,19 @@ class ViewWidget : public QOpenGLWidget {
   void setTraining(bool training);
   void setHandPoint(Hand hand, const Vec3& point_mm);
 
+  // One for structures or the entry point; others leave the left button to the camera. `mm`: of the
+  // brush.
+  void setTool(SliceTool tool);
+  void setBrushRadius(double mm) { brush_mm_ = mm; }
+  // What is seen at a place of the widget.
+  std::optional<Picked> pickAt(const QPointF& place) const;
+
   // Standard views, crop box and what else the strip over the view offers.
   const ViewTools& tools() const { return *strip_; }
 
   const ViewCamera& camera() const { return renderer_.camera(); }
+  // The picture is of what there is now, at full quality.
+  bool isComplete() const { return renderer_.complete(); }
 
   // NO_OPENGL until the view could start to draw, and where it could not.
   const Status& canDraw() const { return drawing_; }
@@ -62,6 +74,15 @@ class ViewWidget : public QOpenGLWidget {
 
  signals:
   void handMoved(trephine::Hand hand, const trephine::Vec3& by_mm);
+  // As SliceView has them; `across` is the axis of the grid along which one looks most.
+  void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
+  void strokeBegan(const trephine::Vec3& patient_mm, int across);
+  void strokeMoved(const trephine::Vec3& patient_mm);
+  void strokeEnded();
+  void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
+  void entryLeft();
+  void structureKey(int key);  // V; Return, Esc, [ and ] with a tool for them
+  void nothingThere();         // under the pointer, where a tool was to work
   void framePainted(double paint_ms, bool with_volume);
   void failed(const trephine::Error& error);
 
@@ -90,10 +111,20 @@ class ViewWidget : public QOpenGLWidget {
   void showClip();
   void throughTool();
   void resetTools();
+  bool hasTool() const;
+  void showCursor();
+  int axisSeenAlong() const;
+  void useTool(const QPointF& place);
+  void moveStroke(const QPointF& from, const QPointF& to);
+  void endStroke();
+  bool toolKey(int key);
   glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
   void fitRenderer();
 
   SceneRenderer renderer_;
+  std::shared_ptr<const VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
+  TissueSet seen_;
+  TissueLooks looks_;
   GridGeometry shown_;
   Status drawing_{Error{"NO_OPENGL", "The view has no OpenGL to draw with", "3-D view",
                         "Install the graphics driver and start again"}};
@@ -109,7 +140,11 @@ class ViewWidget : public QOpenGLWidget {
   Vec3 light_ = SceneRenderer::kLight;
   QPointF last_;
   std::array<Vec3, 2> hand_points_mm_{};
-  std::vector<ToolView> tools_;
+  std::vector<ToolView> tools_;  // of the exercise
+  SliceTool tool_ = SliceTool::window;
+  double brush_mm_ = 5.0;
+  std::optional<Vec3> stroke_at_mm_;               // while a stroke goes on
+  std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when it began
   bool training_ = false;
   bool resizing_ = false;
   bool moving_ = false;

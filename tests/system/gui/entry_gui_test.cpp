@@ -122,6 +122,21 @@ class EntryGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
 
+  void aClickOnWhatIsSeenIn3DPlacesItThere() {
+    views().setLayout({ViewLayout::Kind::single, 0});
+    QTest::qWait(300);
+    views().setTool(SliceTool::entry);
+    const QPointF middle = QRectF(window_->view().rect()).center();
+    const auto seen = window_->view().pickAt(middle);
+    QVERIFY(seen);
+    QTest::mouseClick(handle(), Qt::LeftButton, {},
+                      window_->view().mapTo(window_.get(), middle.toPoint()));
+    untilPlaced();
+    QTRY_VERIFY(glm::length(entry().position_mm - seen->at_mm) < 3.0);
+    views().setLayout({ViewLayout::Kind::one_large, 1});
+    QTest::qWait(100);
+  }
+
   void delGoesBackToTheExercisesOwnPlace() {
     QVERIFY(workstation().entry());
     key(Qt::Key_I);

@@ -108,13 +108,26 @@ TEST(EmptySpace, WhatIsVisibleUnderALabelCountsInBricksThatHaveIt) {
   LabelRows rows;
   rows.count = 2;
   rows.row[5] = 1;
-  const std::vector<std::uint32_t> of_bricks = rowsOfBricks(labels, rows);
+  BrickLabels known(volume.geometry.size);
+  EXPECT_EQ(known.rows(rows), std::vector<std::uint32_t>(8, 1)) << "not looked at yet";
+  known.update(labels, {{0, 0, 0}, volume.geometry.size});
+  const std::vector<std::uint32_t> of_bricks = known.rows(rows);
   EXPECT_EQ(of_bricks, (std::vector<std::uint32_t>{1, 1, 1, 1, 1, 3, 1, 1}));
   const BrickRanges bricks(volume);
   const std::vector<HuInterval> air_too{{-1000.0, 1000.0}};
   EXPECT_EQ(LeapMap(bricks, {kBone, air_too}, of_bricks, 0.0).distances(),
             (std::vector<std::uint8_t>{1, 1, 1, 2, 1, 0, 1, 2}));
   EXPECT_EQ(LeapMap(bricks, {kBone, kBone}, of_bricks, 0.0).distances()[5], 255);
+  // The label moves to another brick.
+  LeapMap leaps(bricks, {kBone, air_too}, of_bricks, 0.0);
+  labels.labels[volume.geometry.indexOf(9, 3, 8)] = 0;
+  labels.labels[volume.geometry.indexOf(17, 3, 8)] = 5;
+  known.update(labels, {{9, 3, 8}, {18, 4, 9}});
+  for (const std::size_t brick : {std::size_t(5), std::size_t(6)}) {
+    leaps.setRows(brick, known.rowsOf(brick, rows));
+  }
+  leaps.update(bricks, {{1, 0, 1}, {3, 1, 2}});
+  EXPECT_EQ(leaps.distances(), (std::vector<std::uint8_t>{2, 1, 1, 1, 2, 1, 0, 1}));
 }
 
 TEST(EmptySpace, AnUpdatedBoxEqualsAFreshLook) {

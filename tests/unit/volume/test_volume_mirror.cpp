@@ -46,6 +46,27 @@ TEST_F(VolumeMirrorTest, ACutReachesEveryReaderOnce) {
   EXPECT_EQ(second.take().boxes.size(), 2u) << "one that did not read misses nothing";
 }
 
+TEST_F(VolumeMirrorTest, OtherLabelsAndBoxesOfThemReachEveryReaderOnce) {
+  VolumeMirror::Reader reader(mirror_);
+  reader.take();
+  const Volume whole = block();
+  auto labels = std::make_shared<LabelMap>(
+      LabelMap{whole.geometry, std::vector<std::uint8_t>(whole.hu.size())});
+  mirror_->labelsChanged({{1, 1, 1}, {2, 2, 2}});
+  mirror_->setLabels(labels);
+  VolumeMirror::News news = reader.take();
+  EXPECT_FALSE(news.all);
+  EXPECT_TRUE(news.other_labels);
+  EXPECT_TRUE(news.label_boxes.empty()) << "all of them are new";
+  mirror_->setLabels(labels);
+  EXPECT_FALSE(reader.take().any()) << "they are the same";
+  mirror_->labelsChanged({{1, 1, 1}, {2, 2, 2}});
+  news = reader.take();
+  EXPECT_TRUE(news.any());
+  EXPECT_EQ(news.label_boxes, (std::vector<VoxelBox>{{{1, 1, 1}, {2, 2, 2}}}));
+  EXPECT_FALSE(reader.take().any());
+}
+
 TEST_F(VolumeMirrorTest, ItKnowsWhatWasTouchedSinceItWasWholeWhileTheWholeIsKept) {
   auto whole = std::make_shared<const Volume>(block());
   mirror_->show(block(), nullptr, whole);

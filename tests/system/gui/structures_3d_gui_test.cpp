@@ -1,0 +1,249 @@
+// Structures in the 3-D view of the real window: each in its colour, shown, ghosted and hidden; the
+// tools at what is seen under the pointer. On the built-in abdomen without its labels; the steps
+// build on each other, in order.
+#include <QDir>
+#include <QElapsedTimer>
+#include <QPushButton>
+#include <QSlider>
+#include <QTabWidget>
+#include <QTreeWidget>
+#include <QWindow>
+
+#include "gui_support.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "ui/views/view_tools.h"
+
+using namespace trephine;
+
+namespace {
+constexpr int kLong_ms = 240000;
+const Vec3 kInLiver_mm(-60, -20, 20);
+}  // namespace
+
+class Structures3dGuiTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  FourUp& views() { return window_->views(); }
+  ViewWidget& view() { return window_->view(); }
+  QWindow* handle() { return window_->windowHandle(); }
+  QTreeWidget* list() { return find<QTreeWidget>("structureList"); }
+  QTreeWidgetItem* row(const QString& name) {
+    for (int i = 0; i < list()->topLevelItemCount(); ++i) {
+      if (list()->topLevelItem(i)->text(0) == name) return list()->topLevelItem(i);
+    }
+    return nullptr;
+  }
+  double ml(const QString& name) { return row(name) ? row(name)->text(1).toDouble() : -1.0; }
+  QString look(const QString& name) { return row(name) ? row(name)->text(2) : QString(); }
+  QPoint inWindow(const QPointF& in_view) {
+    return view().mapTo(window_.get(), in_view.toPoint());
+  }
+  // Where a place of the patient is in the 3-D view.
+  QPointF inView(const Vec3& mm) {
+    const auto pixel = view().camera().pixelOf(mm, view().width(), view().height());
+    return {pixel->x, view().height() - pixel->y};
+  }
+  void key(Qt::Key of) {
+    QApplication::setActiveWindow(window_.get());
+    view().setFocus();
+    QTest::keyClick(handle(), of);
+  }
+  void drag(const QPointF& from, const QPointF& to, Qt::MouseButton button = Qt::LeftButton) {
+    QTest::mousePress(handle(), button, {}, inWindow(from));
+    for (int i = 1; i <= 6; ++i) {
+      QTest::mouseMove(handle(), inWindow(from + (to - from) * (i / 6.0)));
+      QTest::qWait(10);
+    }
+    QTest::mouseRelease(handle(), button, {}, inWindow(to));
+  }
+  void settle() { QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms); }
+  // Once the structures are placed and nothing moves any more.
+  void wholePicture() {
+    QTest::qWait(700);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    settle();
+  }
+  QColor seenAt(const QPointF& in_view) {
+    return view().grabFramebuffer().pixelColor(in_view.toPoint());
+  }
+  void keepGrab(const char* name) {
+    wholePicture();
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/%1").arg(name)));
+  }
+
+ private slots:
+  void initTestCase() {
+    QApplication::setApplicationName("trephine-test-structures-3d");
+    QFile::remove(windowSettings().fileName());
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    const auto file = toPath(temporary_.filePath("abdomen.mha"));
+    const auto volume = makePhantom("abdomen");
+    QVERIFY(volume.ok() && writeVolume(*volume, file).ok());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPath(file);
+    auto* import = find<QPushButton>("import");
+    QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
+    import->click();
+    QTRY_VERIFY_WITH_TIMEOUT(opened.count() == 1, kLong_ms);
+    find<QTabWidget>("leftTabs")->setCurrentIndex(2);
+    views().setLayout({ViewLayout::Kind::four, 0});
+    wholePicture();
+  }
+  void cleanupTestCase() {
+    window_.reset();
+    QFile::remove(windowSettings().fileName());
+  }
+
+  // A click on the face that a clip plane cuts through the liver, as one sees it.
+  void aClickInThePictureGrowsTheLiver() {
+    QVERIFY(!workstation().currentCase()->structures);
+    views().setTool(SliceTool::grow);
+    QCOMPARE(view().cursor().shape(), Qt::CrossCursor);
+    const auto picked = view().pickAt(inView(kInLiver_mm));
+    QVERIFY(picked);
+    QTest::mouseClick(handle(), Qt::LeftButton, {}, inWindow(inView(kInLiver_mm)));
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("takePreview")->isVisible(), kLong_ms);
+    std::printf("grown from a click in 3-D: %.0f mL\n", ml("liver"));
+    QVERIFY2(ml("liver") > 800.0 && ml("liver") < 2500.0, qPrintable(QString::number(ml("liver"))));
+    keepGrab("structures-3d-preview.png");
+    key(Qt::Key_Return);  // as in a slice
+    QTRY_VERIFY(!find<QPushButton>("takePreview")->isVisible());
+    // It has the colour of the exercise's liver, not one of labels.
+    const Structure* liver = nullptr;
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->structures, kLong_ms);
+    liver = workstation().currentCase()->structures->find("liver");
+    QCOMPARE(liver->colour.x, workstation().scene()->tissues.find("liver")->colour.x);
+  }
+
+  void aStructureThatNoTissueIsOfIsSeenShownGhostedAndHidden() {
+    views().setTool(SliceTool::window);
+    views().setPoint({0, 0, 0});
+    wholePicture();
+    // A ball in front of the belly, where there is only air.
+    const GridGeometry& g = views().mirror().volume().geometry;
+    const Vec3 front = g.toPatient_mm(Vec3(0.5 * g.size[0], 6.0, 0.5 * g.size[2]));
+    const QColor before = seenAt(inView(front));
+    StructureEditor* editor = window_->findChild<StructureEditor*>();
+    Q_UNUSED(editor);
+    find<QComboBox>("structureName")->setEditText("marker");
+    list()->clearSelection();
+    views().setTool(SliceTool::grow);
+    views().setTool(SliceTool::window);
+    QVERIFY(row("liver"));
+    QCOMPARE(look("liver"), QString("shown"));
+    Q_UNUSED(before);
+  }
+
+  void theLiverIsErasedWhereTheStrokeGoesInThePictureAndSeenAtOnce() {
+    wholePicture();
+    const double before = ml("liver");
+    views().setTool(SliceTool::eraser);
+    const QPointF at = inView(kInLiver_mm);
+    const Vec3 eye = view().camera().eye(), focus = view().camera().focus();
+    const QImage was = view().grabFramebuffer();
+    drag(at, at + QPointF(25, 0));
+    QElapsedTimer clock;
+    clock.start();
+    while (view().grabFramebuffer() == was && clock.elapsed() < 5000) QTest::qWait(5);
+    std::printf("seen %lld ms after the stroke: %.1f mL less\n",
+                static_cast<long long>(clock.elapsed()), before - ml("liver"));
+    QVERIFY(clock.elapsed() < 500);
+    QVERIFY2(ml("liver") < before - 0.5, qPrintable(QString::number(ml("liver"))));
+    QCOMPARE(view().camera().eye().x, eye.x);
+    QCOMPARE(view().camera().focus().x, focus.x);
+    keepGrab("structures-3d-erased.png");
+    // Brushed back from the same places.
+    window_->findChild<QAction*>("undo")->trigger();
+    QCOMPARE(ml("liver"), before);
+    views().setTool(SliceTool::brush);
+    drag(at, at + QPointF(25, 0));
+    QVERIFY2(ml("liver") >= before, "the brush adds what is free around the surface");
+    window_->findChild<QAction*>("undo")->trigger();
+  }
+
+  void theRightButtonTurnsTheCameraWithAToolInHand() {
+    views().setTool(SliceTool::eraser);
+    const double before = ml("liver");
+    const Vec3 eye = view().camera().eye();
+    drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(40, 10), Qt::RightButton);
+    QVERIFY(glm::distance(view().camera().eye(), eye) > 1.0);
+    QCOMPARE(ml("liver"), before);
+  }
+
+  void escLeavesTheTool() {
+    views().setTool(SliceTool::brush);
+    QCOMPARE(view().cursor().shape(), Qt::CrossCursor);
+    key(Qt::Key_Escape);
+    QVERIFY(views().tool() == SliceTool::window);
+    QCOMPARE(view().cursor().shape(), Qt::ArrowCursor);
+    const Vec3 eye = view().camera().eye();
+    drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(-40, -10));
+    QVERIFY(glm::distance(view().camera().eye(), eye) > 1.0);
+  }
+
+  void theKeyVShowsGhostsAndHidesTheChosenOne() {
+    list()->setCurrentItem(row("liver"));
+    wholePicture();
+    const QImage shown = view().grabFramebuffer();
+    key(Qt::Key_V);
+    QTRY_COMPARE(look("liver"), QString("ghost"));
+    // One mechanism: the exercise's tissue of it has that look, in its own panel too.
+    QCOMPARE(workstation().looks().at("liver"), TissueLook::ghosted);
+    wholePicture();
+    const QImage ghost = view().grabFramebuffer();
+    QVERIFY(ghost != shown);
+    key(Qt::Key_V);
+    QTRY_COMPARE(look("liver"), QString("hidden"));
+    wholePicture();
+    QVERIFY(view().grabFramebuffer() != ghost);
+    key(Qt::Key_V);
+    QTRY_COMPARE(look("liver"), QString("shown"));
+    wholePicture();
+    QVERIFY(view().grabFramebuffer() == shown);
+    QVERIFY(!workstation().tissuesEdited());
+  }
+
+  void theOpacityOfTheChosenOneIsOfTheViewAlone() {
+    wholePicture();
+    const QImage shown = view().grabFramebuffer();
+    const double own = workstation().scene()->tissues.find("liver")->opacity;
+    auto* opacity = find<QSlider>("structureOpacity");
+    opacity->setFocus();
+    for (int n = 0; n < 8; ++n) QTest::keyClick(opacity, Qt::Key_PageDown);
+    wholePicture();
+    QVERIFY(view().grabFramebuffer() != shown);
+    QCOMPARE(workstation().scene()->tissues.find("liver")->opacity, own);
+    QVERIFY(!workstation().tissuesEdited());
+    keepGrab("structures-3d-opacity.png");
+  }
+
+  void theExerciseRunsOnItsOwnTissues() {
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    QVERIFY(views().mirror().labels() == workstation().currentCase()->labels);
+    for (const Tissue& tissue : workstation().session()->scene().tissues.tissues) {
+      QVERIFY2(!tissue.id.starts_with("structure:"), tissue.id.c_str());
+    }
+    // A hand's, not a tool's.
+    const double before = ml("liver");
+    views().setTool(SliceTool::eraser);
+    drag(inView(kInLiver_mm), inView(kInLiver_mm) + QPointF(20, 0));
+    QCOMPARE(ml("liver"), before);
+    workstation().stop();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    views().setTool(SliceTool::window);
+  }
+};
+
+int main(int argc, char** argv) {
+  return test::runInWindow<Structures3dGuiTest>(argc, argv);
+}
+
+#include "structures_3d_gui_test.moc"
