@@ -25,6 +25,23 @@ struct Stretch {
   }
 };
 
+// What may lie between crumbs of a tissue, in mm: its surface, at first.
+constexpr double kGap_mm = 2.5;
+
+// Over 3 x 3 x 3 voxels.
+double meanHu(const Volume& volume, const Index3& around) {
+  const GridGeometry& g = volume.geometry;
+  double sum = 0.0;
+  int count = 0;
+  for (int n = 0; n < 27; ++n) {
+    const int i = around[0] + n % 3 - 1, j = around[1] + n / 3 % 3 - 1, k = around[2] + n / 9 - 1;
+    if (!g.contains(i, j, k)) continue;
+    sum += volume.at(i, j, k);
+    ++count;
+  }
+  return sum / count;
+}
+
 }  // namespace
 
 std::optional<Picked> pick(const Volume& volume, const LabelMap* labels, const TissueSet& tissues,
@@ -83,10 +100,19 @@ std::optional<Picked> pick(const Volume& volume, const LabelMap* labels, const T
   if (!first) return {};
   const double at = clear > 0.5 ? *first : begins;
   const int of = classOn(at);
+  // By HU alone an organ's rim is of another tissue, and noise breaks it into crumbs that means do
+  // not have: there all that is seen goes on.
+  const bool by_label = !seen.tissues[std::size_t(of)].isAnywhere();
+  const auto goesOn = [&](double t) {
+    const int here = classOn(t);
+    if (here == of || by_label) return here == of;
+    const int mean = classify(table, meanHu(volume, voxelOn(t)));
+    return here >= 0 || (mean >= 0 && opacity[std::size_t(mean)] > 0.0);
+  };
   double inside = at;
-  while (inside + step_mm < std::min(within.to, at + kInside_mm) &&
-         classOn(inside + step_mm) == of) {
-    inside += step_mm;
+  for (double t = at; t < std::min(within.to, at + kInside_mm) && t < inside + kGap_mm;
+       t += step_mm) {
+    if (goesOn(t)) inside = t;
   }
   const Index3 voxel = voxelOn(at);
   return Picked{g.toPatient_mm(Vec3(voxel[0], voxel[1], voxel[2])),

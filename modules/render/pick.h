@@ -17,7 +17,7 @@ namespace trephine {
 // Patient frame.
 struct Picked {
   Vec3 at_mm{0.0};      // the middle of the first voxel seen
-  Vec3 inside_mm{0.0};  // on along the ray by at most kInside_mm, while it meets the same tissue
+  Vec3 inside_mm{0.0};  // on along the ray by at most kInside_mm, while it stays in it
 };
 // Far enough in that what is around is of the organ, for a seed to grow from.
 constexpr double kInside_mm = 8.0;

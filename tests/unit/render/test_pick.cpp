@@ -106,8 +106,25 @@ TEST_F(Pick, GoesInsideAsFarAsTheTissueDoes) {
   EXPECT_NEAR(inside_y_, 22.8, 0.8) << "it is thin";
 }
 
+TEST_F(Pick, GoesInsideThroughNoise) {
+  set_.tissues[0].hu_min = 85;
+  set_.tissues[0].hu_max = 115;
+  unsigned noise = 1;
+  for (std::int16_t& hu : volume_.hu) {
+    noise = noise * 1664525u + 1013904223u;
+    hu = std::int16_t(hu + int(noise >> 26) - 32);  // over half of it is out of its range
+  }
+  EXPECT_NEAR(*y(), 20.0, 4.0);
+  EXPECT_GT(inside_y_, 24.0);
+}
+
 TEST_F(Pick, FindsTheSkullsSurfaceWithinAVoxel) {
-  volume_ = *makePhantom("cranium");
+  GridGeometry coarse = *phantomGeometry("cranium");
+  for (int axis = 0; axis < 3; ++axis) {
+    coarse.size[std::size_t(axis)] /= 3;
+    coarse.spacing_mm[axis] *= 3.0;
+  }
+  volume_ = makePhantomOn(*phantomTruth("cranium"), coarse, kPhantomNoiseHu);
   set_ = {"bone", {softAndBone().tissues[1]}};
   const Vec3 middle = volume_.geometry.centre_mm();
   int met = 0;
