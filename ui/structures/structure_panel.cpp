@@ -26,7 +26,9 @@ constexpr int kToolsInARow = 3;
 QIcon swatch(const Vec3& colour) {
   QPixmap pixmap(16, 16);
   pixmap.fill(QColor::fromRgbF(float(colour.x), float(colour.y), float(colour.z)));
-  return pixmap;
+  QIcon icon(pixmap);
+  icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
+  return icon;
 }
 
 QLabel* words(const char* name, QWidget* parent) {
