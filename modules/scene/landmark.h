@@ -20,7 +20,7 @@ namespace trephine {
 //   `outward`. For an organ, whatever else of the body the scan holds.
 struct Landmark {
   std::string id;
-  std::string tissue;           // a tissue's id
+  std::string tissue;           // a tissue's id; empty: the body, whatever it is of
   Vec3 from{0.5};               // outside the patient
   Vec3 towards{0.5};
   double bulk_radius_mm = 0.0;  // above 0: the second way
@@ -48,6 +48,7 @@ Quat frameAlong(const Vec3& outward);
 // `labels`, where there are any, are fitted to the volume.
 // Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray,
 // CANCELLED.
+// The body is what is over -300 HU.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues, const LabelMap* labels = nullptr,
                                    const Progress& progress = Progress());
