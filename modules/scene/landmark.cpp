@@ -14,7 +14,10 @@ struct Box {
   bool found = false;
 };
 
-// A tissue in a case: which places are of it.
+constexpr double kBodyHu = -300.0;  // over it: half-way from air to fat and water
+constexpr int kBody = -1;
+
+// A tissue in a case, or the body (kBody): which places are of it.
 struct Sought {
   const Volume& volume;
   const LabelMap* labels;
@@ -27,7 +30,9 @@ struct Sought {
     progress.at(fraction, "Finding landmarks");
     return !progress.cancelled();
   }
-  bool in(double hu, std::uint8_t label) const { return classify(tissues, hu, label) == tissue; }
+  bool in(double hu, std::uint8_t label) const {
+    return tissue == kBody ? hu > kBodyHu : classify(tissues, hu, label) == tissue;
+  }
   std::uint8_t label(int i, int j, int k) const {
     return labels ? labels->labels[volume.geometry.indexOf(i, j, k)] : 0;
   }
@@ -158,10 +163,13 @@ struct Ray {
   Vec3 from_mm, towards_mm;
 };
 
+std::string nameOf(const Landmark& landmark) {
+  return landmark.tissue.empty() ? "a body" : "the tissue '" + landmark.tissue + "'";
+}
+
 Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
   const GridGeometry& g = sought.volume.geometry;
-  const Error none{"TISSUE_NOT_FOUND",
-                   "The case has no voxel of the tissue '" + landmark.tissue + "'",
+  const Error none{"TISSUE_NOT_FOUND", "The case has no voxel of " + nameOf(landmark),
                    "landmark '" + landmark.id + "'",
                    "Check the HU range and label, or choose a case of the scene's anatomy"};
   if (landmark.bulk_radius_mm > 0.0) {
@@ -217,12 +225,12 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
     return LandmarkFrame{landmark.at_mm, frameAlong(landmark.outward)};
   }
   const Tissue* tissue = tissues.find(landmark.tissue);
-  if (!tissue) {
+  if (!tissue && !landmark.tissue.empty()) {
     return Error{"NO_SUCH_TISSUE", "The tissue '" + landmark.tissue + "' is not in the tissue set",
                  where, "Name one of its tissues"};
   }
-  const Sought sought{volume, labels, tissueTable(tissues), int(tissue - tissues.tissues.data()),
-                      progress};
+  const Sought sought{volume, labels, tissueTable(tissues),
+                      tissue ? int(tissue - tissues.tissues.data()) : kBody, progress};
   const Result<Ray> ray = rayOf(landmark, sought);
   const Error cancelled{"CANCELLED", "Finding the landmarks was cancelled", where, ""};
   if (progress.cancelled()) return cancelled;
@@ -247,7 +255,7 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};
     }
   }
-  return Error{"NO_SURFACE", "The ray does not meet the tissue '" + tissue->id + "'", where,
+  return Error{"NO_SURFACE", "The ray does not meet " + nameOf(landmark), where,
                "Choose a case of the scene's anatomy, or another ray"};
 }
 

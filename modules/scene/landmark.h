@@ -21,7 +21,7 @@ namespace trephine {
 // - `at_mm`, of the patient's LPS frame, and from it `outward`: where a person clicked.
 struct Landmark {
   std::string id;
-  std::string tissue;           // a tissue's id
+  std::string tissue;           // a tissue's id; empty: the body, whatever it is of
   Vec3 from{0.5};               // outside the patient
   Vec3 towards{0.5};
   double bulk_radius_mm = 0.0;  // above 0: the second way
@@ -50,7 +50,7 @@ Quat frameAlong(const Vec3& outward);
 // HU are averaged over a quarter of `run_mm`, at most 3 mm, so that noise does not break a run.
 // `labels`, where there are any, are fitted to the volume.
 // Errors: NO_SUCH_TISSUE in the set, TISSUE_NOT_FOUND in the volume, NO_SURFACE along the ray,
-// NO_PLACE outside of the scan, CANCELLED.
+// NO_PLACE outside of the scan, CANCELLED. The body is what is over -300 HU.
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues, const LabelMap* labels = nullptr,
                                    const Progress& progress = Progress());

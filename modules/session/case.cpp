@@ -78,6 +78,24 @@ std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<An
   return {};
 }
 
+// The scene's landmarks. On a case that is known to show something else than the exercise is for
+// (`other`) they may have no place: then where their rays meet the body, and a warning says so.
+Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of, bool other,
+                                                const Progress& progress) {
+  auto placed = placeLandmarks(scene, *of.volume, of.labels.get(), progress);
+  if (placed || !other) return placed;
+  const std::string& code = placed.error().code;
+  if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
+  Scene on_body = scene;
+  for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
+  auto surface = placeLandmarks(on_body, *of.volume, of.labels.get(), progress);
+  if (!surface) return surface.error().code == "CANCELLED" ? surface : placed;
+  of.warnings.push_back({"NO_LANDMARK", "The place where the exercise begins is not in the case (" +
+                                            placed.error().what +
+                                            "): it begins at the body's surface"});
+  return surface;
+}
+
 }  // namespace
 
 Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256) {
@@ -161,9 +179,10 @@ Result<Case> placedIn(Scene& scene, Case of, const Progress& progress) {
   }
   of.labels = std::move(structures->labels);
   of.warnings = of.structure_warnings;
-  if (const auto warning = anatomyWarning(scene, of.anatomy)) of.warnings.push_back(*warning);
+  const std::optional<Warning> other = anatomyWarning(scene, of.anatomy);
+  if (other) of.warnings.push_back(*other);
   of.warnings.insert(of.warnings.end(), structures->warnings.begin(), structures->warnings.end());
-  auto placed = placeLandmarks(scene, *of.volume, of.labels.get(), progress);
+  auto placed = landmarksIn(scene, of, other.has_value(), progress);
   if (placed) {
     of.landmarks = *std::move(placed);
   } else if (placed.error().code == "CANCELLED") {

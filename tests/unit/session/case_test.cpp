@@ -124,6 +124,49 @@ TEST(Session, SaysWhenTheCaseDoesNotFitTheScene) {
   EXPECT_EQ(session.error().code, "TISSUE_NOT_FOUND");
 }
 
+// A column of bone beside the axis along which the vault is sought.
+Case caseWithoutAVault() {
+  Volume volume = smallHead();
+  const GridGeometry& g = volume.geometry;
+  for (std::size_t i = 0; i < volume.hu.size(); ++i) {
+    const Index3 at = g.indicesOf(i);
+    const auto aside = [&](double x) {
+      return glm::length(glm::dvec2(at[0] - x, at[1] - 40.0)) < 4.0;
+    };
+    if (volume.hu[i] > kAirHu) volume.hu[i] = aside(20.0) || aside(60.0) ? 800 : 40;
+  }
+  return caseOf(std::make_shared<const Volume>(std::move(volume)));
+}
+
+TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
+  Scene scene = cranium();
+  Case of = caseWithoutAVault();
+  of.anatomy = Anatomy{BodyRegion::abdomen};
+  of = *placedIn(scene, of);
+  ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+  ASSERT_EQ(of.warnings.size(), 2u);
+  EXPECT_EQ(of.warnings[0].code, "OTHER_ANATOMY");
+  EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
+  EXPECT_NE(of.warnings[1].text.find("does not meet the tissue 'bone'"), std::string::npos);
+  // The ball's top, above its middle.
+  ASSERT_EQ(of.landmarks.size(), 1u);
+  const Vec3 top_mm = of.volume->geometry.centre_mm() + Vec3(0.0, 0.0, 44.0);
+  EXPECT_LT(glm::length(of.landmarks[0].frame.position_mm - top_mm), 2.0);
+  EXPECT_TRUE(Session::create(scene, of, scripted()).ok());
+}
+
+TEST(Case, OfTheRightAnatomyWithoutTheLandmarksTissueStaysAMisfit) {
+  Scene scene = cranium();
+  Case of = caseWithoutAVault();
+  for (const BodyRegion region : {BodyRegion::head, BodyRegion::not_sure}) {
+    of.anatomy = Anatomy{region, true};
+    const Case placed = *placedIn(scene, of);
+    ASSERT_TRUE(placed.misfit);
+    EXPECT_EQ(placed.misfit->code, "NO_SURFACE");
+    EXPECT_TRUE(placed.warnings.empty());
+  }
+}
+
 TEST(Case, ThatIsMissingIsNamed) {
   EXPECT_EQ(readCase("").error().code, "NO_CASE");
   EXPECT_EQ(readCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
