@@ -62,6 +62,33 @@ VoxelBox boxOf(const std::vector<double>& mm, const GridGeometry& g) {
   return box;
 }
 
+// What the box of voxels holds beyond that of mm, on a grid that is turned against the patient;
+// null: nothing.
+std::shared_ptr<const LabelMap> outsideOf(const std::vector<double>& mm, const GridGeometry& g) {
+  bool turned = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int p = 0; p < 3; ++p) {
+      const double along = std::abs(g.direction[axis][p]);
+      turned = turned || (along > 1e-6 && along < 1.0 - 1e-6);
+    }
+  }
+  if (!turned) return nullptr;
+  auto outside = std::make_shared<LabelMap>(LabelMap{g, std::vector<std::uint8_t>(g.voxelCount())});
+  std::size_t voxel = 0;
+  for (int k = 0; k < g.size[2]; ++k) {
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i, ++voxel) {
+        const Vec3 at = g.toPatient_mm(Vec3(i, j, k));
+        for (int p = 0; p < 3; ++p) {
+          const auto [low, high] = std::minmax(mm[std::size_t(2 * p)], mm[std::size_t(2 * p + 1)]);
+          if (at[p] < low || at[p] > high) outside->labels[voxel] = 1;
+        }
+      }
+    }
+  }
+  return outside;
+}
+
 // All but the box, whose voxels the case tells: its mm go to `box_mm`.
 Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double>& box_mm) {
   GrowOptions options;
@@ -82,8 +109,9 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double
 // The patient's own scan is never written over.
 Status checkStructureTarget(const std::string& target, const std::string& case_source) {
   namespace fs = std::filesystem;
-  if (!target.ends_with(".nrrd")) {
-    if (Status name = checkVolumeFileName(target); !name) return name;
+  if (!target.ends_with(".nrrd") && !checkVolumeFileName(target)) {
+    return Error{"UNKNOWN_FORMAT", "Label maps are written as .nrrd, .mha, .nii or .nii.gz", target,
+                 "Choose one of these endings"};
   }
   if (Status there = checkFolderOf(target); !there) return there;
   std::error_code ec;
@@ -120,7 +148,10 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.5));
   if (!of) return failed(of.error());
   const GridGeometry& g = of->volume->geometry;
-  if (!box_mm.empty()) options->box = boxOf(box_mm, g);
+  if (!box_mm.empty()) {
+    options->box = boxOf(box_mm, g);
+    options->others = outsideOf(box_mm, g);
+  }
   const auto start = std::chrono::steady_clock::now();
   Result<Growth> growth = grow(*of->volume, Vec3((*seed)[0], (*seed)[1], (*seed)[2]), *options,
                                Progress(progress, 0.5, 0.9));
@@ -146,6 +177,9 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   std::printf("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n",
               arguments.name.c_str(), growth->ml, growth->voxels, growth->hu.low, growth->hu.high,
               seconds);
+  if (growth->seed_off_mm > 0.0) {
+    std::printf("The seed itself is not in it: it lies %.1f mm beside.\n", growth->seed_off_mm);
+  }
   if (growth->leaked) {
     std::printf(
         "It reaches the border of the scan or fills much of it: look whether it is %s alone. "
@@ -226,7 +260,14 @@ Result<Answers> answersOf(const std::vector<std::string>& choices) {
       return Error{"BAD_ARGUMENT", "It is written CODE=OPTION, not '" + choice + "'", "--choice",
                    ""};
     }
-    answers[choice.substr(0, equals)] = choice.substr(equals + 1);
+    const std::string code = choice.substr(0, equals);
+    static const std::set<std::string> kCodes{"OVERLAP", "HU_NOT_TISSUE", "MIRRORED",
+                                              "OTHER_FRAME"};
+    if (!kCodes.contains(code)) {
+      return Error{"BAD_CHOICE", "There is no choice '" + code + "'", "--choice",
+                   "Choose OVERLAP, HU_NOT_TISSUE, MIRRORED or OTHER_FRAME"};
+    }
+    answers[code] = choice.substr(equals + 1);
   }
   return answers;
 }
@@ -318,15 +359,23 @@ Result<LabelMap> chosenOf(const LabelMap& map, const std::vector<std::string>& n
 }
 
 // One surface a structure: "FILE.stl" of one, "FILE-liver.stl" of several. Letters that a file
-// system or another program could trip over become "_".
-std::string surfaceFile(const std::string& file, const std::string& name, bool several) {
+// system or another program could trip over become "_"; no two are one file, whatever the case of
+// their letters.
+std::string surfaceFile(const std::string& file, const std::string& name, bool several,
+                        std::set<std::string>& taken) {
   if (!several) return file;
   std::string plain;
   for (const char c : name) {
     const bool good = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || (c & 0x80);
     plain += good ? c : '_';
   }
-  return file.substr(0, file.size() - 4) + "-" + plain + ".stl";
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  std::string own = plain;
+  for (int n = 2; !taken.insert(lower(own)).second; ++n) own = plain + "-" + std::to_string(n);
+  return file.substr(0, file.size() - 4) + "-" + own + ".stl";
 }
 
 }  // namespace
@@ -360,6 +409,7 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   const double voxel_ml = chosen->geometry.voxelVolume_mm3() / 1000.0;
   Json rows = Json::array(), files = Json::array();
   std::string text;
+  std::set<std::string> taken;
   for (const Structure& s : chosen->structures) {
     const std::size_t count = voxels[std::size_t(s.label)];
     Json row = {{"name", s.name}, {"voxels", count}, {"ml", double(count) * voxel_ml}};
@@ -367,7 +417,8 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
     std::snprintf(line, sizeof line, "%-24s %9.1f mL\n", s.name.c_str(), double(count) * voxel_ml);
     text += line;
     if (stl && count > 0) {
-      const std::string file = surfaceFile(arguments.write, s.name, chosen->structures.size() > 1);
+      const std::string file =
+          surfaceFile(arguments.write, s.name, chosen->structures.size() > 1, taken);
       const auto surface = writeSurface(*chosen, s.label, file, Progress(progress, 0.6, 1.0));
       if (!surface) return failed(surface.error());
       row["triangles"] = surface->triangles;

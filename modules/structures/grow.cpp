@@ -199,6 +199,28 @@ Error nothingGrown(const HuSpan& hu, double open_mm) {
           "seed", "Click farther inside, widen the HU range or open by less"};
 }
 
+// From the seed to the nearest voxel of the mask; infinity beyond kMostOff_mm.
+double offFrom(const LabelMap& mask, const Vec3& seed_mm, const Index3& voxel) {
+  const GridGeometry& g = mask.geometry;
+  if (mask.labels[g.indexOf(voxel[0], voxel[1], voxel[2])]) return 0.0;
+  Index3 low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int reach = int(std::ceil(kMostOff_mm / g.spacing_mm[int(axis)]));
+    low[axis] = std::max(0, voxel[axis] - reach);
+    high[axis] = std::min(g.size[axis] - 1, voxel[axis] + reach);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        if (!mask.labels[g.indexOf(i, j, k)]) continue;
+        least = std::min(least, glm::length(g.toPatient_mm(Vec3(i, j, k)) - seed_mm));
+      }
+    }
+  }
+  return least <= kMostOff_mm ? least : std::numeric_limits<double>::infinity();
+}
+
 // Steps 1 to 3, in blocks; what they found of the range and what they did goes to `growth`.
 Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const Index3& voxel,
                              const GrowOptions& options, const Progress& progress, Growth& growth) {
@@ -325,6 +347,17 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   growth.leaked =
       reachesBorder(growth.mask) || double(growth.voxels) > kMostOfScan * double(g.voxelCount());
   if (growth.voxels == 0) return nothingGrown(growth.hu, options.open_mm);
+  growth.seed_off_mm = offFrom(growth.mask, seed_mm, voxel);
+  if (std::isinf(growth.seed_off_mm)) {
+    return Error{"NOTHING_GROWN",
+                 "The place is of no organ as wide as " +
+                     said("%.0f mm: what was found lies more than %.0f mm beside it",
+                          2.0 * options.open_mm, kMostOff_mm),
+                 "seed", "Click farther inside, give the range of HU or open by less"};
+  }
+  if (growth.seed_off_mm > 0.0) {
+    growth.steps.push_back(said("the seed itself lies %.1f mm beside it", growth.seed_off_mm));
+  }
   return growth;
 }
 

@@ -41,14 +41,17 @@ struct Growth {
   double ml = 0.0;
   // It reaches the scan's border, or over kMostOfScan of it: perhaps not the structure alone.
   bool leaked = false;
+  double seed_off_mm = 0.0;  // from the seed to the nearest of its voxels; 0: it holds the seed
   std::vector<std::string> steps;  // what was done, in words
 };
 constexpr double kMostOfScan = 0.15;
+constexpr double kMostOff_mm =
+    10.0;  // a vessel's radius: a click in one still grows what is around
 
 // `seed_mm` in the patient's LPS frame. Two threads inside; takes one and a half bytes a voxel
 // beside the volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT,
-// OTHER_GRID (of the others), NOTHING_GROWN (no room for the ball within 20 mm of the seed),
-// CANCELLED, OUT_OF_MEMORY.
+// OTHER_GRID (of the others), NOTHING_GROWN (no room for the ball near the seed, or what has it
+// does not come within kMostOff_mm of the seed: it is another organ), CANCELLED, OUT_OF_MEMORY.
 Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options = {},
                     const Progress& progress = Progress());
 

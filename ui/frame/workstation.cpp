@@ -275,8 +275,8 @@ void Workstation::openInBackground(Opened opening) {
       [this, labels, answers](Result<Opened> outcome) {
         placing_ = false;
         // A choice that has an option beside refusing is a question.
-        static const std::map<std::string, std::string> kQuestions{{"HU_NOT_TISSUE", "keep"},
-                                                                   {"OTHER_FRAME", "keep"}};
+        static const std::map<std::string, std::string> kQuestions{
+            {"HU_NOT_TISSUE", "keep"}, {"MIRRORED", "keep"}, {"OTHER_FRAME", "keep"}};
         if (!outcome && kQuestions.contains(outcome.error().code)) {
           emit structuresAsked(outcome.error(), labels, answers,
                                kQuestions.at(outcome.error().code));

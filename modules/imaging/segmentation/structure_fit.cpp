@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "imaging/common/text.h"
+#include "imaging/segmentation/structure_hu.h"
 
 namespace trephine {
 
@@ -15,136 +16,11 @@ namespace {
 
 // A structure of which more lies beyond the CT is another patient's, or in another place.
 constexpr double kMostOutside_percent = 50.0;
-// Turned about, the same structures would have HU that lie this much closer together.
-constexpr double kMirrorIsBetter = 0.6;
-// And no further apart than an organ with its vessels: what is mirrored lies on something.
-constexpr double kMostMirrored_HU = 200.0;
-// Structures that are this close in HU anywhere say nothing about their place.
-constexpr double kLeastSpread_HU = 25.0;
-// Of a structure's voxels so many have HU of its kind, or nearly (noise, blur).
-constexpr double kLeastOfKind = 0.8, kNearKind_HU = 60.0;
-constexpr int kHuBins = 4096;  // of -1024 to 3071
 
 std::string number(double value, int digits = 0) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
-}
-
-struct NamedKind {
-  std::vector<const char*> words;
-  HuOfKind hu;
-};
-
-// Broad: with and without contrast, whatever the scanner. A word is one of the name's own.
-const std::vector<NamedKind>& kinds() {
-  static const std::vector<NamedKind> all = {
-      {{"lung", "lungs", "trachea", "bronchus", "airway", "sinus"},
-       {"lung or airway", -1024, -300}},
-      {{"fat", "adipose"}, {"fat", -200, 0}},
-      {{"bone", "bones", "skull", "cranium", "mandible", "vertebra", "vertebrae", "rib", "ribs",
-        "femur", "humerus", "sacrum", "hip", "pelvis", "clavicula", "scapula", "sternum", "table"},
-       {"bone", 100, 3071}},
-      {{"liver", "spleen", "pancreas", "kidney", "kidneys", "prostate", "thyroid"},
-       {"a solid organ", -20, 300}},
-      {{"tumour", "tumor", "lesion", "metastasis"}, {"a tumour", -50, 300}},
-      {{"muscle", "autochthon", "iliopsoas", "gluteus", "heart", "myocardium"},
-       {"muscle", -50, 300}},
-      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {"a vessel", -10, 700}},
-      {{"brain", "cerebellum", "ventricle", "ventricles"}, {"brain", -10, 120}},
-      {{"bladder", "gallbladder"}, {"a bladder", -50, 700}},
-      {{"skin", "scalp", "capsule"}, {"skin or a capsule", -300, 300}}};
-  return all;
-}
-
-std::vector<std::string> wordsOf(const std::string& name) {
-  std::vector<std::string> words(1);
-  for (const char c : name) {
-    const bool letter = std::isalnum(static_cast<unsigned char>(c)) || (c & 0x80);
-    if (letter) {
-      words.back() += char(std::tolower(static_cast<unsigned char>(c)));
-    } else if (!words.back().empty()) {
-      words.emplace_back();
-    }
-  }
-  return words;
-}
-
-struct Counts {
-  std::vector<std::uint32_t> bins = std::vector<std::uint32_t>(kHuBins);
-  std::size_t total = 0;
-
-  void add(std::int16_t hu) {
-    ++bins[std::size_t(std::clamp(int(hu) + 1024, 0, kHuBins - 1))];
-    ++total;
-  }
-  double percentile(double share) const {
-    const double wanted = share * double(total);
-    double seen = 0.0;
-    for (int bin = 0; bin < kHuBins; ++bin) {
-      seen += bins[std::size_t(bin)];
-      if (seen >= wanted && seen > 0.0) return bin - 1024.0;
-    }
-    return kHuBins - 1025.0;
-  }
-  double shareIn(double low, double high) const {
-    double in = 0.0;
-    for (int bin = 0; bin < kHuBins; ++bin) {
-      if (bin - 1024 >= low && bin - 1024 <= high) in += bins[std::size_t(bin)];
-    }
-    return in / double(total);
-  }
-};
-
-using CountsByLabel = std::array<std::optional<Counts>, 256>;
-
-// HU of each label's voxels, as the map lies or turned about along one of its axes.
-CountsByLabel countHu(const LabelMap& map, const Volume& ct, int turned_axis = -1) {
-  CountsByLabel counts;
-  const Index3& size = map.geometry.size;
-  std::size_t voxel = 0;
-  for (int k = 0; k < size[2]; ++k) {
-    for (int j = 0; j < size[1]; ++j) {
-      for (int i = 0; i < size[0]; ++i, ++voxel) {
-        const std::uint8_t label = map.labels[voxel];
-        if (label == 0) continue;
-        if (!counts[label]) counts[label].emplace();
-        const int a = turned_axis == 0 ? size[0] - 1 - i : i;
-        const int b = turned_axis == 1 ? size[1] - 1 - j : j;
-        const int c = turned_axis == 2 ? size[2] - 1 - k : k;
-        counts[label]->add(ct.hu[map.geometry.indexOf(a, b, c)]);
-      }
-    }
-  }
-  return counts;
-}
-
-// How far HU lie apart within structures: the mean over voxels of their structure's 10th to 90th
-// percentile.
-double spread_HU(const CountsByLabel& counts) {
-  double sum = 0.0, total = 0.0;
-  for (const auto& of : counts) {
-    if (!of) continue;
-    sum += double(of->total) * (of->percentile(0.9) - of->percentile(0.1));
-    total += double(of->total);
-  }
-  return total > 0.0 ? sum / total : 0.0;
-}
-
-// Along which axis of the CT structures would have to be turned about to lie on what they are of;
-// -1: none.
-int mirroredAxis(const LabelMap& map, const Volume& ct, double spread) {
-  if (spread < kLeastSpread_HU) return -1;
-  int best = -1;
-  double least = std::min(kMirrorIsBetter * spread, kMostMirrored_HU);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double turned = spread_HU(countHu(map, ct, axis));
-    if (turned < least) {
-      least = turned;
-      best = axis;
-    }
-  }
-  return best;
 }
 
 // The patient's axis that a grid's axis runs along most.
@@ -175,6 +51,32 @@ VoxelBox coveredBy(const GridGeometry& of, const GridGeometry& ct) {
     box.high[a] = int(std::clamp(std::floor(high[int(a)] - 1e-3) + 1.0, double(box.low[a]), n));
   }
   return box;
+}
+
+// Of the CT's voxels, the share whose middles lie in the other grid; `box` holds them.
+double shareCovered(const GridGeometry& of, const GridGeometry& ct, const VoxelBox& box) {
+  const Mat4 to_other = of.patientToVoxel() * ct.voxelToPatient();
+  const Vec3 step(to_other[0]);
+  std::size_t inside = 0;
+  for (int k = box.low[2]; k < box.high[2]; ++k) {
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+      // The part of the row that all three axes of the other leave.
+      const Vec3 start(to_other * glm::dvec4(0, j, k, 1));
+      double low = box.low[0], high = box.high[0] - 1;
+      for (int a = 0; a < 3; ++a) {
+        const double least = -0.5 - 1e-3 - start[a];
+        const double most = of.size[std::size_t(a)] - 0.5 + 1e-3 - start[a];
+        if (std::abs(step[a]) < 1e-9) {
+          if (least > 0.0 || most < 0.0) high = low - 1;
+          continue;
+        }
+        low = std::max(low, std::min(least / step[a], most / step[a]));
+        high = std::min(high, std::max(least / step[a], most / step[a]));
+      }
+      inside += std::size_t(std::max(0.0, std::floor(high) - std::ceil(low) + 1.0));
+    }
+  }
+  return double(inside) / double(ct.voxelCount());
 }
 
 // Whether voxels of the one lie on voxels of the other: same axes but for order and sense, same
@@ -250,6 +152,17 @@ class Asking {
  public:
   Asking(const Answers& answers, bool ask_all, StructureFit& fit)
       : answers_(answers), ask_all_(ask_all), fit_(fit) {}
+
+  // Kept only where a person says so.
+  Status refuseUnless(Choice choice) {
+    const auto given = answers_.find(choice.code);
+    if (given == answers_.end() || given->second != "keep") {
+      return Error{choice.code, choice.question, "the segmentation",
+                   "Export it again with its orientation, or answer " + choice.code + "=keep"};
+    }
+    fit_.choices.push_back(std::move(choice));
+    return {};
+  }
 
   // The option that was chosen, or the one for nobody's answer.
   Result<std::string> ask(Choice choice) {
@@ -356,11 +269,15 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
   if (!map) return map.error();
   fit.map = *std::move(map);
   fit.resampled = !sharesVoxels(of.geometry, g);
-  fit.covers = coveredBy(of.geometry, g);
-  double covered = 1.0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    covered *= double(fit.covers.high[a] - fit.covers.low[a]) / g.size[a];
+  if (fit.resampled) {
+    fit.findings.push_back({"RESAMPLED",
+                            "notice",
+                            "The file's voxels are not the CT's",
+                            {},
+                            "Each voxel of the CT takes what its middle lies in"});
   }
+  fit.covers = coveredBy(of.geometry, g);
+  const double covered = shareCovered(of.geometry, g, fit.covers);
   fit.covers_percent = 100.0 * covered;
   if (covered < 1.0) {
     fit.findings.push_back({"PART_OF_CT",
@@ -372,14 +289,21 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
   }
   if (progress.cancelled()) return cancelled;
   progress.at(0.6, "Looking at the structures' HU");
-  const CountsByLabel counts = countHu(fit.map, ct);
-  const int mirrored = mirroredAxis(fit.map, ct, spread_HU(counts));
-  if (mirrored >= 0) {
-    return Error{"MIRRORED",
-                 std::string("The segmentation is mirrored: its structures lie on what they are of "
-                             "when ") +
-                     sidesAlong(g, mirrored) + " change places",
-                 "the segmentation", "Export it again with its orientation"};
+  const HuByLabel counts = huOf(fit.map, ct);
+  if (const auto mirrored = mirroredAxis(fit.map, ct, fit.covers, counts)) {
+    const std::string what = std::string(
+                                 "The segmentation is mirrored: its structures lie on what "
+                                 "they are of when ") +
+                             sidesAlong(g, *mirrored) + " change places";
+    if (Status taken =
+            asking.refuseUnless({"MIRRORED",
+                                 what,
+                                 {"refuse", "keep"},
+                                 {"Do not use the segmentation", "Use it all the same"}});
+        !taken) {
+      return taken.error();
+    }
+    fit.findings.push_back({"MIRRORED", "notice", what, {}, "It was kept"});
   }
   if (progress.cancelled()) return cancelled;
 
@@ -394,7 +318,7 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
     card.colour = structure.colour;
     card.ml_in_file = double(shares[s].voxels) * file_ml;
     const auto& of_it = counts[std::size_t(structure.label)];
-    card.voxels = of_it ? of_it->total : 0;
+    card.voxels = of_it ? of_it->total() : 0;
     card.ml = double(card.voxels) * ct_ml;
     if (shares[s].voxels > 0) {
       card.outside_percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
@@ -412,9 +336,7 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
       card.hu = {of_it->percentile(0.05), of_it->percentile(0.5), of_it->percentile(0.95)};
       const auto kind = huOfKind(structure.name, structure.tissue);
       const double median = (*card.hu)[1];
-      const double of_kind =
-          kind ? of_it->shareIn(kind->low - kNearKind_HU, kind->high + kNearKind_HU) : 1.0;
-      if (kind && (median < kind->low || median > kind->high || of_kind < kLeastOfKind)) {
+      if (kind && !isOfKind(*of_it, *kind)) {
         doubtful.push_back("'" + structure.name + "' has a median of " + number(median) + " HU, " +
                            number((*card.hu)[0]) + " to " + number((*card.hu)[2]) +
                            " but for a "
@@ -472,18 +394,6 @@ Json toJson(const Choice& choice) {
 }
 
 }  // namespace
-
-std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tissue) {
-  for (const std::string* text : {&name, &tissue}) {
-    const std::vector<std::string> words = wordsOf(*text);
-    for (const NamedKind& kind : kinds()) {
-      for (const char* word : kind.words) {
-        if (std::ranges::find(words, word) != words.end()) return kind.hu;
-      }
-    }
-  }
-  return {};
-}
 
 Result<StructureFit> fitStructures(const Segmentation& segmentation, const Volume& ct,
                                    const Answers& answers, bool ask_all, const Progress& progress) {

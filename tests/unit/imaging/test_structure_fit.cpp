@@ -130,6 +130,68 @@ TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
   EXPECT_NE(fit.error().what.find("left and right"), std::string::npos) << fit.error().what;
 }
 
+TEST(StructureFit, AMirroredOneIsTakenWhereAPersonSaysSoAndNotElse) {
+  Segmentation of = liverOf(abdomen().truth);
+  const GridGeometry& g = of.geometry;
+  const auto straight = of.layers[0];
+  for (std::size_t v = 0; v < straight.size(); ++v) {
+    const Index3 at = g.indicesOf(v);
+    of.layers[0][g.indexOf(g.size[0] - 1 - at[0], at[1], at[2])] = straight[v];
+  }
+  EXPECT_EQ(codeOf(of, {}, false), "MIRRORED") << "nor where nobody is asked";
+  EXPECT_EQ(codeOf(of, {{"MIRRORED", "keep"}, {"HU_NOT_TISSUE", "keep"}}), "fits");
+}
+
+// Each structure alone, in its place: whatever would have closer HU elsewhere.
+TEST(StructureFit, NothingThatLiesInItsPlaceIsTakenForMirrored) {
+  const LabelMap& truth = abdomen().truth;
+  for (const Structure& s : truth.structures) {
+    for (const std::string& name : {s.name, std::string("target"), std::string("vertebra")}) {
+      Segmentation of = liverOf(truth);
+      for (std::size_t v = 0; v < truth.labels.size(); ++v) {
+        of.layers[0][v] = truth.labels[v] == s.label;
+      }
+      of.segments[0].name = name;
+      EXPECT_NE(codeOf(of, {}, false), "MIRRORED") << s.name << " as " << name;
+    }
+  }
+}
+
+// Organs in their places, in a CT of which the file has a part: 82 slices too low they lie on
+// something else, and so they do turned about.
+TEST(StructureFit, WhatLiesTooLowIsAskedAboutByItsHuAndNotCalledMirrored) {
+  const int slices = abdomen().ct.geometry.size[2];
+  Segmentation of = part(slices / 2, slices * 3 / 4);
+  of.geometry.origin_mm = abdomen().ct.geometry.origin_mm;
+  const std::string code = codeOf(of);
+  EXPECT_TRUE(code == "HU_NOT_TISSUE" || code == "fits") << code;
+}
+
+TEST(StructureFit, WhatAnObliqueFileCoversIsCounted) {
+  Segmentation of = liverOf(abdomen().truth);
+  const Vec3 middle = of.geometry.centre_mm();
+  of.geometry.direction =
+      glm::mat3_cast(glm::angleAxis(glm::radians(45.0), Vec3(0, 0, 1))) * of.geometry.direction;
+  of.geometry.origin_mm += middle - of.geometry.centre_mm();
+  const auto fit = fitStructures(of, abdomen().ct, {{"HU_NOT_TISSUE", "keep"}}, false);
+  ASSERT_TRUE(fit) << fit.error().sentence();
+  const GridGeometry& g = abdomen().ct.geometry;
+  const Mat4 to_file = of.geometry.patientToVoxel() * g.voxelToPatient();
+  std::size_t inside = 0;
+  for (std::size_t v = 0; v < g.voxelCount(); ++v) {
+    const Index3 at = g.indicesOf(v);
+    const Vec3 there(to_file * glm::dvec4(at[0], at[1], at[2], 1.0));
+    bool in = true;
+    for (int a = 0; a < 3; ++a) {
+      in = in && there[a] > -0.5 && there[a] < of.geometry.size[std::size_t(a)] - 0.5;
+    }
+    inside += in;
+  }
+  EXPECT_NEAR(fit->covers_percent, 100.0 * double(inside) / double(g.voxelCount()), 0.1);
+  EXPECT_LT(fit->covers_percent, 95.0);
+  EXPECT_TRUE(found(fit->findings, "RESAMPLED"));
+}
+
 TEST(StructureFit, AStructureWhoseHuCannotBeItsTissueIsAskedAbout) {
   Segmentation of = liverOf(abdomen().truth);
   of.segments[0].name = "Left_lung";

@@ -184,6 +184,30 @@ TEST(Grow, DoesNotPassAWallNorTakeWhatOthersHave) {
   EXPECT_EQ(grow(volume, left, options).error().code, "OTHER_GRID");
 }
 
+// Two balls far apart; between them a place of their HU that has no room.
+TEST(Grow, NeverGivesAnOrganThatThePlaceIsNotOf) {
+  Volume volume = twoBallsAndABar();
+  const GridGeometry& g = volume.geometry;
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    const Index3 at = g.indicesOf(n);
+    const Vec3 off = Vec3(at[0], at[1], at[2]) - Vec3(60.0, 35.0, 35.0);
+    if (std::abs(off.x) < 26.0 && std::hypot(off.y, off.z) > 3.0 && std::abs(off.x) < 14.0) {
+      volume.hu[n] = -100;
+    }
+  }
+  const auto between = grow(volume, g.toPatient_mm({58.0, 35.0, 35.0}));
+  if (between) {
+    EXPECT_LE(between->seed_off_mm, kMostOff_mm);
+  } else {
+    EXPECT_EQ(between.error().code, "NOTHING_GROWN");
+  }
+  // Beside the ball, nearer than a vessel is wide: the ball, and it is said.
+  const auto beside = grow(volume, g.toPatient_mm({5.0, 35.0, 35.0}));
+  ASSERT_TRUE(beside) << beside.error().sentence();
+  EXPECT_NEAR(beside->seed_off_mm, 5.0, 2.0);
+  EXPECT_NE(beside->steps.back().find("beside"), std::string::npos);
+}
+
 TEST_F(GrowInAbdomen, CanBeCancelledAtAnyStep) {
   for (const std::string step : {"blocks", "core", "border"}) {
     Progress* told = nullptr;

@@ -1,0 +1,155 @@
+#include "imaging/segmentation/structure_hu.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace trephine {
+
+namespace {
+
+constexpr double kLeastOfKind = 0.8, kNearKind_HU = 60.0;
+// Of the voxels whose names say a kind: fewer than these have it as they lie, and more than these
+// would have it turned about.
+constexpr double kFewHere = 0.5, kMostTurned = 0.9;
+
+struct NamedKind {
+  std::vector<const char*> words;
+  HuOfKind hu;
+};
+
+// Broad: with and without contrast, whatever the scanner. A word is one of the name's own.
+const std::vector<NamedKind>& kinds() {
+  static const std::vector<NamedKind> all = {
+      {{"lung", "lungs", "trachea", "bronchus", "airway", "sinus"},
+       {"lung or airway", -1024, -300}},
+      {{"fat", "adipose"}, {"fat", -200, 0}},
+      {{"bone", "bones", "skull", "cranium", "mandible", "vertebra", "vertebrae", "rib", "ribs",
+        "femur", "humerus", "sacrum", "hip", "pelvis", "clavicula", "scapula", "sternum", "table"},
+       {"bone", 100, 3071}},
+      {{"liver", "spleen", "pancreas", "kidney", "kidneys", "prostate", "thyroid"},
+       {"a solid organ", -20, 300}},
+      {{"tumour", "tumor", "lesion", "metastasis"}, {"a tumour", -50, 300}},
+      {{"muscle", "autochthon", "iliopsoas", "gluteus", "heart", "myocardium"},
+       {"muscle", -50, 300}},
+      {{"vessel", "vessels", "aorta", "vein", "artery", "cava", "portal"}, {"a vessel", -10, 700}},
+      {{"brain", "cerebellum", "ventricle", "ventricles"}, {"brain", -10, 120}},
+      {{"bladder", "gallbladder"}, {"a bladder", -50, 700}},
+      {{"skin", "scalp", "capsule"}, {"skin or a capsule", -300, 300}}};
+  return all;
+}
+
+std::vector<std::string> wordsOf(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : name) {
+    const bool letter = std::isalnum(static_cast<unsigned char>(c)) || (c & 0x80);
+    if (letter) {
+      words.back() += char(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  return words;
+}
+
+// The share of voxels, of those whose names say a kind, whose structures have it; none say: 1.
+double shareOfKind(const LabelMap& map, const HuByLabel& hu) {
+  double of_kind = 0.0, all = 0.0;
+  for (const Structure& s : map.structures) {
+    const auto& counts = hu[std::size_t(s.label)];
+    const auto kind = huOfKind(s.name, s.tissue);
+    if (!counts || !kind) continue;
+    all += double(counts->total());
+    if (isOfKind(*counts, *kind)) of_kind += double(counts->total());
+  }
+  return all > 0.0 ? of_kind / all : 1.0;
+}
+
+}  // namespace
+
+void HuCounts::add(std::int16_t hu) {
+  ++bins_[std::size_t(std::clamp(int(hu) + 1024, 0, kBins - 1))];
+  ++total_;
+}
+
+double HuCounts::percentile(double share) const {
+  const double wanted = share * double(total_);
+  double seen = 0.0;
+  for (int bin = 0; bin < kBins; ++bin) {
+    seen += bins_[std::size_t(bin)];
+    if (seen >= wanted && seen > 0.0) return bin - 1024.0;
+  }
+  return kBins - 1025.0;
+}
+
+double HuCounts::shareIn(double low, double high) const {
+  double in = 0.0;
+  for (int bin = 0; bin < kBins; ++bin) {
+    if (bin - 1024 >= low && bin - 1024 <= high) in += bins_[std::size_t(bin)];
+  }
+  return in / double(total_);
+}
+
+HuByLabel huOf(const LabelMap& map, const Volume& ct) {
+  HuByLabel counts;
+  for (std::size_t voxel = 0; voxel < map.labels.size(); ++voxel) {
+    const std::uint8_t label = map.labels[voxel];
+    if (label == 0) continue;
+    if (!counts[label]) counts[label].emplace();
+    counts[label]->add(ct.hu[voxel]);
+  }
+  return counts;
+}
+
+HuByLabel huOfTurned(const LabelMap& map, const Volume& ct, int axis, const VoxelBox& box) {
+  HuByLabel counts;
+  const auto turned = [&](int a, int n) {
+    const auto side = std::size_t(a);
+    return a == axis ? box.low[side] + box.high[side] - 1 - n : n;
+  };
+  for (int k = box.low[2]; k < box.high[2]; ++k) {
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+      for (int i = box.low[0]; i < box.high[0]; ++i) {
+        const std::uint8_t label = map.labels[map.geometry.indexOf(i, j, k)];
+        if (label == 0) continue;
+        if (!counts[label]) counts[label].emplace();
+        counts[label]->add(ct.at(turned(0, i), turned(1, j), turned(2, k)));
+      }
+    }
+  }
+  return counts;
+}
+
+bool isOfKind(const HuCounts& hu, const HuOfKind& kind) {
+  const double median = hu.percentile(0.5);
+  return median >= kind.low && median <= kind.high &&
+         hu.shareIn(kind.low - kNearKind_HU, kind.high + kNearKind_HU) >= kLeastOfKind;
+}
+
+std::optional<int> mirroredAxis(const LabelMap& map, const Volume& ct, const VoxelBox& covers,
+                                const HuByLabel& here) {
+  if (shareOfKind(map, here) >= kFewHere) return {};
+  std::optional<int> best;
+  double most = kMostTurned;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = shareOfKind(map, huOfTurned(map, ct, axis, covers));
+    if (share >= most && (!best || share > most)) {
+      most = share;
+      best = axis;
+    }
+  }
+  return best;
+}
+
+std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tissue) {
+  for (const std::string* text : {&name, &tissue}) {
+    const std::vector<std::string> words = wordsOf(*text);
+    for (const NamedKind& kind : kinds()) {
+      for (const char* word : kind.words) {
+        if (std::ranges::find(words, word) != words.end()) return kind.hu;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace trephine
