@@ -102,7 +102,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QFile::remove(windowSettings().fileName());
   }
 
-  // A click on the face that a clip plane cuts through the liver, as one sees it.
+  // At the liver's surface, through the ghost of the ribs.
   void aClickInThePictureGrowsTheLiver() {
     QVERIFY(!workstation().currentCase()->structures);
     views().setTool(SliceTool::grow);
@@ -126,7 +126,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QCOMPARE(liver->colour.x, workstation().scene()->tissues.find("liver")->colour.x);
   }
 
-  // A shell of the liver that no tissue asks for, in a colour of its own.
+  // The skin hides the liver, shows it as a ghost, and is gone.
   void aStructureThatNoTissueIsOfIsSeenShownGhostedAndHidden() {
     views().setTool(SliceTool::window);
     list()->setCurrentItem(row("liver"));
