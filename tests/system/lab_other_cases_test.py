@@ -1,0 +1,45 @@
+"""Exercises on cases that are not their own: they run, and say so."""
+
+import json
+import unittest
+
+from lab_support import SCENES, LabTest, data_folder, lab
+
+ALL = sorted(file.stem for file in SCENES.glob("*.json"))
+CRANIAL = [name for name in ALL if json.loads((SCENES / f"{name}.json").read_text())["anatomy"] == "cranium"]
+OTHER = "OTHER_ANATOMY"
+
+
+class OtherCases(LabTest):
+    def warnings(self, name, case):
+        run = lab("run", SCENES / f"{name}.json", "--case", case, "--seconds", 0.2, "--out",
+                  self.folder / "out")
+        return {warning["code"] for warning in run["warnings"]}
+
+    def test_every_exercise_runs_on_every_built_in_case_and_says_where_it_is_for_another(self):
+        for case, anatomy in (("phantom:cranium", "cranium"), ("phantom:abdomen", "abdomen")):
+            for name in ALL:
+                said = self.warnings(name, case)
+                self.assertEqual(OTHER in said, (name in CRANIAL) != (anatomy == "cranium"), name)
+                if OTHER not in said:
+                    self.assertEqual(said, set(), name)
+
+    @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
+    def test_every_exercise_runs_on_a_real_abdomen(self):
+        for name in ALL:
+            said = self.warnings(name, data_folder() / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz")
+            self.assertLessEqual(said, {OTHER, "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"}, name)
+            self.assertEqual(OTHER in said, name in CRANIAL, name)
+
+    @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
+    def test_every_exercise_runs_on_a_real_skull_and_those_for_it_without_a_word(self):
+        for name in ALL:
+            said = self.warnings(name, data_folder() / "head-ct-plastic-skull")
+            if name in CRANIAL:
+                self.assertEqual(said, set(), name)
+            else:
+                self.assertIn(OTHER, said, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
