@@ -143,7 +143,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     liver_.structures = {{1, "liver", Vec3(0.5, 0.2, 0.2)}};
     source_ = toPath(temporary_.filePath("source"));
     SegWriting scanner;  // UIDs come of what is written: the window's must be others
-    scanner.text.patient_id = "SCANNED";
+    scanner.text.series_description = "scanned";
     const auto written = writeStructuresAsDicom(ct, liver_, source_, scanner);
     QVERIFY2(written.ok(), written ? "" : written.error().sentence().c_str());
     window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
