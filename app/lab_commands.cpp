@@ -123,10 +123,12 @@ int replayCommand(const std::string& file, const std::string& case_source,
     printAnswer("replay", {{"ticks", result->ticks},
                            {"identical", result->identical},
                            {"first_difference", difference},
+                           {"structures_cut", toJson(result->structures_cut)},
                            {"volume_sha256", result->volume_sha256}});
   } else {
     std::printf("%llu ticks replayed: %s\n", static_cast<unsigned long long>(result->ticks),
                 result->identical ? "identical" : "different");
+    for (const std::string& cut : linesOf(result->structures_cut)) std::printf("%s\n", cut.c_str());
     if (!result->identical) std::printf("first difference: %s\n", difference.dump().c_str());
   }
   return result->identical ? 0 : 3;

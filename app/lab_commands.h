@@ -57,6 +57,7 @@ struct StructureImportArguments {
   std::string case_source;
   std::string file;
   std::vector<std::string> choices;  // CODE=OPTION
+  std::optional<double> threshold;   // of a fractional one
   std::string write;                 // a label map; empty: none
 };
 
@@ -67,6 +68,8 @@ struct StructureExportArguments {
   std::vector<std::string> choices;  // CODE=OPTION
   std::string write;                 // a label map or a surface
   std::string dicom;                 // or a folder
+  bool source_uids = false;          // which refers to the CT of the case instead of holding one
+  std::optional<double> threshold;   // of a fractional segmentation
 };
 
 int growCommand(const GrowArguments& arguments, bool json, const Progress&);

@@ -11,7 +11,9 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
+#include "base/log.h"
 #include "imaging/dicom/seg_writer.h"
+#include "imaging/source_uids.h"
 #include "imaging/structure_importer.h"
 #include "session/case.h"
 #include "structures/compare.h"
@@ -272,6 +274,20 @@ Result<Answers> answersOf(const std::vector<std::string>& choices) {
   return answers;
 }
 
+StructureRequest request(const std::optional<double>& threshold, const Answers& answers,
+                         const Case& of) {
+  StructureRequest made{answers, true, sourceOf(of)};
+  made.threshold = threshold.value_or(made.threshold);
+  return made;
+}
+
+// Also where the file turns out to have no shares: a slip of the pen is said.
+Status checkThreshold(const std::optional<double>& threshold) {
+  if (!threshold || (*threshold >= 0.0 && *threshold <= 1.0)) return {};
+  return Error{"BAD_THRESHOLD", "The threshold of a fractional segmentation is a share of 0 to 1",
+               "--threshold", "Give one, such as 0.5"};
+}
+
 void print(const StructureFit& fit) {
   for (const StructureCard& card : fit.structures) {
     std::printf("%-24s %9.1f mL", card.name.c_str(), card.ml);
@@ -295,6 +311,7 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
   const auto failed = [&](const Error& error) { return printError(kName, error, json); };
   const auto answers = answersOf(arguments.choices);
   if (!answers) return failed(answers.error());
+  if (Status share = checkThreshold(arguments.threshold); !share) return failed(share.error());
   if (!arguments.write.empty()) {
     if (Status target = checkStructureTarget(arguments.write, arguments.case_source); !target) {
       return failed(target.error());
@@ -302,8 +319,9 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
   }
   const Result<Case> of = readCase(arguments.case_source, Progress(progress, 0.0, 0.5));
   if (!of) return failed(of.error());
-  const auto fit = importStructures(arguments.file, *of->volume, {*answers, true, sourceOf(*of)},
-                                    Progress(progress, 0.5, 0.9));
+  const auto fit =
+      importStructures(arguments.file, *of->volume, request(arguments.threshold, *answers, *of),
+                       Progress(progress, 0.5, 0.9));
   if (!fit) return failed(fit.error());
   if (!arguments.write.empty()) {
     const Status written = writeSegmentation(
@@ -329,8 +347,8 @@ Result<std::shared_ptr<const LabelMap>> structuresOf(const StructureExportArgume
     return Error{"NO_STRUCTURE", "The case brings no structures of its own", "--structures",
                  "Give a label map or a segmentation of it"};
   }
-  auto fit =
-      importStructures(arguments.structures, *of.volume, {answers, true, sourceOf(of)}, progress);
+  auto fit = importStructures(arguments.structures, *of.volume,
+                              request(arguments.threshold, answers, of), progress);
   if (!fit) return fit.error();
   return std::make_shared<const LabelMap>(std::move(fit->map));
 }
@@ -386,7 +404,12 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   const auto failed = [&](const Error& error) { return printError(kName, error, json); };
   const auto answers = answersOf(arguments.choices);
   if (!answers) return failed(answers.error());
+  if (Status share = checkThreshold(arguments.threshold); !share) return failed(share.error());
   const bool stl = arguments.write.ends_with(".stl");
+  if (arguments.source_uids && arguments.dicom.empty()) {
+    return failed({"BAD_ARGUMENT", "The CT's own UIDs go into DICOM alone", "--source-uids",
+                   "Give --dicom FOLDER as well"});
+  }
   if (arguments.write.empty() == arguments.dicom.empty()) {
     return failed({"BAD_ARGUMENT", "Where to is not said, or twice", "--write, --dicom",
                    "Give --write FILE or --dicom FOLDER"});
@@ -428,18 +451,37 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
     rows.push_back(std::move(row));
   }
   if (!arguments.dicom.empty()) {
-    const auto written = writeStructuresAsDicom(*of->volume, *chosen, arguments.dicom, {},
-                                                Progress(progress, 0.6, 1.0));
+    SegWriting writing;
+    if (arguments.source_uids) {
+      auto uids = sourceUids(arguments.case_source, of->provenance.value_or(Provenance()),
+                             of->volume->geometry, Progress(progress, 0.6, 0.7));
+      if (!uids) {
+        Error error = uids.error();
+        if (error.where.empty()) error.where = arguments.case_source;
+        return failed(error);
+      }
+      writing.source = *std::move(uids);
+    }
+    const auto written = writeStructuresAsDicom(*of->volume, *chosen, arguments.dicom, writing,
+                                                Progress(progress, 0.7, 1.0));
     if (!written) return failed(written.error());
     for (const std::string& note : written->notes) text += note + "\n";
     files.push_back(arguments.dicom);
+    if (arguments.source_uids) {
+      spdlog::warn(
+          "structures.dcm names the UIDs of the patient's own CT: it finds the patient where that "
+          "is "
+          "kept. Give it only to whom the CT may be given");
+    }
   } else if (!stl) {
     const Status written = writeSegmentation(
         *chosen, arguments.write, reversedSlicesOf(arguments.case_source, *of), progress);
     if (!written) return failed(written.error());
     files.push_back(arguments.write);
   }
-  return printOutcome(kName, {{"structures", rows}, {"files", files}}, text, std::nullopt, json);
+  return printOutcome(
+      kName, {{"structures", rows}, {"files", files}, {"names_source_uids", arguments.source_uids}},
+      text, std::nullopt, json);
 }
 
 }  // namespace trephine

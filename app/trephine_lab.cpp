@@ -119,6 +119,8 @@ int run(int argc, char** argv) {
       ->required();
   import_structures_command->add_option("--choice", structures.choices,
                                         "CODE=OPTION: the answer to a question of its");
+  import_structures_command->add_option("--threshold", structures.threshold,
+                                        "Of a fractional DICOM SEG: the least share of a voxel");
   import_structures_command->add_option(
       "--write", structures.write,
       "As a label map on the CT's own grid: .nii, .nii.gz, .mha or .nrrd");
@@ -135,11 +137,16 @@ int run(int argc, char** argv) {
   export_structures_command->add_option("--name", exported.names, "These alone");
   export_structures_command->add_option("--choice", exported.choices,
                                         "CODE=OPTION: the answer to a question of the import's");
+  export_structures_command->add_option("--threshold", exported.threshold,
+                                        "Of a fractional DICOM SEG: the least share of a voxel");
   export_structures_command->add_option(
       "--write", exported.write, "A label map (.nii, .nii.gz, .mha, .nrrd) or the surfaces (.stl)");
   export_structures_command->add_option(
       "--dicom", exported.dicom,
       "Instead: a folder for a DICOM SEG and the CT beside it, under new UIDs and of nobody");
+  export_structures_command->add_flag(
+      "--source-uids", exported.source_uids,
+      "With --dicom, of a case from DICOM: the SEG alone, which names the UIDs of that CT");
   auto* compare_command = with_json(structures_command->add_subcommand(
       "compare", "How alike two label maps of one grid are, structure by structure"));
   std::string other;

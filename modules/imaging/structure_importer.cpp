@@ -80,6 +80,15 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
   if (Status of = match(*read, ct, request, asked); !of) return of.error();
   Result<StructureFit> fit =
       fitStructures(read->segmentation, ct, request.answers, request.ask_all, fitting);
+  if (fit && read->fractional) {
+    fit->fractional = true;
+    fit->findings.push_back(
+        {"FRACTIONAL",
+         "notice",
+         "The file says how much of each voxel a structure has",
+         {},
+         "It has a voxel from a share of " + plainNumber(request.threshold) + " on"});
+  }
   if (fit && asked) {
     fit->findings.push_back({asked->code, "notice", asked->question, {}, "It was kept"});
     fit->choices.push_back(*std::move(asked));

@@ -84,6 +84,7 @@ Json toJson(const RunReport& report) {
           {"arms", arms},
           {"removed_mm3", removed},
           {"removed_voxels", report.removed_voxels},
+          {"structures_cut", toJson(report.structures_cut)},
           {"missed_deadlines", report.missed_deadlines},
           {"faults", faults},
           {"warnings", warnings},
@@ -127,6 +128,7 @@ std::string toText(const RunReport& report) {
   for (const auto& [tissue, mm3] : report.removed_mm3) {
     if (mm3 > 0.0) add("  removed of %s: %.0f mm3\n", tissue.c_str(), mm3);
   }
+  for (const std::string& cut : linesOf(report.structures_cut)) text += "  " + cut + "\n";
   add("  a tick took %.1f us (median), %.1f us (99 %%); %llu deadlines missed\n",
       report.tick_ns.median_ns / 1e3, report.tick_ns.p99_ns / 1e3,
       static_cast<unsigned long long>(report.missed_deadlines));

@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "haptics/duration_histogram.h"
 #include "haptics/haptic_types.h"
+#include "volume/cut_structures.h"
 
 namespace trephine {
 
@@ -40,6 +41,7 @@ struct RunReport {
   };
   std::vector<Arm> arms;
   std::vector<std::pair<std::string, double>> removed_mm3;  // by tissue
+  std::vector<CutStructure> structures_cut;                 // of the case; empty where it has none
   std::vector<ArmFault> faults;  // in the order in which they came
   std::vector<Warning> warnings;
   std::optional<bool> memory_locked;  // in real time

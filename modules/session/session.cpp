@@ -111,6 +111,8 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   const double needed_mb = exerciseMb(volume.geometry.voxelCount(), rt::LockedMemory::wasHeld());
   if (Status enough = enoughMemory(needed_mb, "The exercise", "the case"); !enough) return enough;
   sha256_before_ = of.sha256;
+  before_ = of.volume;
+  structures_ = of.structures;
   grid_ = std::make_shared<Grid>(Volume(volume), of.labels);
   warnOfAbsentLabels(scene.tissues, of.labels.get());
   for (const BoundedTissue& b : boundedTissues(scene_)) {
@@ -457,6 +459,7 @@ RunReport Session::report() const {
     arm.removed_mm3 = double(core_->journal().paid(int(i))) * voxel_mm3 / kVoxelShares;
     report.arms.push_back(arm);
   }
+  report.structures_cut = structures_cut_;
   report.faults = faults_;
   report.warnings = warnings_;
   report.memory_locked = memoryLocked();

@@ -134,6 +134,9 @@ class Session {
   std::vector<PlacedLandmark> landmarks_;
   std::vector<TrephineCapabilities> capabilities_;
   std::string sha256_before_, sha256_after_;
+  std::shared_ptr<const Volume> before_;        // the case's
+  std::shared_ptr<const LabelMap> structures_;  // the case's; null: none
+  std::vector<CutStructure> structures_cut_;    // once it has ended
   std::filesystem::path recording_file_;
   std::shared_ptr<Grid> grid_;
   std::unique_ptr<HapticCore> core_;

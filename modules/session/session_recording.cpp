@@ -128,6 +128,7 @@ Status Session::finishRecording() {
   try {
     // Where no tick came the voxels are what they were.
     sha256_after_ = loop_->ticks() == 0 ? sha256_before_ : slabsSha256(slabsOf(*grid_));
+    if (structures_) structures_cut_ = cutStructures(*structures_, *before_, *grid_);
   } catch (const std::bad_alloc&) {
     const Error error = outOfMemory("to end the recording", "the recording");
     if (recorder_) recorder_->abandon(error);

@@ -129,10 +129,14 @@ Status serveJournal(HapticCore& core, JournalFile& journal_file, std::uint64_t t
   return {};
 }
 
-// The label map as the session had it; null where it had none.
-Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& header,
-                                                       const TissueSet& tissues,
-                                                       const LabelMap* given) {
+// Null where the session had none.
+struct RecordedLabels {
+  std::shared_ptr<const LabelMap> structures;  // of the case
+  std::shared_ptr<const LabelMap> placed;      // as the session had them
+};
+
+Result<RecordedLabels> recordedLabels(const RecordingHeader& header, const TissueSet& tissues,
+                                      const LabelMap* given) {
   const auto wrong = [](const char* what, const char* next) {
     return Error{"WRONG_LABELS", what, "--labels", next};
   };
@@ -144,16 +148,17 @@ Result<std::shared_ptr<const LabelMap>> recordedLabels(const RecordingHeader& he
   if (!had && given) {
     return wrong("The session was recorded without a label map", "Leave the label map out");
   }
-  if (!given) return std::shared_ptr<const LabelMap>();
+  if (!given) return RecordedLabels();
   Result<LabelMap> fitted = fitTo(*given, header.geometry);
   if (!fitted) return fitted.error();
   // As they were placed: with the shells that its tissues asked for.
-  auto labels = withShells(tissues, std::make_shared<const LabelMap>(*std::move(fitted)));
+  const auto structures = std::make_shared<const LabelMap>(*std::move(fitted));
+  auto labels = withShells(tissues, structures);
   if (labelsSha256(*labels) != header.labels_sha256) {
     return wrong("The label map is not the one that was recorded: its labels differ",
                  "Give the label map that the session was run with");
   }
-  return labels;
+  return RecordedLabels{structures, std::move(labels)};
 }
 
 }  // namespace
@@ -180,7 +185,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
   Result<std::vector<CarveRecord>> carves = recording.carves();
   if (!carves) return carves.error();
 
-  Result<std::shared_ptr<const LabelMap>> fitted = recordedLabels(header, scene->tissues, labels);
+  Result<RecordedLabels> fitted = recordedLabels(header, scene->tissues, labels);
   if (!fitted) return fitted.error();
 
   const double needed_mb = exerciseMb(volume.geometry.voxelCount());
@@ -188,7 +193,7 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
     return enough.error();
   }
   // The same voxels may come from a file that rounds their place.
-  Grid grid(Volume{header.geometry, volume.hu}, *std::move(fitted));
+  Grid grid(Volume{header.geometry, volume.hu}, fitted->placed);
   HapticCore core(hapticParameters(*scene), *grid.takeWriter());
   const Result<std::filesystem::path> temporary = temporaryFolder();
   if (!temporary) return temporary.error();
@@ -250,6 +255,9 @@ Result<ReplayResult> replay(const SessionReader& recording, const Volume& volume
                                          std::span(*carves).subspan(next_carve), result.ticks);
   }
   result.volume_sha256 = slabsSha256(slabsOf(grid));
+  if (fitted->structures) {
+    result.structures_cut = cutStructures(*fitted->structures, volume, grid);
+  }
   if (!result.first_difference && recording.end() &&
       recording.end()->volume_sha256 != result.volume_sha256) {
     result.first_difference = ReplayDifference{result.ticks, -1, "volume_sha256",

@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "base/result.h"
 #include "training/session_reader.h"
+#include "volume/cut_structures.h"
 #include "volume/label_map.h"
 #include "volume/volume.h"
 
@@ -26,6 +27,7 @@ struct ReplayResult {
   bool identical = false;
   std::optional<ReplayDifference> first_difference;
   std::string volume_sha256;  // after the last replayed tick
+  std::vector<CutStructure> structures_cut;  // by then; empty without a label map
   bool cut_short = false;     // the recording has no end: it was killed
 };
 

@@ -21,6 +21,7 @@ SERIES_KEYS = {
     "hu_min", "hu_max", "tilt_deg", "transfer_syntax", "lossy", "findings", "volume_sha256"}
 RUN_KEYS = {
     "schema", "build", "controller", "controllers", "ticks", "rate_hz", "arms", "removed_mm3", "removed_voxels",
+    "structures_cut",
     "missed_deadlines", "faults", "warnings", "memory_locked", "nonfinite", "events_dropped",
     "recorder_behind_ms", "tick_ns", "volume_sha256_before", "volume_sha256", "recording",
     "picture", "volume", "table"}
@@ -120,6 +121,13 @@ class ShippedScenes:
                     self.assertGreater(arm["removed_mm3"], 50.0)
                 target = "liver" if "liver" in name else "bone"
                 self.assertGreater(run["removed_mm3"][target], 100.0)
+                if target == "liver":
+                    cut = {row["name"]: row for row in run["structures_cut"]}
+                    self.assertGreater(cut["liver"]["cut_ml"], 0.0)
+                    self.assertGreater(cut["liver"]["ml"], 500.0)
+                    # In mm3 no more than went in all: what is no structure is not among them.
+                    self.assertLessEqual(1000.0 * sum(row["cut_ml"] for row in cut.values()),
+                                         sum(run["removed_mm3"].values()) + 1e-6)
                 self.assertEqual(run["nonfinite"], 0)
                 self.assertEqual(run["events_dropped"], 0)
                 self.assertIsNone(run["picture"], "without a display there is no picture")
@@ -128,6 +136,7 @@ class ShippedScenes:
                 self.assertIsNone(again["first_difference"])
                 self.assertEqual(again["ticks"], run["ticks"])
                 self.assertEqual(again["volume_sha256"], run["volume_sha256"])
+                self.assertEqual(again["structures_cut"], run["structures_cut"])
 
 
 class CraniumScenes(ShippedScenes, LabTest):

@@ -309,12 +309,18 @@ void MainWindow::sessionEnded(Session& session) {
   rates_->clear();
   const RunReport report = session.report();
   unsaved_cuts_ = report.removed_voxels > 0;
+  QStringList cut;
+  for (const std::string& line : linesOf(report.structures_cut)) cut << toQt(line);
+  structures_->say(cut.isEmpty() ? QString() : tr("In the last exercise:") + '\n' + cut.join('\n'));
+  constexpr int kMost = 2;  // the status bar is one line; the structures' list has them all
+  const QString first = QStringList(cut.mid(0, kMost)).join(", ");
   const QString words = session.recordingStatus()
-                            ? tr("%1 s, %2 voxels removed. Recorded in %3")
-                            : tr("%1 s, %2 voxels removed. Recorded in part in %3");
+                            ? tr("%1 s, %2 voxels removed%4. Recorded in %3")
+                            : tr("%1 s, %2 voxels removed%4. Recorded in part in %3");
   say(words.arg(double(report.ticks) / report.rate_hz, 0, 'f', 1)
           .arg(report.removed_voxels)
-          .arg(toQt(std::filesystem::path(report.recording))));
+          .arg(toQt(std::filesystem::path(report.recording)),
+               first.isEmpty() ? QString() : " (" + first + ')'));
 }
 
 void MainWindow::tick() {

@@ -103,8 +103,17 @@ class MainWindow : public QMainWindow {
   void showEntry();
   void askAboutStructures(const Error& error, const std::filesystem::path& file,
                           const Answers& answers, const std::string& option);
+  void askAboutOverlap(const std::vector<std::string>& names, const std::filesystem::path& file,
+                       const Answers& answers);
+  void askForThreshold(const std::filesystem::path& file, const Answers& answers);
   void askToSaveStructures();
   void saveStructuresThen(std::function<void()> then);
+  // As other programs read them (main_window_exports.cpp).
+  void connectExports();
+  bool sourceAtHand() const;
+  void askToSaveDicom(bool for_source);
+  void saveDicom(const std::filesystem::path& folder, bool for_source);
+  void askToSaveSurface();
   void unlessStructuresAreLost(std::function<void()> go_on);
   // Goes on with the exercise; where the case is not what it is for it asks first.
   void unlessItDoesNotFit(std::function<void()> go_on);
@@ -153,6 +162,7 @@ class MainWindow : public QMainWindow {
   bool entry_asked_ = false;         // and the case is being placed with it
   StructureLooks structure_looks_;   // of the view alone
   std::optional<SeenTissues> seen_;  // what the 3-D view was told last
+  std::filesystem::path case_source_;  // that the imported case was read from
   bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;
   QAction *open_, *open_file_, *open_scene_, *start_, *stop_, *pause_, *undo_, *redo_, *reset_,

@@ -223,7 +223,10 @@ void MainWindow::connectParts() {
   connect(import_, &ImportDialog::caseRead, this,
           [this](const Case& read, const std::filesystem::path& labels) {
             unlessStructuresAreLost([this, read, labels] {
-              unlessCutsAreLost([this, read, labels] { workstation_.openImported(read, labels); });
+              unlessCutsAreLost([this, read, labels] {
+                case_source_ = workstation_.import().source();
+                workstation_.openImported(read, labels);
+              });
             });
           });
   connect(&workstation_.import(), &ImportTask::scanned, this,

@@ -1,13 +1,18 @@
 // The structures in the window: between their panel, the editor, the slices and the workstation.
 #include <QFileDialog>
+#include <QInputDialog>
 #include <QMessageBox>
 #include <QPushButton>
 #include <utility>
 
+#include "base/range.h"
+#include "imaging/segmentation/overlap_order.h"
+#include "imaging/structure_importer.h"
 #include "scene/entry_point.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
+#include "ui/structures/overlap_dialog.h"
 #include "ui/structures/structure_report.h"
 #include "volume/segmentation.h"
 
@@ -24,6 +29,7 @@ void MainWindow::connectStructures() {
           [this] { views_->setBrushRadius(structures_->brushRadius_mm()); });
   connect(structures_, &StructurePanel::openWanted, this, &MainWindow::askForLabels);
   connect(structures_, &StructurePanel::saveWanted, this, &MainWindow::askToSaveStructures);
+  connectExports();
   connect(views_, &FourUp::toolChanged, this, &MainWindow::structureToolChanged);
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::grow) {
@@ -71,6 +77,8 @@ void MainWindow::connectStructures() {
   connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
   connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::showStructures);
   connect(&workstation_, &Workstation::structuresAsked, this, &MainWindow::askAboutStructures);
+  connect(&workstation_, &Workstation::overlapAsked, this, &MainWindow::askAboutOverlap);
+  connect(&workstation_, &Workstation::thresholdAsked, this, &MainWindow::askForThreshold);
   connect(left_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
   views_->setBrushRadius(structures_->brushRadius_mm());
 }
@@ -125,6 +133,7 @@ void MainWindow::openStructures() {
   structure_looks_.clear();
   editor_.setCase(of.volume, of.structures);
   structures_->setWanted(workstation_.scene()->structures);
+  structures_->setSourceAtHand(sourceAtHand());
   warned_ = false;
   showStructureTab();
   showEntry();
@@ -236,6 +245,37 @@ void MainWindow::askAboutStructures(const Error& error, const std::filesystem::p
         answers[code] = option;
         workstation_.useLabels(file, answers);
       });
+}
+
+void MainWindow::askAboutOverlap(const std::vector<std::string>& names,
+                                 const std::filesystem::path& file, const Answers& answers) {
+  auto* dialog = new OverlapDialog(names, front());
+  connect(dialog, &QDialog::accepted, this, [this, dialog, file, answers = answers]() mutable {
+    answers["OVERLAP"] = orderAnswer(dialog->order());
+    workstation_.useLabels(file, answers);
+  });
+  dialog->open();
+}
+
+void MainWindow::askForThreshold(const std::filesystem::path& file, const Answers& answers) {
+  auto* dialog = new QInputDialog(front());
+  dialog->setObjectName("thresholdQuestion");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("A fractional segmentation"));
+  dialog->setLabelText(
+      tr("The file says how much of each voxel a structure has, from 0 to 1.\n"
+         "A voxel is the structure's from this share on:"));
+  dialog->setInputMode(QInputDialog::DoubleInput);
+  dialog->setDoubleRange(0.0, 1.0);
+  dialog->setDoubleDecimals(2);
+  dialog->setDoubleStep(0.05);
+  dialog->setDoubleValue(StructureRequest().threshold);
+  connect(dialog, &QInputDialog::doubleValueSelected, this,
+          [this, file, answers = answers](double value) mutable {
+            answers[Workstation::kThreshold] = plainNumber(value);
+            workstation_.useLabels(file, answers);
+          });
+  dialog->open();
 }
 
 void MainWindow::askToSaveStructures() {

@@ -213,11 +213,26 @@ void Workstation::openImported(const Case& read, const std::filesystem::path& la
   openInBackground(std::move(opening));
 }
 
-Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening,
+// What a person is asked of a file that could be used as it is; the file is then not used yet.
+struct Workstation::Asked {
+  std::vector<std::string> overlapping;
+  bool threshold = false;
+  bool any() const { return threshold || !overlapping.empty(); }
+};
+
+Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening, Asked& asked,
                                        const Progress& progress) {
-  Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume,
-                                              {opening.answers, true, sourceOf(of)}, progress);
+  StructureRequest request{opening.answers, true, sourceOf(of)};
+  if (const auto share = request.answers.find(kThreshold); share != request.answers.end()) {
+    request.threshold = toQt(share->second).toDouble();
+  }
+  Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume, request, progress);
   if (!fit) return fit.error();
+  // The threshold first: it decides what overlaps.
+  asked.threshold = fit->fractional && !request.answers.contains(kThreshold);
+  if (!asked.threshold && !request.answers.contains("OVERLAP"))
+    asked.overlapping = fit->overlapping;
+  if (asked.any()) return Error{"ASKED", "A person is asked about the structures", "", ""};
   return withFit(of, *std::move(fit));
 }
 
@@ -227,11 +242,13 @@ void Workstation::openInBackground(Opened opening) {
   const std::filesystem::path labels = opening.labels_file;
   const Answers answers = opening.answers;
   const std::shared_ptr<const Volume> shown = case_ ? case_->volume : nullptr;
+  const auto asked = std::make_shared<Asked>();
   opening_.run(
-      [opening = std::move(opening), shown](const Progress& progress) mutable -> Result<Opened> {
+      [opening = std::move(opening), shown,
+       asked](const Progress& progress) mutable -> Result<Opened> {
         if (opening.of && !opening.labels_file.empty()) {
           Result<Case> labelled = opening.structures_alone
-                                      ? withAnswered(*opening.of, opening, progress)
+                                      ? withAnswered(*opening.of, opening, *asked, progress)
                                       : withLabels(*opening.of, opening.labels_file, progress);
           if (!labelled && opening.of->volume == shown) return labelled.error();
           if (labelled) {
@@ -272,8 +289,10 @@ void Workstation::openInBackground(Opened opening) {
         }
         return std::move(opening);
       },
-      [this, labels, answers](Result<Opened> outcome) {
+      [this, labels, answers, asked](Result<Opened> outcome) {
         placing_ = false;
+        if (!outcome && asked->threshold) return thresholdAsked(labels, answers);
+        if (!outcome && asked->any()) return overlapAsked(asked->overlapping, labels, answers);
         // A choice that has an option beside refusing is a question.
         static const std::map<std::string, std::string> kQuestions{
             {"HU_NOT_TISSUE", "keep"}, {"MIRRORED", "keep"}, {"OTHER_FRAME", "keep"}};

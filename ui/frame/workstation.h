@@ -16,6 +16,7 @@ namespace trephine {
 class Workstation : public QObject {
   Q_OBJECT
  public:
+  static constexpr const char* kThreshold = "THRESHOLD";  // an answer of useLabels()
   enum class Phase { empty, ready, starting, running, ending };
 
   explicit Workstation(QObject* parent = nullptr);
@@ -35,8 +36,8 @@ class Workstation : public QObject {
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   // The structures of the open case from a file; what a person has to decide comes as
-  // structuresAsked(), to be called again with the answer. Another case has none until they are
-  // given.
+  // structuresAsked(), overlapAsked() or thresholdAsked(), to be called again with the answer.
+  // Another case has none until they are given.
   void useLabels(const std::filesystem::path& file, const Answers& answers = {});
   // Structures that were made or changed here, on the case's grid: the scene is placed in them.
   // False: not now (something is being opened or runs).
@@ -116,6 +117,12 @@ class Workstation : public QObject {
   // The file was not used: its `error` names a choice, whose option that uses it is `option`.
   void structuresAsked(const trephine::Error& error, const std::filesystem::path& file,
                        const trephine::Answers& answers, const std::string& option);
+  // Structures of the file share voxels: `names`, in the order that would be taken; the answer is
+  // OVERLAP.
+  void overlapAsked(const std::vector<std::string>& names, const std::filesystem::path& file,
+                    const trephine::Answers& answers);
+  // The file has shares instead of yes and no; the answer is kThreshold, a number from 0 to 1.
+  void thresholdAsked(const std::filesystem::path& file, const trephine::Answers& answers);
   void phaseChanged();  // or isOpening()
   void sessionStarted();
   // Once an exercise, which goes on; stop() does not say it again.
@@ -131,7 +138,9 @@ class Workstation : public QObject {
 
  private:
   struct Opened;
-  static Result<Case> withAnswered(const Case& of, const Opened& opening, const Progress& progress);
+  struct Asked;
+  static Result<Case> withAnswered(const Case& of, const Opened& opening, Asked& asked,
+                                   const Progress& progress);
   bool mayOpen();
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,

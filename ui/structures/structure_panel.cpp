@@ -144,8 +144,9 @@ void StructurePanel::build() {
   open_file_->setObjectName("openSegmentation");
   open_file_->setToolTip(
       tr("Structures from elsewhere: DICOM SEG, 3D Slicer's .seg.nrrd, label maps with names"));
-  save_ = new QPushButton(tr("Save structures\u2026"), this);
+  save_ = new QPushButton(tr("&Save structures"), this);
   save_->setObjectName("saveStructures");
+  save_->setMenu(buildSaving());
   auto* files = new QHBoxLayout;
   files->addWidget(open_file_);
   files->addWidget(save_);
@@ -195,7 +196,31 @@ void StructurePanel::build() {
   connect(redo_, &QToolButton::clicked, &editor_, &StructureEditor::redo);
   connect(delete_, &QToolButton::clicked, this, [this] { editor_.remove(editor_.current()); });
   connect(open_file_, &QPushButton::clicked, this, &StructurePanel::openWanted);
-  connect(save_, &QPushButton::clicked, this, &StructurePanel::saveWanted);
+}
+
+QMenu* StructurePanel::buildSaving() {
+  auto* menu = new QMenu(this);
+  const auto add = [&](const char* name, const QString& text, const QString& tip,
+                       void (StructurePanel::*wanted)()) {
+    QAction* action = menu->addAction(text);
+    action->setObjectName(name);
+    action->setToolTip(tip);
+    connect(action, &QAction::triggered, this, wanted);
+    return action;
+  };
+  menu->setToolTipsVisible(true);
+  add("saveLabelMap", tr("&Label map\u2026"), tr("With names, as Trephine and 3D Slicer open it"),
+      &StructurePanel::saveWanted);
+  add("saveDicom", tr("&DICOM folder\u2026"),
+      tr("A DICOM SEG with its CT, under new UIDs and of nobody"),
+      &StructurePanel::saveDicomWanted);
+  for_source_ = add("saveForSource", tr("DICOM for the &original CT\u2026"),
+                    tr("A DICOM SEG alone, which names the UIDs of the CT that was opened"),
+                    &StructurePanel::saveForSourceWanted);
+  surface_ = add("saveSurface", tr("&Surface of the chosen one (STL)\u2026"),
+                 tr("For a printer or a drawing program"), &StructurePanel::saveSurfaceWanted);
+  for_source_->setEnabled(false);
+  return menu;
 }
 
 QLayout* StructurePanel::buildTools() {
@@ -559,6 +584,7 @@ void StructurePanel::showState() {
     }
   }
   save_->setEnabled(any && !busy && !editor_.preview());
+  surface_->setEnabled(editor_.millilitres(editor_.current()) > 0.0);
   const auto& preview = editor_.preview();
   preview_box_->setVisible(preview.has_value());
   if (preview) {

@@ -3,10 +3,12 @@
 // slices hold the tool that is chosen here.
 #pragma once
 
+#include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QToolButton>
@@ -26,6 +28,8 @@ class StructurePanel : public QWidget {
   // The editor outlives it.
   explicit StructurePanel(StructureEditor& editor, QWidget* parent = nullptr);
 
+  // Whether the DICOM that the case came from is at hand, for a segmentation that refers to it.
+  void setSourceAtHand(bool at_hand) { for_source_->setEnabled(at_hand); }
   // Names that the exercise needs and the case lacks come first among those that are offered.
   void setWanted(const std::vector<std::string>& names);
   void showTool(SliceTool tool);
@@ -48,12 +52,16 @@ class StructurePanel : public QWidget {
   void lookWanted(int label, trephine::TissueLook look);
   void opacityWanted(int label, double per_mm);
   void openWanted();
-  void saveWanted();
+  void saveWanted();           // as a label map
+  void saveDicomWanted();      // with the CT, under new UIDs
+  void saveForSourceWanted();  // as DICOM that refers to the CT's own files
+  void saveSurfaceWanted();    // of the current one
 
  private:
   void build();
   QLayout* buildTools();
   QLayout* buildShaping();
+  QMenu* buildSaving();
   void showList();
   void showState();
   void showBox();
@@ -79,6 +87,7 @@ class StructurePanel : public QWidget {
   QToolButton *skull_button_, *skin_button_, *fill_, *smooth_button_, *shell_button_, *delete_,
       *undo_, *redo_;
   QPushButton *take_, *leave_, *open_file_, *save_, *cancel_, *no_box_;
+  QAction *surface_, *for_source_;
   QWidget *preview_box_, *box_line_;
   QLabel *preview_, *said_, *empty_, *box_;
   QWidget* progress_box_;

@@ -532,6 +532,7 @@ Result<DicomSegmentation> read(const fs::path& file, double threshold, const Pro
   result.of = {hashOrNone(header.study),
                header.series.size() == 1 ? seriesHash(header.series.front()) : "",
                hashOrNone(header.frame_of_reference)};
+  result.fractional = !header.binary;
   for (const std::string& uid : header.series) result.series.push_back(seriesHash(uid));
 
   std::map<int, std::vector<std::size_t>> frames_of;

@@ -22,6 +22,7 @@ struct DicomSegmentation {
   // its place in the list where a number is over kMostStructures.
   Segmentation segmentation;
   SourceIds of;                     // `series` where it refers to one alone
+  bool fractional = false;
   std::vector<std::string> series;  // hashes of those that it refers to, each once
 };
 

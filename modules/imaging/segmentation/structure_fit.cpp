@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "imaging/common/text.h"
+#include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_hu.h"
 
 namespace trephine {
@@ -193,8 +194,8 @@ class Asking {
   StructureFit& fit_;
 };
 
-Result<std::vector<std::size_t>> orderOf(const Segmentation& of, Asking& asking,
-                                         StructureFit& fit) {
+Result<std::vector<std::size_t>> orderOf(const Segmentation& of, const Answers& answers,
+                                         Asking& asking, StructureFit& fit) {
   std::vector<std::size_t> order = smallerFirst(of);
   const std::vector<Overlap> shared = overlaps(of);
   if (shared.empty()) return order;
@@ -206,18 +207,32 @@ Result<std::vector<std::size_t>> orderOf(const Segmentation& of, Asking& asking,
   const std::string what =
       counted(shared.size(), "pair") + " of structures share voxels, most of all " + name(most->a) +
       " and " + name(most->b) + " with " + number(double(most->voxels) * voxel_ml, 1) + " mL";
-  const Result<std::string> chosen =
-      asking.ask({"OVERLAP",
-                  what + ". Which of them has those voxels?",
-                  {"smaller", "first", "last"},
-                  {"The smaller one, as a vessel in the liver", "The one that the file has first",
-                   "The one that the file has last"}});
+  Choice choice{"OVERLAP",
+                what + ". Which of them has those voxels?",
+                {"smaller", "first", "last"},
+                {"The smaller one, as a vessel in the liver", "The one that the file has first",
+                 "The one that the file has last"}};
+  const auto given = answers.find(choice.code);
+  if (given != answers.end() && given->second.starts_with(kOrderAnswer)) {
+    auto own = orderFrom(given->second, of);
+    if (!own) return own.error();
+    fit.choices.push_back(std::move(choice));
+    fit.overlapping = overlapping(of, shared, *own);
+    fit.findings.push_back({"OVERLAP",
+                            "notice",
+                            what,
+                            {},
+                            "The first has them, of " + listed(fit.overlapping, "and")});
+    return own;
+  }
+  const Result<std::string> chosen = asking.ask(std::move(choice));
   if (!chosen) return chosen.error();
   if (*chosen != "smaller") {
     for (std::size_t s = 0; s < order.size(); ++s) {
       order[s] = *chosen == "first" ? s : order.size() - 1 - s;
     }
   }
+  fit.overlapping = overlapping(of, shared, order);
   fit.findings.push_back({"OVERLAP",
                           "notice",
                           what,
@@ -261,7 +276,7 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
                  "the segmentation", "Choose the one that was made from this CT"};
   }
   Asking asking(answers, ask_all, fit);
-  const auto order = orderOf(of, asking, fit);
+  const auto order = orderOf(of, answers, asking, fit);
   if (!order) return order.error();
   progress.at(0.3, "Placing the structures");
   const LabelMap own = merged(of, *order);
@@ -410,6 +425,8 @@ Json toJson(const StructureFit& fit) {
           {"covers_percent", fit.covers_percent},
           {"covers", {{"low", fit.covers.low}, {"high", fit.covers.high}}},
           {"resampled", fit.resampled},
+          {"overlapping", fit.overlapping},
+          {"fractional", fit.fractional},
           {"findings", listOf(fit.findings)},
           {"choices", listOf(fit.choices)}};
 }

@@ -39,6 +39,9 @@ struct StructureFit {
   double covers_percent = 0.0;
   VoxelBox covers;
   bool resampled = false;  // its grid is not the CT's or a part of it
+  // Those that share voxels in the file, in the order in which they have them: the first wins.
+  std::vector<std::string> overlapping{};
+  bool fractional = false;  // voxels were shares, of which a threshold took some
   std::vector<Finding> findings;
   std::vector<Choice> choices;  // what only a person can answer, answered or not
 };
@@ -52,10 +55,10 @@ struct HuOfKind {
 std::optional<HuOfKind> huOfKind(const std::string& name, const std::string& tissue = "");
 
 // Puts the segmentation on the CT's grid by its place in the patient. `answers` to the choices:
-// OVERLAP (smaller, first, last), HU_NOT_TISSUE (refuse, keep). `ask_all`: an open choice whose
-// first option is to refuse is an Error of its code, else it is taken as "keep" and said.
-// Errors: LABELS_ELSEWHERE, HALF_OUTSIDE, MIRRORED, EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED,
-// OUT_OF_MEMORY.
+// OVERLAP (smaller, first, last, or an order of one's own as "order:vessel,liver",
+// overlap_order.h), HU_NOT_TISSUE (refuse, keep). `ask_all`: an open choice whose first option is
+// to refuse is an Error of its code, else it is taken as "keep" and said. Errors: LABELS_ELSEWHERE,
+// HALF_OUTSIDE, MIRRORED, EMPTY_SEGMENTATION, BAD_CHOICE, CANCELLED, OUT_OF_MEMORY.
 Result<StructureFit> fitStructures(const Segmentation& segmentation, const Volume& ct,
                                    const Answers& answers = {}, bool ask_all = true,
                                    const Progress& progress = Progress());

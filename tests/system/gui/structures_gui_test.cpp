@@ -256,7 +256,8 @@ class StructuresGuiTest : public test::WindowTest {
 
   void itIsSavedWithItsName() {
     left()->setCurrentIndex(2);
-    press("saveStructures");
+    find<QAction>("saveLabelMap")->trigger();
+    clicks_ += 2;  // the button and its entry
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
     const QString file = temporary_.filePath("mine.nii.gz");

@@ -1,0 +1,320 @@
+// Structures to and from other programs in the real window: what a person is asked of a file, and
+// what "Save structures" offers. On the built-in abdomen, opened from DICOM. In order.
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+#include <QApplication>
+#include <QFile>
+#include <QFileDialog>
+#include <QInputDialog>
+#include <QListWidget>
+#include <QMenu>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QStatusBar>
+#include <QTabWidget>
+#include <QTimer>
+#include <QTreeWidget>
+#include <QtTest>
+#include <fstream>
+
+#include "gui_support.h"
+#include "imaging/dicom/seg_reader.h"
+#include "imaging/dicom/seg_writer.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "ui/structures/overlap_dialog.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kLong_ms = 240000;
+
+// As 3D Slicer writes one: two layers, of which the second lies in the first.
+void writeOverlapping(const GridGeometry& g, const LabelMap& liver,
+                      const std::filesystem::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  const auto vector = [](const Vec3& v) {
+    return "(" + std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z) + ")";
+  };
+  out << "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 "
+      << g.size[0] << ' ' << g.size[1] << ' ' << g.size[2] << "\nspace directions: none";
+  for (int axis = 0; axis < 3; ++axis) out << ' ' << vector(g.direction[axis] * g.spacing_mm[axis]);
+  out << "\nkinds: list domain domain domain\nencoding: raw\nspace origin: " << vector(g.origin_mm)
+      << '\n';
+  for (int n = 0; n < 2; ++n) {
+    const std::string segment = "Segment" + std::to_string(n);
+    out << segment << "_ID:=S" << n << '\n'
+        << segment << "_LabelValue:=1\n"
+        << segment << "_Layer:=" << n << '\n'
+        << segment << "_Name:=" << (n == 0 ? "liver" : "segment 4") << '\n';
+  }
+  out << '\n';
+  std::string voxels;
+  for (std::size_t v = 0; v < liver.labels.size(); ++v) {
+    voxels += char(liver.labels[v] != 0);
+    voxels += char(liver.labels[v] != 0 && v % 4 == 0);
+  }
+  out << voxels;
+}
+
+// The same file with shares instead of yes and no: every other frame has 0.4 of each voxel.
+void makeFractional(const std::filesystem::path& from, const std::filesystem::path& to) {
+  DcmFileFormat file;
+  QVERIFY(file.loadFile(from.c_str()).good());
+  DcmDataset& data = *file.getDataset();
+  const Uint8* bits = nullptr;
+  Sint32 frames = 0;
+  Uint16 rows = 0, columns = 0;
+  QVERIFY(data.findAndGetUint8Array(DCM_PixelData, bits).good());
+  QVERIFY(data.findAndGetSint32(DCM_NumberOfFrames, frames).good());
+  QVERIFY(data.findAndGetUint16(DCM_Rows, rows).good());
+  QVERIFY(data.findAndGetUint16(DCM_Columns, columns).good());
+  const std::size_t of_frame = std::size_t(rows) * columns;
+  std::vector<Uint8> shares(of_frame * std::size_t(frames));
+  for (std::size_t n = 0; n < shares.size(); ++n) {
+    const bool set = bits[n / 8] >> n % 8 & 1;
+    shares[n] = Uint8(!set ? 0 : n / of_frame % 2 ? 40 : 100);
+  }
+  if (shares.size() % 2) shares.push_back(0);
+  data.putAndInsertString(DCM_SegmentationType, "FRACTIONAL");
+  data.putAndInsertString(DCM_SegmentationFractionalType, "OCCUPANCY");
+  data.putAndInsertUint16(DCM_MaximumFractionalValue, 100);
+  data.putAndInsertUint16(DCM_BitsAllocated, 8);
+  data.putAndInsertUint16(DCM_BitsStored, 8);
+  data.putAndInsertUint16(DCM_HighBit, 7);
+  data.putAndInsertUint8Array(DCM_PixelData, shares.data(), shares.size());
+  QVERIFY(file.saveFile(to.c_str(), EXS_LittleEndianExplicit).good());
+}
+
+}  // namespace
+
+class StructureFilesGuiTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  std::filesystem::path source_;  // CT and structures.dcm
+  LabelMap liver_;
+
+  QTreeWidget* list() { return find<QTreeWidget>("structureList"); }
+  double ml(const char* name) {
+    for (int i = 0; i < list()->topLevelItemCount(); ++i) {
+      if (list()->topLevelItem(i)->text(0) == name)
+        return list()->topLevelItem(i)->text(1).toDouble();
+    }
+    return -1.0;
+  }
+  template <class Dialog>
+  Dialog* wait(const char* name) {
+    (void)QTest::qWaitFor([&] { return window_->findChild<Dialog*>(name) != nullptr; }, kLong_ms);
+    auto* dialog = window_->findChild<Dialog*>(name);
+    if (!dialog) qFatal("no %s comes", name);
+    return dialog;
+  }
+  // Chooses an entry of "Save structures" and a file or folder for it; the outcome in saved() or
+  // failed().
+  void choose(const char* entry) { find<QAction>(entry)->trigger(); }
+  void give(const char* name, const QString& path) {
+    auto* dialog = wait<QFileDialog>(name);
+    emit dialog->fileSelected(path);
+    dialog->close();
+    QTest::qWait(10);  // it goes away
+  }
+  bool saved(const char* dialog, const QString& path) {
+    QSignalSpy done(&workstation(), &Workstation::saved);
+    give(dialog, path);
+    return done.count() == 1 || done.wait(kLong_ms);
+  }
+
+ private slots:
+  void initTestCase() {
+    QApplication::setApplicationName("trephine-test-structure-files");
+    QFile::remove(windowSettings().fileName());
+    GridGeometry g = *phantomGeometry("abdomen");
+    for (std::size_t a = 0; a < 3; ++a) {
+      g.size[a] /= 2;
+      g.spacing_mm[int(a)] *= 2.0;
+    }
+    const Volume ct = makePhantomOn(*phantomTruth("abdomen"), g, kPhantomNoiseHu);
+    liver_ = phantomLabelsOn(*phantomTruth("abdomen"), g);
+    for (std::uint8_t& label : liver_.labels) label = label == 1;
+    liver_.structures = {{1, "liver", Vec3(0.5, 0.2, 0.2)}};
+    source_ = toPath(temporary_.filePath("source"));
+    SegWriting scanner;  // UIDs come of what is written: the window's must be others
+    scanner.text.series_description = "scanned";
+    const auto written = writeStructuresAsDicom(ct, liver_, source_, scanner);
+    QVERIFY2(written.ok(), written ? "" : written.error().sentence().c_str());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+  }
+  void cleanupTestCase() {
+    window_.reset();
+    QFile::remove(windowSettings().fileName());
+  }
+
+  void aCaseFromDicomHasItsSourceAtHand() {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPath(source_ / "CT");
+    auto* import = find<QPushButton>("import");
+    QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
+    import->click();
+    QTRY_VERIFY_WITH_TIMEOUT(opened.count() == 1 || find<QPushButton>("openCase")->isVisible(),
+                             kLong_ms);
+    if (opened.isEmpty()) {
+      for (QRadioButton* keep : window_->findChildren<QRadioButton*>()) {
+        if (keep->objectName().endsWith("_keep") && keep->isVisible()) keep->click();
+      }
+      find<QPushButton>("openCase")->click();
+      QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    }
+    QVERIFY(find<QAction>("saveForSource")->isEnabled());
+    find<QTabWidget>("leftTabs")->setCurrentIndex(2);
+    QVERIFY(!find<QPushButton>("saveStructures")->isEnabled());
+  }
+
+  void sharesOfVoxelsAskForTheirThresholdOnce() {
+    const std::filesystem::path file = toPath(temporary_.filePath("shares.dcm"));
+    makeFractional(source_ / "structures.dcm", file);
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(file);
+    auto* question = wait<QInputDialog>("thresholdQuestion");
+    QCOMPARE(changed.count(), 0);
+    QCOMPARE(question->doubleValue(), 0.5);
+    question->accept();
+    QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
+    const double half = ml("liver");
+    workstation().useLabels(file, {{Workstation::kThreshold, "0.4"}});
+    QVERIFY(changed.wait(kLong_ms));
+    QVERIFY2(half > 0.4 * ml("liver") && half < 0.6 * ml("liver"),
+             qPrintable(QString::number(half)));
+  }
+
+  void structuresThatOverlapAreAskedForTheirOrderOnce() {
+    const std::filesystem::path file = toPath(temporary_.filePath("two.seg.nrrd"));
+    writeOverlapping(liver_.geometry, liver_, file);
+    QSignalSpy changed(&workstation(), &Workstation::structuresChanged);
+    workstation().useLabels(file);
+    auto* question = wait<OverlapDialog>("overlapQuestion");
+    QCOMPARE(changed.count(), 0);
+    QCOMPARE(question->order(), (std::vector<std::string>{"segment 4", "liver"}));
+    QVERIFY(question->grab().save(QString(TREPHINE_ARTEFACTS "/overlap-order.png")));
+    // By keys: down, up again by its button, and down.
+    auto* order = question->findChild<QListWidget*>("overlapOrder");
+    QVERIFY(QTest::qWaitForWindowActive(question));
+    QTest::keyClick(order, Qt::Key_Down, Qt::ControlModifier);
+    QCOMPARE(question->order(), (std::vector<std::string>{"liver", "segment 4"}));
+    QVERIFY(!question->findChild<QPushButton*>("overlapDown")->isEnabled());
+    question->findChild<QPushButton*>("overlapUp")->click();
+    QCOMPARE(question->order(), (std::vector<std::string>{"segment 4", "liver"}));
+    QTest::keyClick(order, Qt::Key_Down, Qt::ControlModifier);
+    question->accept();
+    QVERIFY(changed.count() == 1 || changed.wait(kLong_ms));
+    QCOMPARE(workstation().currentCase()->structures->find("liver")->label,
+             workstation().currentCase()->structures->labels[std::size_t(
+                 std::ranges::find(liver_.labels, 1) - liver_.labels.begin())]);
+    const double all = ml("liver");
+    // The other way round the part has a quarter of it.
+    workstation().useLabels(file, {{"OVERLAP", "order:segment 4"}});
+    QVERIFY(changed.wait(kLong_ms));
+    QVERIFY(std::abs(ml("segment 4") / all - 0.25) < 0.02);
+    QTRY_VERIFY(!window_->findChild<OverlapDialog*>());
+  }
+
+  void savingIsReachedByKeys() {
+    auto* save = find<QPushButton>("saveStructures");
+    QTRY_VERIFY(save->isEnabled());
+    QApplication::setActiveWindow(window_.get());
+    save->setFocus();
+    bool open = false;
+    QTimer::singleShot(500, this, [&] {
+      auto* menu = qobject_cast<QMenu*>(QApplication::activePopupWidget());
+      if (!menu) return;
+      open = true;
+      QTest::keyClick(menu, Qt::Key_D);
+    });
+    QTest::keyClick(save, Qt::Key_Space);
+    QVERIFY(open);
+    wait<QFileDialog>("dicomDialog")->close();
+    QTRY_VERIFY(!window_->findChild<QFileDialog*>("dicomDialog"));
+  }
+
+  void aDicomFolderHoldsTheCtAndTheStructuresUnderNewUids() {
+    const QString folder = temporary_.filePath("dicom");
+    choose("saveDicom");
+    QVERIFY(saved("dicomDialog", folder));
+    const auto seg = readDicomSegmentation(toPath(folder) / "structures.dcm");
+    QVERIFY(seg.ok());
+    QCOMPARE(seg->segmentation.segments.size(), std::size_t(2));
+    QVERIFY(std::filesystem::is_directory(toPath(folder) / "CT"));
+    QVERIFY(seg->of.study != workstation().currentCase()->provenance->source_ids.study);
+    // Where something lies already nothing is written, and that is said.
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    choose("saveDicom");
+    give("dicomDialog", folder);
+    QVERIFY(failed.count() == 1 || failed.wait(kLong_ms));
+    const auto error = failed.front().front().value<Error>();
+    QCOMPARE(error.code, std::string("CANNOT_WRITE"));
+    QVERIFY2(error.what.find("already holds") != error.what.npos, error.what.c_str());
+    for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
+  }
+
+  void forTheOriginalCtItNamesItsUidsOnceThatIsAgreed() {
+    const QString folder = temporary_.filePath("original");
+    choose("saveForSource");
+    auto* question = wait<QMessageBox>("sourceUidsQuestion");
+    QVERIFY2(question->text().contains("UIDs"), qPrintable(question->text()));
+    for (QAbstractButton* button : question->buttons()) {
+      if (question->buttonRole(button) == QMessageBox::DestructiveRole) button->click();
+    }
+    QVERIFY(saved("dicomDialog", folder));
+    const auto seg = readDicomSegmentation(toPath(folder) / "structures.dcm");
+    QVERIFY(seg.ok());
+    QVERIFY(seg->of == workstation().currentCase()->provenance->source_ids);
+    QVERIFY(!std::filesystem::exists(toPath(folder) / "CT"));
+  }
+
+  void aSurfaceIsThatOfTheChosenStructure() {
+    list()->setCurrentItem(list()->topLevelItem(0));
+    QVERIFY(find<QAction>("saveSurface")->isEnabled());
+    const QString file = temporary_.filePath("liver.stl");
+    choose("saveSurface");
+    QVERIFY(saved("saveDialog", file));
+    QFile stl(file);
+    QVERIFY(stl.open(QIODevice::ReadOnly) && stl.size() > 84 + 50 * 1000);
+    QCOMPARE((stl.size() - 84) % 50, qint64(0));
+  }
+
+  void aBuiltInCaseHasNoSourceThatCouldBeNamed() {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPhantom("abdomen");
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(!find<QAction>("saveForSource")->isEnabled());
+  }
+
+  void whatAnExerciseCutOfEachStructureIsSaidAtItsEnd() {
+    const Scene& scene = *workstation().scene();
+    const auto script = readOperatorScript(scene.operator_file, scene);
+    QVERIFY(script.ok());
+    std::optional<std::vector<CutStructure>> ended;
+    connect(&workstation(), &Workstation::sessionEnded, window_.get(),
+            [&](Session& session) { ended = session.report().structures_cut; });
+    window_->startExercise(*script, 12.0);
+    QTRY_VERIFY_WITH_TIMEOUT(ended, kLong_ms);
+    const std::vector<CutStructure>& cut = *ended;
+    QVERIFY(!linesOf(cut).empty());
+    const QString line = toQt(linesOf(cut).front());
+    QVERIFY2(find<QLabel>("structureSaid")->text().contains(line), qPrintable(line));
+    QVERIFY2(window_->statusBar()->currentMessage().contains(line),
+             qPrintable(window_->statusBar()->currentMessage()));
+  }
+};
+
+int main(int argc, char** argv) {
+  return test::runInWindow<StructureFilesGuiTest>(argc, argv);
+}
+
+#include "structure_files_gui_test.moc"

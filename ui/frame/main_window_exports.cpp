@@ -1,0 +1,106 @@
+// Structures for other programs: DICOM, with the CT or for the one that they came from; a surface.
+#include <QFileDialog>
+#include <QMessageBox>
+
+#include "imaging/dicom/seg_writer.h"
+#include "imaging/source_uids.h"
+#include "structures/surface.h"
+#include "ui/common/question.h"
+#include "ui/common/words.h"
+#include "ui/frame/main_window.h"
+
+namespace trephine {
+
+namespace {
+
+// Letters that a file system could trip over become "_".
+QString fileNameOf(const std::string& structure) {
+  QString name;
+  for (const QChar c : toQt(structure))
+    name += c.isLetterOrNumber() || c == QChar('-') ? c : QChar('_');
+  return name + ".stl";
+}
+
+}  // namespace
+
+void MainWindow::connectExports() {
+  connect(structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
+  connect(structures_, &StructurePanel::saveForSourceWanted, this, [this] {
+    ask(front(), "sourceUidsQuestion",
+        tr("The file will name the UIDs of the patient's own CT, so that it finds the patient "
+           "where "
+           "the CT is kept."),
+        tr("Give it only to whom the CT may be given. \"DICOM folder\" names nobody."),
+        tr("&Choose a folder\u2026"), [this] { askToSaveDicom(true); });
+  });
+  connect(structures_, &StructurePanel::saveSurfaceWanted, this, &MainWindow::askToSaveSurface);
+}
+
+// Of the case that was read by this window from DICOM, in the folder that was opened last.
+bool MainWindow::sourceAtHand() const {
+  const std::optional<Case>& of = workstation_.currentCase();
+  return of && of->provenance && !of->provenance->source_ids.series.empty() &&
+         !case_source_.empty();
+}
+
+void MainWindow::askToSaveDicom(bool for_source) {
+  QFileDialog* dialog = fileDialog("dicomDialog", tr("Choose an empty folder for the DICOM files"));
+  dialog->setFileMode(QFileDialog::Directory);
+  dialog->setOption(QFileDialog::ShowDirsOnly);
+  dialog->setLabelText(QFileDialog::Accept, tr("&Save here"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, for_source](const QString& folder) { saveDicom(toPath(folder), for_source); });
+  dialog->open();
+}
+
+void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source) {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
+  const std::shared_ptr<const LabelMap> map = editor_.finished();
+  auto notes = std::make_shared<std::vector<std::string>>();
+  const std::optional<std::filesystem::path> source =
+      for_source ? std::optional(case_source_) : std::nullopt;
+  workstation_.save(
+      for_source ? tr("The structures are saved as DICOM that names the UIDs of the patient's CT.")
+                 : tr("The structures are saved as DICOM, with the CT."),
+      [map, notes, folder, source, ct = of->volume,
+       provenance = of->provenance](const Progress& progress) -> Status {
+        SegWriting writing;
+        if (source) {
+          auto uids = sourceUids(*source, *provenance, ct->geometry, Progress(progress, 0.0, 0.3));
+          if (!uids) return uids.error();
+          writing.source = *std::move(uids);
+        }
+        const auto written = writeStructuresAsDicom(*ct, *map, folder, writing,
+                                                    Progress(progress, source ? 0.3 : 0.0, 1.0));
+        if (!written) return written.error();
+        *notes = written->notes;
+        return {};
+      },
+      [this, notes] {
+        editor_.markSaved();
+        QStringList words;
+        for (const std::string& note : *notes) words << toQt(note);
+        structures_->say(words.join('\n'));
+      });
+}
+
+void MainWindow::askToSaveSurface() {
+  const int label = editor_.current();
+  const Structure* of = editor_.map() ? editor_.map()->find(label) : nullptr;
+  if (!of) return;
+  QFileDialog* dialog = saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
+                                   fileNameOf(of->name), tr("Surface (*.stl)"));
+  connect(dialog, &QFileDialog::fileSelected, this, [this, label](const QString& file) {
+    auto copy = std::make_shared<const LabelMap>(*editor_.map());
+    workstation_.save(tr("The surface is saved."),
+                      [copy, label, path = toPath(file)](const Progress& progress) -> Status {
+                        const auto written = writeSurface(*copy, label, path, progress);
+                        if (!written) return written.error();
+                        return {};
+                      });
+  });
+  dialog->open();
+}
+
+}  // namespace trephine
