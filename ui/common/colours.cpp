@@ -38,6 +38,8 @@ void applyTheme(QApplication& application) {
   application.setStyleSheet(
       QString(
           "QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+          "QToolButton:checked { background: %6; color: white; border: 1px solid %6;"
+          " border-radius: 3px; padding: 2px; }"
           "QToolBar { border: none; border-bottom: 1px solid %4; padding: 4px; spacing: 4px; }"
           "QToolBar QToolButton { padding: 4px 8px; border-radius: 4px; }"
           "QToolBar QToolButton:hover { background: %2; }"

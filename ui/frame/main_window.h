@@ -106,6 +106,7 @@ class MainWindow : public QMainWindow {
   void askAboutOverlap(const std::vector<std::string>& names, const std::filesystem::path& file,
                        const Answers& answers);
   void askForThreshold(const std::filesystem::path& file, const Answers& answers);
+  void askAboutPreview();
   void askToSaveStructures();
   void saveStructuresThen(std::function<void()> then);
   // As other programs read them (main_window_exports.cpp).

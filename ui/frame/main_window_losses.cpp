@@ -49,6 +49,7 @@ void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
 }
 
 void MainWindow::start() {
+  if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview();
   if (editor_.preview()) editor_.takePreview();
   if (!takeStructures())
     return say(tr("The structures are being put in place: try again in a moment."));

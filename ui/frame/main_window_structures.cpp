@@ -278,6 +278,25 @@ void MainWindow::askForThreshold(const std::filesystem::path& file, const Answer
   dialog->open();
 }
 
+// What was grown and reaches too far, perhaps, before an exercise runs on it.
+void MainWindow::askAboutPreview() {
+  QMessageBox* question = ask(
+      this, "previewQuestion", tr("What was grown does not count yet, and may be too large."),
+      tr("Look at it in the slices first, or start with it or without."), tr("&Take it"), [this] {
+        editor_.takePreview();
+        start();
+      });
+  auto* without = question->addButton(tr("Start &without it"), QMessageBox::AcceptRole);
+  without->setObjectName("startWithout");
+  connect(
+      without, &QPushButton::clicked, this,
+      [this] {
+        editor_.leavePreview();
+        start();
+      },
+      Qt::QueuedConnection);
+}
+
 void MainWindow::askToSaveStructures() {
   saveStructuresThen({});
 }
@@ -305,9 +324,9 @@ void MainWindow::saveStructuresThen(std::function<void()> then) {
 
 void MainWindow::unlessStructuresAreLost(std::function<void()> go_on) {
   if (!editor_.edited()) return go_on();
-  QMessageBox* question = ask(
-      front(), "structuresUnsaved", tr("The structures have been made or changed and not saved."),
-      tr("Going on takes them away with the case."), tr("&Go on without them"), go_on);
+  QMessageBox* question = ask(front(), "structuresUnsaved",
+                              tr("The structures have been made or changed and not saved."),
+                              tr("Going on takes them away."), tr("&Go on without them"), go_on);
   auto* save = question->addButton(tr("&Save structures\u2026"), QMessageBox::AcceptRole);
   save->setObjectName("saveFirst");
   connect(
@@ -353,6 +372,7 @@ void MainWindow::unlessItDoesNotFit(std::function<void()> go_on) {
         [this] {
           left_->setCurrentIndex(kStructureTab);
           views_->setTool(SliceTool::grow);
+          structures_->offer(workstation_.scene()->structures.front());
         },
         Qt::QueuedConnection);
   }

@@ -62,6 +62,7 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
 void StructureEditor::setLocked(const QString& why) {
   if (std::exchange(locked_, why) == why) return;
   stroke_.reset();
+  if (why.isEmpty()) emit said({});
   emit stateChanged();
 }
 
@@ -92,6 +93,7 @@ bool StructureEditor::mayChange() {
   } else if (busy()) {
     emit said(tr("Wait for what is being done, or cancel it."));
   } else {
+    emit said({});  // what was said of the last one
     return makeOwn();
   }
   return false;
@@ -136,8 +138,11 @@ Status StructureEditor::rename(int label, const QString& name) {
     return Error{"BAD_NAME", "A structure needs a name", "", "Type one"};
   }
   if (!mayChange()) return {};
-  for (const Structure& s : map_->structures) {
-    if (s.label != label && sameName(s.name, wanted)) {
+  for (Structure& s : map_->structures) {
+    if (s.label == label || !sameName(s.name, wanted)) continue;
+    if (ml_[std::size_t(s.label)] == 0.0) {  // deleted: it gives its name away
+      s.name = spareName(s.name);
+    } else {
       return Error{"BAD_NAME", "Another structure is called '" + s.name + "'", "",
                    "Choose another name"};
     }
@@ -159,12 +164,30 @@ void StructureEditor::setColour(int label, const Vec3& colour) {
   emit listChanged();
 }
 
-// Its voxels go, which undo brings back; its row stays in the list, empty, for that.
+// Its voxels go, which undo brings back; its row stays in the map, empty, for that.
 void StructureEditor::remove(int label) {
   if (!mayChange() || !map_->find(label)) return;
   leavePreview();
   const std::vector<std::uint8_t> nothing(map_->labels.size());
   put(tr("Delete").toStdString(), maskEdit(*map_, nothing, label));
+  if (current_ == label) chooseAnother();
+}
+
+// The first that has voxels.
+void StructureEditor::chooseAnother() {
+  current_ = 0;
+  for (const Structure& s : map_->structures) {
+    if (current_ == 0 && ml_[std::size_t(s.label)] > 0.0) current_ = s.label;
+  }
+  emit listChanged();
+}
+
+// One that no row has, with or without voxels.
+std::string StructureEditor::spareName(const std::string& base) const {
+  for (int n = 2;; ++n) {
+    const std::string name = base + " " + std::to_string(n);
+    if (!map_->find(name)) return name;
+  }
 }
 
 std::string StructureEditor::freeName(const QString& wanted) const {
@@ -232,7 +255,9 @@ void StructureEditor::put(const std::string& step, const Result<LabelEdit>& edit
     return;
   }
   if (edit->empty()) {
-    if (!joins && !stroke_) emit said(tr("Nothing was changed."));
+    if (!joins && !stroke_) {
+      emit said(tr("Nothing was changed: it is so already, as finely as the voxels go."));
+    }
     return;
   }
   trephine::apply(*map_, *edit);
@@ -307,7 +332,8 @@ void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOpt
         preview_edit_ = *std::move(edit);
         trephine::apply(*map_, preview_edit_);
         count(preview_edit_, true);
-        preview_ = Preview{label, ml_[std::size_t(label)], grown->hu, grown->leaked, patient_mm};
+        preview_ = Preview{label,      ml_[std::size_t(label)], grown->hu, grown->leaked,
+                           patient_mm, grown->seed_off_mm};
         current_ = label;
         emit changed(preview_edit_.box);
         emit listChanged();
@@ -364,6 +390,10 @@ void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across
     box.high[a] = int(std::clamp(std::floor(std::max(from[axis], to[axis])) + 1.0, 0.0, last));
     if (box.low[a] >= box.high[a]) return emit said(tr("The box lies outside of the scan."));
   }
+  const auto clicked = preview_ ? voxelAt(g, preview_->seed_mm) : std::nullopt;
+  if (clicked && !isIn(box, *clicked)) {
+    return emit said(tr("Draw the box around the place that was clicked."));
+  }
   box_ = box;
   emit boxChanged();
   emit stateChanged();
@@ -406,9 +436,19 @@ void StructureEditor::makeSkull() {
             });
 }
 
+// A layer is a voxel thick at least.
+void StructureEditor::sayIfThin(double thickness_mm) {
+  const Vec3& mm = volume_->geometry.spacing_mm;
+  const double voxel_mm = std::max({mm.x, mm.y, mm.z});
+  if (thickness_mm >= voxel_mm) return;
+  emit said(tr("The CT's voxels are up to %1 mm large, and the layer is one thick at least.")
+                .arg(voxel_mm, 0, 'f', 1));
+}
+
 void StructureEditor::makeSkin(double thickness_mm) {
   if (!mayChange()) return;
   leavePreview();
+  sayIfThin(thickness_mm);
   work_.run([volume = volume_, thickness_mm](
                 const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
             [this, own = map_](Result<Skin> made) {
@@ -424,6 +464,7 @@ void StructureEditor::makeShell(double thickness_mm, const QString& name) {
   const int of = current_;
   const int into = addStructure(freeName(name));
   if (into == 0) return;
+  sayIfThin(thickness_mm);
   inBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
                 into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
                tr("Shell").toStdString());
@@ -536,6 +577,7 @@ void StructureEditor::undo() {
     countAll();
     edited_ = untaken_ = true;
     emit changed(*box);
+    if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
     emit listChanged();
     emit stateChanged();
   }

@@ -63,6 +63,7 @@ class StructureEditor : public QObject {
     HuSpan hu;
     bool leaked = false;
     Vec3 seed_mm{0.0};
+    double seed_off_mm = 0.0;  // beside it
   };
   // A structure that was grown and does not count yet.
   const std::optional<Preview>& preview() const { return preview_; }
@@ -128,6 +129,9 @@ class StructureEditor : public QObject {
   // `like`: the tissue whose colour it takes where none is called as it is.
   int addStructure(const std::string& name, const std::string& like = {});
   std::string freeName(const QString& wanted) const;
+  std::string spareName(const std::string& base) const;
+  void chooseAnother();
+  void sayIfThin(double thickness_mm);
   void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
   void applied(const LabelEdit& edit, bool added);
   void count(const LabelEdit& edit, bool added);

@@ -43,8 +43,9 @@ class StructurePanel : public QWidget {
   double brushRadius_mm() const { return radius_->wanted(); }
   void stepRadius(int steps);
   void makeSkin();  // as thick as is set
-  // One line: what the tool in hand does, or what was said last.
+  // What was said last; nothing: what the tool in hand does.
   void say(const QString& words);
+  void offer(const std::string& name);  // as the next one's name
 
  signals:
   void toolChosen(trephine::SliceTool tool);
@@ -58,10 +59,18 @@ class StructurePanel : public QWidget {
   void saveSurfaceWanted();    // of the current one
 
  private:
-  void build();
+  static constexpr int kNameColumn = 0, kMlColumn = 1, kLookColumn = 2;
+  static constexpr int kProgressSteps = 1000;
+  static constexpr std::array kToolButtons{SliceTool::grow, SliceTool::wall, SliceTool::piece,
+                                           SliceTool::brush, SliceTool::eraser};
+
+  void build();  // structure_panel_layout.cpp
   QLayout* buildTools();
   QLayout* buildShaping();
   QMenu* buildSaving();
+  void buildListMenu();
+  void buildBoxLine(QWidget* parent);
+  QString hint() const;  // what the tool in hand does
   void showList();
   void showState();
   void showBox();
@@ -79,14 +88,14 @@ class StructurePanel : public QWidget {
   QLabel* no_room_;
   std::vector<SeenStructure> seen_;
   QComboBox* name_;
-  std::array<QToolButton*, 5> tools_;  // as kTools
+  std::array<QToolButton*, 5> tools_;  // as kToolButtons
   DecimalField *open_, *radius_, *smooth_, *shell_, *skin_;
   WholeNumberField *hu_low_, *hu_high_;
   QComboBox* shape_;
   QCheckBox* only_hu_;
   QToolButton *skull_button_, *skin_button_, *fill_, *smooth_button_, *shell_button_, *delete_,
       *undo_, *redo_;
-  QPushButton *take_, *leave_, *open_file_, *save_, *cancel_, *no_box_;
+  QPushButton *take_, *leave_, *open_file_, *save_, *export_, *cancel_, *no_box_;
   QAction *surface_, *for_source_;
   QWidget *preview_box_, *box_line_;
   QLabel *preview_, *said_, *empty_, *box_;

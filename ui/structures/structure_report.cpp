@@ -53,7 +53,7 @@ StructureReport::StructureReport(const Case& of, QWidget* parent) : QDialog(pare
   build();
   QStringList words;
   for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
-  if (words.isEmpty()) words << tr("They lie on the CT, and their HU can be what they are named.");
+  if (words.isEmpty()) words << tr("They lie on the CT.");
   said_->setText(words.join('\n'));
   for (const StructureCard& card : of.structure_cards) {
     auto* item = new QTreeWidgetItem(list_);

@@ -21,7 +21,7 @@ void add(SeriesReport& report, const char* code, const char* severity, std::stri
 void refuseLabelMap(SeriesReport& report, std::string text) {
   report.modality = "SEG";
   add(report, "LABEL_MAP", "refusal", std::move(text),
-      "Open the CT instead; a label map can restrict tissues of a scene to their labels");
+      "Open the CT first, then this file by \"Open segmentation\" on the tab Structures");
   report.verdict = Verdict::refused;
 }
 

@@ -8,6 +8,7 @@
 #include <QSignalSpy>
 
 #include "qt_support.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 namespace {
@@ -244,6 +245,33 @@ TEST_F(Editor, AClickIntoWhatIsThereSaysSo) {
   EXPECT_FALSE(editor_.busy());
   EXPECT_NE(said_.indexOf("liver"), -1);
   EXPECT_EQ(ml("second"), -1.0);
+}
+
+TEST_F(Editor, WhatIsDeletedGivesItsNameAwayAndIsChosenNoMore) {
+  stroke(middle_, middle_);
+  const int first = editor_.current();
+  editor_.setCurrent(0);
+  stroke(middle_ + Vec3(20, 0, 0), middle_ + Vec3(20, 0, 0));
+  const int second = editor_.current();
+  editor_.remove(second);
+  EXPECT_EQ(editor_.current(), first);
+  EXPECT_TRUE(editor_.rename(first, toQt(editor_.map()->find(second)->name)).ok());
+  editor_.undo();
+  EXPECT_GT(editor_.millilitres(second), 0.0);
+  EXPECT_NE(editor_.map()->find(first)->name, editor_.map()->find(second)->name);
+}
+
+TEST_F(Editor, WhatWasSaidOfOneStepGoesWithTheNext) {
+  editor_.fillHoles();
+  stroke(middle_, middle_);
+  editor_.fillHoles();
+  wait();
+  EXPECT_NE(said_.indexOf("Nothing was changed"), -1);
+  stroke(middle_ + Vec3(10, 0, 0), middle_ + Vec3(10, 0, 0));
+  EXPECT_EQ(said_, "");
+  editor_.makeShell(0.5, "shell");
+  EXPECT_NE(said_.indexOf("one thick at least"), -1);
+  wait();
 }
 
 }  // namespace
