@@ -132,12 +132,16 @@ void StructurePanel::build() {
   open_file_->setObjectName("openSegmentation");
   open_file_->setToolTip(
       tr("Structures from elsewhere: DICOM SEG, 3D Slicer's .seg.nrrd, label maps with names"));
-  save_ = new QPushButton(tr("&Save structures"), this);
+  save_ = new QPushButton(tr("&Save structures\u2026"), this);
   save_->setObjectName("saveStructures");
-  save_->setMenu(buildSaving());
+  connect(save_, &QPushButton::clicked, this, &StructurePanel::saveWanted);
+  auto* others = new QPushButton(tr("E&xport"), this);
+  others->setObjectName("exportStructures");
+  others->setMenu(buildSaving());
   auto* files = new QHBoxLayout;
   files->addWidget(open_file_);
   files->addWidget(save_);
+  files->addWidget(others);
 
   auto* called = new QFormLayout;
   called->addRow(tr("Next one"), name_);
@@ -487,6 +491,7 @@ void StructurePanel::showState() {
     }
   }
   save_->setEnabled(any && !busy && !editor_.preview());
+  findChild<QPushButton*>("exportStructures")->setEnabled(save_->isEnabled());
   surface_->setEnabled(editor_.millilitres(editor_.current()) > 0.0);
   const auto& preview = editor_.preview();
   preview_box_->setVisible(preview.has_value());
