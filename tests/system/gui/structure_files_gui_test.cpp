@@ -1,5 +1,5 @@
 // Structures to and from other programs in the real window: what a person is asked of a file, and
-// what "Save structures" offers. On the built-in abdomen, opened from DICOM. In order.
+// what "Export" offers. On the built-in abdomen, opened from DICOM. In order.
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 
@@ -113,7 +113,7 @@ class StructureFilesGuiTest : public test::WindowTest {
     if (!dialog) qFatal("no %s comes", name);
     return dialog;
   }
-  // Chooses an entry of "Save structures" and a file or folder for it; the outcome in saved() or
+  // Chooses an entry of "Export" and a file or folder for it; the outcome in saved() or
   // failed().
   void choose(const char* entry) { find<QAction>(entry)->trigger(); }
   void give(const char* name, const QString& path) {
@@ -225,7 +225,7 @@ class StructureFilesGuiTest : public test::WindowTest {
   }
 
   void savingIsReachedByKeys() {
-    auto* save = find<QPushButton>("saveStructures");
+    auto* save = find<QPushButton>("exportStructures");
     QTRY_VERIFY(save->isEnabled());
     QApplication::setActiveWindow(window_.get());
     save->setFocus();

@@ -256,8 +256,7 @@ class StructuresGuiTest : public test::WindowTest {
 
   void itIsSavedWithItsName() {
     left()->setCurrentIndex(2);
-    find<QAction>("saveLabelMap")->trigger();
-    clicks_ += 2;  // the button and its entry
+    press("saveStructures");
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
     const QString file = temporary_.filePath("mine.nii.gz");
