@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "ui/common/colours.h"
+#include "ui/common/words.h"
 #include "ui/structures/structure_panel.h"
 
 namespace trephine {

@@ -398,5 +398,41 @@ TEST(ShippedScenes, LetTheCapsuleOfTheLiverBeToldFromItsParenchyma) {
   }
 }
 
+// The built-in liver and its capsule, and the same in every second block of 16 voxels alone:
+// borders across the tool's way, where HU go on as they were. What is known by HU alone is not to
+// be cut.
+TEST(ShippedScenes, CutByStructureRemoveNoVoxelOutsideOfIt) {
+  for (const bool in_blocks : {false, true}) {
+    Scene scene = shipped("liver", "");
+    Case of = caseOf(scene);
+    auto structures = std::make_shared<LabelMap>(*of.structures);
+    for (std::size_t v = 0; in_blocks && v < structures->labels.size(); ++v) {
+      const Index3 at = structures->geometry.indicesOf(v);
+      if ((at[0] / 16 + at[1] / 16 + at[2] / 16) % 2 == 0) structures->labels[v] = 0;
+    }
+    of = *placedIn(scene, withStructures(of, structures));
+    ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+    std::array<bool, 256> to_cut{};
+    for (Tissue& tissue : scene.tissues.tissues) {
+      if (tissue.isAnywhere()) tissue.cuttable = false;
+      if (tissue.cuttable && tissue.label) to_cut[std::size_t(*tissue.label)] = true;
+    }
+    const test::TemporaryFolder folder;
+    const SessionOptions options{folder / "s.h5", *readOperatorScript(scene.operator_file, scene)};
+    auto session = Session::create(scene, of, options);
+    ASSERT_TRUE(session) << session.error().sentence();
+    ASSERT_TRUE((*session)->freewheel(kSeconds).ok());
+    std::size_t inside = 0, outside = 0;
+    for (std::size_t v = 0; v < of.volume->hu.size(); ++v) {
+      if ((*session)->grid().hu(v) == of.volume->hu[v]) continue;
+      ++(to_cut[of.labels->labels[v]] ? inside : outside);
+    }
+    std::printf("cut by structure%s: %zu voxels inside, %zu outside\n",
+                in_blocks ? ", in blocks" : "", inside, outside);
+    EXPECT_GT(inside, 50u);
+    EXPECT_EQ(outside, 0u);
+  }
+}
+
 }  // namespace
 }  // namespace trephine
