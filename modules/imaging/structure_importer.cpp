@@ -76,6 +76,10 @@ Result<StructureFit> importStructures(const std::filesystem::path& file, const V
   }
   const Result<DicomSegmentation> read = readDicomSegmentation(file, request.threshold, reading);
   if (!read) return read.error();
+  if (read->fractional && request.ask_threshold) {
+    return Error{"THRESHOLD", "The file says how much of each voxel a structure has",
+                 "the segmentation", "Say from which share on it has a voxel"};
+  }
   std::optional<Choice> asked;
   if (Status of = match(*read, ct, request, asked); !of) return of.error();
   Result<StructureFit> fit =

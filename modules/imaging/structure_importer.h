@@ -20,6 +20,7 @@ struct StructureRequest {
   // What the CT is of; empty where it is not known (a volume file).
   SourceIds ct{};
   double threshold = 0.5;  // of a fractional DICOM SEG
+  bool ask_threshold = false;  // which is then an Error THRESHOLD
 };
 
 // A DICOM SEG belongs to the CT by its frame of reference. One with another is asked about

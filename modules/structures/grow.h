@@ -45,8 +45,8 @@ struct Growth {
   std::vector<std::string> steps;  // what was done, in words
 };
 constexpr double kMostOfScan = 0.15;
-constexpr double kMostOff_mm =
-    10.0;  // a vessel's radius: a click in one still grows what is around
+// A click in a vessel, or in a thin rim, still grows what is around or beside it, and says so.
+constexpr double kMostOff_mm = 20.0;
 
 // `seed_mm` in the patient's LPS frame. Two threads inside; takes one and a half bytes a voxel
 // beside the volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT,

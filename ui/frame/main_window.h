@@ -92,6 +92,7 @@ class MainWindow : public QMainWindow {
   bool takeStructures();
   void openStructures();
   void showStructures();
+  void placingFailed();
   void showStructureReport();
   void showStructureTab();
   void structureToolChanged(SliceTool tool);
@@ -160,6 +161,7 @@ class MainWindow : public QMainWindow {
   StructureEditor editor_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   QTimer settled_;
+  bool start_when_placed_ = false;   // an exercise waits for its structures
   bool entry_asked_ = false;         // and the case is being placed with it
   StructureLooks structure_looks_;   // of the view alone
   std::optional<SeenTissues> seen_;  // what the 3-D view was told last

@@ -49,7 +49,10 @@ void MainWindow::askToSaveDicom(bool for_source) {
   dialog->setOption(QFileDialog::ShowDirsOnly);
   dialog->setLabelText(QFileDialog::Accept, tr("&Save here"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this, for_source](const QString& folder) { saveDicom(toPath(folder), for_source); });
+          [this, for_source, volume = workstation_.currentCase()->volume](const QString& folder) {
+            const std::optional<Case>& of = workstation_.currentCase();
+            if (of && of->volume == volume) saveDicom(toPath(folder), for_source);
+          });
   dialog->open();
 }
 
@@ -57,6 +60,8 @@ void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source)
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
   const std::shared_ptr<const LabelMap> map = editor_.finished();
+  if (!map) return;
+  const std::uint64_t changes = editor_.changes();
   auto notes = std::make_shared<std::vector<std::string>>();
   const std::optional<std::filesystem::path> source =
       for_source ? std::optional(case_source_) : std::nullopt;
@@ -77,8 +82,8 @@ void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source)
         *notes = written->notes;
         return {};
       },
-      [this, notes] {
-        editor_.markSaved();
+      [this, notes, changes] {
+        editor_.markSaved(changes);
         QStringList words;
         for (const std::string& note : *notes) words << toQt(note);
         structures_->say(words.join('\n'));
@@ -89,10 +94,12 @@ void MainWindow::askToSaveSurface() {
   const int label = editor_.current();
   const Structure* of = editor_.map() ? editor_.map()->find(label) : nullptr;
   if (!of) return;
+  // As it is now: another case may come while the dialog stands.
+  const std::shared_ptr<const LabelMap> copy = editor_.finished();
+  if (!copy) return;
   QFileDialog* dialog = saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
                                    fileNameOf(of->name), tr("Surface (*.stl)"));
-  connect(dialog, &QFileDialog::fileSelected, this, [this, label](const QString& file) {
-    auto copy = std::make_shared<const LabelMap>(*editor_.map());
+  connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
     workstation_.save(tr("The surface is saved."),
                       [copy, label, path = toPath(file)](const Progress& progress) -> Status {
                         const auto written = writeSurface(*copy, label, path, progress);

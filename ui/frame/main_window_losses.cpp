@@ -54,8 +54,7 @@ void MainWindow::start() {
   if (!takeStructures())
     return say(tr("The structures are being put in place: try again in a moment."));
   if (workstation_.isOpening()) {  // what was made a moment ago, first
-    connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::start,
-            Qt::ConnectionType(Qt::QueuedConnection | Qt::SingleShotConnection));
+    start_when_placed_ = true;
     return;
   }
   unlessItDoesNotFit([this] { unlessCutsAreLost([this] { startExercise(); }); });
@@ -91,8 +90,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     return say(tr("A file is being saved; the window closes when it is written."));
   }
   const bool running = phase != Phase::empty && phase != Phase::ready;
-  if (may_close_ ||
-      !(running || unsaved_cuts_ || workstation_.tissuesEdited() || editor_.edited())) {
+  if (may_close_ || !(running || unsaved_cuts_ || workstation_.tissuesEdited() ||
+                      workstation_.tissuesWait() || editor_.edited())) {
     return QMainWindow::closeEvent(event);
   }
   event->ignore();

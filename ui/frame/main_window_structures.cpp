@@ -34,7 +34,7 @@ void MainWindow::connectStructures() {
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::grow) {
       editor_.growAt(at_mm, structures_->name(), structures_->growing());
-    } else {
+    } else if (tool == SliceTool::piece) {
       editor_.keepPieceAt(at_mm);
     }
   });
@@ -76,6 +76,7 @@ void MainWindow::connectStructures() {
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
   connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::showStructures);
+  connect(&workstation_, &Workstation::placingFailed, this, &MainWindow::placingFailed);
   connect(&workstation_, &Workstation::structuresAsked, this, &MainWindow::askAboutStructures);
   connect(&workstation_, &Workstation::overlapAsked, this, &MainWindow::askAboutOverlap);
   connect(&workstation_, &Workstation::thresholdAsked, this, &MainWindow::askForThreshold);
@@ -110,17 +111,32 @@ void MainWindow::showStructures() {
     left_->setCurrentIndex(kStructureTab);
     showStructureReport();
   }
-  if (carved_) showWholeCase();
+  if (carved_ && !unsaved_cuts_) showWholeCase();
   tissues_->setLabelsOpen(of.labels != nullptr);
   showCaseCard(of);
   showStructureTab();
   showEntry();
   if (std::exchange(entry_asked_, false)) lookAtCase();
+  // Not by a dialog: it would come with every stroke.
+  if (of.misfit) structures_->say(toQt(of.misfit->sentence()));
+  settled_.start();  // what was changed meanwhile
+  if (std::exchange(start_when_placed_, false)) {
+    QMetaObject::invokeMethod(this, &MainWindow::start, Qt::QueuedConnection);
+  }
+}
+
+// Nothing waits for it any more, and nothing that was made is lost.
+void MainWindow::placingFailed() {
+  entry_asked_ = start_when_placed_ = false;
+  own_structures_ = workstation_.currentCase()->structures;
+  editor_.giveBack();
+  showEntry();
 }
 
 // Of those that came from a file: beside the window, which goes on.
 void MainWindow::showStructureReport() {
   const Case& of = *workstation_.currentCase();
+  if (auto* before = findChild<StructureReport*>()) before->close();  // of another file
   if (of.structure_cards.empty()) return;
   (new StructureReport(of, this))->show();
 }
@@ -129,9 +145,11 @@ void MainWindow::showStructureReport() {
 void MainWindow::openStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) showStructureReport();
+  if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
+    structure_looks_.clear();
+    editor_.setCase(of.volume, of.structures);
+  }
   own_structures_ = of.structures;
-  structure_looks_.clear();
-  editor_.setCase(of.volume, of.structures);
   structures_->setWanted(workstation_.scene()->structures);
   structures_->setSourceAtHand(sourceAtHand());
   warned_ = false;
@@ -192,16 +210,21 @@ void MainWindow::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
     const auto before = workstation_.viewLandmark();
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
-  entry_asked_ = workstation_.placeEntry(placedAt(*landmark, at_mm, glm::normalize(outward)));
-  say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                   : tr("Busy: try again in a moment."));
+  const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
+  unlessCutsAreLost([this, entry] {
+    entry_asked_ = workstation_.placeEntry(entry);
+    say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
+                     : tr("Busy: try again in a moment."));
+  });
 }
 
 void MainWindow::leaveEntry() {
   if (!workstation_.entry()) return say(tr("The exercise enters at its own place."));
-  entry_asked_ = workstation_.placeEntry({});
-  say(entry_asked_ ? tr("The exercise enters at its own place again.")
-                   : tr("Busy: try again in a moment."));
+  unlessCutsAreLost([this] {
+    entry_asked_ = workstation_.placeEntry({});
+    say(entry_asked_ ? tr("The exercise enters at its own place again.")
+                     : tr("Busy: try again in a moment."));
+  });
 }
 
 void MainWindow::showEntry() {
@@ -302,20 +325,23 @@ void MainWindow::askToSaveStructures() {
 }
 
 void MainWindow::saveStructuresThen(std::function<void()> then) {
+  // As they are now: another case may come while the dialog stands.
+  const std::shared_ptr<const LabelMap> copy = editor_.finished();
+  if (!copy) return say(tr("There is no structure to save."));
+  const std::uint64_t changes = editor_.changes();
   QFileDialog* dialog = saveDialog(
       tr("Save structures"), "structures.nii.gz",
       tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
          "with names beside it (*.mha)"));
   connect(dialog, &QFileDialog::fileSelected, this,
-          [this, then = std::move(then)](const QString& file) {
-            const std::shared_ptr<const LabelMap> copy = editor_.finished();
+          [this, copy, changes, then = std::move(then)](const QString& file) {
             workstation_.save(
                 tr("The structures are saved."),
                 [copy, path = toPath(file)](const Progress& progress) {
                   return writeSegmentation(*copy, path, false, progress);
                 },
-                [this, then] {
-                  editor_.markSaved();
+                [this, changes, then] {
+                  editor_.markSaved(changes);
                   if (then) then();
                 });
           });
@@ -372,7 +398,7 @@ void MainWindow::unlessItDoesNotFit(std::function<void()> go_on) {
         [this] {
           left_->setCurrentIndex(kStructureTab);
           views_->setTool(SliceTool::grow);
-          structures_->offer(workstation_.scene()->structures.front());
+          structures_->offerWanted();
         },
         Qt::QueuedConnection);
   }

@@ -49,6 +49,15 @@ void MainWindow::showSeen() {
     if (any || s.label == editor_.current()) rows.push_back(s);
   }
   const TissueSet& set = tissues_->tissues();
+  // A label of the exercise's map may be another structure's: a shell has what the wall gave up.
+  const std::shared_ptr<const LabelMap> own = editor_.map();
+  std::erase_if(structure_looks_, [&](const auto& of) { return own && !own->find(of.first); });
+  if (map != own) {
+    std::erase_if(rows, [&](const Structure& s) {
+      const Structure* there = own ? own->find(s.label) : nullptr;
+      return structure_looks_.contains(s.label) && !(there && sameName(there->name, s.name));
+    });
+  }
   TissueLooks looks = workstation_.looks();
   handToTissues(structure_looks_, looks, set, rows);
   if (looks != workstation_.looks()) {
@@ -96,7 +105,7 @@ void MainWindow::keyPressEvent(QKeyEvent* event) {
 }
 
 void MainWindow::unlessTissuesStay(std::function<void()> go_on) {
-  if (!workstation_.tissuesEdited()) return go_on();
+  if (!workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
   auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
                               tr("The tissues have been changed and not saved."),
                               QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);

@@ -157,9 +157,9 @@ bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structure
 
 bool Workstation::placeEntry(const std::optional<Landmark>& entry) {
   if (!case_ || phase_ != Phase::ready || isOpening()) return false;
-  const std::optional<Landmark> before = std::exchange(entry_, entry);
+  entry_ = entry;
   if (placeAgain(case_->structures)) return true;
-  entry_ = before;
+  entry_ = entry_before_;
   return false;
 }
 
@@ -226,12 +226,11 @@ Result<Case> Workstation::withAnswered(const Case& of, const Opened& opening, As
   if (const auto share = request.answers.find(kThreshold); share != request.answers.end()) {
     request.threshold = toQt(share->second).toDouble();
   }
+  request.ask_threshold = !request.answers.contains(kThreshold);
   Result<StructureFit> fit = importStructures(opening.labels_file, *of.volume, request, progress);
+  asked.threshold = !fit && fit.error().code == "THRESHOLD";
   if (!fit) return fit.error();
-  // The threshold first: it decides what overlaps.
-  asked.threshold = fit->fractional && !request.answers.contains(kThreshold);
-  if (!asked.threshold && !request.answers.contains("OVERLAP"))
-    asked.overlapping = fit->overlapping;
+  if (!request.answers.contains("OVERLAP")) asked.overlapping = fit->overlapping;
   if (asked.any()) return Error{"ASKED", "A person is asked about the structures", "", ""};
   return withFit(of, *std::move(fit));
 }
@@ -332,7 +331,12 @@ void Workstation::keepEdits(Opened& opened) {
 }
 
 void Workstation::opened(Result<Opened> outcome) {
-  if (!outcome) return fail(outcome.error());
+  if (!outcome) {
+    entry_ = entry_before_;
+    if (case_) emit placingFailed();
+    return fail(outcome.error());
+  }
+  entry_before_ = entry_;
   const bool structures_alone = outcome->structures_alone;
   placed_with_ = tissueTable(outcome->scene.tissues);
   keepEdits(*outcome);
@@ -346,6 +350,7 @@ void Workstation::opened(Result<Opened> outcome) {
   }
   mirror_ = std::move(outcome->mirror);
   entry_.reset();
+  entry_before_.reset();
   carved_.reset();
   tellGivenBack();
   emit sceneChanged();

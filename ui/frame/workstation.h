@@ -85,6 +85,8 @@ class Workstation : public QObject {
   // been edited since.
   const TissueSet& declaredTissues() const { return declared_tissues_; }
   bool tissuesEdited() const;
+  // Others were, which wait for a case unlike the open one.
+  bool tissuesWait() const { return edited_other_.has_value(); }
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 
@@ -114,6 +116,8 @@ class Workstation : public QObject {
   // The case that is open has other structures, from a file or made here; sceneChanged() came
   // before.
   void structuresChanged();
+  // It stays as it was; failed() says why.
+  void placingFailed();
   // The file was not used: its `error` names a choice, whose option that uses it is `option`.
   void structuresAsked(const trephine::Error& error, const std::filesystem::path& file,
                        const trephine::Answers& answers, const std::string& option);
@@ -164,7 +168,8 @@ class Workstation : public QObject {
   std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;
   std::optional<Case> case_;
-  std::optional<Landmark> entry_;  // instead of the scene's landmark of that id
+  std::optional<Landmark> entry_;         // instead of the scene's landmark of that id
+  std::optional<Landmark> entry_before_;  // in the case as it is placed
   TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;

@@ -29,10 +29,6 @@ bool isIn(const VoxelBox& box, const Index3& voxel) {
   return true;
 }
 
-const Structure* wallOf(const LabelMap& map) {
-  return map.find(wallName().toStdString());
-}
-
 }  // namespace
 
 StructureEditor::StructureEditor(QObject* parent) : QObject(parent) {
@@ -50,6 +46,8 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
   history_.clear();
   preview_.reset();
   box_.reset();
+  regrow_.reset();
+  wall_ = 0;
   stroke_.reset();
   edited_ = untaken_ = false;
   current_ = given_ && !given_->structures.empty() ? given_->structures.front().label : 0;
@@ -62,7 +60,7 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
 void StructureEditor::setLocked(const QString& why) {
   if (std::exchange(locked_, why) == why) return;
   stroke_.reset();
-  if (why.isEmpty()) emit said({});
+  if (why.isEmpty() && std::exchange(said_locked_, false)) emit said({});
   emit stateChanged();
 }
 
@@ -71,24 +69,50 @@ std::shared_ptr<const LabelMap> StructureEditor::takeEdited() {
   return withoutWall();
 }
 
-std::shared_ptr<LabelMap> StructureEditor::withoutWall() const {
-  auto copy = std::make_shared<LabelMap>(*map());
-  const Structure* wall = wallOf(*copy);
-  if (!wall) return copy;
-  const int label = wall->label;
-  std::ranges::replace(copy->labels, std::uint8_t(label), std::uint8_t(0));
-  std::erase_if(copy->structures, [&](const Structure& s) { return s.label == label; });
+void StructureEditor::touched() {
+  edited_ = untaken_ = true;
+  ++changes_;
+}
+
+// Null where nothing but a wall was made, or for want of memory.
+std::shared_ptr<LabelMap> StructureEditor::withoutWall() {
+  const std::shared_ptr<const LabelMap> shown = map();
+  if (!shown) return nullptr;
+  try {
+    auto copy = std::make_shared<LabelMap>(*shown);
+    if (wall_ != 0) {
+      std::ranges::replace(copy->labels, std::uint8_t(wall_), std::uint8_t(0));
+      std::erase_if(copy->structures, [&](const Structure& s) { return s.label == wall_; });
+    }
+    return copy->structures.empty() ? nullptr : copy;
+  } catch (const std::bad_alloc&) {
+    emit failed(outOfMemory("to use the structures", "the case"));
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const LabelMap> StructureEditor::finished() {
+  const std::shared_ptr<LabelMap> copy = withoutWall();
+  if (copy) {
+    std::array<bool, 256> any{};
+    for (const std::uint8_t label : copy->labels) any[label] = true;
+    std::erase_if(copy->structures, [&](const Structure& s) { return !any[std::size_t(s.label)]; });
+  }
   return copy;
 }
 
-std::shared_ptr<const LabelMap> StructureEditor::finished() const {
-  return std::make_shared<const LabelMap>(withoutEmpty(*withoutWall()));
+// What is made takes the wall's voxels: they are of nothing.
+Labels StructureEditor::overWall() const {
+  Labels over;
+  if (wall_ != 0) over.set(std::size_t(wall_));
+  return over;
 }
 
 bool StructureEditor::mayChange() {
   if (!volume_) {
     emit said(tr("Open a case first."));
   } else if (!locked_.isEmpty()) {
+    said_locked_ = true;
     emit said(locked_);
   } else if (busy()) {
     emit said(tr("Wait for what is being done, or cancel it."));
@@ -150,7 +174,7 @@ Status StructureEditor::rename(int label, const QString& name) {
   for (Structure& s : map_->structures) {
     if (s.label == label) s.name = wanted;
   }
-  edited_ = untaken_ = true;
+  touched();
   emit listChanged();
   return {};
 }
@@ -160,7 +184,7 @@ void StructureEditor::setColour(int label, const Vec3& colour) {
   for (Structure& s : map_->structures) {
     if (s.label == label) s.colour = colour;
   }
-  edited_ = untaken_ = true;
+  touched();
   emit listChanged();
 }
 
@@ -177,7 +201,7 @@ void StructureEditor::remove(int label) {
 void StructureEditor::chooseAnother() {
   current_ = 0;
   for (const Structure& s : map_->structures) {
-    if (current_ == 0 && ml_[std::size_t(s.label)] > 0.0) current_ = s.label;
+    if (current_ == 0 && s.label != wall_ && ml_[std::size_t(s.label)] > 0.0) current_ = s.label;
   }
   emit listChanged();
 }
@@ -245,7 +269,7 @@ void StructureEditor::count(const LabelEdit& edit, bool added) {
 
 void StructureEditor::applied(const LabelEdit& edit, bool added) {
   count(edit, added);
-  edited_ = untaken_ = true;
+  touched();
   emit changed(edit.box);
 }
 
@@ -321,6 +345,7 @@ void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOpt
           }
           return;
         }
+        preview_has_new_row_ = !map_->find(wanted);
         const int label = addStructure(wanted);
         if (label == 0) return;
         // Only what no other structure has.
@@ -345,7 +370,7 @@ void StructureEditor::takePreview() {
   if (!preview_) return;
   const Structure* grown = map_->find(preview_->label);
   preview_.reset();
-  edited_ = untaken_ = true;
+  touched();
   history_.add(tr("Grow %1").arg(toQt(grown->name)).toStdString(),
                std::exchange(preview_edit_, {}));
   emit listChanged();
@@ -360,12 +385,11 @@ void StructureEditor::leavePreview() {
   count(preview_edit_, false);
   const VoxelBox box = preview_edit_.box;
   preview_edit_ = {};
-  if (ml_[std::size_t(label)] == 0.0) {
+  // A row that was there before is one that undo may fill again.
+  if (preview_has_new_row_) {
     std::erase_if(map_->structures, [&](const Structure& s) { return s.label == label; });
   }
-  if (!map_->find(current_)) {
-    current_ = map_->structures.empty() ? 0 : map_->structures.front().label;
-  }
+  if (!map_->find(current_) || ml_[std::size_t(current_)] == 0.0) chooseAnother();
   emit changed(box);
   emit listChanged();
   emit stateChanged();
@@ -421,7 +445,7 @@ void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::
                               const std::string& like) {
   const int label = addStructure(name, like);
   if (label == 0) return;
-  put(name, maskEdit(*map_, mask, label));
+  put(name, maskEdit(*map_, mask, label, overWall()));
   setCurrent(label);
 }
 
@@ -507,6 +531,7 @@ void StructureEditor::beginStroke(const Vec3& patient_mm, const Brush& brush, co
     emit listChanged();
   }
   stroke_ = Stroke{current_, brush, patient_mm};
+  if (current_ != wall_) stroke_->brush.over |= overWall();
   moveStroke(patient_mm);
 }
 
@@ -518,13 +543,14 @@ void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
     again = Regrow{preview_->seed_mm, grown ? toQt(grown->name) : QString()};
   }
   leavePreview();
-  const bool is_new = !wallOf(*map_);
-  const int label = addStructure(wallName().toStdString());
-  if (label == 0) return;
-  if (is_new) {
+  if (!map_->find(wall_)) {
+    const std::string name = wallName().toStdString();
+    wall_ = addStructure(map_->find(name) ? spareName(name) : name);
+    if (wall_ == 0) return;
     map_->structures.back().colour = kWallColour;
     emit listChanged();
   }
+  const int label = wall_;
   stroke_ = Stroke{label, brush, patient_mm};
   regrow_ = again;
   moveStroke(patient_mm);
@@ -575,7 +601,7 @@ void StructureEditor::undo() {
   stroke_.reset();
   if (const auto box = history_.undo(*map_)) {
     countAll();
-    edited_ = untaken_ = true;
+    touched();
     emit changed(*box);
     if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
     emit listChanged();
@@ -588,7 +614,7 @@ void StructureEditor::redo() {
   stroke_.reset();
   if (const auto box = history_.redo(*map_)) {
     countAll();
-    edited_ = untaken_ = true;
+    touched();
     emit changed(*box);
     emit listChanged();
     emit stateChanged();

@@ -42,12 +42,19 @@ class StructureEditor : public QObject {
   double millilitres(int label) const { return ml_[std::size_t(label)]; }
   // Since setCase() or markSaved().
   bool edited() const { return edited_; }
-  void markSaved() { edited_ = false; }
+  // What was saved is as it was after so many changes.
+  std::uint64_t changes() const { return changes_; }
+  void markSaved(std::uint64_t changes) { edited_ = edited_ && changes != changes_; }
+  // What was taken last could not be used: it is there to be taken again.
+  void giveBack() { untaken_ = edited_; }
+  bool isOf(const std::shared_ptr<const Volume>& volume) const { return volume_ == volume; }
   // Since setCase() or the last call; a copy of the map then, without the wall, else null. Not
   // while a preview stands.
   std::shared_ptr<const LabelMap> takeEdited();
-  // Such a copy, for a file: without rows that have no voxel either. Only where there is a map.
-  std::shared_ptr<const LabelMap> finished() const;
+  // Such a copy, for a file: without rows that have no voxel either. Null without structures, or
+  // memory for them.
+  std::shared_ptr<const LabelMap> finished();
+  int wall() const { return wall_; }  // its label; 0: none was painted
 
   // The one that tools work on: its label; 0: none.
   int current() const { return current_; }
@@ -124,7 +131,9 @@ class StructureEditor : public QObject {
   bool mayChange();
   bool makeOwn();
   const Structure* structure(int label) const;
-  std::shared_ptr<LabelMap> withoutWall() const;
+  std::shared_ptr<LabelMap> withoutWall();
+  void touched();
+  Labels overWall() const;
   void growAnew();
   // `like`: the tissue whose colour it takes where none is called as it is.
   int addStructure(const std::string& name, const std::string& like = {});
@@ -151,7 +160,9 @@ class StructureEditor : public QObject {
   int current_ = 0;
   std::optional<Preview> preview_;
   LabelEdit preview_edit_;
+  bool preview_has_new_row_ = false;
   GrowOptions grown_with_;  // of the preview
+  int wall_ = 0;
   struct Regrow {
     Vec3 seed_mm{0.0};
     QString name;
@@ -160,7 +171,9 @@ class StructureEditor : public QObject {
   std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;
+  bool said_locked_ = false;  // and it is still said
   bool edited_ = false, untaken_ = false;
+  std::uint64_t changes_ = 0;
   BackgroundTask work_;  // last: joined before what it reads goes
 };
 

@@ -134,8 +134,8 @@ void StructurePanel::say(const QString& text) {
   said_->setText(text.isEmpty() ? hint() : text);
 }
 
-void StructurePanel::offer(const std::string& name) {
-  name_->setEditText(toQt(name));
+void StructurePanel::offerWanted() {
+  name_->setCurrentIndex(0);  // those come first
 }
 
 // --- What is shown ---
@@ -273,7 +273,7 @@ void StructurePanel::showState() {
   bool any = false;
   if (const std::shared_ptr<const LabelMap> map = editor_.map()) {
     for (const Structure& s : map->structures) {
-      any = any || editor_.millilitres(s.label) > 0.0;
+      any = any || (s.label != editor_.wall() && editor_.millilitres(s.label) > 0.0);
     }
   }
   save_->setEnabled(any && !busy && !editor_.preview());

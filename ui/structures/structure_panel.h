@@ -45,7 +45,7 @@ class StructurePanel : public QWidget {
   void makeSkin();  // as thick as is set
   // What was said last; nothing: what the tool in hand does.
   void say(const QString& words);
-  void offer(const std::string& name);  // as the next one's name
+  void offerWanted();  // the first that the exercise lacks, as the next one's name
 
  signals:
   void toolChosen(trephine::SliceTool tool);

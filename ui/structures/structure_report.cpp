@@ -50,6 +50,7 @@ QString noticeWords(const StructureCard& card) {
 StructureReport::StructureReport(const Case& of, QWidget* parent) : QDialog(parent) {
   setObjectName("structureReport");
   setAttribute(Qt::WA_DeleteOnClose);
+  setAttribute(Qt::WA_ShowWithoutActivating);  // the keys stay where they are
   build();
   QStringList words;
   for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);

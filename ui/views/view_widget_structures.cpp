@@ -3,6 +3,7 @@
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <cmath>
+#include <new>
 
 #include "ui/views/view_tools.h"
 #include "ui/views/view_widget.h"
@@ -54,7 +55,11 @@ void ViewWidget::useTool(const QPointF& place) {
     return emit structureClicked(tool_,
                                  tool_ == SliceTool::grow ? picked->inside_mm : picked->at_mm);
   }
-  if (mirror_->labels()) stroke_labels_ = std::make_shared<LabelMap>(*mirror_->labels());
+  try {
+    if (mirror_->labels()) stroke_labels_ = std::make_shared<LabelMap>(*mirror_->labels());
+  } catch (const std::bad_alloc&) {
+    stroke_labels_.reset();  // those that change, then
+  }
   stroke_at_mm_ = picked->at_mm;
   emit strokeBegan(picked->at_mm, axisSeenAlong());
 }
@@ -68,6 +73,7 @@ void ViewWidget::moveStroke(const QPointF& from, const QPointF& to) {
   const double moved_mm = std::hypot(moved.x(), moved.y()) * devicePixelRatioF() *
                           renderer_.mmPerPixelAt(picked->at_mm);
   if (glm::distance(picked->at_mm, *stroke_at_mm_) > 3.0 * moved_mm + brush_mm_) {
+    if (tool_ == SliceTool::wall) return;  // its end grows the preview anew
     emit strokeEnded();
     emit strokeBegan(picked->at_mm, axisSeenAlong());
   } else {

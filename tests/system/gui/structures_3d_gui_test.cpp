@@ -181,7 +181,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QCOMPARE(ml("liver"), before);
     views().setTool(SliceTool::brush);
     drag(at, at + QPointF(25, 0));
-    QVERIFY2(ml("liver") >= before, "the brush adds what is free around the surface");
+    QVERIFY2(ml("liver") > before, "the brush adds what is free around the surface");
     window_->findChild<QAction*>("undo")->trigger();
   }
 
