@@ -125,7 +125,7 @@ TEST_F(BesideCt, ALabelMapAloneIsNoPartOfAnything) {
   writeNifti("organs.nii", 6, 2, 3);
   const CtFolder ct = scan();
   EXPECT_TRUE(ct.labelFiles().empty());
-  EXPECT_NE(find(of(ct, "organs.nii"), "LABEL_MAP")->action.find("Open the CT instead"),
+  EXPECT_NE(find(of(ct, "organs.nii"), "LABEL_MAP")->action.find("Open the CT first"),
             std::string::npos);
 }
 

@@ -184,28 +184,29 @@ TEST(Grow, DoesNotPassAWallNorTakeWhatOthersHave) {
   EXPECT_EQ(grow(volume, left, options).error().code, "OTHER_GRID");
 }
 
-// Two balls far apart; between them a place of their HU that has no room.
-TEST(Grow, NeverGivesAnOrganThatThePlaceIsNotOf) {
+// A click in a vessel of the ball, then in fat that is as wide as a vessel but far from all that
+// has room.
+TEST(Grow, SaysHowFarThePlaceLiesBesideItAndGivesNothingThatIsFarOff) {
   Volume volume = twoBallsAndABar();
   const GridGeometry& g = volume.geometry;
   for (std::size_t n = 0; n < volume.hu.size(); ++n) {
     const Index3 at = g.indicesOf(n);
-    const Vec3 off = Vec3(at[0], at[1], at[2]) - Vec3(60.0, 35.0, 35.0);
-    if (std::abs(off.x) < 26.0 && std::hypot(off.y, off.z) > 3.0 && std::abs(off.x) < 14.0) {
-      volume.hu[n] = -100;
-    }
+    if (std::hypot(at[0] - 30.0, at[1] - 35.0) < 6.0 && volume.hu[n] == 50) volume.hu[n] = 180;
   }
-  const auto between = grow(volume, g.toPatient_mm({58.0, 35.0, 35.0}));
-  if (between) {
-    EXPECT_LE(between->seed_off_mm, kMostOff_mm);
-  } else {
-    EXPECT_EQ(between.error().code, "NOTHING_GROWN");
-  }
-  // Beside the ball, nearer than a vessel is wide: the ball, and it is said.
-  const auto beside = grow(volume, g.toPatient_mm({5.0, 35.0, 35.0}));
-  ASSERT_TRUE(beside) << beside.error().sentence();
-  EXPECT_NEAR(beside->seed_off_mm, 5.0, 2.0);
-  EXPECT_NE(beside->steps.back().find("beside"), std::string::npos);
+  GrowOptions options;
+  options.hu = HuSpan{20.0, 80.0};
+  options.open_mm = 5.0;
+  const auto around = grow(volume, g.toPatient_mm({30.0, 35.0, 35.0}), options);
+  ASSERT_TRUE(around) << around.error().sentence();
+  EXPECT_NEAR(around->seed_off_mm, 6.0, 1.5);
+  EXPECT_NE(around->steps.back().find("beside"), std::string::npos);
+  const auto inside = grow(volume, g.toPatient_mm({40.0, 35.0, 35.0}), options);
+  ASSERT_TRUE(inside) << inside.error().sentence();
+  EXPECT_EQ(inside->seed_off_mm, 0.0);
+  // 30 mm from the ball.
+  const auto far_off = grow(volume, g.toPatient_mm({60.0, 62.0, 62.0}), options);
+  ASSERT_FALSE(far_off);
+  EXPECT_EQ(far_off.error().code, "NOTHING_GROWN");
 }
 
 TEST_F(GrowInAbdomen, CanBeCancelledAtAnyStep) {

@@ -1,4 +1,5 @@
-// A real liver from one click, and mended as a person does who sees the slices and not the truth.
+// A real liver from one click, and mended by strokes at places that can be seen in its slices. They
+// were chosen with the truth at hand.
 #include <gtest/gtest.h>
 
 #include <cstdio>
