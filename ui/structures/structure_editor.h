@@ -46,7 +46,7 @@ class StructureEditor : public QObject {
   std::uint64_t changes() const { return changes_; }
   void markSaved(std::uint64_t changes) { edited_ = edited_ && changes != changes_; }
   // What was taken last could not be used: it is there to be taken again.
-  void giveBack() { untaken_ = edited_; }
+  void giveBack() { untaken_ = map_ != nullptr; }
   bool isOf(const std::shared_ptr<const Volume>& volume) const { return volume_ == volume; }
   // Since setCase() or the last call; a copy of the map then, without the wall, else null. Not
   // while a preview stands.

@@ -274,5 +274,45 @@ TEST_F(Editor, WhatWasSaidOfOneStepGoesWithTheNext) {
   wait();
 }
 
+TEST_F(Editor, WhatRedoBringsBackHasItsNameAlthoughAPreviewOfThatNameWasLeft) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  editor_.undo();
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.leavePreview();
+  editor_.redo();
+  EXPECT_NEAR(ml("liver"), kBall_ml, 2.0);
+}
+
+TEST_F(Editor, AStructureFromElsewhereThatIsCalledWallIsNoWall) {
+  LabelMap given{volume_->geometry, std::vector<std::uint8_t>(volume_->geometry.voxelCount())};
+  given.labels[0] = 3;
+  given.structures = {{3, "wall", Vec3(1.0)}};
+  editor_.setCase(volume_, std::make_shared<const LabelMap>(given));
+  Brush brush;
+  editor_.beginWall(middle_, brush);
+  editor_.endStroke();
+  EXPECT_EQ(editor_.map()->structures.size(), 2u);
+  const auto finished = editor_.finished();
+  ASSERT_TRUE(finished);
+  ASSERT_EQ(finished->structures.size(), 1u);
+  EXPECT_EQ(finished->structures[0].label, 3);
+}
+
+TEST_F(Editor, WhatChangedAfterItWasHandedOutIsStillUnsaved) {
+  stroke(middle_, middle_);
+  const std::uint64_t saved = editor_.changes();
+  stroke(middle_ + Vec3(20, 0, 0), middle_ + Vec3(20, 0, 0));
+  editor_.markSaved(saved);
+  EXPECT_TRUE(editor_.edited());
+  editor_.markSaved(editor_.changes());
+  EXPECT_FALSE(editor_.edited());
+  EXPECT_TRUE(editor_.takeEdited());
+  editor_.giveBack();
+  EXPECT_TRUE(editor_.takeEdited()) << "it could not be used, saved or not";
+}
+
 }  // namespace
 }  // namespace trephine
