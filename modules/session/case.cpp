@@ -78,12 +78,12 @@ std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<An
   return {};
 }
 
-// The scene's landmarks. On a case that is known to show something else than the exercise is for
-// (`other`) they may have no place: then where their rays meet the body, and a warning says so.
-Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of, bool other,
+// The scene's landmarks. Where one has no place in the case: where their rays meet the body, and a
+// warning says so, for an exercise is no dead end.
+Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of,
                                                 const Progress& progress) {
   auto placed = placeLandmarks(scene, *of.volume, of.labels.get(), progress);
-  if (placed || !other) return placed;
+  if (placed) return placed;
   const std::string& code = placed.error().code;
   if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
   Scene on_body = scene;
@@ -179,10 +179,9 @@ Result<Case> placedIn(Scene& scene, Case of, const Progress& progress) {
   }
   of.labels = std::move(structures->labels);
   of.warnings = of.structure_warnings;
-  const std::optional<Warning> other = anatomyWarning(scene, of.anatomy);
-  if (other) of.warnings.push_back(*other);
+  if (auto other = anatomyWarning(scene, of.anatomy)) of.warnings.push_back(*std::move(other));
   of.warnings.insert(of.warnings.end(), structures->warnings.begin(), structures->warnings.end());
-  auto placed = landmarksIn(scene, of, other.has_value(), progress);
+  auto placed = landmarksIn(scene, of, progress);
   if (placed) {
     of.landmarks = *std::move(placed);
   } else if (placed.error().code == "CANCELLED") {

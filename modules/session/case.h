@@ -62,8 +62,8 @@ Case withFit(Case of, StructureFit fit);
 Case withStructures(Case of, std::shared_ptr<const LabelMap> structures);
 
 // Placed in a scene: with the label map that it names, unless one was given, and its landmarks. The
-// scene's tissues get the labels of the case's structures (placeStructures). Where the case is said
-// to show another anatomy (OTHER_ANATOMY, NO_VAULT) and a landmark has no place in it, the
+// scene's tissues get the labels of the case's structures (placeStructures). A case that shows
+// another anatomy is warned of (OTHER_ANATOMY, NO_VAULT). Where a landmark has no place in it, the
 // landmarks are where their rays meet the body, with the warning NO_LANDMARK. Error: CANCELLED; all
 // others are the case's `misfit`.
 Result<Case> placedIn(Scene& scene, Case of, const Progress& progress = Progress());

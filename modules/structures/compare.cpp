@@ -61,11 +61,32 @@ bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
          near(Vec3(0, 0, corner.z));
 }
 
+// The same voxels, whose axes come in another order or run the other way.
+bool sameVoxels(const GridGeometry& a, const GridGeometry& b) {
+  const Mat4 to_a = a.patientToVoxel() * b.voxelToPatient();
+  const Vec3 last_b(b.size[0] - 1, b.size[1] - 1, b.size[2] - 1);
+  constexpr double kWithin = 1e-3;  // voxels
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step(to_a[axis]);
+    const double most = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
+    if (std::abs(most - 1.0) * last_b[axis] > kWithin) return false;
+    if (std::abs(glm::length(step) - most) * last_b[axis] > kWithin) return false;
+  }
+  const Vec3 first = Vec3(to_a[3]), last = Vec3(to_a * glm::dvec4(last_b, 1.0));
+  const Vec3 end(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
+  return glm::length(glm::min(first, last)) <= kWithin &&
+         glm::length(glm::max(first, last) - end) <= kWithin;
+}
+
 }  // namespace
 
 Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& b,
                           std::uint8_t of_b) {
   if (!sameGrid(a.geometry, b.geometry)) {
+    if (sameVoxels(a.geometry, b.geometry)) {
+      const Result<LabelMap> turned = fitTo(b, a.geometry);
+      return turned ? likeness(a, of_a, *turned, of_b) : turned.error();
+    }
     return Error{"OTHER_GRID", "The two label maps are not of the same grid", "",
                  "Compare label maps of one CT"};
   }

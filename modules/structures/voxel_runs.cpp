@@ -3,38 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "volume/forest.h"
+
 namespace trephine {
-
-namespace {
-
-// Runs that belong together, by their numbers: the lowest of a set stands for it.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    for (std::size_t n = 0; n < count; ++n) parent_[n] = std::uint32_t(n);
-  }
-  std::uint32_t of(std::uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = of(a);
-    b = of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-}  // namespace
 
 void VoxelRuns::join(Touching touching) {
   std::vector<std::uint32_t> offset(layers_.size() + 1);
   for (std::size_t k = 0; k < layers_.size(); ++k) {
     offset[k + 1] = offset[k] + std::uint32_t(layers_[k].runs.size());
   }
-  Sets sets(offset.back());
+  Forest sets(offset.back());
   const std::int32_t apart = touching == Touching::corners ? 1 : 0;
   const auto joinRows = [&](int j, int k, int other_j, int other_k) {
     if (other_j < 0 || other_j >= size_[1] || other_k < 0) return;
@@ -75,7 +53,7 @@ void VoxelRuns::join(Touching touching) {
       for (std::uint32_t n = layer.first[std::size_t(j)]; n < layer.first[std::size_t(j) + 1];
            ++n) {
         Run& run = layer.runs[n];
-        std::uint32_t& of_set = number[sets.of(offset[std::size_t(k)] + n)];
+        std::uint32_t& of_set = number[sets.root(offset[std::size_t(k)] + n)];
         if (of_set == kNone) {
           of_set = std::uint32_t(pieces_.size());
           pieces_.push_back({0, false, {run.begin, j, k}});

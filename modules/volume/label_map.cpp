@@ -127,11 +127,10 @@ void nameTheRest(LabelMap& map) {
   }
 }
 
-LabelMap withoutEmpty(const LabelMap& map) {
-  LabelMap out = map;
+LabelMap withoutEmpty(LabelMap map) {
   const std::array<bool, 256> used = labelsIn(map);
-  std::erase_if(out.structures, [&](const Structure& s) { return !used[std::size_t(s.label)]; });
-  return out;
+  std::erase_if(map.structures, [&](const Structure& s) { return !used[std::size_t(s.label)]; });
+  return map;
 }
 
 std::vector<std::uint8_t> shellOf(const LabelMap& map, int label, double thickness_mm) {

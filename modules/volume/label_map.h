@@ -49,7 +49,7 @@ int unusedLabel(const LabelMap& map);
 void nameTheRest(LabelMap& map);
 
 // The same voxels, without rows of structures that have none.
-LabelMap withoutEmpty(const LabelMap& map);
+LabelMap withoutEmpty(LabelMap map);
 
 // The outermost layer of a structure, as a capsule or the outer table is: its voxels whose middle
 // lies within `thickness_mm` of its surface, and at least those with one neighbour, of their 26,

@@ -71,6 +71,9 @@ Result<std::vector<NamedLabel>> readSidecar(const fs::path& file) {
     named.segment.name = item.text("name");
     named.segment.colour = item.vec3("colour", kShares, labelColour(named.label));
     named.segment.tissue = item.text("tissue", "");
+    if (trimmed(named.segment.name).empty()) {
+      item.fail("name", "The name is blank", "Give each structure a name");
+    }
     for (const NamedLabel& other : labels) {
       if (other.label == named.label || sameName(other.segment.name, named.segment.name)) {
         item.fail("label", "The label or the name stands twice in the list",
@@ -206,8 +209,13 @@ Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
 // Segments that the file speaks of and does not have, and values that it has and is silent about.
 void settleSegments(const std::vector<NamedLabel>& beside, Segmentation& of) {
   const bool own = !of.segments.empty();
-  std::erase_if(of.segments,
-                [&](const Segment& s) { return s.layer >= of.layers.size() || s.value == 0; });
+  std::erase_if(of.segments, [&](const Segment& s) {
+    const bool gone = s.layer >= of.layers.size() || s.value == 0;
+    if (gone) {
+      of.notes.push_back("'" + s.name + "' stands in the list and not in the voxels");
+    }
+    return gone;
+  });
   of.named = own || !beside.empty();
   for (std::size_t l = 0; l < of.layers.size(); ++l) {
     std::array<bool, 256> known{}, used{};
@@ -256,13 +264,20 @@ std::string nrrdHeader(const LabelMap& map) {
                 g.origin_mm.y, g.origin_mm.z);
   text += line;
   text += "kinds: domain domain domain\nencoding: gzip\n";
+  text +=
+      "Segmentation_ContainedRepresentationNames:=Binary labelmap|\n"
+      "Segmentation_MasterRepresentation:=Binary labelmap\n"
+      "Segmentation_ReferenceImageExtentOffset:=0 0 0\n";
+  std::snprintf(line, sizeof line, "Extent:=0 %d 0 %d 0 %d\n", g.size[0] - 1, g.size[1] - 1,
+                g.size[2] - 1);
+  const std::string extent = line;
   int n = 0;
   for (const Structure& s : map.structures) {
     const std::string key = "Segment" + std::to_string(n++) + "_";
     std::snprintf(line, sizeof line, "%.6g %.6g %.6g", s.colour.x, s.colour.y, s.colour.z);
-    text += key + "Color:=" + line + "\n" + key + "ID:=Segment_" + std::to_string(s.label) + "\n" +
-            key + "LabelValue:=" + std::to_string(s.label) + "\n" + key + "Layer:=0\n" + key +
-            "Name:=" + oneLine(s.name) + "\n";
+    text += key + "Color:=" + line + "\n" + key + extent + key + "ID:=Segment_" +
+            std::to_string(s.label) + "\n" + key + "LabelValue:=" + std::to_string(s.label) + "\n" +
+            key + "Layer:=0\n" + key + "Name:=" + oneLine(s.name) + "\n";
   }
   return text + "\n";
 }

@@ -58,9 +58,10 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
 }
 
 void StructureEditor::setLocked(const QString& why) {
-  if (std::exchange(locked_, why) == why) return;
+  const QString before = std::exchange(locked_, why);
+  if (before == why) return;
   stroke_.reset();
-  if (why.isEmpty() && std::exchange(said_locked_, false)) emit said({});
+  if (why.isEmpty()) emit saidNoMore(before);
   emit stateChanged();
 }
 
@@ -93,11 +94,7 @@ std::shared_ptr<LabelMap> StructureEditor::withoutWall() {
 
 std::shared_ptr<const LabelMap> StructureEditor::finished() {
   const std::shared_ptr<LabelMap> copy = withoutWall();
-  if (copy) {
-    std::array<bool, 256> any{};
-    for (const std::uint8_t label : copy->labels) any[label] = true;
-    std::erase_if(copy->structures, [&](const Structure& s) { return !any[std::size_t(s.label)]; });
-  }
+  if (copy) *copy = withoutEmpty(std::move(*copy));
   return copy;
 }
 
@@ -112,7 +109,6 @@ bool StructureEditor::mayChange() {
   if (!volume_) {
     emit said(tr("Open a case first."));
   } else if (!locked_.isEmpty()) {
-    said_locked_ = true;
     emit said(locked_);
   } else if (busy()) {
     emit said(tr("Wait for what is being done, or cancel it."));
@@ -296,19 +292,23 @@ void StructureEditor::put(const std::string& step, const Result<LabelEdit>& edit
   emit stateChanged();
 }
 
-template <class Make>
-void StructureEditor::inBackground(Make make, const std::string& step) {
-  using Made = std::invoke_result_t<Make&, const Progress&>;
-  work_.run(std::move(make), [this, step, own = map_](Made made) {
-    if (map_ != own) return;  // of a case that is gone
-    if (!made) {
-      if (made.error().code != "CANCELLED") emit failed(made.error());
-      emit said(made.error().code == "CANCELLED" ? tr("Cancelled: nothing was changed.")
-                                                 : QString());
-    } else {
-      put(step, *made);
-    }
+// `take` gets what the work made, unless the case is gone by then.
+template <class Work, class Take>
+void StructureEditor::inBackground(Work work, Take take) {
+  using Made = std::invoke_result_t<Work&, const Progress&>;
+  work_.run(std::move(work), [this, take, own = map_](Made made) {
+    if (map_ != own) return;
+    if (made) return take(*std::move(made));
+    const bool cancelled = made.error().code == "CANCELLED";
+    if (!cancelled) emit failed(made.error());
+    emit said(cancelled ? tr("Cancelled: nothing was changed.") : QString());
   });
+}
+
+template <class Make>
+void StructureEditor::editInBackground(Make make, const QString& step) {
+  inBackground(std::move(make),
+               [this, step](LabelEdit edit) { put(step.toStdString(), std::move(edit)); });
 }
 
 void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOptions& options) {
@@ -326,44 +326,40 @@ void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOpt
   if (box_ && !isIn(*box_, *voxel)) {
     return emit said(tr("Click inside the box, or take the box away."));
   }
-  const std::string wanted = freeName(name);
   grown_with_ = options;
   GrowOptions within = options;
   within.box = box_;
-  within.others = map_;
-  work_.run(
+  // Without any, looking for them would take a while for nothing.
+  if (std::ranges::any_of(ml_, [](double ml) { return ml > 0.0; })) within.others = map_;
+  inBackground(
       [volume = volume_, patient_mm, within](const Progress& progress) {
         return grow(*volume, patient_mm, within, progress);
       },
-      [this, wanted, patient_mm, own = map_](Result<Growth> grown) {
-        if (map_ != own) return;  // of a case that is gone
-        if (!grown) {
-          if (grown.error().code == "CANCELLED") {
-            emit said(tr("Cancelled: nothing was grown."));
-          } else {
-            emit failed(grown.error());
-          }
-          return;
-        }
-        preview_has_new_row_ = !map_->find(wanted);
-        const int label = addStructure(wanted);
-        if (label == 0) return;
-        // Only what no other structure has.
-        auto edit = maskEdit(*map_, grown->mask.labels, label);
-        if (!edit) {
-          emit failed(edit.error());
-          return;
-        }
-        preview_edit_ = *std::move(edit);
-        trephine::apply(*map_, preview_edit_);
-        count(preview_edit_, true);
-        preview_ = Preview{label,      ml_[std::size_t(label)], grown->hu, grown->leaked,
-                           patient_mm, grown->seed_off_mm};
-        current_ = label;
-        emit changed(preview_edit_.box);
-        emit listChanged();
-        emit stateChanged();
+      [this, wanted = freeName(name), patient_mm](const Growth& grown) {
+        showGrown(grown, wanted, patient_mm);
       });
+}
+
+// As a preview.
+void StructureEditor::showGrown(const Growth& grown, const std::string& name, const Vec3& seed_mm) {
+  preview_has_new_row_ = !map_->find(name);
+  const int label = addStructure(name);
+  if (label == 0) return;
+  // Only what no other structure has.
+  auto edit = maskEdit(*map_, grown.mask.labels, label);
+  if (!edit) {
+    emit failed(edit.error());
+    return;
+  }
+  preview_edit_ = *std::move(edit);
+  trephine::apply(*map_, preview_edit_);
+  count(preview_edit_, true);
+  preview_ =
+      Preview{label, ml_[std::size_t(label)], grown.hu, grown.leaked, seed_mm, grown.seed_off_mm};
+  current_ = label;
+  emit changed(preview_edit_.box);
+  emit listChanged();
+  emit stateChanged();
 }
 
 void StructureEditor::takePreview() {
@@ -452,12 +448,8 @@ void StructureEditor::putMask(const std::vector<std::uint8_t>& mask, const std::
 void StructureEditor::makeSkull() {
   if (!mayChange()) return;
   leavePreview();
-  work_.run([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
-            [this, own = map_](Result<Skull> made) {
-              if (map_ != own) return;
-              if (made) return putMask(made->mask.labels, "skull", "bone");
-              if (made.error().code != "CANCELLED") emit failed(made.error());
-            });
+  inBackground([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
+               [this](const Skull& made) { putMask(made.mask.labels, "skull", "bone"); });
 }
 
 // A layer is a voxel thick at least.
@@ -473,13 +465,9 @@ void StructureEditor::makeSkin(double thickness_mm) {
   if (!mayChange()) return;
   leavePreview();
   sayIfThin(thickness_mm);
-  work_.run([volume = volume_, thickness_mm](
-                const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
-            [this, own = map_](Result<Skin> made) {
-              if (map_ != own) return;
-              if (made) return putMask(made->mask.labels, "skin", "scalp");
-              if (made.error().code != "CANCELLED") emit failed(made.error());
-            });
+  inBackground([volume = volume_, thickness_mm](
+                   const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
+               [this](const Skin& made) { putMask(made.mask.labels, "skin", "scalp"); });
 }
 
 void StructureEditor::makeShell(double thickness_mm, const QString& name) {
@@ -489,33 +477,33 @@ void StructureEditor::makeShell(double thickness_mm, const QString& name) {
   const int into = addStructure(freeName(name));
   if (into == 0) return;
   sayIfThin(thickness_mm);
-  inBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
-                into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
-               tr("Shell").toStdString());
+  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
+                    into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
+                   tr("Shell"));
 }
 
 void StructureEditor::fillHoles() {
   if (!mayChange() || current_ == 0) return;
   leavePreview();
-  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_](
-                   const Progress& p) { return holesEdit(*map, of, std::nullopt, {}, p); },
-               tr("Fill holes").toStdString());
+  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_](
+                       const Progress& p) { return holesEdit(*map, of, std::nullopt, {}, p); },
+                   tr("Fill holes"));
 }
 
 void StructureEditor::smooth(double radius_mm) {
   if (!mayChange() || current_ == 0) return;
   leavePreview();
-  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
-                radius_mm](const Progress& p) { return smoothEdit(*map, of, radius_mm, {}, p); },
-               tr("Smooth").toStdString());
+  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_, radius_mm](
+                       const Progress& p) { return smoothEdit(*map, of, radius_mm, {}, p); },
+                   tr("Smooth"));
 }
 
 void StructureEditor::keepPieceAt(const Vec3& patient_mm) {
   if (!mayChange() || current_ == 0) return;
   leavePreview();
-  inBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
-                patient_mm](const Progress&) { return keepPieceEdit(*map, of, patient_mm); },
-               tr("Keep the piece").toStdString());
+  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of = current_,
+                    patient_mm](const Progress&) { return keepPieceEdit(*map, of, patient_mm); },
+                   tr("Keep the piece"));
 }
 
 // --- The brush ---
@@ -599,26 +587,23 @@ void StructureEditor::undo() {
   if (!mayChange()) return;
   if (preview_) return leavePreview();
   stroke_.reset();
-  if (const auto box = history_.undo(*map_)) {
-    countAll();
-    touched();
-    emit changed(*box);
-    if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
-    emit listChanged();
-    emit stateChanged();
-  }
+  stepped(history_.undo(*map_));
 }
 
 void StructureEditor::redo() {
   if (!mayChange() || preview_) return;
   stroke_.reset();
-  if (const auto box = history_.redo(*map_)) {
-    countAll();
-    touched();
-    emit changed(*box);
-    emit listChanged();
-    emit stateChanged();
-  }
+  stepped(history_.redo(*map_));
+}
+
+void StructureEditor::stepped(const std::optional<VoxelBox>& box) {
+  if (!box) return;
+  countAll();
+  touched();
+  emit changed(*box);
+  if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
+  emit listChanged();
+  emit stateChanged();
 }
 
 }  // namespace trephine

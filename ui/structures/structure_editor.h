@@ -119,6 +119,7 @@ class StructureEditor : public QObject {
   void stateChanged();                          // busy, preview, history, locked
   void progressed(double fraction, const QString& step);
   void said(const QString& words);
+  void saidNoMore(const QString& words);  // they no longer hold
   void failed(const trephine::Error& error);
 
  private:
@@ -145,8 +146,12 @@ class StructureEditor : public QObject {
   void applied(const LabelEdit& edit, bool added);
   void count(const LabelEdit& edit, bool added);
   void countAll();
+  template <class Work, class Take>
+  void inBackground(Work work, Take take);
   template <class Make>
-  void inBackground(Make make, const std::string& step);
+  void editInBackground(Make make, const QString& step);
+  void showGrown(const Growth& grown, const std::string& name, const Vec3& seed_mm);
+  void stepped(const std::optional<VoxelBox>& box);  // of the history
   // A mask of 0 and 1 as a structure of that name, which is made or replaced.
   void putMask(const std::vector<std::uint8_t>& mask, const std::string& name,
                const std::string& like);
@@ -171,7 +176,6 @@ class StructureEditor : public QObject {
   std::optional<VoxelBox> box_;
   std::optional<Stroke> stroke_;
   QString locked_;
-  bool said_locked_ = false;  // and it is still said
   bool edited_ = false, untaken_ = false;
   std::uint64_t changes_ = 0;
   BackgroundTask work_;  // last: joined before what it reads goes

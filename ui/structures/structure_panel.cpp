@@ -29,6 +29,9 @@ StructurePanel::StructurePanel(StructureEditor& editor, QWidget* parent)
   connect(&editor_, &StructureEditor::stateChanged, this, &StructurePanel::showState);
   connect(&editor_, &StructureEditor::boxChanged, this, &StructurePanel::showBox);
   connect(&editor_, &StructureEditor::said, this, &StructurePanel::say);
+  connect(&editor_, &StructureEditor::saidNoMore, this, [this](const QString& words) {
+    if (said_->text() == words) say({});
+  });
   connect(&editor_, &StructureEditor::progressed, this, [this](double fraction, const QString&) {
     progress_->setValue(int(fraction * kProgressSteps));
   });

@@ -2,31 +2,12 @@
 
 #include <algorithm>
 
+#include "volume/forest.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
 
 namespace {
-
-// A forest over runs: each points towards the first run of its tree.
-class Forest {
- public:
-  explicit Forest(std::size_t n) : parent_(n) {
-    for (std::size_t r = 0; r < n; ++r) parent_[r] = std::uint32_t(r);
-  }
-  std::uint32_t root(std::uint32_t r) {
-    while (parent_[r] != r) r = parent_[r] = parent_[parent_[r]];
-    return r;
-  }
-  void join(std::uint32_t p, std::uint32_t q) {
-    p = root(p);
-    q = root(q);
-    parent_[std::max(p, q)] = std::min(p, q);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // Every run of one kind; `row_begin` gets the first of each row and, at last, their count.
 std::vector<CellRun> findRuns(const Index3& size, const CoarseCells& kind,

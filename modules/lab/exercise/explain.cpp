@@ -90,7 +90,7 @@ double removalNs() {
   return medianNs([&] { journal.erase(writer, 0, voxel++, 0); });
 }
 
-// What a run of the scene's own script in its own case would warn of: the first tick, alone.
+// What a run of the scene's own script in its own case would warn of: of its beginning alone.
 Result<Json> warningsAtStart(Scene& scene, const Progress& progress) {
   if (scene.case_source.empty() || scene.operator_file.empty()) return Json(nullptr);
   Result<OperatorScript> script = readOperatorScript(scene.operator_file, scene);
@@ -115,6 +115,9 @@ Result<Json> warningsAtStart(Scene& scene, const Progress& progress) {
   TickRecord record;
   core.tick(input, nullptr, 0, record);
   Json warnings = Json::array();
+  for (const Warning& warning : of->warnings) {
+    warnings.push_back({{"code", warning.code}, {"text", warning.text}});
+  }
   for (const Event& event : core.events()) {
     if (event.kind != EventKind::starts_in_tissue) continue;
     const Warning warning = startsInTissue(scene.arms[std::size_t(event.arm)].name,

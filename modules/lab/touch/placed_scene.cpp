@@ -22,6 +22,11 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
   const Result<Case> of = openCase(*scene, progress);
   if (!of) return of.error();
   if (of->misfit) return *of->misfit;
+  for (const Warning& warning : of->warnings) {
+    if (warning.code != "NO_LANDMARK") continue;  // a figure would be of another place
+    return Error{warning.code, warning.text, "scene '" + name + "'",
+                 "Choose a case of the scene's anatomy"};
+  }
   return PlacedScene{withFixedMaps(*scene, of->landmarks), of->volume,
                      armFrames(*scene, of->landmarks)};
 }

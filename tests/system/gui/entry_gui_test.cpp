@@ -37,12 +37,7 @@ class EntryGuiTest : public test::WindowTest {
     QTest::keyClick(handle(), of);
   }
   void drag(const Vec3& from, const Vec3& to) {
-    QTest::mousePress(handle(), Qt::LeftButton, {}, inWindow(from));
-    for (int i = 1; i <= 8; ++i) {
-      QTest::mouseMove(handle(), inWindow(from + (to - from) * (i / 8.0)));
-      QTest::qWait(10);
-    }
-    QTest::mouseRelease(handle(), Qt::LeftButton, {}, inWindow(to));
+    dragInWindow(inWindow(from), inWindow(to), Qt::LeftButton);
     QTest::qWait(30);
   }
   void click(const Vec3& at) { QTest::mouseClick(handle(), Qt::LeftButton, {}, inWindow(at)); }
@@ -61,13 +56,7 @@ class EntryGuiTest : public test::WindowTest {
 
  private slots:
   void initTestCase() {
-    QApplication::setApplicationName("trephine-test-entry");
-    QFile::remove(windowSettings().fileName());
-    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    openWindow("trephine-test-entry");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openPhantom("abdomen");
     QVERIFY(opened.wait(kLong_ms));
@@ -75,10 +64,7 @@ class EntryGuiTest : public test::WindowTest {
     views().setPoint(kInLiver_mm);
     QTest::qWait(100);
   }
-  void cleanupTestCase() {
-    window_.reset();
-    QFile::remove(windowSettings().fileName());
-  }
+  void cleanupTestCase() { closeWindow(); }
 
   void aClickOnTheSkinIsWhereTheExerciseEnters() {
     const Vec3 before = entry().position_mm;

@@ -1,15 +1,23 @@
 // What the tests of the real window share: the case that they open and how they start.
 #pragma once
 
+#include <QAction>
 #include <QApplication>
+#include <QDir>
+#include <QFile>
 #include <QStandardPaths>
 #include <QTemporaryDir>
+#include <QWheelEvent>
+#include <QWindow>
 #include <QtTest>
 #include <cstdio>
+#include <cstdlib>
 
 #include "base/file.h"
 #include "base/system.h"
 #include "ui/common/colours.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
 #include "volume/phantom.h"
@@ -56,6 +64,86 @@ class WindowTest : public QObject {
     auto* widget = window_->findChild<Widget*>(name);
     if (!widget) qFatal("the window has no %s", qPrintable(name));
     return widget;
+  }
+
+  // An empty window with settings of its own, 1280 x 800.
+  void openWindow(const char* application) {
+    QApplication::setApplicationName(application);
+    QFile::remove(windowSettings().fileName());
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+  }
+  void closeWindow() {
+    window_.reset();
+    QFile::remove(windowSettings().fileName());
+  }
+  // As a hand does, in the window's pixels.
+  void dragInWindow(const QPointF& from, const QPointF& to, Qt::MouseButton button) {
+    constexpr int kSteps = 8;
+    QWindow* handle = window_->windowHandle();
+    QTest::mousePress(handle, button, {}, from.toPoint());
+    for (int i = 1; i <= kSteps; ++i) {
+      QTest::mouseMove(handle, (from + (to - from) * (double(i) / kSteps)).toPoint());
+      QTest::qWait(10);
+    }
+    QTest::mouseRelease(handle, button, {}, to.toPoint());
+  }
+
+  // The right hand towards the patient, in the exercise's view: the wheel.
+  void pushHand(int notches, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    ViewWidget& view = window_->view();
+    const QPointF at = QRectF(view.rect()).center();
+    for (int i = 0; i < std::abs(notches); ++i) {
+      QWheelEvent event(at, view.mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
+                        modifiers, Qt::NoScrollPhase, false);
+      QCoreApplication::sendEvent(&view, &event);
+      QTest::qWait(15);
+    }
+  }
+  void dragHand(QPoint by, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    ViewWidget& view = window_->view();
+    const QPoint from = view.rect().center();
+    constexpr int kSteps = 20;
+    QTest::mousePress(&view, Qt::LeftButton, modifiers, from);
+    for (int i = 1; i <= kSteps; ++i) {
+      QTest::mouseMove(&view, from + by * i / kSteps);
+      QTest::qWait(20);
+    }
+    QTest::mouseRelease(&view, Qt::LeftButton, modifiers, from + by);
+  }
+  static std::uint64_t removedVoxels(Session& session) {
+    std::uint64_t sum = 0;
+    for (const auto& arm : session.state().removed) {
+      for (std::uint64_t voxels : arm) sum += voxels;
+    }
+    return sum;
+  }
+  // Down into the tissue, sideways, and well out until the stroke has ended; then as high above it
+  // as before, so that the next cut is as deep. Where the machine was so busy that a step came
+  // 20 ms late the arms are without force and cut nothing: then, as a person would, one waits for
+  // the force or asks for it, and makes the cut again.
+  void cut(QPoint across, Qt::KeyboardModifiers modifiers = Qt::NoModifier,
+           std::uint64_t enough = 0) {
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      const std::uint64_t standing = removedVoxels(*workstation().session());
+      pushHand(30, modifiers);
+      dragHand(attempt % 2 == 0 ? across : -across, modifiers);
+      pushHand(-34, modifiers);
+      QTest::qWait(500);
+      pushHand(4, modifiers);
+      // Fewer voxels: the force went in the middle of it.
+      if (removedVoxels(*workstation().session()) > standing + enough) return;
+      qInfo("little or nothing was cut: once more");
+      for (int n = 0; n < 5 && removedVoxels(*workstation().session()) != standing; ++n) {
+        find<QAction>("undo")->trigger();
+        QTest::qWait(300);
+      }
+      QTest::qWait(1500);
+      find<QAction>("forceBack")->trigger();
+    }
   }
 
   QTemporaryDir temporary_;

@@ -50,14 +50,6 @@ int differentPixels(const Picture& a, const Picture& b) {
   return count;
 }
 
-std::uint64_t removedVoxels(Session& session) {
-  std::uint64_t sum = 0;
-  for (const auto& arm : session.state().removed) {
-    for (std::uint64_t voxels : arm) sum += voxels;
-  }
-  return sum;
-}
-
 }  // namespace
 
 class GuiTest : public test::WindowTest {
@@ -90,52 +82,6 @@ class GuiTest : public test::WindowTest {
     QVERIFY(enter.isAccepted());
     QDropEvent dropped(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QCoreApplication::sendEvent(window_.get(), &dropped);
-  }
-
-  void wheel(int notches, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    const QPointF at = QRectF(view().rect()).center();
-    for (int i = 0; i < std::abs(notches); ++i) {
-      QWheelEvent event(at, view().mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
-                        modifiers, Qt::NoScrollPhase, false);
-      QCoreApplication::sendEvent(&view(), &event);
-      QTest::qWait(15);
-    }
-  }
-
-  void drag(QPoint by, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    const QPoint from = view().rect().center();
-    constexpr int kSteps = 20;
-    QTest::mousePress(&view(), Qt::LeftButton, modifiers, from);
-    for (int i = 1; i <= kSteps; ++i) {
-      QTest::mouseMove(&view(), from + by * i / kSteps);
-      QTest::qWait(20);
-    }
-    QTest::mouseRelease(&view(), Qt::LeftButton, modifiers, from + by);
-  }
-
-  // Down into the bone, sideways, and well out until the stroke has ended; then as high above the
-  // bone as before, so that the next cut is as deep. Where the machine was so busy that a step came
-  // 20 ms late the arms are without force and cut nothing: then, as a person would, one waits for
-  // the force or asks for it, and makes the cut again.
-  void cut(QPoint across, Qt::KeyboardModifiers modifiers = Qt::NoModifier,
-           std::uint64_t enough = 0) {
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      const std::uint64_t standing = removedVoxels(*workstation().session());
-      wheel(30, modifiers);
-      drag(attempt % 2 == 0 ? across : -across, modifiers);
-      wheel(-34, modifiers);
-      QTest::qWait(500);
-      wheel(4, modifiers);
-      // Fewer voxels: the force went in the middle of it.
-      if (removedVoxels(*workstation().session()) > standing + enough) return;
-      qInfo("little or nothing was cut: once more");
-      for (int n = 0; n < 5 && removedVoxels(*workstation().session()) != standing; ++n) {
-        find<QAction>("undo")->trigger();
-        QTest::qWait(300);
-      }
-      QTest::qWait(1500);
-      find<QAction>("forceBack")->trigger();
-    }
   }
 
   // Keys go to the active window, and without a window manager nobody makes it so after a dialog.
@@ -398,7 +344,7 @@ class GuiTest : public test::WindowTest {
     auto* notice = find<QFrame>("pauseNotice");
     QVERIFY(!notice->isVisible());
     const QImage released = pauseButton();
-    wheel(24);  // on the bone, pressing
+    pushHand(24);  // on the bone, pressing
     QTest::qWait(300);
     focusView();
     const Vec3 before_mm = tip_mm();
@@ -419,8 +365,8 @@ class GuiTest : public test::WindowTest {
     QTest::qWait(300);
     const std::uint32_t second = workstation().session()->state().seconds;
     const QString clock = find<QLabel>("rewindTime")->text();
-    wheel(10);
-    drag({0, 60});
+    pushHand(10);
+    dragHand({0, 60});
     QTest::keyClick(&view(), Qt::Key_PageDown);
     keepGrab("paused-1280x800.png");
     QVERIFY2(glm::distance(tip_mm(), before_mm) < 1.0, "the tool moved in a pause");
@@ -432,7 +378,7 @@ class GuiTest : public test::WindowTest {
     QTRY_VERIFY(!workstation().session()->state().paused);
     QTRY_VERIFY(!notice->isVisible());
     QVERIFY(view().hasFocus());
-    wheel(-24);
+    pushHand(-24);
     QTRY_VERIFY(glm::distance(tip_mm(), before_mm) > 5.0);
     QTRY_VERIFY(workstation().session()->state().seconds > second);
     QTest::qWait(500);  // the stroke ends
@@ -464,7 +410,7 @@ class GuiTest : public test::WindowTest {
     const std::uint32_t before_cut = workstation().session()->state().seconds;
     cut({60, 10});
     QVERIFY(removedVoxels(*workstation().session()) > 20);
-    wheel(30);  // the tool stays where it cut
+    pushHand(30);  // the tool stays where it cut
     QTest::qWait(3000);
     QVERIFY(find<QAction>("undo")->isEnabled());
     QVERIFY(!find<QAction>("redo")->isEnabled());
@@ -491,7 +437,7 @@ class GuiTest : public test::WindowTest {
     QVERIFY(find<QLabel>("forceNoticeWhy")->text().contains("Draw it out"));
     QVERIFY2(window_->statusBar()->currentMessage().contains("draw the tool out"),
              qPrintable(window_->statusBar()->currentMessage()));
-    wheel(-30);
+    pushHand(-30);
     QTRY_VERIFY(!no_force->isVisible());
     QCOMPARE(shownSha(), sha_before_);
 

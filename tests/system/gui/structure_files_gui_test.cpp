@@ -130,8 +130,6 @@ class StructureFilesGuiTest : public test::WindowTest {
 
  private slots:
   void initTestCase() {
-    QApplication::setApplicationName("trephine-test-structure-files");
-    QFile::remove(windowSettings().fileName());
     GridGeometry g = *phantomGeometry("abdomen");
     for (std::size_t a = 0; a < 3; ++a) {
       g.size[a] /= 2;
@@ -146,15 +144,9 @@ class StructureFilesGuiTest : public test::WindowTest {
     scanner.text.series_description = "scanned";
     const auto written = writeStructuresAsDicom(ct, liver_, source_, scanner);
     QVERIFY2(written.ok(), written ? "" : written.error().sentence().c_str());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    openWindow("trephine-test-structure-files");
   }
-  void cleanupTestCase() {
-    window_.reset();
-    QFile::remove(windowSettings().fileName());
-  }
+  void cleanupTestCase() { closeWindow(); }
 
   void aCaseFromDicomHasItsSourceAtHand() {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);

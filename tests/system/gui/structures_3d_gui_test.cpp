@@ -52,12 +52,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QTest::keyClick(handle(), of);
   }
   void drag(const QPointF& from, const QPointF& to, Qt::MouseButton button = Qt::LeftButton) {
-    QTest::mousePress(handle(), button, {}, inWindow(from));
-    for (int i = 1; i <= 6; ++i) {
-      QTest::mouseMove(handle(), inWindow(from + (to - from) * (i / 6.0)));
-      QTest::qWait(10);
-    }
-    QTest::mouseRelease(handle(), button, {}, inWindow(to));
+    dragInWindow(inWindow(from), inWindow(to), button);
   }
   void settle() { QTRY_VERIFY_WITH_TIMEOUT(view().isComplete(), kLong_ms); }
   // Once the structures are placed and nothing moves any more.
@@ -77,16 +72,10 @@ class Structures3dGuiTest : public test::WindowTest {
 
  private slots:
   void initTestCase() {
-    QApplication::setApplicationName("trephine-test-structures-3d");
-    QFile::remove(windowSettings().fileName());
-    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
     const auto file = toPath(temporary_.filePath("abdomen.mha"));
     const auto volume = makePhantom("abdomen");
     QVERIFY(volume.ok() && writeVolume(*volume, file).ok());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    openWindow("trephine-test-structures-3d");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openPath(file);
     auto* import = find<QPushButton>("import");
@@ -97,10 +86,7 @@ class Structures3dGuiTest : public test::WindowTest {
     views().setLayout({ViewLayout::Kind::four, 0});
     wholePicture();
   }
-  void cleanupTestCase() {
-    window_.reset();
-    QFile::remove(windowSettings().fileName());
-  }
+  void cleanupTestCase() { closeWindow(); }
 
   // At the liver's surface, through the ghost of the ribs.
   void aClickInThePictureGrowsTheLiver() {

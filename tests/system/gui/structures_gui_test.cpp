@@ -47,12 +47,7 @@ class StructuresGuiTest : public test::WindowTest {
     ++clicks_;
   }
   void drag(const Vec3& from, const Vec3& to) {
-    QTest::mousePress(handle(), Qt::LeftButton, {}, inWindow(from));
-    for (int i = 1; i <= 8; ++i) {
-      QTest::mouseMove(handle(), inWindow(from + (to - from) * (i / 8.0)));
-      QTest::qWait(10);
-    }
-    QTest::mouseRelease(handle(), Qt::LeftButton, {}, inWindow(to));
+    dragInWindow(inWindow(from), inWindow(to), Qt::LeftButton);
     QTest::qWait(30);
     ++clicks_;
   }
@@ -84,9 +79,6 @@ class StructuresGuiTest : public test::WindowTest {
 
  private slots:
   void initTestCase() {
-    QApplication::setApplicationName("trephine-test-structures");
-    QFile::remove(windowSettings().fileName());
-    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
     if (const char* data = std::getenv("TREPHINE_TEST_DATA")) {
       file_ = std::filesystem::path(data) / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz";
       in_liver_mm_ = {-92, -161, 406};
@@ -95,15 +87,9 @@ class StructuresGuiTest : public test::WindowTest {
       const auto volume = makePhantom("abdomen");
       QVERIFY(volume.ok() && writeVolume(*volume, file_).ok());
     }
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.path()) / "recordings");
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    openWindow("trephine-test-structures");
   }
-  void cleanupTestCase() {
-    window_.reset();
-    QFile::remove(windowSettings().fileName());
-  }
+  void cleanupTestCase() { closeWindow(); }
 
   void anAbdomenOpensUnderAnExerciseForAbdomens() {
     QElapsedTimer clock;
@@ -240,7 +226,17 @@ class StructuresGuiTest : public test::WindowTest {
     QVERIFY(!of.structures->find("capsule"));
     QCOMPARE(int(*workstation().scene()->tissues.find("liver")->label),
              of.labels->find("liver")->label);
-    ++clicks_;  // a cut: a drag in the 3-D view
+  }
+
+  // A wheel into the liver and one stroke.
+  void aStrokeOfTheHandCutsTheLiver() {
+    Session& session = *workstation().session();
+    views().setLayout({ViewLayout::Kind::single, 0});
+    cut({60, 0});
+    ++clicks_;
+    QVERIFY(removedVoxels(session) > 0);
+    keepGrab("structures-cut.png");
+    views().setLayout({ViewLayout::Kind::four, 0});
   }
 
   void whileItRunsStructuresStayAndSayWhy() {
@@ -252,6 +248,7 @@ class StructuresGuiTest : public test::WindowTest {
     QTest::qWait(500);
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    QTRY_VERIFY2(said().contains("liver") && said().contains("mL"), qPrintable(said()));
   }
 
   void itIsSavedWithItsName() {
@@ -305,19 +302,26 @@ class StructuresGuiTest : public test::WindowTest {
     views().setTool(SliceTool::eraser);
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
     QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
-    auto* question = window_->findChild<QMessageBox*>("structuresUnsaved");
-    QVERIFY(question);
-    question->reject();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));
+    window_->findChild<QMessageBox*>("structuresUnsaved")->reject();
     QTest::qWait(100);
     QVERIFY(!workstation().isOpening() || workstation().isPlacing());
     QVERIFY(ml("liver") > 800.0);
     window_->close();
     QVERIFY(window_->isVisible());
+    answerCuts();
     QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));
     window_->findChild<QMessageBox*>("structuresUnsaved")->reject();
   }
 
  private:
+  // When the window closes they are asked about first.
+  void answerCuts() {
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("cutsQuestion"));
+    auto* question = window_->findChild<QMessageBox*>("cutsQuestion");
+    QTest::mouseClick(question->findChild<QPushButton*>("goOnAnyway"), Qt::LeftButton);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("cutsQuestion"));
+  }
   QTabWidget* left() { return find<QTabWidget>("leftTabs"); }
 };
 

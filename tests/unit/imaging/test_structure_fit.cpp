@@ -116,7 +116,8 @@ TEST(StructureFit, APartThatIsOutsideIsLeftOutAndSaid) {
   FAIL() << "it never reached the border";
 }
 
-TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
+// Left and right have changed places.
+Segmentation mirroredLiver() {
   Segmentation of = liverOf(abdomen().truth);
   const GridGeometry& g = of.geometry;
   const auto straight = of.layers[0];
@@ -124,6 +125,11 @@ TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
     const Index3 at = g.indicesOf(v);
     of.layers[0][g.indexOf(g.size[0] - 1 - at[0], at[1], at[2])] = straight[v];
   }
+  return of;
+}
+
+TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
+  const Segmentation of = mirroredLiver();
   const auto fit = fitStructures(of, abdomen().ct);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code, "MIRRORED");
@@ -131,13 +137,7 @@ TEST(StructureFit, AMirroredLiverIsRefusedWithTheSidesNamed) {
 }
 
 TEST(StructureFit, AMirroredOneIsTakenWhereAPersonSaysSoAndNotElse) {
-  Segmentation of = liverOf(abdomen().truth);
-  const GridGeometry& g = of.geometry;
-  const auto straight = of.layers[0];
-  for (std::size_t v = 0; v < straight.size(); ++v) {
-    const Index3 at = g.indicesOf(v);
-    of.layers[0][g.indexOf(g.size[0] - 1 - at[0], at[1], at[2])] = straight[v];
-  }
+  const Segmentation of = mirroredLiver();
   EXPECT_EQ(codeOf(of, {}, false), "MIRRORED") << "nor where nobody is asked";
   EXPECT_EQ(codeOf(of, {{"MIRRORED", "keep"}, {"HU_NOT_TISSUE", "keep"}}), "fits");
 }

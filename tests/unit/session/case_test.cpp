@@ -155,15 +155,16 @@ TEST(Case, ThatShowsAnotherAnatomyIsBegunAtItsSurfaceAndSaysSo) {
   EXPECT_TRUE(Session::create(scene, of, scripted()).ok());
 }
 
-TEST(Case, OfTheRightAnatomyWithoutTheLandmarksTissueStaysAMisfit) {
+TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
   Scene scene = cranium();
   Case of = caseWithoutAVault();
   for (const BodyRegion region : {BodyRegion::head, BodyRegion::not_sure}) {
     of.anatomy = Anatomy{region, true};
     const Case placed = *placedIn(scene, of);
-    ASSERT_TRUE(placed.misfit);
-    EXPECT_EQ(placed.misfit->code, "NO_SURFACE");
-    EXPECT_TRUE(placed.warnings.empty());
+    ASSERT_FALSE(placed.misfit) << placed.misfit->sentence();
+    ASSERT_EQ(placed.warnings.size(), 1u);
+    EXPECT_EQ(placed.warnings[0].code, "NO_LANDMARK");
+    EXPECT_TRUE(Session::create(scene, placed, scripted()).ok());
   }
 }
 

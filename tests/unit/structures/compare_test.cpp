@@ -51,5 +51,33 @@ TEST(Likeness, IsOfOneGridOnly) {
   EXPECT_TRUE(likeness(a, 1, moved, 1));
 }
 
+// As a file may have it: axes in the order k, i, j, and the patient's x the other way.
+LabelMap turned(const LabelMap& map) {
+  const GridGeometry& g = map.geometry;
+  LabelMap out;
+  out.geometry.size = {g.size[2], g.size[0], g.size[1]};
+  out.geometry.spacing_mm = Vec3(g.spacing_mm.z, g.spacing_mm.x, g.spacing_mm.y);
+  out.geometry.direction = Mat3(g.direction[2], -g.direction[0], g.direction[1]);
+  out.geometry.origin_mm = g.toPatient_mm(Vec3(g.size[0] - 1, 0, 0));
+  out.labels.resize(map.labels.size());
+  for (std::size_t v = 0; v < map.labels.size(); ++v) {
+    const Index3 at = g.indicesOf(v);
+    out.labels[out.geometry.indexOf(at[2], g.size[0] - 1 - at[0], at[1])] = map.labels[v];
+  }
+  return out;
+}
+
+TEST(Likeness, IsOfPlacesInThePatientWhateverOrderAFileHasThem) {
+  const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1), b = boxOf({8, 5, 5}, {18, 15, 15}, 4);
+  const auto of = likeness(a, 1, turned(b), 4);
+  ASSERT_TRUE(of) << of.error().sentence();
+  EXPECT_NEAR(of->dice, 0.7, 1e-9);
+  EXPECT_NEAR(of->hd95_mm, 3.0, 1e-5);
+  LabelMap shorter = turned(b);
+  shorter.geometry.size[0] -= 1;
+  shorter.labels.resize(shorter.geometry.voxelCount());
+  EXPECT_EQ(likeness(a, 1, shorter, 4).error().code, "OTHER_GRID");
+}
+
 }  // namespace
 }  // namespace trephine

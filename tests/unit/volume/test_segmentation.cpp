@@ -116,6 +116,19 @@ TEST(Segmentation, ReadsLayersOfOldSlicerFiles) {
   EXPECT_EQ(of->segments[1].value, 1);
 }
 
+TEST(Segmentation, ASegmentOfALayerThatIsMissingIsSaid) {
+  const test::TemporaryFolder folder;
+  SlicerFile slicer;
+  slicer.segments += "Segment3_ID:=Segment_4\nSegment3_LabelValue:=1\nSegment3_Layer:=7\n"
+                     "Segment3_Name:=spleen\n";
+  writeBytes(folder / "a.seg.nrrd", slicer.bytes());
+  const auto of = readSegmentation(folder / "a.seg.nrrd");
+  ASSERT_TRUE(of) << of.error().sentence();
+  EXPECT_EQ(of->segments.size(), 3u);
+  ASSERT_EQ(of->notes.size(), 1u);
+  EXPECT_NE(of->notes[0].find("spleen"), std::string::npos);
+}
+
 TEST(Segmentation, ADamagedFileOfSlicerIsRefused) {
   const test::TemporaryFolder folder;
   SlicerFile slicer;
@@ -197,6 +210,7 @@ TEST(Segmentation, ABadSidecarIsNamedWithItsField) {
   const std::string start = R"({"format": "trephine.structures", "version": 1, "structures": [)";
   EXPECT_EQ(error(start + R"({"label": 1, "name": "liver"}]})").code, "none");
   EXPECT_EQ(error(start + R"({"label": 0, "name": "liver"}]})").code, "BAD_FIELD");
+  EXPECT_NE(error(start + R"({"label": 1, "name": "  "}]})").what.find("blank"), std::string::npos);
   EXPECT_EQ(error(start + R"({"label": 1, "name": "a"}, {"label": 1, "name": "b"}]})").code,
             "BAD_FIELD");
   EXPECT_EQ(error(start + R"({"label": 1, "name": "Left Lung"},
