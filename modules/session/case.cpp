@@ -78,6 +78,23 @@ std::optional<Warning> anatomyWarning(const Scene& scene, const std::optional<An
   return {};
 }
 
+// Where the rays of a scene's landmarks meet the body, whatever it is of.
+Result<std::vector<PlacedLandmark>> onBody(const Scene& scene, const Volume& volume,
+                                           const Progress& progress) {
+  Scene on_body = scene;
+  for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
+  auto placed = placeLandmarks(on_body, volume, nullptr, progress);
+  if (placed || placed.error().code == "CANCELLED") return placed;
+  // A scan may be too thin for the ball that a landmark looks for: towards its middle, then.
+  for (Landmark& landmark : on_body.landmarks) {
+    if (landmark.bulk_radius_mm == 0.0) continue;
+    landmark.bulk_radius_mm = 0.0;
+    landmark.towards = Vec3(0.5);
+    landmark.from = landmark.towards + landmark.outward;
+  }
+  return placeLandmarks(on_body, volume, nullptr, progress);
+}
+
 // The scene's landmarks. Where one has no place in the case: where their rays meet the body, and a
 // warning says so, for an exercise is no dead end.
 Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of,
@@ -86,9 +103,7 @@ Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of,
   if (placed) return placed;
   const std::string& code = placed.error().code;
   if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
-  Scene on_body = scene;
-  for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
-  auto surface = placeLandmarks(on_body, *of.volume, of.labels.get(), progress);
+  auto surface = onBody(scene, *of.volume, progress);
   if (!surface) return surface.error().code == "CANCELLED" ? surface : placed;
   of.warnings.push_back({"NO_LANDMARK", "The place where the exercise begins is not in the case (" +
                                             placed.error().what +

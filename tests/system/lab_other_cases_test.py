@@ -40,6 +40,14 @@ class OtherCases(LabTest):
             else:
                 self.assertIn(OTHER, said, name)
 
+    @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
+    def test_no_scan_is_a_dead_end_be_it_of_a_few_slices(self):
+        for case in ("abdomen-ct-totalsegmentator/example_ct_dicom", "head-ct-gantry-tilt"):
+            for name in ALL:
+                said = self.warnings(name, data_folder() / case)
+                self.assertLessEqual(said, {OTHER, "NO_VAULT", "NO_LANDMARK", "STARTS_IN_TISSUE",
+                                            "LACKS_STRUCTURE"}, f"{name} on {case}")
+
 
 if __name__ == "__main__":
     unittest.main()

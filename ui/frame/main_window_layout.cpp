@@ -89,7 +89,7 @@ void MainWindow::buildPanels() {
   structures_ = new StructurePanel(editor_);
   left_->addTab(scrolled(tissues_, "tissuePage"), tr("Tissues"));
   left_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
-  left_->setMinimumWidth(260);
+  left_->setMinimumWidth(275);
   views_ = new FourUp;
   view_ = &views_->threeD();
   notice_ = new StateNotice(views_);

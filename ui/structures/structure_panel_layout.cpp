@@ -115,7 +115,7 @@ void StructurePanel::build() {
   auto* steps = new QHBoxLayout;
   for (QToolButton* b : {undo_, redo_, delete_}) steps->addWidget(b);
 
-  open_file_ = new QPushButton(tr("&Open segmentation\u2026"), this);
+  open_file_ = new QPushButton(tr("&Open\u2026"), this);
   open_file_->setObjectName("openSegmentation");
   open_file_->setToolTip(
       tr("Structures from elsewhere: DICOM SEG, 3D Slicer's .seg.nrrd, label maps with names"));
@@ -127,9 +127,10 @@ void StructurePanel::build() {
   export_->setObjectName("exportStructures");
   export_->setMenu(buildSaving());
   auto* files = new QHBoxLayout;
-  files->addWidget(open_file_);
-  files->addWidget(save_);
-  files->addWidget(export_);
+  for (QPushButton* b : {open_file_, save_, export_}) {
+    b->setMinimumWidth(b->fontMetrics().horizontalAdvance(b->text()) + 24);  // no 80 pixels
+    files->addWidget(b);
+  }
 
   auto* called = new QFormLayout;
   called->addRow(tr("Next one"), name_);
@@ -304,20 +305,21 @@ QLayout* StructurePanel::buildTools() {
   });
   connect(shape_, &QComboBox::activated, this, &StructurePanel::brushChanged);
   auto* brush_row = new QHBoxLayout;
+  brush_row->addWidget(new QLabel(tr("Brush"), this));
   brush_row->addLayout(radius_->withReason(), 1);
   brush_row->addWidget(shape_);
   auto* hu_row = new QHBoxLayout;
+  hu_row->setSpacing(4);
   hu_row->addWidget(only_hu_);
   hu_row->addLayout(hu_low_->withReason(), 1);
   hu_row->addLayout(hu_high_->withReason(), 1);
   auto* form = new QFormLayout;
-  form->setVerticalSpacing(6);
   form->addRow(tr("Room for a ball"), open_->withReason());
-  form->addRow(tr("Brush"), brush_row);
   auto* column = new QVBoxLayout;
   column->setSpacing(6);
   column->addLayout(row);
   column->addLayout(form);
+  column->addLayout(brush_row);
   column->addLayout(hu_row);
   return column;
 }

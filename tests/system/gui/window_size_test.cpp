@@ -85,12 +85,16 @@ class WindowSizeTest : public test::WindowTest {
     window_->resize(size);
     QTest::qWait(100);
     QCOMPARE(window_->size(), size);  // it is no larger than it was asked to be
-    for (int tab : {0, 1}) {
-      find<QTabWidget>("leftTabs")->setCurrentIndex(tab);
+    for (int tab : {0, 1, 2}) {
+      auto* tabs = find<QTabWidget>("leftTabs");
+      tabs->setCurrentIndex(tab);
       QTest::qWait(100);
+      // A column is read without being moved to and fro.
+      const int beyond = qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
+      QVERIFY2(beyond == 0, qPrintable(tabs->tabText(tab) + ' ' + QString::number(beyond)));
       const QStringList lost = outOfReach(*window_);
       QVERIFY(window_->grab().save(
-          QString(TREPHINE_ARTEFACTS "/size-%1x%2.png").arg(size.width()).arg(size.height())));
+          QString(TREPHINE_ARTEFACTS "/size-%1x%2-%3.png").arg(size.width()).arg(size.height()).arg(tab)));
       QVERIFY2(lost.isEmpty(), qPrintable(lost.join(", ")));
     }
     for (const char* name : {"start", "stop", "pause", "undo", "redo", "reset"}) {

@@ -168,6 +168,28 @@ TEST(Case, WithoutTheLandmarksTissueIsNoDeadEndWhateverItShows) {
   }
 }
 
+// Of a liver's scene the landmark is the middle of a ball of 30 mm.
+TEST(Case, ThatIsTooThinForTheLandmarksBallIsBegunAtItsSurface) {
+  Scene scene = *readScene(resourceFolder() / "scenes" / "liver.json");
+  Volume thin;
+  thin.geometry.size = {100, 80, 10};
+  thin.geometry.spacing_mm = {2.0, 2.0, 3.0};
+  thin.hu.assign(thin.geometry.voxelCount(), kAirHu);
+  for (int k = 0; k < 10; ++k) {
+    for (int j = 20; j < 60; ++j) {
+      for (int i = 20; i < 80; ++i) thin.hu[thin.geometry.indexOf(i, j, k)] = 200;
+    }
+  }
+  const Case of = *placedIn(scene, caseOf(std::make_shared<const Volume>(std::move(thin))));
+  ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+  ASSERT_EQ(of.warnings.size(), 2u);
+  EXPECT_EQ(of.warnings[0].code, "LACKS_STRUCTURE");
+  EXPECT_EQ(of.warnings[1].code, "NO_LANDMARK");
+  // In front, y towards the back.
+  EXPECT_NEAR(of.landmarks[0].frame.position_mm.y, 39.0, 2.0);
+  EXPECT_GT(-(of.landmarks[0].frame.rotation * Vec3(0, 0, 1)).y, 0.7);
+}
+
 TEST(Case, ThatIsMissingIsNamed) {
   EXPECT_EQ(readCase("").error().code, "NO_CASE");
   EXPECT_EQ(readCase("phantom:foot").error().code, "UNKNOWN_PHANTOM");
