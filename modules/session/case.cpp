@@ -1,5 +1,6 @@
 #include "session/case.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
 #include <utility>
@@ -85,10 +86,13 @@ Result<std::vector<PlacedLandmark>> onBody(const Scene& scene, const Volume& vol
   for (Landmark& landmark : on_body.landmarks) landmark.tissue.clear();
   auto placed = placeLandmarks(on_body, volume, nullptr, progress);
   if (placed || placed.error().code == "CANCELLED") return placed;
-  // A scan may be too thin for the ball that a landmark looks for: towards its middle, then.
+  // A scan may be too thin for the ball that a landmark looks for, or be of an empty shell: towards
+  // its middle, then, up to the first wall.
+  constexpr double kWall_mm = 2.0;
   for (Landmark& landmark : on_body.landmarks) {
     if (landmark.bulk_radius_mm == 0.0) continue;
     landmark.bulk_radius_mm = 0.0;
+    landmark.run_mm = std::min(landmark.run_mm, kWall_mm);
     landmark.towards = Vec3(0.5);
     landmark.from = landmark.towards + landmark.outward;
   }

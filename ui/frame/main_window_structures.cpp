@@ -365,21 +365,23 @@ void MainWindow::unlessItDoesNotFit(std::function<void()> go_on) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of || of->warnings.empty() || warned_) return go_on();
   QStringList words;
-  bool lacks = false;
+  bool lacks = false, no_place = false;
   std::string fits;
   for (const Warning& warning : of->warnings) {
     words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
     lacks = lacks || warning.code == "LACKS_STRUCTURE";
+    no_place = no_place || warning.code == "NO_LANDMARK";
     if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->anatomy->region);
   }
+  const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
+                       : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
+                       : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
+                                  : tr("Choose an exercise that fits, or go on as it is.");
   QMessageBox* question =
-      ask(this, "misfitQuestion", words.join('\n'),
-          lacks && fits.empty() ? tr("Make the structure in the slices first, or go on as it is.")
-                                : tr("Choose an exercise that fits, or go on as it is."),
-          tr("&Go on as it is"), [this, go_on] {
-            warned_ = true;
-            go_on();
-          });
+      ask(this, "misfitQuestion", words.join('\n'), next, tr("&Go on as it is"), [this, go_on] {
+        warned_ = true;
+        go_on();
+      });
   if (!fits.empty()) {
     const std::filesystem::path file = defaultScene(fits);
     const int index = scenes_->findData(toQt(file));

@@ -90,11 +90,14 @@ class WindowSizeTest : public test::WindowTest {
       tabs->setCurrentIndex(tab);
       QTest::qWait(100);
       // A column is read without being moved to and fro.
-      const int beyond = qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
+      const int beyond =
+          qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
       QVERIFY2(beyond == 0, qPrintable(tabs->tabText(tab) + ' ' + QString::number(beyond)));
       const QStringList lost = outOfReach(*window_);
-      QVERIFY(window_->grab().save(
-          QString(TREPHINE_ARTEFACTS "/size-%1x%2-%3.png").arg(size.width()).arg(size.height()).arg(tab)));
+      QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/size-%1x%2-%3.png")
+                                       .arg(size.width())
+                                       .arg(size.height())
+                                       .arg(tab)));
       QVERIFY2(lost.isEmpty(), qPrintable(lost.join(", ")));
     }
     for (const char* name : {"start", "stop", "pause", "undo", "redo", "reset"}) {
@@ -211,6 +214,8 @@ class WindowSizeTest : public test::WindowTest {
   }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<WindowSizeTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<WindowSizeTest>(argc, argv);
+}
 
 #include "window_size_test.moc"
