@@ -54,6 +54,7 @@ ViewWidget::ViewWidget(QWidget* parent)
   setObjectName("view");
   setAccessibleName(tr("3-D view"));
   setFocusPolicy(Qt::StrongFocus);
+  setMouseTracking(true);  // a brush's ring goes with the pointer
   setMinimumSize(320, 240);
   setToolTip(QString());
   hint_->setObjectName("viewHint");
@@ -372,6 +373,7 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   const QPointF before = last_, moved = event->position() - last_;
   last_ = event->position();
   if (!(event->buttons() & Qt::LeftButton)) endStroke();
+  if (isBrush(tool_)) showCursor();
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
   const double ratio = devicePixelRatioF();
   const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
@@ -413,6 +415,7 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
     moveHandBy(handFor(event->modifiers()), renderer_.viewForward() * (notches * kWheelStep_mm));
   } else {
     renderer_.zoom(std::pow(kZoomStep, notches));
+    if (isBrush(tool_)) showCursor();
     redraw();
   }
   event->accept();

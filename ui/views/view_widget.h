@@ -54,7 +54,10 @@ class ViewWidget : public QOpenGLWidget {
   // One for structures or the entry point; others leave the left button to the camera. `mm`: of the
   // brush.
   void setTool(SliceTool tool);
-  void setBrushRadius(double mm) { brush_mm_ = mm; }
+  void setBrushRadius(double mm) {
+    brush_mm_ = mm;
+    showCursor();
+  }
   // What is seen at a place of the widget.
   std::optional<Picked> pickAt(const QPointF& place) const;
 
@@ -143,6 +146,7 @@ class ViewWidget : public QOpenGLWidget {
   std::vector<ToolView> tools_;  // of the exercise
   SliceTool tool_ = SliceTool::window;
   double brush_mm_ = 5.0;
+  int ring_ = 0;  // pixels of the radius that the pointer shows
   std::optional<Vec3> stroke_at_mm_;               // while a stroke goes on
   std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when it began
   bool training_ = false;

@@ -2,13 +2,40 @@
 // pointer.
 #include <QKeyEvent>
 #include <QMouseEvent>
+#include <QPainter>
+#include <QPixmap>
+#include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "ui/views/view_tools.h"
 #include "ui/views/view_widget.h"
 
 namespace trephine {
+
+namespace {
+
+constexpr int kMostRing = 120;  // pixels of its radius: cursors have an end
+
+// White with a dark rim, to be seen on any tissue.
+QCursor ringCursor(int radius, double ratio) {
+  const int side = 2 * radius + 5;
+  QPixmap ring(QSize(side, side) * ratio);
+  ring.setDevicePixelRatio(ratio);
+  ring.fill(Qt::transparent);
+  QPainter painter(&ring);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const QPointF middle(side / 2.0, side / 2.0);
+  for (const auto& [colour, width] : {std::pair{QColor(0, 0, 0, 160), 3.0}, {Qt::white, 1.2}}) {
+    painter.setPen(QPen(colour, width));
+    painter.drawEllipse(middle, radius, radius);
+  }
+  painter.end();
+  return QCursor(ring, side / 2, side / 2);
+}
+
+}  // namespace
 
 void ViewWidget::setTool(SliceTool tool) {
   tool_ = tool;
@@ -20,8 +47,17 @@ bool ViewWidget::hasTool() const {
   return (isForStructures(tool_) || tool_ == SliceTool::entry) && !training_ && !moving_light_;
 }
 
+// A brush is a ring as wide as it paints on what is under the pointer.
 void ViewWidget::showCursor() {
-  setCursor(moving_light_ || hasTool() ? Qt::CrossCursor : Qt::ArrowCursor);
+  if (!moving_light_ && !hasTool()) return setCursor(Qt::ArrowCursor);
+  const std::optional<Picked> picked = hasTool() && isBrush(tool_) ? pickAt(last_) : std::nullopt;
+  if (!picked) return setCursor(Qt::CrossCursor);
+  const double mm = renderer_.mmPerPixelAt(picked->at_mm) * devicePixelRatioF();
+  const int radius = int(std::lround(brush_mm_ / mm));
+  if (radius > kMostRing) return setCursor(Qt::CrossCursor);
+  const bool ring_already = cursor().shape() == Qt::BitmapCursor && radius == ring_;
+  if (!ring_already) setCursor(ringCursor(std::max(2, radius), devicePixelRatioF()));
+  ring_ = radius;
 }
 
 std::optional<Picked> ViewWidget::pickAt(const QPointF& place) const {

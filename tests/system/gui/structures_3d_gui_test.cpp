@@ -38,9 +38,7 @@ class Structures3dGuiTest : public test::WindowTest {
   }
   double ml(const QString& name) { return row(name) ? row(name)->text(1).toDouble() : -1.0; }
   QString look(const QString& name) { return row(name) ? row(name)->text(2) : QString(); }
-  QPoint inWindow(const QPointF& in_view) {
-    return view().mapTo(window_.get(), in_view.toPoint());
-  }
+  QPoint inWindow(const QPointF& in_view) { return view().mapTo(window_.get(), in_view.toPoint()); }
   // Where a place of the patient is in the 3-D view.
   QPointF inView(const Vec3& mm) {
     const auto pixel = view().camera().pixelOf(mm, view().width(), view().height());
@@ -180,9 +178,33 @@ class Structures3dGuiTest : public test::WindowTest {
     QCOMPARE(ml("liver"), before);
   }
 
+  void aBrushIsARingAsWideAsItPaintsThere() {
+    views().setTool(SliceTool::brush);
+    const QPointF at = inView(kInLiver_mm);
+    QTest::mouseMove(handle(), inWindow(at));
+    QTRY_COMPARE(view().cursor().shape(), Qt::BitmapCursor);
+    const auto radius = [&] {
+      const QPixmap ring = view().cursor().pixmap();
+      return (ring.width() / ring.devicePixelRatio() - 5.0) / 2.0;
+    };
+    const Vec3 seen = view().pickAt(at)->at_mm;
+    const Vec3 forward = view().camera().focus() - view().camera().eye();
+    const Vec3 beside = glm::normalize(glm::cross(forward, Vec3(0.0, 0.0, 1.0)));
+    const QPointF to = inView(seen + 6.0 * beside) - inView(seen);  // as its field begins
+    const double before = radius();
+    QVERIFY2(std::abs(before - std::hypot(to.x(), to.y())) < 1.5,
+             qPrintable(QString::number(before)));
+    key(Qt::Key_BracketRight);
+    QTRY_VERIFY(radius() > before);
+    key(Qt::Key_BracketLeft);
+    QTRY_COMPARE(radius(), before);
+    QTest::mouseMove(handle(), inWindow(QPointF(20, 200)));  // air
+    QTRY_COMPARE(view().cursor().shape(), Qt::CrossCursor);
+  }
+
   void escLeavesTheTool() {
     views().setTool(SliceTool::brush);
-    QCOMPARE(view().cursor().shape(), Qt::CrossCursor);
+    QVERIFY(view().cursor().shape() != Qt::ArrowCursor);
     key(Qt::Key_Escape);
     QVERIFY(views().tool() == SliceTool::window);
     QCOMPARE(view().cursor().shape(), Qt::ArrowCursor);
