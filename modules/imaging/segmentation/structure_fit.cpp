@@ -10,6 +10,7 @@
 #include "imaging/common/text.h"
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/segmentation/structure_hu.h"
+#include "imaging/segmentation/structure_place.h"
 
 namespace trephine {
 
@@ -24,14 +25,30 @@ std::string number(double value, int digits = 0) {
   return text;
 }
 
-// The patient's axis that a grid's axis runs along most.
-const char* sidesAlong(const GridGeometry& g, int axis) {
-  static const char* const kSides[] = {"left and right", "front and back", "head and foot"};
+// The patient's axis (0 left, 1 back, 2 head) that a grid's axis runs along most.
+int patientAxis(const GridGeometry& g, int axis) {
   int most = 0;
   for (int p = 1; p < 3; ++p) {
     if (std::abs(g.direction[axis][p]) > std::abs(g.direction[axis][most])) most = p;
   }
-  return kSides[most];
+  return most;
+}
+
+const char* sidesAlong(const GridGeometry& g, int axis) {
+  static const char* const kSides[] = {"left and right", "front and back", "head and foot"};
+  return kSides[patientAxis(g, axis)];
+}
+
+// "82 slices (246 mm) nearer to the head".
+std::string moveWords(const BetterPlace& place, const GridGeometry& g) {
+  static const char* const kAxes[] = {"column", "row", "slice"};
+  static const char* const kSides[][2] = {{"the patient's right", "the patient's left"},
+                                          {"the front", "the back"},
+                                          {"the foot", "the head"}};
+  const int voxels = std::abs(place.voxels), towards = patientAxis(g, place.axis);
+  const bool rising = (place.voxels > 0) == (g.direction[place.axis][towards] > 0.0);
+  return counted(std::size_t(voxels), kAxes[place.axis]) + " (" +
+         number(voxels * g.spacing_mm[place.axis]) + " mm) nearer to " + kSides[towards][rising];
 }
 
 // Voxels [low, high) of the CT whose middles lie in the other grid's box, by their extremes.
@@ -97,9 +114,10 @@ bool sharesVoxels(const GridGeometry& of, const GridGeometry& ct) {
   return true;
 }
 
-// Of each segment: voxels in the file, and how many of them have their middle beyond the CT.
+// Of each segment: voxels in the file, and how many of them have their middle beyond the CT, or
+// beyond it by more than a voxel: what has a slice at its end may be half a voxel off.
 struct SegmentShare {
-  std::size_t voxels = 0, outside = 0;
+  std::size_t voxels = 0, outside = 0, far_outside = 0;
 };
 
 std::vector<SegmentShare> sharesOf(const Segmentation& of, const GridGeometry& ct) {
@@ -107,9 +125,13 @@ std::vector<SegmentShare> sharesOf(const Segmentation& of, const GridGeometry& c
   const Mat4 to_ct = ct.patientToVoxel() * of.geometry.voxelToPatient();
   const Vec3 step(to_ct[0]);
   const Index3& size = of.geometry.size;
-  const auto beyond = [&](const Vec3& v) {
+  const double voxel_mm =
+      std::max({of.geometry.spacing_mm.x, of.geometry.spacing_mm.y, of.geometry.spacing_mm.z});
+  const Vec3 slack = glm::max(Vec3(1.0), voxel_mm / ct.spacing_mm);
+  const auto beyond = [&](const Vec3& v, const Vec3& by) {
     for (int a = 0; a < 3; ++a) {
-      if (v[a] < -0.5 - 1e-3 || v[a] > ct.size[std::size_t(a)] - 0.5 + 1e-3) return true;
+      const double most = 0.5 + by[a] + 1e-3;
+      if (v[a] < -most || v[a] > ct.size[std::size_t(a)] - 1.0 + most) return true;
     }
     return false;
   };
@@ -123,7 +145,10 @@ std::vector<SegmentShare> sharesOf(const Segmentation& of, const GridGeometry& c
           if (value == 0) continue;
           SegmentShare& share = by_value[l][value];
           ++share.voxels;
-          share.outside += beyond(row + double(i) * step);
+          const Vec3 at = row + double(i) * step;
+          if (!beyond(at, Vec3(0.0))) continue;
+          ++share.outside;
+          share.far_outside += beyond(at, slack);
         }
       }
     }
@@ -268,7 +293,7 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
   }
   for (std::size_t s = 0; s < shares.size(); ++s) {
     if (shares[s].voxels == 0) continue;
-    const double percent = 100.0 * double(shares[s].outside) / double(shares[s].voxels);
+    const double percent = 100.0 * double(shares[s].far_outside) / double(shares[s].voxels);
     if (percent < kMostOutside_percent) continue;
     return Error{"HALF_OUTSIDE",
                  "Of the structure '" + of.segments[s].name + "' " + number(percent) +
@@ -305,11 +330,24 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
   if (progress.cancelled()) return cancelled;
   progress.at(0.6, "Looking at the structures' HU");
   const HuByLabel counts = huOf(fit.map, ct);
-  if (const auto mirrored = mirroredAxis(fit.map, ct, fit.covers, counts)) {
-    const std::string what = std::string(
-                                 "The segmentation is mirrored: its structures lie on what "
-                                 "they are of when ") +
-                             sidesAlong(g, *mirrored) + " change places";
+  // Of good ones, what is off by a voxel of either grid is no mistake.
+  const double slack_mm =
+      std::max({of.geometry.spacing_mm.x, of.geometry.spacing_mm.y, of.geometry.spacing_mm.z,
+                g.spacing_mm.x, g.spacing_mm.y, g.spacing_mm.z});
+  const auto wrong = notOfTheirKind(fit.map, ct, counts, slack_mm);
+  std::string mirrored;
+  std::optional<BetterPlace> better;
+  if (const auto axis = mirroredAxis(fit.map, ct, fit.covers, counts, wrong)) {
+    mirrored = std::string("its structures lie on what they are of when ") + sidesAlong(g, *axis);
+  } else {
+    better = betterPlace(fit.map, ct, fit.covers, slack_mm);
+    if (better && better->mirrored) {
+      mirrored = std::string("its structures' borders lie on borders in the CT when ") +
+                 sidesAlong(g, better->axis);
+    }
+  }
+  if (!mirrored.empty()) {
+    const std::string what = "The segmentation is mirrored: " + mirrored + " change places";
     if (Status taken =
             asking.refuseUnless({"MIRRORED",
                                  what,
@@ -351,7 +389,7 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
       card.hu = {of_it->percentile(0.05), of_it->percentile(0.5), of_it->percentile(0.95)};
       const auto kind = huOfKind(structure.name, structure.tissue);
       const double median = (*card.hu)[1];
-      if (kind && !isOfKind(*of_it, *kind)) {
+      if (kind && wrong[std::size_t(structure.label)]) {
         doubtful.push_back("'" + structure.name + "' has a median of " + number(median) + " HU, " +
                            number((*card.hu)[0]) + " to " + number((*card.hu)[2]) +
                            " but for a "
@@ -362,16 +400,22 @@ Result<StructureFit> fitted(const Segmentation& of, const Volume& ct, const Answ
     }
     fit.structures.push_back(std::move(card));
   }
+  std::string doubt;
   if (!doubtful.empty()) {
-    const std::string more =
-        doubtful.size() > 1 ? ", and " + counted(doubtful.size() - 1, "other") + " alike" : "";
+    doubt = "The HU cannot be the tissue: " + doubtful.front();
+    if (doubtful.size() > 1) doubt += ", and " + counted(doubtful.size() - 1, "other") + " alike";
+  }
+  if (better && !better->mirrored) {
+    doubt += doubt.empty() ? "The structures' borders lie on nothing in the CT" : "";
+    doubt += ". They would fit far better about " + moveWords(*better, g);
+  }
+  if (!doubt.empty()) {
     const auto chosen = asking.ask({"HU_NOT_TISSUE",
-                                    "The HU cannot be the tissue: " + doubtful.front() + more +
-                                        ". The segmentation may lie in a wrong place",
+                                    doubt + ". The segmentation may lie in a wrong place",
                                     {"refuse", "keep"},
                                     {"Do not use the segmentation", "Use it all the same"}});
     if (!chosen) return chosen.error();
-    fit.findings.push_back({"HU_NOT_TISSUE", "notice", doubtful.front() + more, {}, "It was kept"});
+    fit.findings.push_back({"HU_NOT_TISSUE", "notice", doubt, {}, "It was kept"});
   }
   progress.at(1.0, "Placing the structures");
   return fit;

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace trephine {
 
 namespace {
 
-constexpr double kLeastOfKind = 0.8, kNearKind_HU = 60.0;
+constexpr double kLeastOfKind = 0.7, kNearKind_HU = 60.0;
 // Of the voxels whose names say a kind: fewer than these have it as they lie, and more than these
 // would have it turned about.
 constexpr double kFewHere = 0.5, kMostTurned = 0.9;
+constexpr std::size_t kMostLookedAt = 5000;  // voxels of a structure, in other places
 
 struct NamedKind {
   std::vector<const char*> words;
@@ -51,17 +53,59 @@ std::vector<std::string> wordsOf(const std::string& name) {
   return words;
 }
 
-// The share of voxels, of those whose names say a kind, whose structures have it; none say: 1.
-double shareOfKind(const LabelMap& map, const HuByLabel& hu) {
-  double of_kind = 0.0, all = 0.0;
+using Labels = std::array<bool, 256>;
+
+Labels notOfKind(const LabelMap& map, const HuByLabel& hu) {
+  Labels wrong{};
   for (const Structure& s : map.structures) {
     const auto& counts = hu[std::size_t(s.label)];
     const auto kind = huOfKind(s.name, s.tissue);
-    if (!counts || !kind) continue;
+    wrong[std::size_t(s.label)] = counts && kind && !isOfKind(*counts, *kind);
+  }
+  return wrong;
+}
+
+// The share of voxels, of those whose names say a kind, whose structures have it; none say: 1.
+double shareOfKind(const LabelMap& map, const HuByLabel& hu, const Labels& wrong) {
+  double of_kind = 0.0, all = 0.0;
+  for (const Structure& s : map.structures) {
+    const auto& counts = hu[std::size_t(s.label)];
+    if (!counts || !huOfKind(s.name, s.tissue)) continue;
     all += double(counts->total());
-    if (isOfKind(*counts, *kind)) of_kind += double(counts->total());
+    if (!wrong[std::size_t(s.label)]) of_kind += double(counts->total());
   }
   return all > 0.0 ? of_kind / all : 1.0;
+}
+
+// Of the voxels as they lie moved by so many; those that leave the CT are left out.
+HuCounts huOfMoved(const std::vector<Index3>& voxels, const Volume& ct, const Index3& by) {
+  HuCounts counts;
+  const Index3& size = ct.geometry.size;
+  for (const Index3& v : voxels) {
+    const int i = v[0] + by[0], j = v[1] + by[1], k = v[2] + by[2];
+    if (i < 0 || j < 0 || k < 0 || i >= size[0] || j >= size[1] || k >= size[2]) continue;
+    counts.add(ct.at(i, j, k));
+  }
+  return counts;
+}
+
+bool isOfKindNearby(const std::vector<Index3>& voxels, const Volume& ct, const HuOfKind& kind,
+                    double slack_mm) {
+  std::array<std::vector<int>, 3> moves;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int most = std::max(1, int(std::ceil(slack_mm / ct.geometry.spacing_mm[int(a)] - 0.01)));
+    moves[a] = {0, -most, most};
+    if (most > 1) moves[a].insert(moves[a].end(), {-most / 2, most / 2});
+  }
+  for (const int k : moves[2]) {
+    for (const int j : moves[1]) {
+      for (const int i : moves[0]) {
+        const HuCounts counts = huOfMoved(voxels, ct, {i, j, k});
+        if (2 * counts.total() > voxels.size() && isOfKind(counts, kind)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -125,13 +169,34 @@ bool isOfKind(const HuCounts& hu, const HuOfKind& kind) {
          hu.shareIn(kind.low - kNearKind_HU, kind.high + kNearKind_HU) >= kLeastOfKind;
 }
 
+std::array<bool, 256> notOfTheirKind(const LabelMap& map, const Volume& ct, const HuByLabel& here,
+                                     double slack_mm) {
+  Labels wrong = notOfKind(map, here);
+  if (std::ranges::find(wrong, true) == wrong.end()) return wrong;
+  std::array<std::vector<Index3>, 256> voxels;
+  std::array<std::size_t, 256> seen{};
+  for (std::size_t v = 0; v < map.labels.size(); ++v) {
+    const std::uint8_t label = map.labels[v];
+    if (!wrong[label]) continue;
+    const std::size_t every = here[label]->total() / kMostLookedAt + 1;
+    if (seen[label]++ % every == 0) voxels[label].push_back(map.geometry.indicesOf(v));
+  }
+  for (const Structure& s : map.structures) {
+    const auto label = std::size_t(s.label);
+    if (!wrong[label]) continue;
+    wrong[label] = !isOfKindNearby(voxels[label], ct, *huOfKind(s.name, s.tissue), slack_mm);
+  }
+  return wrong;
+}
+
 std::optional<int> mirroredAxis(const LabelMap& map, const Volume& ct, const VoxelBox& covers,
-                                const HuByLabel& here) {
-  if (shareOfKind(map, here) >= kFewHere) return {};
+                                const HuByLabel& here, const std::array<bool, 256>& wrong) {
+  if (shareOfKind(map, here, wrong) >= kFewHere) return {};
   std::optional<int> best;
   double most = kMostTurned;
   for (int axis = 0; axis < 3; ++axis) {
-    const double share = shareOfKind(map, huOfTurned(map, ct, axis, covers));
+    const HuByLabel turned = huOfTurned(map, ct, axis, covers);
+    const double share = shareOfKind(map, turned, notOfKind(map, turned));
     if (share >= most && (!best || share > most)) {
       most = share;
       best = axis;

@@ -34,10 +34,15 @@ HuByLabel huOfTurned(const LabelMap& map, const Volume& ct, int axis, const Voxe
 // Most voxels have HU of the kind or nearly (noise, blur), and the median has.
 bool isOfKind(const HuCounts& hu, const HuOfKind& kind);
 
+// Labels whose names say a kind that their HU are not, neither as they lie nor moved by up to
+// `slack_mm`: a rib that is a voxel off lies on muscle. `here`: huOf() of them.
+std::array<bool, 256> notOfTheirKind(const LabelMap& map, const Volume& ct, const HuByLabel& here,
+                                     double slack_mm);
+
 // Along which axis of the CT the structures would have to be turned about, within the part that
 // the file covers, to have HU of their kinds, which most do not have as they lie. Those whose names
-// say no kind say nothing. `here`: huOf() of them.
+// say no kind say nothing. `wrong`: notOfTheirKind() as they lie.
 std::optional<int> mirroredAxis(const LabelMap& map, const Volume& ct, const VoxelBox& covers,
-                                const HuByLabel& here);
+                                const HuByLabel& here, const std::array<bool, 256>& wrong);
 
 }  // namespace trephine

@@ -21,6 +21,8 @@ const Abdomen& abdomen() {
     }
     Abdomen of{makePhantomOn(*phantomTruth("abdomen"), g, kPhantomNoiseHu),
                phantomLabelsOn(*phantomTruth("abdomen"), g)};
+    of.truth.structures = {
+        {1, "liver"}, {2, "capsule"}, {3, "vessel"}, {4, "kidney"}, {5, "spleen"}};
     return of;
   }();
   return made;
