@@ -12,6 +12,7 @@
 #include "app/lab_commands.h"
 #include "app/out_folder.h"
 #include "base/log.h"
+#include "base/utf8.h"
 #include "imaging/dicom/seg_writer.h"
 #include "imaging/source_uids.h"
 #include "imaging/structure_importer.h"
@@ -25,6 +26,16 @@
 namespace trephine {
 
 namespace {
+
+// In a column so many bytes wide.
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
+}
+
+// A sentence's end, once.
+std::string stopped(const std::string& text) {
+  return text.empty() || text.ends_with('.') ? text : text + ".";
+}
 
 // So many numbers with commas between, and nothing else.
 Result<std::vector<double>> numbersOf(const std::string& text, std::size_t count,
@@ -110,19 +121,13 @@ Result<GrowOptions> optionsOf(const GrowArguments& arguments, std::vector<double
 
 // The patient's own scan is never written over.
 Status checkStructureTarget(const std::string& target, const std::string& case_source) {
-  namespace fs = std::filesystem;
   if (!target.ends_with(".nrrd") && !checkVolumeFileName(target)) {
     return Error{"UNKNOWN_FORMAT", "Label maps are written as .nrrd, .mha, .nii or .nii.gz", target,
                  "Choose one of these endings"};
   }
   if (Status there = checkFolderOf(target); !there) return there;
-  std::error_code ec;
-  if (!fs::exists(target, ec) || !fs::exists(case_source, ec)) return {};
-  const fs::path to = fs::canonical(target, ec), from = fs::canonical(case_source, ec);
-  const auto differs = std::mismatch(from.begin(), from.end(), to.begin(), to.end());
-  if (differs.first != from.end()) return {};
-  return Error{"CANNOT_WRITE", "This file is of the case that is read, and would be lost", target,
-               "Choose another name"};
+  if (Status kept = keepsCase(structuresFile(target), case_source); !kept) return kept;
+  return keepsCase(target, case_source);
 }
 
 // Whether the case's file has its slices the other way round, so that what goes beside it has too.
@@ -143,6 +148,10 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
     return failed(target.error());
   }
   // What is asked for wrongly is said before a CT is read.
+  const std::string name = structureName(arguments.name);
+  if (name.empty()) {
+    return failed({"BAD_ARGUMENT", "A structure needs a name that can be seen", "--name", ""});
+  }
   std::vector<double> box_mm;
   auto options = optionsOf(arguments, box_mm);
   if (!options) return failed(options.error());
@@ -161,13 +170,17 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  growth->mask.structures = {{1, arguments.name, labelColour(1)}};
+  growth->mask.structures = {{1, name, labelColour(1)}};
   const Status written = writeSegmentation(growth->mask, arguments.write,
                                            reversedSlicesOf(arguments.case_source, *of), progress);
   if (!written) return failed(written.error());
 
+  if (growth->seed_off_mm > 0.0) {
+    spdlog::warn("the seed itself is not in what was grown: it lies {:.1f} mm beside it",
+                 growth->seed_off_mm);
+  }
   if (json) {
-    printAnswer(kName, {{"name", arguments.name},
+    printAnswer(kName, {{"name", name},
                         {"voxels", growth->voxels},
                         {"ml", growth->ml},
                         {"seconds", seconds},
@@ -177,16 +190,13 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
     return 0;
   }
   std::printf("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n",
-              arguments.name.c_str(), growth->ml, growth->voxels, growth->hu.low, growth->hu.high,
+              name.c_str(), growth->ml, growth->voxels, growth->hu.low, growth->hu.high,
               seconds);
-  if (growth->seed_off_mm > 0.0) {
-    std::printf("The seed itself is not in it: it lies %.1f mm beside.\n", growth->seed_off_mm);
-  }
   if (growth->leaked) {
     std::printf(
         "It reaches the border of the scan or fills much of it: look whether it is %s alone. "
         "--box, --hu or a larger --open hold it back.\n",
-        arguments.name.c_str());
+        name.c_str());
   }
   return 0;
 }
@@ -240,12 +250,11 @@ int compareCommand(const std::string& a, const std::string& b, bool json, const 
                     {"dice", of->dice},
                     {"hd95_mm", both ? Json(of->hd95_mm) : Json()},
                     {"ml", {of->ml_a, of->ml_b}}});
-    char line[512];
-    std::snprintf(line, sizeof line, "%-10s Dice %.4f, hd95 %s, %.1f and %.1f mL\n",
-                  pair.name.c_str(), of->dice,
+    char figures[128];
+    std::snprintf(figures, sizeof figures, " Dice %.4f, hd95 %s, %.1f and %.1f mL\n", of->dice,
                   both ? (std::to_string(of->hd95_mm) + " mm").c_str() : "none", of->ml_a,
                   of->ml_b);
-    text += line;
+    text += padded(pair.name, 10) + figures;
   }
   if (rows.empty()) text = "Neither label map has a label\n";
   return printOutcome(kName, {{"rows", rows}}, text, std::nullopt, json);
@@ -295,11 +304,12 @@ void print(const StructureFit& fit) {
       std::printf("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
     std::printf("\n");
     for (const Finding& f : card.findings) {
-      std::printf("    %s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+      std::printf("    %s: %s %s\n", f.code.c_str(), stopped(f.text).c_str(),
+                  stopped(f.action).c_str());
     }
   }
   for (const Finding& f : fit.findings) {
-    std::printf("%s: %s. %s\n", f.code.c_str(), f.text.c_str(), f.action.c_str());
+    std::printf("%s: %s %s\n", f.code.c_str(), stopped(f.text).c_str(), stopped(f.action).c_str());
   }
 }
 
@@ -387,6 +397,8 @@ std::string surfaceFile(const std::string& file, const std::string& name, bool s
     const bool good = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || (c & 0x80);
     plain += good ? c : '_';
   }
+  constexpr std::size_t kMost = 80;  // bytes: a file's name has an end
+  plain = cutUtf8(plain, kMost);
   const auto lower = [](std::string text) {
     for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
     return text;
@@ -414,7 +426,7 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
     return failed({"BAD_ARGUMENT", "Where to is not said, or twice", "--write, --dicom",
                    "Give --write FILE or --dicom FOLDER"});
   }
-  if (Status target = !arguments.dicom.empty() ? Status()
+  if (Status target = !arguments.dicom.empty() ? keepsCase(arguments.dicom, arguments.case_source)
                       : stl                    ? checkFolderOf(arguments.write)
                             : checkStructureTarget(arguments.write, arguments.case_source);
       !target) {
@@ -436,9 +448,9 @@ int exportStructuresCommand(const StructureExportArguments& arguments, bool json
   for (const Structure& s : chosen->structures) {
     const std::size_t count = voxels[std::size_t(s.label)];
     Json row = {{"name", s.name}, {"voxels", count}, {"ml", double(count) * voxel_ml}};
-    char line[512];
-    std::snprintf(line, sizeof line, "%-24s %9.1f mL\n", s.name.c_str(), double(count) * voxel_ml);
-    text += line;
+    char figures[64];
+    std::snprintf(figures, sizeof figures, " %9.1f mL\n", double(count) * voxel_ml);
+    text += padded(s.name, 24) + figures;
     if (stl && count > 0) {
       const std::string file =
           surfaceFile(arguments.write, s.name, chosen->structures.size() > 1, taken);

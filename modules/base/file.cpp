@@ -14,13 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Error writeError(const fs::path& target, int error) {
-  return Error{"CANNOT_WRITE",
-               std::string("The file could not be written: ") +
-                   (error ? std::strerror(error) : "unknown reason"),
-               target.string(), afterFailedWrite(error) + "; nothing that was there is lost"};
-}
-
 // Keeps the target's extension.
 fs::path temporaryFor(const fs::path& target) {
   const fs::path name = target.filename();
@@ -61,6 +54,13 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     return writeError(target, error);
   }
   return {};
+}
+
+Error writeError(const fs::path& target, int error) {
+  return Error{"CANNOT_WRITE",
+               std::string("The file could not be written: ") +
+                   (error ? std::strerror(error) : "unknown reason"),
+               target.string(), afterFailedWrite(error) + "; nothing that was there is lost"};
 }
 
 std::string afterFailedWrite(int error) {

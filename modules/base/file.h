@@ -20,6 +20,10 @@ Status replaceFile(const std::filesystem::path& target,
 // CANNOT_WRITE, MISSING_FOLDER.
 Status checkNewFile(const std::filesystem::path& file, const std::string& option);
 
+// CANNOT_WRITE with the reason of this errno, 0 where it is not known; nothing that was there is
+// lost.
+Error writeError(const std::filesystem::path& target, int error);
+
 // What a person can do about a write that failed with this errno: space is named only where it is
 // short.
 std::string afterFailedWrite(int error);

@@ -161,6 +161,7 @@ std::optional<Vec3> bulkOf(const Sought& sought, double radius_mm) {
 
 struct Ray {
   Vec3 from_mm, towards_mm;
+  double run_mm;  // that it must stay in the tissue
 };
 
 std::string nameOf(const Landmark& landmark) {
@@ -173,14 +174,22 @@ Result<Ray> rayOf(const Landmark& landmark, const Sought& sought) {
                    "landmark '" + landmark.id + "'",
                    "Check the HU range and label, or choose a case of the scene's anatomy"};
   if (landmark.bulk_radius_mm > 0.0) {
-    const std::optional<Vec3> centre = bulkOf(sought, landmark.bulk_radius_mm);
-    if (!centre) return none;
-    return Ray{*centre + landmark.outward * g.diagonal_mm() / 2.0, *centre};
+    // A scan of a few slices has no room for the whole ball.
+    for (const double part : {1.0, 0.5, 0.25}) {
+      const std::optional<Vec3> centre = bulkOf(sought, part * landmark.bulk_radius_mm);
+      if (centre) {
+        return Ray{*centre + landmark.outward * g.diagonal_mm() / 2.0, *centre,
+                   part * landmark.run_mm};
+      }
+      if (sought.progress.cancelled()) break;
+    }
+    return none;
   }
   const Box box = tissueBox(sought);
   if (!box.found) return none;
   const Vec3 extent_mm = box.high_mm - box.low_mm;
-  return Ray{box.low_mm + landmark.from * extent_mm, box.low_mm + landmark.towards * extent_mm};
+  return Ray{box.low_mm + landmark.from * extent_mm, box.low_mm + landmark.towards * extent_mm,
+             landmark.run_mm};
 }
 
 constexpr double kMostAround_mm = 3.0;  // HU are averaged over no more
@@ -235,14 +244,14 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
   const Error cancelled{"CANCELLED", "Finding the landmarks was cancelled", where, ""};
   if (progress.cancelled()) return cancelled;
   if (!ray) return ray.error();
-  const auto [from_mm, towards_mm] = *ray;
+  const auto [from_mm, towards_mm, least_run_mm] = *ray;
   const double length_mm = glm::length(towards_mm - from_mm);
   if (!(length_mm > 0.0)) {
     return Error{"NO_SURFACE", "The ray has no direction", where, "Give two different points"};
   }
   const Vec3 along = (towards_mm - from_mm) / length_mm;
   constexpr double kStep_mm = 0.25;
-  const double radius_mm = std::min(kMostAround_mm, landmark.run_mm / 4.0);
+  const double radius_mm = std::min(kMostAround_mm, least_run_mm / 4.0);
   const Stretch stretch = stretchOf(volume.geometry, from_mm, along, length_mm);
   double run_mm = 0.0;
   for (double at_mm = kStep_mm * std::floor(stretch.begin_mm / kStep_mm); at_mm <= stretch.end_mm;
@@ -251,7 +260,7 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
     const Vec3 place_mm = from_mm + at_mm * along;
     const bool inside = sought.in(meanHu(volume, place_mm, radius_mm), sought.labelNear(place_mm));
     run_mm = inside ? run_mm + kStep_mm : 0.0;
-    if (run_mm >= landmark.run_mm) {
+    if (run_mm >= least_run_mm) {
       return LandmarkFrame{from_mm + (at_mm - run_mm + kStep_mm) * along, frameAlong(-along)};
     }
   }

@@ -62,6 +62,7 @@ SeenTissues withStructures(const TissueSet& tissues, const TissueLooks& looks,
       if (!isOf(tissue, of)) continue;
       tissue.label = of.label;
       if (wanted.opacity) tissue.opacity = *wanted.opacity;
+      if (wanted.colour) tissue.colour = *wanted.colour;
       if (!first) first = &tissue;
     }
     SeenStructure& look = seen.structures.emplace_back();

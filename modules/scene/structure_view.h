@@ -18,6 +18,7 @@ namespace trephine {
 struct StructureLook {
   std::optional<TissueLook> look{};  // absent: shown
   std::optional<double> opacity{};   // per mm; absent: its tissue's, else kSeenOpacity
+  std::optional<Vec3> colour{};      // that a person gave it; absent: its tissue's, else its own
   friend bool operator==(const StructureLook&, const StructureLook&) = default;
 };
 using StructureLooks = std::map<int, StructureLook>;  // by label

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "base/memory.h"
 #include "imaging/importer.h"
@@ -140,6 +141,26 @@ Result<Case> readCase(const std::string& source, const Progress& progress) {
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the case", "the case");
   }
+}
+
+Status keepsCase(const std::filesystem::path& target, const std::string& source) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  if (source.empty() || !fs::exists(target, ec) || !fs::exists(source, ec)) return {};
+  std::vector<fs::path> own{source};
+  if (isVolumeFile(source) && !fs::is_directory(source, ec)) {
+    if (const auto header = readVolumeFileHeader(source)) own.push_back(header->data.file);
+    own.push_back(fs::path(source).replace_extension(".json"));  // of raw voxels
+  }
+  const fs::path to = fs::canonical(target, ec);
+  for (const fs::path& file : own) {
+    if (!fs::exists(file, ec)) continue;
+    const fs::path from = fs::canonical(file, ec);
+    if (std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first != from.end()) continue;
+    return Error{"CANNOT_WRITE", "This is of the case that is read, and would be lost",
+                 target.string(), "Choose another name or place"};
+  }
+  return {};
 }
 
 Result<Case> withLabels(Case of, const std::string& file, const Progress& progress) {

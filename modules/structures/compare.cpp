@@ -11,7 +11,7 @@ namespace trephine {
 
 namespace {
 
-// Voxels of it with one across a face that is not; the grid's end is no border.
+// Voxels of it with one across a face that is not; beyond the grid nothing is.
 std::vector<std::size_t> borderOf(const LabelMap& map, std::uint8_t label) {
   std::vector<std::size_t> border;
   const GridGeometry& g = map.geometry;
@@ -21,7 +21,7 @@ std::vector<std::size_t> borderOf(const LabelMap& map, std::uint8_t label) {
         const std::size_t at = g.indexOf(i, j, k);
         if (map.labels[at] != label) continue;
         const auto out = [&](int x, int y, int z) {
-          return g.contains(x, y, z) && map.labels[g.indexOf(x, y, z)] != label;
+          return !g.contains(x, y, z) || map.labels[g.indexOf(x, y, z)] != label;
         };
         if (out(i - 1, j, k) || out(i + 1, j, k) || out(i, j - 1, k) || out(i, j + 1, k) ||
             out(i, j, k - 1) || out(i, j, k + 1)) {
@@ -105,10 +105,6 @@ Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& 
   of.hd95_mm = std::numeric_limits<double>::quiet_NaN();
   if (in_a == 0 || in_b == 0) return of;
   const std::vector<std::size_t> a_border = borderOf(a, of_a), b_border = borderOf(b, of_b);
-  if (a_border.empty() || b_border.empty()) {  // the whole grid
-    of.hd95_mm = a_border.empty() && b_border.empty() ? 0.0 : of.hd95_mm;
-    return of;
-  }
   of.hd95_mm = std::max(percentile95_mm(a_border, b_border, a.geometry),
                         percentile95_mm(b_border, a_border, a.geometry));
   return of;

@@ -10,8 +10,8 @@ namespace trephine {
 
 struct Likeness {
   double dice = 0.0;     // 2 |A and B| / (|A| + |B|); 1 where both are empty
-  double hd95_mm = 0.0;  // the greater of the two 95th percentiles, border to border; NaN where one
-                         // of them is empty
+  double hd95_mm = 0.0;  // the greater of the two 95th percentiles, border to border, the scan's
+                         // faces too; NaN where one of them is empty
   double ml_a = 0.0, ml_b = 0.0;
 };
 

@@ -16,20 +16,38 @@ VoxelBox both(const VoxelBox& a, const VoxelBox& b) {
 }
 
 VoxelBox boxOf(const std::vector<LabelEdit>& edits) {
+  if (edits.empty()) return {};
   VoxelBox box = edits.front().box;
   for (const LabelEdit& edit : edits) box = both(box, edit.box);
   return box;
 }
 
+void setRow(LabelMap& map, const Structure& to) {
+  for (Structure& row : map.structures) {
+    if (row.label == to.label) row = to;
+  }
+}
+
 }  // namespace
 
-void EditHistory::add(const std::string& name, LabelEdit edit, bool joins) {
-  if (edit.empty()) return;
+void EditHistory::forgetUndone() {
   while (steps_.size() > done_) {
     bytes_ -= steps_.back().bytes;
     steps_.pop_back();
   }
-  if (!joins || steps_.empty()) steps_.push_back({name, {}, 0});
+}
+
+void EditHistory::addRow(const std::string& name, const Structure& before, const Structure& after) {
+  if (before == after) return;
+  forgetUndone();
+  steps_.push_back({name, {}, 0, Step::Row{before, after}});
+  done_ = steps_.size();
+}
+
+void EditHistory::add(const std::string& name, LabelEdit edit, bool joins) {
+  if (edit.empty()) return;
+  forgetUndone();
+  if (!joins || steps_.empty() || steps_.back().row) steps_.push_back({name, {}, 0, {}});
   Step& step = steps_.back();
   edit.runs.shrink_to_fit();
   step.bytes += edit.bytes();
@@ -49,6 +67,7 @@ std::optional<VoxelBox> EditHistory::undo(LabelMap& map) {
   for (auto edit = step.edits.rbegin(); edit != step.edits.rend(); ++edit) {
     trephine::undo(map, *edit);
   }
+  if (step.row) setRow(map, step.row->before);
   return boxOf(step.edits);
 }
 
@@ -56,6 +75,7 @@ std::optional<VoxelBox> EditHistory::redo(LabelMap& map) {
   if (done_ == steps_.size()) return std::nullopt;
   const Step& step = steps_[done_++];
   for (const LabelEdit& edit : step.edits) apply(map, edit);
+  if (step.row) setRow(map, step.row->after);
   return boxOf(step.edits);
 }
 

@@ -23,12 +23,15 @@ class EditHistory {
   // dropped() says how many went in all.
   void add(const std::string& name, LabelEdit edit, bool joins = false);
 
+  // A row of the map that was given another name or colour, as a step.
+  void addRow(const std::string& name, const Structure& before, const Structure& after);
+
   // The name of the step that undo() would take back, or redo() do again; null: there is none.
   const std::string* toUndo() const { return done_ ? &steps_[done_ - 1].name : nullptr; }
   const std::string* toRedo() const {
     return done_ < steps_.size() ? &steps_[done_].name : nullptr;
   }
-  // The box of what changed; nothing where there is no step.
+  // The box of what changed, empty where a row alone did; nothing where there is no step.
   std::optional<VoxelBox> undo(LabelMap& map);
   std::optional<VoxelBox> redo(LabelMap& map);
 
@@ -39,10 +42,16 @@ class EditHistory {
 
  private:
   struct Step {
+    struct Row {
+      Structure before, after;
+    };
     std::string name;
     std::vector<LabelEdit> edits;
     std::size_t bytes = 0;
+    std::optional<Row> row{};
   };
+  void forgetUndone();
+
   std::size_t most_bytes_;
   std::deque<Step> steps_;  // the first done_ are in the map, the others were undone
   std::size_t done_ = 0;

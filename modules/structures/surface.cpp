@@ -1,5 +1,6 @@
 #include "structures/surface.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
 #include <vtkImageGaussianSmooth.h>
@@ -11,6 +12,7 @@
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <new>
 
 #include "base/file.h"
@@ -119,10 +121,11 @@ Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
       writer->SetFileTypeToBinary();
       writer->SetHeader("Trephine: for training, not for diagnosis or treatment planning");
       writer->SetFileName(temporary.c_str());
+      const vtkNew<vtkCallbackCommand> said_below;  // instead of VTK's own words on stderr
+      writer->AddObserver(vtkCommand::ErrorEvent, said_below);
+      errno = 0;
       if (writer->Write() == 1 && writer->GetErrorCode() == 0) return {};
-      return Error{"CANNOT_WRITE", "The surface could not be written", file.string(),
-                   "Check free space and that you may write there; nothing that was there is "
-                   "lost"};
+      return writeError(file, errno);
     });
     if (!written) return written.error();
     progress.at(1.0, "Making the surface");

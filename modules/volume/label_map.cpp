@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <new>
 
 #include "base/memory.h"
 #include "base/sha256.h"
+#include "base/utf8.h"
 #include "volume/case_memory.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
@@ -84,6 +86,19 @@ std::vector<Index3> shellSteps(const Vec3& spacing_mm, double thickness_mm) {
 bool sameName(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](char x, char y) { return folded(x) == folded(y); });
+}
+
+std::string structureName(std::string_view text) {
+  const std::string name = cutUtf8(cleanUtf8(text), kLongestName);
+  // A space that does not break, and those without a width.
+  std::string seen = name;
+  for (const char* blank :
+       {" ", "\u00a0", "\u200b", "\u200c", "\u200d", "\u2060", "\ufeff", "\u3000"}) {
+    for (std::size_t at; (at = seen.find(blank)) != seen.npos;) {
+      seen.erase(at, std::strlen(blank));
+    }
+  }
+  return seen.empty() ? "" : name;
 }
 
 const Structure* LabelMap::find(const std::string& name) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/progress.h"
@@ -40,6 +41,10 @@ constexpr int kMostStructures = 250;
 // Letters in either case, blanks and underscores alike: "Left_Kidney" is "left kidney". ASCII
 // alone; other letters are compared as they are.
 bool sameName(const std::string& a, const std::string& b);
+// A name as all structures have theirs, from whatever a person or a file calls one: UTF-8 in one
+// line, cut at kLongestName bytes. Empty where nothing is left that could be seen.
+constexpr std::size_t kLongestName = 200;
+std::string structureName(std::string_view text);
 // A colour to tell a label from its neighbours, where a file gives none.
 Vec3 labelColour(int label);
 // The lowest label that neither a structure nor a voxel has; 0: none.

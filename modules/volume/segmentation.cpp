@@ -68,7 +68,8 @@ LabelMap merged(const Segmentation& of, const std::vector<std::size_t>& order) {
       for (label = 1; label < 255 && taken[std::size_t(label)];) ++label;
     }
     taken[std::size_t(label)] = true;
-    std::string name = segment.name.empty() ? "label " + std::to_string(label) : segment.name;
+    std::string name = structureName(segment.name);
+    if (name.empty()) name = "label " + std::to_string(label);
     const std::string once = name;
     for (int n = 2; map.find(name); ++n) name = once + " " + std::to_string(n);
     map.structures.push_back({label, name, segment.colour, segment.tissue});

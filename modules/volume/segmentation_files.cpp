@@ -65,13 +65,13 @@ Result<std::vector<NamedLabel>> readSidecar(const fs::path& file) {
   JsonReader reader(*json, file.string());
   reader.format("trephine.structures", 1);
   std::vector<NamedLabel> labels;
-  for (JsonReader& item : reader.objects("structures", 255)) {
+  for (JsonReader& item : reader.objects("structures", kMostStructures)) {
     NamedLabel named;
     named.label = int(item.integer("label", kLabels));
-    named.segment.name = item.text("name");
+    named.segment.name = structureName(item.text("name"));
     named.segment.colour = item.vec3("colour", kShares, labelColour(named.label));
     named.segment.tissue = item.text("tissue", "");
-    if (trimmed(named.segment.name).empty()) {
+    if (named.segment.name.empty()) {
       item.fail("name", "The name is blank", "Give each structure a name");
     }
     for (const NamedLabel& other : labels) {
@@ -104,7 +104,7 @@ std::optional<std::vector<NamedLabel>> labelsIn(const std::string& text) {
     if (!kLabels.holds(number) || number != std::floor(number)) continue;
     NamedLabel named;
     named.label = int(number);
-    named.segment.name = name.substr(1, name.size() - 2);
+    named.segment.name = structureName(name.substr(1, name.size() - 2));
     named.segment.colour = glm::clamp(Vec3(red, green, blue) / 255.0, Vec3(0.0), Vec3(1.0));
     labels.push_back(std::move(named));
   }
@@ -123,7 +123,7 @@ Result<std::vector<NamedLabel>> namesBeside(const fs::path& file) {
     const auto text = readStart(text_file, kMostText);
     const auto labels = text ? labelsIn(*text) : std::nullopt;
     if (labels) return *labels;
-    if (std::string(ending) == ".label") {
+    if (std::string(ending) == ".label" || (text && text->find("ITK-SnAP") != text->npos)) {
       return Error{"BAD_NAMES", "The text beside the label map is no list of labels of ITK-SNAP",
                    text_file.string(), "Export it again, or take it away"};
     }
@@ -146,7 +146,7 @@ std::vector<Segment> slicerSegments(const VolumeFileHeader& header) {
       return given && *given >= 0.0 && *given <= most ? *given : otherwise;
     };
     Segment segment;
-    segment.name = text("Name").value_or(*text("ID"));
+    segment.name = structureName(text("Name").value_or(text("ID").value_or("")));
     const auto colour = numbersIn(text("Color").value_or(""));
     segment.colour = colour && colour->size() == 3
                          ? glm::clamp(Vec3((*colour)[0], (*colour)[1], (*colour)[2]), 0.0, 1.0)
@@ -163,6 +163,12 @@ std::vector<Segment> slicerSegments(const VolumeFileHeader& header) {
 // The layers of a file: its values in turn.
 Result<Segmentation> layersOf(const fs::path& file, const Progress& progress) {
   auto header = readVolumeFileHeader(file);
+  if (!header && header.error().code == "NOT_HU") return notLabels(header.error().what, file);
+  if (!header && header.error().code == "UNKNOWN_FORMAT") {
+    Error error = header.error();
+    error.next = "Choose a DICOM SEG, a .seg.nrrd, or a label map as .nrrd, .mha, .nii or .nii.gz";
+    return error;
+  }
   if (!header) return header.error();
   const auto layers = std::size_t(header->layers);
   const std::size_t voxels = header->geometry.voxelCount();
@@ -246,8 +252,13 @@ std::string oneLine(std::string text) {
   return out;
 }
 
-std::string nrrdHeader(const LabelMap& map) {
-  const GridGeometry& g = map.geometry;
+// `reversed`: the last slice comes first.
+std::string nrrdHeader(const LabelMap& map, bool reversed) {
+  GridGeometry g = map.geometry;
+  if (reversed) {
+    g.origin_mm = g.toPatient_mm(Vec3(0, 0, g.size[2] - 1));
+    g.direction[2] = -g.direction[2];
+  }
   char line[512];
   std::string text =
       "NRRD0004\n# Made by Trephine: for training, not for diagnosis or treatment planning\n"
@@ -282,26 +293,29 @@ std::string nrrdHeader(const LabelMap& map) {
   return text + "\n";
 }
 
-Status writeNrrd(const LabelMap& map, const fs::path& target, const Progress& progress) {
+Status writeNrrd(const LabelMap& map, const fs::path& target, bool reversed,
+                 const Progress& progress) {
   return replaceFile(target, [&](const fs::path& temporary) -> Status {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wbe"),
                                                          std::fclose);
     if (!file) return cannotWrite(target);
-    const std::string header = nrrdHeader(map);
+    const std::string header = nrrdHeader(map, reversed);
     bool good = std::fwrite(header.data(), 1, header.size(), file.get()) == header.size();
     GzipWriter gzip(file.get());
     const std::span<const std::byte> all = std::as_bytes(std::span(map.labels));
-    for (std::size_t at = 0; good && at < all.size(); at += GzipWriter::kAtOnce) {
-      progress.at(double(at) / double(all.size()), "Saving the structures");
+    const int slices = map.geometry.size[2];
+    const std::size_t slice = all.size() / std::size_t(slices);
+    for (int k = 0; good && k < slices; ++k) {
+      progress.at(double(k) / slices, "Saving the structures");
       if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
-      good = gzip.write(all.subspan(at, std::min(GzipWriter::kAtOnce, all.size() - at)));
+      good = gzip.write(all.subspan(std::size_t(reversed ? slices - 1 - k : k) * slice, slice));
     }
     good = good && gzip.finish();
     return std::fclose(file.release()) == 0 && good ? Status() : cannotWrite(target);
   });
 }
 
-Json sidecarOf(const LabelMap& map) {
+std::string sidecarText(const LabelMap& map) {
   Json rows = Json::array();
   for (const Structure& s : map.structures) {
     Json row = {
@@ -309,7 +323,9 @@ Json sidecarOf(const LabelMap& map) {
     if (!s.tissue.empty()) row["tissue"] = s.tissue;
     rows.push_back(std::move(row));
   }
-  return {{"format", "trephine.structures"}, {"version", 1}, {"structures", std::move(rows)}};
+  const Json all = {
+      {"format", "trephine.structures"}, {"version", 1}, {"structures", std::move(rows)}};
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -337,11 +353,32 @@ Result<Segmentation> readSegmentation(const fs::path& file, const Progress& prog
 
 Status writeSegmentation(const LabelMap& map, const fs::path& file, bool reversed_slices,
                          const Progress& progress) {
-  if (endsWith(file, ".nrrd")) return writeNrrd(map, file, progress);
-  if (Status written = writeLabelMap(map, file, reversed_slices, progress); !written) {
-    return written;
-  }
-  return writeTextFile(structuresFile(file), sidecarOf(map).dump(1) + "\n");
+  if (endsWith(file, ".nrrd")) return writeNrrd(map, file, reversed_slices, progress);
+  // Map and names are both written before either takes its place, and no map is ever beside the
+  // names of another: whatever ends this in between, it has none.
+  const fs::path names = structuresFile(file);
+  std::error_code ec;
+  fs::path new_map = file, old_names = names;
+  new_map.replace_filename(".new-" + file.filename().string());
+  old_names.replace_filename(".old-" + names.filename().string());
+  const Status written = replaceFile(names, [&](const fs::path& temporary) -> Status {
+    if (Status text = writeTextFile(temporary, sidecarText(map)); !text) return text;
+    if (Status voxels = writeLabelMap(map, new_map, reversed_slices, progress); !voxels) {
+      Error error = voxels.error();
+      error.where = file.string();
+      return error;
+    }
+    fs::rename(names, old_names, ec);
+    const bool had_names = !ec;
+    if (ec && ec != std::errc::no_such_file_or_directory) return writeError(names, ec.value());
+    fs::rename(new_map, file, ec);
+    if (!ec) return {};
+    const int error = ec.value();
+    if (had_names) fs::rename(old_names, names, ec);
+    return writeError(file, error);
+  });
+  fs::remove(written ? old_names : new_map, ec);
+  return written;
 }
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 """`trephine-lab structures`: what is grown, where it is written, what is refused."""
 
 import gzip
+import os
 import struct
 import subprocess
 import unittest
@@ -96,6 +97,46 @@ class Grow(LabTest):
             self.assert_error(answer, "CANNOT_WRITE", "would be lost")
             self.assertEqual(file.read_bytes(), before)
 
+    def test_no_file_of_the_case_is_written_over_be_it_beside_its_header(self):
+        header, voxels = self.folder / "ct.nhdr", self.folder / "ct.nrrd"
+        size = 40
+        voxels.write_bytes(struct.pack("<h", 50) * size ** 3)
+        header.write_text(f"NRRD0004\ntype: short\ndimension: 3\nsizes: {size} {size} {size}\n"
+                          "space: left-posterior-superior\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
+                          "space origin: (0,0,0)\nendian: little\nencoding: raw\ndata file: ct.nrrd\n")
+        before = voxels.read_bytes()
+        answer = lab("structures", "grow", header, "--seed", "40,40,40", "--name", "liver",
+                     "--write", voxels, expect=1)
+        self.assert_error(answer, "CANNOT_WRITE", "would be lost")
+        self.assertEqual(voxels.read_bytes(), before)
+        # Nor is DICOM put into the patient's own folder.
+        ct = self.folder / "ct"
+        lab("phantom", "abdomen", "--out", ct)
+        files = sorted(ct.rglob("*"))
+        answer = lab("structures", "export", ct, "--structures", self.liver_of(ct), "--dicom", ct,
+                     expect=1)
+        self.assert_error(answer, "CANNOT_WRITE", "would be lost")
+        self.assertEqual(sorted(ct.rglob("*")), files)
+
+    def liver_of(self, case):
+        file = self.folder / "liver.nrrd"
+        lab("structures", "grow", case, "--seed", IN_LIVER, "--name", "liver", "--write", file)
+        return file
+
+    def test_a_name_is_one_line_of_letters_that_can_be_seen(self):
+        def grown(name, expect=0):
+            return lab("structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", name,
+                       "--write", self.folder / "a.nii.gz", expect=expect)
+        for name in ("", "   ", "\u00a0\u200b"):
+            self.assert_error(grown(name, expect=1), "BAD_ARGUMENT", "--name")
+        self.assertEqual(list(self.folder.iterdir()), [])
+        self.assertEqual(grown("a\nb\x1b[31m")["name"], "a b [31m")
+        self.assertEqual(len(grown("x" * 9000)["name"]), 200)
+        # Bytes that are no UTF-8, as of a label in Latin-1.
+        self.assertEqual(grown(os.fsdecode(b"foie \xe9t\xe9"))["name"], "foie \ufffdt\ufffd")
+        (row,) = lab("structures", "import", "phantom:abdomen", self.folder / "a.nii.gz")["structures"]
+        self.assertEqual(row["name"], "foie \ufffdt\ufffd")
+
     def test_words_say_what_was_grown(self):
         done = subprocess.run(
             [LAB, "structures", "grow", "phantom:abdomen", "--seed", IN_LIVER, "--name", "liver",
@@ -171,6 +212,9 @@ class Import(LabTest):
         self.assertEqual(with_liver["warnings"], [])
         self.assertGreater(with_liver["removed_mm3"]["liver"] + with_liver["removed_mm3"]["capsule"],
                            0)
+        # The abdominal wall is held open: what is removed is of the structures, all of it.
+        self.assertAlmostEqual(sum(with_liver["removed_mm3"].values()) / 1000,
+                               sum(row["cut_ml"] for row in with_liver["structures_cut"]), delta=1e-6)
         without = lab("run", scene, "--case", ct, "--seconds", 1, "--out", self.folder / "b")
         self.assertEqual([w["code"] for w in without["warnings"]], ["LACKS_STRUCTURE"])
         again = lab("replay", self.folder / "a" / "session.h5", "--case", ct,

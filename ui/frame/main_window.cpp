@@ -103,6 +103,9 @@ void MainWindow::askForScene() {
 }
 
 void MainWindow::askForLabels() {
+  if (workstation_.session()) {
+    return say(tr("An exercise is running: stop it, then open structures."));
+  }
   QFileDialog* dialog = fileDialog("labelsDialog", tr("Open the case's label map"));
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
     unlessStructuresAreLost([this, file] {

@@ -98,6 +98,8 @@ class MainWindow : public QMainWindow {
   void structureToolChanged(SliceTool tool);
   void structureKey(int key);
   void showUndo();
+  void sayWhatIsOpen();
+  bool keepsTheCase(const std::filesystem::path& target);
   // Where the exercise enters (main_window_structures.cpp); from nowhere: out of what was clicked.
   void placeEntry(const Vec3& at_mm, const Vec3& from_mm);
   void leaveEntry();
@@ -165,6 +167,7 @@ class MainWindow : public QMainWindow {
   bool entry_asked_ = false;         // and the case is being placed with it
   StructureLooks structure_looks_;   // of the view alone
   std::optional<SeenTissues> seen_;  // what the 3-D view was told last
+  QString exercise_said_;  // the last one that was open
   std::filesystem::path case_source_;  // that the imported case was read from
   bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;

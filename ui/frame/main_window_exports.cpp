@@ -51,7 +51,8 @@ void MainWindow::askToSaveDicom(bool for_source) {
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, for_source, volume = workstation_.currentCase()->volume](const QString& folder) {
             const std::optional<Case>& of = workstation_.currentCase();
-            if (of && of->volume == volume) saveDicom(toPath(folder), for_source);
+            if (!of || of->volume != volume || !keepsTheCase(toPath(folder))) return;
+            saveDicom(toPath(folder), for_source);
           });
   dialog->open();
 }
@@ -100,6 +101,7 @@ void MainWindow::askToSaveSurface() {
   QFileDialog* dialog = saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
                                    fileNameOf(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
+    if (!keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),
                       [copy, label, path = toPath(file)](const Progress& progress) -> Status {
                         const auto written = writeSurface(*copy, label, path, progress);

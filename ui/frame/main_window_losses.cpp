@@ -35,6 +35,7 @@ void MainWindow::saveVolume(const QString& file) {
 }
 
 void MainWindow::saveVolumeThen(const QString& file, std::function<void()> then) {
+  if (!keepsTheCase(toPath(file))) return;
   // What a running exercise shows may be cut further.
   const bool all = workstation_.phase() == Workstation::Phase::ready;
   say(tr("Saving the volume\u2026"));
@@ -49,6 +50,9 @@ void MainWindow::unlessSceneIsLost(std::function<void()> go_on) {
 }
 
 void MainWindow::start() {
+  if (editor_.busy()) {
+    return say(tr("A structure is being made: wait for it, or cancel it, and start then."));
+  }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview();
   if (editor_.preview()) editor_.takePreview();
   if (!takeStructures())

@@ -1,5 +1,6 @@
 // The structures in the window: between their panel, the editor, the slices and the workstation.
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QInputDialog>
 #include <QMessageBox>
 #include <QPushButton>
@@ -52,12 +53,17 @@ void MainWindow::connectStructures() {
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
   connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
   connect(views_, &FourUp::nothingThere, this,
-          [this] { structures_->say(tr("Nothing is seen there.")); });
+          [this] { structures_->say(tr("Nothing solid is seen there: ghosts are passed through.")); });
   connect(structures_, &StructurePanel::lookWanted, this, &MainWindow::structureLookWanted);
   connect(structures_, &StructurePanel::opacityWanted, this, [this](int label, double per_mm) {
     structure_looks_[label].opacity = per_mm;
     showSeen();
   });
+  connect(structures_, &StructurePanel::colourChosen, this, [this](int label, const Vec3& colour) {
+    structure_looks_[label].colour = colour;
+    showSeen();
+  });
+  connect(structures_, &StructurePanel::decided, this, [this] { view_->setFocus(); });
   connect(&editor_, &StructureEditor::changed, this, [this](const VoxelBox& box) {
     if (views_->mirror().labels() == editor_.map()) views_->labelsChanged(box);
     settled_.start();
@@ -147,6 +153,8 @@ void MainWindow::openStructures() {
   if (of.structures != own_structures_) showStructureReport();
   if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
     structure_looks_.clear();
+    views_->setTool(SliceTool::window);  // what was in hand was for another case
+    structures_->suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
   }
   own_structures_ = of.structures;
@@ -155,6 +163,10 @@ void MainWindow::openStructures() {
   warned_ = false;
   showStructureTab();
   showEntry();
+  sayWhatIsOpen();
+  for (const Warning& warning : of.warnings) {
+    if (warning.code == "OTHER_ANATOMY") return;  // another exercise comes first
+  }
   for (const Warning& warning : of.warnings) {
     if (warning.code != "LACKS_STRUCTURE") continue;
     // What is missing is offered to be made at once.
@@ -166,9 +178,25 @@ void MainWindow::openStructures() {
   }
 }
 
+// Which exercise the case has, where that is news, and that it is for something else.
+void MainWindow::sayWhatIsOpen() {
+  const QString exercise = scenes_->currentText();
+  QString words;
+  if (!exercise_said_.isEmpty() && exercise != exercise_said_) {
+    words = tr("The exercise is now \"%1\".").arg(exercise);
+  }
+  exercise_said_ = exercise;
+  for (const Warning& warning : workstation_.currentCase()->warnings) {
+    if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
+    words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
+  }
+  if (!words.isEmpty()) say(words);
+}
+
 // The slices show what the panel lists while it is in front, else what the exercise runs on.
 void MainWindow::showStructureTab() {
   showLabelsInUse();
+  showUndo();
   if (structuresShown()) {
     if (views_->colours().overlay() != Overlay::labels) {
       views_->setOverlay(Overlay::labels, kStructureOpacity);
@@ -253,10 +281,20 @@ void MainWindow::structureKey(int key) {
   }
 }
 
+// Without an exercise they are the structures', while those are in front. Cuts that an exercise left
+// in the view are no step of theirs: there the panel's own buttons serve.
 void MainWindow::showUndo() {
   if (workstation_.phase() == Workstation::Phase::running) return;
-  undo_->setEnabled(editor_.undoText().has_value());
-  redo_->setEnabled(editor_.redoText().has_value());
+  const bool serve = structuresShown() && !unsaved_cuts_;
+  const auto undo = serve ? editor_.undoText() : std::nullopt;
+  const auto redo = serve ? editor_.redoText() : std::nullopt;
+  undo_->setEnabled(undo.has_value());
+  redo_->setEnabled(redo.has_value());
+  undo_->setToolTip(undo      ? tr("Undo: %1").arg(*undo)
+                    : unsaved_cuts_
+                        ? tr("The exercise has ended: its cuts stay until Reset")
+                        : tr("Nothing to undo"));
+  redo_->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
 }
 
 void MainWindow::askAboutStructures(const Error& error, const std::filesystem::path& file,
@@ -301,6 +339,18 @@ void MainWindow::askForThreshold(const std::filesystem::path& file, const Answer
   dialog->open();
 }
 
+// False, and said, where writing there would take a file of the case.
+bool MainWindow::keepsTheCase(const std::filesystem::path& target) {
+  const std::string scene_case = workstation_.scene() ? workstation_.scene()->case_source : "";
+  for (const std::string& source : {case_source_.string(), scene_case}) {
+    const Status kept = keepsCase(target, source);
+    if (kept) continue;
+    report(kept.error());
+    return false;
+  }
+  return true;
+}
+
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
 void MainWindow::askAboutPreview() {
   QMessageBox* question = ask(
@@ -335,8 +385,9 @@ void MainWindow::saveStructuresThen(std::function<void()> then) {
          "with names beside it (*.mha)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, copy, changes, then = std::move(then)](const QString& file) {
+            if (!keepsTheCase(structuresFile(toPath(file))) || !keepsTheCase(toPath(file))) return;
             workstation_.save(
-                tr("The structures are saved."),
+                tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
                 [copy, path = toPath(file)](const Progress& progress) {
                   return writeSegmentation(*copy, path, false, progress);
                 },

@@ -72,7 +72,7 @@ void MainWindow::showSeen() {
   view_->setTissues(seen_->tissues, seen_->looks);
 }
 
-// An opacity that was set for a tissue goes before one that was set for its structure.
+// An opacity or colour that was set for a tissue goes before one that was set for its structure.
 void MainWindow::tissuesEdited(const TissueSet& set) {
   const std::shared_ptr<const LabelMap> map = editor_.map();
   for (auto& [label, look] : structure_looks_) {
@@ -81,6 +81,7 @@ void MainWindow::tissuesEdited(const TissueSet& set) {
     for (const std::string& id : tissuesOf(set, *of)) {
       const Tissue* before = workstation_.scene()->tissues.find(id);
       if (before && before->opacity != set.find(id)->opacity) look.opacity.reset();
+      if (before && before->colour != set.find(id)->colour) look.colour.reset();
     }
   }
   workstation_.setTissues(set);

@@ -48,6 +48,7 @@ void StructureEditor::setCase(std::shared_ptr<const Volume> volume,
   box_.reset();
   regrow_.reset();
   wall_ = 0;
+  shell_of_.clear();
   stroke_.reset();
   edited_ = untaken_ = false;
   current_ = given_ && !given_->structures.empty() ? given_->structures.front().label : 0;
@@ -153,7 +154,7 @@ void StructureEditor::setCurrent(int label) {
 }
 
 Status StructureEditor::rename(int label, const QString& name) {
-  const std::string wanted = name.trimmed().toStdString();
+  const std::string wanted = structureName(name.toStdString());
   if (wanted.empty()) {
     return Error{"BAD_NAME", "A structure needs a name", "", "Type one"};
   }
@@ -168,29 +169,48 @@ Status StructureEditor::rename(int label, const QString& name) {
     }
   }
   for (Structure& s : map_->structures) {
-    if (s.label == label) s.name = wanted;
+    if (s.label != label) continue;
+    const Structure before = s;
+    s.name = wanted;
+    history_.addRow(tr("Rename").toStdString(), before, s);
   }
   touched();
   emit listChanged();
+  emit stateChanged();
   return {};
 }
 
-void StructureEditor::setColour(int label, const Vec3& colour) {
-  if (!mayChange()) return;
+bool StructureEditor::setColour(int label, const Vec3& colour) {
+  if (!mayChange()) return false;
   for (Structure& s : map_->structures) {
-    if (s.label == label) s.colour = colour;
+    if (s.label != label) continue;
+    const Structure before = s;
+    s.colour = colour;
+    history_.addRow(tr("Colour").toStdString(), before, s);
   }
   touched();
   emit listChanged();
+  emit stateChanged();
+  return true;
 }
 
 // Its voxels go, which undo brings back; its row stays in the map, empty, for that.
 void StructureEditor::remove(int label) {
   if (!mayChange() || !map_->find(label)) return;
   leavePreview();
-  const std::vector<std::uint8_t> nothing(map_->labels.size());
-  put(tr("Delete").toStdString(), maskEdit(*map_, nothing, label));
+  const auto shell = shell_of_.find(label);
+  const int whole = shell != shell_of_.end() && map_->find(shell->second) ? shell->second : 0;
+  std::vector<std::uint8_t> stays(map_->labels.size());
+  Labels over;
+  if (whole != 0) {
+    over.set(std::size_t(label));
+    for (std::size_t v = 0; v < stays.size(); ++v) {
+      stays[v] = map_->labels[v] == whole || map_->labels[v] == label;
+    }
+  }
+  put(tr("Delete").toStdString(), maskEdit(*map_, stays, whole != 0 ? whole : label, over));
   if (current_ == label) chooseAnother();
+  if (whole != 0) emit said(tr("\"%1\" has its layer back.").arg(toQt(map_->find(whole)->name)));
 }
 
 // The first that has voxels.
@@ -211,8 +231,8 @@ std::string StructureEditor::spareName(const std::string& base) const {
 }
 
 std::string StructureEditor::freeName(const QString& wanted) const {
-  const std::string base =
-      wanted.trimmed().isEmpty() ? tr("structure").toStdString() : wanted.trimmed().toStdString();
+  std::string base = structureName(wanted.toStdString());
+  if (base.empty()) base = tr("structure").toStdString();
   std::string name = base;
   for (int n = 2;; ++n) {
     const Structure* there = map_->find(name);
@@ -299,9 +319,14 @@ void StructureEditor::inBackground(Work work, Take take) {
   work_.run(std::move(work), [this, take, own = map_](Made made) {
     if (map_ != own) return;
     if (made) return take(*std::move(made));
-    const bool cancelled = made.error().code == "CANCELLED";
-    if (!cancelled) emit failed(made.error());
-    emit said(cancelled ? tr("Cancelled: nothing was changed.") : QString());
+    const Error& error = made.error();
+    if (error.code == "CANCELLED") return emit said(tr("Cancelled: nothing was changed."));
+    // A place that was missed is clicked anew: no dialog for that.
+    if (error.where == "seed" || error.where == "at") {
+      return emit said(toQt(error.what) + QStringLiteral(". ") + toQt(error.next) + '.');
+    }
+    emit failed(error);
+    emit said({});
   });
 }
 
@@ -342,6 +367,7 @@ void StructureEditor::growAt(Vec3 patient_mm, const QString& name, const GrowOpt
 
 // As a preview.
 void StructureEditor::showGrown(const Growth& grown, const std::string& name, const Vec3& seed_mm) {
+  if (!locked_.isEmpty()) return;  // an exercise began meanwhile
   preview_has_new_row_ = !map_->find(name);
   const int label = addStructure(name);
   if (label == 0) return;
@@ -363,7 +389,7 @@ void StructureEditor::showGrown(const Growth& grown, const std::string& name, co
 }
 
 void StructureEditor::takePreview() {
-  if (!preview_) return;
+  if (!preview_ || !mayChange()) return;
   const Structure* grown = map_->find(preview_->label);
   preview_.reset();
   touched();
@@ -408,7 +434,9 @@ void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across
     const double last = g.size[a];
     box.low[a] = int(std::clamp(std::ceil(std::min(from[axis], to[axis])), 0.0, last));
     box.high[a] = int(std::clamp(std::floor(std::max(from[axis], to[axis])) + 1.0, 0.0, last));
-    if (box.low[a] >= box.high[a]) return emit said(tr("The box lies outside of the scan."));
+    if (box.low[a] >= box.high[a]) {
+      return emit said(tr("That box holds nothing of the scan: draw it wider, inside of the scan."));
+    }
   }
   const auto clicked = preview_ ? voxelAt(g, preview_->seed_mm) : std::nullopt;
   if (clicked && !isIn(box, *clicked)) {
@@ -449,25 +477,37 @@ void StructureEditor::makeSkull() {
   if (!mayChange()) return;
   leavePreview();
   inBackground([volume = volume_](const Progress& progress) { return skullOf(*volume, progress); },
-               [this](const Skull& made) { putMask(made.mask.labels, "skull", "bone"); });
+               [this](const Skull& made) {
+                 putMask(made.mask.labels, "skull", "bone");
+                 sayMade({});
+               });
+}
+
+// What is current now was made.
+void StructureEditor::sayMade(const QString& more) {
+  if (const Structure* of = structure(current_)) {
+    emit said(tr("%1: %2 mL.").arg(toQt(of->name)).arg(millilitres(current_), 0, 'f', 0) + more);
+  }
 }
 
 // A layer is a voxel thick at least.
-void StructureEditor::sayIfThin(double thickness_mm) {
+QString StructureEditor::wordsIfThin(double thickness_mm) const {
   const Vec3& mm = volume_->geometry.spacing_mm;
   const double voxel_mm = std::max({mm.x, mm.y, mm.z});
-  if (thickness_mm >= voxel_mm) return;
-  emit said(tr("The CT's voxels are up to %1 mm large, and the layer is one thick at least.")
-                .arg(voxel_mm, 0, 'f', 1));
+  if (thickness_mm >= voxel_mm) return {};
+  return ' ' + tr("It is one voxel thick, which is up to %1 mm on this CT.")
+                   .arg(voxel_mm, 0, 'f', 1);
 }
 
 void StructureEditor::makeSkin(double thickness_mm) {
   if (!mayChange()) return;
   leavePreview();
-  sayIfThin(thickness_mm);
   inBackground([volume = volume_, thickness_mm](
                    const Progress& progress) { return skinOf(*volume, thickness_mm, progress); },
-               [this](const Skin& made) { putMask(made.mask.labels, "skin", "scalp"); });
+               [this, thickness_mm](const Skin& made) {
+                 putMask(made.mask.labels, "skin", "scalp");
+                 sayMade(wordsIfThin(thickness_mm));
+               });
 }
 
 void StructureEditor::makeShell(double thickness_mm, const QString& name) {
@@ -476,10 +516,21 @@ void StructureEditor::makeShell(double thickness_mm, const QString& name) {
   const int of = current_;
   const int into = addStructure(freeName(name));
   if (into == 0) return;
-  sayIfThin(thickness_mm);
-  editInBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
-                    into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
-                   tr("Shell"));
+  inBackground([map = std::shared_ptr<const LabelMap>(map_), of, thickness_mm,
+                into](const Progress& p) { return shellEdit(*map, of, thickness_mm, into, p); },
+               [this, of, into, thickness_mm](LabelEdit edit) {
+                 const bool any = !edit.empty();
+                 put(tr("Shell").toStdString(), std::move(edit));
+                 if (!any) return;
+                 shell_of_[into] = of;
+                 emit said(tr("\"%1\" has %2 mL of \"%3\", which keeps %4 mL. Deleting it gives "
+                              "them back.")
+                               .arg(toQt(map_->find(into)->name))
+                               .arg(millilitres(into), 0, 'f', 0)
+                               .arg(toQt(map_->find(of)->name))
+                               .arg(millilitres(of), 0, 'f', 0) +
+                           wordsIfThin(thickness_mm));
+               });
 }
 
 void StructureEditor::fillHoles() {
@@ -539,6 +590,15 @@ void StructureEditor::beginWall(const Vec3& patient_mm, const Brush& brush) {
     emit listChanged();
   }
   const int label = wall_;
+  if (const auto voxel = voxelAt(map_->geometry, patient_mm)) {
+    const int there = map_->labels[map_->geometry.indexOf((*voxel)[0], (*voxel)[1], (*voxel)[2])];
+    const Structure* of = there != label ? map_->find(there) : nullptr;
+    if (of) {
+      emit said(tr("The wall goes around \"%1\", which counts already: delete it first, paint, and "
+                   "grow it anew.")
+                    .arg(toQt(of->name)));
+    }
+  }
   stroke_ = Stroke{label, brush, patient_mm};
   regrow_ = again;
   moveStroke(patient_mm);
@@ -600,7 +660,7 @@ void StructureEditor::stepped(const std::optional<VoxelBox>& box) {
   if (!box) return;
   countAll();
   touched();
-  emit changed(*box);
+  if (box->high[0] > box->low[0]) emit changed(*box);
   if (current_ != 0 && ml_[std::size_t(current_)] == 0.0) chooseAnother();
   emit listChanged();
   emit stateChanged();

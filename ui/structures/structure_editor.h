@@ -8,6 +8,7 @@
 
 #include <QObject>
 #include <QString>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -61,7 +62,8 @@ class StructureEditor : public QObject {
   void setCurrent(int label);
   // Refuses a name that another has or that is empty, in words.
   Status rename(int label, const QString& name);
-  void setColour(int label, const Vec3& colour);
+  bool setColour(int label, const Vec3& colour);  // false: it may not change now
+  // A layer that was made of another (makeShell) goes back to that one.
   void remove(int label);
 
   struct Preview {
@@ -141,7 +143,8 @@ class StructureEditor : public QObject {
   std::string freeName(const QString& wanted) const;
   std::string spareName(const std::string& base) const;
   void chooseAnother();
-  void sayIfThin(double thickness_mm);
+  QString wordsIfThin(double thickness_mm) const;
+  void sayMade(const QString& more);
   void put(const std::string& step, const Result<LabelEdit>& edit, bool joins = false);
   void applied(const LabelEdit& edit, bool added);
   void count(const LabelEdit& edit, bool added);
@@ -168,6 +171,7 @@ class StructureEditor : public QObject {
   bool preview_has_new_row_ = false;
   GrowOptions grown_with_;  // of the preview
   int wall_ = 0;
+  std::map<int, int> shell_of_;  // by the layer's label: whose it is
   struct Regrow {
     Vec3 seed_mm{0.0};
     QString name;

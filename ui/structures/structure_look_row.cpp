@@ -29,7 +29,7 @@ StructureLookRow::StructureLookRow(QWidget* parent)
   number_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00 /mm"));
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(new QLabel(tr("3-D"), this));
+  layout->addWidget(new QLabel(tr("Look"), this));
   layout->addWidget(look_);
   layout->addWidget(opacity_, 1);
   layout->addWidget(number_);

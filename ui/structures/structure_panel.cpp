@@ -98,6 +98,13 @@ void StructurePanel::makeSkin() {
   editor_.makeSkin(skin_->wanted());
 }
 
+// Less than two voxels round nothing off.
+void StructurePanel::suitVoxels(const Vec3& spacing_mm) {
+  constexpr double kLeast_mm = 3.0;
+  const double voxel_mm = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  smooth_->show(std::max(kLeast_mm, std::ceil(4.0 * voxel_mm) / 2.0));
+}
+
 void StructurePanel::stepRadius(int steps) {
   radius_->stepBy(2 * steps);
 }
@@ -113,7 +120,7 @@ void StructurePanel::regrow() {
 void StructurePanel::rename(QTreeWidgetItem* item) {
   const int label = item->data(kNameColumn, Qt::UserRole).toInt();
   const Status renamed = editor_.rename(label, item->text(kNameColumn));
-  if (renamed) return;
+  if (renamed) return showList();  // where it may not change now, the old one
   say(toQt(renamed.error().what) + ". " + toQt(renamed.error().next) + ".");
   showList();
 }
@@ -128,7 +135,8 @@ void StructurePanel::chooseColour(int label) {
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Colour of %1").arg(toQt(of->name)));
   connect(dialog, &QColorDialog::colorSelected, this, [this, label](const QColor& colour) {
-    editor_.setColour(label, {colour.redF(), colour.greenF(), colour.blueF()});
+    const Vec3 chosen(colour.redF(), colour.greenF(), colour.blueF());
+    if (editor_.setColour(label, chosen)) emit colourChosen(label, chosen);
   });
   dialog->open();
 }
@@ -186,13 +194,12 @@ void StructurePanel::showList() {
     item->setFont(kNameColumn, font);
     if (s.label == editor_.current()) list_->setCurrentItem(item);
   }
-  list_->setVisible(any);
+  listing_layout_->setCurrentWidget(any ? static_cast<QWidget*>(list_) : empty_);
   empty_->setText(
       editor_.hasCase()
           ? tr("The case has no structures yet. Grow one by a click in a slice, or open "
                "a segmentation.")
           : tr("Open a case first."));
-  empty_->setVisible(!any);
   const QString typed = name_->currentText();
   bool was_offered = typed.isEmpty();
   for (int i = 0; i < name_->count(); ++i) was_offered = was_offered || name_->itemText(i) == typed;

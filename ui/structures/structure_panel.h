@@ -11,6 +11,7 @@
 #include <QMenu>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QStackedLayout>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <array>
@@ -45,12 +46,15 @@ class StructurePanel : public QWidget {
   void makeSkin();  // as thick as is set
   // What was said last; nothing: what the tool in hand does.
   void say(const QString& words);
-  void offerWanted();  // the first that the exercise lacks, as the next one's name
+  void suitVoxels(const Vec3& spacing_mm);  // what a step does nothing without
+  void offerWanted();                       // the first that the exercise lacks, as the next one's name
 
  signals:
   void toolChosen(trephine::SliceTool tool);
   void brushChanged();
   void lookWanted(int label, trephine::TissueLook look);
+  void colourChosen(int label, const trephine::Vec3& colour);
+  void decided();  // about a preview: the keys go back to the views
   void opacityWanted(int label, double per_mm);
   void openWanted();
   void saveWanted();           // as a label map
@@ -99,6 +103,7 @@ class StructurePanel : public QWidget {
   QAction *surface_, *for_source_;
   QWidget *preview_box_, *box_line_;
   QLabel *preview_, *said_, *empty_, *box_;
+  QStackedLayout* listing_layout_;  // the list, or why there is none
   QWidget* progress_box_;
   QProgressBar* progress_;
   std::vector<std::string> wanted_;

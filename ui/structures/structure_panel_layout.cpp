@@ -5,6 +5,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QMenu>
+#include <QStackedLayout>
 #include <algorithm>
 #include <functional>
 
@@ -54,7 +55,7 @@ void StructurePanel::build() {
   list_ = new QTreeWidget(this);
   list_->setObjectName("structureList");
   list_->setColumnCount(3);
-  list_->setHeaderLabels({tr("Structure"), tr("mL"), tr("3-D")});
+  list_->setHeaderLabels({tr("Structure"), tr("mL"), tr("Look")});
   list_->setRootIsDecorated(false);
   list_->setUniformRowHeights(true);
   list_->setEditTriggers(QAbstractItemView::EditKeyPressed | QAbstractItemView::DoubleClicked);
@@ -65,14 +66,21 @@ void StructurePanel::build() {
   list_->setMinimumHeight(96);
   list_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
   list_->setToolTip(
-      tr("A double click or F2 renames, the right button offers more; V, or a click under 3-D, "
-         "shows, ghosts and hides it in the 3-D view"));
+      tr("A double click or F2 renames, the right button offers more; V, or a click under Look, "
+         "shows, ghosts and hides it"));
   buildListMenu();
   look_ = new StructureLookRow(this);
   no_room_ = words("structureNoRoom", this);
   colours::setText(*no_room_, colours::kCaution);
   empty_ = words("structuresEmpty", this);
   empty_->setProperty("quiet", true);
+  empty_->setAlignment(Qt::AlignTop);
+  auto* listing = new QWidget(this);
+  listing->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
+  listing->setMinimumHeight(96);
+  listing_layout_ = new QStackedLayout(listing);
+  listing_layout_->addWidget(list_);
+  listing_layout_->addWidget(empty_);
 
   said_ = words("structureSaid", this);
   preview_box_ = new QWidget(this);
@@ -154,17 +162,16 @@ void StructurePanel::build() {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(8);
-  layout->addWidget(list_, 3);
-  layout->addWidget(empty_);
+  // What grows takes room from the list alone, so that what lies below stays where it is.
+  layout->addWidget(listing, 1);
   layout->addWidget(look_);
   layout->addWidget(no_room_);
-  layout->addLayout(steps);
   layout->addWidget(notices);
+  layout->addLayout(steps);
   layout->addLayout(called);
   layout->addLayout(buildTools());
   layout->addLayout(buildShaping());
   layout->addLayout(files);
-  layout->addStretch(1);
 
   connect(list_, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
     if (!listing_ && item) editor_.setCurrent(item->data(kNameColumn, Qt::UserRole).toInt());
@@ -181,6 +188,9 @@ void StructurePanel::build() {
           [this](double per_mm) { emit opacityWanted(editor_.current(), per_mm); });
   connect(take_, &QPushButton::clicked, &editor_, &StructureEditor::takePreview);
   connect(leave_, &QPushButton::clicked, &editor_, &StructureEditor::leavePreview);
+  for (QPushButton* decides : {take_, leave_}) {
+    connect(decides, &QPushButton::clicked, this, &StructurePanel::decided);
+  }
   connect(cancel_, &QPushButton::clicked, &editor_, &StructureEditor::cancel);
   connect(undo_, &QToolButton::clicked, &editor_, &StructureEditor::undo);
   connect(redo_, &QToolButton::clicked, &editor_, &StructureEditor::redo);
@@ -305,7 +315,7 @@ QLayout* StructurePanel::buildTools() {
   });
   connect(shape_, &QComboBox::activated, this, &StructurePanel::brushChanged);
   auto* brush_row = new QHBoxLayout;
-  brush_row->addWidget(new QLabel(tr("Brush"), this));
+  brush_row->addWidget(new QLabel(tr("Brush radius"), this));
   brush_row->addLayout(radius_->withReason(), 1);
   brush_row->addWidget(shape_);
   auto* hu_row = new QHBoxLayout;

@@ -1,5 +1,7 @@
 #include "ui/views/four_up.h"
 
+#include <QAbstractButton>
+#include <QApplication>
 #include <QHBoxLayout>
 #include <QMouseEvent>
 #include <QPainter>
@@ -90,6 +92,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   made.box->setAutoFillBackground(true);
   made.view = new SliceView(axis, mirror_, colours_, made.box);
   made.view->setObjectName(name);
+  made.view->installEventFilter(this);
   made.view->setAccessibleName(tr("%1 slices").arg(name));
   made.slider = new QSlider(Qt::Vertical, made.box);
   made.slider->setObjectName(QString(name) + "Slider");
@@ -345,7 +348,19 @@ void FourUp::paintEvent(QPaintEvent*) {
   QPainter(this).fillRect(rect(), colours::kLine);
 }
 
+// A view has the keys once the pointer is over it, unless a hand has them or they are being typed:
+// a click that gave them to a slice would paint in it.
+void FourUp::takeKeys(QWidget* view) {
+  QWidget* has = QApplication::focusWidget();
+  const bool of_views = has && (has == three_d_ || qobject_cast<SliceView*>(has));
+  if (training_ || !(of_views || !has || qobject_cast<QAbstractButton*>(has))) return;
+  view->setFocus(Qt::MouseFocusReason);
+}
+
 bool FourUp::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::Enter && watched->isWidgetType()) {
+    takeKeys(static_cast<QWidget*>(watched));
+  }
   if (watched == three_d_ && event->type() == QEvent::FocusIn) emit helpChanged({});
   if (watched == three_d_ && event->type() == QEvent::MouseButtonDblClick && !training_ &&
       !isForStructures(tool_) && tool_ != SliceTool::entry &&

@@ -89,6 +89,7 @@ class FourUp : public QWidget {
   void resizeEvent(QResizeEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void takeKeys(QWidget* view);
 
  private:
   struct Slices {

@@ -7,13 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/utf8.h"
+
 namespace trephine {
-
-bool isUtf8(std::string_view text);
-
-// `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters a space,
-// and spaces around it go.
-std::string cleanUtf8(std::string_view text);
 
 // For text whose character set cannot be decoded: UTF-8 where it is that, ISO 2022 escapes dropped
 // and what they encoded shown as U+FFFD, anything else read as Latin-1. Never fails.

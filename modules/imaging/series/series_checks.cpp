@@ -30,6 +30,8 @@ const DicomHeader& typicalSlice(const std::vector<DicomHeader>& slices) {
 // Series of which no volume can come whatever their geometry. True where one of these it is.
 bool refusedByKind(const DicomHeader& first, Findings& findings) {
   constexpr const char* kChooseCt = "Choose a CT series";
+  constexpr const char* kOpenAsStructures =
+      "It holds structures: open their CT first, then this file under Structures, Open";
   const std::string& kind = first.sop_class;
   const bool secondary = kind.starts_with("1.2.840.10008.5.1.4.1.1.7");
   if (!first.has_pixels && first.defect == Defect::none) {
@@ -47,7 +49,7 @@ bool refusedByKind(const DicomHeader& first, Findings& findings) {
                     "The series is " +
                         (first.modality.empty() ? "no CT" : shownTerm(first.modality)) +
                         ": its values are not HU",
-                    kChooseCt);
+                    first.modality == "SEG" ? kOpenAsStructures : kChooseCt);
   } else if (isLocalizer(first)) {
     findings.refuse("LOCALIZER", "The series is a localizer (scout), not a stack of slices",
                     kChooseCt);

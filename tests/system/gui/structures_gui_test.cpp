@@ -80,7 +80,9 @@ class StructuresGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     if (const char* data = std::getenv("TREPHINE_TEST_DATA")) {
-      file_ = std::filesystem::path(data) / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz";
+      file_ = toPath(temporary_.filePath("ct.nii.gz"));
+      std::filesystem::copy_file(
+          std::filesystem::path(data) / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz", file_);
       in_liver_mm_ = {-92, -161, 406};
     } else {
       file_ = toPath(temporary_.filePath("abdomen.mha"));
@@ -187,6 +189,21 @@ class StructuresGuiTest : public test::WindowTest {
     keepGrab("structures-mended.png");
   }
 
+  // A click that gave it the keys would paint.
+  void aSliceHasTheKeysOnceThePointerIsOverIt() {
+    QApplication::setActiveWindow(window_.get());
+    QTest::mouseMove(handle(), QPoint(5, 5));
+    find<QToolButton>("structureUndo")->setFocus();
+    QTest::mouseMove(handle(), inWindow(in_liver_mm_));
+    QTRY_VERIFY(axial().hasFocus());
+    // Not from one who types.
+    QTest::mouseMove(handle(), QPoint(5, 5));
+    find<QComboBox>("structureName")->setFocus();
+    QTest::mouseMove(handle(), inWindow(in_liver_mm_));
+    QTest::qWait(50);
+    QVERIFY(!axial().hasFocus());
+  }
+
   // Where the brush was the slice changes at once.
   void aStrokeIsSeenAtOnce() {
     views().setTool(SliceTool::eraser);
@@ -249,6 +266,9 @@ class StructuresGuiTest : public test::WindowTest {
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QTRY_VERIFY2(said().contains("liver") && said().contains("mL"), qPrintable(said()));
+    // Undo is of the cuts no more, and takes no structure instead.
+    QVERIFY(!window_->findChild<QAction*>("undo")->isEnabled());
+    QVERIFY(find<QToolButton>("structureUndo")->isEnabled());
   }
 
   void itIsSavedWithItsName() {
@@ -269,6 +289,22 @@ class StructuresGuiTest : public test::WindowTest {
     QCOMPARE(std::count(back->labels.begin(), back->labels.end(), back->find("liver")->label),
              std::count(of.structures->labels.begin(), of.structures->labels.end(),
                         of.structures->find("liver")->label));
+  }
+
+  void theCtItselfIsNeverSavedOver() {
+    const auto size = std::filesystem::file_size(file_);
+    left()->setCurrentIndex(2);
+    QTest::mouseClick(find<QPushButton>("saveStructures"), Qt::LeftButton);
+    auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
+    QVERIFY(dialog);
+    emit dialog->fileSelected(toQt(file_));
+    dialog->close();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("errorDialog"));
+    auto* refused = window_->findChild<QMessageBox*>("errorDialog");
+    QVERIFY2(refused->text().contains("would be lost"), qPrintable(refused->text()));
+    refused->close();
+    QCOMPARE(std::filesystem::file_size(file_), size);
+    QTRY_VERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
   }
 
   void thePathIsShort() {

@@ -62,6 +62,23 @@ TEST(Landmark, FindsTheBulkOfAnOrganInNoiseAndBesideSmallerLumps) {
   EXPECT_NEAR(frame->position_mm.z, 40, 5.0);
 }
 
+// A scan of a few slices has no room for the ball that is looked for.
+TEST(Landmark, IsInTheBulkOfAnOrganOfAThinScanToo) {
+  Volume v;
+  v.geometry.size = {80, 80, 12};
+  v.geometry.spacing_mm = Vec3(2.0, 2.0, 3.0);
+  v.hu.assign(v.geometry.voxelCount(), kAirHu);
+  for (int k = 0; k < 12; ++k) {
+    for (int j = 20; j < 60; ++j) {
+      for (int i = 20; i < 60; ++i) v.hu[v.geometry.indexOf(i, j, k)] = 800;
+    }
+  }
+  const Landmark organ{"organ", "bone", {}, {}, 30.0, {0, -1, 0}, 15.0};
+  const auto frame = findLandmark(organ, v, boneOnly());
+  ASSERT_TRUE(frame.ok()) << frame.error().sentence();
+  EXPECT_NEAR(frame->position_mm.y, 39.0, 2.0);
+}
+
 TEST(Landmark, FramesAreRightHandedAndKeepTheHeadUp) {
   for (const Vec3& out : {Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(-1, 0.5, 0.3)}) {
     const Mat3 m = glm::mat3_cast(frameAlong(out));

@@ -33,6 +33,12 @@ TEST(Likeness, OfTwoBoxesIsKnown) {
   EXPECT_EQ(same->hd95_mm, 0.0);
 }
 
+// Where a scan ends an organ has a border too, as others count it.
+TEST(Likeness, CountsTheScansFacesAsBorder) {
+  const LabelMap a = boxOf({5, 5, 16}, {25, 15, 20}, 1), b = boxOf({5, 5, 15}, {25, 15, 19}, 1);
+  EXPECT_NEAR(likeness(a, 1, b, 1)->hd95_mm, 3.0, 1e-5);  // one slice apart
+}
+
 TEST(Likeness, OfNothingHasNoDistance) {
   const LabelMap a = boxOf({5, 5, 5}, {15, 15, 15}, 1);
   const auto none = likeness(a, 1, a, 2);

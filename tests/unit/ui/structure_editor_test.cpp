@@ -131,6 +131,63 @@ TEST_F(Editor, AShellOfTheChosenOneIsAStructureOfItsOwn) {
   EXPECT_NEAR(ml("capsule") + ml("liver"), before, 1e-6);
 }
 
+TEST_F(Editor, ALayerThatIsDeletedGoesBackToWhatItWasOf) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.takePreview();
+  const double before = ml("liver");
+  editor_.makeShell(2.0, "capsule");
+  wait();
+  EXPECT_LT(ml("liver"), before - 3.0);
+  EXPECT_TRUE(said_.contains("keeps")) << said_.toStdString();
+  editor_.remove(editor_.map()->find("capsule")->label);
+  EXPECT_NEAR(ml("liver"), before, 1e-6);
+  EXPECT_EQ(ml("capsule"), 0.0);
+  editor_.undo();
+  EXPECT_NEAR(ml("liver") + ml("capsule"), before, 1e-6);
+  EXPECT_GT(ml("capsule"), 3.0);
+}
+
+TEST_F(Editor, ANameAndAColourAreStepsThatAreUndone) {
+  stroke(middle_, middle_);
+  const int label = editor_.current();
+  const Vec3 colour = editor_.map()->find(label)->colour;
+  ASSERT_TRUE(editor_.rename(label, "liver").ok());
+  ASSERT_TRUE(editor_.setColour(label, Vec3(0.0, 1.0, 0.0)));
+  EXPECT_EQ(editor_.undoText(), QString("Colour"));
+  editor_.undo();
+  EXPECT_EQ(editor_.map()->find(label)->colour, colour);
+  editor_.undo();
+  EXPECT_EQ(editor_.map()->find(label)->name, "made");
+  EXPECT_GT(ml("made"), 0.0) << "what was painted is a step of its own";
+  editor_.redo();
+  EXPECT_EQ(editor_.map()->find(label)->name, "liver");
+}
+
+TEST_F(Editor, APreviewCannotBeTakenOnceAnExerciseRuns) {
+  editor_.growAt(middle_, "liver");
+  wait();
+  editor_.setLocked("An exercise runs.");
+  editor_.takePreview();
+  EXPECT_TRUE(editor_.preview());
+  EXPECT_EQ(said_, "An exercise runs.");
+  editor_.setLocked({});
+  editor_.leavePreview();
+  editor_.growAt(middle_, "liver");  // and what is on its way when it begins is dropped
+  editor_.setLocked("An exercise runs.");
+  wait();
+  EXPECT_FALSE(editor_.preview());
+}
+
+TEST_F(Editor, AWallOverWhatCountsAlreadySaysWhatToDo) {
+  stroke(middle_, middle_);
+  Brush brush;
+  brush.radius_mm = 5.0;
+  editor_.beginWall(middle_, brush);
+  editor_.endStroke();
+  EXPECT_TRUE(said_.contains("made")) << said_.toStdString();
+}
+
 TEST_F(Editor, WhileItIsLockedNothingChangesAndItSaysWhy) {
   stroke(middle_, middle_);
   const auto before = editor_.map()->labels;
@@ -256,7 +313,8 @@ TEST_F(Editor, WhatIsDeletedGivesItsNameAwayAndIsChosenNoMore) {
   editor_.remove(second);
   EXPECT_EQ(editor_.current(), first);
   EXPECT_TRUE(editor_.rename(first, toQt(editor_.map()->find(second)->name)).ok());
-  editor_.undo();
+  editor_.undo();  // the name
+  editor_.undo();  // what was deleted
   EXPECT_GT(editor_.millilitres(second), 0.0);
   EXPECT_NE(editor_.map()->find(first)->name, editor_.map()->find(second)->name);
 }
@@ -270,8 +328,8 @@ TEST_F(Editor, WhatWasSaidOfOneStepGoesWithTheNext) {
   stroke(middle_ + Vec3(10, 0, 0), middle_ + Vec3(10, 0, 0));
   EXPECT_EQ(said_, "");
   editor_.makeShell(0.5, "shell");
-  EXPECT_NE(said_.indexOf("one thick at least"), -1);
   wait();
+  EXPECT_NE(said_.indexOf("one voxel thick"), -1) << said_.toStdString();
 }
 
 TEST_F(Editor, WhatRedoBringsBackHasItsNameAlthoughAPreviewOfThatNameWasLeft) {

@@ -198,6 +198,45 @@ TEST(Segmentation, ReadsTheTextOfLabelsOfItkSnap) {
   EXPECT_EQ(map_back->find(9)->name, "label 9") << "which the text leaves out";
 }
 
+// Whatever fails in between, no map is beside the names of another.
+TEST(Segmentation, AMapAndItsNamesAreBothWrittenOrNeither) {
+  const test::TemporaryFolder folder;
+  LabelMap map{obliqueVolume({6, 5, 4}).geometry, {}};
+  map.labels.assign(map.geometry.voxelCount(), 1);
+  map.structures = {{1, "liver", Vec3(1.0)}};
+  const std::string long_name(238, 'n');  // with the sidecar's ending it is too long
+  const auto file = folder / (long_name + ".mha");
+  const auto before = std::string("not a map");
+  writeBytes(file, before);
+  const Status refused = writeSegmentation(map, file);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("too long"), std::string::npos) << refused.error().sentence();
+  std::ifstream now(file, std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(now), {}), before);
+
+  const auto good = folder / "a.nii.gz";
+  ASSERT_TRUE(writeSegmentation(map, good));
+  map.structures[0].name = "spleen";
+  ASSERT_TRUE(writeSegmentation(map, good));
+  EXPECT_TRUE(readLabelMap(good)->find("spleen"));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
+    files += !entry.path().filename().string().starts_with(long_name);
+  }
+  EXPECT_EQ(files, 2u) << "nothing else is left";
+}
+
+TEST(Segmentation, ALeftHandedNrrdHasItsSlicesAsTheCtsFile) {
+  const test::TemporaryFolder folder;
+  LabelMap map{obliqueVolume({4, 3, 2}).geometry, std::vector<std::uint8_t>(24)};
+  map.labels[0] = 5;
+  ASSERT_TRUE(writeSegmentation(map, folder / "a.nrrd", true));
+  const auto header = readVolumeFileHeader(folder / "a.nrrd");
+  ASSERT_TRUE(header);
+  EXPECT_TRUE(header->reversed_slices);
+  EXPECT_EQ(readLabelMap(folder / "a.nrrd")->labels, map.labels);
+}
+
 TEST(Segmentation, ABadSidecarIsNamedWithItsField) {
   const test::TemporaryFolder folder;
   const LabelMap map{obliqueVolume({4, 3, 2}).geometry, std::vector<std::uint8_t>(24, 1)};

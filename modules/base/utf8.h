@@ -1,0 +1,19 @@
+// Text from elsewhere, made safe to show and to write.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace trephine {
+
+bool isUtf8(std::string_view text);
+
+// `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters a space,
+// and spaces around it go.
+std::string cleanUtf8(std::string_view text);
+
+// Its first characters, in at most so many bytes.
+std::string cutUtf8(const std::string& text, std::size_t most_bytes);
+
+}  // namespace trephine
