@@ -20,6 +20,8 @@ constexpr int kMostEstimates = 6;       // of the range, after the first
 constexpr double kSettled_HU = 0.5;     // between two of them
 constexpr double kCoreSpreads = 3.0;    // of the range, to both sides
 constexpr double kLeastHalf_HU = 15.0;  // of the range
+constexpr double kCrumb_ml = 1.0;       // a smaller core may be a crumb of the organ
+constexpr double kFat_HU = -70.0;       // and air: below
 constexpr double kCoreMostHalf_HU = 45.0, kMostHalf_HU = 90.0;
 constexpr double kReach_mm = 6.0;   // beyond the core's ball: two blocks
 constexpr double kBridge_mm = 3.5;  // narrower ones are cut off
@@ -53,7 +55,10 @@ HuSpan around(const Spread& of, double most_half) {
   return {of.middle - half, of.middle + half};
 }
 
-Spread aboutClick(const Blocks& blocks, const WorkGrid& grid, const Index3& at) {
+// What most of the blocks about the click are like, within kLeastHalf_HU: beside an edge or in a
+// vessel a median lies between the organ and its neighbours. What is below `least_HU` does not
+// count.
+double commonAbout(const Blocks& blocks, const WorkGrid& grid, const Index3& at, double least_HU) {
   std::vector<float> values;
   Index3 half;
   for (int axis = 0; axis < 3; ++axis) {
@@ -63,32 +68,45 @@ Spread aboutClick(const Blocks& blocks, const WorkGrid& grid, const Index3& at) 
   for (int k = at[2] - half[2]; k <= at[2] + half[2]; ++k) {
     for (int j = at[1] - half[1]; j <= at[1] + half[1]; ++j) {
       for (int i = at[0] - half[0]; i <= at[0] + half[0]; ++i) {
-        if (grid.holds(i, j, k)) values.push_back(blocks[grid.indexOf(i, j, k)]);
+        if (!grid.holds(i, j, k)) continue;
+        const float value = blocks[grid.indexOf(i, j, k)];
+        if (value >= least_HU) values.push_back(value);
       }
     }
   }
-  return spreadOf(std::move(values));
+  double common = 0.0, most = 0.0;
+  for (const float middle : values) {
+    double like = 0.0;
+    for (const float value : values) {
+      like += std::max(0.0, kLeastHalf_HU - std::abs(double(value) - double(middle)));
+    }
+    if (like > most) {
+      most = like;
+      common = middle;
+    }
+  }
+  return common;
 }
 
-// The piece at the click, or the nearest; 0 where none is near.
+// The piece at the click, or the one that has most about it, what is near counting more: in a
+// narrow range crumbs of an organ may be nearer than the organ. 0 where none is near.
 std::int32_t pieceAt(const std::vector<std::int32_t>& piece, const WorkGrid& grid,
                      const Index3& at) {
-  std::int32_t found = 0;
-  double nearest = kFromSeed_mm * kFromSeed_mm;
+  if (const std::int32_t here = piece[grid.indexOf(at[0], at[1], at[2])]) return here;
+  std::vector<double> share(std::size_t(*std::max_element(piece.begin(), piece.end())) + 1);
   for (int k = 0; k < grid.size[2]; ++k) {
     for (int j = 0; j < grid.size[1]; ++j) {
       for (int i = 0; i < grid.size[0]; ++i) {
         const std::int32_t here = piece[grid.indexOf(i, j, k)];
         if (here == 0) continue;
-        const Vec3 away = Vec3(i - at[0], j - at[1], k - at[2]) * grid.block_mm;
-        const double square = glm::dot(away, away);
-        if (square > nearest) continue;
-        nearest = square;
-        found = here;
+        const double away_mm = glm::length(Vec3(i - at[0], j - at[1], k - at[2]) * grid.block_mm);
+        const double near = std::max(0.0, 1.0 - away_mm / kFromSeed_mm);
+        share[std::size_t(here)] += near * near;
       }
     }
   }
-  return found;
+  // The first, of what is out, has none.
+  return std::int32_t(std::max_element(share.begin(), share.end()) - share.begin());
 }
 
 BlockMask only(const std::vector<std::int32_t>& piece, std::int32_t which) {
@@ -221,6 +239,31 @@ double offFrom(const LabelMap& mask, const Vec3& seed_mm, const Index3& voxel) {
   return least <= kMostOff_mm ? least : std::numeric_limits<double>::infinity();
 }
 
+// Whether a place lies apart from what was found and not in the midst of it, as a vessel does: less
+// than half of the ways from there lead to it.
+bool isBeside(const BlockMask& found, const WorkGrid& grid, const Index3& at) {
+  int ways = 0, leading = 0;
+  for (int k = -1; k <= 1; ++k) {
+    for (int j = -1; j <= 1; ++j) {
+      for (int i = -1; i <= 1; ++i) {
+        if (i == 0 && j == 0 && k == 0) continue;
+        ++ways;
+        const double step_mm = glm::length(Vec3(i, j, k) * grid.block_mm);
+        for (int n = 0; n * step_mm <= kMostOff_mm; ++n) {
+          const Index3 to{at[0] + n * i, at[1] + n * j, at[2] + n * k};
+          if (!grid.holds(to[0], to[1], to[2])) break;
+          if (!found[grid.indexOf(to[0], to[1], to[2])]) continue;
+          // Beside it by no more than a block is its rim.
+          if (n <= 1) return false;
+          ++leading;
+          break;
+        }
+      }
+    }
+  }
+  return 2 * leading < ways;
+}
+
 // Steps 1 to 3, in blocks; what they found of the range and what they did goes to `growth`.
 Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const Index3& voxel,
                              const GrowOptions& options, const Progress& progress, Growth& growth) {
@@ -243,24 +286,45 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   const BlockMask taken = blocksOf(options.others.get(), grid);
   const Index3 at = grid.blockOf(voxel);
   BlockMask core, ranged;
-  HuSpan hu = options.hu ? *options.hu : around(aboutClick(smooth, grid, at), kCoreMostHalf_HU);
-  for (int estimate = 0;; ++estimate) {
-    if (!on(0.1 + 0.08 * estimate, "core")) return cancelled;
-    ranged = within(smooth, hu.low, hu.high);
+  // What has room for the ball within a range.
+  const auto coresWithin = [&](const HuSpan& span) {
+    ranged = within(smooth, span.low, span.high);
     keepInside(ranged, grid, options.box);
     keepFree(ranged, taken);
-    const std::vector<std::int32_t> piece = pieces(eroded(ranged, grid, options.open_mm), grid);
-    // After the first, what goes on from the last one: at the click it may be a little too dark or
-    // too bright for the whole.
-    std::int32_t here = estimate == 0 ? 0 : pieceSharing(core, piece);
-    if (here == 0) here = pieceAt(piece, grid, at);
-    if (here == 0) return nothingGrown(hu, options.open_mm);
-    core = only(piece, here);
-    if (options.hu || estimate == kMostEstimates) break;
+    return pieces(eroded(ranged, grid, options.open_mm), grid);
+  };
+  // An organ is meant where the click itself is not in fat or air, however much of them lies about.
+  const double seed_HU = smooth[grid.indexOf(at[0], at[1], at[2])];
+  const double least_HU = seed_HU < kFat_HU ? -std::numeric_limits<double>::infinity() : kFat_HU;
+  const double common = options.hu ? 0.0 : commonAbout(smooth, grid, at, least_HU);
+  // The first range is the narrowest that finds more than crumbs: from one that is too narrow the
+  // estimates widen, while one that holds the neighbours too may settle on all of them.
+  HuSpan hu;
+  for (double half = kLeastHalf_HU; half <= kCoreMostHalf_HU; half += kLeastHalf_HU) {
+    if (!on(0.1, "core")) return cancelled;
+    hu = options.hu ? *options.hu : HuSpan{std::max(common - half, least_HU), common + half};
+    const std::vector<std::int32_t> piece = coresWithin(hu);
+    const std::int32_t here = pieceAt(piece, grid, at);
+    if (here != 0) core = only(piece, here);
+    const double ml = double(std::ranges::count(core, 1)) * grid.block_mm.x * grid.block_mm.y *
+                      grid.block_mm.z / 1000.0;
+    const bool holds_click = here != 0 && core[grid.indexOf(at[0], at[1], at[2])];
+    if (options.hu || holds_click || ml >= kCrumb_ml) break;
+  }
+  if (core.empty()) return nothingGrown(hu, options.open_mm);
+  for (int estimate = 1; !options.hu && estimate <= kMostEstimates; ++estimate) {
     const HuSpan next = around(spreadOf(smooth, core), kCoreMostHalf_HU);
     const double moved = std::max(std::abs(next.low - hu.low), std::abs(next.high - hu.high));
     if (moved < kSettled_HU) break;
     hu = next;
+    if (!on(0.1 + 0.08 * estimate, "core")) return cancelled;
+    const std::vector<std::int32_t> piece = coresWithin(hu);
+    // What goes on from the last one: at the click it may be a little too dark or too bright for
+    // the whole.
+    std::int32_t here = pieceSharing(core, piece);
+    if (here == 0) here = pieceAt(piece, grid, at);
+    if (here == 0) return nothingGrown(hu, options.open_mm);
+    core = only(piece, here);
   }
   growth.steps.push_back(said("core within %.0f to %.0f HU", hu.low, hu.high) +
                          said(", opened by %.1f mm", options.open_mm));
@@ -294,6 +358,14 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   fillHoles(found, grid);
   keepFree(found, taken);
   growth.steps.push_back(said("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
+  if (!options.hu && isBeside(found, grid, at)) {
+    if (seed_HU < growth.hu.low - kLeastHalf_HU || seed_HU > growth.hu.high + kLeastHalf_HU) {
+      return Error{"NOTHING_GROWN",
+                   said("The seed is of %.0f HU, and what has room near it", seed_HU) +
+                       said(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
+                   "seed", "Click farther inside, give the range of HU or open by less"};
+    }
+  }
   return found;
 }
 

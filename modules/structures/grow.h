@@ -1,9 +1,10 @@
 // A structure grown from a click: what hangs together with it at about its HU, without what only
 // narrow bridges lead to. By HU and shape alone.
 //
-// 1. The range of HU: median and spread (1.4826 MAD) of a cube about the click, so that a vessel
-//    under the click does not matter; taken anew from what was found, until it settles, so that
-//    where one clicks does not matter either.
+// 1. The range of HU: what most of a cube about the click is like, so that a vessel under the
+//    click or an edge beside it does not matter, as narrow as finds more than crumbs; median and
+//    spread (1.4826 MAD) of what was found, until they settle, so that where one clicks does not
+//    matter either.
 // 2. The core: blocks of about 3 mm (work_grid.h), smoothed by the noise, that lie in the range and
 //    have room for a ball of `open_mm` around them; the piece at the click. This is what stops
 //    leaks.
@@ -50,8 +51,9 @@ constexpr double kMostOff_mm = 20.0;
 
 // `seed_mm` in the patient's LPS frame. Two threads inside; takes one and a half bytes a voxel
 // beside the volume. Errors: BAD_SEED (outside of the scan or of the box), BAD_ARGUMENT,
-// OTHER_GRID (of the others), NOTHING_GROWN (no room for the ball near the seed, or what has it
-// does not come within kMostOff_mm of the seed: it is another organ), CANCELLED, OUT_OF_MEMORY.
+// OTHER_GRID (of the others), NOTHING_GROWN (no room for the ball near the seed, or what has it is
+// another organ: it does not come within kMostOff_mm of the seed, or lies beside it and is of
+// another HU), CANCELLED, OUT_OF_MEMORY.
 Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions& options = {},
                     const Progress& progress = Progress());
 

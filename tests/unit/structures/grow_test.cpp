@@ -49,6 +49,46 @@ TEST_F(GrowInAbdomen, StillFindsLiverWhereTheClickMetAVessel) {
   EXPECT_GE(diceOf(grow(with.volume, click)), 0.97);
 }
 
+// Half of what lies about such a click is fat, or two other organs.
+TEST_F(GrowInAbdomen, FindsTheLiverOrNothingFromAClickInItsCapsule) {
+  std::vector<Vec3> seeds = of().some(of().in_capsule_mm, 12, 1);
+  seeds.push_back({-34.30, -52.50, -8.25});
+  for (const Vec3& seed : seeds) {
+    const auto growth = grow(of().volume, seed);
+    if (growth) {
+      EXPECT_GE(diceOf(growth), 0.97) << seed.x << "," << seed.y << "," << seed.z;
+    } else {
+      EXPECT_EQ(growth.error().code, "NOTHING_GROWN");
+    }
+  }
+}
+
+TEST_F(GrowInAbdomen, FindsTheLiverFromAClickNearItsEdgeOrInItsVessels) {
+  for (const Vec3& seed : of().clicks(4, 5.0, 15.0)) {
+    EXPECT_GE(diceOf(grow(of().volume, seed)), 0.97);
+  }
+  for (const Vec3& seed : of().vesselClicks(4)) {
+    EXPECT_GE(diceOf(grow(of().volume, seed)), 0.97);
+  }
+}
+
+// Half of it an organ; 4 mm beside it a thin rod of another HU that has no room for the ball.
+TEST(Grow, GivesNothingWhereOnlyAnotherThingBesideTheClickHasRoom) {
+  Volume volume;
+  volume.geometry.size = {90, 70, 70};
+  volume.geometry.spacing_mm = Vec3(1.0);
+  volume.hu.assign(volume.geometry.voxelCount(), -100);
+  for (std::size_t n = 0; n < volume.hu.size(); ++n) {
+    const Index3 at = volume.geometry.indicesOf(n);
+    if (at[0] < 47) volume.hu[n] = 50;
+    if (std::hypot(at[0] - 54.0, at[1] - 35.0) < 3.0) volume.hu[n] = 600;
+  }
+  const auto growth = grow(volume, volume.geometry.toPatient_mm({54.0, 35.0, 35.0}));
+  ASSERT_FALSE(growth);
+  EXPECT_EQ(growth.error().code, "NOTHING_GROWN");
+  EXPECT_NE(growth.error().sentence().find("another thing"), std::string::npos);
+}
+
 TEST_F(GrowInAbdomen, NoiseContrastAndSlicesDoNotLoseIt) {
   test::LiverCase other = of();
   other.addNoise(25.0);
@@ -245,6 +285,20 @@ TEST(GrowInRealAbdomen, FindsTheLiverInTheSlicesInWhichItIsKnown) {
     EXPECT_GE(like.dice, 0.92);
     EXPECT_LE(like.hd95_mm, 9.5);
     EXPECT_TRUE(growth->leaked) << "the scan ends in the liver's dome";
+  }
+}
+
+TEST(GrowInRealAbdomen, FindsTheLiverFromItsPortalVeinAndFromNearItsEdge) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  const test::LiverCase of = test::realLiver(data);
+  std::vector<Vec3> seeds = of.vesselClicks(6);
+  seeds.push_back({-47.04, -179.32, 397.30});
+  for (const Vec3& seed : of.clicks(6, 5.0, 15.0)) seeds.push_back(seed);
+  seeds.push_back({-68.04, -185.32, 376.30});
+  for (const Vec3& seed : seeds) {
+    const auto growth = grow(of.volume, seed);
+    ASSERT_TRUE(growth) << growth.error().sentence();
+    EXPECT_GE(of.against(growth->mask).dice, 0.92) << seed.x << "," << seed.y << "," << seed.z;
   }
 }
 
