@@ -189,9 +189,8 @@ int growCommand(const GrowArguments& arguments, bool json, const Progress& progr
                         {"steps", growth->steps}});
     return 0;
   }
-  std::printf("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n",
-              name.c_str(), growth->ml, growth->voxels, growth->hu.low, growth->hu.high,
-              seconds);
+  std::printf("%s: %.1f mL, %zu voxels of about %.0f to %.0f HU, in %.2f s\n", name.c_str(),
+              growth->ml, growth->voxels, growth->hu.low, growth->hu.high, seconds);
   if (growth->leaked) {
     std::printf(
         "It reaches the border of the scan or fills much of it: look whether it is %s alone. "

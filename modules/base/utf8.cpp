@@ -9,12 +9,6 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\0')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.remove_suffix(1);
-  return text;
-}
-
 // Length of the UTF-8 sequence at the front of `text`; 0 where it is not valid.
 std::size_t sequenceLength(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -64,7 +58,8 @@ std::string cleanUtf8(std::string_view text) {
     }
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
-  return std::string(trimmed(clean));
+  const std::size_t begin = clean.find_first_not_of(' '), end = clean.find_last_not_of(' ');
+  return begin == clean.npos ? "" : clean.substr(begin, end + 1 - begin);
 }
 
 std::string cutUtf8(const std::string& text, std::size_t most_bytes) {

@@ -108,6 +108,7 @@ Result<std::vector<PlacedLandmark>> landmarksIn(const Scene& scene, Case& of,
   if (placed) return placed;
   const std::string& code = placed.error().code;
   if (code != "NO_SURFACE" && code != "TISSUE_NOT_FOUND") return placed;
+  if (std::ranges::min(of.volume->geometry.size) < 2) return placed;  // one slice is no body
   auto surface = onBody(scene, *of.volume, progress);
   if (!surface) return surface.error().code == "CANCELLED" ? surface : placed;
   of.warnings.push_back({"NO_LANDMARK", "The place where the exercise begins is not in the case (" +

@@ -52,8 +52,8 @@ Case caseOf(std::shared_ptr<const Volume> volume, std::string sha256 = "");
 Result<Case> readCase(const std::string& source, const Progress& progress = Progress());
 
 // That writing `target`, a file or a folder, takes nothing of what the case was read from: it is
-// none of a volume's files (voxels beside a header, names beside voxels), and neither a file that is
-// in a folder of DICOM nor that folder itself. Error: CANNOT_WRITE. Reads a header at most.
+// none of a volume's files (voxels beside a header, names beside voxels), and neither a file that
+// is in a folder of DICOM nor that folder itself. Error: CANNOT_WRITE. Reads a header at most.
 Status keepsCase(const std::filesystem::path& target, const std::string& source);
 
 // The structures of a file, instead of what it had; "" for none. What a person would be asked is

@@ -15,8 +15,8 @@ struct Likeness {
   double ml_a = 0.0, ml_b = 0.0;
 };
 
-// Of the voxels with the label `of_a` in `a` and `of_b` in `b`, by their places in the patient: axes
-// may come in another order or run the other way. Errors: OTHER_GRID where the voxels differ.
+// Of the voxels with the label `of_a` in `a` and `of_b` in `b`, by their places in the patient:
+// axes may come in another order or run the other way. Errors: OTHER_GRID where the voxels differ.
 Result<Likeness> likeness(const LabelMap& a, std::uint8_t of_a, const LabelMap& b,
                           std::uint8_t of_b);
 

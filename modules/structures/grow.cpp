@@ -212,9 +212,10 @@ std::string said(const char* text, double a, double b = 0.0) {
 
 Error nothingGrown(const HuSpan& hu, double open_mm) {
   return {"NOTHING_GROWN",
-          said("Within 20 mm of the seed nothing of %.0f to %.0f HU", hu.low, hu.high) +
+          said("There is no organ at this place: within 20 mm nothing of %.0f to %.0f HU", hu.low,
+               hu.high) +
               said(" is as wide as %.0f mm", 2.0 * open_mm),
-          "seed", "Click farther inside, widen the HU range or open by less"};
+          "seed", "Choose a place well inside, a wider range of HU or a smaller ball"};
 }
 
 // From the seed to the nearest voxel of the mask; infinity beyond kMostOff_mm.
@@ -359,11 +360,12 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   keepFree(found, taken);
   growth.steps.push_back(said("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
   if (!options.hu && isBeside(found, grid, at)) {
-    if (seed_HU < growth.hu.low - kLeastHalf_HU || seed_HU > growth.hu.high + kLeastHalf_HU) {
+    const double far_HU = 2.0 * kLeastHalf_HU;  // beyond noise, and what a blurred edge makes
+    if (seed_HU < growth.hu.low - far_HU || seed_HU > growth.hu.high + far_HU) {
       return Error{"NOTHING_GROWN",
                    said("The seed is of %.0f HU, and what has room near it", seed_HU) +
                        said(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
-                   "seed", "Click farther inside, give the range of HU or open by less"};
+                   "seed", "Choose a place well inside, another range of HU or a smaller ball"};
     }
   }
   return found;
@@ -425,7 +427,7 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
                  "The place is of no organ as wide as " +
                      said("%.0f mm: what was found lies more than %.0f mm beside it",
                           2.0 * options.open_mm, kMostOff_mm),
-                 "seed", "Click farther inside, give the range of HU or open by less"};
+                 "seed", "Choose a place well inside, another range of HU or a smaller ball"};
   }
   if (growth.seed_off_mm > 0.0) {
     growth.steps.push_back(said("the seed itself lies %.1f mm beside it", growth.seed_off_mm));

@@ -1,15 +1,13 @@
 // Growing a liver from a click: how like the known one it is, from where, and what it takes.
 //   bench_grow [CLICKS]    (the real abdomen where TREPHINE_TEST_DATA says)
 // Exit code 1 where one was below 0.75 without a warning.
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
-#include "base/memory.h"
+#include "allocation_probe.h"
 #include "liver_case.h"
 #include "structures/grow.h"
 
@@ -91,22 +89,16 @@ int main(int argc, char** argv) {
   test::LiverCase large{makePhantomOn(*phantomTruth("abdomen"), g, kPhantomNoiseHu),
                         *fitTo(built_in.liver, g), 0, 300};
   const Vec3 click = built_in.clicks(1).front();
-  // What was freed before is given back, and the peak so far forgotten (proc(5), clear_refs).
-  ::malloc_trim(0);
-  if (std::FILE* refs = std::fopen("/proc/self/clear_refs", "w")) {
-    std::fputs("5", refs);
-    std::fclose(refs);
-  }
-  const double before_mb = residentMb();
   for (int turn = 0; turn < 3; ++turn) {
+    const long long before = test::allocated_bytes;
+    test::forgetMostAllocated();
     const auto start = std::chrono::steady_clock::now();
     const auto growth = grow(large.volume, click);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double more_mb = peakResidentMb() - before_mb;  // of the first turn alone
-    std::printf("512x512x300: %.2f s", seconds);
-    if (turn == 0) std::printf(", %.0f MB more at its peak (a byte a voxel: 75 MB)", more_mb);
-    std::printf("; Dice %.3f\n", growth ? large.against(growth->mask).dice : 0.0);
+    const double more_mb = double(test::most_allocated_bytes - before) / (1 << 20);
+    std::printf("512x512x300: %.2f s, %.0f MB at its peak (a byte a voxel: 75 MB); Dice %.3f\n",
+                seconds, more_mb, growth ? large.against(growth->mask).dice : 0.0);
   }
   return wrong > 0 ? 1 : 0;
 }

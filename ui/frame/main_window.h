@@ -167,7 +167,7 @@ class MainWindow : public QMainWindow {
   bool entry_asked_ = false;         // and the case is being placed with it
   StructureLooks structure_looks_;   // of the view alone
   std::optional<SeenTissues> seen_;  // what the 3-D view was told last
-  QString exercise_said_;  // the last one that was open
+  QString exercise_said_;            // the last one that was open
   std::filesystem::path case_source_;  // that the imported case was read from
   bool warned_ = false;  // of this case in this exercise, and it was gone on
   std::filesystem::path recordings_;

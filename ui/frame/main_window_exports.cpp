@@ -44,10 +44,13 @@ bool MainWindow::sourceAtHand() const {
 }
 
 void MainWindow::askToSaveDicom(bool for_source) {
-  QFileDialog* dialog = fileDialog("dicomDialog", tr("Choose an empty folder for the DICOM files"));
-  dialog->setFileMode(QFileDialog::Directory);
+  // A name that is not there yet is a folder that will be made.
+  QFileDialog* dialog = fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
+  dialog->setAcceptMode(QFileDialog::AcceptSave);
+  dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setOption(QFileDialog::ShowDirsOnly);
-  dialog->setLabelText(QFileDialog::Accept, tr("&Save here"));
+  dialog->selectFile(QStringLiteral("structures-dicom"));
+  dialog->setLabelText(QFileDialog::FileName, tr("New folder:"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, for_source, volume = workstation_.currentCase()->volume](const QString& folder) {
             const std::optional<Case>& of = workstation_.currentCase();

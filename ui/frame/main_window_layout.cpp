@@ -68,8 +68,8 @@ void MainWindow::buildActions() {
                      tr("Put the last stroke's tissue back"));
   redo_ = makeAction(Symbol::redo, "redo", tr("Redo"),
                      QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), tr("Cut the stroke again"));
-  redo_->setShortcuts({QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z),
-                       QKeySequence(Qt::CTRL | Qt::Key_Y)});
+  redo_->setShortcuts(
+      {QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
   reset_ = makeAction(Symbol::reset, "reset", tr("Reset"), QKeySequence(Qt::CTRL | Qt::Key_R),
                       tr("Put all tissue back"));
   picture_ = makeAction(Symbol::picture, "savePicture", tr("Save picture\u2026"),

@@ -52,8 +52,9 @@ void MainWindow::connectStructures() {
   connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
   connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
-  connect(views_, &FourUp::nothingThere, this,
-          [this] { structures_->say(tr("Nothing solid is seen there: ghosts are passed through.")); });
+  connect(views_, &FourUp::nothingThere, this, [this] {
+    structures_->say(tr("Nothing solid is seen there: ghosts are passed through."));
+  });
   connect(structures_, &StructurePanel::lookWanted, this, &MainWindow::structureLookWanted);
   connect(structures_, &StructurePanel::opacityWanted, this, [this](int label, double per_mm) {
     structure_looks_[label].opacity = per_mm;
@@ -281,8 +282,8 @@ void MainWindow::structureKey(int key) {
   }
 }
 
-// Without an exercise they are the structures', while those are in front. Cuts that an exercise left
-// in the view are no step of theirs: there the panel's own buttons serve.
+// Without an exercise they are the structures', while those are in front. Cuts that an exercise
+// left in the view are no step of theirs: there the panel's own buttons serve.
 void MainWindow::showUndo() {
   if (workstation_.phase() == Workstation::Phase::running) return;
   const bool serve = structuresShown() && !unsaved_cuts_;
@@ -290,10 +291,9 @@ void MainWindow::showUndo() {
   const auto redo = serve ? editor_.redoText() : std::nullopt;
   undo_->setEnabled(undo.has_value());
   redo_->setEnabled(redo.has_value());
-  undo_->setToolTip(undo      ? tr("Undo: %1").arg(*undo)
-                    : unsaved_cuts_
-                        ? tr("The exercise has ended: its cuts stay until Reset")
-                        : tr("Nothing to undo"));
+  undo_->setToolTip(undo            ? tr("Undo: %1").arg(*undo)
+                    : unsaved_cuts_ ? tr("The exercise has ended: its cuts stay until Reset")
+                                    : tr("Nothing to undo"));
   redo_->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
 }
 

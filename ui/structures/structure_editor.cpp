@@ -435,7 +435,8 @@ void StructureEditor::limitTo(const Vec3& from_mm, const Vec3& to_mm, int across
     box.low[a] = int(std::clamp(std::ceil(std::min(from[axis], to[axis])), 0.0, last));
     box.high[a] = int(std::clamp(std::floor(std::max(from[axis], to[axis])) + 1.0, 0.0, last));
     if (box.low[a] >= box.high[a]) {
-      return emit said(tr("That box holds nothing of the scan: draw it wider, inside of the scan."));
+      return emit said(
+          tr("That box holds nothing of the scan: draw it wider, inside of the scan."));
     }
   }
   const auto clicked = preview_ ? voxelAt(g, preview_->seed_mm) : std::nullopt;
@@ -495,8 +496,8 @@ QString StructureEditor::wordsIfThin(double thickness_mm) const {
   const Vec3& mm = volume_->geometry.spacing_mm;
   const double voxel_mm = std::max({mm.x, mm.y, mm.z});
   if (thickness_mm >= voxel_mm) return {};
-  return ' ' + tr("It is one voxel thick, which is up to %1 mm on this CT.")
-                   .arg(voxel_mm, 0, 'f', 1);
+  return ' ' +
+         tr("It is one voxel thick, which is up to %1 mm on this CT.").arg(voxel_mm, 0, 'f', 1);
 }
 
 void StructureEditor::makeSkin(double thickness_mm) {

@@ -47,7 +47,7 @@ class StructurePanel : public QWidget {
   // What was said last; nothing: what the tool in hand does.
   void say(const QString& words);
   void suitVoxels(const Vec3& spacing_mm);  // what a step does nothing without
-  void offerWanted();                       // the first that the exercise lacks, as the next one's name
+  void offerWanted();  // the first that the exercise lacks, as the next one's name
 
  signals:
   void toolChosen(trephine::SliceTool tool);

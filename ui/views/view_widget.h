@@ -146,7 +146,7 @@ class ViewWidget : public QOpenGLWidget {
   std::vector<ToolView> tools_;  // of the exercise
   SliceTool tool_ = SliceTool::window;
   double brush_mm_ = 5.0;
-  int ring_ = 0;  // pixels of the radius that the pointer shows
+  int ring_ = 0;                                   // pixels of the radius that the pointer shows
   std::optional<Vec3> stroke_at_mm_;               // while a stroke goes on
   std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when it began
   bool training_ = false;

@@ -27,7 +27,7 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
     return Error{warning.code, warning.text, "scene '" + name + "'",
                  "Choose a case of the scene's anatomy"};
   }
-  return PlacedScene{withFixedMaps(*scene, of->landmarks), of->volume,
+  return PlacedScene{withFixedMaps(*scene, of->landmarks), of->volume, of->labels,
                      armFrames(*scene, of->landmarks)};
 }
 
@@ -54,14 +54,19 @@ RigArm rigArmOf(const ArmDynamics& dynamics, const Impedance& hand) {
 }
 
 std::optional<double> depthOf(const Volume& volume, const TissueTable& tissues, int tissue_class,
-                              const Vec3& from_mm, const Vec3& along, double reach_mm) {
+                              const Vec3& from_mm, const Vec3& along, double reach_mm,
+                              const LabelMap* labels) {
   constexpr double kStep_mm = 0.1, kRun_mm = 1.0;
   const Mat4 to_voxel = volume.geometry.patientToVoxel();
   double run_mm = 0.0, solid_mm = 0.0;
   for (double way_mm = 0.0; way_mm < reach_mm; way_mm += kStep_mm) {
     const Vec3 v = glm::round(Vec3(to_voxel * glm::dvec4(from_mm + way_mm * along, 1.0)));
     const int i = int(v.x), j = int(v.y), k = int(v.z);
-    const int c = volume.geometry.contains(i, j, k) ? classify(tissues, volume.at(i, j, k)) : -1;
+    int c = -1;
+    if (volume.geometry.contains(i, j, k)) {
+      const std::uint8_t label = labels ? labels->labels[volume.geometry.indexOf(i, j, k)] : 0;
+      c = classify(tissues, volume.at(i, j, k), label);
+    }
     run_mm = c == tissue_class ? run_mm + kStep_mm : 0.0;
     if (run_mm >= kRun_mm) return way_mm - run_mm + kStep_mm;
     const bool solid = c >= 0 && tissues.classes[std::size_t(c)].solid;

@@ -19,6 +19,7 @@ std::vector<std::string> shippedScenes();
 struct PlacedScene {
   Scene scene;  // maps fixed, dynamics of the devices that it names
   std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const LabelMap> labels;  // null: none
   std::vector<LandmarkFrame> frames;  // by arm: its landmark
 };
 // `case_source`: empty for the scene's own. Errors: those of the scene's files, case and devices.
@@ -35,6 +36,7 @@ RigArm rigArmOf(const ArmDynamics& dynamics, const Impedance& hand);
 // How far along a ray a tissue first runs for a millimetre, before any solid one but itself;
 // nothing where it does not within `reach_mm`.
 std::optional<double> depthOf(const Volume& volume, const TissueTable& tissues, int tissue_class,
-                              const Vec3& from_mm, const Vec3& along, double reach_mm);
+                              const Vec3& from_mm, const Vec3& along, double reach_mm,
+                              const LabelMap* labels = nullptr);
 
 }  // namespace trephine

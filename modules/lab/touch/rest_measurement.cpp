@@ -69,7 +69,8 @@ bool isGrave(HoldKind kind, const HoldResult& r, double encoder_m) {
 
 std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              std::vector<RigArm> arms, const std::vector<HoldPath>& paths,
-                             HoldKind kind, double seconds, bool ideal) {
+                             HoldKind kind, double seconds, bool ideal,
+                             const std::shared_ptr<const LabelMap>& labels) {
   if (ideal) {
     parameters.period_s = kIdealPeriod_s;
     parameters.controller = ControllerKind::off;
@@ -77,7 +78,7 @@ std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
     for (RigArm& arm : arms) arm.encoder_m = 0.0;
   }
   const double T = parameters.period_s;
-  TouchRig rig(parameters, volume, arms);
+  TouchRig rig(parameters, volume, arms, labels);
   double way_m = 0.0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     rig.place(i, paths[i].start_m);
@@ -137,7 +138,8 @@ Result<RestFigures> measureRest(std::optional<double> seconds, const Progress& p
     const HoldKind kind = kKinds[n % 3];
     const double s = kind == HoldKind::rest ? figures.seconds : std::min(kSwing_s, figures.seconds);
     const auto run = [&](bool ideal) {
-      return hold(cell.parameters, *cell.volume, cell.rig, cell.paths, kind, s, ideal);
+      return hold(cell.parameters, *cell.volume, cell.rig, cell.paths, kind, s, ideal,
+                  cell.labels);
     };
     const std::vector<HoldResult> held = run(false);
     for (std::size_t i = 0; i < held.size(); ++i) {

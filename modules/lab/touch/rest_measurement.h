@@ -55,10 +55,11 @@ HoldFaults faultsOf(HoldKind kind, const HoldResult& result, double encoder_m);
 bool isGrave(HoldKind kind, const HoldResult& result, double encoder_m);
 
 // Every arm on its path, judged for so long after it arrived. `ideal`: the continuous law on
-// perfect arms: no controller, no encoder, 5 kHz.
+// perfect arms: no controller, no encoder, 5 kHz. `labels`: for tissues of a structure.
 std::vector<HoldResult> hold(HapticParameters parameters, const Volume& volume,
                              std::vector<RigArm> arms, const std::vector<HoldPath>& paths,
-                             HoldKind kind, double seconds, bool ideal = false);
+                             HoldKind kind, double seconds, bool ideal = false,
+                             const std::shared_ptr<const LabelMap>& labels = nullptr);
 
 struct RestRow {
   std::string scene, arm, tool, place;

@@ -24,6 +24,7 @@ HoldCell cellOf(const std::string& name, const PlacedScene& placed,
   cell.scene = name;
   cell.parameters = withoutMotors(placed.scene);
   cell.volume = volume;
+  cell.labels = placed.labels;
   for (std::size_t i = 0; i < placed.scene.arms.size(); ++i) {
     cell.arms.push_back(placed.scene.arms[i].name);
     cell.tools.push_back(placed.scene.arms[i].tool);
@@ -66,7 +67,7 @@ void addScene(const std::string& name, const PlacedScene& placed, std::vector<Ho
             const LandmarkFrame& frame = placed.frames[arm];
             const auto depth_mm =
                 depthOf(*placed.volume, table, int(t), frame.toPatient_mm(start_mm),
-                        frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm);
+                        frame.rotation * Vec3(0.0, 0.0, -1.0), kReach_mm, placed.labels.get());
             if (!depth_mm) break;
             // The press is the hand's own: at the device, whatever its motion is scaled by.
             cell.paths.push_back(
@@ -104,11 +105,20 @@ std::shared_ptr<const Volume> blockOf(const Tissue& tissue) {
   return std::make_shared<const Volume>(std::move(volume));
 }
 
+// All of it is of the tissue's structure; null: the tissue is of none.
+std::shared_ptr<const LabelMap> labelsOf(const Tissue& tissue, const GridGeometry& geometry) {
+  if (!tissue.label) return nullptr;
+  return std::make_shared<const LabelMap>(LabelMap{
+      geometry,
+      std::vector<std::uint8_t>(geometry.voxelCount(), std::uint8_t(*tissue.label))});
+}
+
 // Each tissue of the scene's set under each of its tools, by each sum of laws and each arm.
 void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
                std::vector<HoldCell>& cells) {
   for (const Tissue& tissue : scene.tissues.tissues) {
     const auto volume = blockOf(tissue);
+    const auto labels = labelsOf(tissue, volume->geometry);
     for (const SceneTool* tool : tools) {
       for (const auto& [sum, laws] : kSums) {
         for (const NamedArm& arm : kArms) {
@@ -118,6 +128,7 @@ void addBlocks(const Scene& scene, const std::vector<const SceneTool*>& tools,
           cell.arms = {arm.name};
           cell.tools = {tool->id};
           cell.volume = volume;
+          cell.labels = labels;
           cell.parameters = withoutMotors(scene);
           cell.parameters.laws = laws;
           cell.parameters.arms = {{withoutMotor(tool->tool), WorkspaceMap{}, 3.3, arm.dynamics}};

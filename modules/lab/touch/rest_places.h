@@ -17,6 +17,7 @@ struct HoldCell {
   std::vector<std::string> arms, tools;
   HapticParameters parameters;
   std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const LabelMap> labels{};  // for tissues of a structure
   std::vector<RigArm> rig;
   std::vector<HoldPath> paths;
 };

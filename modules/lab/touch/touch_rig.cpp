@@ -7,8 +7,8 @@
 namespace trephine {
 
 TouchRig::TouchRig(const HapticParameters& parameters, Volume volume,
-                   const std::vector<RigArm>& arms)
-    : grid_(std::move(volume)),
+                   const std::vector<RigArm>& arms, std::shared_ptr<const LabelMap> labels)
+    : grid_(std::move(volume), std::move(labels)),
       core_(parameters, *grid_.takeWriter()),
       period_s_(parameters.period_s) {
   for (const RigArm& arm : arms) {

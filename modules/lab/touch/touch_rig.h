@@ -20,8 +20,10 @@ struct RigArm {
 
 class TouchRig {
  public:
-  // Of each arm of the core: what it is. `volume` is the rig's own.
-  TouchRig(const HapticParameters& parameters, Volume volume, const std::vector<RigArm>& arms);
+  // Of each arm of the core: what it is. `volume` is the rig's own; `labels`: for tissues of a
+  // structure.
+  TouchRig(const HapticParameters& parameters, Volume volume, const std::vector<RigArm>& arms,
+           std::shared_ptr<const LabelMap> labels = nullptr);
 
   // Puts an arm and its hand there, at rest: before the first tick.
   void place(std::size_t arm, const Vec3& position_m);

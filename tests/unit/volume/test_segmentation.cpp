@@ -119,8 +119,9 @@ TEST(Segmentation, ReadsLayersOfOldSlicerFiles) {
 TEST(Segmentation, ASegmentOfALayerThatIsMissingIsSaid) {
   const test::TemporaryFolder folder;
   SlicerFile slicer;
-  slicer.segments += "Segment3_ID:=Segment_4\nSegment3_LabelValue:=1\nSegment3_Layer:=7\n"
-                     "Segment3_Name:=spleen\n";
+  slicer.segments +=
+      "Segment3_ID:=Segment_4\nSegment3_LabelValue:=1\nSegment3_Layer:=7\n"
+      "Segment3_Name:=spleen\n";
   writeBytes(folder / "a.seg.nrrd", slicer.bytes());
   const auto of = readSegmentation(folder / "a.seg.nrrd");
   ASSERT_TRUE(of) << of.error().sentence();
