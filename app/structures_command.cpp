@@ -32,11 +32,6 @@ std::string padded(const std::string& text, std::size_t width) {
   return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
 }
 
-// A sentence's end, once.
-std::string stopped(const std::string& text) {
-  return text.empty() || text.ends_with('.') ? text : text + ".";
-}
-
 // So many numbers with commas between, and nothing else.
 Result<std::vector<double>> numbersOf(const std::string& text, std::size_t count,
                                       const std::string& option, const std::string& form) {
@@ -303,12 +298,11 @@ void print(const StructureFit& fit) {
       std::printf("  %5.0f HU (%.0f to %.0f)", (*card.hu)[1], (*card.hu)[0], (*card.hu)[2]);
     std::printf("\n");
     for (const Finding& f : card.findings) {
-      std::printf("    %s: %s %s\n", f.code.c_str(), stopped(f.text).c_str(),
-                  stopped(f.action).c_str());
+      std::printf("    %s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
     }
   }
   for (const Finding& f : fit.findings) {
-    std::printf("%s: %s %s\n", f.code.c_str(), stopped(f.text).c_str(), stopped(f.action).c_str());
+    std::printf("%s: %s\n", f.code.c_str(), sentencesOf(f).c_str());
   }
 }
 

@@ -183,9 +183,7 @@ Case withFit(Case of, StructureFit fit) {
   of = withStructures(std::move(of), std::make_shared<const LabelMap>(std::move(fit.map)));
   of.structure_cards = std::move(fit.structures);
   for (const Finding& finding : fit.findings) {
-    std::string text = finding.text + ".";
-    if (!finding.action.empty()) text += " " + finding.action + ".";
-    of.structure_warnings.push_back({finding.code, std::move(text)});
+    of.structure_warnings.push_back({finding.code, sentencesOf(finding)});
   }
   return of;
 }

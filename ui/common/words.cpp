@@ -157,11 +157,7 @@ QString faultWords(std::uint32_t faults) {
 QString findingWords(const SeriesReport& series) {
   QStringList lines;
   for (const Finding& finding : series.findings) {
-    QString line = toQt(finding.text);
-    if (!line.isEmpty() && !line.endsWith('.')) line += '.';
-    if (!finding.action.empty()) line += ' ' + toQt(finding.action);
-    if (!line.endsWith('.')) line += '.';
-    lines << line;
+    lines << toQt(sentencesOf(finding));
   }
   return lines.join('\n');
 }

@@ -79,6 +79,15 @@ Json seriesJson(const SeriesReport& series, Identity identity) {
 
 }  // namespace
 
+std::string sentencesOf(const Finding& finding) {
+  const auto stopped = [](const std::string& text) {
+    return text.ends_with('.') ? text : text + ".";
+  };
+  std::string text = stopped(finding.text);
+  if (!finding.action.empty()) text += " " + stopped(finding.action);
+  return text;
+}
+
 const char* verdictName(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:

@@ -30,6 +30,9 @@ struct Finding {
   std::string action;
 };
 
+// Text and action as sentences, each with one stop, whether or not it came with it.
+std::string sentencesOf(const Finding& finding);
+
 // A question that only a person can answer. `options` are what `--choice CODE=OPTION` takes, the
 // first is what happens where nobody answers ("refuse" or "keep"); `words` say what each does.
 struct Choice {
