@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "ui/common/colours.h"
 #include "ui/common/error_dialog.h"
+#include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/frame/exercise.h"
 #include "ui/frame/main_window.h"
@@ -62,7 +63,9 @@ int run(int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName("trephine");
   QApplication::setApplicationDisplayName("Trephine");
-  colours::applyTheme(application);
+  const colours::Theme theme =
+      read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
+  colours::applyTheme(application, theme, readWithin(settings::kTextScale, 80, 200));
   if (!scene.empty()) {
     ExerciseOptions options{scene, {}, out};
     if (seconds > 0.0) options.seconds = seconds;

@@ -65,9 +65,12 @@ INNER = {
         "views": {"common"},
         "tissue": {"common"},
         "structures": {"common", "views", "tissue"},
-        "training": {"common"},
-        "cases": {"common", "views"},
-        "frame": {"common", "views", "tissue", "structures", "training", "cases"},
+        "work": {"common", "views"},
+        "cases": {"common", "views", "work"},
+        "prepare": {"common", "views", "work", "tissue", "structures"},
+        "train": {"common", "views", "work"},
+        "review": {"common", "work", "views"},
+        "frame": {"common", "views", "work", "cases", "prepare", "train", "review"},
     },
 }
 

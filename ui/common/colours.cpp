@@ -1,11 +1,36 @@
 #include "ui/common/colours.h"
 
+#include <QFont>
 #include <QPalette>
 #include <QStyleFactory>
 
 namespace trephine::colours {
 
-void applyTheme(QApplication& application) {
+namespace {
+
+// As legible on white as the dark theme's are on black: text 12:1, colours that mean something 4:1.
+void makeLight() {
+  kWindow = QColor(0xee, 0xef, 0xf1);
+  kPanel = QColor(0xff, 0xff, 0xff);
+  kRaised = QColor(0xe0, 0xe2, 0xe6);
+  kLine = QColor(0xb9, 0xbe, 0xc6);
+  kText = QColor(0x1c, 0x1e, 0x22);
+  kQuiet = QColor(0x55, 0x5b, 0x66);
+  kAccent = QColor(0x1f, 0x6f, 0xb5);
+  kGood = QColor(0x1f, 0x7d, 0x47);
+  kCaution = QColor(0x8f, 0x5f, 0x00);
+  kBad = QColor(0xb8, 0x32, 0x2a);
+  kLeftArm = QColor(0x0f, 0x72, 0x90);
+  kRightArm = QColor(0xa3, 0x57, 0x05);
+}
+
+}  // namespace
+
+void applyTheme(QApplication& application, Theme theme, int text_percent) {
+  if (theme == Theme::light) makeLight();
+  QFont font = application.font();
+  font.setPointSizeF(font.pointSizeF() * text_percent / 100.0);
+  application.setFont(font);
   application.setStyle(QStyleFactory::create("Fusion"));
   QPalette p;
   p.setColor(QPalette::Window, kWindow);
@@ -62,6 +87,16 @@ void applyTheme(QApplication& application) {
           " stop: 0.58 %6); }"
           "QRadioButton::indicator:focus { border: 1px solid white; }"
           "QRadioButton::indicator:disabled { border-color: %3; }"
+          "QWidget#rail { background: %4; border-right: 1px solid %3; }"
+          "QToolButton[rail=\"true\"] { border: none; border-radius: 6px; padding: 6px 2px; }"
+          "QToolButton[rail=\"true\"]:hover { background: %2; }"
+          "QToolButton[rail=\"true\"]:focus { border: 1px solid %7; }"
+          "QToolButton[rail=\"true\"]:checked { background: %6; color: white; }"
+          "QLabel[heading=\"true\"] { font-size: 18px; font-weight: bold; }"
+          "QPushButton[primary=\"true\"]:enabled { background: %6; color: white;"
+          " border: 1px solid %6; border-radius: 3px; padding: 4px 12px; }"
+          "QPushButton[primary=\"true\"]:enabled:hover { background: %7; }"
+          "QPushButton[primary=\"true\"]:focus { border: 2px solid %1; }"
           "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }"
           // Over a picture of bone and of black alike.
           "QFrame[notice=\"true\"] { background: %4; border: 2px solid %8; border-radius: 8px; }"

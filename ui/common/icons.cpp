@@ -65,6 +65,39 @@ void paintSymbol(QPainter& p, Symbol symbol, const QColor& colour) {
       p.drawPolyline(QPolygonF({{7, 10}, {12, 15}, {17, 10}}));
       p.drawPolyline(QPolygonF({{4, 16}, {4, 20}, {20, 20}, {20, 16}}));
       break;
+    case Symbol::cases:
+      p.drawRoundedRect(QRectF(3, 4, 8, 7), 1, 1);
+      p.drawRoundedRect(QRectF(13, 4, 8, 7), 1, 1);
+      p.drawRoundedRect(QRectF(3, 13, 8, 7), 1, 1);
+      p.drawRoundedRect(QRectF(13, 13, 8, 7), 1, 1);
+      break;
+    case Symbol::prepare:
+      for (const auto& [y, x] : {std::pair{6.0, 15.0}, {12.0, 8.0}, {18.0, 13.0}}) {
+        p.drawLine(QPointF(3, y), QPointF(21, y));
+        p.setBrush(colour);
+        p.drawEllipse(QPointF(x, y), 2.0, 2.0);
+        p.setBrush(Qt::NoBrush);
+      }
+      break;
+    case Symbol::train:
+      p.drawPolyline(QPolygonF({{20, 3}, {10, 13}}));
+      p.drawPolyline(QPolygonF({{20, 3}, {12, 15}, {10, 13}}));
+      p.drawPolyline(QPolygonF({{3, 20}, {9, 18.5}, {15, 20}, {21, 18.5}}));
+      break;
+    case Symbol::review:
+      p.drawPolyline(QPolygonF({{3, 4}, {3, 20}, {21, 20}}));
+      p.drawPolyline(QPolygonF({{6, 16}, {10, 11}, {14, 13}, {20, 6}}));
+      break;
+    case Symbol::settings:
+      p.drawEllipse(QPointF(12, 12), 3.5, 3.5);
+      for (int i = 0; i < 8; ++i) {
+        p.save();
+        p.translate(12, 12);
+        p.rotate(45.0 * i);
+        p.drawLine(QPointF(0, -6.5), QPointF(0, -9.5));
+        p.restore();
+      }
+      break;
     case Symbol::view:
       p.drawPolygon(QPolygonF({{12, 3}, {20, 7.5}, {20, 16.5}, {12, 21}, {4, 16.5}, {4, 7.5}}));
       p.drawPolyline(QPolygonF({{4, 7.5}, {12, 12}, {20, 7.5}}));

@@ -5,7 +5,8 @@
 
 namespace trephine {
 
-enum class Symbol { open, start, stop, pause, undo, redo, reset, back, picture, save, view };
+enum class Symbol { open, start, stop, pause, undo, redo, reset, back, picture, save, view,
+                    cases, prepare, train, review, settings };
 
 QIcon symbolIcon(Symbol symbol);
 

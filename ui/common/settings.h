@@ -1,9 +1,13 @@
-// What the window remembers of itself from one session to the next: how it is laid out, never what
-// it shows. Nothing of a patient, no path, no name.
+// What the workstation remembers from one session to the next, as typed values with key and
+// default: how the window is laid out and how a person likes to work, never what it shows. Nothing
+// of a patient, no path of a source, no name.
 #pragma once
 
+#include <QByteArray>
 #include <QSettings>
 #include <QStandardPaths>
+#include <QString>
+#include <QStringList>
 
 namespace trephine {
 
@@ -12,5 +16,56 @@ inline QSettings windowSettings() {
       QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation) + "/window.ini",
       QSettings::IniFormat);
 }
+
+template <class Value>
+struct Setting {
+  const char* key;
+  Value fallback;
+};
+
+// What is not of the value's type is read as the fallback.
+template <class Value>
+Value read(const Setting<Value>& setting) {
+  const QVariant found = windowSettings().value(setting.key);
+  if (!found.isValid() || !found.canConvert<Value>()) return setting.fallback;
+  return found.value<Value>();
+}
+
+// `value` that lies within, or the fallback.
+template <class Value>
+Value readWithin(const Setting<Value>& setting, Value least, Value most) {
+  const Value value = read(setting);
+  return value >= least && value <= most ? value : setting.fallback;
+}
+
+template <class Value>
+void write(const Setting<Value>& setting, const Value& value) {
+  QSettings settings = windowSettings();
+  if (value == setting.fallback) {
+    settings.remove(setting.key);
+  } else {
+    settings.setValue(setting.key, value);
+  }
+}
+
+namespace settings {
+
+// Chosen by a person, in the dialog of settings.
+inline const Setting<QString> kStorage{"storage", {}};      // folder; empty: the user's own data
+inline const Setting<QString> kLanguage{"language", "en"};  // "en", "zh_TW"
+inline const Setting<QString> kTheme{"theme", "dark"};      // "dark", "light"
+inline const Setting<int> kTextScale{"text_percent", 100};  // 80 to 200
+inline const Setting<QString> kMainHand{"hands/main", "right"};       // that the mouse takes first
+inline const Setting<double> kPushStep_N{"mouse/push_step_N", 0.2};   // a notch of the wheel
+inline const Setting<double> kKeyStep_mm{"keys/step_mm", 1.0};        // an arrow key
+// Of the window itself.
+inline const Setting<QByteArray> kGeometry{"window/geometry", {}};
+inline const Setting<QByteArray> kColumns{"window/columns", {}};
+inline const Setting<QString> kWorkspace{"window/workspace", "cases"};
+inline const Setting<bool> kLeftPanel{"window/left_panel", true};
+inline const Setting<bool> kRightPanel{"window/right_panel", true};
+inline const Setting<QStringList> kRecentCases{"cases/recent", {}};  // ids, the newest first
+
+}  // namespace settings
 
 }  // namespace trephine

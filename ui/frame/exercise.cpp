@@ -74,7 +74,9 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   Heartbeat heartbeat;
   QEventLoop loop;
   MainWindow window(options.out);
-  window.views().setLayout({});  // the 3-D view alone, whatever its user is used to: it is measured
+  // As large as it is in every exercise, whatever its user is used to: it is measured.
+  window.views().setLayout({ViewLayout::Kind::one_large, 0});
+  window.show(Place::train);
   Workstation& workstation = window.workstation();
   enum class Step { opening, starting, running, ending } step = Step::opening;
 
@@ -116,7 +118,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   });
   cancelling.start(kCancelPoll_ms);
   window.show();
-  workstation.openPath(options.scene);
+  window.open(options.scene);
   if (!failure) loop.exec();
   const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};
   if (step != Step::ending && progress.cancelled()) return cancelled;

@@ -20,8 +20,8 @@ constexpr double kLargeShare = 0.68;  // of the width, beside three small ones
 // As they are written in the settings.
 constexpr std::array kKindNames{"single", "four", "oneLarge"};
 constexpr std::array kViewNames{"3d", "axial", "coronal", "sagittal"};
-constexpr const char* kKindKey = "views/layout";
-constexpr const char* kLargeKey = "views/large";
+constexpr const char* kKindKey = "views/%1/layout";
+constexpr const char* kLargeKey = "views/%1/large";
 
 template <std::size_t N>
 std::optional<int> placeOf(const std::array<const char*, N>& names, const QString& name) {
@@ -128,11 +128,22 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   });
   connect(made.slider, &QSlider::valueChanged, made.view, &SliceView::setSlice);
   connect(made.view, &SliceView::focused, this, [this] {
-    emit helpChanged(
-        tr("Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
-           "1\u20135: presets. M: ruler. N: angle. O: colours. G: grow. B: brush. I: entry."));
+    emit helpChanged(sliceHelp());
   });
   return made;
+}
+
+QString FourUp::sliceHelp() {
+  return tr(
+      "Wheel: slices. Drag: window. Shift: point. Middle: shift. Right: zoom. "
+      "1\u20135: presets. M: ruler. N: angle. O: colours. G: grow. B: brush. I: entry.");
+}
+
+QList<QPair<QString, QString>> FourUp::helpOfViews() {
+  return {{tr("In a slice"), sliceHelp()},
+          {tr("In the 3-D view"),
+           tr("Drag: turn. Middle drag: shift. Wheel: zoom. Arrow keys: turn. Home: as at the "
+              "start. V: shown, ghosted, hidden.")}};
 }
 
 QWidget* FourUp::box(int view) const {
@@ -251,20 +262,30 @@ void FourUp::setLayout(const ViewLayout& layout) {
   arrange();
 }
 
+void FourUp::useLayoutOf(const char* workspace, const ViewLayout& fallback) {
+  workspace_ = workspace;
+  fallback_ = fallback;
+  if (std::exchange(layout_used_, true)) restored_ = false;  // the first may have been set already
+  if (painted_) restore();
+}
+
 void FourUp::restore() {
+  painted_ = true;
   if (restored_) return;
   const QSettings settings = windowSettings();
-  const std::optional<int> kind = placeOf(kKindNames, settings.value(kKindKey).toString());
-  const std::optional<int> large = placeOf(kViewNames, settings.value(kLargeKey).toString());
-  if (kind) setLayout({ViewLayout::Kind(*kind), large.value_or(0)});
-  restored_ = true;
+  const auto chosen = [&](const char* key) {
+    return settings.value(QString(key).arg(workspace_)).toString();
+  };
+  const std::optional<int> kind = placeOf(kKindNames, chosen(kKindKey));
+  const std::optional<int> large = placeOf(kViewNames, chosen(kLargeKey));
+  setLayout(kind ? ViewLayout{ViewLayout::Kind(*kind), large.value_or(0)} : fallback_);
 }
 
 void FourUp::choose(const ViewLayout& layout) {
   setLayout(layout);
   QSettings settings = windowSettings();
-  settings.setValue(kKindKey, kKindNames[std::size_t(layout.kind)]);
-  settings.setValue(kLargeKey, kViewNames[std::size_t(layout.large)]);
+  settings.setValue(QString(kKindKey).arg(workspace_), kKindNames[std::size_t(layout.kind)]);
+  settings.setValue(QString(kLargeKey).arg(workspace_), kViewNames[std::size_t(layout.large)]);
   focusLarge();
 }
 

@@ -65,10 +65,15 @@ class FourUp : public QWidget {
   void showLabels(const std::shared_ptr<const LabelMap>& labels);
   void labelsChanged(const VoxelBox& box);
 
-  // Not remembered: that is the user's choice alone. The layout that is, comes once the 3-D view
-  // has painted for the first time, unless another was set by then.
+  // Each workspace has the layout that a person chose in it, `fallback` until then. It comes once
+  // the 3-D view has painted for the first time, unless another was set by then.
+  void useLayoutOf(const char* workspace, const ViewLayout& fallback);
+  // Not remembered: that is the user's choice alone.
   void setLayout(const ViewLayout& layout);
   const ViewLayout& viewLayout() const { return layout_; }
+
+  // What mouse and keys do in the views, for the page of keys: a title and sentences each.
+  static QList<QPair<QString, QString>> helpOfViews();
 
  signals:
   // What mouse and keys do where the focus went; empty in the 3-D view.
@@ -97,6 +102,7 @@ class FourUp : public QWidget {
     SliceView* view;
     QSlider* slider;
   };
+  static QString sliceHelp();
   QAction* makeAction(const char* name, const QString& text, Qt::Key key, const QString& tip);
   Slices makeSlices(SliceAxis axis);
   QWidget* box(int view) const;
@@ -118,7 +124,10 @@ class FourUp : public QWidget {
   QAction *four_, *one_large_, *single_;
   Vec3 point_mm_{0.0};
   ViewLayout layout_, before_{ViewLayout::Kind::four, 0};
-  bool restored_ = false;
+  QString workspace_{"prepare"};
+  ViewLayout fallback_;
+  bool layout_used_ = false;  // of a workspace
+  bool painted_ = false, restored_ = false;
   bool training_ = false;
   SliceTool tool_ = SliceTool::window;
 };

@@ -90,7 +90,7 @@ class EditsGuiTest : public test::WindowTest {
     auto* controller = find<QComboBox>("controller");
     auto* scenes = find<QComboBox>("scenes");
     const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
-    QWidget* tabs = find<QTabWidget>("leftTabs")->tabBar();
+    QWidget* tabs = find<QTabWidget>("prepareTabs")->tabBar();
     for (QWidget* widget :
          {find<QWidget>("huLow"), find<QWidget>("huHigh"), find<QWidget>("damping"),
           find<QWidget>("stiffness"), find<QWidget>("friction"), find<QWidget>("opacity"),
@@ -103,7 +103,7 @@ class EditsGuiTest : public test::WindowTest {
     QVERIFY(sameSet(workstation().scene()->tissues, tissues));
     QCOMPARE(controller->currentIndex(), controller_was);
     QCOMPARE(scenes->currentIndex(), scene_was);
-    QCOMPARE(find<QTabWidget>("leftTabs")->currentIndex(), 1);
+    QCOMPARE(find<QTabWidget>("prepareTabs")->currentIndex(), 0);
     QVERIFY(workstation().sceneFile() == file);
     QVERIFY(workstation().currentCase()->volume == volume);
     QVERIFY(!workstation().isOpening());
@@ -118,7 +118,7 @@ class EditsGuiTest : public test::WindowTest {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    showTissues();
     window_->findChild<TissuePanel*>()->select("bone");
     QCOMPARE(find<QSpinBox>("huLow")->value(), 226);
   }
@@ -213,7 +213,7 @@ class EditsGuiTest : public test::WindowTest {
   }
 
   void editsAreSavedBeforeTheOtherExerciseComes() {
-    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    showTissues();
     window_->findChild<TissuePanel*>()->select("bone");
     enter("huLow", "310");
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
@@ -232,7 +232,7 @@ class EditsGuiTest : public test::WindowTest {
     QApplication::setActiveWindow(window_.get());
     chooseScene("cranium.json");
     QVERIFY(opened.count() == 2 || opened.wait(kLong_ms));
-    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    showTissues();
     window_->findChild<TissuePanel*>()->select("bone");
   }
 

@@ -66,6 +66,15 @@ class WindowTest : public QObject {
     return widget;
   }
 
+  void showTissues() {
+    window_->show(Place::prepare);
+    find<QTabWidget>("prepareTabs")->setCurrentIndex(PrepareWorkspace::kTissueTab);
+  }
+  void showStructures() {
+    window_->show(Place::prepare);
+    find<QTabWidget>("prepareTabs")->setCurrentIndex(PrepareWorkspace::kStructureTab);
+  }
+
   // An empty window with settings of its own, 1280 x 800.
   void openWindow(const char* application) {
     QApplication::setApplicationName(application);
@@ -160,6 +169,7 @@ int runInWindow(int argc, char** argv) {
   QApplication application(argc, argv);
   QApplication::setApplicationName("trephine-test");
   QStandardPaths::setTestModeEnabled(true);
+  QFile::remove(windowSettings().fileName());  // of a test before
   colours::applyTheme(application);
   Test test;
   return QTest::qExec(&test, argc, argv);

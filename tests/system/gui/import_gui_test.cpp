@@ -100,7 +100,7 @@ class ImportGuiTest : public test::WindowTest {
   Q_OBJECT
 
  private:
-  ImportDialog* dialog() { return find<ImportDialog>("importDialog"); }
+  ImportPage* dialog() { return find<ImportPage>("importPage"); }
   SeriesList* list() { return find<SeriesList>("seriesList"); }
   SliceCanvas* canvas() { return find<SliceCanvas>("sliceCanvas"); }
   void open(const QString& path) {

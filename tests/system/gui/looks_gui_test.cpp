@@ -64,7 +64,7 @@ class LooksGuiTest : public test::WindowTest {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
     QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    find<QTabWidget>("leftTabs")->setCurrentIndex(1);
+    showTissues();
     window_->view().lookFromFront();
   }
 

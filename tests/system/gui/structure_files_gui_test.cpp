@@ -164,7 +164,7 @@ class StructureFilesGuiTest : public test::WindowTest {
       QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
     }
     QVERIFY(find<QAction>("saveForSource")->isEnabled());
-    find<QTabWidget>("leftTabs")->setCurrentIndex(2);
+    showStructures();
     QVERIFY(!find<QPushButton>("saveStructures")->isEnabled());
   }
 

@@ -80,7 +80,7 @@ class Structures3dGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
     import->click();
     QTRY_VERIFY_WITH_TIMEOUT(opened.count() == 1, kLong_ms);
-    find<QTabWidget>("leftTabs")->setCurrentIndex(2);
+    showStructures();
     views().setLayout({ViewLayout::Kind::four, 0});
     wholePicture();
   }

@@ -272,7 +272,7 @@ class StructuresGuiTest : public test::WindowTest {
   }
 
   void itIsSavedWithItsName() {
-    left()->setCurrentIndex(2);
+    showStructures();
     press("saveStructures");
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
@@ -293,7 +293,7 @@ class StructuresGuiTest : public test::WindowTest {
 
   void theCtItselfIsNeverSavedOver() {
     const auto size = std::filesystem::file_size(file_);
-    left()->setCurrentIndex(2);
+    showStructures();
     QTest::mouseClick(find<QPushButton>("saveStructures"), Qt::LeftButton);
     auto* dialog = window_->findChild<QFileDialog*>("saveDialog");
     QVERIFY(dialog);
@@ -358,7 +358,6 @@ class StructuresGuiTest : public test::WindowTest {
     QTest::mouseClick(question->findChild<QPushButton*>("goOnAnyway"), Qt::LeftButton);
     QTRY_VERIFY(!window_->findChild<QMessageBox*>("cutsQuestion"));
   }
-  QTabWidget* left() { return find<QTabWidget>("leftTabs"); }
 };
 
 int main(int argc, char** argv) {

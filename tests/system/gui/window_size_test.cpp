@@ -81,24 +81,34 @@ class WindowSizeTest : public test::WindowTest {
  private:
   QString folder() { return temporary_.filePath("ct"); }
 
+  void verifyPage(const QString& name) {
+    const QStringList lost = outOfReach(*window_);
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/size-%1x%2-%3.png")
+                                     .arg(window_->width())
+                                     .arg(window_->height())
+                                     .arg(name)));
+    QVERIFY2(lost.isEmpty(), qPrintable(name + ": " + lost.join(", ")));
+  }
+
   void verifyAllIsThere(const QSize& size) {
     window_->resize(size);
     QTest::qWait(100);
     QCOMPARE(window_->size(), size);  // it is no larger than it was asked to be
-    for (int tab : {0, 1, 2}) {
-      auto* tabs = find<QTabWidget>("leftTabs");
+    for (Place place : {Place::cases, Place::prepare, Place::train, Place::review}) {
+      window_->show(place);
+      QTest::qWait(100);
+      verifyPage(QString::number(int(place)));
+    }
+    window_->show(Place::prepare);
+    auto* tabs = find<QTabWidget>("prepareTabs");
+    for (int tab = 0; tab < tabs->count(); ++tab) {
       tabs->setCurrentIndex(tab);
       QTest::qWait(100);
       // A column is read without being moved to and fro.
       const int beyond =
           qobject_cast<QScrollArea*>(tabs->widget(tab))->horizontalScrollBar()->maximum();
       QVERIFY2(beyond == 0, qPrintable(tabs->tabText(tab) + ' ' + QString::number(beyond)));
-      const QStringList lost = outOfReach(*window_);
-      QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/size-%1x%2-%3.png")
-                                       .arg(size.width())
-                                       .arg(size.height())
-                                       .arg(tab)));
-      QVERIFY2(lost.isEmpty(), qPrintable(lost.join(", ")));
+      verifyPage("1" + tabs->tabText(tab));
     }
     for (const char* name : {"start", "stop", "pause", "undo", "redo", "reset"}) {
       QWidget* button = find<QToolBar>("toolBar")->widgetForAction(find<QAction>(name));
@@ -180,37 +190,17 @@ class WindowSizeTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(window_->workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
 
-  void theImportWindowStandsInTheMiddleOfItsWindow() {
-    // As at the start with a folder's name: a window manager has yet to find the window its place.
-    const QRect screen = window_->screen()->availableGeometry();
-    const QPoint place = screen.bottomRight() - QPoint(window_->width(), window_->height());
-    window_->openOnceShown(toPath(folder()));
-    window_->show();
-    window_->move(place);
-    auto* dialog = find<ImportDialog>("importDialog");
-    QTRY_VERIFY_WITH_TIMEOUT(dialog->isVisible(), kLong_ms);
-    QTRY_COMPARE(window_->pos(), place);
-    QTest::qWait(300);
-    const QPoint off = dialog->geometry().center() - window_->geometry().center();
-    QVERIFY2(off.manhattanLength() <= 4, qPrintable(QString("%1, %2").arg(off.x()).arg(off.y())));
-    QVERIFY(screen.contains(dialog->frameGeometry()));
-  }
-
-  void aSmallScreenShowsEveryControlOfTheImportWindow_data() { sizes(); }
-  void aSmallScreenShowsEveryControlOfTheImportWindow() {
+  void aSmallScreenShowsEveryControlOfTheImportPage_data() { sizes(); }
+  void aSmallScreenShowsEveryControlOfTheImportPage() {
     QFETCH(QSize, size);
     window_->show();
     window_->workstation().openPath(toPath(folder()));
-    auto* dialog = find<ImportDialog>("importDialog");
     QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("import")->isEnabled(), kLong_ms);
-    dialog->resize(size);
+    window_->resize(size);
     QTest::qWait(300);
-    QCOMPARE(dialog->size(), size);
-    const QStringList lost = outOfReach(*dialog);
-    QVERIFY2(lost.isEmpty(), qPrintable(lost.join(", ")));
-    QVERIFY(dialog->grab().save(
-        QString(TREPHINE_ARTEFACTS "/import-%1x%2.png").arg(size.width()).arg(size.height())));
-    dialog->close();
+    QCOMPARE(window_->size(), size);
+    verifyPage("import");
+    find<ImportPage>("importPage")->reject();
   }
 };
 

@@ -1,4 +1,4 @@
-#include "ui/cases/import_task.h"
+#include "ui/work/import_task.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "imaging/dicom/ct_writer.h"
 #include "qt_support.h"
 #include "support.h"
-#include "ui/cases/import_dialog.h"
+#include "ui/cases/import_page.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
 #include "volume/volume_files.h"
@@ -65,6 +65,14 @@ class ImportTaskTest : public ::testing::Test {
   int scanned_ = 0, read_ = 0, stopped_ = 0, last_hu_ = -1;
   std::vector<int> slices_;
   std::optional<Error> error_;
+};
+
+// As the workspace shows it.
+struct ShownPage : ImportPage {
+  explicit ShownPage(ImportTask& task) : ImportPage(task) {
+    connect(this, &ImportPage::opened, this, &QWidget::show);
+    connect(this, &ImportPage::closed, this, &QWidget::hide);
+  }
 };
 
 TEST_F(ImportTaskTest, AScanListsTheSeriesAndARreadGivesTheVoxels) {
@@ -185,7 +193,7 @@ TEST_F(ImportTaskTest, AnotherFolderTakesThePlaceOfTheOneBeingScanned) {
 }
 
 TEST_F(ImportTaskTest, AfterARefusedImportTheDialogKeepsTheSizeThatWasChosen) {
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   task_.scan(path());
   auto* import = dialog.findChild<QPushButton*>("import");
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
@@ -218,7 +226,7 @@ TEST_F(ImportTaskTest, ThePromiseAfterBackIsThatOfTheWholeSeries) {
   large.geometry.size = {256, 256, 40};
   large.hu.assign(large.geometry.voxelCount(), 100);
   write(large, "large");
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   task_.scan(path() / "large");
   auto* import = dialog.findChild<QPushButton*>("import");
   ASSERT_TRUE(waitFor([&] { return import->isEnabled(); }));
@@ -236,9 +244,9 @@ TEST_F(ImportTaskTest, ThePromiseAfterBackIsThatOfTheWholeSeries) {
 }
 
 TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   Case of;
-  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog, [&](const Case& read) { of = read; });
+  QObject::connect(&dialog, &ImportPage::caseRead, &dialog, [&](const Case& read) { of = read; });
   task_.scan(path());
   EXPECT_TRUE(dialog.isVisible()) << "it opens by itself";
   auto* import = dialog.findChild<QPushButton*>("import");
@@ -259,7 +267,7 @@ TEST_F(ImportTaskTest, TheDialogImportsTheBestSeriesAsItStands) {
 }
 
 TEST_F(ImportTaskTest, AClickThatComesLateForCancelIsNoImport) {
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   task_.scan(path());
   auto* cancel = dialog.findChild<QPushButton*>("cancelImport");
   auto* import = dialog.findChild<QPushButton*>("import");
@@ -276,9 +284,9 @@ TEST_F(ImportTaskTest, AClickThatComesLateForCancelIsNoImport) {
 TEST_F(ImportTaskTest, ALabelMapBesideTheCtIsOfferedWithItAndLeftUnlessItIsChosen) {
   write(stack(40, -100), "labelled/ct");
   ASSERT_TRUE(writeVolume(stack(60, 0), path() / "labelled" / "organs_seg.nii.gz"));
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   std::vector<std::filesystem::path> labels;
-  QObject::connect(&dialog, &ImportDialog::caseRead, &dialog,
+  QObject::connect(&dialog, &ImportPage::caseRead, &dialog,
                    [&](const Case&, const std::filesystem::path& file) { labels.push_back(file); });
   auto* import = dialog.findChild<QPushButton*>("import");
   auto* offered = dialog.findChild<QComboBox*>("labelFile");
@@ -303,7 +311,7 @@ TEST_F(ImportTaskTest, ALabelMapBesideTheCtIsOfferedWithItAndLeftUnlessItIsChose
 }
 
 TEST_F(ImportTaskTest, ADialogThatIsClosedStopsItsWork) {
-  ImportDialog dialog(task_);
+  ShownPage dialog(task_);
   task_.scan(path());
   dialog.reject();
   ASSERT_TRUE(waitFor([&] { return !task_.isWorking(); }));

@@ -11,11 +11,11 @@
 #include "haptics/bounded_controller.h"
 #include "qt_support.h"
 #include "tissue/tissue_edits.h"
-#include "ui/cases/case_panel.h"
+#include "ui/cases/cases_page.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 #include "ui/tissue/tissue_panel.h"
-#include "ui/training/arms_panel.h"
+#include "ui/train/arms_panel.h"
 
 namespace trephine {
 namespace {
@@ -303,7 +303,7 @@ TEST_F(TissuePanelTest, ANumberPutBackCitesItsSourceAgain) {
 }
 
 TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
-  CasePanel panel;
+  CasesPage panel;
   QPushButton& folder = find<QPushButton>(panel, "openFolder");
   QPushButton& another = find<QPushButton>(panel, "anotherSeries");
   EXPECT_TRUE(another.isHidden()) << "there is no folder yet";
@@ -317,17 +317,6 @@ TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
   EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
   panel.endProgress();
   EXPECT_TRUE(folder.isEnabled() && another.isEnabled());
-}
-
-TEST_F(PanelTest, ALabelMapIsAskedForUnlessAnExerciseRuns) {
-  CasePanel panel;
-  int wanted = 0;
-  QObject::connect(&panel, &CasePanel::labelsWanted, &panel, [&] { ++wanted; });
-  QPushButton& button = find<QPushButton>(panel, "openLabels");
-  button.click();
-  EXPECT_EQ(wanted, 1);
-  panel.setOpeningAllowed(false);
-  EXPECT_FALSE(button.isEnabled());
 }
 
 TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {

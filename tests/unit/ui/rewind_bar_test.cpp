@@ -1,5 +1,5 @@
 // The bar without an exercise: what it shows and asks for as time runs and a person chooses.
-#include "ui/training/rewind_bar.h"
+#include "ui/train/rewind_bar.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What is said over the view of a pause and of arms without force, from states as the loop gives
 // them.
-#include "ui/training/state_notice.h"
+#include "ui/train/state_notice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The workstation without a window: a case, its label map, an exercise on both.
-#include "ui/frame/workstation.h"
+#include "ui/work/workstation.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <QComboBox>
-#include <QDialog>
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
@@ -14,7 +13,7 @@
 
 #include "session/case.h"
 #include "ui/cases/choice_panel.h"
-#include "ui/cases/import_task.h"
+#include "ui/work/import_task.h"
 #include "ui/cases/report_card.h"
 #include "ui/cases/series_list.h"
 #include "ui/cases/size_panel.h"
@@ -22,19 +21,21 @@
 
 namespace trephine {
 
-class ImportDialog : public QDialog {
+class ImportPage : public QWidget {
   Q_OBJECT
  public:
-  // Opens by itself when the task begins to scan.
-  explicit ImportDialog(ImportTask& task, QWidget* parent = nullptr);
+  // opened() when the task begins to scan.
+  explicit ImportPage(ImportTask& task, QWidget* parent = nullptr);
 
-  void open() override;  // the folder scanned last, once more
+  void open();  // the folder scanned last, once more
   void say(const QString& text);
 
  public slots:
-  void reject() override;
+  void reject();
 
  signals:
+  void opened();  // it is to be shown
+  void closed();  // and no longer
   void folderWanted();
   void fileWanted();
   void pathDropped(const QString& path);
@@ -46,7 +47,6 @@ class ImportDialog : public QDialog {
   void dragEnterEvent(QDragEnterEvent* event) override;
   void dropEvent(QDropEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
-  void showEvent(QShowEvent* event) override;
 
  private:
   // Empty: nothing scanned. Asking: read, and something is to be said or asked before it opens.
@@ -87,6 +87,7 @@ class ImportDialog : public QDialog {
   Answers& answers() { return answers_[list_->selectedUid()]; }
 
   ImportTask& task_;
+  bool active_ = false;  // opened, not closed
   Step step_ = Step::empty;
   // As scanned: what a read leaves of a series has other questions and the size that was asked for.
   std::vector<SeriesReport> before_;

@@ -1,4 +1,4 @@
-#include "ui/cases/import_task.h"
+#include "ui/work/import_task.h"
 
 #include <algorithm>
 

@@ -1,17 +1,50 @@
-// The tissue panel in the window: what it says of the arms, and edits that would be lost; tissues
-// and structures in the 3-D view.
+// The tissue panel: what it says of the arms, and edits that would be lost; tissues and structures
+// in the 3-D view.
 #include <QFileDialog>
-#include <QKeyEvent>
 #include <QMessageBox>
 #include <algorithm>
 
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
+#include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
 
-void MainWindow::showRenderable(ControllerKind in_force) {
+void PrepareWorkspace::connectTissues() {
+  connect(tissues_, &TissuePanel::tissuesChanged, this,
+          [this](const TissueSet& set) { tissuesEdited(set); });
+  connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
+    workstation_.setLooks(looks);
+    views_->setTissues(tissues_->tissues(), looks);
+    showSeen();
+  });
+  bench_.setGuard(Bench::Loss::tissues,
+                  [this](Bench::Next go_on) { unlessTissuesStay(std::move(go_on)); });
+  connect(&workstation_, &Workstation::sceneChanged, this, &PrepareWorkspace::showScene);
+  connect(&workstation_, &Workstation::controllerChanged, this, [this] {
+    if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
+  });
+  // They may be about to go.
+  connect(&workstation_, &Workstation::openingProgressed, this, [this] {
+    if (!workstation_.isPlacing()) tissues_->setEnabled(false);
+  });
+  connect(&workstation_, &Workstation::openingEnded, this, [this] { tissues_->setEnabled(true); });
+}
+
+void PrepareWorkspace::showScene() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  if (!scene) return;
+  tissues_->setTissues(scene->tissues, workstation_.declaredTissues());
+  structures_->setWanted(scene->structures);
+  showRenderable(scene->controller);
+  tissues_->setLooks(workstation_.looks());
+  editor_.setTissues(scene->tissues);
+  views_->setTissues(scene->tissues, workstation_.looks());
+  showSeen();
+  views_->setAnatomy(scene->anatomy);
+}
+
+void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
   // The weaker of the arms: the panel speaks of both.
   std::optional<Renderable> most;
@@ -24,12 +57,11 @@ void MainWindow::showRenderable(ControllerKind in_force) {
   }
   tissues_->setRenderable(
       most, [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
-  controller_shown_ = in_force;
 }
 
 // The views show what the panel of structures lists while it is in front, else what the exercise
 // runs on, with the shells that its tissues asked for.
-void MainWindow::showLabelsInUse() {
+void PrepareWorkspace::showLabelsInUse() {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of || !(views_->mirror().volume().geometry == of->volume->geometry)) return;
   const bool exercise = workstation_.phase() != Workstation::Phase::ready;
@@ -39,7 +71,7 @@ void MainWindow::showLabelsInUse() {
   showSeen();
 }
 
-void MainWindow::showSeen() {
+void PrepareWorkspace::showSeen() {
   if (!workstation_.scene()) return;
   const std::shared_ptr<const LabelMap>& map = views_->mirror().labels();
   std::vector<Structure> rows;
@@ -73,7 +105,7 @@ void MainWindow::showSeen() {
 }
 
 // An opacity or colour that was set for a tissue goes before one that was set for its structure.
-void MainWindow::tissuesEdited(const TissueSet& set) {
+void PrepareWorkspace::tissuesEdited(const TissueSet& set) {
   const std::shared_ptr<const LabelMap> map = editor_.map();
   for (auto& [label, look] : structure_looks_) {
     const Structure* of = map ? map->find(label) : nullptr;
@@ -90,26 +122,17 @@ void MainWindow::tissuesEdited(const TissueSet& set) {
   showSeen();
 }
 
-void MainWindow::structureLookWanted(int label, TissueLook look) {
+void PrepareWorkspace::structureLookWanted(int label, TissueLook look) {
   structure_looks_[label].look = look;
   showSeen();  // which hands it to a tissue of the scene, where one is of it
 }
 
-// Return and Esc, where nobody else wants them, give the keys back to the hands.
-void MainWindow::keyPressEvent(QKeyEvent* event) {
-  const int key = event->key();
-  if (key == Qt::Key_Return || key == Qt::Key_Enter || key == Qt::Key_Escape) {
-    view_->setFocus();
-  } else {
-    QMainWindow::keyPressEvent(event);
-  }
-}
-
-void MainWindow::unlessTissuesStay(std::function<void()> go_on) {
+void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
   if (!workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
   auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
                               tr("The tissues have been changed and not saved."),
-                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                              bench_.window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
   box->setInformativeText(tr("Save them to a file? Discarded changes cannot be had back."));
@@ -117,7 +140,7 @@ void MainWindow::unlessTissuesStay(std::function<void()> go_on) {
   connect(box, &QMessageBox::finished, this, [this, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
-    QFileDialog* dialog = saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
+    QFileDialog* dialog = bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
     connect(dialog, &QFileDialog::fileSelected, this,
             [this, go_on](const QString& file) { workstation_.saveTissues(toPath(file), go_on); });
     dialog->open();

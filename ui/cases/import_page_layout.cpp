@@ -2,7 +2,7 @@
 #include <QSplitter>
 #include <QVBoxLayout>
 
-#include "ui/cases/import_dialog.h"
+#include "ui/cases/import_page.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
@@ -38,9 +38,8 @@ QPushButton* button(const char* name, const QString& text) {
 
 }  // namespace
 
-void ImportDialog::build() {
-  setObjectName("importDialog");
-  setWindowTitle(tr("Import CT"));
+void ImportPage::build() {
+  setObjectName("importPage");
   setAcceptDrops(true);
   preview_ = new SlicePreview;
   preview_->setObjectName("slicePreview");
@@ -63,10 +62,9 @@ void ImportDialog::build() {
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(columns, 1);
   layout->addLayout(buildBottomRow());
-  resize(sizeOnScreen({1200, 740}, *this));
 }
 
-QWidget* ImportDialog::buildFolderColumn() {
+QWidget* ImportPage::buildFolderColumn() {
   open_folder_ = button("importFolder", tr("Open &folder\u2026"));
   open_file_ = button("importFile", tr("Open fi&le\u2026"));
   open_folder_->setIcon(symbolIcon(Symbol::open));
@@ -91,7 +89,7 @@ QWidget* ImportDialog::buildFolderColumn() {
   return column;
 }
 
-QWidget* ImportDialog::buildSeriesPage() {
+QWidget* ImportPage::buildSeriesPage() {
   choices_ = new ChoicePanel;
   choices_->setObjectName("choices");
   card_ = new ReportCard(choices_);
@@ -123,7 +121,7 @@ QWidget* ImportDialog::buildSeriesPage() {
   return page;
 }
 
-QWidget* ImportDialog::buildAskingPage() {
+QWidget* ImportPage::buildAskingPage() {
   loss_ = wrapped("lossWords", false);
   couch_ = wrapped("couchNote", true);
   couch_->setText(tr("In the slices, what would be taken out is tinted."));
@@ -147,7 +145,7 @@ QWidget* ImportDialog::buildAskingPage() {
   return page;
 }
 
-QLayout* ImportDialog::buildBottomRow() {
+QLayout* ImportPage::buildBottomRow() {
   status_ = new ElidedLabel;
   status_->setObjectName("importStatus");
   status_->setProperty("quiet", true);
@@ -161,11 +159,12 @@ QLayout* ImportDialog::buildBottomRow() {
   close_ = button("closeImport", tr("&Close"));
   back_ = button("importBack", tr("&Back"));
   import_ = button("import", tr("&Import"));
-  import_->setDefault(true);
+  import_->setProperty("primary", true);
   take_found_ = button("takeFound", tr("Use this &series"));
   take_found_->setToolTip(
       tr("Look only at the files beside those of this series, and at no others"));
   open_case_ = button("openCase", tr("&Open the case"));
+  open_case_->setProperty("primary", true);
   purpose_ = new ElidedLabel(purposeText());
   purpose_->setProperty("quiet", true);
   auto* row = new QHBoxLayout;
@@ -180,48 +179,49 @@ QLayout* ImportDialog::buildBottomRow() {
   return row;
 }
 
-void ImportDialog::connectParts() {
-  connect(open_folder_, &QPushButton::clicked, this, &ImportDialog::folderWanted);
-  connect(open_file_, &QPushButton::clicked, this, &ImportDialog::fileWanted);
-  connect(list_, &SeriesList::seriesSelected, this, &ImportDialog::seriesSelected);
+void ImportPage::connectParts() {
+  connect(open_folder_, &QPushButton::clicked, this, &ImportPage::folderWanted);
+  connect(open_file_, &QPushButton::clicked, this, &ImportPage::fileWanted);
+  connect(list_, &SeriesList::seriesSelected, this, &ImportPage::seriesSelected);
   connect(list_, &SeriesList::seriesActivated, this,
           [this] { step_ == Step::scanning ? takeFound() : import(); });
-  connect(take_found_, &QPushButton::clicked, this, &ImportDialog::takeFound);
+  connect(take_found_, &QPushButton::clicked, this, &ImportPage::takeFound);
   connect(scan_on_, &QPushButton::clicked, this, [this] { task_.scan(task_.source()); });
   connect(&task_, &ImportTask::found, this, [this](const std::vector<FoundSeries>& series) {
     if (step_ != Step::scanning) return;
     list_->showFound(series);
     showImportButton();
   });
-  connect(preview_, &SlicePreview::sliceWanted, this, &ImportDialog::sliceWanted);
-  connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportDialog::boxDrawn);
-  connect(size_, &SizePanel::changed, this, &ImportDialog::showKept);
-  connect(size_, &SizePanel::changed, this, &ImportDialog::showSelected);
+  connect(preview_, &SlicePreview::sliceWanted, this, &ImportPage::sliceWanted);
+  connect(&preview_->canvas(), &SliceCanvas::boxDrawn, this, &ImportPage::boxDrawn);
+  connect(size_, &SizePanel::changed, this, &ImportPage::showKept);
+  connect(size_, &SizePanel::changed, this, &ImportPage::showSelected);
   connect(choices_, &ChoicePanel::answered, this, [this] {
     for (const auto& [code, option] : choices_->answers()) answers()[code] = option;
     showSelected();
   });
   connect(late_choices_, &ChoicePanel::answered, this,
           [this] { open_case_->setEnabled(late_choices_->allAnswered()); });
-  connect(import_, &QPushButton::clicked, this, &ImportDialog::import);
-  connect(open_case_, &QPushButton::clicked, this, &ImportDialog::answered);
-  connect(report_, &QPushButton::clicked, this, &ImportDialog::reportWanted);
-  connect(back_, &QPushButton::clicked, this, &ImportDialog::back);
-  connect(close_, &QPushButton::clicked, this, &ImportDialog::reject);
+  connect(import_, &QPushButton::clicked, this, &ImportPage::import);
+  connect(open_case_, &QPushButton::clicked, this, &ImportPage::answered);
+  connect(report_, &QPushButton::clicked, this, &ImportPage::reportWanted);
+  connect(back_, &QPushButton::clicked, this, &ImportPage::back);
+  connect(close_, &QPushButton::clicked, this, &ImportPage::reject);
   connect(cancel_, &QPushButton::clicked, &task_, &ImportTask::cancel);
 
   connect(&task_, &ImportTask::scanBegan, this, [this] {
     showStep(Step::scanning);
-    if (!isVisible()) QDialog::open();
+    active_ = true;
+    emit opened();
   });
   connect(&task_, &ImportTask::progressed, this, [this](double fraction, const QString& step) {
     status_->setText(step);
     progress_->setValue(int(fraction * kProgressSteps));
   });
-  connect(&task_, &ImportTask::scanned, this, &ImportDialog::scanned);
-  connect(&task_, &ImportTask::readDone, this, &ImportDialog::readDone);
-  connect(&task_, &ImportTask::stopped, this, &ImportDialog::stopped);
-  connect(&task_, &ImportTask::sliceReady, this, &ImportDialog::showSlice);
+  connect(&task_, &ImportTask::scanned, this, &ImportPage::scanned);
+  connect(&task_, &ImportTask::readDone, this, &ImportPage::readDone);
+  connect(&task_, &ImportTask::stopped, this, &ImportPage::stopped);
+  connect(&task_, &ImportTask::sliceReady, this, &ImportPage::showSlice);
   connect(&task_, &ImportTask::thumbnailReady, list_, &SeriesList::setThumbnail);
   connect(&task_, &ImportTask::pictureReady, this,
           [this](const QString& uid, int slice, const QImage& picture) {

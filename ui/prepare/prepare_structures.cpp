@@ -1,4 +1,4 @@
-// The structures in the window: between their panel, the editor, the slices and the workstation.
+// The structures: between their panel, the editor, the slices and the workstation.
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QInputDialog>
@@ -12,7 +12,7 @@
 #include "scene/entry_point.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
+#include "ui/prepare/prepare_workspace.h"
 #include "ui/structures/overlap_dialog.h"
 #include "ui/structures/structure_report.h"
 #include "volume/segmentation.h"
@@ -24,14 +24,13 @@ constexpr int kSettled_ms = 500;  // after the last change the exercise is place
 constexpr double kStructureOpacity = 0.4;
 }  // namespace
 
-void MainWindow::connectStructures() {
+void PrepareWorkspace::connectStructures() {
   connect(structures_, &StructurePanel::toolChosen, views_, &FourUp::setTool);
   connect(structures_, &StructurePanel::brushChanged, this,
           [this] { views_->setBrushRadius(structures_->brushRadius_mm()); });
-  connect(structures_, &StructurePanel::openWanted, this, &MainWindow::askForLabels);
-  connect(structures_, &StructurePanel::saveWanted, this, &MainWindow::askToSaveStructures);
-  connectExports();
-  connect(views_, &FourUp::toolChanged, this, &MainWindow::structureToolChanged);
+  connect(structures_, &StructurePanel::openWanted, this, &PrepareWorkspace::askForLabels);
+  connect(structures_, &StructurePanel::saveWanted, this, &PrepareWorkspace::askToSaveStructures);
+  connect(views_, &FourUp::toolChanged, this, &PrepareWorkspace::structureToolChanged);
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::grow) {
       editor_.growAt(at_mm, structures_->name(), structures_->growing());
@@ -47,15 +46,15 @@ void MainWindow::connectStructures() {
     if (tool == SliceTool::wall) return editor_.beginWall(at_mm, brush);
     editor_.beginStroke(at_mm, brush, structures_->name());
   });
-  connect(views_, &FourUp::entryChosen, this, &MainWindow::placeEntry);
-  connect(views_, &FourUp::entryLeft, this, &MainWindow::leaveEntry);
+  connect(views_, &FourUp::entryChosen, this, &PrepareWorkspace::placeEntry);
+  connect(views_, &FourUp::entryLeft, this, &PrepareWorkspace::leaveEntry);
   connect(views_, &FourUp::strokeMoved, &editor_, &StructureEditor::moveStroke);
   connect(views_, &FourUp::strokeEnded, &editor_, &StructureEditor::endStroke);
-  connect(views_, &FourUp::structureKey, this, &MainWindow::structureKey);
+  connect(views_, &FourUp::structureKey, this, &PrepareWorkspace::structureKey);
   connect(views_, &FourUp::nothingThere, this, [this] {
     structures_->say(tr("Nothing solid is seen there: ghosts are passed through."));
   });
-  connect(structures_, &StructurePanel::lookWanted, this, &MainWindow::structureLookWanted);
+  connect(structures_, &StructurePanel::lookWanted, this, &PrepareWorkspace::structureLookWanted);
   connect(structures_, &StructurePanel::opacityWanted, this, [this](int label, double per_mm) {
     structure_looks_[label].opacity = per_mm;
     showSeen();
@@ -78,25 +77,54 @@ void MainWindow::connectStructures() {
     showUndo();
     settled_.start();
   });
-  connect(&editor_, &StructureEditor::failed, this, &MainWindow::report);
+  connect(&editor_, &StructureEditor::failed, &bench_, &Bench::report);
   settled_.setSingleShot(true);
   settled_.setInterval(kSettled_ms);
   connect(&settled_, &QTimer::timeout, this, [this] { (void)takeStructures(); });
-  connect(&workstation_, &Workstation::structuresChanged, this, &MainWindow::showStructures);
-  connect(&workstation_, &Workstation::placingFailed, this, &MainWindow::placingFailed);
-  connect(&workstation_, &Workstation::structuresAsked, this, &MainWindow::askAboutStructures);
-  connect(&workstation_, &Workstation::overlapAsked, this, &MainWindow::askAboutOverlap);
-  connect(&workstation_, &Workstation::thresholdAsked, this, &MainWindow::askForThreshold);
-  connect(left_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
+  bench_.setGuard(Bench::Loss::structures,
+                  [this](Bench::Next go_on) { unlessStructuresAreLost(std::move(go_on)); });
+  bench_.setBeforeStart([this](Bench::Next go_on) { beforeStart(std::move(go_on)); });
+  connect(bench_.undoAction(), &QAction::triggered, this, [this] {
+    if (!workstation_.session()) editor_.undo();
+  });
+  connect(bench_.redoAction(), &QAction::triggered, this, [this] {
+    if (!workstation_.session()) editor_.redo();
+  });
+  connect(&bench_, &Bench::cutsChanged, this, &PrepareWorkspace::showUndo);
+  connect(&bench_, &Bench::caseShown, this, [this] {
+    tissues_->setLabelsOpen(workstation_.currentCase()->labels != nullptr);
+    openStructures();
+  });
+  connect(&workstation_, &Workstation::phaseChanged, this, [this] {
+    const Workstation::Phase phase = workstation_.phase();
+    editor_.setLocked(phase == Workstation::Phase::ready || phase == Workstation::Phase::empty
+                          ? QString()
+                          : tr("Structures cannot be changed while an exercise runs: it was "
+                               "started on them."));
+    showUndo();
+    showLabelsInUse();
+  });
+  connect(&workstation_, &Workstation::exerciseReported, this, [this](const RunReport& report) {
+    QStringList cut;
+    for (const std::string& line : linesOf(report.structures_cut)) cut << toQt(line);
+    structures_->say(cut.isEmpty() ? QString()
+                                   : tr("In the last exercise:") + '\n' + cut.join('\n'));
+  });
+  connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showStructures);
+  connect(&workstation_, &Workstation::placingFailed, this, &PrepareWorkspace::placingFailed);
+  connect(&workstation_, &Workstation::structuresAsked, this, &PrepareWorkspace::askAboutStructures);
+  connect(&workstation_, &Workstation::overlapAsked, this, &PrepareWorkspace::askAboutOverlap);
+  connect(&workstation_, &Workstation::thresholdAsked, this, &PrepareWorkspace::askForThreshold);
+  connect(tabs_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
   views_->setBrushRadius(structures_->brushRadius_mm());
 }
 
-bool MainWindow::structuresShown() const {
-  return left_->currentIndex() == kStructureTab && editor_.hasCase();
+bool PrepareWorkspace::structuresShown() const {
+  return here_ && tabs_->currentIndex() == kStructureTab && editor_.hasCase();
 }
 
 // What was made or changed is what the next exercise runs on. True where nothing waits any more.
-bool MainWindow::takeStructures() {
+bool PrepareWorkspace::takeStructures() {
   if (!editor_.hasCase() || workstation_.isOpening()) return false;
   if (workstation_.phase() != Workstation::Phase::ready) return true;
   const std::shared_ptr<const LabelMap> made = editor_.takeEdited();
@@ -106,7 +134,7 @@ bool MainWindow::takeStructures() {
 }
 
 // The scene was placed in other structures: made here, or read.
-void MainWindow::showStructures() {
+void PrepareWorkspace::showStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) {
     structure_looks_.clear();
@@ -115,41 +143,42 @@ void MainWindow::showStructures() {
     QStringList words;
     for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
     structures_->say(words.join('\n'));
-    left_->setCurrentIndex(kStructureTab);
+    tabs_->setCurrentIndex(kStructureTab);
     showStructureReport();
   }
-  if (carved_ && !unsaved_cuts_) showWholeCase();
+  if (bench_.carved() && !bench_.cutsUnsaved()) bench_.showWholeCase();
   tissues_->setLabelsOpen(of.labels != nullptr);
-  showCaseCard(of);
   showStructureTab();
   showEntry();
-  if (std::exchange(entry_asked_, false)) lookAtCase();
+  if (std::exchange(entry_asked_, false)) bench_.lookAtCase();
   // Not by a dialog: it would come with every stroke.
   if (of.misfit) structures_->say(toQt(of.misfit->sentence()));
   settled_.start();  // what was changed meanwhile
-  if (std::exchange(start_when_placed_, false)) {
-    QMetaObject::invokeMethod(this, &MainWindow::start, Qt::QueuedConnection);
+  if (Bench::Next start = std::exchange(start_when_placed_, {})) {
+    QMetaObject::invokeMethod(
+        this, [this, start] { beforeStart(start); }, Qt::QueuedConnection);
   }
 }
 
 // Nothing waits for it any more, and nothing that was made is lost.
-void MainWindow::placingFailed() {
-  entry_asked_ = start_when_placed_ = false;
+void PrepareWorkspace::placingFailed() {
+  entry_asked_ = false;
+  start_when_placed_ = {};
   own_structures_ = workstation_.currentCase()->structures;
   editor_.giveBack();
   showEntry();
 }
 
 // Of those that came from a file: beside the window, which goes on.
-void MainWindow::showStructureReport() {
+void PrepareWorkspace::showStructureReport() {
   const Case& of = *workstation_.currentCase();
-  if (auto* before = findChild<StructureReport*>()) before->close();  // of another file
+  if (auto* before = bench_.window()->findChild<StructureReport*>()) before->close();  // of another file
   if (of.structure_cards.empty()) return;
-  (new StructureReport(of, this))->show();
+  (new StructureReport(of, bench_.window()))->show();
 }
 
 // Of a case that was opened.
-void MainWindow::openStructures() {
+void PrepareWorkspace::openStructures() {
   const Case& of = *workstation_.currentCase();
   if (of.structures != own_structures_) showStructureReport();
   if (of.structures != own_structures_ || !editor_.isOf(of.volume)) {  // not another exercise alone
@@ -161,41 +190,38 @@ void MainWindow::openStructures() {
   own_structures_ = of.structures;
   structures_->setWanted(workstation_.scene()->structures);
   structures_->setSourceAtHand(sourceAtHand());
-  warned_ = false;
   showStructureTab();
   showEntry();
-  sayWhatIsOpen();
-  for (const Warning& warning : of.warnings) {
-    if (warning.code == "OTHER_ANATOMY") return;  // another exercise comes first
-  }
-  for (const Warning& warning : of.warnings) {
-    if (warning.code != "LACKS_STRUCTURE") continue;
-    // What is missing is offered to be made at once.
-    left_->setCurrentIndex(kStructureTab);
-    views_->setTool(SliceTool::grow);
-    structures_->say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
-                        "it, well inside. Or start at once: tissue is then told by its HU.")
-                         .arg(structures_->name()));
-  }
+  if (here_) (void)offerMissing();
 }
 
-// Which exercise the case has, where that is news, and that it is for something else.
-void MainWindow::sayWhatIsOpen() {
-  const QString exercise = scenes_->currentText();
-  QString words;
-  if (!exercise_said_.isEmpty() && exercise != exercise_said_) {
-    words = tr("The exercise is now \"%1\".").arg(exercise);
+// What is missing is offered to be made at once. False: the exercise lacks nothing that could be.
+bool PrepareWorkspace::offerMissing() {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || workstation_.session()) return false;
+  bool lacks = false;
+  for (const Warning& warning : of->warnings) {
+    if (warning.code == "OTHER_ANATOMY") return false;  // another exercise comes first
+    lacks = lacks || warning.code == "LACKS_STRUCTURE";
   }
-  exercise_said_ = exercise;
-  for (const Warning& warning : workstation_.currentCase()->warnings) {
-    if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
-    words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
-  }
-  if (!words.isEmpty()) say(words);
+  if (!lacks) return false;
+  tabs_->setCurrentIndex(kStructureTab);
+  views_->setTool(SliceTool::grow);
+  structures_->say(tr("The exercise needs the structure \"%1\", which the case lacks: click into "
+                      "it, well inside. Or start at once: tissue is then told by its HU.")
+                       .arg(structures_->name()));
+  return true;
+}
+
+void PrepareWorkspace::makeMissing() {
+  bench_.go(Place::prepare);
+  tabs_->setCurrentIndex(kStructureTab);
+  views_->setTool(SliceTool::grow);
+  structures_->offerWanted();
 }
 
 // The slices show what the panel lists while it is in front, else what the exercise runs on.
-void MainWindow::showStructureTab() {
+void PrepareWorkspace::showStructureTab() {
   showLabelsInUse();
   showUndo();
   if (structuresShown()) {
@@ -210,13 +236,15 @@ void MainWindow::showStructureTab() {
   }
 }
 
-void MainWindow::structureToolChanged(SliceTool tool) {
-  if (isForStructures(tool) && left_->currentIndex() != kStructureTab) {
-    left_->setCurrentIndex(kStructureTab);
+void PrepareWorkspace::structureToolChanged(SliceTool tool) {
+  if (isForStructures(tool) && !here_) {
+    views_->setTool(SliceTool::window);
+    return bench_.say(tr("Structures are made in Prepare (Ctrl+2)."));
   }
+  if (isForStructures(tool)) tabs_->setCurrentIndex(kStructureTab);
   structures_->showTool(tool);
   if (tool == SliceTool::entry) {
-    say(
+    bench_.say(
         tr("Click where the exercise enters; drag to where the instrument comes from. Del: back to "
            "its own place."));
   }
@@ -224,14 +252,14 @@ void MainWindow::structureToolChanged(SliceTool tool) {
 
 // --- The entry point ---
 
-void MainWindow::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
+void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (workstation_.phase() != Workstation::Phase::ready || !of) {
-    return say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
+    return bench_.say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
   }
   const Scene& scene = *workstation_.scene();
   const Landmark* landmark = entryLandmark(scene);
-  if (!landmark) return say(tr("This exercise is fixed in its own patient."));
+  if (!landmark) return bench_.say(tr("This exercise is fixed in its own patient."));
   Vec3 outward = from_mm - at_mm;
   if (!(glm::length(outward) > 0.0)) {
     const auto out =
@@ -240,35 +268,38 @@ void MainWindow::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
     outward = out ? *out : before ? before->rotation * Vec3(0.0, 0.0, 1.0) : Vec3(0.0, -1.0, 0.0);
   }
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
-  unlessCutsAreLost([this, entry] {
+  bench_.unlessLost({Bench::Loss::cuts}, [this, entry] {
     entry_asked_ = workstation_.placeEntry(entry);
-    say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
+    bench_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
                      : tr("Busy: try again in a moment."));
   });
 }
 
-void MainWindow::leaveEntry() {
-  if (!workstation_.entry()) return say(tr("The exercise enters at its own place."));
-  unlessCutsAreLost([this] {
+void PrepareWorkspace::leaveEntry() {
+  if (!workstation_.entry()) return bench_.say(tr("The exercise enters at its own place."));
+  bench_.unlessLost({Bench::Loss::cuts}, [this] {
     entry_asked_ = workstation_.placeEntry({});
-    say(entry_asked_ ? tr("The exercise enters at its own place again.")
+    bench_.say(entry_asked_ ? tr("The exercise enters at its own place again.")
                      : tr("Busy: try again in a moment."));
   });
 }
 
-void MainWindow::showEntry() {
+void PrepareWorkspace::showEntry() {
   const auto frame = workstation_.viewLandmark();
   if (!frame) return views_->setEntry({});
   views_->setEntry(SliceView::Entry{frame->position_mm, frame->rotation * Vec3(0.0, 0.0, 1.0)});
 }
 
-void MainWindow::structureKey(int key) {
+void PrepareWorkspace::structureKey(int key) {
+  if (!here_ && key != Qt::Key_V && key != Qt::Key_Escape) {
+    return bench_.say(tr("Structures are made in Prepare (Ctrl+2)."));
+  }
   switch (key) {
     case Qt::Key_K:
-      left_->setCurrentIndex(kStructureTab);
+      tabs_->setCurrentIndex(kStructureTab);
       return editor_.makeSkull();
     case Qt::Key_S:
-      left_->setCurrentIndex(kStructureTab);
+      tabs_->setCurrentIndex(kStructureTab);
       return structures_->makeSkin();
     case Qt::Key_V:
       return structures_->nextLook();
@@ -284,22 +315,23 @@ void MainWindow::structureKey(int key) {
 
 // Without an exercise they are the structures', while those are in front. Cuts that an exercise
 // left in the view are no step of theirs: there the panel's own buttons serve.
-void MainWindow::showUndo() {
+void PrepareWorkspace::showUndo() {
   if (workstation_.phase() == Workstation::Phase::running) return;
-  const bool serve = structuresShown() && !unsaved_cuts_;
+  const bool serve = structuresShown() && !bench_.cutsUnsaved();
   const auto undo = serve ? editor_.undoText() : std::nullopt;
   const auto redo = serve ? editor_.redoText() : std::nullopt;
-  undo_->setEnabled(undo.has_value());
-  redo_->setEnabled(redo.has_value());
-  undo_->setToolTip(undo            ? tr("Undo: %1").arg(*undo)
-                    : unsaved_cuts_ ? tr("The exercise has ended: its cuts stay until Reset")
+  QAction *undo_action = bench_.undoAction(), *redo_action = bench_.redoAction();
+  undo_action->setEnabled(undo.has_value());
+  redo_action->setEnabled(redo.has_value());
+  undo_action->setToolTip(undo            ? tr("Undo: %1").arg(*undo)
+                    : bench_.cutsUnsaved() ? tr("The exercise has ended: its cuts stay until Reset")
                                     : tr("Nothing to undo"));
-  redo_->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
+  redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
 }
 
-void MainWindow::askAboutStructures(const Error& error, const std::filesystem::path& file,
+void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,
                                     const Answers& answers, const std::string& option) {
-  ask(front(), "structuresQuestion", toQt(error.what) + '.',
+  ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
       tr("What is used as it is may be felt and cut in the wrong place."),
       tr("&Use it all the same"),
       [this, file, answers = answers, code = error.code, option]() mutable {
@@ -308,9 +340,9 @@ void MainWindow::askAboutStructures(const Error& error, const std::filesystem::p
       });
 }
 
-void MainWindow::askAboutOverlap(const std::vector<std::string>& names,
+void PrepareWorkspace::askAboutOverlap(const std::vector<std::string>& names,
                                  const std::filesystem::path& file, const Answers& answers) {
-  auto* dialog = new OverlapDialog(names, front());
+  auto* dialog = new OverlapDialog(names, bench_.window());
   connect(dialog, &QDialog::accepted, this, [this, dialog, file, answers = answers]() mutable {
     answers["OVERLAP"] = orderAnswer(dialog->order());
     workstation_.useLabels(file, answers);
@@ -318,8 +350,8 @@ void MainWindow::askAboutOverlap(const std::vector<std::string>& names,
   dialog->open();
 }
 
-void MainWindow::askForThreshold(const std::filesystem::path& file, const Answers& answers) {
-  auto* dialog = new QInputDialog(front());
+void PrepareWorkspace::askForThreshold(const std::filesystem::path& file, const Answers& answers) {
+  auto* dialog = new QInputDialog(bench_.window());
   dialog->setObjectName("thresholdQuestion");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("A fractional segmentation"));
@@ -339,53 +371,73 @@ void MainWindow::askForThreshold(const std::filesystem::path& file, const Answer
   dialog->open();
 }
 
-// False, and said, where writing there would take a file of the case.
-bool MainWindow::keepsTheCase(const std::filesystem::path& target) {
-  const std::string scene_case = workstation_.scene() ? workstation_.scene()->case_source : "";
-  for (const std::string& source : {case_source_.string(), scene_case}) {
-    const Status kept = keepsCase(target, source);
-    if (kept) continue;
-    report(kept.error());
-    return false;
-  }
-  return true;
-}
-
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
-void MainWindow::askAboutPreview() {
-  QMessageBox* question = ask(
-      this, "previewQuestion", tr("What was grown does not count yet, and may be too large."),
-      tr("Look at it in the slices first, or start with it or without."), tr("&Take it"), [this] {
-        editor_.takePreview();
-        start();
-      });
+void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
+  QMessageBox* question =
+      ask(bench_.window(), "previewQuestion",
+          tr("What was grown does not count yet, and may be too large."),
+          tr("Look at it in the slices first, or start with it or without."), tr("&Take it"),
+          [this, go_on] {
+            editor_.takePreview();
+            beforeStart(go_on);
+          });
   auto* without = question->addButton(tr("Start &without it"), QMessageBox::AcceptRole);
   without->setObjectName("startWithout");
   connect(
       without, &QPushButton::clicked, this,
-      [this] {
+      [this, go_on = std::move(go_on)] {
         editor_.leavePreview();
-        start();
+        beforeStart(go_on);
       },
       Qt::QueuedConnection);
 }
 
-void MainWindow::askToSaveStructures() {
+// An exercise runs on what was made a moment ago.
+void PrepareWorkspace::beforeStart(Bench::Next go_on) {
+  if (editor_.busy()) {
+    return bench_.say(
+        tr("A structure is being made: wait for it, or cancel it, and start then."));
+  }
+  if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
+  if (editor_.preview()) editor_.takePreview();
+  if (!takeStructures()) {
+    return bench_.say(tr("The structures are being put in place: try again in a moment."));
+  }
+  if (workstation_.isOpening()) {
+    start_when_placed_ = std::move(go_on);
+    return;
+  }
+  go_on();
+}
+
+void PrepareWorkspace::askForLabels() {
+  if (workstation_.session()) {
+    return bench_.say(tr("An exercise is running: stop it, then open structures."));
+  }
+  QFileDialog* dialog = bench_.fileDialog("labelsDialog", tr("Open structures of the case"));
+  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+    bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts},
+                      [this, file] { workstation_.useLabels(toPath(file)); });
+  });
+  dialog->open();
+}
+
+void PrepareWorkspace::askToSaveStructures() {
   saveStructuresThen({});
 }
 
-void MainWindow::saveStructuresThen(std::function<void()> then) {
+void PrepareWorkspace::saveStructuresThen(Bench::Next then) {
   // As they are now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
-  if (!copy) return say(tr("There is no structure to save."));
+  if (!copy) return bench_.say(tr("There is no structure to save."));
   const std::uint64_t changes = editor_.changes();
-  QFileDialog* dialog = saveDialog(
+  QFileDialog* dialog = bench_.saveDialog(
       tr("Save structures"), "structures.nii.gz",
       tr("NIfTI with names beside it (*.nii.gz *.nii);;3D Slicer (*.seg.nrrd *.nrrd);;MetaImage "
          "with names beside it (*.mha)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, copy, changes, then = std::move(then)](const QString& file) {
-            if (!keepsTheCase(structuresFile(toPath(file))) || !keepsTheCase(toPath(file))) return;
+            if (!bench_.keepsTheCase(structuresFile(toPath(file))) || !bench_.keepsTheCase(toPath(file))) return;
             workstation_.save(
                 tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
                 [copy, path = toPath(file)](const Progress& progress) {
@@ -399,9 +451,9 @@ void MainWindow::saveStructuresThen(std::function<void()> then) {
   dialog->open();
 }
 
-void MainWindow::unlessStructuresAreLost(std::function<void()> go_on) {
+void PrepareWorkspace::unlessStructuresAreLost(Bench::Next go_on) {
   if (!editor_.edited()) return go_on();
-  QMessageBox* question = ask(front(), "structuresUnsaved",
+  QMessageBox* question = ask(bench_.window(), "structuresUnsaved",
                               tr("The structures have been made or changed and not saved."),
                               tr("Going on takes them away."), tr("&Go on without them"), go_on);
   auto* save = question->addButton(tr("&Save structures\u2026"), QMessageBox::AcceptRole);
@@ -409,52 +461,6 @@ void MainWindow::unlessStructuresAreLost(std::function<void()> go_on) {
   connect(
       save, &QPushButton::clicked, this,
       [this, go_on = std::move(go_on)] { saveStructuresThen(go_on); }, Qt::QueuedConnection);
-}
-
-// Before an exercise starts on a case that is not what it is for, once a case and exercise.
-void MainWindow::unlessItDoesNotFit(std::function<void()> go_on) {
-  const std::optional<Case>& of = workstation_.currentCase();
-  if (!of || of->warnings.empty() || warned_) return go_on();
-  QStringList words;
-  bool lacks = false, no_place = false;
-  std::string fits;
-  for (const Warning& warning : of->warnings) {
-    words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
-    lacks = lacks || warning.code == "LACKS_STRUCTURE";
-    no_place = no_place || warning.code == "NO_LANDMARK";
-    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->anatomy->region);
-  }
-  const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
-                       : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
-                       : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
-                                  : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question =
-      ask(this, "misfitQuestion", words.join('\n'), next, tr("&Go on as it is"), [this, go_on] {
-        warned_ = true;
-        go_on();
-      });
-  if (!fits.empty()) {
-    const std::filesystem::path file = defaultScene(fits);
-    const int index = scenes_->findData(toQt(file));
-    auto* other = question->addButton(tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
-                                      QMessageBox::AcceptRole);
-    other->setObjectName("changeExercise");
-    connect(
-        other, &QPushButton::clicked, this,
-        [this, file] { unlessSceneIsLost([this, file] { workstation_.useScene(file); }); },
-        Qt::QueuedConnection);
-  } else if (lacks) {
-    auto* make = question->addButton(tr("&Make it"), QMessageBox::AcceptRole);
-    make->setObjectName("makeStructure");
-    connect(
-        make, &QPushButton::clicked, this,
-        [this] {
-          left_->setCurrentIndex(kStructureTab);
-          views_->setTool(SliceTool::grow);
-          structures_->offerWanted();
-        },
-        Qt::QueuedConnection);
-  }
 }
 
 }  // namespace trephine

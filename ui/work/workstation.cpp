@@ -1,4 +1,4 @@
-#include "ui/frame/workstation.h"
+#include "ui/work/workstation.h"
 
 #include <QDateTime>
 #include <QTimer>
@@ -193,6 +193,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
   if (source.empty()) {  // the scene waits for a case of the user's
     scene_ = std::move(scene);
     scene_file_ = scene_file;
+    in_force_ = scene_->controller;
     declared_tissues_ = scene_->tissues;
     looks_ = scene_->view.looks;
     emit sceneChanged();
@@ -342,6 +343,7 @@ void Workstation::opened(Result<Opened> outcome) {
   keepEdits(*outcome);
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
+  in_force_ = scene_->controller;
   case_ = std::move(outcome->of);
   if (structures_alone) {
     emit sceneChanged();
@@ -441,8 +443,10 @@ void Workstation::stop() {
                  carved_ = session_->carved();
                  tellGivenBack();
                  emit sessionEnded(*session_);
+                 emit exerciseReported(session_->report());
                  const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
+                 noteController(scene_->controller);
                  setPhase(Phase::ready);
                  const bool said = !stopped && recording_failure_ &&
                                    recording_failure_->what == stopped.error().what;
@@ -458,9 +462,14 @@ void Workstation::setTissues(const TissueSet& tissues) {
   if (Status set = session_->setTissues(tissues); !set) fail(set.error());
 }
 
+void Workstation::noteController(ControllerKind in_force) {
+  if (std::exchange(in_force_, in_force) != in_force) emit controllerChanged();
+}
+
 void Workstation::setController(ControllerKind kind) {
   if (!scene_) return;
   scene_->controller = kind;
+  if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {
     fail({"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"});
   }

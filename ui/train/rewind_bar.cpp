@@ -1,4 +1,4 @@
-#include "ui/training/rewind_bar.h"
+#include "ui/train/rewind_bar.h"
 
 #include <QHBoxLayout>
 #include <QKeyEvent>

@@ -1,4 +1,4 @@
-#include "ui/training/force_bar.h"
+#include "ui/train/force_bar.h"
 
 #include <QPainter>
 #include <algorithm>

@@ -1,9 +1,8 @@
-#include "ui/cases/import_dialog.h"
+#include "ui/cases/import_page.h"
 
 #include <QDragEnterEvent>
 #include <QKeyEvent>
 #include <QMimeData>
-#include <QShowEvent>
 #include <algorithm>
 
 #include "ui/cases/import_words.h"
@@ -28,31 +27,31 @@ bool isAsStored(const SeriesReport& series, const QImage& slice) {
 
 }  // namespace
 
-ImportDialog::ImportDialog(ImportTask& task, QWidget* parent) : QDialog(parent), task_(task) {
+ImportPage::ImportPage(ImportTask& task, QWidget* parent) : QWidget(parent), task_(task) {
   build();
   connectParts();
   showStep(Step::empty);
 }
 
-const SeriesReport* ImportDialog::selected() const {
+const SeriesReport* ImportPage::selected() const {
   if (step_ == Step::scanning) return nullptr;  // the report is of the folder before
   return findSeries(task_.report().series, list_->selectedUid());
 }
 
-SeriesReport* ImportDialog::before() {
+SeriesReport* ImportPage::before() {
   if (step_ == Step::scanning) return nullptr;
   const auto found = std::ranges::find(before_, list_->selectedUid(), &SeriesReport::uid);
   return found == before_.end() ? nullptr : &*found;
 }
 
 // Of the window's own nothing is asked for again. 0: not known before it is read.
-double ImportDialog::neededMb(const ImportRequest& request) {
+double ImportPage::neededMb(const ImportRequest& request) {
   const SeriesReport& series = *before();
   return series.memory_mb > 0.0 ? memoryMb(series, request) - kWindow_mb : 0.0;
 }
 
 // The list says what the series is, not how much of it was read last.
-void ImportDialog::listSelected() {
+void ImportPage::listSelected() {
   SeriesReport listed = *selected();
   listed.geometry = before()->geometry;
   list_->updateSeries(listed, answers());
@@ -60,17 +59,19 @@ void ImportDialog::listSelected() {
 
 // --- The folder ---
 
-void ImportDialog::open() {
+void ImportPage::open() {
   if (task_.hasFolder() && step_ != Step::scanning) {
     showStep(Step::choosing);
     task_.wantThumbnails(list_->withoutThumbnail());
     seriesSelected();
   }
-  QDialog::open();
+  active_ = true;
+  emit opened();
+  list_->setFocus();
 }
 
 // The label maps that lie beside the CT of the folder; none is taken until it is chosen.
-void ImportDialog::showLabelFiles() {
+void ImportPage::showLabelFiles() {
   labels_->clear();
   labels_->addItem(tr("None"));
   for (const CtFolder::LabelFile& one : task_.labelFiles()) {
@@ -79,7 +80,7 @@ void ImportDialog::showLabelFiles() {
 }
 
 // Enough was found: what is selected is wanted, and the scan comes to its end.
-void ImportDialog::takeFound() {
+void ImportPage::takeFound() {
   const std::string uid = list_->selectedUid();
   if (uid.empty() || found_taken_) return;
   found_taken_ = true;
@@ -88,26 +89,21 @@ void ImportDialog::takeFound() {
   showImportButton();
 }
 
-// Qt's own guess of the place is off by the frame that it expects.
-void ImportDialog::showEvent(QShowEvent* event) {
-  QDialog::showEvent(event);
-  if (!event->spontaneous() && parentWidget()) centreOver(*this, *parentWidget()->window());
-}
-
-void ImportDialog::reject() {
+void ImportPage::reject() {
   task_.wantNothing();
   if (task_.isWorking()) task_.cancel();
   (void)task_.takeVolume();
-  QDialog::reject();
+  active_ = false;
+  emit closed();
 }
 
-void ImportDialog::scanned() {
+void ImportPage::scanned() {
   before_ = task_.report().series;
   answers_.clear();
   showFolder();
 }
 
-void ImportDialog::showFolder() {
+void ImportPage::showFolder() {
   folder_->setText(folderWords(task_.report()));
   showStep(Step::choosing);
   showLabelFiles();
@@ -121,14 +117,14 @@ void ImportDialog::showFolder() {
   list_->setFocus();
 }
 
-void ImportDialog::stopped() {
+void ImportPage::stopped() {
   const bool was_scanning = step_ == Step::scanning;
   if (was_scanning && !task_.hasFolder()) {
     showStep(Step::empty);
     return reject();
   }
   showStep(Step::choosing);
-  if (!isVisible()) return;
+  if (!active_) return;
   if (was_scanning) return showFolder();  // the one before
   // What could not be read may ask more now; what was chosen of it stays.
   if (const SeriesReport* now = selected()) {
@@ -144,29 +140,34 @@ void ImportDialog::stopped() {
   }
 }
 
-void ImportDialog::dragEnterEvent(QDragEnterEvent* event) {
+void ImportPage::dragEnterEvent(QDragEnterEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
 }
 
-void ImportDialog::dropEvent(QDropEvent* event) {
+void ImportPage::dropEvent(QDropEvent* event) {
   event->acceptProposedAction();
   emit pathDropped(event->mimeData()->urls().front().toLocalFile());
 }
 
-// From the questions Esc goes back, as Back does; the rest is the dialog's.
-void ImportDialog::keyPressEvent(QKeyEvent* event) {
-  if (event->key() == Qt::Key_Escape && step_ == Step::asking) return back();
-  QDialog::keyPressEvent(event);
+// Return goes on, Esc goes back, as the buttons do.
+void ImportPage::keyPressEvent(QKeyEvent* event) {
+  const int key = event->key();
+  const bool asking = step_ == Step::asking;
+  if (key == Qt::Key_Escape) return asking ? back() : reject();
+  if (key == Qt::Key_Return || key == Qt::Key_Enter) {
+    return asking ? open_case_->click() : import_->click();
+  }
+  QWidget::keyPressEvent(event);
 }
 
-void ImportDialog::say(const QString& text) {
+void ImportPage::say(const QString& text) {
   if (task_.isWorking()) return;
   status_->setText(text);
   status_->show();
 }
 
-void ImportDialog::showStep(Step step) {
+void ImportPage::showStep(Step step) {
   step_ = step;
   const bool working = step == Step::scanning || step == Step::reading;
   const bool choosing = step == Step::choosing;
@@ -193,7 +194,6 @@ void ImportDialog::showStep(Step step) {
   report_->setVisible(choosing && task_.hasFolder());
   back_->setVisible(step == Step::asking);
   open_case_->setVisible(step == Step::asking);
-  (step == Step::asking ? open_case_ : import_)->setDefault(true);
   if (step == Step::scanning) {
     status_->setText(tr("Looking through the files"));
     progress_->setValue(0);
@@ -206,7 +206,7 @@ void ImportDialog::showStep(Step step) {
 
 // --- The series ---
 
-void ImportDialog::seriesSelected() {
+void ImportPage::seriesSelected() {
   const SeriesReport* series = selected();
   card_->setVisible(series);
   labels_box_->setVisible(series && series->source == "DICOM" && series->modality == "CT" &&
@@ -232,7 +232,7 @@ void ImportDialog::seriesSelected() {
 }
 
 // What answers change of what is shown.
-void ImportDialog::showSelected() {
+void ImportPage::showSelected() {
   const SeriesReport* series = selected();
   if (!series) return;
   card_->showSeries(*series, answers(), neededMb({{}, size_->crop(), size_->reduction(), {}}),
@@ -241,7 +241,7 @@ void ImportDialog::showSelected() {
   showImportButton();
 }
 
-void ImportDialog::showImportButton() {
+void ImportPage::showImportButton() {
   take_found_->setEnabled(step_ == Step::scanning && !found_taken_ && list_->currentItem());
   const SeriesReport* series = selected();
   const bool usable = series && mayBeRead(seriesState(*series, answers()));
@@ -253,7 +253,7 @@ void ImportDialog::showImportButton() {
                                 : QString());
 }
 
-void ImportDialog::sliceWanted(int index) {
+void ImportPage::sliceWanted(int index) {
   if (step_ == Step::asking) {
     if (!task_.volume()) return;
     preview_->showSlice(index, sliceOf(*task_.volume(), index));
@@ -264,17 +264,17 @@ void ImportDialog::sliceWanted(int index) {
 }
 
 // What would be taken out of slice `k` of the volume that was read.
-void ImportDialog::showCouch(int k) {
+void ImportPage::showCouch(int k) {
   preview_->canvas().setMarked(couchMask(task_.couch(), *task_.volume(), k));
 }
 
-void ImportDialog::showSlice(const QString& uid, int index, const Result<SlicePicture>& picture) {
+void ImportPage::showSlice(const QString& uid, int index, const Result<SlicePicture>& picture) {
   if (step_ == Step::asking || uid != toQt(list_->selectedUid())) return;
   preview_->showSlice(index, picture);
   showKept();
 }
 
-void ImportDialog::showKept() {
+void ImportPage::showKept() {
   SliceCanvas& canvas = preview_->canvas();
   const SeriesReport* series = before();
   const bool grid_known = series && series->verdict != Verdict::refused;
@@ -296,7 +296,7 @@ void ImportDialog::showKept() {
                                                box.high[1] - box.low[1]));
 }
 
-void ImportDialog::boxDrawn(const QRect& pixels) {
+void ImportPage::boxDrawn(const QRect& pixels) {
   VoxelBox box = size_->box();
   box.low[0] = pixels.left();
   box.low[1] = pixels.top();
@@ -307,7 +307,7 @@ void ImportDialog::boxDrawn(const QRect& pixels) {
 
 // --- Reading ---
 
-void ImportDialog::import() {
+void ImportPage::import() {
   if (!import_->isEnabled()) return;
   request_ = {answers(), size_->crop(), size_->reduction(), {}};
   loss_told_ = false;
@@ -315,7 +315,7 @@ void ImportDialog::import() {
   task_.read(list_->selectedUid(), request_, neededMb(request_));
 }
 
-void ImportDialog::readDone() {
+void ImportPage::readDone() {
   const SeriesReport* after = selected();
   if (!after) return;
   listSelected();
@@ -330,7 +330,7 @@ void ImportDialog::readDone() {
   ask(*after, questions);
 }
 
-void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& questions) {
+void ImportPage::ask(const SeriesReport& after, const std::vector<Choice>& questions) {
   const std::optional<Provenance>& provenance = task_.report().provenance;
   loss_->setText(provenance && provenance->loss ? lossWords(*provenance->loss) : QString());
   loss_->setVisible(!loss_->text().isEmpty());
@@ -351,7 +351,7 @@ void ImportDialog::ask(const SeriesReport& after, const std::vector<Choice>& que
 }
 
 // All that was asked after reading has an answer: what is not as it was read is read again.
-void ImportDialog::answered() {
+void ImportPage::answered() {
   if (!late_choices_->allAnswered()) return;
   bool as_read = true;
   const SeriesReport* after = selected();
@@ -366,20 +366,21 @@ void ImportDialog::answered() {
   task_.read(list_->selectedUid(), request_, neededMb(request_));
 }
 
-void ImportDialog::openCase() {
+void ImportPage::openCase() {
   const SeriesReport* series = selected();
   Case read = caseOf(task_.takeVolume(), series->volume_sha256.value_or(""));
   read.provenance = task_.report().provenance;
   read.name = seriesName(*series).toStdString();
   task_.wantNothing();
   showStep(Step::choosing);
-  accept();
+  active_ = false;
+  emit closed();
   const bool with_labels = series->source == "DICOM" && labels_->currentIndex() > 0;
   emit caseRead(read,
                 with_labels ? toPath(labels_->currentData().toString()) : std::filesystem::path());
 }
 
-void ImportDialog::back() {
+void ImportPage::back() {
   (void)task_.takeVolume();
   showStep(Step::choosing);
   seriesSelected();

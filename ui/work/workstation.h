@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "session/session.h"
-#include "ui/cases/import_task.h"
+#include "ui/work/import_task.h"
 #include "ui/common/background_task.h"
 
 namespace trephine {
@@ -81,6 +81,9 @@ class Workstation : public QObject {
   void setLooks(const TissueLooks& looks) { looks_ = looks; }
   const TissueLooks& looks() const { return looks_; }
   void setController(ControllerKind kind);
+  // What the arms are controlled by now: the scene's, or what the running exercise has made of it.
+  ControllerKind controllerInForce() const { return in_force_; }
+  void noteController(ControllerKind in_force);
   // The tissues as the scene's file has them, or as they were saved last; and whether they have
   // been edited since.
   const TissueSet& declaredTissues() const { return declared_tissues_; }
@@ -135,6 +138,9 @@ class Workstation : public QObject {
   void sessionEnded(trephine::Session& session);
   // What the view shows of an exercise before is gone; failed() says why none runs.
   void startFailed();
+  // After sessionEnded(), what it came to.
+  void exerciseReported(const trephine::RunReport& report);
+  void controllerChanged();  // controllerInForce()
   void savingProgressed(double fraction, const QString& step);
   void savingEnded();
   void saved(const QString& what);
@@ -164,6 +170,7 @@ class Workstation : public QObject {
   Phase phase_ = Phase::empty;
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
+  ControllerKind in_force_ = ControllerKind::bounded;
   TissueSet declared_tissues_;
   std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;

@@ -1,9 +1,10 @@
-#include "ui/cases/case_panel.h"
+#include "ui/cases/cases_page.h"
 
 #include <QGridLayout>
 #include <QVBoxLayout>
 
 #include "ui/common/icons.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 
@@ -20,7 +21,7 @@ QLabel* quietLabel(const QString& text, QWidget* parent) {
 
 }  // namespace
 
-CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
+CasesPage::CasesPage(QWidget* parent) : QWidget(parent) {
   folder_ = new QPushButton(symbolIcon(Symbol::open), tr("Open folder of CT\u2026"), this);
   folder_->setObjectName("openFolder");
   series_ = new QPushButton(tr("Use another series\u2026"), this);
@@ -29,10 +30,6 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   cranium_->setObjectName("craniumPhantom");
   abdomen_ = new QPushButton(tr("Abdomen phantom"), this);
   abdomen_->setObjectName("abdomenPhantom");
-
-  labels_ = new QPushButton(tr("Label map\u2026"), this);
-  labels_->setObjectName("openLabels");
-  labels_->setToolTip(tr("Open the case's label map, to which tissues can be restricted"));
 
   auto* card = new QFrame(this);
   card->setProperty("card", true);
@@ -68,7 +65,6 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(8);
   layout->addWidget(card);
-  layout->addWidget(labels_);
   layout->addWidget(progress_box_);
   layout->addWidget(folder_);
   layout->addWidget(series_);
@@ -77,25 +73,24 @@ CasePanel::CasePanel(QWidget* parent) : QWidget(parent) {
   layout->addLayout(built_in);
   layout->addStretch(1);
 
-  connect(folder_, &QPushButton::clicked, this, &CasePanel::folderWanted);
-  connect(series_, &QPushButton::clicked, this, &CasePanel::seriesWanted);
+  connect(folder_, &QPushButton::clicked, this, &CasesPage::folderWanted);
+  connect(series_, &QPushButton::clicked, this, &CasesPage::seriesWanted);
   connect(cranium_, &QPushButton::clicked, this, [this] { emit phantomWanted("cranium"); });
   connect(abdomen_, &QPushButton::clicked, this, [this] { emit phantomWanted("abdomen"); });
-  connect(labels_, &QPushButton::clicked, this, &CasePanel::labelsWanted);
-  connect(cancel_, &QPushButton::clicked, this, &CasePanel::cancelWanted);
+  connect(cancel_, &QPushButton::clicked, this, &CasesPage::cancelWanted);
   showButtons();
 }
 
-void CasePanel::showCase(const QString& what) {
+void CasesPage::showCase(const QString& what) {
   case_->setText(what);
 }
 
-void CasePanel::setSeriesAtHand(bool at_hand) {
+void CasesPage::setSeriesAtHand(bool at_hand) {
   at_hand_ = at_hand;
   showButtons();
 }
 
-void CasePanel::showProgress(double fraction, const QString& step) {
+void CasesPage::showProgress(double fraction, const QString& step) {
   busy_ = true;
   progress_box_->show();
   step_->setText(step);
@@ -103,22 +98,48 @@ void CasePanel::showProgress(double fraction, const QString& step) {
   showButtons();
 }
 
-void CasePanel::endProgress() {
+void CasesPage::endProgress() {
   busy_ = false;
   progress_box_->hide();
   showButtons();
 }
 
-void CasePanel::setOpeningAllowed(bool allowed) {
+void CasesPage::setOpeningAllowed(bool allowed) {
   allowed_ = allowed;
   showButtons();
 }
 
-void CasePanel::showButtons() {
+void CasesPage::showButtons() {
   const bool may = allowed_ && !busy_;
-  for (QPushButton* button : {folder_, cranium_, abdomen_, labels_}) button->setEnabled(may);
+  for (QPushButton* button : {folder_, cranium_, abdomen_}) button->setEnabled(may);
   series_->setVisible(at_hand_);
   series_->setEnabled(may);
+}
+
+QString caseWords(const Case& of) {
+  QString about = sizeWords(of.volume->geometry);
+  if (!of.name.empty()) about = toQt(of.name) + '\n' + about;
+  if (of.anatomy) {
+    switch (of.anatomy->region) {
+      case BodyRegion::head:
+        about += of.anatomy->vault ? CasesPage::tr("\nA head") : CasesPage::tr("\nA head whose vault is not whole");
+        break;
+      case BodyRegion::abdomen:
+        about += CasesPage::tr("\nAn abdomen");
+        break;
+      case BodyRegion::not_sure:
+        about += CasesPage::tr("\nWhat it shows is not known");
+    }
+  }
+  if (of.structures && !of.structures->structures.empty()) {
+    QStringList names;
+    for (const Structure& s : of.structures->structures) names << toQt(s.name);
+    constexpr int kMost = 6;
+    const int more = int(names.size()) - kMost;
+    about += CasesPage::tr("\nwith %1").arg(QStringList(names.mid(0, kMost)).join(", "));
+    if (more > 0) about += CasesPage::tr(" and %1 more").arg(more);
+  }
+  return about;
 }
 
 }  // namespace trephine

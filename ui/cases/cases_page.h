@@ -7,12 +7,14 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include "session/case.h"
+
 namespace trephine {
 
-class CasePanel : public QWidget {
+class CasesPage : public QWidget {
   Q_OBJECT
  public:
-  explicit CasePanel(QWidget* parent = nullptr);
+  explicit CasesPage(QWidget* parent = nullptr);
 
   void showCase(const QString& what);
   // A folder is at hand, so that another series of it can be used.
@@ -27,16 +29,18 @@ class CasePanel : public QWidget {
   void phantomWanted(const QString& name);
   void seriesWanted();
   void cancelWanted();
-  void labelsWanted();
 
  private:
   void showButtons();
 
   bool at_hand_ = false, allowed_ = true, busy_ = false;
-  QPushButton *folder_, *series_, *cranium_, *abdomen_, *labels_, *cancel_;
+  QPushButton *folder_, *series_, *cranium_, *abdomen_, *cancel_;
   QLabel *case_, *step_;
   QProgressBar* progress_;
   QWidget* progress_box_;
 };
+
+// What a case is and shows, in a few lines.
+QString caseWords(const Case& of);
 
 }  // namespace trephine

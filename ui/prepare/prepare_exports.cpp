@@ -7,7 +7,7 @@
 #include "structures/surface.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
-#include "ui/frame/main_window.h"
+#include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
 
@@ -23,29 +23,29 @@ QString fileNameOf(const std::string& structure) {
 
 }  // namespace
 
-void MainWindow::connectExports() {
+void PrepareWorkspace::connectExports() {
   connect(structures_, &StructurePanel::saveDicomWanted, this, [this] { askToSaveDicom(false); });
   connect(structures_, &StructurePanel::saveForSourceWanted, this, [this] {
-    ask(front(), "sourceUidsQuestion",
+    ask(bench_.window(), "sourceUidsQuestion",
         tr("The file will name the UIDs of the patient's own CT, so that it finds the patient "
            "where "
            "the CT is kept."),
         tr("Give it only to whom the CT may be given. \"DICOM folder\" names nobody."),
         tr("&Choose a folder\u2026"), [this] { askToSaveDicom(true); });
   });
-  connect(structures_, &StructurePanel::saveSurfaceWanted, this, &MainWindow::askToSaveSurface);
+  connect(structures_, &StructurePanel::saveSurfaceWanted, this, &PrepareWorkspace::askToSaveSurface);
 }
 
 // Of the case that was read by this window from DICOM, in the folder that was opened last.
-bool MainWindow::sourceAtHand() const {
+bool PrepareWorkspace::sourceAtHand() const {
   const std::optional<Case>& of = workstation_.currentCase();
   return of && of->provenance && !of->provenance->source_ids.series.empty() &&
-         !case_source_.empty();
+         !bench_.caseSource().empty();
 }
 
-void MainWindow::askToSaveDicom(bool for_source) {
+void PrepareWorkspace::askToSaveDicom(bool for_source) {
   // A name that is not there yet is a folder that will be made.
-  QFileDialog* dialog = fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
+  QFileDialog* dialog = bench_.fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
   dialog->setAcceptMode(QFileDialog::AcceptSave);
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setOption(QFileDialog::ShowDirsOnly);
@@ -54,13 +54,13 @@ void MainWindow::askToSaveDicom(bool for_source) {
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, for_source, volume = workstation_.currentCase()->volume](const QString& folder) {
             const std::optional<Case>& of = workstation_.currentCase();
-            if (!of || of->volume != volume || !keepsTheCase(toPath(folder))) return;
+            if (!of || of->volume != volume || !bench_.keepsTheCase(toPath(folder))) return;
             saveDicom(toPath(folder), for_source);
           });
   dialog->open();
 }
 
-void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source) {
+void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_source) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of || !editor_.map() || (for_source && !sourceAtHand())) return;
   const std::shared_ptr<const LabelMap> map = editor_.finished();
@@ -68,7 +68,7 @@ void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source)
   const std::uint64_t changes = editor_.changes();
   auto notes = std::make_shared<std::vector<std::string>>();
   const std::optional<std::filesystem::path> source =
-      for_source ? std::optional(case_source_) : std::nullopt;
+      for_source ? std::optional(bench_.caseSource()) : std::nullopt;
   workstation_.save(
       for_source ? tr("The structures are saved as DICOM that names the UIDs of the patient's CT.")
                  : tr("The structures are saved as DICOM, with the CT."),
@@ -94,17 +94,17 @@ void MainWindow::saveDicom(const std::filesystem::path& folder, bool for_source)
       });
 }
 
-void MainWindow::askToSaveSurface() {
+void PrepareWorkspace::askToSaveSurface() {
   const int label = editor_.current();
   const Structure* of = editor_.map() ? editor_.map()->find(label) : nullptr;
   if (!of) return;
   // As it is now: another case may come while the dialog stands.
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return;
-  QFileDialog* dialog = saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
+  QFileDialog* dialog = bench_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
                                    fileNameOf(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
-    if (!keepsTheCase(toPath(file))) return;
+    if (!bench_.keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),
                       [copy, label, path = toPath(file)](const Progress& progress) -> Status {
                         const auto written = writeSurface(*copy, label, path, progress);

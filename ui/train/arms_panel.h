@@ -11,7 +11,7 @@
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
 #include "session/energy_watch.h"
-#include "ui/training/force_bar.h"
+#include "ui/train/force_bar.h"
 
 namespace trephine {
 

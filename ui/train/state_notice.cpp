@@ -1,4 +1,4 @@
-#include "ui/training/state_notice.h"
+#include "ui/train/state_notice.h"
 
 #include <QEvent>
 #include <QStringList>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "ui/common/words.h"
-#include "ui/training/arms_panel.h"
+#include "ui/train/arms_panel.h"
 
 namespace trephine {
 

@@ -1,4 +1,4 @@
-#include "ui/training/arms_panel.h"
+#include "ui/train/arms_panel.h"
 
 #include <QAbstractItemView>
 #include <QFormLayout>

@@ -1,0 +1,30 @@
+// The recordings of a folder, as a person chooses among them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct ListedRecording {
+  std::filesystem::path file;
+  std::filesystem::file_time_type written;
+  std::string exercise;       // the scene's name
+  std::string case_source;    // of a built-in case; else empty
+  std::string volume_sha256;  // of the case
+  double seconds = 0.0;
+  bool cut_short = false;
+  std::optional<Error> problem;  // why it cannot be replayed; of the rest only `file` holds
+};
+
+// The newest first; a folder that is not there has none. Reads the head of each, which takes some
+// milliseconds. Any thread. Error: CANCELLED.
+Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
+                                                    const Progress& progress = Progress());
+
+}  // namespace trephine

@@ -1,0 +1,48 @@
+#include "ui/frame/rail.h"
+
+#include "ui/common/actions.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kIcon = 26, kWidth = 76;
+}  // namespace
+
+Rail::Rail(QWidget& window) : QWidget(&window), window_(window) {
+  setObjectName("rail");
+  setAttribute(Qt::WA_StyledBackground);
+  setFixedWidth(kWidth);
+  group_ = new QActionGroup(this);
+  layout_ = new QVBoxLayout(this);
+  layout_->setContentsMargins(4, 6, 4, 6);
+  layout_->setSpacing(4);
+  layout_->addStretch(1);
+}
+
+void Rail::add(Place place, const Workspace& workspace) {
+  const int number = int(group_->actions().size()) + 1;
+  QAction* action =
+      makeAction(window_, workspace.symbol(), "", workspace.title(),
+                 QKeySequence(Qt::CTRL | Qt::Key(int(Qt::Key_0) + number)), workspace.title());
+  action->setObjectName(QStringLiteral("go%1").arg(number));
+  action->setCheckable(true);
+  action->setData(int(place));
+  group_->addAction(action);
+  auto* button = new QToolButton;
+  button->setDefaultAction(action);
+  button->setObjectName(QStringLiteral("rail%1").arg(number));
+  button->setProperty("rail", true);
+  button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
+  button->setIconSize({kIcon, kIcon});
+  button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  layout_->insertWidget(number - 1, button);
+  connect(action, &QAction::triggered, this, [this, place] { emit chosen(place); });
+}
+
+void Rail::show(Place place) {
+  for (QAction* action : group_->actions()) {
+    if (action->data().toInt() == int(place)) action->setChecked(true);
+  }
+}
+
+}  // namespace trephine

@@ -1,0 +1,114 @@
+#include "ui/frame/shortcuts_page.h"
+
+#include <QDialogButtonBox>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenu>
+#include <QMenuBar>
+#include <QRegularExpression>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+#include "ui/common/placing.h"
+
+namespace trephine {
+
+namespace {
+
+QString plain(QString text) {
+  return text.remove(QRegularExpression(QStringLiteral("&(?!&)"))).remove(QChar(0x2026));
+}
+
+// The tip without the key, which stands beside it.
+QString meaning(const QAction& action) {
+  QString tip = action.toolTip();
+  const QString key = action.shortcut().toString(QKeySequence::NativeText);
+  return tip.remove(QStringLiteral(" (%1)").arg(key));
+}
+
+QString keysOf(const QAction& action) {
+  QStringList keys;
+  for (const QKeySequence& one : action.shortcuts()) keys << one.toString(QKeySequence::NativeText);
+  return keys.join(ShortcutsPage::tr(" or "));
+}
+
+void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions) {
+  for (const QAction* action : actions) {
+    if (action->menu()) {
+      addRows(group, action->menu()->actions());
+    } else if (!action->shortcut().isEmpty()) {
+      new QTreeWidgetItem(group, {plain(action->text()), keysOf(*action), meaning(*action)});
+    }
+  }
+}
+
+}  // namespace
+
+ShortcutsPage::ShortcutsPage(const QMainWindow& window,
+                             const QList<QPair<QString, QString>>& views, QWidget* parent)
+    : QDialog(parent) {
+  setObjectName("shortcutsPage");
+  setWindowTitle(tr("Keys"));
+  setAttribute(Qt::WA_DeleteOnClose);
+  auto* list = new QTreeWidget;
+  list->setObjectName("shortcuts");
+  list->setHeaderLabels({tr("What"), tr("Key"), tr("What it does")});
+  list->setRootIsDecorated(false);
+  list->setSelectionMode(QAbstractItemView::NoSelection);
+  list->setWordWrap(true);
+  const auto addGroup = [list](const QString& title) {
+    auto* group = new QTreeWidgetItem(list, {title});
+    QFont bold = list->font();
+    bold.setBold(true);
+    group->setFont(0, bold);
+    group->setFirstColumnSpanned(true);
+    return group;
+  };
+  for (const QAction* menu : window.menuBar()->actions()) {
+    if (!menu->menu()) continue;
+    QTreeWidgetItem* group = addGroup(plain(menu->text()));
+    addRows(group, menu->menu()->actions());
+    if (group->childCount() == 0) delete group;
+  }
+  for (const auto& [title, words] : views) {
+    QTreeWidgetItem* group = addGroup(title);
+    // "Key: what it does. Key: ..."
+    for (QString part : words.split(QStringLiteral(". "), Qt::SkipEmptyParts)) {
+      if (part.endsWith('.')) part.chop(1);
+      const int colon = int(part.indexOf(QStringLiteral(": ")));
+      new QTreeWidgetItem(group, colon < 0 ? QStringList{part, {}, {}}
+                                           : QStringList{{}, part.left(colon), part.mid(colon + 2)});
+    }
+  }
+  list->expandAll();
+  list->resizeColumnToContents(0);
+  list->resizeColumnToContents(1);
+  auto* find = new QLineEdit;
+  find->setObjectName("findKey");
+  find->setPlaceholderText(tr("Find"));
+  connect(find, &QLineEdit::textChanged, list, [list](const QString& wanted) {
+    for (int i = 0; i < list->topLevelItemCount(); ++i) {
+      QTreeWidgetItem* group = list->topLevelItem(i);
+      bool any = false;
+      for (int k = 0; k < group->childCount(); ++k) {
+        QTreeWidgetItem* row = group->child(k);
+        const QString all = row->text(0) + ' ' + row->text(1) + ' ' + row->text(2);
+        const bool hit = all.contains(wanted, Qt::CaseInsensitive);
+        row->setHidden(!hit);
+        any = any || hit;
+      }
+      group->setHidden(!any);
+    }
+  });
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(find);
+  layout->addWidget(list, 1);
+  layout->addWidget(buttons);
+  resize(sizeOnScreen({760, 620}, *this));
+  find->setFocus();
+}
+
+}  // namespace trephine

@@ -1,0 +1,100 @@
+// Prepare: what tissue is felt and cut, and where it is: tissues, structures, the entry point, and
+// the ways out for other programs. Between its panels, the editor of structures, the views and the
+// workstation. (prepare_tissues.cpp, prepare_structures.cpp and prepare_exports.cpp are what it
+// does with those.)
+#pragma once
+
+#include <QTabWidget>
+#include <QTimer>
+#include <optional>
+
+#include "ui/structures/structure_panel.h"
+#include "ui/tissue/tissue_panel.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class PrepareWorkspace : public Workspace {
+  Q_OBJECT
+ public:
+  static constexpr int kTissueTab = 0, kStructureTab = 1;
+
+  explicit PrepareWorkspace(Bench& bench);
+
+  QString title() const override { return tr("Prepare"); }
+  Symbol symbol() const override { return Symbol::prepare; }
+  Parts parts() override;
+  void enter() override;
+  void leave() override;
+
+  // The structure that the exercise needs and the case lacks: with the tool that makes it.
+  void makeMissing();
+  bool structuresEdited() const { return editor_.edited(); }
+
+ private:
+  void connectTissues();
+  void connectStructures();
+  void connectExports();
+
+  // Tissues (prepare_tissues.cpp).
+  void showScene();
+  void showRenderable(ControllerKind in_force);
+  void showLabelsInUse();
+  void showSeen();
+  void tissuesEdited(const TissueSet& set);
+  void structureLookWanted(int label, TissueLook look);
+  // Goes on with what takes the place of the tissues; where they have been edited it asks first.
+  void unlessTissuesStay(Bench::Next go_on);
+
+  // Structures (prepare_structures.cpp).
+  bool structuresShown() const;
+  bool takeStructures();
+  void beforeStart(Bench::Next go_on);
+  void openStructures();
+  void showStructures();
+  void placingFailed();
+  void showStructureReport();
+  void showStructureTab();
+  void structureToolChanged(SliceTool tool);
+  void structureKey(int key);
+  void showUndo();
+  bool offerMissing();
+  void askForLabels();
+  void askAboutStructures(const Error& error, const std::filesystem::path& file,
+                          const Answers& answers, const std::string& option);
+  void askAboutOverlap(const std::vector<std::string>& names, const std::filesystem::path& file,
+                       const Answers& answers);
+  void askForThreshold(const std::filesystem::path& file, const Answers& answers);
+  void askAboutPreview(Bench::Next go_on);
+  void askToSaveStructures();
+  void saveStructuresThen(Bench::Next then);
+  void unlessStructuresAreLost(Bench::Next go_on);
+  // Where the exercise enters; from nowhere: out of what was clicked.
+  void placeEntry(const Vec3& at_mm, const Vec3& from_mm);
+  void leaveEntry();
+  void showEntry();
+
+  // As other programs read them (prepare_exports.cpp).
+  bool sourceAtHand() const;
+  void askToSaveDicom(bool for_source);
+  void saveDicom(const std::filesystem::path& folder, bool for_source);
+  void askToSaveSurface();
+
+  Bench& bench_;
+  Workstation& workstation_;
+  FourUp* views_;
+  ViewWidget* view_;
+  StructureEditor editor_;
+  QTabWidget* tabs_;
+  TissuePanel* tissues_;
+  StructurePanel* structures_;
+  std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
+  QTimer settled_;
+  Bench::Next start_when_placed_;    // an exercise waits for its structures
+  bool entry_asked_ = false;         // and the case is being placed with it
+  bool here_ = false;                // this workspace is the one that is shown
+  StructureLooks structure_looks_;   // of the view alone
+  std::optional<SeenTissues> seen_;  // what the 3-D view was told last
+};
+
+}  // namespace trephine

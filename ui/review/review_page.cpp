@@ -1,0 +1,141 @@
+#include "ui/review/review_page.h"
+
+#include <QDateTime>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QVBoxLayout>
+#include <chrono>
+
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kProgressSteps = 1000;
+constexpr int kTimeColumn = 0, kExerciseColumn = 1, kLengthColumn = 2, kStateColumn = 3;
+
+QDateTime timeOf(const ListedRecording& row) {
+  const auto time = std::chrono::file_clock::to_sys(row.written);
+  return QDateTime::fromSecsSinceEpoch(
+      std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count());
+}
+
+}  // namespace
+
+ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
+  auto* title = new QLabel(tr("Recorded exercises"));
+  title->setProperty("heading", true);
+  list_ = new QTreeWidget;
+  list_->setObjectName("recordings");
+  list_->setRootIsDecorated(false);
+  list_->setAllColumnsShowFocus(true);
+  list_->setHeaderLabels({tr("When"), tr("Exercise"), tr("Length"), tr("State")});
+  list_->header()->setSectionResizeMode(kExerciseColumn, QHeaderView::Stretch);
+  list_->header()->setStretchLastSection(false);
+  for (int column : {kTimeColumn, kLengthColumn, kStateColumn}) {
+    list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+  }
+  empty_ = new QLabel(tr("No exercise has been recorded yet. Each one that is done in Train is."));
+  empty_->setProperty("quiet", true);
+  outcome_ = new QLabel;
+  outcome_->setObjectName("replayOutcome");
+  outcome_->setWordWrap(true);
+  replay_ = new QPushButton(tr("&Check by replay"));
+  replay_->setObjectName("replay");
+  replay_->setToolTip(
+      tr("Computes the exercise again from what the arms did, and compares every bit"));
+  step_ = new QLabel;
+  progress_ = new QProgressBar;
+  progress_->setObjectName("replayProgress");
+  progress_->setRange(0, kProgressSteps);
+  progress_->setTextVisible(false);
+  progress_->setMaximumHeight(14);
+  cancel_ = new QPushButton(tr("Cancel"));
+  cancel_->setObjectName("cancelReplay");
+  progress_box_ = new QWidget;
+  auto* progress_row = new QHBoxLayout(progress_box_);
+  progress_row->setContentsMargins(0, 0, 0, 0);
+  progress_row->addWidget(step_);
+  progress_row->addWidget(progress_, 1);
+  progress_row->addWidget(cancel_);
+  progress_box_->hide();
+
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(replay_);
+  buttons->addWidget(progress_box_, 1);
+  buttons->addStretch(0);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(16, 12, 16, 12);
+  layout->setSpacing(10);
+  layout->addWidget(title);
+  layout->addWidget(empty_);
+  layout->addWidget(list_, 1);
+  layout->addLayout(buttons);
+  layout->addWidget(outcome_);
+  connect(list_, &QTreeWidget::currentItemChanged, this, &ReviewPage::showChosen);
+  connect(replay_, &QPushButton::clicked, this, [this] {
+    if (const ListedRecording* of = chosen()) emit replayWanted(*of);
+  });
+  connect(cancel_, &QPushButton::clicked, this, &ReviewPage::cancelWanted);
+  showRecordings({}, {});
+}
+
+const ListedRecording* ReviewPage::chosen() const {
+  const int row = list_->indexOfTopLevelItem(list_->currentItem());
+  return row >= 0 && std::size_t(row) < rows_.size() ? &rows_[std::size_t(row)] : nullptr;
+}
+
+void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows,
+                                const std::string& in_use) {
+  const ListedRecording* before = chosen();
+  const std::filesystem::path file = before ? before->file : std::filesystem::path();
+  in_use_ = in_use;
+  list_->clear();
+  rows_ = rows;
+  for (const ListedRecording& row : rows_) {
+    auto* item = new QTreeWidgetItem(list_);
+    item->setText(kTimeColumn, QLocale().toString(timeOf(row), QLocale::ShortFormat));
+    item->setText(kExerciseColumn, toQt(row.exercise));
+    item->setText(kLengthColumn, timeWords(std::uint32_t(row.seconds)));
+    item->setTextAlignment(kLengthColumn, Qt::AlignRight | Qt::AlignVCenter);
+    item->setText(kStateColumn, row.problem     ? toQt(row.problem->what)
+                                : row.cut_short ? tr("ended early")
+                                                : tr("whole"));
+    if (row.file == file) list_->setCurrentItem(item);
+  }
+  if (!list_->currentItem() && !rows_.empty()) list_->setCurrentItem(list_->topLevelItem(0));
+  empty_->setVisible(rows_.empty());
+  list_->setVisible(!rows_.empty());
+  showChosen();
+}
+
+void ReviewPage::showChosen() {
+  const ListedRecording* of = chosen();
+  const bool at_hand = of && (!of->case_source.empty() || of->volume_sha256 == in_use_);
+  replay_->setVisible(!rows_.empty());
+  replay_->setEnabled(of && !of->problem && at_hand && !busy_);
+  outcome_->setText(of && of->problem ? toQt(of->problem->sentence())
+                    : of && !at_hand  ? tr("Open the case that it was done on, to replay it.")
+                                      : QString());
+}
+
+void ReviewPage::showProgress(double fraction, const QString& step) {
+  busy_ = true;
+  progress_box_->show();
+  step_->setText(step);
+  progress_->setValue(int(fraction * kProgressSteps));
+  replay_->setEnabled(false);
+}
+
+void ReviewPage::endProgress() {
+  busy_ = false;
+  progress_box_->hide();
+  showChosen();
+}
+
+void ReviewPage::showOutcome(const QString& words) {
+  outcome_->setText(words);
+}
+
+}  // namespace trephine

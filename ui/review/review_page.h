@@ -1,0 +1,44 @@
+// The recordings: when, which exercise, how long; and whether one replays bit for bit.
+#pragma once
+
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QWidget>
+#include <vector>
+
+#include "training/recording_list.h"
+
+namespace trephine {
+
+class ReviewPage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ReviewPage(QWidget* parent = nullptr);
+
+  // `in_use` is the sha256 of the open case's voxels, or empty.
+  void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use);
+  void showProgress(double fraction, const QString& step);
+  void endProgress();
+  void showOutcome(const QString& words);
+
+ signals:
+  void replayWanted(const trephine::ListedRecording& of);
+  void cancelWanted();
+
+ private:
+  const ListedRecording* chosen() const;
+  void showChosen();
+
+  std::vector<ListedRecording> rows_;
+  std::string in_use_;
+  bool busy_ = false;
+  QTreeWidget* list_;
+  QLabel *empty_, *outcome_, *step_;
+  QPushButton *replay_, *cancel_;
+  QWidget* progress_box_;
+  QProgressBar* progress_;
+};
+
+}  // namespace trephine

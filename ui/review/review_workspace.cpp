@@ -1,0 +1,68 @@
+#include "ui/review/review_workspace.h"
+
+#include "training/replay.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+ReviewWorkspace::ReviewWorkspace(Bench& bench)
+    : Workspace(&bench), bench_(bench), page_(new ReviewPage) {
+  connect(page_, &ReviewPage::replayWanted, this, &ReviewWorkspace::replay);
+  connect(page_, &ReviewPage::cancelWanted, &replaying_, &BackgroundTask::cancel);
+  connect(&replaying_, &BackgroundTask::progressed, page_, &ReviewPage::showProgress);
+  connect(&replaying_, &BackgroundTask::ended, page_, &ReviewPage::endProgress);
+}
+
+Workspace::Parts ReviewWorkspace::parts() {
+  Parts parts;
+  parts.page = page_;
+  return parts;
+}
+
+void ReviewWorkspace::list() {
+  listing_.run(
+      [folder = bench_.recordings()](const Progress& progress) {
+        return listRecordings(folder, progress);
+      },
+      [this](Result<std::vector<ListedRecording>> rows) {
+        if (!rows) return;
+        const std::optional<Case>& of = bench_.workstation().currentCase();
+        page_->showRecordings(*rows, of ? of->sha256 : "");
+      });
+}
+
+void ReviewWorkspace::replay(const ListedRecording& of) {
+  const std::optional<Case>& open = bench_.workstation().currentCase();
+  std::optional<Case> at_hand;
+  if (open && open->sha256 == of.volume_sha256) at_hand = open;
+  const bool begun = replaying_.run(
+      [of, at_hand](const Progress& progress) -> Result<ReplayResult> {
+        Result<std::unique_ptr<SessionReader>> recording = SessionReader::open(of.file);
+        if (!recording) return recording.error();
+        std::optional<Case> on = at_hand;
+        if (!on) {
+          Result<Case> read = readCase(of.case_source, Progress(progress, 0.0, 0.2));
+          if (!read) return read.error();
+          on = *std::move(read);
+        }
+        return trephine::replay(**recording, *on->volume, on->structures.get(),
+                                Progress(progress, 0.2, 1.0), on->sha256);
+      },
+      [this](Result<ReplayResult> result) {
+        if (!result) {
+          if (result.error().code != "CANCELLED") bench_.report(result.error());
+          return page_->showOutcome(result.error().code == "CANCELLED" ? tr("Cancelled.")
+                                                                       : QString());
+        }
+        QStringList words;
+        words << (result->identical
+                      ? tr("It replays bit for bit: all forces and all that was cut are the same.")
+                      : tr("It replays differently from step %1 on.")
+                            .arg(result->first_difference ? result->first_difference->tick : 0));
+        for (const std::string& line : linesOf(result->structures_cut)) words << toQt(line);
+        page_->showOutcome(words.join('\n'));
+      });
+  if (begun) page_->showProgress(0.0, tr("Replaying"));
+}
+
+}  // namespace trephine

@@ -1,0 +1,29 @@
+// Review: what was recorded, and whether it replays. Between its page and the recordings.
+#pragma once
+
+#include "ui/common/background_task.h"
+#include "ui/review/review_page.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class ReviewWorkspace : public Workspace {
+  Q_OBJECT
+ public:
+  explicit ReviewWorkspace(Bench& bench);
+
+  QString title() const override { return tr("Review"); }
+  Symbol symbol() const override { return Symbol::review; }
+  Parts parts() override;
+  void enter() override { list(); }
+
+ private:
+  void list();
+  void replay(const ListedRecording& of);
+
+  Bench& bench_;
+  ReviewPage* page_;
+  BackgroundTask listing_, replaying_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,99 @@
+// Train: the exercise: which one, its start and end, what the hands do and feel. Between its
+// panels, the views and the workstation. (train_hands.cpp is how mouse and keys move a hand.)
+#pragma once
+
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QTimer>
+#include <optional>
+
+#include "ui/train/arms_panel.h"
+#include "ui/train/rewind_bar.h"
+#include "ui/train/state_notice.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class TrainWorkspace : public Workspace {
+  Q_OBJECT
+ public:
+  static constexpr double kNoEnd_s = 1e9;
+
+  explicit TrainWorkspace(Bench& bench);
+
+  QString title() const override { return tr("Train"); }
+  Symbol symbol() const override { return Symbol::train; }
+  Parts parts() override;
+
+  // The exercises to choose from, for the bar; what one does with a running one.
+  QComboBox* exercises() const { return scenes_; }
+  QAction* startAction() const { return start_; }
+  QAction* stopAction() const { return stop_; }
+  QAction* pauseAction() const { return pause_; }
+  QAction* resetAction() const { return reset_; }
+  QAction* forceOnAction() const { return notice_->forceOnAction(); }
+  QAction* backAction() const { return rewind_->backAction(); }
+
+  // `script` plays until the mouse takes a hand; after `seconds` the exercise stops by itself.
+  void startExercise(std::optional<OperatorScript> script = {}, double seconds = kNoEnd_s);
+  // A scene that is about to open may not be in the list.
+  void chooseNothing() { scenes_->setCurrentIndex(-1); }
+  void showInUse();  // in the list of exercises
+
+ signals:
+  void ratesChanged(const QString& words);
+  void structureWanted();  // that the exercise needs and the case lacks
+
+ private:
+  void buildActions();
+  void connectParts();
+  void fillScenes();
+  void chooseScene(int index);
+  void showScene();
+  void showOpening(const Scene& scene, const std::filesystem::path& file);
+  void sayWhatIsOpen();
+  void showPhase();
+  void showReset();
+  void start();
+  void reset();
+  // Goes on with the exercise; where the case is not what it is for it asks first.
+  void unlessItDoesNotFit(Bench::Next go_on);
+  void sessionStarted();
+  void sessionEnded(Session& session);
+  void tick();
+  void showTools(const std::vector<ToolView>& tools);
+  void showState(Session& session, const LoopState& state);
+  void showRates();
+  void command(CommandKind kind);
+  void rewind(std::uint32_t second);
+  void showRewind(const LoopState& state);
+  void askToGoOn(const Error& error);
+  // train_hands.cpp
+  void moveHand(Hand hand, const Vec3& by_mm);
+  void placeHandPoints();
+  std::size_t armOf(Hand hand) const;
+
+  Bench& bench_;
+  Workstation& workstation_;
+  FourUp* views_;
+  ViewWidget* view_;
+  QAction *start_, *stop_, *pause_, *reset_;
+  QComboBox* scenes_;
+  ArmsPanel* arms_;
+  StateNotice* notice_;  // over the views
+  RewindBar* rewind_;
+  QTimer frame_timer_;
+  QElapsedTimer panel_clock_, rate_clock_;
+  std::vector<double> limits_N_;  // of the running session's arms
+  struct GoingBack {
+    std::uint32_t second;
+    std::uint64_t asked_tick;
+  };
+  std::optional<GoingBack> going_back_;  // until it is said that one is there
+  int frames_ = 0;                       // since the rates were shown
+  std::uint64_t ticks_shown_ = 0;
+  QString exercise_said_;  // the last one that was open
+  bool warned_ = false;    // of this case in this exercise, and it was gone on
+};
+
+}  // namespace trephine

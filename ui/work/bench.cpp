@@ -1,0 +1,197 @@
+#include "ui/work/bench.h"
+
+#include <QFileInfo>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSettings>
+
+#include "render/picture.h"
+#include "ui/common/actions.h"
+#include "ui/common/error_dialog.h"
+#include "ui/common/question.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+std::filesystem::path ownRecordings() {
+  const QString storage = read(settings::kStorage);
+  return toPath(storage.isEmpty()
+                    ? QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)
+                    : storage) /
+         "sessions";
+}
+
+}  // namespace
+
+Bench::Bench(QMainWindow& window, std::filesystem::path recordings)
+    : QObject(&window),
+      window_(window),
+      recordings_(recordings.empty() ? ownRecordings() : std::move(recordings)),
+      views_(new FourUp(&window)) {
+  undo_ = makeAction(window_, Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),
+                     tr("Put the last stroke's tissue back"));
+  redo_ = makeAction(window_, Symbol::redo, "redo", tr("Redo"),
+                     QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), tr("Cut the stroke again"));
+  redo_->setShortcuts(
+      {QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_Z), QKeySequence(Qt::CTRL | Qt::Key_Y)});
+  setGuard(Loss::cuts, [this](Next go_on) { unlessCutsAreLost(std::move(go_on)); });
+  connect(&workstation_, &Workstation::caseOpened, this, &Bench::showCase);
+  connect(&workstation_, &Workstation::startFailed, this, [this] {
+    if (carved_) showWholeCase();
+  });
+  connect(&workstation_, &Workstation::saved, this, &Bench::say);
+  connect(&workstation_, &Workstation::failed, this, &Bench::report);
+  connect(&views_->threeD(), &ViewWidget::failed, this, &Bench::report);
+}
+
+void Bench::report(const Error& error) {
+  showError(&window_, error);
+  emit failed(error);
+}
+
+QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QString& filter) {
+  auto* dialog = new QFileDialog(&window_, title, {}, filter);
+  dialog->setObjectName(name);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  // Qt keeps where its dialogs have been, for the next user to read: folders named for patients.
+  connect(dialog, &QObject::destroyed, [] {
+    QSettings settings(QSettings::UserScope, "QtProject");
+    settings.remove("FileDialog/history");
+    settings.remove("FileDialog/lastVisited");
+  });
+  return dialog;
+}
+
+QFileDialog* Bench::saveDialog(const QString& title, const QString& suggestion,
+                               const QString& filter) {
+  QFileDialog* dialog = fileDialog("saveDialog", title, filter);
+  dialog->setFileMode(QFileDialog::AnyFile);
+  dialog->setAcceptMode(QFileDialog::AcceptSave);
+  dialog->selectFile(suggestion);
+  dialog->setDefaultSuffix(QFileInfo(suggestion).suffix());
+  return dialog;
+}
+
+// --- What would be lost ---
+
+void Bench::unlessLost(const std::vector<Loss>& losses, Next go_on) {
+  if (losses.empty()) return go_on();
+  const Guard& first = guards_[std::size_t(losses.front())];
+  const std::vector<Loss> rest(losses.begin() + 1, losses.end());
+  const Next next = [this, rest, go_on = std::move(go_on)] { unlessLost(rest, go_on); };
+  first ? first(next) : next();
+}
+
+void Bench::unlessCutsAreLost(Next go_on) {
+  if (!cuts_unsaved_) return go_on();
+  QMessageBox* question =
+      ask(&window_, "cutsQuestion", tr("What was cut is not saved as a volume."),
+          tr("Going on takes it from the view. The recording of the exercise is kept."),
+          tr("&Go on without it"), go_on);
+  auto* save = question->addButton(tr("&Save volume\u2026"), QMessageBox::AcceptRole);
+  save->setObjectName("saveFirst");
+  connect(
+      save, &QPushButton::clicked, this,
+      [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); }, Qt::QueuedConnection);
+}
+
+bool Bench::keepsTheCase(const std::filesystem::path& target) {
+  const std::string scene_case = workstation_.scene() ? workstation_.scene()->case_source : "";
+  for (const std::string& source : {case_source_.string(), scene_case}) {
+    const Status kept = keepsCase(target, source);
+    if (kept) continue;
+    report(kept.error());
+    return false;
+  }
+  return true;
+}
+
+// --- The case in the views ---
+
+void Bench::setCuts(bool carved, bool unsaved) {
+  carved_ = carved;
+  cuts_unsaved_ = unsaved;
+  emit cutsChanged();
+}
+
+void Bench::showCase() {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of) return;
+  view().setTools({});
+  views_->setTools({});
+  if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {
+    views_->showVolume(std::move(mirror), of->labels, of->volume);
+  } else {
+    views_->refill(of->volume, of->labels);
+  }
+  setCuts(false, false);
+  emit caseShown();
+  lookAtCase();
+}
+
+// The view has the case already, unless an earlier exercise left its cuts there.
+void Bench::exerciseBegan() {
+  const Case& of = *workstation_.currentCase();
+  if (carved_) views_->refill(of.volume, of.labels);
+  setCuts(true, false);
+}
+
+void Bench::exerciseEnded(bool anything_cut) {
+  setCuts(carved_, anything_cut);
+}
+
+void Bench::showWholeCase() {
+  workstation_.makeWhole();
+  const Case& of = *workstation_.currentCase();
+  views_->refill(of.volume, of.labels);
+  setCuts(false, false);
+}
+
+void Bench::lookAtCase() {
+  if (const std::optional<LandmarkFrame> landmark = workstation_.viewLandmark()) {
+    views_->setPoint(landmark->position_mm);
+    view().lookAtLandmark(*landmark, workstation_.scene()->view.distance_mm);
+  } else {
+    view().lookFromFront();
+  }
+}
+
+void Bench::askToSavePicture() {
+  QFileDialog* dialog = saveDialog(tr("Save picture"), "trephine.png", tr("Picture (*.png)"));
+  connect(dialog, &QFileDialog::fileSelected, this, &Bench::savePicture);
+  dialog->open();
+}
+
+void Bench::savePicture(const QString& file) {
+  Result<Picture> picture = view().picture();
+  if (!picture) return report(picture.error());
+  workstation_.save(tr("The picture is saved."),
+                    [picture = *std::move(picture), path = toPath(file)](const Progress&) {
+                      return writePng(picture, path);
+                    });
+}
+
+void Bench::askToSaveVolume(Next then) {
+  QFileDialog* dialog =
+      saveDialog(tr("Save volume"), "carved.mha", tr("MetaImage (*.mha);;NIfTI (*.nii *.nii.gz)"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this, then = std::move(then)](const QString& file) { saveVolume(file, then); });
+  dialog->open();
+}
+
+void Bench::saveVolume(const QString& file, Next then) {
+  if (!keepsTheCase(toPath(file))) return;
+  // What a running exercise shows may be cut further.
+  const bool all = workstation_.phase() == Workstation::Phase::ready;
+  say(tr("Saving the volume\u2026"));
+  workstation_.saveVolume(toPath(file), [this, all, then = std::move(then)] {
+    if (all) setCuts(carved_, false);
+    if (then) then();
+  });
+}
+
+}  // namespace trephine
