@@ -1,145 +1,354 @@
 #include "ui/cases/cases_page.h"
 
+#include <QEvent>
 #include <QGridLayout>
+#include <QHBoxLayout>
+#include <QInputDialog>
+#include <QKeyEvent>
+#include <QPainter>
 #include <QVBoxLayout>
+#include <algorithm>
 
+#include "ui/common/colours.h"
 #include "ui/common/icons.h"
+#include "ui/common/placing.h"
 #include "ui/common/words.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr int kProgressSteps = 1000;
+constexpr QSize kPicture(192, 144);
+constexpr QSize kCard(208, 222);
+constexpr int kDetailsWidth = 280;
+constexpr int kIdRole = Qt::UserRole;
 
-QLabel* quietLabel(const QString& text, QWidget* parent) {
-  auto* label = new QLabel(text, parent);
-  label->setProperty("quiet", true);
-  label->setWordWrap(true);
-  return label;
+QPushButton* button(const char* name, const QString& text, bool primary = false) {
+  auto* made = new QPushButton(text);
+  made->setObjectName(name);
+  if (primary) made->setProperty("primary", true);
+  return made;
+}
+
+// A case without one: a frame with its initial, so that the card is not a hole.
+QPixmap cardPicture(const CaseEntry& entry) {
+  if (!entry.picture.isNull()) {
+    return QPixmap::fromImage(
+        entry.picture.scaled(kPicture, Qt::KeepAspectRatio, Qt::SmoothTransformation));
+  }
+  QPixmap empty(kPicture);
+  empty.fill(colours::kPanel);
+  QPainter painter(&empty);
+  painter.setPen(colours::kLine);
+  painter.drawRect(empty.rect().adjusted(0, 0, -1, -1));
+  painter.setPen(colours::kQuiet);
+  painter.drawText(empty.rect(), Qt::AlignCenter,
+                   entry.problem ? CasesPage::tr("damaged") : CasesPage::tr("no picture yet"));
+  return empty;
 }
 
 }  // namespace
 
 CasesPage::CasesPage(QWidget* parent) : QWidget(parent) {
-  folder_ = new QPushButton(symbolIcon(Symbol::open), tr("Open folder of CT\u2026"), this);
-  folder_->setObjectName("openFolder");
-  series_ = new QPushButton(tr("Use another series\u2026"), this);
-  series_->setObjectName("anotherSeries");
-  cranium_ = new QPushButton(tr("Cranium phantom"), this);
-  cranium_->setObjectName("craniumPhantom");
-  abdomen_ = new QPushButton(tr("Abdomen phantom"), this);
-  abdomen_->setObjectName("abdomenPhantom");
-
-  auto* card = new QFrame(this);
-  card->setProperty("card", true);
-  case_ =
-      new QLabel(tr("No case is open.\nOpen a folder of CT, or drop one on this window."), card);
-  case_->setObjectName("caseLabel");
-  case_->setTextFormat(Qt::PlainText);
-  case_->setWordWrap(true);
-  auto* card_layout = new QVBoxLayout(card);
-  card_layout->addWidget(case_);
-
-  step_ = quietLabel({}, this);
-  progress_ = new QProgressBar(this);
-  progress_->setObjectName("openProgress");
-  progress_->setRange(0, kProgressSteps);
-  progress_->setTextVisible(false);
-  progress_->setMaximumHeight(14);
-  cancel_ = new QPushButton(tr("Cancel"), this);
-  cancel_->setObjectName("cancelOpening");
-  progress_box_ = new QWidget(this);
-  auto* progress_row = new QGridLayout(progress_box_);
-  progress_row->setContentsMargins(0, 0, 0, 0);
-  progress_row->addWidget(step_, 0, 0, 1, 2);
-  progress_row->addWidget(progress_, 1, 0);
-  progress_row->addWidget(cancel_, 1, 1);
-  progress_box_->hide();
-
-  auto* built_in = new QHBoxLayout;
-  built_in->addWidget(cranium_);
-  built_in->addWidget(abdomen_);
-
+  cards_ = new QListWidget;
+  cards_->setObjectName("cases");
+  cards_->setAccessibleName(tr("Cases"));
+  cards_->setViewMode(QListView::IconMode);
+  cards_->setMovement(QListView::Static);
+  cards_->setResizeMode(QListView::Adjust);
+  cards_->setIconSize(kPicture);
+  cards_->setGridSize(kCard);
+  cards_->setWordWrap(true);
+  cards_->setSpacing(4);
+  cards_->setUniformItemSizes(true);
+  cards_->setTextElideMode(Qt::ElideRight);
+  cards_->installEventFilter(this);
+  details_ = buildDetails();
+  auto* row = new QHBoxLayout;
+  row->setSpacing(10);
+  row->addWidget(cards_, 1);
+  row->addWidget(details_);
   auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(10, 10, 10, 10);
-  layout->setSpacing(8);
-  layout->addWidget(card);
-  layout->addWidget(progress_box_);
-  layout->addWidget(folder_);
-  layout->addWidget(series_);
-  layout->addSpacing(4);
-  layout->addWidget(quietLabel(tr("Built-in cases"), this));
-  layout->addLayout(built_in);
-  layout->addStretch(1);
-
-  connect(folder_, &QPushButton::clicked, this, &CasesPage::folderWanted);
-  connect(series_, &QPushButton::clicked, this, &CasesPage::seriesWanted);
-  connect(cranium_, &QPushButton::clicked, this, [this] { emit phantomWanted("cranium"); });
-  connect(abdomen_, &QPushButton::clicked, this, [this] { emit phantomWanted("abdomen"); });
-  connect(cancel_, &QPushButton::clicked, this, &CasesPage::cancelWanted);
-  showButtons();
+  layout->setContentsMargins(16, 12, 16, 12);
+  layout->setSpacing(10);
+  layout->addWidget(buildStrip());
+  layout->addLayout(row, 1);
+  connect(cards_, &QListWidget::currentItemChanged, this, &CasesPage::showChosen);
+  connect(cards_, &QListWidget::itemActivated, this, [this] {
+    if (train_->isEnabled()) train_->click();
+  });
+  showChosen();
+  showStrip();
 }
 
-void CasesPage::showCase(const QString& what) {
-  case_->setText(what);
+// The next step, whoever one is.
+QWidget* CasesPage::buildStrip() {
+  auto* strip = new QFrame;
+  strip->setObjectName("nextStep");
+  strip->setProperty("card", true);
+  strip_title_ = new QLabel;
+  strip_title_->setObjectName("nextStepTitle");
+  strip_title_->setProperty("heading", true);
+  strip_title_->setWordWrap(true);
+  strip_words_ = new QLabel;
+  strip_words_->setObjectName("caseLabel");
+  strip_words_->setTextFormat(Qt::PlainText);
+  strip_words_->setWordWrap(true);
+  strip_train_ = button("nextTrain", tr("&Train"), true);
+  strip_prepare_ = button("nextPrepare", tr("&Prepare"));
+  strip_save_ = button("saveCase", tr("&Save the case"), true);
+  folder_ = button("openFolder", tr("Open &folder of CT\u2026"));
+  folder_->setIcon(symbolIcon(Symbol::open));
+  series_ = button("anotherSeries", tr("Use another se&ries\u2026"));
+  auto* words = new QVBoxLayout;
+  words->setSpacing(4);
+  words->addWidget(strip_title_);
+  words->addWidget(strip_words_);
+  auto* layout = new QHBoxLayout(strip);
+  layout->setContentsMargins(14, 10, 14, 10);
+  layout->setSpacing(8);
+  layout->addLayout(words, 1);
+  auto* buttons = new QGridLayout;
+  buttons->setSpacing(6);
+  buttons->addWidget(strip_save_, 0, 0);
+  buttons->addWidget(strip_train_, 0, 1);
+  buttons->addWidget(strip_prepare_, 0, 2);
+  buttons->addWidget(series_, 1, 1);
+  buttons->addWidget(folder_, 1, 2);
+  layout->addLayout(buttons);
+  connect(folder_, &QPushButton::clicked, this, &CasesPage::folderWanted);
+  connect(series_, &QPushButton::clicked, this, &CasesPage::seriesWanted);
+  connect(strip_save_, &QPushButton::clicked, this, &CasesPage::saveWanted);
+  connect(strip_train_, &QPushButton::clicked, this, [this] { takeNextStep(true); });
+  connect(strip_prepare_, &QPushButton::clicked, this, [this] { takeNextStep(false); });
+  return strip;
+}
+
+QWidget* CasesPage::buildDetails() {
+  picture_ = new QLabel;
+  picture_->setAlignment(Qt::AlignCenter);
+  name_ = new QLabel;
+  name_->setObjectName("caseName");
+  name_->setProperty("title", true);
+  name_->setWordWrap(true);
+  about_ = new QLabel;
+  about_->setObjectName("caseAbout");
+  about_->setTextFormat(Qt::PlainText);
+  about_->setWordWrap(true);
+  done_ = new QLabel;
+  done_->setObjectName("caseExercises");
+  done_->setProperty("quiet", true);
+  done_->setTextFormat(Qt::PlainText);
+  done_->setWordWrap(true);
+  train_ = button("trainOnCase", tr("T&rain on it"), true);
+  prepare_ = button("prepareCase", tr("Pr&epare it"));
+  rename_ = button("renameCase", tr("Re&name\u2026"));
+  report_ = button("caseReport", tr("&Import report"));
+  delete_ = button("deleteCase", tr("&Delete\u2026"));
+  exercises_ = button("caseRecordings", tr("Its e&xercises"));
+  auto* page = new QWidget;
+  auto* layout = new QVBoxLayout(page);
+  layout->setContentsMargins(8, 0, 4, 0);
+  layout->setSpacing(8);
+  layout->addWidget(name_);
+  layout->addWidget(picture_);
+  layout->addWidget(about_);
+  layout->addWidget(train_);
+  layout->addWidget(prepare_);
+  layout->addWidget(done_);
+  auto* more = new QGridLayout;
+  more->setSpacing(6);
+  more->addWidget(exercises_, 0, 0);
+  more->addWidget(report_, 0, 1);
+  more->addWidget(rename_, 1, 0);
+  more->addWidget(delete_, 1, 1);
+  layout->addLayout(more);
+  layout->addStretch(1);
+  const auto withChosen = [this](auto signal) {
+    return [this, signal] {
+      if (const CaseEntry* entry = chosen()) emit (this->*signal)(*entry);
+    };
+  };
+  connect(train_, &QPushButton::clicked, this, withChosen(&CasesPage::trainWanted));
+  connect(prepare_, &QPushButton::clicked, this, withChosen(&CasesPage::prepareWanted));
+  connect(report_, &QPushButton::clicked, this, withChosen(&CasesPage::reportWanted));
+  connect(delete_, &QPushButton::clicked, this, withChosen(&CasesPage::deleteWanted));
+  connect(exercises_, &QPushButton::clicked, this, &CasesPage::exercisesWanted);
+  connect(rename_, &QPushButton::clicked, this, [this] {
+    const CaseEntry* entry = chosen();
+    if (!entry) return;
+    auto* dialog = new QInputDialog(this);
+    dialog->setObjectName("renameDialog");
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle(tr("Rename the case"));
+    dialog->setLabelText(tr("A name that does not say who the patient is:"));
+    dialog->setTextValue(toQt(entry->record.name));
+    connect(dialog, &QInputDialog::textValueSelected, this,
+            [this, entry = *entry](const QString& name) { emit renameWanted(entry, name); });
+    dialog->open();
+  });
+  QScrollArea* area = scrolled(page, "caseDetails");
+  area->setFixedWidth(kDetailsWidth);
+  return area;
+}
+
+bool CasesPage::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == cards_ && event->type() == QEvent::KeyPress) {
+    switch (static_cast<QKeyEvent*>(event)->key()) {
+      case Qt::Key_Delete:
+        if (delete_->isEnabled()) delete_->click();
+        return true;
+      case Qt::Key_F2:
+        if (rename_->isEnabled()) rename_->click();
+        return true;
+      default:
+        break;
+    }
+  }
+  return QWidget::eventFilter(watched, event);
+}
+
+const CaseEntry* CasesPage::find(const std::string& id) const {
+  const auto found = std::ranges::find(entries_, id, &CaseEntry::id);
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+const CaseEntry* CasesPage::chosen() const {
+  const QListWidgetItem* item = cards_->currentItem();
+  return item ? find(item->data(kIdRole).toString().toStdString()) : nullptr;
+}
+
+void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
+  const CaseEntry* before = chosen();
+  const std::string keep = before ? before->id : open_;
+  std::map<std::string, QImage> pictures;  // that were made here
+  for (const CaseEntry& entry : entries_) pictures[entry.id] = entry.picture;
+  entries_ = entries;
+  cards_->clear();
+  for (CaseEntry& entry : entries_) {
+    if (entry.picture.isNull()) entry.picture = pictures[entry.id];
+    auto* item = new QListWidgetItem(QIcon(cardPicture(entry)), cardWords(entry), cards_);
+    item->setData(kIdRole, toQt(entry.id));
+    item->setToolTip(detailWords(entry));
+    item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
+    item->setSizeHint(kCard);
+  }
+  select(keep);
+  if (!cards_->currentItem() && cards_->count() > 0) cards_->setCurrentRow(0);
+  showChosen();
+  showStrip();
+}
+
+void CasesPage::showPicture(const std::string& id, const QImage& picture) {
+  for (CaseEntry& entry : entries_) {
+    if (entry.id == id) entry.picture = picture;
+  }
+  for (int i = 0; i < cards_->count(); ++i) {
+    const CaseEntry* entry = find(cards_->item(i)->data(kIdRole).toString().toStdString());
+    if (entry && entry->id == id) cards_->item(i)->setIcon(QIcon(cardPicture(*entry)));
+  }
+  showChosen();
+}
+
+void CasesPage::select(const std::string& id) {
+  for (int i = 0; i < cards_->count(); ++i) {
+    if (cards_->item(i)->data(kIdRole).toString() == toQt(id)) cards_->setCurrentRow(i);
+  }
+}
+
+void CasesPage::showOpen(const std::string& id, const QString& about, bool saved) {
+  any_open_ = true;
+  open_ = id;
+  open_about_ = about;
+  open_saved_ = saved;
+  showStrip();
+}
+
+void CasesPage::setRecent(const std::string& id) {
+  recent_ = id;
+  showStrip();
+}
+
+void CasesPage::sayInStrip(const QString& words) {
+  said_ = words;
+  showStrip();
 }
 
 void CasesPage::setSeriesAtHand(bool at_hand) {
   at_hand_ = at_hand;
-  showButtons();
-}
-
-void CasesPage::showProgress(double fraction, const QString& step) {
-  busy_ = true;
-  progress_box_->show();
-  step_->setText(step);
-  progress_->setValue(int(fraction * kProgressSteps));
-  showButtons();
-}
-
-void CasesPage::endProgress() {
-  busy_ = false;
-  progress_box_->hide();
-  showButtons();
+  showStrip();
 }
 
 void CasesPage::setOpeningAllowed(bool allowed) {
   allowed_ = allowed;
-  showButtons();
+  showChosen();
+  showStrip();
 }
 
-void CasesPage::showButtons() {
-  const bool may = allowed_ && !busy_;
-  for (QPushButton* button : {folder_, cranium_, abdomen_}) button->setEnabled(may);
+void CasesPage::showChosen() {
+  const CaseEntry* entry = chosen();
+  details_->setVisible(entry);
+  if (!entry) return;
+  picture_->setPixmap(cardPicture(*entry));
+  name_->setText(toQt(entry->record.name.empty() ? entry->id : entry->record.name));
+  about_->setText(detailWords(*entry));
+  QStringList done;
+  constexpr std::size_t kMost = 3;
+  for (std::size_t i = 0; i < std::min(kMost, entry->exercises.size()); ++i) {
+    const ListedRecording& one = entry->exercises[i];
+    done << tr("%1, %2").arg(toQt(one.exercise), timeWords(std::uint32_t(one.seconds)));
+  }
+  if (entry->exercises.size() > kMost) {
+    done << tr("and %1 more").arg(entry->exercises.size() - kMost);
+  }
+  done_->setText(done.isEmpty() ? tr("No exercise has been done on it yet.")
+                                : tr("Exercises done on it:") + '\n' + done.join('\n'));
+  const bool whole = !entry->problem;
+  train_->setEnabled(whole && allowed_);
+  prepare_->setEnabled(whole && allowed_);
+  exercises_->setEnabled(!entry->exercises.empty());
+  rename_->setVisible(!entry->built_in);
+  rename_->setEnabled(whole);
+  report_->setVisible(!entry->built_in);
+  report_->setEnabled(whole && entry->record.verdict);
+  delete_->setVisible(!entry->built_in);
+}
+
+void CasesPage::takeNextStep(bool train) {
+  const CaseEntry* entry = find(any_open_ ? open_ : recent_);
+  if (!entry) return;
+  train ? emit trainWanted(*entry) : emit prepareWanted(*entry);
+}
+
+void CasesPage::showStrip() {
+  const CaseEntry* recent = find(recent_);
+  const bool go_on = any_open_ || (recent && !recent->problem);
+  QString title, words;
+  if (!said_.isEmpty()) {
+    title = said_;
+    words = open_about_;
+  } else if (any_open_) {
+    title = open_saved_ ? tr("A case is open: practise on it, or prepare it")
+                        : tr("The open case is not saved yet");
+    words = open_about_;
+  } else if (recent && !recent->problem) {
+    title = tr("Go on with \"%1\"").arg(toQt(recent->record.name));
+    words = tr("Or choose another case below, or open a folder of CT.");
+  } else {
+    title = tr("Choose a case to practise on");
+    words = tr("Take one of the built-in cases below, or open a folder of CT: it becomes a case of "
+               "yours. It can be dropped on this window, too.");
+  }
+  strip_title_->setText(title);
+  strip_words_->setText(words);
+  strip_save_->setVisible(any_open_ && !open_saved_);
+  strip_train_->setVisible(go_on);
+  strip_prepare_->setVisible(go_on);
+  strip_train_->setEnabled(allowed_ || any_open_);
+  strip_prepare_->setEnabled(allowed_ || any_open_);
+  folder_->setEnabled(allowed_);
   series_->setVisible(at_hand_);
-  series_->setEnabled(may);
-}
-
-QString caseWords(const Case& of) {
-  QString about = sizeWords(of.volume->geometry);
-  if (!of.name.empty()) about = toQt(of.name) + '\n' + about;
-  if (of.anatomy) {
-    switch (of.anatomy->region) {
-      case BodyRegion::head:
-        about += of.anatomy->vault ? CasesPage::tr("\nA head") : CasesPage::tr("\nA head whose vault is not whole");
-        break;
-      case BodyRegion::abdomen:
-        about += CasesPage::tr("\nAn abdomen");
-        break;
-      case BodyRegion::not_sure:
-        about += CasesPage::tr("\nWhat it shows is not known");
-    }
-  }
-  if (of.structures && !of.structures->structures.empty()) {
-    QStringList names;
-    for (const Structure& s : of.structures->structures) names << toQt(s.name);
-    constexpr int kMost = 6;
-    const int more = int(names.size()) - kMost;
-    about += CasesPage::tr("\nwith %1").arg(QStringList(names.mid(0, kMost)).join(", "));
-    if (more > 0) about += CasesPage::tr(" and %1 more").arg(more);
-  }
-  return about;
+  series_->setEnabled(allowed_);
 }
 
 }  // namespace trephine

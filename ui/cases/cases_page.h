@@ -1,13 +1,17 @@
-// Where the case comes from: a folder or file of CT, another series of it, or a built-in case;
-// which one is open; how far opening is.
+// What there is to practise on, as cards; the chosen one at length, with what can be done with it;
+// and on top the next step. It shows what it is given and says what is wanted.
 #pragma once
 
+#include <QFrame>
 #include <QLabel>
-#include <QProgressBar>
+#include <QListWidget>
 #include <QPushButton>
+#include <QToolButton>
 #include <QWidget>
+#include <optional>
+#include <vector>
 
-#include "session/case.h"
+#include "ui/cases/case_entry.h"
 
 namespace trephine {
 
@@ -16,31 +20,56 @@ class CasesPage : public QWidget {
  public:
   explicit CasesPage(QWidget* parent = nullptr);
 
-  void showCase(const QString& what);
+  void showCases(const std::vector<CaseEntry>& entries);
+  // A card that another was made of in the meantime, its picture perhaps.
+  void showPicture(const std::string& id, const QImage& picture);
+  void select(const std::string& id);
+  // Which is open (an id), and a few lines about it; `saved`: the library has it.
+  void showOpen(const std::string& id, const QString& about, bool saved);
+  // The one that was open last, by id; empty: none.
+  void setRecent(const std::string& id);
+  // Said in the strip of the next step until another case is opened.
+  void sayInStrip(const QString& words);
   // A folder is at hand, so that another series of it can be used.
   void setSeriesAtHand(bool at_hand);
-  void showProgress(double fraction, const QString& step);
-  void endProgress();
-  // While an exercise runs no other case can be opened.
+  // While an exercise runs, or a case is being opened, no other can be.
   void setOpeningAllowed(bool allowed);
 
  signals:
   void folderWanted();
-  void phantomWanted(const QString& name);
+  void fileWanted();
   void seriesWanted();
-  void cancelWanted();
+  void trainWanted(const trephine::CaseEntry& entry);
+  void prepareWanted(const trephine::CaseEntry& entry);
+  void saveWanted();  // the open case
+  void renameWanted(const trephine::CaseEntry& entry, const QString& name);
+  void reportWanted(const trephine::CaseEntry& entry);
+  void deleteWanted(const trephine::CaseEntry& entry);
+  void exercisesWanted();
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  void showButtons();
+  QWidget* buildStrip();
+  QWidget* buildDetails();
+  const CaseEntry* chosen() const;
+  const CaseEntry* find(const std::string& id) const;
+  void showChosen();
+  void showStrip();
+  void takeNextStep(bool train);
 
-  bool at_hand_ = false, allowed_ = true, busy_ = false;
-  QPushButton *folder_, *series_, *cranium_, *abdomen_, *cancel_;
-  QLabel *case_, *step_;
-  QProgressBar* progress_;
-  QWidget* progress_box_;
+  std::vector<CaseEntry> entries_;
+  std::string open_, recent_;
+  bool open_saved_ = true, any_open_ = false;
+  QString open_about_, said_;
+  bool at_hand_ = false, allowed_ = true;
+  QLabel *strip_title_, *strip_words_;
+  QPushButton *strip_train_, *strip_prepare_, *strip_save_, *folder_, *series_;
+  QListWidget* cards_;
+  QWidget* details_;
+  QLabel *picture_, *name_, *about_, *done_;
+  QPushButton *train_, *prepare_, *rename_, *report_, *delete_, *exercises_;
 };
-
-// What a case is and shows, in a few lines.
-QString caseWords(const Case& of);
 
 }  // namespace trephine

@@ -1,0 +1,123 @@
+#include "ui/cases/case_entry.h"
+
+#include <QCoreApplication>
+#include <QLocale>
+
+#include "library/case_picture.h"
+#include "ui/cases/import_words.h"
+#include "ui/common/words.h"
+#include "volume/phantom.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kStructuresNamed = 6;
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("CaseEntry", text);
+}
+
+QString regionWords(BodyRegion region) {
+  return region == BodyRegion::head ? tr("A head")
+         : region == BodyRegion::abdomen
+             ? tr("An abdomen")
+             : tr("What it shows is not known");
+}
+
+template <class Structures>
+QString structureNames(const Structures& structures, int most) {
+  QStringList names;
+  for (const auto& s : structures) names << toQt(s.name);
+  const int more = int(names.size()) - most;
+  const QString first = QStringList(names.mid(0, most)).join(", ");
+  return more > 0 ? tr("%1 and %2 more").arg(first).arg(more) : first;
+}
+
+// Pictures and hashes of the built-in cases cost a second: they are made once a program.
+CaseEntry builtIn(const std::string& name) {
+  CaseEntry entry;
+  entry.id = name;
+  entry.built_in = true;
+  entry.record.name =
+      (name == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in")).toStdString();
+  entry.record.region = name == "cranium" ? BodyRegion::head : BodyRegion::abdomen;
+  if (const auto geometry = phantomGeometry(name)) entry.record.grid = *geometry;
+  return entry;
+}
+
+}  // namespace
+
+QString cardWords(const CaseEntry& entry) {
+  QStringList lines{toQt(entry.record.name.empty() ? entry.id : entry.record.name)};
+  if (entry.problem) {
+    lines << tr("Cannot be opened");
+  } else {
+    if (entry.built_in) {
+      lines << regionWords(entry.record.region);
+    } else if (entry.record.verdict) {
+      lines << verdictWord(*entry.record.verdict);
+    }
+    const std::size_t structures = entry.record.structures.size();
+    if (structures > 0) lines << tr("%1 structures").arg(structures);
+  }
+  return lines.join('\n');
+}
+
+QString detailWords(const CaseEntry& entry) {
+  if (entry.problem) return toQt(entry.problem->sentence());
+  const CaseRecord& record = entry.record;
+  QStringList lines{regionWords(record.region) + '.', sizeWords(record.grid)};
+  const QDateTime imported = QDateTime::fromString(toQt(record.imported), Qt::ISODate);
+  if (imported.isValid()) {
+    lines << tr("Imported %1").arg(QLocale().toString(imported, QLocale::ShortFormat));
+  }
+  if (record.verdict) lines << tr("Import: %1").arg(verdictWord(*record.verdict));
+  if (!record.structures.empty()) {
+    lines << tr("Structures: %1").arg(structureNames(record.structures, kStructuresNamed));
+  }
+  if (record.bytes > 0) lines << tr("%1 on the disk").arg(megabytes(double(record.bytes) / 1048576.0));
+  return lines.join('\n');
+}
+
+QString caseWords(const Case& of) {
+  QString about = sizeWords(of.volume->geometry);
+  if (!of.name.empty()) about = toQt(of.name) + '\n' + about;
+  if (of.anatomy) {
+    const bool open_vault = of.anatomy->region == BodyRegion::head && !of.anatomy->vault;
+    about += '\n' + (open_vault ? tr("A head whose vault is not whole")
+                                : regionWords(of.anatomy->region));
+  }
+  if (of.structures && !of.structures->structures.empty()) {
+    about += '\n' + tr("with %1").arg(structureNames(of.structures->structures, kStructuresNamed));
+  }
+  return about;
+}
+
+Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
+                                         const std::filesystem::path& recordings,
+                                         const Progress& progress) {
+  std::vector<CaseEntry> entries;
+  for (const ListedCase& listed : library.list()) {
+    CaseEntry entry;
+    entry.id = listed.id;
+    entry.record = listed.record;
+    entry.problem = listed.problem;
+    (void)entry.picture.load(toQt(listed.record.folder / "picture.png"));
+    entries.push_back(std::move(entry));
+  }
+  for (const char* name : {"cranium", "abdomen"}) entries.push_back(builtIn(name));
+  Result<std::vector<ListedRecording>> recorded = listRecordings(recordings, progress);
+  if (!recorded) return recorded.error();
+  for (CaseEntry& entry : entries) {
+    for (const ListedRecording& one : *recorded) {
+      const bool of_it = entry.built_in ? one.case_source == phantomSource(entry.id)
+                                        : !entry.record.volume_sha256.empty() &&
+                                              one.volume_sha256 == entry.record.volume_sha256;
+      if (of_it) entry.exercises.push_back(one);
+    }
+  }
+  return entries;
+}
+
+}  // namespace trephine

@@ -1,0 +1,38 @@
+// A case as the list of cases shows it: one of the library's, or a built-in one.
+#pragma once
+
+#include <QImage>
+#include <QString>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "library/case_library.h"
+#include "session/case.h"
+#include "training/recording_list.h"
+
+namespace trephine {
+
+struct CaseEntry {
+  std::string id;       // the library's; of a built-in one its name, "cranium", "abdomen"
+  bool built_in = false;
+  CaseRecord record;                       // of the library; of a built-in one its name, grid and hash
+  std::optional<Error> problem;            // why it cannot be opened
+  QImage picture;                          // null: there is none
+  std::vector<ListedRecording> exercises;  // done on it, the newest first
+};
+
+// The picture and what stands below it: name, size, verdict, structures.
+QString cardWords(const CaseEntry& entry);
+// The same at length, for the chosen one: plain text.
+QString detailWords(const CaseEntry& entry);
+// What a case is and shows, in a few lines.
+QString caseWords(const Case& of);
+
+// All that there is to practise on: the library's, the newest first, then the built-in ones; with
+// the exercises that were done on each. Takes some hundredths of a second a case. Any thread.
+Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
+                                         const std::filesystem::path& recordings,
+                                         const Progress& progress = Progress());
+
+}  // namespace trephine
