@@ -368,6 +368,18 @@ std::vector<ScreenNames> CtFolder::screenNames() const {
   return names;
 }
 
+SourceIdentity CtFolder::sourceIdentity(const std::string& uid) const {
+  SourceIdentity identity;
+  const Source* source = contents_->find(uid);
+  if (!source) return identity;
+  if (!source->file.empty()) identity.addFile(source->file);
+  for (const DicomHeader& slice : source->series.slices) {
+    if (slice.identity) identity.add(*slice.identity);
+    identity.addFile(slice.file);
+  }
+  return identity;
+}
+
 std::vector<CtFolder::LabelFile> CtFolder::labelFiles() const {
   std::vector<LabelFile> files;
   if (!contents_->hasDicomCt()) return files;

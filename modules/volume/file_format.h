@@ -22,10 +22,11 @@ Result<VolumeFileHeader> readRawHeader(const std::filesystem::path& file);
 std::optional<std::filesystem::path> sibling(const std::filesystem::path& file,
                                              const std::string& ending);
 
-// To `temporary`, for a grid that was checked; `type` is int16 or uint8; errors name `target`. A
-// NIfTI that is cancelled ends early with any answer.
+// To `temporary`, for a grid that was checked; `type` is int16 or uint8; errors name `target`. What
+// is cancelled ends early with any answer.
 Status writeMetaImage(const VoxelSlabs& voxels, VoxelType type,
-                      const std::filesystem::path& temporary, const std::filesystem::path& target);
+                      const std::filesystem::path& temporary, const std::filesystem::path& target,
+                      const Progress& progress);
 Status writeNifti(const VoxelSlabs& voxels, VoxelType type, const std::filesystem::path& temporary,
                   const std::filesystem::path& target, const Progress& progress);
 // The voxels of a slab as they go to a file: `narrow` holds those that are bytes there.

@@ -215,14 +215,14 @@ Result<VolumeFileHeader> readMetaImageHeader(const fs::path& file) {
 }
 
 Status writeMetaImage(const VoxelSlabs& voxels, VoxelType type, const fs::path& temporary,
-                      const fs::path& target) {
+                      const fs::path& target, const Progress& progress) {
   std::ofstream out(temporary, std::ios::binary);
   out << headerText(voxels.geometry, type);
   std::vector<std::byte> narrow;
   voxels.forEach([&](std::span<const std::int16_t> slab) {
     const std::span<const std::byte> stored = storedAs(type, slab, narrow);
     out.write(reinterpret_cast<const char*>(stored.data()), std::streamsize(stored.size()));
-    return bool(out);
+    return bool(out) && !progress.cancelled();
   });
   out.close();
   if (!out) return cannotWrite(target);

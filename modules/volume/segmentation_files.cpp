@@ -1,6 +1,7 @@
 // Segmentations as files: layers of a NRRD as 3D Slicer writes them, and label maps of any format
 // with their names beside them. Names in a NRRD follow 3D Slicer's keys (Segment0_Name,
-// Segment0_Color, Segment0_Layer, Segment0_LabelValue); ITK-SNAP's text of labels has a line of
+// Segment0_Color, Segment0_Layer, Segment0_LabelValue), and a tissue is one of its tags
+// (Segment0_Tags, "key:value|"), which it keeps; ITK-SNAP's text of labels has a line of
 // number, red, green, blue, opacity, two marks and a quoted name for each.
 #include <algorithm>
 #include <array>
@@ -30,6 +31,7 @@ using namespace file_format;
 using Segment = Segmentation::Segment;
 
 constexpr Range kLabels{1, 255}, kShares{0, 1};
+constexpr std::string_view kTissueTag = "Trephine.Tissue:";
 constexpr std::size_t kMostText = std::size_t(1) << 20;
 
 Error tooMany(std::size_t count, const fs::path& file) {
@@ -151,6 +153,11 @@ std::vector<Segment> slicerSegments(const VolumeFileHeader& header) {
     segment.colour = colour && colour->size() == 3
                          ? glm::clamp(Vec3((*colour)[0], (*colour)[1], (*colour)[2]), 0.0, 1.0)
                          : labelColour(n + 1);
+    const std::string tags = text("Tags").value_or("");
+    if (const std::size_t at = tags.find(kTissueTag); at != tags.npos) {
+      const std::size_t from = at + kTissueTag.size();
+      segment.tissue = tags.substr(from, tags.find('|', from) - from);
+    }
     // Before there were values and layers, each had a layer of its own, of 0 and 1.
     const bool old = !text("LabelValue");
     segment.layer = std::size_t(number("Layer", old && header.layers > 1 ? n : 0, 255.0));
@@ -289,6 +296,8 @@ std::string nrrdHeader(const LabelMap& map, bool reversed) {
     text += key + "Color:=" + line + "\n" + key + extent + key + "ID:=Segment_" +
             std::to_string(s.label) + "\n" + key + "LabelValue:=" + std::to_string(s.label) + "\n" +
             key + "Layer:=0\n" + key + "Name:=" + oneLine(s.name) + "\n";
+    if (s.tissue.empty()) continue;
+    text += key + "Tags:=" + std::string(kTissueTag) + oneLine(s.tissue) + "|\n";
   }
   return text + "\n";
 }

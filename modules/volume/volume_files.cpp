@@ -118,7 +118,7 @@ Status writeVolume(const VoxelSlabs& voxels, const fs::path& file, const Progres
   Status saved = replaceFile(file, [&](const fs::path& temporary) -> Status {
     try {
       const Status written = endsWith(file, ".mha")
-                                 ? writeMetaImage(told, writing.type, temporary, file)
+                                 ? writeMetaImage(told, writing.type, temporary, file, progress)
                                  : writeNifti(told, writing.type, temporary, file, progress);
       if (progress.cancelled()) return Error{"CANCELLED", "Saving was cancelled", "", ""};
       return written;

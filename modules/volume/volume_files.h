@@ -102,7 +102,7 @@ struct VolumeWriting {
 // CANNOT_WRITE.
 // checkVolumeFileName says before a long run whether the name can be written at all.
 Status checkVolumeFileName(const std::filesystem::path& file);
-// Cancelled in between, nothing was written: CANCELLED; a NIfTI ends at once, the rest at its end.
+// Cancelled in between, it ends at once and nothing was written: CANCELLED.
 Status writeVolume(const VoxelSlabs& voxels, const std::filesystem::path& file,
                    const Progress& progress = Progress(), const VolumeWriting& writing = {});
 Status writeVolume(const Volume& volume, const std::filesystem::path& file);

@@ -80,7 +80,7 @@ MAY_USE = {
     "volume": {"zlib"},
     "tissue": set(),
     "imaging": {"dcmtk", "openjpeg", "vtk-image"},
-    "library": {"qt"},
+    "library": {"qt-gui"},
     "device": {"dl"},
     "haptics": {"glm"},
     "scene": set(),
@@ -110,7 +110,7 @@ HEADERS = {
     "vtk-rendering": r"vtk[A-Z]\w*\.h|vtk_gl(ew|ad)\.h|vtksys/\w+\.hxx",
     "opengl": r"GL/.+|vtk_gl(ew|ad)\.h",
     # Pictures and texts, no widgets and no events.
-    "qt-gui": r"Q(Color|Font\w*|GuiApplication|Image|LineF|List|Painter\w*|Pen|PluginLoader|PointF|PolygonF|"
+    "qt-gui": r"Q(Buffer|Char|Color|Font\w*|GuiApplication|Image|LineF|List|Painter\w*|Pen|PluginLoader|PointF|PolygonF|"
               r"RectF|SizeF|String)",
     "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",
     "cli11": r"CLI/.+",

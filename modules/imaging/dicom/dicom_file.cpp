@@ -442,6 +442,7 @@ Result<std::vector<DicomHeader>> readDicomHeaders(const std::filesystem::path& f
   header.patient = patientOf(data);
   header.patient_name = patientText(data);
   header.study_text = studyText(data);
+  header.identity = std::make_shared<const SourceIdentity>(identityOf(data));
   header.orientation = decimals<6>(data, DCM_ImageOrientationPatient);
 
   if (cut) {

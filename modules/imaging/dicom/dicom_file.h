@@ -12,6 +12,7 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "imaging/common/source_identity.h"
 #include "imaging/common/stored_values.h"
 
 namespace trephine {
@@ -68,6 +69,8 @@ struct DicomHeader {
   std::array<std::string, 3> patient;
   // For the screen alone, as ScreenNames has them.
   std::string patient_name, study_text;
+  // Its texts, without folders and files; shared by the frames of a file.
+  std::shared_ptr<const SourceIdentity> identity;
   // Set by grouping: of a series whose slices differ in what may be its writer's doing, the part that
   // it belongs to; 0 is the largest.
   int part = 0;

@@ -63,6 +63,27 @@ std::string studyText(const DicomItem& data) {
   return text;
 }
 
+SourceIdentity identityOf(const DicomItem& data) {
+  SourceIdentity identity;
+  const auto add = [&](IdentityKind kind, const DicomItem& item, const DcmTagKey& tag) {
+    for (const std::string& value : splitValues(decodedText(item, tag, data))) {
+      identity.add(kind, value);
+    }
+  };
+  for (const DcmTagKey& tag : {DCM_PatientName, DCM_PatientBirthName, DCM_OtherPatientNames}) {
+    add(IdentityKind::patient_name, data, tag);
+  }
+  for (const DcmTagKey& tag : {DCM_PatientID, DCM_RETIRED_OtherPatientIDs}) {
+    add(IdentityKind::patient_id, data, tag);
+  }
+  for (DcmItem* other : data.items(DCM_OtherPatientIDsSequence)) {
+    add(IdentityKind::patient_id, DicomItem(other), DCM_PatientID);
+  }
+  add(IdentityKind::accession, data, DCM_AccessionNumber);
+  add(IdentityKind::study_id, data, DCM_StudyID);
+  return identity;
+}
+
 std::array<std::string, 3> patientOf(const DicomItem& data) {
   static const std::string salt =
       std::to_string(std::random_device{}()) + std::to_string(std::random_device{}());

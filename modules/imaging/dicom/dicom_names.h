@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "imaging/common/source_identity.h"
 #include "imaging/dicom/dicom_values.h"
 
 namespace trephine {
@@ -13,6 +14,9 @@ std::string patientText(const DicomItem& data);
 
 // "Head, 2024-05-03": what a study is called, and its day.
 std::string studyText(const DicomItem& data);
+
+// All names of the patient, IDs, accession number and the study's own ID, as they stand there.
+SourceIdentity identityOf(const DicomItem& data);
 
 // Name, ID and birth date, each hashed, empty where absent. Nobody can be found by them outside of
 // this process: what is hashed along differs in each.

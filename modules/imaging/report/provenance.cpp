@@ -40,6 +40,59 @@ Json toJson(const Provenance& provenance) {
           {"build", provenance.build}};
 }
 
+namespace {
+
+constexpr std::size_t kMost = 4096;  // of findings, and of their slices
+constexpr Range kVoxels{0, 2048}, kSlices{0, 1e9}, kReductions{1, 4};
+constexpr Range kHu{0, 1e5}, kPercent{-1e6, 1e6};
+
+Index3 indexFrom(JsonReader& reader, const char* key) {
+  const std::vector<std::int64_t> n = reader.integers(key, 3, kVoxels);
+  return {std::int32_t(n[0]), std::int32_t(n[1]), std::int32_t(n[2])};
+}
+
+}  // namespace
+
+Result<Provenance> provenanceFrom(const Json& json, const std::string& file) {
+  Provenance provenance;
+  JsonReader reader(json, file);
+  provenance.source = reader.text("source");
+  provenance.transfer_syntax = reader.text("transfer_syntax");
+  provenance.lossy = reader.boolean("lossy", false);
+  provenance.slices_used = int(reader.integer("slices_used", kSlices));
+  const Json& answers = reader.raw("choices");
+  if (!answers.is_object()) reader.fail("choices", "Expected an object of texts");
+  for (const auto& [code, option] : answers.items()) {
+    if (!option.is_string()) {
+      reader.fail("choices", "Expected an object of texts");
+      break;
+    }
+    provenance.answers[code] = option.get<std::string>();
+  }
+  provenance.unanswered = reader.texts("unanswered", kMost);
+  provenance.unused_answers = reader.texts("unused_answers", kMost);
+  for (JsonReader& item : reader.objects("changes", kMost)) {
+    provenance.changes.push_back({item.text("code"), "repair", item.text("text"),
+                                  item.texts("slices", kMost), item.text("action")});
+  }
+  if (!reader.raw("crop").is_null()) {
+    JsonReader crop = reader.object("crop");
+    provenance.crop = VoxelBox{indexFrom(crop, "low"), indexFrom(crop, "high")};
+  }
+  provenance.reduction = int(reader.integer("reduction", kReductions));
+  if (!reader.raw("loss").is_null()) {
+    JsonReader loss = reader.object("loss");
+    provenance.loss = MeasuredLoss{loss.number("rms_hu", kHu), loss.number("p99_hu", kHu),
+                                   loss.number("bone_volume_change_percent", kPercent)};
+  }
+  provenance.volume_sha256 = reader.text("volume_sha256");
+  JsonReader ids = reader.object("source_ids");
+  provenance.source_ids = {ids.text("study"), ids.text("series"), ids.text("frame_of_reference")};
+  provenance.build = reader.text("build");
+  if (Status status = reader.finish(); !status) return status.error();
+  return provenance;
+}
+
 std::filesystem::path provenanceFile(const std::filesystem::path& volume_file) {
   return volume_file.parent_path() / (volume_file.filename().string() + ".provenance.json");
 }

@@ -13,6 +13,9 @@ namespace trephine {
 
 Json toJson(const Provenance& provenance);
 
+// The same back; `file` is named in errors. Errors: BAD_FIELD.
+Result<Provenance> provenanceFrom(const Json& json, const std::string& file);
+
 // "head.nii.gz.provenance.json" for "head.nii.gz".
 std::filesystem::path provenanceFile(const std::filesystem::path& volume_file);
 // Error: CANNOT_WRITE; what was there stays.

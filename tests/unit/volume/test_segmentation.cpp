@@ -171,7 +171,9 @@ TEST(Segmentation, IsWrittenWithItsNamesAndReadBackTheSame) {
       }
     }
   }
-  EXPECT_EQ(readLabelMap(folder / "a.nii.gz")->find("Leber \\ \xc3\xa4")->tissue, "liver");
+  for (const char* name : {"a.nii.gz", "e.seg.nrrd"}) {
+    EXPECT_EQ(readLabelMap(folder / name)->find("Leber \\ \xc3\xa4")->tissue, "liver") << name;
+  }
   EXPECT_EQ(structuresFile("x/liver.seg.nii.gz"), std::filesystem::path("x/liver.structures.json"));
 }
 

@@ -1,0 +1,224 @@
+#include "library/case_folders.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/stretched_hash.h"
+
+namespace trephine::case_folders {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Names of parts begin with what they are: only a whole case has a private file of its own.
+constexpr const char* kWholeCase = "case-";
+constexpr const char* kSomeFiles = "files-";
+constexpr const char* kPartLock = ".lock";
+
+int openLockFile(const fs::path& file) {
+  return ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+}
+
+Result<fs::path> newPartName(const Folders& folders, const char* begin) {
+  Result<std::string> name = randomHex(8);
+  if (!name) return name.error();
+  return folders.parts() / (begin + *name);
+}
+
+// Of the case.json in a part: no reader of the whole, since it may be of another version.
+std::string keyIn(const fs::path& part) {
+  const Result<Json> json = readJsonFile(part / kCaseFile);
+  if (!json || !json->is_object()) return "";
+  const auto key = json->find("names_key");
+  return key != json->end() && key->is_string() ? key->get<std::string>() : "";
+}
+
+bool isKey(const std::string& key) {
+  return !key.empty() && key.find_first_not_of("0123456789abcdef") == key.npos;
+}
+
+// What a whole case has outside of its folder goes first: a folder that is left behind names it.
+void discard(const Folders& folders, const fs::path& part) {
+  if (part.filename().string().starts_with(kWholeCase)) folders.removePrivate(keyIn(part));
+  std::error_code ec;
+  fs::remove_all(part, ec);
+}
+
+}  // namespace
+
+Result<FileLock> FileLock::waitFor(const fs::path& file) {
+  const int fd = openLockFile(file);
+  if (fd < 0) return writeError(file, errno);
+  while (::flock(fd, LOCK_EX) != 0) {
+    if (errno == EINTR) continue;
+    const int error = errno;
+    ::close(fd);
+    return writeError(file, error);
+  }
+  return FileLock(fd);
+}
+
+std::optional<FileLock> FileLock::tryFor(const fs::path& file) {
+  const int fd = openLockFile(file);
+  if (fd < 0) return std::nullopt;
+  if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return FileLock(fd);
+  ::close(fd);
+  return std::nullopt;
+}
+
+FileLock::~FileLock() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+Status Folders::make() const {
+  for (const fs::path& folder : {cases(), parts(), storage_ / "private"}) {
+    if (Status made = makeFolder(folder); !made) return made;
+  }
+  if (::chmod((storage_ / "private").c_str(), 0700) != 0) {
+    return writeError(storage_ / "private", errno);
+  }
+  return {};
+}
+
+void Folders::sweep() const {
+  std::error_code ec;
+  if (!fs::is_directory(parts(), ec)) return;
+  const Result<FileLock> list = lock();
+  if (!list) return;
+  std::vector<fs::path> dead;
+  for (fs::directory_iterator it(parts(), ec), end; !ec && it != end; it.increment(ec)) {
+    // One without a lock file was a case that is being deleted, or has lost its maker.
+    if (fs::exists(it->path() / kPartLock, ec) && !FileLock::tryFor(it->path() / kPartLock)) {
+      continue;
+    }
+    dead.push_back(it->path());
+  }
+  for (const fs::path& part : dead) discard(*this, part);
+}
+
+Status Folders::roomFor(std::uint64_t bytes) const {
+  std::error_code ec;
+  const fs::space_info space = fs::space(storage_, ec);
+  if (ec || space.available >= bytes) return {};
+  const auto mb = [](std::uint64_t n) { return std::to_string(n / 1000000 + 1) + " MB"; };
+  return Error{"CANNOT_WRITE",
+               "The disk has no room for the case: it needs " + mb(bytes) + ", and " +
+                   mb(space.available) + " are free",
+               storage_.string(), "Free some space, or choose another storage folder"};
+}
+
+Status Folders::writePrivate(const std::string& key, std::string_view text) const {
+  const fs::path file = privateFile(key);
+  Status written = replaceFile(file, [&](const fs::path& temporary) -> Status {
+    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (fd < 0) return writeError(file, errno);
+    std::size_t done = 0;
+    int error = 0;
+    while (done < text.size() && error == 0) {
+      const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
+      if (n >= 0) done += std::size_t(n);
+      if (n < 0 && errno != EINTR) error = errno;
+    }
+    if (::close(fd) != 0 && error == 0) error = errno;
+    if (error != 0) return writeError(file, error);
+    return {};
+  });
+  return written ? syncFolder(file.parent_path()) : written;
+}
+
+void Folders::removePrivate(const std::string& key) const {
+  std::error_code ec;
+  if (isKey(key)) fs::remove(privateFile(key), ec);
+}
+
+void Folders::keepPrivateOf(const std::set<std::string>& keys) const {
+  std::error_code ec;
+  std::vector<std::string> gone;
+  for (fs::directory_iterator it(storage_ / "private", ec), end; !ec && it != end;
+       it.increment(ec)) {
+    const std::string key = it->path().stem().string();
+    if (!keys.contains(key)) gone.push_back(key);
+  }
+  for (const std::string& key : gone) removePrivate(key);
+}
+
+Result<Part> Part::make(const Folders& folders, Of what) {
+  const Result<FileLock> list = folders.lock();
+  if (!list) return list.error();
+  const auto path = newPartName(folders, what == Of::wholeCase ? kWholeCase : kSomeFiles);
+  if (!path) return path.error();
+  if (Status made = makeFolder(*path); !made) return made.error();
+  Result<FileLock> lock = FileLock::waitFor(*path / kPartLock);
+  if (!lock) {
+    discard(folders, *path);
+    return lock.error();
+  }
+  return Part(folders, *path, *std::move(lock));
+}
+
+Part::~Part() {
+  drop();
+}
+
+void Part::drop() {
+  if (!path_.empty()) discard(folders_, std::exchange(path_, {}));
+}
+
+Status Part::replace(const char* name, const fs::path& case_folder) const {
+  std::error_code ec;
+  fs::rename(path_ / name, case_folder / name, ec);
+  if (ec) return writeError(case_folder / name, ec.value());
+  return syncFolder(case_folder);
+}
+
+Status Part::becomeCase(const fs::path& case_folder) {
+  std::error_code ec;
+  // Nobody sweeps meanwhile: that needs the lock of the list.
+  fs::remove(path_ / kPartLock, ec);
+  if (Status synced = syncFolder(path_); !synced) return synced;
+  fs::rename(path_, case_folder, ec);
+  if (ec) return writeError(case_folder, ec.value());
+  path_.clear();
+  return syncFolder(case_folder.parent_path());
+}
+
+Status removeCase(const Folders& folders, const std::string& id) {
+  const fs::path folder = folders.caseFolder(id);
+  const auto part = newPartName(folders, kWholeCase);
+  if (!part) return part.error();
+  std::error_code ec;
+  fs::rename(folder, *part, ec);
+  if (ec == std::errc::no_such_file_or_directory) {
+    return Error{"NO_SUCH_CASE", "The case is not there any more", id, "Look at the list again"};
+  }
+  if (ec) {
+    Error error = writeError(folder, ec.value());
+    error.what = "The case could not be deleted: " + ec.message();
+    return error;
+  }
+  const Status synced = syncFolder(folders.cases());
+  discard(folders, *part);
+  return synced;
+}
+
+Status syncFolder(const fs::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return writeError(folder, errno);
+  const int failed = ::fsync(fd) == 0 ? 0 : errno;
+  ::close(fd);
+  // Some file systems know no such call on a folder.
+  if (failed != 0 && failed != EINVAL && failed != ENOTSUP) return writeError(folder, failed);
+  return {};
+}
+
+}  // namespace trephine::case_folders

@@ -1,0 +1,530 @@
+#include "library/case_library.h"
+
+#include <algorithm>
+#include <ctime>
+#include <new>
+#include <utility>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/stretched_hash.h"
+#include "imaging/report/provenance.h"
+#include "imaging/report/report_page.h"
+#include "library/case_picture.h"
+#include "library/name_guard.h"
+#include "library/name_words.h"
+#include "volume/segmentation.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace fs = std::filesystem;
+using namespace case_folders;
+
+namespace {
+
+constexpr std::uint64_t kRoomForTheRest = 4 << 20;  // bytes: report, picture, JSON, folders
+
+Error noSuchCase(const std::string& id) {
+  return Error{"NO_SUCH_CASE", "The case is not there any more", id, "Look at the list again"};
+}
+
+Error wrongGrid() {
+  return Error{"WRONG_GRID", "The structures lie on another grid than the case", "",
+               "Fit them to the case first"};
+}
+
+Error partMissing(const std::string& id, const char* file, const char* what) {
+  return Error{"CASE_PART_MISSING", std::string("The case's ") + what + " is not there any more",
+               id + "/" + file, "Put the file back, or import the CT again"};
+}
+
+Error caseChanged(const std::string& id, const char* file, const char* what) {
+  return Error{"CASE_CHANGED", std::string("The case's ") + what + " is not as it was saved",
+               id + "/" + file, "Put the file back as it was, or import the CT again"};
+}
+
+// By what their file keeps whole.
+bool alike(const std::vector<CaseStructure>& a, const std::vector<CaseStructure>& b) {
+  return std::ranges::equal(a, b, [](const CaseStructure& one, const CaseStructure& other) {
+    return one.name == other.name && one.ml == other.ml;
+  });
+}
+
+// A case's folder, and none that a name could lead to from there.
+bool isFolderName(const std::string& id) {
+  return !id.empty() && id[0] != '.' && id.find('/') == id.npos && id.find('\0') == id.npos;
+}
+
+std::string timeText(const char* format) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  char text[40];
+  return {text, std::strftime(text, sizeof text, format, &local)};
+}
+
+const char* regionWord(BodyRegion region) {
+  switch (region) {
+    case BodyRegion::head:
+      return "Head";
+    case BodyRegion::abdomen:
+      return "Abdomen";
+    case BodyRegion::not_sure:
+      break;
+  }
+  return "CT";
+}
+
+// "head-2026-11-24-2"
+std::string neutralId(BodyRegion region, const std::string& day, int number) {
+  std::string id = neutralName(region, day, number);
+  for (char& c : id) c = c == ' ' ? '-' : c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return id;
+}
+
+bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
+  if (a.size != b.size) return false;
+  const Mat4 one = a.voxelToPatient(), other = b.voxelToPatient();
+  constexpr double kSame_mm = 1e-6;  // a header's digits, over the whole of a scan
+  const Vec3 last(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0, 1);
+    if (!(glm::length(Vec3(one * at) - Vec3(other * at)) < kSame_mm)) return false;
+  }
+  return true;
+}
+
+std::optional<Verdict> verdictOf(const ImportReport& report) {
+  for (const SeriesReport& series : report.series) {
+    if (report.chosen == series.uid) return series.verdict;
+  }
+  return std::nullopt;
+}
+
+std::string pretty(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+bool isNone(const Json& tissues) {
+  return tissues.is_null() || (tissues.is_object() && tissues.empty());
+}
+
+// Names that tell who the patient is give way to their labels.
+LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<Warning>& warnings) {
+  for (Structure& s : map.structures) {
+    if (const auto told = toldBy(s.name, source); !told || !tellsPatient(*told)) continue;
+    std::string name = "label " + std::to_string(s.label);
+    for (int n = 2; map.find(name); ++n) {
+      name = "label " + std::to_string(s.label) + " " + std::to_string(n);
+    }
+    s.name = name;
+    warnings.push_back({"RENAMED_STRUCTURE", "The name of a structure told who the patient is: it is "
+                                             "now called '" + name + "'"});
+  }
+  return map;
+}
+
+// What went wrong inside of a part does not name the part: that is gone, and what it took of the
+// disk is free again.
+Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
+  if (error.code != "CANNOT_WRITE") return error;
+  if (Status room = folders.roomFor(needed); !room) return room.error();
+  error.where = folders.storage().string();
+  return error;
+}
+
+Error cancelled() {
+  return Error{"CANCELLED", "Saving was cancelled", "", ""};
+}
+
+}  // namespace
+
+std::string neutralName(BodyRegion region, const std::string& day, int number) {
+  return std::string(regionWord(region)) + " " + day + " " + std::to_string(number);
+}
+
+bool isNeutralName(const std::string& name) {
+  for (const BodyRegion region : {BodyRegion::head, BodyRegion::abdomen, BodyRegion::not_sure}) {
+    const std::string begin = std::string(regionWord(region)) + " ";
+    if (!name.starts_with(begin)) continue;
+    const std::string rest = name.substr(begin.size());
+    constexpr std::string_view kDay = "0000-00-00 ";
+    if (rest.size() <= kDay.size() || rest.size() > kDay.size() + 6) return false;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+      const char c = n < kDay.size() ? kDay[n] : '0';
+      if (c == '0' ? rest[n] < '0' || rest[n] > '9' : rest[n] != c) return false;
+    }
+    return true;
+  }
+  return false;
+}
+
+CaseLibrary::CaseLibrary(fs::path storage) : folders_(std::move(storage)) {
+  folders_.sweep();
+}
+
+Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
+  const fs::path folder = folders_.caseFolder(id);
+  std::error_code ec;
+  if (!isFolderName(id) || !fs::is_directory(folder, ec)) return noSuchCase(id);
+  const std::string where = id + "/" + kCaseFile;
+  const fs::file_status file = fs::status(folder / kCaseFile, ec);
+  if (file.type() == fs::file_type::none) {
+    return Error{"MISSING_FILE", "The case's folder cannot be read: " + ec.message(), id,
+                 "Let its owner allow it, or delete the case"};
+  }
+  if (!fs::exists(file)) {
+    if (!fs::is_directory(folder, ec)) return noSuchCase(id);
+    return Error{"CASE_PART_MISSING", "The folder has no case.json, so it is no whole case", where,
+                 "Put the file back, or delete the case"};
+  }
+  Result<Json> json = readJsonFile(folder / kCaseFile);
+  if (!json) {
+    Error error = json.error();
+    error.where = where;
+    return error;
+  }
+  Result<CaseRecord> record = caseRecordFrom(*json, where);
+  if (!record) return record;
+  record->id = id;
+  record->folder = folder;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code unknown;
+    if (const auto bytes = it->file_size(unknown); !unknown) record->bytes += bytes;
+  }
+  return record;
+}
+
+std::vector<ListedCase> CaseLibrary::list() const {
+  std::vector<ListedCase> cases;
+  std::error_code ec;
+  for (fs::directory_iterator it(folders_.cases(), ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code unknown;
+    const std::string id = it->path().filename().string();
+    if (!isFolderName(id) || !fs::is_directory(it->path(), unknown)) continue;
+    ListedCase listed{id, {}, {}};
+    listed.record.id = id;
+    listed.record.folder = it->path();
+    Result<CaseRecord> read = record(id);
+    if (read) {
+      listed.record = *std::move(read);
+      const std::uint64_t voxels = listed.record.grid.voxelCount() * sizeof(std::int16_t);
+      const auto bytes = fs::file_size(it->path() / kVolumeFile, unknown);
+      if (unknown) {
+        listed.problem = partMissing(id, kVolumeFile, "volume");
+      } else if (bytes < voxels) {
+        listed.problem = caseChanged(id, kVolumeFile, "volume");
+      }
+    } else if (read.error().code == "NO_SUCH_CASE") {
+      continue;  // deleted meanwhile
+    } else {
+      listed.problem = read.error();
+    }
+    cases.push_back(std::move(listed));
+  }
+  std::ranges::sort(cases, [](const ListedCase& a, const ListedCase& b) {
+    return std::tie(a.record.imported, a.id) > std::tie(b.record.imported, b.id);
+  });
+  return cases;
+}
+
+Status CaseLibrary::nameIsFree(const std::string& name, const std::string& id) const {
+  const std::string folded = foldedName(name);
+  for (const ListedCase& other : list()) {
+    if (other.id == id || foldedName(other.record.name) != folded) continue;
+    return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
+  }
+  return {};
+}
+
+Status CaseLibrary::writeRecord(const CaseRecord& record, const Part& part) const {
+  return writeTextFile(part / kCaseFile, pretty(toJson(record)));
+}
+
+Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress) try {
+  const Volume& volume = *of.volume;
+  if (of.structures && !sameGrid(of.structures->geometry, volume.geometry)) return wrongGrid();
+  SavedCase saved;
+  CaseRecord& record = saved.record;
+  if (!of.name.empty()) {
+    Result<std::string> name = caseNameFrom(of.name);
+    if (!name) return name.error();
+    if (Status free = nameIsFree(*name, ""); !free) return free.error();
+    record.name = *name;
+  }
+  const SourceKeys source = sourceKeys(of.source);
+  if (!record.name.empty() && !isNeutralName(record.name)) {
+    if (const auto told = toldBy(record.name, source)) return identityError(*told);
+  }
+
+  // A label a byte, packed to a tenth and less.
+  const std::uint64_t voxels = volume.hu.size();
+  const std::uint64_t needed =
+      voxels * sizeof(std::int16_t) + (of.structures ? voxels / 8 : 0) + kRoomForTheRest;
+  if (Status made = folders_.make(); !made) return made.error();
+  if (Status room = folders_.roomFor(needed); !room) return room.error();
+  Result<Part> made = Part::make(folders_, Part::Of::wholeCase);
+  if (!made) return ofStorage(made.error(), folders_, needed);
+  Part& part = *made;
+  const auto failed = [&](const Error& error) { 
+    part.drop();
+    return ofStorage(error, folders_, needed);
+  };
+
+  progress.at(0.0, "Saving the case");
+  record.volume_sha256 = of.volume_sha256.empty() ? volumeSha256(volume) : of.volume_sha256;
+  record.region = of.region;
+  record.grid = volume.geometry;
+  if (of.report) record.verdict = verdictOf(*of.report);
+  if (progress.cancelled()) return cancelled();
+
+  const Status volume_written =
+      writeVolume(slabsOf(volume), part / kVolumeFile, Progress(progress, 0.1, 0.7));
+  if (!volume_written) return failed(volume_written.error());
+  if (of.structures && !of.structures->structures.empty()) {
+    const LabelMap map = withoutIdentity(*of.structures, source, saved.warnings);
+    record.structures = structuresOf(map);
+    const Status written = writeSegmentation(map, part / kStructuresFile, false,
+                                             Progress(progress, 0.7, 0.8));
+    if (!written) return failed(written.error());
+  }
+  progress.at(0.8, "Drawing the case's picture");
+  const std::string picture = pngOf(casePicture(volume, of.region));
+  std::vector<std::pair<const char*, std::string>> texts{{kPictureFile, picture}};
+  if (of.report) {
+    texts.emplace_back(kReportPage, reportPage(*of.report));
+    texts.emplace_back(kReportFile, pretty(toJson(*of.report, Identity::hidden)));
+  }
+  if (of.provenance) texts.emplace_back(kProvenanceFile, pretty(toJson(*of.provenance)));
+  if (!isNone(of.tissues)) texts.emplace_back(kTissuesFile, pretty(of.tissues));
+  for (const auto& [name, text] : texts) {
+    if (Status written = writeTextFile(part / name, text); !written) return failed(written.error());
+  }
+  if (progress.cancelled()) return cancelled();
+
+  progress.at(0.9, "Keeping what the case may not be called");
+  NameGuard guard;
+  if (!source.keys.empty()) {
+    Result<std::string> key = randomHex(8);
+    if (!key) return key.error();
+    Result<NameGuard> of_source = NameGuard::of(source, progress);
+    if (!of_source) return of_source.error();
+    record.names_key = *key;
+    guard = *std::move(of_source);
+  }
+
+  // From here on it is quick, and nobody else changes the list.
+  const Result<FileLock> list_lock = folders_.lock();
+  if (!list_lock) return failed(list_lock.error());
+  if (progress.cancelled()) return cancelled();
+  const std::string day = timeText("%Y-%m-%d");
+  record.imported = timeText("%Y-%m-%dT%H:%M:%S");
+  std::error_code ec;
+  for (int number = 1;; ++number) {
+    record.id = neutralId(of.region, day, number);
+    const std::string neutral = neutralName(of.region, day, number);
+    if (fs::exists(fs::symlink_status(folders_.caseFolder(record.id), ec))) continue;
+    if (record.name.empty() && !nameIsFree(neutral, "")) continue;
+    if (record.name.empty()) record.name = neutral;
+    break;
+  }
+  if (Status free = nameIsFree(record.name, ""); !free) return free.error();
+  record.folder = folders_.caseFolder(record.id);
+  if (Status written = writeRecord(record, part); !written) return failed(written.error());
+  if (!record.names_key.empty()) {
+    const Status kept = folders_.writePrivate(record.names_key, pretty(guard.toJson()));
+    if (!kept) return failed(kept.error());
+  }
+  if (Status there = part.becomeCase(record.folder); !there) return failed(there.error());
+  progress.at(1.0, "The case is saved");
+  Result<CaseRecord> as_listed = this->record(record.id);
+  if (!as_listed) return as_listed.error();
+  record = *std::move(as_listed);
+  return saved;
+} catch (const std::bad_alloc&) {
+  return outOfMemory("to save the case", "");
+}
+
+Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& progress) try {
+  Result<CaseRecord> read = record(id);
+  if (!read) return read.error();
+  LoadedCase loaded;
+  loaded.record = *std::move(read);
+  const fs::path& folder = loaded.record.folder;
+  std::error_code ec;
+  const auto has = [&](const char* file) { return fs::exists(folder / file, ec); };
+  // Whatever went wrong, with the folder gone that is why; `where` is the case's own.
+  const auto failed = [&](Error error, const char* file) {
+    if (!fs::is_directory(folder, ec)) return noSuchCase(id);
+    if (error.code != "CANCELLED") error.where = id + "/" + file;
+    return error;
+  };
+
+  if (!has(kVolumeFile)) return failed(partMissing(id, kVolumeFile, "volume"), kVolumeFile);
+  Result<Volume> volume = readVolume(folder / kVolumeFile, Progress(progress, 0.0, 0.7));
+  if (!volume) return failed(volume.error(), kVolumeFile);
+  progress.at(0.7, "Checking the volume");
+  if (!sameGrid(volume->geometry, loaded.record.grid) ||
+      volumeSha256(*volume) != loaded.record.volume_sha256) {
+    return caseChanged(id, kVolumeFile, "volume");
+  }
+  if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
+  if (has(kStructuresFile)) {
+    auto segmentation =
+        readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
+    if (!segmentation) return failed(segmentation.error(), kStructuresFile);
+    LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
+    if (!sameGrid(map.geometry, volume->geometry)) {
+      return caseChanged(id, kStructuresFile, "structures");
+    }
+    map.geometry = volume->geometry;
+    loaded.structures = std::make_shared<const LabelMap>(std::move(map));
+  }
+  for (const char* file : {kProvenanceFile, kTissuesFile}) {
+    if (!has(file)) continue;
+    Result<Json> json = readJsonFile(folder / file);
+    if (!json) return failed(json.error(), file);
+    if (file == kTissuesFile) {
+      loaded.tissues = *std::move(json);
+      continue;
+    }
+    Result<Provenance> provenance = provenanceFrom(*json, id + "/" + file);
+    if (!provenance) return provenance.error();
+    loaded.provenance = *std::move(provenance);
+  }
+  loaded.volume = std::make_shared<const Volume>(*std::move(volume));
+  const std::vector<CaseStructure> listed = std::exchange(
+      loaded.record.structures,
+      loaded.structures ? structuresOf(*loaded.structures) : std::vector<CaseStructure>());
+  if (!alike(listed, loaded.record.structures)) mendRows(loaded.record);
+  progress.at(1.0, "The case is open");
+  return loaded;
+} catch (const std::bad_alloc&) {
+  return outOfMemory("for the case", id);
+}
+
+// A program that ended between the structures and their rows in case.json left old ones. The list
+// is right again where this can be written; the case is open either way.
+void CaseLibrary::mendRows(const CaseRecord& of) const {
+  const Result<Part> part = Part::make(folders_, Part::Of::someFiles);
+  if (!part) return;
+  const Result<FileLock> list_lock = folders_.lock();
+  Result<CaseRecord> now = record(of.id);
+  if (!list_lock || !now) return;
+  now->structures = of.structures;
+  if (writeRecord(*now, *part)) (void)part->replace(kCaseFile, now->folder);
+}
+
+Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string& new_name) {
+  Result<std::string> name = caseNameFrom(new_name);
+  if (!name) return name.error();
+  Result<CaseRecord> was = record(id);
+  if (!was) return was;
+  if (!was->names_key.empty() && !isNeutralName(*name) && *name != was->name) {
+    const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(was->names_key));
+    if (!guard) {
+      return Error{"NAME_UNCHECKED",
+                   "Whether this name tells who the patient is cannot be checked: what the case may "
+                   "not be called is not on this computer",
+                   id, "Keep the name, or import the CT again"};
+    }
+    if (Status told = guard->check(*name); !told) return told.error();
+  }
+  Result<Part> part = Part::make(folders_, Part::Of::someFiles);
+  if (!part) return ofStorage(part.error(), folders_, 1 << 16);
+  const Result<FileLock> list_lock = folders_.lock();
+  if (!list_lock) return list_lock.error();
+  if (Status free = nameIsFree(*name, id); !free) return free.error();
+  Result<CaseRecord> now = record(id);
+  if (!now) return now;
+  now->name = *name;
+  Status done = writeRecord(*now, *part);
+  if (done) done = part->replace(kCaseFile, now->folder);
+  if (!done) return ofStorage(done.error(), folders_, 1 << 16);
+  return record(id);
+}
+
+Status CaseLibrary::remove(const std::string& id) {
+  std::error_code ec;
+  if (!isFolderName(id) || !fs::is_directory(folders_.caseFolder(id), ec)) return noSuchCase(id);
+  const Result<FileLock> list_lock = folders_.lock();
+  if (!list_lock) return list_lock.error();
+  const bool whole = record(id).ok();
+  const Status removed = removeCase(folders_, id);
+  if (whole || !removed) return removed;
+  // Its case.json may not have named its private file: it is the one that no other case names.
+  std::set<std::string> keys;
+  for (const ListedCase& other : list()) {
+    if (other.record.volume_sha256.empty()) return removed;  // nor can that one be asked
+    keys.insert(other.record.names_key);
+  }
+  folders_.keepPrivateOf(keys);
+  return removed;
+}
+
+Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const LabelMap& structures,
+                                               const Progress& progress) try {
+  Result<CaseRecord> was = record(id);
+  if (!was) return was;
+  if (!sameGrid(structures.geometry, was->grid)) return wrongGrid();
+  std::vector<std::string> new_names;
+  for (const Structure& s : structures.structures) {
+    const bool old = std::ranges::find(was->structures, s.name, &CaseStructure::name) !=
+                     was->structures.end();
+    if (!old && s.name != "label " + std::to_string(s.label)) new_names.push_back(s.name);
+  }
+  if (!new_names.empty() && !was->names_key.empty()) {
+    // A file that is not there tells nothing: names of organs do not wait for it.
+    const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(was->names_key));
+    if (guard) {
+      if (Status told = guard->checkPatient(new_names, progress); !told) return told.error();
+    }
+  }
+  const std::uint64_t needed = structures.labels.size() / 8 + (1 << 20);
+  if (Status room = folders_.roomFor(needed); !room) return room.error();
+  Result<Part> part = Part::make(folders_, Part::Of::someFiles);
+  if (!part) return ofStorage(part.error(), folders_, needed);
+  const bool none = structures.structures.empty();
+  if (!none) {
+    const Status written =
+        writeSegmentation(structures, *part / kStructuresFile, false, progress);
+    if (!written) return ofStorage(written.error(), folders_, needed);
+  }
+  const Result<FileLock> list_lock = folders_.lock();
+  if (!list_lock) return list_lock.error();
+  Result<CaseRecord> now = record(id);  // it may have been renamed meanwhile
+  if (!now) return now;
+  now->structures = structuresOf(structures);
+  // The file counts, and rows that are not its own are mended by load().
+  Status done = writeRecord(*now, *part);
+  std::error_code ec;
+  if (done && !none) done = part->replace(kStructuresFile, now->folder);
+  if (done && none) fs::remove(now->folder / kStructuresFile, ec);
+  if (ec) done = writeError(now->folder / kStructuresFile, ec.value());
+  if (done) done = part->replace(kCaseFile, now->folder);
+  if (!done) return ofStorage(done.error(), folders_, needed);
+  return record(id);
+} catch (const std::bad_alloc&) {
+  return outOfMemory("to save the structures", id);
+}
+
+Status CaseLibrary::saveTissues(const std::string& id, const Json& tissues) {
+  Result<CaseRecord> was = record(id);
+  if (!was) return was.error();
+  const fs::path file = was->folder / kTissuesFile;
+  if (isNone(tissues)) {
+    std::error_code ec;
+    fs::remove(file, ec);
+    if (ec) return writeError(file, ec.value());
+    return syncFolder(was->folder);
+  }
+  Result<Part> part = Part::make(folders_, Part::Of::someFiles);
+  if (!part) return ofStorage(part.error(), folders_, 1 << 16);
+  Status done = writeTextFile(*part / kTissuesFile, pretty(tissues));
+  if (done) done = part->replace(kTissuesFile, was->folder);
+  if (!done) return ofStorage(done.error(), folders_, 1 << 16);
+  return {};
+}
+
+}  // namespace trephine
