@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "lab/import/import_measurement.h"
+#include "scene/policy.h"
 
 namespace trephine {
 
@@ -78,7 +79,9 @@ int importStructuresCommand(const StructureImportArguments& arguments, bool json
 int exportStructuresCommand(const StructureExportArguments& arguments, bool json, const Progress&);
 int phantomCommand(const std::string& name, const std::string& out, bool json, const Progress&);
 int importCommand(const ImportArguments& arguments, bool json, const Progress&);
-int runCommand(const RunArguments& arguments, bool json, const Progress&);
+// `policy`: what the workstation locks is not changed by an argument, nor by a scene.
+int runCommand(const RunArguments& arguments, const Policy& policy, bool json, const Progress&);
+int pinCommand(bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
 int explainCommand(const std::string& scene, bool json, const Progress&);

@@ -22,8 +22,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Error locked(const std::string& what, const char* option) {
+  return {"LOCKED", "The workstation or the exercise locks " + what, option,
+          "Leave the option away, or ask an educator"};
+}
+
 // Puts the command line's choices into the scene.
-Status applyChoices(const RunArguments& arguments, Scene& scene) {
+Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& scene) {
+  const Locks locks = locksOf(policy, scene);
+  const bool other_rate = arguments.rate_hz.value_or(scene.rate_hz) != scene.rate_hz;
+  const bool other_controller =
+      !arguments.controller.empty() && arguments.controller != controllerName(scene.controller);
+  if (other_rate && locks.contains(Lock::rate)) return locked("the rate", "--rate");
+  if (other_controller && locks.contains(Lock::controller)) {
+    return locked("the controller", "--controller");
+  }
   if (!arguments.case_source.empty()) useCase(scene, arguments.case_source);
   if (!arguments.labels.empty()) scene.labels_file = arguments.labels;
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
@@ -129,10 +142,12 @@ bool isOfThisMachine(const Error& error) {
 }
 
 // Runs the exercise and leaves its files in `out`. The Error is of a run that took no step.
-Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& progress) {
+Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& policy,
+                               const Progress& progress) {
   Result<Scene> scene = readScene(arguments.scene);
   if (!scene) return scene.error();
-  if (Status chosen = applyChoices(arguments, *scene); !chosen) return chosen.error();
+  if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
+  if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();
   SessionOptions options;
   const std::string script_file =
       arguments.operator_file.empty() ? scene->operator_file : arguments.operator_file;
@@ -190,8 +205,9 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Progress& pr
 
 }  // namespace
 
-int runCommand(const RunArguments& arguments, bool json, const Progress& progress) {
-  Result<RunOutcome> outcome = runExercise(arguments, progress);
+int runCommand(const RunArguments& arguments, const Policy& policy, bool json,
+               const Progress& progress) {
+  Result<RunOutcome> outcome = runExercise(arguments, policy, progress);
   if (!outcome) {
     Error error = outcome.error();
     const bool asked = !arguments.csv.empty() || !arguments.save_volume.empty();

@@ -16,6 +16,7 @@ trephine::Progress progress(trephine::withTimeLeft(trephine::reportToTerminal));
 
 int run(int argc, char** argv) {
   using namespace trephine;
+  const Policy policy = policyAtStart();
   CLI::App app{"Trephine's laboratory. For training, not for diagnosis or treatment planning."};
   app.require_subcommand(1);
   app.set_version_flag("--version", buildName());
@@ -85,6 +86,9 @@ int run(int argc, char** argv) {
   auto* explain_command =
       with_json(app.add_subcommand("explain", "What a scene instantiates and what it costs"));
   explain_command->add_option("scene", file, "A scene file")->required();
+
+  auto* pin_command = with_json(app.add_subcommand(
+      "pin", "Ask for a PIN, and print it as the workstation's settings keep it"));
 
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);
@@ -245,7 +249,8 @@ int run(int argc, char** argv) {
   setUpLog(json);
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
   if (*import_command) return importCommand(wanted, json, progress);
-  if (*run_command) return runCommand(arguments, json, progress);
+  if (*run_command) return runCommand(arguments, policy, json, progress);
+  if (*pin_command) return pinCommand(json, progress);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);
   if (*import_structures_command) return importStructuresCommand(structures, json, progress);

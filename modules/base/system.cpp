@@ -29,4 +29,9 @@ std::filesystem::path pluginFolder() {
   return fromEnvironment("TREPHINE_PLUGINS", build_info::plugins);
 }
 
+void keepToBuiltFolders() {
+  ::unsetenv("TREPHINE_RESOURCES");
+  ::unsetenv("TREPHINE_PLUGINS");
+}
+
 }  // namespace trephine

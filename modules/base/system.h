@@ -13,5 +13,8 @@ std::string buildName();
 std::filesystem::path resourceFolder();
 // Where device plugins are; the environment's TREPHINE_PLUGINS comes first.
 std::filesystem::path pluginFolder();
+// From now on both are where the build has put them: takes the two out of this process's
+// environment, and so out of that of what it starts. Before there are threads.
+void keepToBuiltFolders();
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 #include "base/utf8.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <string_view>
 
 namespace trephine {
@@ -36,6 +37,11 @@ bool isUtf8(std::string_view text) {
     text.remove_prefix(length);
   }
   return true;
+}
+
+std::size_t charactersOf(std::string_view text) {
+  return std::size_t(
+      std::ranges::count_if(text, [](char c) { return (std::uint8_t(c) & 0xC0) != 0x80; }));
 }
 
 std::string cleanUtf8(std::string_view text) {

@@ -9,6 +9,9 @@ namespace trephine {
 
 bool isUtf8(std::string_view text);
 
+// Characters of valid UTF-8.
+std::size_t charactersOf(std::string_view text);
+
 // `text` as valid UTF-8 in one line: bytes that are none become U+FFFD, control characters a space,
 // and spaces around it go.
 std::string cleanUtf8(std::string_view text);

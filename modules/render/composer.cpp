@@ -63,6 +63,7 @@ void main()
   vec2 low = floor(at);
   vec2 share = at - low;
   vec3 sum = vec3(0.0);
+  float seen = 0.0;
   for (int corner = 0; corner < 4; ++corner)
   {
     ivec2 step = ivec2(corner & 1, corner >> 1);
@@ -74,7 +75,9 @@ void main()
     if (t >= met.g) front = texelFetch(volume, ray, 0);
     else if (t >= met.r) front = texelFetch(before, ray, 0);
     sum += w.x * w.y * (front.rgb + (1.0 - front.a) * tool);
+    seen += w.x * w.y * (1.0 - front.a);
   }
+  if (seen < 0.02) discard;  // what is there stays: the tissue, or a line on it
   colour = vec4(sum, 1.0);
 }
 )";

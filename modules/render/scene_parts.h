@@ -7,6 +7,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "render/carve_volume_mapper.h"
 #include "render/composer.h"
 #include "render/display_volume.h"
+#include "render/outline_drawing.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
 #include "render/view_camera.h"
@@ -23,9 +25,10 @@
 namespace trephine {
 
 // VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
-// other the tools'. The picture is put together from both.
+// others that of the outline and that of the tools. The picture is put together from them.
 struct SceneRenderer::Parts {
   vtkNew<vtkRenderer> renderer;  // of the volume
+  vtkNew<vtkRenderer> outline_renderer;
   vtkNew<vtkRenderer> tool_renderer;
   vtkSmartPointer<vtkOpenGLRenderWindow> window;  // null while detached
   vtkNew<vtkCallbackCommand> context_asked;
@@ -47,6 +50,7 @@ struct SceneRenderer::Parts {
   Status refusal;
   int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
 
+  OutlineDrawing outline;
   ToolDrawing tools;
   std::vector<ToolView> tool_views;
   ScreenLines lines;
@@ -54,8 +58,8 @@ struct SceneRenderer::Parts {
   ViewCamera camera;
   VolumePictures pictures;
   Composer composer;
-  Canvas scene;       // the volume over the background, in the window's size
-  Canvas tool_layer;  // tools alone, colour and depth
+  Canvas scene;       // the volume over the background and the outline, in the window's size
+  Canvas tool_layer;  // the outline alone, then tools alone: colour and depth
   Canvas frame;       // pictures that are read back
   bool scene_stale = true;
   bool moving = false;
@@ -63,6 +67,7 @@ struct SceneRenderer::Parts {
   int height = 1;
 
   Parts();
+  std::array<vtkRenderer*, 3> renderers() { return {renderer, outline_renderer, tool_renderer}; }
 
   void spoil() {
     spoilLooks();
@@ -112,7 +117,11 @@ struct SceneRenderer::Parts {
   void release();
 
   // ---- Tools over the picture: scene_tools.cpp.
+  void drawOutline(const Canvas* shown, const Span& span);  // into `scene`
   void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
+  // What a renderer shows in these parts of the window, where tissue leaves it visible.
+  void drawSolids(vtkRenderer& solids, const std::vector<PixelRect>& parts,
+                  unsigned int framebuffer, const Canvas* shown, const Span& span);
   void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const;
 };
 

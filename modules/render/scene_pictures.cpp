@@ -25,7 +25,7 @@
 namespace trephine {
 
 SceneRenderer::Parts::Parts() {
-  for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) {
+  for (vtkRenderer* each : renderers()) {
     each->EraseOff();
     each->GetActiveCamera();
   }
@@ -180,6 +180,7 @@ void SceneRenderer::Parts::compose(unsigned int framebuffer) {
   if (scene_stale || scene.width() != width || scene.height() != height) {
     scene.bind(width, height, {Canvas::Image::colour});
     composer.drawVolume(shown, span, width, height);
+    drawOutline(shown, span);
     scene_stale = false;
   }
   scene.copyTo(framebuffer);
@@ -244,7 +245,7 @@ void SceneRenderer::Parts::release() {
   fitted = refused = false;
   volume.releaseGraphics(*renderer);
   window->Finalize();
-  for (vtkRenderer* each : {renderer.Get(), tool_renderer.Get()}) window->RemoveRenderer(each);
+  for (vtkRenderer* each : renderers()) window->RemoveRenderer(each);
   window->RemoveObserver(context_asked);
   window = nullptr;
 }

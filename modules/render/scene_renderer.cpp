@@ -54,7 +54,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   p.window->SetOffScreenRendering(1);
   p.window->SetMultiSamples(0);
   p.window->SetSize(p.width, p.height);
-  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
+  for (vtkRenderer* each : p.renderers()) p.window->AddRenderer(each);
   p.window->Initialize();
   p.window->MakeCurrent();
   if (openGlVersion() < kOpenGlNeeded) return no_opengl;
@@ -82,7 +82,7 @@ Status SceneRenderer::attach(RenderHost host) {
     p.window = nullptr;
     return openGlTooOld(description);
   }
-  for (vtkRenderer* each : {p.renderer.Get(), p.tool_renderer.Get()}) p.window->AddRenderer(each);
+  for (vtkRenderer* each : p.renderers()) p.window->AddRenderer(each);
   return {};
 }
 
@@ -189,6 +189,11 @@ const Volume& SceneRenderer::copy() const {
 void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
   parts_->tools.show(tools, *parts_->tool_renderer);
   parts_->tool_views = tools;
+}
+
+void SceneRenderer::setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm) {
+  parts_->outline.show(points_mm, closed, width_mm, *parts_->outline_renderer);
+  parts_->scene_stale = true;
 }
 
 void SceneRenderer::resize(int width, int height) {

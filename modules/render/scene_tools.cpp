@@ -1,4 +1,4 @@
-// Tools over the last picture of the volume, and the way from a tool to the surface.
+// Outline and tools over the last picture of the volume, and the way from a tool to the surface.
 //
 // VTK renamed its loader of OpenGL in 9.4. Before any other header that knows OpenGL.
 #if __has_include(<vtk_glad.h>)
@@ -9,6 +9,7 @@
 //
 #include <vtkCamera.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -24,7 +25,21 @@ void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* sho
     const PixelRect part = around(box.data(), box.size(), 2);
     if (!part.empty()) parts.push_back(part);
   }
-  if (parts.empty()) return;
+  drawSolids(*tool_renderer, parts, framebuffer, shown, span);
+}
+
+void SceneRenderer::Parts::drawOutline(const Canvas* shown, const Span& span) {
+  const auto box = outline.box();
+  if (!box) return;
+  outline.lift(camera);
+  drawSolids(*outline_renderer, {around(box->data(), box->size(), 2)}, scene.framebuffer(), shown,
+             span);
+}
+
+void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, const std::vector<PixelRect>& parts,
+                                      unsigned int framebuffer, const Canvas* shown,
+                                      const Span& span) {
+  if (std::ranges::all_of(parts, &PixelRect::empty)) return;
   tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
   glEnable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);
@@ -35,11 +50,11 @@ void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* sho
     glClearBufferfv(GL_DEPTH, 0, &kFar);
   }
   handToVtk();
-  place(*tool_renderer, 1.0);
-  tool_renderer->Render();
+  place(solids, 1.0);
+  solids.Render();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   DepthRange range;
-  tool_renderer->GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
+  solids.GetActiveCamera()->GetClippingRange(range.near_mm, range.far_mm);
   range.parallel = camera.parallel();
   // A part that lies in another would be drawn twice, which changes nothing: what is read is not
   // what is written.

@@ -209,6 +209,30 @@ Stretch stretchOf(const GridGeometry& g, const Vec3& from_mm, const Vec3& along,
   return {std::max(0.0, nearest_mm - half_mm), std::min(length_mm, nearest_mm + half_mm)};
 }
 
+// The height from +reach down to -reach at which `inside` begins and lasts; what is inside from the
+// very beginning has no surface there.
+template <class Inside>
+std::optional<double> surfaceHeight_mm(const Inside& inside, double reach_mm, double least_run_mm) {
+  constexpr double kStep_mm = 0.25, kExact_mm = 0.02;
+  double height_mm = reach_mm;
+  while (height_mm > -reach_mm && inside(height_mm)) height_mm -= kStep_mm;
+  double out_mm = height_mm, run_mm = 0.0;
+  for (; height_mm >= -reach_mm; height_mm -= kStep_mm) {
+    if (!inside(height_mm)) {
+      out_mm = height_mm;
+      run_mm = 0.0;
+    } else if ((run_mm += kStep_mm) >= least_run_mm) {
+      double in_mm = out_mm - kStep_mm;
+      while (out_mm - in_mm > kExact_mm) {
+        const double middle_mm = 0.5 * (in_mm + out_mm);
+        (inside(middle_mm) ? in_mm : out_mm) = middle_mm;
+      }
+      return in_mm;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Quat frameAlong(const Vec3& outward) {
@@ -266,6 +290,28 @@ Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volum
   }
   return Error{"NO_SURFACE", "The ray does not meet " + nameOf(landmark), where,
                "Choose a case of the scene's anatomy, or another ray"};
+}
+
+std::vector<Vec3> ontoSurface(std::vector<Vec3> points_mm, const Vec3& outward, double reach_mm,
+                              const Landmark& landmark, const Volume& volume,
+                              const TissueSet& tissues, const LabelMap* labels) {
+  const Tissue* tissue = tissues.find(landmark.tissue);
+  if (!tissue) return points_mm;
+  const Progress nobody;
+  const Sought sought{volume, labels, tissueTable(tissues), int(tissue - tissues.tissues.data()),
+                      nobody};
+  const double least_run_mm = std::min(kSurfaceRun_mm, landmark.run_mm);
+  const double radius_mm = std::min(kMostAround_mm, least_run_mm / 4.0);
+  for (Vec3& point : points_mm) {
+    const auto inside = [&](double height_mm) {
+      const Vec3 at_mm = point + height_mm * outward;
+      return sought.in(meanHu(volume, at_mm, radius_mm), sought.labelNear(at_mm));
+    };
+    if (const auto height_mm = surfaceHeight_mm(inside, reach_mm, least_run_mm)) {
+      point += *height_mm * outward;
+    }
+  }
+  return points_mm;
 }
 
 }  // namespace trephine

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/math.h"
 #include "base/progress.h"
@@ -54,5 +55,14 @@ Quat frameAlong(const Vec3& outward);
 Result<LandmarkFrame> findLandmark(const Landmark& landmark, const Volume& volume,
                                    const TissueSet& tissues, const LabelMap* labels = nullptr,
                                    const Progress& progress = Progress());
+
+// Each point moved along `outward`, a unit vector, to where a ray from outside first enters the
+// landmark's tissue and stays in it, for kSurfaceRun_mm or the landmark's own run if that is
+// shorter: from `reach_mm` outside of the point to as far inside. One whose ray does not enter it
+// there stays. HU are averaged as for findLandmark; 0.02 mm exact.
+constexpr double kSurfaceRun_mm = 1.0;
+std::vector<Vec3> ontoSurface(std::vector<Vec3> points_mm, const Vec3& outward, double reach_mm,
+                              const Landmark& landmark, const Volume& volume,
+                              const TissueSet& tissues, const LabelMap* labels = nullptr);
 
 }  // namespace trephine

@@ -16,10 +16,17 @@ const Landmark* Scene::findLandmarkById(const std::string& id) const {
   return it == landmarks.end() ? nullptr : &*it;
 }
 
+const CardText* cardFor(const Scene& scene, std::string_view language) {
+  if (!scene.card) return nullptr;
+  const bool other = language == "zh_TW" && scene.card->zh_TW;
+  return other ? &*scene.card->zh_TW : &scene.card->en;
+}
+
 void useCase(Scene& scene, const std::string& case_source) {
   if (case_source == scene.case_source) return;
   if (!scene.case_source.empty()) {
     scene.labels_file.clear();
+    if (scene.outline && !scene.outline->frame) scene.outline.reset();
     const auto& tissues = scene.tissues.tissues;
     const bool by_number = std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
       return tissue.label && tissue.structure.empty();
@@ -68,6 +75,7 @@ Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landm
                                    arm.map.force_scale};
     }
   }
+  if (fixed.outline) fixed.outline = placedOutline(*fixed.outline, landmarks);
   return fixed;
 }
 

@@ -6,12 +6,16 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/json.h"
 #include "base/result.h"
 #include "haptics/haptic_core.h"
 #include "scene/landmark.h"
+#include "scene/locks.h"
+#include "scene/scene_card.h"
+#include "scene/scene_outline.h"
 #include "scene/scene_tool.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
@@ -65,15 +69,22 @@ struct Scene {
   double rate_hz = 1000.0;
   std::string operator_file;  // default script, empty for none
   SceneView view;
+  std::optional<SceneCard> card;        // said before it begins
+  std::optional<SceneOutline> outline;  // drawn on the tissue
+  Locks locks;                          // what is not changed while it is practised
 
   const SceneTool* findTool(const std::string& id) const;
   const Landmark* findLandmarkById(const std::string& id) const;
 };
 
+// The scene's card in this language, "en" or "zh_TW", or in English where it has no other; null
+// where it has none.
+const CardText* cardFor(const Scene& scene, std::string_view language);
+
 // The scene is run on this case instead ("" is one that has no name): a label map that the scene
-// names beside its own case is of that one, and so are tissues that are known by a number of it,
-// where the scene has others for elsewhere. What is known by a structure's name holds anywhere
-// (scene_structures.h).
+// names beside its own case is of that one, and so are an outline without a frame and tissues that
+// are known by a number of it, where the scene has others for elsewhere. What is known by a
+// structure's name holds anywhere (scene_structures.h).
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
@@ -99,7 +110,8 @@ Result<std::vector<PlacedLandmark>> placeLandmarks(const Scene& scene, const Vol
 // and nothing would say so.
 Status checkLabels(const TissueSet& tissues, const LabelMap* labels);
 
-// The same scene with every arm's map fixed at its landmark.
+// The same scene with every arm's map fixed at its landmark, and its outline where it lies in this
+// case (placedOutline): what is recorded.
 Scene withFixedMaps(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
 
 // By arm: the frame of its map's landmark, in which a script gives its waypoints.

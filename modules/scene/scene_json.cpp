@@ -11,7 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Range kQuaternionPart{-1.001, 1.001};
 constexpr std::size_t kMostInAList = 64;
 
 SceneMap readMap(JsonReader map) {
@@ -23,11 +22,7 @@ SceneMap readMap(JsonReader map) {
   }
   WorkspaceMap fixed;
   readNumbers(map, kWorkspaceMapNumbers, fixed);
-  const std::vector<double> q = map.numbers("rotation_wxyz", 4, kQuaternionPart);
-  fixed.rotation = Quat(q[0], q[1], q[2], q[3]);
-  if (map.ok() && !validate(fixed, "")) {  // its numbers are possible
-    map.fail("rotation_wxyz", "Expected a unit quaternion, found " + Json(q).dump());
-  }
+  fixed.rotation = readRotation(map);
   out.motion_scale = fixed.motion_scale;
   out.force_scale = fixed.force_scale;
   out.fixed = fixed;
@@ -99,6 +94,18 @@ TissueLooks readLooks(JsonReader& view, const TissueSet& tissues) {
   return looks;
 }
 
+Locks readLocks(JsonReader& reader) {
+  Locks locks;
+  for (const std::string& name : reader.texts("locks", kLockNames.size())) {
+    if (const auto lock = kindOf(kLockNames, name)) {
+      locks.insert(*lock);
+    } else {
+      reader.fail("locks", "There is nothing to lock called '" + name + "'", choices(kLockNames));
+    }
+  }
+  return locks;
+}
+
 // Names by which others refer to an element are there once.
 template <class Items, class NameOf>
 void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, NameOf name_of) {
@@ -145,6 +152,11 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
   }
   if (!scene.view.landmark.empty() && !scene.findLandmarkById(scene.view.landmark)) {
     reader.fail("view", "The view names the unknown landmark '" + scene.view.landmark + "'");
+  }
+  if (!scene.outline || !scene.outline->frame) return;
+  const std::string& of = scene.outline->frame->landmark;
+  if (!scene.findLandmarkById(of)) {
+    reader.fail("outline", "Its frame names the unknown landmark '" + of + "'");
   }
 }
 
@@ -227,6 +239,9 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
     readNumbers(view, kViewNumbers, scene.view);
     if (view.has("looks")) scene.view.looks = readLooks(view, scene.tissues);
   }
+  if (reader.has("card")) scene.card = readSceneCard(reader.object("card"));
+  if (reader.has("outline")) scene.outline = readSceneOutline(reader.object("outline"));
+  if (reader.has("locks")) scene.locks = readLocks(reader);
   if (reader.ok()) checkReferences(reader, scene);
   if (Status status = reader.finish(); !status) return status.error();
   return scene;
@@ -294,6 +309,9 @@ Json toJson(const Scene& scene) {
   for (const auto& [id, look] : scene.view.looks) {
     json["view"]["looks"][id] = nameOf(kTissueLookNames, look);
   }
+  if (scene.card) json["card"] = toJson(*scene.card);
+  if (scene.outline) json["outline"] = toJson(*scene.outline);
+  for (const Lock lock : scene.locks) json["locks"].push_back(nameOf(kLockNames, lock));
   return json;
 }
 

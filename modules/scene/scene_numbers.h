@@ -21,6 +21,7 @@ constexpr Range kPlace_mm{-10'000, 10'000, "mm"};
 constexpr Range kOffset_mm{-1000, 1000, "mm"};
 constexpr Range kRate_hz{100, 20'000, "Hz"};
 constexpr Range kViewDistance_mm{10, 5000, "mm"};
+constexpr Range kOutlineWidth_mm{0.2, 10, "mm"};
 constexpr Range kTip_mm{-10'000, 10'000, "mm"};
 
 inline constexpr NumberOf<Scene> kSceneNumbers[] = {
@@ -30,6 +31,14 @@ inline constexpr NumberOf<Scene> kSceneNumbers[] = {
 inline constexpr NumberOf<SceneView> kViewNumbers[] = {
     {{"distance_mm", kViewDistance_mm, Given::may_be, "of the eye from the landmark"},
      &SceneView::distance_mm},
+};
+
+inline constexpr NumberOf<SceneOutline> kOutlineNumbers[] = {
+    {{"width_mm", kOutlineWidth_mm, Given::may_be, "of the line"}, &SceneOutline::width_mm},
+};
+inline constexpr NumberOf<LandmarkFrame> kOutlineFrameNumbers[] = {
+    {{"centre_mm", kMapPlace_mm, Given::always, "where the landmark was when the line was drawn"},
+     &LandmarkFrame::position_mm},
 };
 
 inline constexpr NumberOf<Landmark> kRayNumbers[] = {
@@ -99,6 +108,9 @@ inline constexpr NumberOf<ToolDescription> kCylinderNumbers[] = {
 inline constexpr NumberOf<ToolLook> kLookNumbers[] = {
     {{"tip_mm", kTip_mm, Given::may_be, "the tip, in the mesh's frame"}, &ToolLook::tip_mm},
 };
+
+// `rotation_wxyz`, a unit quaternion.
+Quat readRotation(JsonReader& item);
 
 // The tables of resources/schemas/scene.md and tool.md.
 std::string sceneNumbersPage();

@@ -30,6 +30,11 @@ Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume
                              Vec3(0.75, 0.78, 0.82)));
   }
   renderer.setTools(tools);
+  if (scene.outline) {
+    renderer.setOutline(
+        outlineOn(scene, session.landmarks(), *whole, session.grid().labels().get()),
+        scene.outline->closed, scene.outline->width_mm);
+  }
   bool placed = false;
   for (const PlacedLandmark& landmark : session.landmarks()) {
     if (landmark.id != scene.view.landmark) continue;

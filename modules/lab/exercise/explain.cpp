@@ -319,6 +319,7 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
   const bool named_case = phantomNamed(scene.case_source).has_value();
   Json answer{
       {"scene", scene.name},
+      {"goal", scene.card ? Json(scene.card->en.goal) : Json(nullptr)},
       {"case", named_case ? Json(scene.case_source) : Json(nullptr)},
       {"rate_hz", scene.rate_hz},
       {"controller", controllerName(scene.controller)},
@@ -356,6 +357,7 @@ std::string explanationText(const Json& explained) {
     text += line;
   };
   text += word(explained, "scene") + "\n";
+  if (explained.at("goal").is_string()) text += "  " + word(explained, "goal") + "\n";
   if (explained.at("case").is_string()) text += "  case: " + word(explained, "case") + "\n";
   add("  %.0f Hz, controller '%s', force at: %s, removal: %s\n", number(explained, "rate_hz"),
       word(explained, "controller").c_str(), word(explained, "force_at").c_str(),

@@ -12,7 +12,7 @@
 
 namespace trephine {
 
-// -> {scene, case, rate_hz, controller, laws, removal, tissues,
+// -> {scene, goal (of its card; null: none), case, rate_hz, controller, laws, removal, tissues,
 //     arms:[{name, plugin, tool, points, renderable}],
 //     warnings:[{code, text}] as of a run of the scene's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,

@@ -245,6 +245,59 @@ TEST(ShippedScenes, KnowTissueByHuOnOtherCasesThanTheirOwn) {
   for (const Tissue& tissue : scene.tissues.tissues) EXPECT_TRUE(tissue.isAnywhere()) << tissue.id;
   EXPECT_TRUE(checkLabels(scene.tissues, nullptr).ok());
 }
+// How many points of a line are within a millimetre of bone that begins there.
+int onBone(const std::vector<Vec3>& points, const Scene& scene, const Case& of) {
+  const LandmarkFrame& frame = of.landmarks[0].frame;
+  const Vec3 out = frame.rotation * Vec3(0.0, 0.0, 1.0);
+  const TissueTable tissues = tissueTable(scene.tissues);
+  const int bone = int(scene.tissues.find("bone") - scene.tissues.tissues.data());
+  const auto isBone = [&](const Vec3& at_mm) {
+    return classify(tissues, sampleHu(*of.volume, at_mm)) == bone;
+  };
+  const Landmark& vault = *scene.findLandmarkById("vault");
+  const auto surface = ontoSurface(points, out, 5.0, vault, *of.volume, scene.tissues);
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    count += glm::length(points[i] - surface[i]) < 1.0 && isBone(points[i] - out) &&
+             !isBone(points[i] + 2.0 * out);
+  }
+  return count;
+}
+
+TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfTheirOwnCase) {
+  int outlines = 0;
+  for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
+                           "seed-cranium", "seed-liver"}) {
+    Scene scene = shipped(name, "");
+    if (!scene.outline) continue;
+    ++outlines;
+    const Case of = placed(scene);
+    ASSERT_TRUE(scene.outline->frame) << name << ": so that it holds on other patients";
+    const Vec3 was_mm = scene.outline->frame->at.position_mm;
+    EXPECT_LT(glm::length(was_mm - of.landmarks[0].frame.position_mm), 0.01) << name;
+    const std::vector<Vec3>& points = scene.outline->points_mm;
+    EXPECT_EQ(onBone(points, scene, of), int(points.size())) << name;
+    const auto drawn = outlineOn(scene, of.landmarks, *of.volume);
+    EXPECT_GT(drawn.size(), points.size());
+    EXPECT_EQ(onBone(drawn, scene, of), int(drawn.size())) << name;
+  }
+  EXPECT_EQ(outlines, 3) << "the burr hole and the two windows";
+}
+
+TEST(ShippedScenes, HaveTheirOutlineOnTheBoneOfARealCaseToo) {
+  TREPHINE_TEST_DATA_OR_SKIP(data);
+  for (const char* name : {"burr-hole", "cranium", "cranium-one-arm"}) {
+    Scene scene = shipped(name, realCase(data, name));
+    const Case of = placed(scene);
+    ASSERT_FALSE(of.misfit) << of.misfit->sentence();
+    const auto drawn = outlineOn(scene, of.landmarks, *of.volume);
+    ASSERT_FALSE(drawn.empty());
+    std::printf("%s: %d of %zu points of the outline on bone\n", name, onBone(drawn, scene, of),
+                drawn.size());
+    EXPECT_GT(onBone(drawn, scene, of), 0.95 * double(drawn.size())) << name;
+  }
+}
+
 // The window's hands, which no script moves.
 TEST(ShippedScenes, BeginWithTheToolsOutsideOfTissueInTheWindow) {
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",

@@ -1,0 +1,30 @@
+// What an exercise says to a trainee before it begins, in plain words.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+
+namespace trephine {
+
+// Characters, not bytes.
+constexpr std::size_t kCardGoal = 300, kCardStep = 200, kCardHands = 300;
+constexpr std::size_t kCardSteps = 12;
+
+struct CardText {
+  std::string goal;                // what is to be reached
+  std::vector<std::string> steps;  // one after the other; at least one
+  std::string hands;               // which tool in which hand, and how to move it
+};
+
+struct SceneCard {
+  CardText en;
+  std::optional<CardText> zh_TW;  // Traditional Chinese
+};
+
+SceneCard readSceneCard(JsonReader card);
+Json toJson(const SceneCard& card);
+
+}  // namespace trephine
