@@ -12,10 +12,11 @@ constexpr double kHover_mm_s = 100.0, kHover_s = 0.1;
 constexpr double kAside_mm_s = 60.0;  // across the ray per N that is left, where it touches
 constexpr double kLeastAside_N = 0.5;
 constexpr double kSpare_mm = 5.0;     // how far a tool that is put down stays off what it touched
-constexpr double kElsewhere_mm = 2.0;  // so far aside a pointer wants the tool out first
+constexpr double kElsewhere_mm = 3.0;  // so far aside a pointer wants the tool out first
 constexpr double kRelax_s = 0.05, kGiveIn_s = 0.02;
 // From the tool to the rest point at most: short of what lets a hooked tool go.
 constexpr double kFarthest_mm = 12.0;
+constexpr double kLeastSlope = 0.3;  // of the ray to the tool: flatter, and it presses along the ray
 
 }  // namespace
 
@@ -38,7 +39,7 @@ void PointerHand::comeOut(Way& way, double target_mm, double T) const {
 
 void PointerHand::hover(Way& way, double T) const {
   if (!way.seen_mm) return;
-  const double target_mm = *way.seen_mm - kHover_mm;
+  const double target_mm = std::min(*way.seen_mm, 0.0) - kHover_mm;
   if (target_mm < way.rest_mm) {
     const double slower = std::min(1.0, T / kHover_s);
     const double goal_mm = way.touches ? target_mm : way.rest_mm - slower * (way.rest_mm - target_mm);
@@ -68,45 +69,65 @@ void PointerHand::goAside(Way& way, double push_N, double most_N, double T) cons
   way.aside_mm *= apart_mm > step_mm ? 1.0 - step_mm / apart_mm : 0.0;
 }
 
+// Where the pointer is, on the plane across the tool. A hole that is being made is not followed
+// down: from a push to where the pointer next goes elsewhere it is the plane that the push began on.
+Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmRecord& arm,
+                          bool presses, bool touches) {
+  const double slope = glm::dot(at.direction, along);
+  const auto pointed = [&](const Vec3& place_mm) {
+    return at.origin_mm + (glm::dot(place_mm - at.origin_mm, along) / slope) * at.direction;
+  };
+  const bool left = plane_mm_ && !presses && !touches &&
+                    glm::distance(pointed(*plane_mm_), pressed_mm_) > kElsewhere_mm;
+  if (left) plane_mm_.reset();
+  const Vec3 place_mm = plane_mm_.value_or(seen_mm_.value_or(arm.proxy_position_mm));
+  if (presses) {
+    plane_mm_ = place_mm;
+    pressed_mm_ = pointed(place_mm);
+  }
+  return pointed(place_mm);
+}
+
 Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const WorkspaceMap& map,
                          const Reach& reach, double T) {
   if (!rest_m_) rest_m_ = arm.device_position_m;
-  const Vec3& origin_mm = to.at.origin_mm;
-  const Vec3& along = to.at.direction;
   const Vec3 arm_mm = map.toPatient_mm({arm.device_position_m, Quat(1, 0, 0, 0)}).position;
   const Vec3 rest_mm = map.toPatient_mm({*rest_m_, Quat(1, 0, 0, 0)}).position;
-
-  Way way;
-  way.arm_mm = glm::dot(arm_mm - origin_mm, along);
-  way.rest_mm = glm::dot(rest_mm - origin_mm, along);
-  way.arm_aside_mm = arm_mm - origin_mm - way.arm_mm * along;
-  way.aside_mm = rest_mm - origin_mm - way.rest_mm * along;
-  way.mm_per_N = 1000.0 * map.motion_scale / kStiffness_N_per_m;
   const bool waits = (arm.tool_state & kToolWaits) != 0;
-  way.touches = waits || arm.tissue_class >= 0 || (arm.tool_state & kToolHeld);
-  if (to.at.depth_mm) seen_mm_ = origin_mm + *to.at.depth_mm * along;
+  const bool touches = waits || arm.tissue_class >= 0 || (arm.tool_state & kToolHeld);
   const bool presses = to.push_N > 0.0 && !to.put_down && !waits;
-  if (way.touches || (presses && !pressing_)) touched_mm_ = arm.proxy_position_mm;
+  if (to.at.depth_mm) seen_mm_ = to.at.origin_mm + *to.at.depth_mm * to.at.direction;
+  if (touches || (presses && !pressing_)) touched_mm_ = arm.proxy_position_mm;
   pressing_ = presses;
+
+  Vec3 along = map.rotation * arm.device_orientation * Vec3(0.0, 0.0, -1.0);
+  if (glm::dot(along, to.at.direction) < kLeastSlope) along = to.at.direction;
+  const Vec3 origin_mm = onPlane(to.at, along, arm, presses, touches);
   const auto depthOf = [&](const std::optional<Vec3>& place_mm) {
     return place_mm ? std::optional(glm::dot(*place_mm - origin_mm, along)) : std::nullopt;
   };
+  Way way;
+  way.arm_mm = *depthOf(arm_mm);
+  way.rest_mm = *depthOf(rest_mm);
+  way.arm_aside_mm = arm_mm - origin_mm - way.arm_mm * along;
+  way.aside_mm = rest_mm - origin_mm - way.rest_mm * along;
+  way.mm_per_N = 1000.0 * map.motion_scale / kStiffness_N_per_m;
   way.seen_mm = depthOf(seen_mm_);
   way.touched_mm = depthOf(touched_mm_);
+  way.touches = touches;
 
-  const double most_N = kMostShare * reach.max_force_N;
   const bool elsewhere = glm::length(way.arm_aside_mm) > kElsewhere_mm;
   if (presses) {
     press(way, to.push_N, T);
-  } else if (waits || (way.touches && elsewhere && !to.put_down)) {
+  } else if (waits || (touches && elsewhere && !to.put_down)) {
     comeOut(way, way.rest_mm - kHover_mm, T);
   } else if (to.put_down) {
     comeOut(way, way.touched_mm ? *way.touched_mm - kSpare_mm : way.rest_mm, T);
   } else {
     hover(way, T);
   }
-  if (presses || (!to.put_down && !way.touches)) {
-    goAside(way, presses ? to.push_N : 0.0, most_N, T);
+  if (presses || (!to.put_down && !touches)) {
+    goAside(way, presses ? to.push_N : 0.0, kMostShare * reach.max_force_N, T);
   } else {
     way.aside_mm += (way.arm_aside_mm - way.aside_mm) * std::min(1.0, T / kRelax_s);
   }

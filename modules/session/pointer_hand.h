@@ -1,12 +1,18 @@
 // A hand that goes where a pointer is: the rest point of a simulated arm's hand, tick by tick.
 //
 // The hand is a spring and damper, which pull the arm to the rest point r. With x where the arm is
-// and k the spring, the hand pulls by F = k (r - x) / s, s the motion scale, and all is said of F:
-//   along the ray, push P > 0:  dr/dt = 15 mm/s per N of (P - F), at most 20 mm/s forwards
-//   along the ray, push 0:      to 4 mm before what is seen there, backwards where it touches
-//   across it:                  to the ray, slower as F comes to what is left of the arm's force
+// and k the spring, the hand pulls by F = k (r - x) / s, s the motion scale, and all is said of F,
+// along the tool and across it:
+//   along, push P > 0:  dr/dt = 15 mm/s per N of (P - F), at most 20 mm/s forwards
+//   along, push 0:      to 4 mm before what is seen; where it touches only backwards
+//   across:             to where the pointer is, slower as F comes to what P leaves of the arm's
 // So a push is a force and not a depth: it builds up where the tool is stopped, goes on while it
 // overcomes the tissue, and nothing springs on where a resistance ends.
+//
+// It presses along the tool and not along the ray: an eye looks at a tool from aside, by 24 degrees
+// at first, and along the ray a needle cut a slit and a burr a hole that its shaft did not fit. The
+// tool's line goes through the pointed place; the ray itself is pressed along where it is flat to
+// the tool.
 #pragma once
 
 #include <optional>
@@ -49,6 +55,8 @@ class PointerHand {
     bool touches = false;
     double pull_N() const { return (rest_mm - arm_mm) / mm_per_N; }
   };
+  Vec3 onPlane(const PointerSample& at, const Vec3& along, const ArmRecord& arm, bool presses,
+               bool touches);
   void press(Way& way, double push_N, double period_s) const;
   void comeOut(Way& way, double target_mm, double period_s) const;
   void hover(Way& way, double period_s) const;
@@ -56,6 +64,8 @@ class PointerHand {
 
   std::optional<Vec3> rest_m_;      // device
   std::optional<Vec3> seen_mm_;     // the last place that was seen
+  std::optional<Vec3> plane_mm_;    // a place of the plane that a push began on
+  Vec3 pressed_mm_{0.0};            // the pointer on it when it pressed last
   std::optional<Vec3> touched_mm_;  // the tip where it touched last, or where this push began
   bool pressing_ = false;
 };

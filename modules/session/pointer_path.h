@@ -22,7 +22,7 @@ struct PointerSample {
 // A sample, and what the hand does there.
 struct PointerInput {
   PointerSample at;
-  double push_N = 0.0;    // along the ray, of the hand on the arm; 0: hovers
+  double push_N = 0.0;    // of the hand on the arm, along the tool; 0: hovers
   bool put_down = false;  // not in use from here on
 };
 

@@ -105,7 +105,7 @@ class Session {
   // session runs by itself, 0 at its first tick while it freewheels, where samples may wait for
   // their time. False for a real arm, a ray that is none, and while 2048 samples wait.
   bool point(std::size_t arm, const PointerSample& sample);
-  // How hard it presses along the ray from then on, in newtons at the arm: 0, hovering, to
+  // How hard it presses along the tool from then on, in newtons at the arm: 0, hovering, to
   // mostPush_N. An undo, redo, rewind or reset makes it 0.
   bool setPush(std::size_t arm, double push_N, std::int64_t time_ns = kNow);
   double handPush_N(std::size_t arm) const { return push_N_[arm]; }
