@@ -94,6 +94,7 @@ bool HapticLoop::step(std::int64_t late_ns) {
     if (!exchange(input)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
+    if (operator_) operator_->moved(record, core_.parameters());
     for (std::size_t i = 0; i < forces_N_.size(); ++i) forces_N_[i] = record.arms[i].sent_N;
 
     // The record last: who finds it finds all that belongs to it.

@@ -36,6 +36,8 @@ class Operator {
   virtual void setPoints(std::uint64_t tick, OperatorSetPoint* of_arms, std::size_t arm_count) = 0;
   // The next command due at or before `tick`, once each; false when there is none.
   virtual bool command(std::uint64_t tick, Command& out) = 0;
+  // What a tick came to, and over which maps: before the next set-points.
+  virtual void moved(const TickRecord& /*record*/, const HapticParameters& /*now*/) {}
 };
 
 // An arm of the core and the device that moves it.

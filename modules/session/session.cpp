@@ -134,11 +134,20 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
         std::make_unique<ScriptOperator>(*options.script, scene_, armFrames(scene, landmarks_));
   }
   for (LiveHands::Hand& hand : hands_.hands) {
-    hand = {false, Vec3(0.0), kMouseStiffness_N_per_m, kMouseDamping_Ns_per_m};
+    hand = {};
+    hand.stiffness_N_per_m = kMouseStiffness_N_per_m;
+    hand.damping_Ns_per_m = kMouseDamping_Ns_per_m;
   }
   engine_ = std::make_shared<Engine>(*core_, std::move(devices), std::move(script));
   engine_->live_hands.write(hands_);
   loop_ = &engine_->loop;
+  for (const LoopDevice& d : loop_->devices()) {
+    for (std::size_t i : d.arms) simulated_[i] = d.device->takesTargets();
+  }
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    const double* size_m = capabilities_[i].workspace_m;
+    engine_->oper.setReach(i, {scene_.arms[i].max_force_N, {size_m[0], size_m[1], size_m[2]}});
+  }
   if (options.hands_outside && !options.script) beginOutside();
   statistics_.resize(scene_.arms.size());
 
@@ -177,6 +186,7 @@ Status Session::start(double seconds) {
 
 void Session::startThreads(double seconds) {
   const auto last_tick = std::uint64_t(std::llround(seconds * scene_.rate_hz));
+  engine_->oper.useHostClock();
   recorder_thread_ = std::thread([this] { record(); });
   watchdog_thread_ = std::thread([engine = engine_] {
     rt::nameThread("watchdog");
@@ -343,6 +353,9 @@ bool Session::send(CommandKind kind) {
 bool Session::push(CommandKind kind) {
   const bool held = hands_.hands[0].held;
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
+  const bool restores = kind == CommandKind::undo || kind == CommandKind::redo ||
+                        kind == CommandKind::reset;
+  if (restores) stopPushing();
   const bool sent = loop_->commands().push({kind, 0, {}});
   if (sent ? kind == CommandKind::resume : !held) holdHands(false);
   if (sent && kind == CommandKind::reset) {  // the tissue comes back around the tools
@@ -386,6 +399,7 @@ void Session::holdHands(bool hold) {
 
 bool Session::rewind(std::uint32_t second) {
   if (freeze_ != Freeze::none) return false;
+  stopPushing();
   return loop_->commands().push({CommandKind::rewind, std::int32_t(second), {}});
 }
 
@@ -418,8 +432,9 @@ void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
   if (hands_.hands[arm].held || state().paused) return;
   const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
   LiveHands::Hand& hand = hands_.hands[arm];
-  if (!hand.live) {  // taken over from a script, or from rest
+  if (!hand.live || hand.pointed) {  // taken over from a script, from rest, or from the pointer
     hand.live = true;
+    hand.pointed = false;
     hand.position_m = state().record.arms[arm].device_position_m;
   }
   hand.position_m += glm::conjugate(map.rotation) * by_mm / (1000.0 * map.motion_scale);
@@ -433,6 +448,72 @@ void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
 Vec3 Session::handTarget_mm(std::size_t arm) const {
   const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
   return map.toPatient_mm({hands_.hands[arm].position_m, Quat(1, 0, 0, 0)}).position;
+}
+
+double Session::mostPush_N(std::size_t arm) const {
+  return PointerHand::kMostShare * scene_.arms[arm].max_force_N;
+}
+
+bool Session::point(std::size_t arm, const PointerSample& sample) {
+  const double length = glm::length(sample.direction);
+  const bool ray = isFinite(sample.origin_mm) && isFinite(length) && length > 0.0 &&
+                   isFinite(sample.depth_mm.value_or(0.0));
+  if (!ray || !simulated_[arm]) return false;
+  std::optional<PointerSample>& last = pointer_[arm];
+  const std::int64_t after_ns = last ? last->time_ns : sample.time_ns;
+  last = sample;
+  last->direction /= length;
+  last->time_ns = std::max(sample.time_ns, after_ns);
+  LiveHands::Hand& hand = hands_.hands[arm];
+  if (!hand.pointed) {
+    hand.live = hand.pointed = true;
+    engine_->live_hands.write(hands_);
+  }
+  return playPointer(arm, last->time_ns, false);
+}
+
+// The last sample once more, at this time.
+bool Session::playPointer(std::size_t arm, std::int64_t time_ns, bool put_down) {
+  if (!pointer_[arm] || !hands_.hands[arm].pointed) return false;
+  PointerSample& at = *pointer_[arm];
+  const std::int64_t now_ns = running_ ? HostClock().now_ns() : at.time_ns;
+  if (time_ns == kNow || (running_ && time_ns > now_ns)) time_ns = now_ns;
+  at.time_ns = std::max(at.time_ns, time_ns);
+  return engine_->oper.path(arm).push({at, push_N_[arm], put_down});
+}
+
+bool Session::setPush(std::size_t arm, double push_N, std::int64_t time_ns) {
+  push_N_[arm] = push_N > 0.0 ? std::min(push_N, mostPush_N(arm)) : 0.0;
+  return playPointer(arm, time_ns, false);
+}
+
+bool Session::releaseHand(std::size_t arm, std::int64_t time_ns) {
+  push_N_[arm] = 0.0;
+  return playPointer(arm, time_ns, true);
+}
+
+// Tissue comes back around the tools: they come out, and stay there.
+void Session::stopPushing() {
+  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
+    if (push_N_[i] > 0.0) (void)setPush(i, 0.0);
+  }
+}
+
+void Session::turnHand(std::size_t arm, const Vec3& axis, double by_rad) {
+  const double length = glm::length(axis);
+  if (!(length > 0.0) || !isFinite(length) || !isFinite(by_rad)) return;
+  LiveHands::Hand& hand = hands_.hands[arm];
+  const Vec3 of_device =
+      glm::conjugate(scene_.arms[arm].map.fixed.value_or(WorkspaceMap{}).rotation) * axis / length;
+  const Quat turned = glm::normalize(glm::angleAxis(by_rad, of_device) * hand.turned);
+  if (2.0 * std::acos(std::min(1.0, std::abs(turned.w))) > kMostTurn_rad) return;
+  hand.turned = turned;
+  engine_->live_hands.write(hands_);
+}
+
+void Session::straightenHand(std::size_t arm) {
+  hands_.hands[arm].turned = Quat(1, 0, 0, 0);
+  engine_->live_hands.write(hands_);
 }
 
 const LoopState& Session::state() {

@@ -100,6 +100,25 @@ class Session {
   void moveHand(std::size_t arm, const Vec3& by_mm);
   Vec3 handTarget_mm(std::size_t arm) const;
 
+  // ---- A hand of a simulated arm that goes where a pointer is (pointer_hand.h). Owner thread.
+  // From the first sample on, and until moveHand(). Times do not fall: steady clock while the
+  // session runs by itself, 0 at its first tick while it freewheels, where samples may wait for
+  // their time. False for a real arm, a ray that is none, and while 2048 samples wait.
+  bool point(std::size_t arm, const PointerSample& sample);
+  // How hard it presses along the tool from then on, in newtons at the arm: 0, hovering, to
+  // mostPush_N. An undo, redo, rewind or reset makes it 0.
+  bool setPush(std::size_t arm, double push_N, std::int64_t time_ns = kNow);
+  double handPush_N(std::size_t arm) const { return push_N_[arm]; }
+  double mostPush_N(std::size_t arm) const;
+  // Puts the tool down: out of what it touches, then it rests there without force.
+  bool releaseHand(std::size_t arm, std::int64_t time_ns = kNow);
+  // Turns the tool about its tip, by a patient axis, within a tenth of a second; at most
+  // kMostTurn_rad from how the scene holds it.
+  void turnHand(std::size_t arm, const Vec3& axis, double by_rad);
+  void straightenHand(std::size_t arm);
+  static constexpr double kMostTurn_rad = 1.2;
+  static constexpr std::int64_t kNow = -1;  // the clock's; freewheeling, the last sample's
+
   // The newest state of the loop. Owner thread.
   const LoopState& state();
   // What became of the recording so far.
@@ -121,6 +140,8 @@ class Session {
   void note(const Event& event);
   void holdHands(bool hold);
   void beginOutside();
+  bool playPointer(std::size_t arm, std::int64_t time_ns, bool put_down);
+  void stopPushing();
   void record();  // the recorder thread
   void drain();
   void flush();
@@ -142,6 +163,9 @@ class Session {
   std::unique_ptr<HapticCore> core_;
   LiveHands hands_;  // the owner's side of the engine's
   std::array<std::optional<Vec3>, kMaxArms> begin_m_{};  // where a hand begins, outside of tissue
+  std::array<std::optional<PointerSample>, kMaxArms> pointer_{};  // the last of each arm
+  std::array<double, kMaxArms> push_N_{};
+  std::array<bool, kMaxArms> simulated_{};
   std::shared_ptr<Engine> engine_;
   HapticLoop* loop_ = nullptr;  // the engine's
   std::unique_ptr<SessionRecorder> recorder_;
