@@ -10,6 +10,9 @@ void ArmStatistics::add(const ArmRecord& record) {
   if (record.tissue_class >= 0) ++contact_ticks;
   const Vec3& e = record.energy_out_J;
   energy_out_J = std::max(energy_out_J, e.x + e.y + e.z);
+  if (!isFinite(record.proxy_position_mm)) return;
+  if (tip_mm) path_mm += glm::distance(record.proxy_position_mm, *tip_mm);
+  tip_mm = record.proxy_position_mm;
 }
 
 namespace {

@@ -17,6 +17,8 @@ struct ArmStatistics {
   double max_force_N = 0.0;       // sent
   std::uint64_t contact_ticks = 0;
   double energy_out_J = 0.0;      // the most that was ever given out, net
+  double path_mm = 0.0;           // of the tool's tip
+  std::optional<Vec3> tip_mm{};   // where it was last
   void add(const ArmRecord& record);
 };
 

@@ -1,6 +1,7 @@
 #include "ui/cases/case_entry.h"
 
 #include <QCoreApplication>
+#include <QDateTime>
 #include <QLocale>
 
 #include "library/case_picture.h"

@@ -315,7 +315,8 @@ void CasesPage::showChosen() {
 }
 
 void CasesPage::takeNextStep(bool train) {
-  const CaseEntry* entry = find(any_open_ ? open_ : recent_);
+  if (any_open_) return goOnWanted(train);
+  const CaseEntry* entry = find(recent_);
   if (!entry) return;
   train ? emit trainWanted(*entry) : emit prepareWanted(*entry);
 }

@@ -41,7 +41,8 @@ class CasesPage : public QWidget {
   void seriesWanted();
   void trainWanted(const trephine::CaseEntry& entry);
   void prepareWanted(const trephine::CaseEntry& entry);
-  void saveWanted();  // the open case
+  void goOnWanted(bool train);  // with the open case
+  void saveWanted();            // it
   void renameWanted(const trephine::CaseEntry& entry, const QString& name);
   void reportWanted(const trephine::CaseEntry& entry);
   void deleteWanted(const trephine::CaseEntry& entry);

@@ -1,13 +1,51 @@
 #include "ui/cases/cases_workspace.h"
 
+#include <QDialogButtonBox>
+#include <QFile>
+#include <QTextBrowser>
+#include <QVBoxLayout>
+
+#include "library/case_picture.h"
+#include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
+#include "ui/common/placing.h"
+#include "ui/common/question.h"
+#include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
+namespace {
+
+constexpr int kMostRecent = 10;
+
+// As the window works on it.
+Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& id,
+                                       const Progress& progress) {
+  Result<LoadedCase> loaded = library.load(id, progress);
+  if (!loaded) return loaded.error();
+  Case of = caseOf(loaded->volume, loaded->record.volume_sha256);
+  of.provenance = loaded->provenance;
+  of.name = loaded->record.name;
+  of.stored = id;
+  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}};
+  if (loaded->tissues.empty()) return stored;
+  // One that cannot be used any more is no reason not to open the case.
+  if (Result<TissueSet> set = parseTissueSet(loaded->tissues, "tissues.json")) {
+    stored.tissues = *std::move(set);
+  }
+  return stored;
+}
+
+}  // namespace
+
 CasesWorkspace::CasesWorkspace(Bench& bench)
-    : Workspace(&bench), bench_(bench), workstation_(bench.workstation()) {
+    : Workspace(&bench),
+      bench_(bench),
+      workstation_(bench.workstation()),
+      library_(std::make_shared<CaseLibrary>(bench.storage())) {
   QWidget& window = *bench.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
@@ -36,10 +74,22 @@ void CasesWorkspace::connectParts() {
   connect(open_file_, &QAction::triggered, this, &CasesWorkspace::askForFile);
   connect(open_scene_, &QAction::triggered, this, &CasesWorkspace::askForScene);
   connect(page_, &CasesPage::folderWanted, this, &CasesWorkspace::askForFolder);
-  connect(page_, &CasesPage::phantomWanted, this,
-          [this](const QString& name) { openPhantom(name.toStdString()); });
   connect(page_, &CasesPage::seriesWanted, import_, &ImportPage::open);
-  connect(page_, &CasesPage::cancelWanted, &workstation_, &Workstation::cancelOpening);
+  connect(page_, &CasesPage::trainWanted, this,
+          [this](const CaseEntry& entry) { openEntry(entry, Place::train); });
+  connect(page_, &CasesPage::prepareWanted, this,
+          [this](const CaseEntry& entry) { openEntry(entry, Place::prepare); });
+  connect(page_, &CasesPage::goOnWanted, this,
+          [this](bool train) { bench_.go(train ? Place::train : Place::prepare); });
+  connect(page_, &CasesPage::exercisesWanted, this, [this] { bench_.go(Place::review); });
+  connect(page_, &CasesPage::saveWanted, this, &CasesWorkspace::saveCase);
+  connect(page_, &CasesPage::renameWanted, this, &CasesWorkspace::rename);
+  connect(page_, &CasesPage::deleteWanted, this, &CasesWorkspace::askToDelete);
+  connect(page_, &CasesPage::reportWanted, this, &CasesWorkspace::showReport);
+  connect(&listing_, &BackgroundTask::ended, this, [this] {
+    if (std::exchange(list_again_, false)) QMetaObject::invokeMethod(this, &CasesWorkspace::list,
+                                                                     Qt::QueuedConnection);
+  });
 
   connect(import_, &ImportPage::opened, this, [this] {
     pages_->setCurrentWidget(import_);
@@ -61,16 +111,19 @@ void CasesWorkspace::connectParts() {
           [this] { page_->setSeriesAtHand(true); });
   connect(&bench_, &Bench::said, import_, &ImportPage::say);
 
-  connect(&workstation_, &Workstation::openingProgressed, this,
-          [this](double fraction, const QString& step) {
-            // What is placed anew is on the screen: a moment.
-            if (!workstation_.isPlacing()) page_->showProgress(fraction, step);
-          });
-  connect(&workstation_, &Workstation::openingEnded, page_, &CasesPage::endProgress);
   connect(&workstation_, &Workstation::caseOpened, this, [this] {
+    page_->sayInStrip({});
     showCase();
-    bench_.go(std::exchange(train_wanted_, false) ? Place::train : Place::prepare);
+    if (import_to_save_) saveCase();
+    bench_.go(std::exchange(then_, Place::prepare));
+    const std::string& id = workstation_.currentCase()->stored;
+    if (id.empty()) return;
+    QStringList recent = read(settings::kRecentCases);
+    recent.removeAll(toQt(id));
+    recent.prepend(toQt(id));
+    write(settings::kRecentCases, recent.mid(0, kMostRecent));
   });
+  connect(&workstation_, &Workstation::failed, this, [this] { then_ = Place::prepare; });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &CasesWorkspace::showPhase);
 }
@@ -103,23 +156,192 @@ void CasesWorkspace::askForScene() {
 
 void CasesWorkspace::open(const std::filesystem::path& path) {
   const auto go_on = [this, path] {
-    train_wanted_ = Workstation::isScene(path);
+    then_ = Workstation::isScene(path) ? Place::train : Place::prepare;
     workstation_.openPath(path);
   };
   if (!Workstation::isScene(path)) return go_on();
   bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts, Bench::Loss::tissues}, go_on);
 }
 
-void CasesWorkspace::openPhantom(const std::string& name) {
-  std::vector<Bench::Loss> losses{Bench::Loss::structures, Bench::Loss::cuts};
-  if (!workstation_.sceneFits(name)) losses.push_back(Bench::Loss::tissues);
-  bench_.unlessLost(losses, [this, name] { workstation_.openPhantom(name); });
+// --- The library ---
+
+void CasesWorkspace::list() {
+  const bool begun = listing_.run(
+      [library = library_, recordings = bench_.recordings()](const Progress& progress) {
+        return listCases(*library, recordings, progress);
+      },
+      [this](Result<std::vector<CaseEntry>> entries) {
+        if (!entries) return;
+        page_->showCases(*entries);
+        const QStringList recent = read(settings::kRecentCases);
+        page_->setRecent(recent.isEmpty() ? std::string() : recent.front().toStdString());
+        if (!std::exchange(pictures_made_, true)) makePictures();
+      });
+  list_again_ = !begun;
 }
 
+// Of the built-in cases, once: the library's have theirs on the disk.
+void CasesWorkspace::makePictures() {
+  using Pictures = std::vector<std::pair<std::string, QImage>>;
+  pictures_.run(
+      [](const Progress& progress) -> Result<Pictures> {
+        Pictures made;
+        for (const auto& [name, region] : {std::pair{"cranium", BodyRegion::head},
+                                           std::pair{"abdomen", BodyRegion::abdomen}}) {
+          if (progress.cancelled()) return Error{"CANCELLED", "", "", ""};
+          const Result<Case> of = readCase(phantomSource(name), progress);
+          if (!of) continue;
+          const CasePicture picture = casePicture(*of->volume, region);
+          const QImage image(picture.rgb.data(), CasePicture::kWidth, CasePicture::kHeight,
+                             3 * CasePicture::kWidth, QImage::Format_RGB888);
+          made.emplace_back(name, image.copy());
+        }
+        return made;
+      },
+      [this](Result<Pictures> made) {
+        if (!made) return;
+        for (const auto& [id, picture] : *made) page_->showPicture(id, picture);
+      });
+}
+
+void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
+  const std::optional<Case>& open = workstation_.currentCase();
+  if (open && !entry.built_in && open->stored == entry.id) return bench_.go(then);
+  const auto begin = [this, then](auto go_on) {
+    return [this, then, go_on] {
+      then_ = then;
+      import_to_save_.reset();
+      go_on();
+    };
+  };
+  std::vector<Bench::Loss> losses{Bench::Loss::structures, Bench::Loss::cuts};
+  const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
+  if (anatomy.empty() || !workstation_.sceneFits(anatomy)) losses.push_back(Bench::Loss::tissues);
+  if (entry.built_in) {
+    return bench_.unlessLost(
+        losses, begin([this, name = entry.id] {
+          bench_.setCaseSource({});
+          workstation_.openPhantom(name);
+        }));
+  }
+  bench_.unlessLost(losses, begin([this, id = entry.id, folder = entry.record.folder] {
+    bench_.setCaseSource(folder);
+    workstation_.openStored([library = library_, id](const Progress& progress) {
+      return storedCase(*library, id, progress);
+    });
+  }));
+}
+
+// The case that is open, whole or not at all, in the background: it can be looked at meanwhile.
+void CasesWorkspace::saveCase() {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || of->built_in || !of->stored.empty()) return;
+  NewCase made = import_to_save_.value_or(NewCase{});
+  import_to_save_ = made;  // for another try
+  made.volume = of->volume;
+  made.volume_sha256 = of->sha256;
+  made.structures = of->structures;
+  made.provenance = of->provenance;
+  made.region = of->anatomy ? of->anatomy->region : BodyRegion::not_sure;
+  made.tissues = toJson(unplaced(workstation_.scene()->tissues));
+  const auto done = std::make_shared<SavedCase>();
+  workstation_.save(
+      tr("The case is saved. You may remove the stick."),
+      [library = library_, made, done](const Progress& progress) -> Status {
+        Result<SavedCase> written = library->save(made, progress);
+        if (!written) return written.error();
+        *done = *std::move(written);
+        return {};
+      },
+      [this, done, volume = made.volume] {
+        const std::optional<Case>& now = workstation_.currentCase();
+        if (now && now->volume == volume) saved(*done);
+        list();
+      });
+}
+
+void CasesWorkspace::saved(const SavedCase& saved) {
+  import_to_save_.reset();
+  workstation_.setStored(saved.record.id);
+  const QString name = toQt(saved.record.name);
+  write(settings::kRecentCases,
+        (QStringList{toQt(saved.record.id)} + read(settings::kRecentCases)).mid(0, kMostRecent));
+  showCase();
+  const QString words =
+      tr("Saved as \"%1\", without a word of who the patient is. You may remove the stick.")
+          .arg(name);
+  page_->sayInStrip(words);
+  page_->select(saved.record.id);
+  bench_.say(words);
+  emit caseSaved(name);
+}
+
+void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
+  changing_.run(
+      [library = library_, id = entry.id, to = name.toStdString()](const Progress&) {
+        return library->rename(id, to);
+      },
+      [this](Result<CaseRecord> renamed) {
+        if (!renamed) return bench_.report(renamed.error());
+        list();
+        bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
+      });
+}
+
+void CasesWorkspace::askToDelete(const CaseEntry& entry) {
+  const std::size_t exercises = entry.exercises.size();
+  ask(bench_.window(), "deleteQuestion",
+      tr("Delete \"%1\"?").arg(toQt(entry.record.name.empty() ? entry.id : entry.record.name)),
+      exercises == 0
+          ? tr("Its volume, structures and report are removed from this workstation for good.")
+          : tr("Its volume, structures and report are removed from this workstation for good. The "
+               "recordings of %1 exercises stay, but cannot be replayed without it.")
+                .arg(exercises),
+      tr("&Delete it"), [this, entry] {
+        changing_.run(
+            [library = library_, id = entry.id](const Progress&) { return library->remove(id); },
+            [this, entry](Status removed) {
+              if (!removed) bench_.report(removed.error());
+              const std::optional<Case>& open = workstation_.currentCase();
+              if (removed && open && open->stored == entry.id) workstation_.setStored({});
+              list();
+              showCase();
+            });
+      });
+}
+
+void CasesWorkspace::showReport(const CaseEntry& entry) {
+  QFile page(toQt(entry.record.folder / "report.html"));
+  if (!page.open(QIODevice::ReadOnly)) {
+    return bench_.report({"MISSING_FILE", "The case's report cannot be read",
+                          (entry.record.folder / "report.html").string(),
+                          "The case can be used without it"});
+  }
+  auto* dialog = new QDialog(bench_.window());
+  dialog->setObjectName("reportDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("Import report of \"%1\"").arg(toQt(entry.record.name)));
+  auto* text = new QTextBrowser;
+  text->setHtml(QString::fromUtf8(page.readAll()));
+  auto* close = new QDialogButtonBox(QDialogButtonBox::Close);
+  connect(close, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
+  auto* layout = new QVBoxLayout(dialog);
+  layout->addWidget(text, 1);
+  layout->addWidget(close);
+  dialog->resize(sizeOnScreen({720, 640}, *dialog));
+  dialog->open();
+}
+
+// --- Importing ---
+
 void CasesWorkspace::caseRead(const Case& read, const std::filesystem::path& labels) {
-  bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts}, [this, read, labels] {
+  NewCase to_save;
+  to_save.report = workstation_.import().report();
+  to_save.source = workstation_.import().identity();
+  bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts}, [this, read, labels, to_save] {
     bench_.setCaseSource(workstation_.import().source());
-    train_wanted_ = false;
+    then_ = Place::prepare;
+    import_to_save_ = to_save;
     workstation_.openImported(read, labels);
   });
 }
@@ -131,7 +353,11 @@ void CasesWorkspace::saveReport(const QString& file) {
 }
 
 void CasesWorkspace::showCase() {
-  if (const std::optional<Case>& of = workstation_.currentCase()) page_->showCase(caseWords(*of));
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of) return;
+  const bool phantom = of->built_in;
+  const std::string id = phantom ? workstation_.scene()->anatomy : of->stored;
+  page_->showOpen(id, caseWords(*of), phantom || !of->stored.empty());
 }
 
 void CasesWorkspace::showPhase() {

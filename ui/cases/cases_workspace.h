@@ -1,9 +1,11 @@
 // Cases: what there is to practise on, and how it gets here: the library's page and the page of the
-// importer, and all that is asked on the way. Between these, the import task and the workstation.
+// importer, and all that is asked on the way. Between these, the library, the import task and the
+// workstation. What is imported is saved once it is open, so that nobody waits for the disk.
 #pragma once
 
 #include <QStackedWidget>
 
+#include "library/case_library.h"
 #include "ui/cases/cases_page.h"
 #include "ui/cases/import_page.h"
 #include "ui/work/bench.h"
@@ -18,6 +20,7 @@ class CasesWorkspace : public Workspace {
   QString title() const override { return tr("Cases"); }
   Symbol symbol() const override { return Symbol::cases; }
   Parts parts() override;
+  void enter() override { list(); }
 
   // A folder or file of CT, or a scene, which asks first where it takes what is not saved.
   void open(const std::filesystem::path& path);
@@ -26,12 +29,23 @@ class CasesWorkspace : public Workspace {
   // Of the folder that was scanned last: PDF or HTML.
   void saveReport(const QString& file);
 
+ signals:
+  void caseSaved(const QString& name);  // what was imported, under this name
+
  private:
   void connectParts();
   void askForFolder();
   void askForFile();
   void askForScene();
+  void list();
+  void makePictures();
+  void openEntry(const CaseEntry& entry, Place then);
   void openPhantom(const std::string& name);
+  void saveCase();
+  void saved(const SavedCase& saved);
+  void rename(const CaseEntry& entry, const QString& name);
+  void askToDelete(const CaseEntry& entry);
+  void showReport(const CaseEntry& entry);
   void caseRead(const Case& read, const std::filesystem::path& labels);
   void showCase();
   void showPhase();
@@ -42,7 +56,12 @@ class CasesWorkspace : public Workspace {
   QStackedWidget* pages_;
   CasesPage* page_;
   ImportPage* import_;
-  bool train_wanted_ = false;  // once the case that opens is there
+  std::shared_ptr<CaseLibrary> library_;
+  std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
+  Place then_ = Place::prepare;            // once the case that opens is there
+  bool list_again_ = false;
+  bool pictures_made_ = false;
+  BackgroundTask listing_, changing_, pictures_;  // last: joined before what they use goes
 };
 
 }  // namespace trephine

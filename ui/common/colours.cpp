@@ -92,7 +92,7 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           "QToolButton[rail=\"true\"]:hover { background: %2; }"
           "QToolButton[rail=\"true\"]:focus { border: 1px solid %7; }"
           "QToolButton[rail=\"true\"]:checked { background: %6; color: white; }"
-          "QLabel[heading=\"true\"] { font-size: 18px; font-weight: bold; }"
+          "QLabel[heading=\"true\"] { font-size: %10pt; font-weight: bold; }"
           "QPushButton[primary=\"true\"]:enabled { background: %6; color: white;"
           " border: 1px solid %6; border-radius: 3px; padding: 4px 12px; }"
           "QPushButton[primary=\"true\"]:enabled:hover { background: %7; }"
@@ -100,9 +100,15 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           "QFrame[card=\"true\"] { background: %4; border: 1px solid %3; border-radius: 6px; }"
           // Over a picture of bone and of black alike.
           "QFrame[notice=\"true\"] { background: %4; border: 2px solid %8; border-radius: 8px; }"
-          "QLabel[noticeTitle=\"true\"] { font-size: 28px; font-weight: bold; color: %8; }")
+          "QLabel[noticeTitle=\"true\"] { font-size: %11pt; font-weight: bold; color: %8; }"
+          "QFrame[overlay=\"true\"] { background: %4; border: 1px solid %3; border-radius: 8px; }"
+          "QLabel[large=\"true\"] { font-size: %9pt; }"
+          "QPushButton[big=\"true\"] { font-size: %9pt; padding: 8px 22px; }")
           .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
-               kAccent.darker(125).name(), kAccent.name(), kCaution.name()));
+               kAccent.darker(125).name(), kAccent.name(), kCaution.name())
+          .arg(1.3 * font.pointSizeF())
+          .arg(1.5 * font.pointSizeF())
+          .arg(2.3 * font.pointSizeF()));
 }
 
 void setText(QLabel& label, const QColor& colour) {

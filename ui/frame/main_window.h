@@ -23,8 +23,10 @@ namespace trephine {
 class MainWindow : public QMainWindow {
   Q_OBJECT
  public:
-  // Recordings go into `recordings`; empty: the user's own folder of sessions.
-  explicit MainWindow(std::filesystem::path recordings = {}, QWidget* parent = nullptr);
+  // Recordings go into `recordings`, cases beside it; empty: into the storage folder. `policy`: what
+  // the workstation locks.
+  explicit MainWindow(std::filesystem::path recordings = {}, const Policy& policy = {},
+                      QWidget* parent = nullptr);
 
   ~MainWindow() override;
 

@@ -18,8 +18,8 @@ constexpr int kLeftWidth = 300, kRightWidth = 270, kMiddleWidth = 634;
 constexpr int kProgressSteps = 1000, kProgressWidth = 140;
 }  // namespace
 
-MainWindow::MainWindow(std::filesystem::path recordings, QWidget* parent)
-    : QMainWindow(parent), bench_(*this, std::move(recordings)) {
+MainWindow::MainWindow(std::filesystem::path recordings, const Policy& policy, QWidget* parent)
+    : QMainWindow(parent), bench_(*this, std::move(recordings), policy) {
   setWindowTitle(tr("Trephine"));
   setAcceptDrops(true);
   buildWorkspaces();

@@ -45,6 +45,12 @@ QString armName(const SceneArm& arm) {
   return toQt(arm.name);
 }
 
+QString forceScaleWords(const SceneArm& arm) {
+  const double force = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
+  if (force == 1.0) return ArmsPanel::tr("Felt = as the tissue is modelled");
+  return ArmsPanel::tr("Felt = %1 x modelled").arg(force, 0, 'g', 3);
+}
+
 ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   auto* inside = new QWidget(this);
   cards_layout_ = new QVBoxLayout(inside);
@@ -76,9 +82,9 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
 
   auto* common = new QFormLayout;
   common->setVerticalSpacing(6);
-  common->addRow(quiet(tr("Controller"), inside), controller_);
-  common->addRow(quiet(tr("Missed deadlines"), inside), missed_);
-  common->addRow(quiet(tr("Dropped records"), inside), dropped_);
+  common->addRow(quiet(tr("Kept steady by"), inside), controller_);
+  common->addRow(quiet(tr("Steps of touch"), inside), missed_);
+  common->addRow(quiet(tr("Recording"), inside), dropped_);
   cards_layout_->addLayout(common);
   cards_layout_->addWidget(journal_);
   cards_layout_->addStretch(1);
@@ -118,6 +124,8 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
             value(frame, prefix + "Parts"),
             value(frame, prefix + "Faults"),
             new ForceBar(frame),
+            new TraceView(tr("Force"), tr("N"), 0.0, arm.max_force_N, frame),
+            new TraceView(tr("Energy given out"), tr("mJ"), -10.0, 2.0, frame),
             arm.map.force_scale / arm.map.motion_scale,
             {}};
   card.bar->setObjectName(prefix + "ForceBar");
@@ -137,6 +145,17 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   card.faults->setWordWrap(true);
   colours::setText(*card.faults, colours::kBad);
 
+  for (TraceView* trace : {card.force_trace, card.energy_trace}) {
+    trace->setColour(armColour(arm, index));
+  }
+  card.force_trace->setObjectName(prefix + "ForceTrace");
+  card.energy_trace->setObjectName(prefix + "EnergyTrace");
+  card.force_trace->setToolTip(tr("Line: the force sent. Grey: the force demanded."));
+  card.energy_trace->setToolTip(card.energy->toolTip());
+  auto* scale = quiet(forceScaleWords(arm), frame);
+  scale->setObjectName(prefix + "Scale");
+  scale->setWordWrap(true);
+
   auto* force_row = new QHBoxLayout;
   force_row->addWidget(card.force, 1);
   force_row->addWidget(card.demanded);
@@ -154,7 +173,10 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   layout->addWidget(title);
   layout->addWidget(card.bar);
   layout->addLayout(force_row);
+  layout->addWidget(card.force_trace);
+  layout->addWidget(scale);
   layout->addLayout(form);
+  layout->addWidget(card.energy_trace);
   layout->addWidget(card.faults);
   cards_layout_->insertWidget(int(index), frame);
   card_widgets_.push_back(frame);
@@ -200,11 +222,29 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.faults->setText(wrong.join('\n'));
     card.faults->setVisible(!wrong.isEmpty());
   }
-  missed_->setText(QString::number(state.missed));
-  dropped_->setText(QString::number(state.dropped));
+  missed_->setText(state.missed == 0 ? tr("all on time") : tr("%1 late").arg(state.missed));
+  colours::setText(*missed_, state.missed > 0 ? colours::kCaution : colours::kText);
+  dropped_->setText(state.dropped == 0 ? tr("whole") : tr("not whole: it cannot be replayed"));
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
   journal_->setVisible(state.journal_full);
   if (state.ticks > 0) showController(state.controller);  // before, it is not known
+}
+
+void ArmsPanel::follow(const LoopState& state) {
+  if (state.ticks == 0 || state.ticks == traced_tick_) return;
+  traced_tick_ = state.ticks;
+  const double now_s = double(state.ticks) * period_s_;
+  for (std::size_t i = 0; i < cards_.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    cards_[i].force_trace->add(now_s, glm::length(arm.sent_N), glm::length(arm.demanded_N));
+    const double energy_J = arm.energy_out_J.x + arm.energy_out_J.y + arm.energy_out_J.z;
+    cards_[i].energy_trace->add(now_s, kMilli * energy_J);
+  }
+}
+
+void ArmsPanel::setLocked(const QString& why) {
+  controller_->setEnabled(why.isEmpty());
+  controller_->setToolTip(why);
 }
 
 void ArmsPanel::showController(std::optional<ControllerKind> kind) {

@@ -1,5 +1,6 @@
-// Both arms' state while an exercise runs: where they are, what they feel against their limit, the
-// energy they gave out, the tissue they touch, their faults; and the controller of both.
+// Both arms' state while an exercise runs: what they touch, the force against its limit, force and
+// energy of the last ten seconds, what the controller does to them, their faults; whether the steps
+// are on time. Words first, numbers second.
 #pragma once
 
 #include <QComboBox>
@@ -12,6 +13,7 @@
 #include "scene/scene.h"
 #include "session/energy_watch.h"
 #include "ui/train/force_bar.h"
+#include "ui/train/trace_view.h"
 
 namespace trephine {
 
@@ -25,7 +27,11 @@ class ArmsPanel : public QWidget {
   // The newest state; `limits_N` by arm.
   void showState(const LoopState& state, const TissueSet& tissues,
                  const std::vector<double>& limits_N);
+  // With every picture, for the traces.
+  void follow(const LoopState& state);
   void showIdle();
+  // Why the controller may not be changed; empty: it may.
+  void setLocked(const QString& why);
   void showController(std::optional<ControllerKind> kind);  // none: no scene says which
 
  signals:
@@ -35,6 +41,7 @@ class ArmsPanel : public QWidget {
   struct Card {
     QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
     ForceBar* bar;
+    TraceView *force_trace, *energy_trace;
     double device_per_model;  // energy
     EnergyWatch watch;
   };
@@ -46,11 +53,14 @@ class ArmsPanel : public QWidget {
   double period_s_ = 0.001;
   QComboBox* controller_;
   QLabel *missed_, *dropped_, *journal_;
+  std::uint64_t traced_tick_ = 0;
 };
 
 // The colour in which an arm's tool and card are drawn.
 QColor armColour(const SceneArm& arm, std::size_t index);
 // "Left arm".
 QString armName(const SceneArm& arm);
+// How what is felt follows from what the tissue does: "Felt as the tissue is."
+QString forceScaleWords(const SceneArm& arm);
 
 }  // namespace trephine

@@ -109,6 +109,10 @@ StateNotice::StateNotice(QWidget* view) : QWidget(view) {
   pause_.why->setText(tr("No force, no cutting, and the clock stands still."));
   pause_.button->setText(tr("Go on (Space)"));
   force_ = makeCard("forceNotice", "forceOn");
+  ready_ = makeCard("readyNotice", "readyButton");
+  ready_.title->setText(tr("READY"));
+  ready_.why->setText(tr("Take an arm, or move the mouse over the tissue: the wheel presses."));
+  ready_.button->hide();
   connect(pause_.button, &QPushButton::clicked, this, &StateNotice::goOnWanted);
   connect(force_.button, &QPushButton::clicked, force_on_, &QAction::trigger);
   connect(force_on_, &QAction::triggered, this, &StateNotice::forceWanted);
@@ -142,22 +146,25 @@ StateNotice::Card StateNotice::makeCard(const char* name, const char* button_nam
   return {frame, title, why, button};
 }
 
-void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s) {
-  show(state.paused, forceNotice(state, scene, still_s));
+void StateNotice::showState(const LoopState& state, const Scene& scene, double still_s,
+                            bool ready) {
+  show(state.paused, forceNotice(state, scene, still_s), ready);
 }
 
 void StateNotice::showIdle() {
-  show(false, {});
+  show(false, {}, false);
 }
 
-void StateNotice::show(bool paused, const ForceNotice& force) {
+void StateNotice::show(bool paused, const ForceNotice& force, bool ready) {
   const QString mend =
       force.mend.isEmpty()
           ? QString()
           : tr("%1 (%2)").arg(force.mend, force_on_->shortcut().toString(QKeySequence::NativeText));
   const bool without_force = !force.title.isEmpty();
+  ready = ready && !paused && !without_force;
   const bool same =
-      isHidden() == !(paused || without_force) && pause_.frame->isHidden() != paused &&
+      isHidden() == !(paused || without_force || ready) && pause_.frame->isHidden() != paused &&
+      ready_.frame->isHidden() != ready &&
       force_.frame->isHidden() != without_force && force_.title->text() == force.title &&
       force_.why->text() == force.why && force_.button->text() == mend;
   if (same) return;
@@ -165,12 +172,13 @@ void StateNotice::show(bool paused, const ForceNotice& force) {
   const bool had_focus = isAncestorOf(window()->focusWidget());
   pause_.frame->setVisible(paused);
   force_.frame->setVisible(without_force);
+  ready_.frame->setVisible(ready);
   force_.title->setText(force.title);
   force_.why->setText(force.why);
   force_.button->setText(mend);
   force_.button->setVisible(!mend.isEmpty());
   force_on_->setEnabled(!mend.isEmpty());
-  setVisible(paused || without_force);
+  setVisible(paused || without_force || ready);
   if (had_focus && !isAncestorOf(window()->focusWidget())) parentWidget()->setFocus();
   place();
 }
@@ -184,7 +192,7 @@ void StateNotice::place() {
   const QWidget* view = parentWidget();
   const int width = std::min(kWidest, view->width() - 2 * kMargin);
   // Where words changed within a card, only the card's own layout knows it yet.
-  for (QFrame* frame : {pause_.frame, force_.frame}) frame->updateGeometry();
+  for (QFrame* frame : {pause_.frame, force_.frame, ready_.frame}) frame->updateGeometry();
   layout()->activate();
   const int height = layout()->totalHeightForWidth(width);
   setGeometry((view->width() - width) / 2, kMargin, width, height);

@@ -1,5 +1,5 @@
 // What stands between the hand and the tissue in a running exercise, said large over the view: the
-// pause, and arms that are without force. Words, and one button that mends it. Mouse and wheel
+// pause, arms that are without force, or that all is ready. Words, and one button that mends it. Mouse and wheel
 // beside the buttons go on to the view below.
 #pragma once
 
@@ -32,7 +32,8 @@ class StateNotice : public QWidget {
   // Lies over `view`, at its top, as wide as there is room.
   explicit StateNotice(QWidget* view);
 
-  void showState(const LoopState& state, const Scene& scene, double still_s);
+  // `ready`: nothing has been touched yet.
+  void showState(const LoopState& state, const Scene& scene, double still_s, bool ready = false);
   void showIdle();
   // "Force on" with its key, for a menu; enabled while it can be used.
   QAction* forceOnAction() { return force_on_; }
@@ -51,10 +52,10 @@ class StateNotice : public QWidget {
     QPushButton* button;
   };
   Card makeCard(const char* name, const char* button_name);
-  void show(bool paused, const ForceNotice& force);
+  void show(bool paused, const ForceNotice& force, bool ready);
   void place();
 
-  Card pause_, force_;
+  Card pause_, force_, ready_;
   QAction* force_on_;
 };
 

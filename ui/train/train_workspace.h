@@ -1,5 +1,6 @@
 // Train: the exercise: which one, its start and end, what the hands do and feel. Between its
-// panels, the views and the workstation. (train_hands.cpp is how mouse and keys move a hand.)
+// panels, the views and the workstation. (train_exercises.cpp is which exercise it is,
+// train_running.cpp what is shown while one runs.)
 #pragma once
 
 #include <QComboBox>
@@ -8,7 +9,12 @@
 #include <optional>
 
 #include "ui/train/arms_panel.h"
+#include "ui/train/exercise_panel.h"
+#include "ui/train/hand_bar.h"
+#include "ui/train/pointer_hands.h"
+#include "ui/train/result_page.h"
 #include "ui/train/rewind_bar.h"
+#include "ui/train/start_card.h"
 #include "ui/train/state_notice.h"
 #include "ui/work/bench.h"
 
@@ -24,6 +30,8 @@ class TrainWorkspace : public Workspace {
   QString title() const override { return tr("Train"); }
   Symbol symbol() const override { return Symbol::train; }
   Parts parts() override;
+  void enter() override;
+  void leave() override;
 
   // The exercises to choose from, for the bar; what one does with a running one.
   QComboBox* exercises() const { return scenes_; }
@@ -31,6 +39,7 @@ class TrainWorkspace : public Workspace {
   QAction* stopAction() const { return stop_; }
   QAction* pauseAction() const { return pause_; }
   QAction* resetAction() const { return reset_; }
+  QList<QAction*> handActions() const { return {other_hand_, clutch_, recentre_}; }
   QAction* forceOnAction() const { return notice_->forceOnAction(); }
   QAction* backAction() const { return rewind_->backAction(); }
 
@@ -43,6 +52,7 @@ class TrainWorkspace : public Workspace {
  signals:
   void ratesChanged(const QString& words);
   void structureWanted();  // that the exercise needs and the case lacks
+  void replayWanted();     // of the exercise that ended last
 
  private:
   void buildActions();
@@ -68,22 +78,35 @@ class TrainWorkspace : public Workspace {
   void rewind(std::uint32_t second);
   void showRewind(const LoopState& state);
   void askToGoOn(const Error& error);
-  // train_hands.cpp
-  void moveHand(Hand hand, const Vec3& by_mm);
-  void placeHandPoints();
-  std::size_t armOf(Hand hand) const;
+  void showCard();
+  void showHand();
+  void showRemoved(Session& session, const LoopState& state);
+  void showOutline();
+  void showLocks();
+  void showResult(const Session& session, const RunReport& report);
+  void clutch();
+  void recentre();
 
   Bench& bench_;
   Workstation& workstation_;
   FourUp* views_;
   ViewWidget* view_;
-  QAction *start_, *stop_, *pause_, *reset_;
+  QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_;
   QComboBox* scenes_;
   ArmsPanel* arms_;
   StateNotice* notice_;  // over the views
   RewindBar* rewind_;
+  ExercisePanel* exercise_;
+  QWidget* exercise_page_;
+  StartCard* card_;
+  ResultPage* result_;
+  HandBar* hand_bar_;
+  PointerHands* hands_;
+  bool here_ = false;           // this workspace is the one that is shown
+  bool touched_ = false;        // something has been, in this exercise
+  bool result_shown_ = false;   // instead of the card, until it is closed
   QTimer frame_timer_;
-  QElapsedTimer panel_clock_, rate_clock_;
+  QElapsedTimer panel_clock_, rate_clock_, removed_clock_;
   std::vector<double> limits_N_;  // of the running session's arms
   struct GoingBack {
     std::uint32_t second;

@@ -21,8 +21,6 @@ constexpr double kRefine_ms = 30.0;
 constexpr double kRefineInTraining_ms = 10.0;
 constexpr int kNothingToRefine_ms = 40;  // while cuts follow each other too fast for full quality
 constexpr double kTurn_deg_per_pixel = 0.4;
-constexpr double kWheelStep_mm = 1.0;  // a notch of the wheel
-constexpr double kKeyStep_mm = 0.5;
 constexpr double kZoomStep = 1.1;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
@@ -30,10 +28,6 @@ constexpr double kToolMoved_mm = 0.02;
 const Vec3 kLightColour(1.0, 0.95, 0.5);
 constexpr double kReach_pixels = 11.0;  // of a handle
 constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
-
-Hand handFor(Qt::KeyboardModifiers modifiers) {
-  return modifiers & Qt::ShiftModifier ? Hand::left : Hand::right;
-}
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
   return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
@@ -323,8 +317,9 @@ void ViewWidget::setTraining(bool training) {
   showCursor();
 }
 
-void ViewWidget::setHandPoint(Hand hand, const Vec3& point_mm) {
-  hand_points_mm_[std::size_t(hand)] = point_mm;
+void ViewWidget::setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm) {
+  renderer_.setOutline(points_mm, closed, width_mm);
+  update();
 }
 
 Result<Picture> ViewWidget::picture() {
@@ -342,16 +337,6 @@ Result<Picture> ViewWidget::picture() {
                  "Try again, or with a smaller window"};
   }
   return picture;
-}
-
-void ViewWidget::moveHand(Hand hand, double right_pixels, double up_pixels) {
-  const double mm =
-      renderer_.mmPerPixelAt(hand_points_mm_[std::size_t(hand)]) * devicePixelRatioF();
-  moveHandBy(hand, (renderer_.viewRight() * right_pixels + renderer_.viewUp() * up_pixels) * mm);
-}
-
-void ViewWidget::moveHandBy(Hand hand, const Vec3& by_mm) {
-  emit handMoved(hand, by_mm);
 }
 
 void ViewWidget::turn(double right_pixels, double down_pixels) {
@@ -374,6 +359,9 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   last_ = event->position();
   if (!(event->buttons() & Qt::LeftButton)) endStroke();
   if (isBrush(tool_)) showCursor();
+  const bool points = event->buttons() == Qt::NoButton || (event->buttons() == Qt::LeftButton &&
+                                                           !dragged_ && !moving_light_);
+  if (training_ && points && renderer_.hasVolume()) return emit pointed(last_);
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
   const double ratio = devicePixelRatioF();
   const glm::dvec2 pixels(moved.x() * ratio, -moved.y() * ratio);
@@ -392,8 +380,6 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   } else if (event->buttons() & Qt::MiddleButton) {
     renderer_.pan(moved.x() * devicePixelRatioF(), moved.y() * devicePixelRatioF());
     redraw();
-  } else if (training_ && left) {
-    moveHand(handFor(event->modifiers()), moved.x(), -moved.y());
   } else if (left && stroke_at_mm_) {
     moveStroke(before, last_);
   } else if (!left || !hasTool()) {
@@ -412,7 +398,7 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
   const QPoint angle = event->angleDelta();
   const double notches = double(angle.y() != 0 ? angle.y() : angle.x()) / kWheelNotch;
   if (training_ && !(event->modifiers() & Qt::ControlModifier)) {
-    moveHandBy(handFor(event->modifiers()), renderer_.viewForward() * (notches * kWheelStep_mm));
+    emit pushStepped(notches);
   } else {
     renderer_.zoom(std::pow(kZoomStep, notches));
     if (isBrush(tool_)) showCursor();
@@ -442,22 +428,35 @@ void ViewWidget::keyPressEvent(QKeyEvent* event) {
     case Qt::Key_PageUp:
       deeper = -1;
       break;
+    case Qt::Key_Home:  // with Shift; alone it is the window's
+      if (training_) return emit toolStraightened();
+      [[fallthrough]];
     default:
       if (!toolKey(event->key())) QOpenGLWidget::keyPressEvent(event);
       return;
   }
   if (!renderer_.hasVolume()) return;
   if (training_ && !(event->modifiers() & Qt::ControlModifier)) {
-    moveHandBy(
-        handFor(event->modifiers()),
-        kKeyStep_mm * (renderer_.viewRight() * double(right) + renderer_.viewUp() * double(up) +
-                       renderer_.viewForward() * double(deeper)));
+    if (deeper != 0) {
+      emit pushStepped(deeper);
+    } else if (event->modifiers() & Qt::ShiftModifier) {
+      emit toolTilted(right, up);
+    } else {
+      emit pointerStepped(right, up);
+    }
   } else if (deeper != 0) {
     renderer_.zoom(std::pow(kZoomStep, deeper));
     redraw();
   } else {
     turn(right * kKeyTurn_pixels, -up * kKeyTurn_pixels);
   }
+}
+
+// The hand changes by Tab; Shift+Tab leaves the view as ever.
+bool ViewWidget::focusNextPrevChild(bool next) {
+  if (!training_ || !next) return QOpenGLWidget::focusNextPrevChild(next);
+  emit otherHandWanted();
+  return true;
 }
 
 }  // namespace trephine

@@ -1,9 +1,9 @@
 // The 3-D view: hosts the scene renderer and turns mouse and keys into movements of a hand or of
 // the camera. It knows no session: what a hand does with its movement is told by a signal.
 //
-// While an exercise runs:  left drag moves the right hand in the view plane, the wheel in depth;
-//                          with Shift, the left hand. Arrow keys and Page Up, Page Down do the
-//                          same.
+// While an exercise runs the pointer is where the tool goes, and what is over the view is told by
+// signals: the wheel or Page Up and Down press, arrow keys move the pointer, with Shift they tilt the
+// tool, Shift+Home straightens it, Tab takes the other hand.
 // The squares of the crop box and the clip plane are dragged with the left button, and while the
 // light is to be moved, the light.
 // Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
@@ -29,8 +29,6 @@ namespace trephine {
 
 class ViewTools;
 
-enum class Hand { left, right };
-
 class ViewWidget : public QOpenGLWidget {
   Q_OBJECT
  public:
@@ -47,9 +45,9 @@ class ViewWidget : public QOpenGLWidget {
   // Where the tools are now; draws when something changed.
   void setTools(const std::vector<ToolView>& tools);
 
-  // In an exercise the mouse moves hands; `point_mm` is where a hand is, which gives the scale.
   void setTraining(bool training);
-  void setHandPoint(Hand hand, const Vec3& point_mm);
+  // A line on the tissue; no points: none.
+  void setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm);
 
   // One for structures or the entry point; others leave the left button to the camera. `mm`: of the
   // brush.
@@ -60,6 +58,10 @@ class ViewWidget : public QOpenGLWidget {
   }
   // What is seen at a place of the widget.
   std::optional<Picked> pickAt(const QPointF& place) const;
+  // The line of sight there; none without a case.
+  std::optional<ViewCamera::Ray> rayAt(const QPointF& place) const;
+  // How many mm one unit of the widget spans at what is seen there, else at what is looked at.
+  double mmPerUnitAt(const QPointF& place) const;
 
   // Standard views, crop box and what else the strip over the view offers.
   const ViewTools& tools() const { return *strip_; }
@@ -76,7 +78,13 @@ class ViewWidget : public QOpenGLWidget {
   std::string openGlDescription() const { return gl_description_; }
 
  signals:
-  void handMoved(trephine::Hand hand, const trephine::Vec3& by_mm);
+  // While an exercise runs.
+  void pointed(const QPointF& place);
+  void pointerStepped(int right, int up);
+  void pushStepped(double notches);
+  void toolTilted(int right, int up);
+  void toolStraightened();
+  void otherHandWanted();
   // As SliceView has them; `across` is the axis of the grid along which one looks most.
   void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
@@ -99,6 +107,7 @@ class ViewWidget : public QOpenGLWidget {
   void mouseReleaseEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
+  bool focusNextPrevChild(bool next) override;
 
  private:
   void showNews();  // of the mirror, as a whole
@@ -106,8 +115,6 @@ class ViewWidget : public QOpenGLWidget {
   void redraw();  // the volume too: coarse now, refined when still
   void refine();
   void showLevel();
-  void moveHand(Hand hand, double right_pixels, double up_pixels);
-  void moveHandBy(Hand hand, const Vec3& by_mm);
   void turn(double right_pixels, double down_pixels);
   void fitHint();
   void connectTools();
@@ -142,7 +149,6 @@ class ViewWidget : public QOpenGLWidget {
   bool moving_light_ = false;
   Vec3 light_ = SceneRenderer::kLight;
   QPointF last_;
-  std::array<Vec3, 2> hand_points_mm_{};
   std::vector<ToolView> tools_;  // of the exercise
   SliceTool tool_ = SliceTool::window;
   double brush_mm_ = 5.0;

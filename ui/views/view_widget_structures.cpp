@@ -60,14 +60,25 @@ void ViewWidget::showCursor() {
   ring_ = radius;
 }
 
-std::optional<Picked> ViewWidget::pickAt(const QPointF& place) const {
+std::optional<ViewCamera::Ray> ViewWidget::rayAt(const QPointF& place) const {
   if (!renderer_.hasVolume()) return {};
   const double ratio = devicePixelRatioF();
-  const ViewCamera::Ray ray = renderer_.camera().rayThrough(
-      pixelAt(place), int(std::lround(width() * ratio)), int(std::lround(height() * ratio)));
+  return renderer_.camera().rayThrough(pixelAt(place), int(std::lround(width() * ratio)),
+                                       int(std::lround(height() * ratio)));
+}
+
+std::optional<Picked> ViewWidget::pickAt(const QPointF& place) const {
+  const std::optional<ViewCamera::Ray> ray = rayAt(place);
+  if (!ray) return {};
   const std::shared_ptr<const LabelMap>& labels =
       stroke_labels_ ? stroke_labels_ : mirror_->labels();
-  return pick(mirror_->volume(), labels.get(), seen_, looks_, clip_.planes(), ray);
+  return pick(mirror_->volume(), labels.get(), seen_, looks_, clip_.planes(), *ray);
+}
+
+double ViewWidget::mmPerUnitAt(const QPointF& place) const {
+  const std::optional<Picked> picked = pickAt(place);
+  return renderer_.mmPerPixelAt(picked ? picked->at_mm : renderer_.camera().focus()) *
+         devicePixelRatioF();
 }
 
 // The disc of a brush lies across the axis of the grid along which one looks most.

@@ -16,21 +16,23 @@ namespace trephine {
 
 namespace {
 
-std::filesystem::path ownRecordings() {
-  const QString storage = read(settings::kStorage);
-  return toPath(storage.isEmpty()
+std::filesystem::path storageFolder(const Policy& policy) {
+  if (!policy.storage.empty()) return policy.storage;
+  const QString chosen = read(settings::kStorage);
+  return toPath(chosen.isEmpty()
                     ? QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)
-                    : storage) /
-         "sessions";
+                    : chosen);
 }
 
 }  // namespace
 
-Bench::Bench(QMainWindow& window, std::filesystem::path recordings)
+Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy& policy)
     : QObject(&window),
       window_(window),
-      recordings_(recordings.empty() ? ownRecordings() : std::move(recordings)),
-      views_(new FourUp(&window)) {
+      storage_(recordings.empty() ? storageFolder(policy) : recordings.parent_path()),
+      recordings_(recordings.empty() ? storage_ / "sessions" : std::move(recordings)),
+      views_(new FourUp(&window)),
+      workstation_(policy) {
   undo_ = makeAction(window_, Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),
                      tr("Put the last stroke's tissue back"));
   redo_ = makeAction(window_, Symbol::redo, "redo", tr("Redo"),

@@ -23,14 +23,16 @@ class Bench : public QObject {
   // What can be lost while no file has it.
   enum class Loss { structures, cuts, tissues };
 
-  // `recordings`: where they go; empty: into the storage folder.
-  Bench(QMainWindow& window, std::filesystem::path recordings);
+  // `recordings`: where they go; empty: into the storage folder, which the policy, a person's
+  // settings or the user's own data folder say.
+  Bench(QMainWindow& window, std::filesystem::path recordings, const Policy& policy);
 
   Workstation& workstation() { return workstation_; }
   FourUp& views() { return *views_; }
   ViewWidget& view() { return views_->threeD(); }
   QWidget* window() const { return &window_; }
   const std::filesystem::path& recordings() const { return recordings_; }
+  const std::filesystem::path& storage() const { return storage_; }
 
   // Of the exercise while one runs, else of what is prepared: who serves them enables them.
   QAction* undoAction() const { return undo_; }
@@ -90,7 +92,7 @@ class Bench : public QObject {
   void setCuts(bool carved, bool unsaved);
 
   QMainWindow& window_;
-  std::filesystem::path recordings_;
+  std::filesystem::path storage_, recordings_;
   FourUp* views_;
   Workstation workstation_;
   std::array<Guard, 3> guards_;

@@ -14,6 +14,7 @@ constexpr int kThumbnailPixels = 160;  // sharp at twice the size it is shown at
 struct ReadSeries {
   std::shared_ptr<const Volume> volume;
   CouchFinding couch;
+  SourceIdentity identity;
 };
 
 bool asks(const ImportReport& report, const std::string& uid, const char* code) {
@@ -101,7 +102,7 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
   couch_ = {};
   begin([this, uid, request, needed_mb] {
     task_.run(
-        [folder = folder_, uid, request, needed_mb,
+        [folder = folder_, source = source_, uid, request, needed_mb,
          room_mb = roomMb()](const Progress& progress) -> Result<ReadSeries> {
           if (Status enough =
                   enoughMemory(needed_mb, "Opening the case and practising on it", "", room_mb);
@@ -110,7 +111,9 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
           }
           Result<Volume> volume = folder->read(uid, request, progress);
           if (!volume) return volume.error();
-          ReadSeries read{std::make_shared<const Volume>(*std::move(volume)), {}};
+          ReadSeries read{
+              std::make_shared<const Volume>(*std::move(volume)), {}, folder->sourceIdentity(uid)};
+          read.identity.add(IdentityKind::folder, source.filename().string());
           if (asks(folder->report(), uid, "COUCH") && !request.answers.contains("COUCH")) {
             read.couch = findCouch(*read.volume);
           }
@@ -122,6 +125,7 @@ void ImportTask::read(const std::string& uid, const ImportRequest& request, doub
           if (!read || cancelled_) return endWithout(read);
           volume_ = std::move(read->volume);
           couch_ = std::move(read->couch);
+          identity_ = std::move(read->identity);
           end(&ImportTask::readDone);
         });
   });

@@ -47,6 +47,8 @@ class ImportTask : public QObject {
   // Whom and what its series are of, by uid. For the screen alone.
   const std::map<std::string, ScreenNames>& names() const { return names_; }
   const std::vector<CtFolder::LabelFile>& labelFiles() const { return label_files_; }
+  // Of the series that was read last: to be compared with what its case is called, never written.
+  const SourceIdentity& identity() const { return identity_; }
   const std::shared_ptr<const Volume>& volume() const { return volume_; }
   // The couch in volume(), where the series asks about it and that is not answered yet.
   const CouchFinding& couch() const { return couch_; }
@@ -97,6 +99,7 @@ class ImportTask : public QObject {
   std::shared_ptr<ScanGuide> guide_;  // of the scan that was asked for last, while it runs
   int scans_ = 0;
   std::shared_ptr<const Volume> volume_;
+  SourceIdentity identity_;
   double given_back_mb_ = 0.0;
   CouchFinding couch_;
   bool cancelled_ = false;      // even where the work came to its end first

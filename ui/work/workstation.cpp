@@ -2,6 +2,7 @@
 
 #include <QDateTime>
 #include <QTimer>
+#include <algorithm>
 #include <map>
 #include <new>
 
@@ -30,6 +31,9 @@ struct Workstation::Opened {
   bool structures_alone = false;     // the open case with others of them
   bool any_scene = false;            // nobody chose the scene: one that fits what the case shows
   std::optional<Error> no_labels{};  // why the case opened without them
+  // The case comes from there, and its own tissues with it.
+  std::function<Result<Stored>(const Progress&)> load{};
+  std::optional<TissueSet> tissues{};
   Volume mirror{};
 };
 
@@ -37,6 +41,10 @@ namespace {
 
 // While a save waits for the haptic thread to stand still.
 constexpr int kLookAgain_ms = 10;
+
+bool sameIds(const TissueSet& a, const TissueSet& b) {
+  return std::ranges::equal(a.tissues, b.tissues, {}, &Tissue::id, &Tissue::id);
+}
 
 Error busySaving() {
   return {"BUSY", "Another file is being saved", "", "Try again in a moment"};
@@ -48,7 +56,8 @@ std::filesystem::path defaultScene(const std::string& anatomy) {
   return resourceFolder() / "scenes" / (anatomy == "abdomen" ? "liver.json" : "cranium.json");
 }
 
-Workstation::Workstation(QObject* parent) : QObject(parent) {
+Workstation::Workstation(const Policy& policy, QObject* parent)
+    : QObject(parent), policy_(policy) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
   connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
@@ -87,10 +96,39 @@ std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& f
     fail(scene.error());
     return {};
   }
+  if (Status may = unlocked_ ? Status() : checkScene(policy_, *scene, file); !may) {
+    fail(may.error());
+    return {};
+  }
   // An arm that is not there now may be when the exercise starts, which then asks again.
   (void)readArmDynamics(*scene);
   return *std::move(scene);
 }
+
+// --- Locks ---
+
+bool Workstation::isLocked(Lock lock) const {
+  if (unlocked_) return false;
+  return scene_ ? locksOf(policy_, *scene_).contains(lock) : policy_.isLocked(lock);
+}
+
+bool Workstation::anyLocked() const {
+  return isLocked(Lock::controller) || isLocked(Lock::tissues) || isLocked(Lock::rate);
+}
+
+void Workstation::unlock() {
+  unlocked_ = true;
+  emit locksChanged();
+}
+
+bool Workstation::refuseLocked(Lock lock, const char* what) {
+  if (!isLocked(lock)) return false;
+  fail({"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
+        "Ask an educator, who can unlock it with a PIN (menu File)"});
+  return true;
+}
+
+// --- Opening ---
 
 bool Workstation::isScene(const std::filesystem::path& path) {
   const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
@@ -197,6 +235,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     declared_tissues_ = scene_->tissues;
     looks_ = scene_->view.looks;
     emit sceneChanged();
+    emit locksChanged();
     return;
   }
   useCase(scene, source);
@@ -212,6 +251,22 @@ void Workstation::openImported(const Case& read, const std::filesystem::path& la
   Opened opening{*std::move(scene), file, read, scene_.has_value(), labels.string()};
   opening.any_scene = !scene_chosen_;
   openInBackground(std::move(opening));
+}
+
+void Workstation::openStored(std::function<Result<Stored>(const Progress&)> load) {
+  if (!mayOpen()) return;
+  const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
+  std::optional<Scene> scene = readSceneOrFail(file);
+  if (!scene) return;
+  useCase(*scene, "");
+  Opened opening{*std::move(scene), file, {}, scene_.has_value()};
+  opening.any_scene = true;
+  opening.load = std::move(load);
+  openInBackground(std::move(opening));
+}
+
+void Workstation::setStored(const std::string& id) {
+  if (case_) case_->stored = id;
 }
 
 // What a person is asked of a file that could be used as it is; the file is then not used yet.
@@ -245,7 +300,16 @@ void Workstation::openInBackground(Opened opening) {
   const auto asked = std::make_shared<Asked>();
   opening_.run(
       [opening = std::move(opening), shown,
-       asked](const Progress& progress) mutable -> Result<Opened> {
+       asked](const Progress& all) mutable -> Result<Opened> {
+        constexpr double kLoaded = 0.7;  // of the work
+        if (opening.load) {
+          Result<Stored> stored = opening.load(Progress(all, 0.0, kLoaded));
+          if (!stored) return stored.error();
+          opening.of = std::move(stored->of);
+          opening.tissues = std::move(stored->tissues);
+        }
+        const Progress progress(all, opening.load ? kLoaded : 0.0, 1.0);
+        opening.load = nullptr;
         if (opening.of && !opening.labels_file.empty()) {
           Result<Case> labelled = opening.structures_alone
                                       ? withAnswered(*opening.of, opening, *asked, progress)
@@ -339,8 +403,15 @@ void Workstation::opened(Result<Opened> outcome) {
   }
   entry_before_ = entry_;
   const bool structures_alone = outcome->structures_alone;
+  const bool may_edit = !isLocked(Lock::tissues);
   placed_with_ = tissueTable(outcome->scene.tissues);
   keepEdits(*outcome);
+  // The case's own, where they are of the same kinds: what was felt on it is felt again.
+  if (outcome->tissues && may_edit && sameIds(*outcome->tissues, outcome->scene.tissues)) {
+    outcome->scene.tissues = *outcome->tissues;
+    placeTissues(outcome->scene.tissues, outcome->of->labels.get());
+    declared_tissues_ = outcome->scene.tissues;
+  }
   scene_ = std::move(outcome->scene);
   scene_file_ = std::move(outcome->scene_file);
   in_force_ = scene_->controller;
@@ -356,6 +427,7 @@ void Workstation::opened(Result<Opened> outcome) {
   carved_.reset();
   tellGivenBack();
   emit sceneChanged();
+  emit locksChanged();
   emit caseOpened();
   setPhase(Phase::ready);
   if (outcome->no_labels) fail(*outcome->no_labels);
@@ -457,6 +529,7 @@ void Workstation::stop() {
 
 void Workstation::setTissues(const TissueSet& tissues) {
   if (!scene_) return;
+  if (refuseLocked(Lock::tissues, "The tissues are")) return emit sceneChanged();  // as they were
   scene_->tissues = tissues;
   if (!session()) return;
   if (Status set = session_->setTissues(tissues); !set) fail(set.error());
@@ -468,6 +541,9 @@ void Workstation::noteController(ControllerKind in_force) {
 
 void Workstation::setController(ControllerKind kind) {
   if (!scene_) return;
+  if (kind != scene_->controller && refuseLocked(Lock::controller, "The controller is")) {
+    return emit controllerChanged();
+  }
   scene_->controller = kind;
   if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {

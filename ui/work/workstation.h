@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "scene/policy.h"
 #include "session/session.h"
 #include "ui/work/import_task.h"
 #include "ui/common/background_task.h"
@@ -19,7 +20,8 @@ class Workstation : public QObject {
   static constexpr const char* kThreshold = "THRESHOLD";  // an answer of useLabels()
   enum class Phase { empty, ready, starting, running, ending };
 
-  explicit Workstation(QObject* parent = nullptr);
+  // What the workstation locks for who practises at it.
+  explicit Workstation(const Policy& policy = {}, QObject* parent = nullptr);
   ~Workstation() override;
 
   // A scene (.json, unless it is the sidecar of a .raw) brings its own case; any other folder or
@@ -33,6 +35,15 @@ class Workstation : public QObject {
   // What an import has read, with the label map of this file where there is one. A label map that
   // cannot be had is said; the case opens without it.
   void openImported(const Case& read, const std::filesystem::path& labels = {});
+  // One that the library has: `load` runs in the background. Its own tissues are used where the
+  // exercise has the same ones. The exercise changes where it is for another region of the body.
+  struct Stored {
+    Case of;
+    std::optional<TissueSet> tissues;
+  };
+  void openStored(std::function<Result<Stored>(const Progress&)> load);
+  // The library has the open case now, as that id, or no longer.
+  void setStored(const std::string& id);
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   // The structures of the open case from a file; what a person has to decide comes as
@@ -49,8 +60,17 @@ class Workstation : public QObject {
   // While that is being done: the case itself stays as it is.
   bool isPlacing() const { return placing_; }
   void cancelOpening() { opening_.cancel(); }
+  void cancelSaving() { saving_.cancel(); }
   bool isOpening() const { return opening_.busy(); }
   ImportTask& import() { return import_; }
+
+  // What may not be changed now: by the workstation or by the exercise, until an educator's PIN
+  // takes the locks off for this session of the program. What is locked and tried all the same is
+  // refused here: LOCKED.
+  const Policy& policy() const { return policy_; }
+  bool isLocked(Lock lock) const;
+  bool anyLocked() const;
+  void unlock();
 
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }
@@ -130,6 +150,7 @@ class Workstation : public QObject {
                     const trephine::Answers& answers);
   // The file has shares instead of yes and no; the answer is kThreshold, a number from 0 to 1.
   void thresholdAsked(const std::filesystem::path& file, const trephine::Answers& answers);
+  void locksChanged();
   void phaseChanged();  // or isOpening()
   void sessionStarted();
   // Once an exercise, which goes on; stop() does not say it again.
@@ -167,6 +188,10 @@ class Workstation : public QObject {
   void setPhase(Phase phase);
   void fail(const Error& error);
 
+  bool refuseLocked(Lock lock, const char* what);
+
+  Policy policy_;
+  bool unlocked_ = false;
   Phase phase_ = Phase::empty;
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;

@@ -1,0 +1,28 @@
+// A frame of words and buttons that lies over another widget, as wide as is asked or as there is
+// room, and keeps its place there.
+#pragma once
+
+#include <QFrame>
+
+namespace trephine {
+
+class FloatingCard : public QFrame {
+  Q_OBJECT
+ public:
+  enum class At { top, middle, bottom };
+
+  FloatingCard(QWidget& over, At at, int widest);
+  // After what it says has changed.
+  void place();
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  static constexpr int kMargin = 12;
+  At at_;
+  int widest_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,119 @@
+#include "ui/train/exercise_panel.h"
+
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "ui/common/words.h"
+#include "ui/train/arms_panel.h"
+
+namespace trephine {
+
+namespace {
+
+QLabel* wrapped(const char* name, Qt::TextFormat format = Qt::PlainText) {
+  auto* label = new QLabel;
+  label->setObjectName(name);
+  label->setTextFormat(format);
+  label->setWordWrap(true);
+  return label;
+}
+
+QLabel* heading(const QString& text) {
+  auto* label = new QLabel(text);
+  label->setProperty("title", true);
+  return label;
+}
+
+QString rows(const QString& title, const std::vector<RemovedOf>& removed) {
+  QString html;
+  for (const RemovedOf& one : removed) {
+    if (!(one.mm3 > 0.0)) continue;
+    html += QStringLiteral("<tr><td style='color:%1'>\u25a0&nbsp;</td><td>%2&nbsp;&nbsp;</td>"
+                           "<td align='right'>%3</td></tr>")
+                .arg(one.colour.name(), one.name.toHtmlEscaped(), volumeWords(one.mm3));
+  }
+  if (html.isEmpty()) return {};
+  return QStringLiteral("<tr><td colspan='3'>%1</td></tr>").arg(title.toHtmlEscaped()) + html;
+}
+
+}  // namespace
+
+QString volumeWords(double mm3) {
+  if (mm3 >= 1000.0) return ExercisePanel::tr("%1 mL").arg(mm3 / 1000.0, 0, 'f', 2);
+  return ExercisePanel::tr("%1 mm\u00b3").arg(mm3, 0, 'f', mm3 < 10.0 ? 1 : 0);
+}
+
+QString stepsWords(const CardText& card) {
+  QString html = QStringLiteral("<ol style='margin-left:-20px'>");
+  for (const std::string& step : card.steps) {
+    html += QStringLiteral("<li>%1</li>").arg(toQt(step).toHtmlEscaped());
+  }
+  return html + QStringLiteral("</ol>");
+}
+
+QString toolWords(const Scene& scene) {
+  QStringList lines;
+  for (const SceneArm& arm : scene.arms) {
+    lines << ExercisePanel::tr("%1: %2").arg(armName(arm), toQt(arm.tool));
+  }
+  return lines.join('\n');
+}
+
+ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
+  title_ = wrapped("exerciseTitle");
+  title_->setProperty("heading", true);
+  goal_ = wrapped("exerciseGoal");
+  steps_ = wrapped("exerciseSteps", Qt::RichText);
+  hands_ = wrapped("exerciseHands");
+  time_ = new QLabel;
+  time_->setObjectName("exerciseTime");
+  time_->setProperty("large", true);
+  removed_ = wrapped("exerciseRemoved", Qt::RichText);
+  keys_ = wrapped("exerciseKeys");
+  keys_->setProperty("quiet", true);
+  keys_->setText(
+      tr("Mouse: where the tool goes. Wheel: how hard it presses. Shift and arrows: tilt. Tab: the "
+         "other hand. Space: pause. Right drag: turn the view."));
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(12, 10, 12, 10);
+  layout->setSpacing(8);
+  layout->addWidget(title_);
+  layout->addWidget(time_);
+  layout->addWidget(heading(tr("Removed")));
+  layout->addWidget(removed_);
+  layout->addWidget(heading(tr("Goal")));
+  layout->addWidget(goal_);
+  layout->addWidget(steps_);
+  layout->addWidget(heading(tr("Hands")));
+  layout->addWidget(hands_);
+  layout->addWidget(keys_);
+  layout->addStretch(1);
+  showIdle();
+}
+
+void ExercisePanel::setScene(const Scene& scene, const QString& language) {
+  title_->setText(toQt(scene.name));
+  const CardText* card = cardFor(scene, language.toStdString());
+  goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
+  steps_->setText(card ? stepsWords(*card) : QString());
+  steps_->setVisible(card && !card->steps.empty());
+  hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
+}
+
+void ExercisePanel::showTime(double seconds) {
+  time_->setText(timeWords(std::uint32_t(seconds)));
+}
+
+void ExercisePanel::showRemoved(const std::vector<RemovedOf>& tissues,
+                                const std::vector<RemovedOf>& structures) {
+  const QString html = rows(tr("Tissue"), tissues) + rows(tr("Structure"), structures);
+  removed_->setText(html.isEmpty() ? tr("nothing yet")
+                                   : QStringLiteral("<table>%1</table>").arg(html));
+}
+
+void ExercisePanel::showIdle() {
+  showTime(0.0);
+  showRemoved({}, {});
+}
+
+}  // namespace trephine

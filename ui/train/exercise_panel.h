@@ -1,0 +1,42 @@
+// What the exercise asks for, and how it goes: goal, steps and hands of its card; the time; what was
+// removed of each tissue and structure.
+#pragma once
+
+#include <QLabel>
+#include <QWidget>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace trephine {
+
+// In whole words: 1240 mm3 as "1.24 mL".
+QString volumeWords(double mm3);
+
+struct RemovedOf {
+  QString name;
+  QColor colour;
+  double mm3 = 0.0;
+};
+
+class ExercisePanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ExercisePanel(QWidget* parent = nullptr);
+
+  void setScene(const Scene& scene, const QString& language);
+  void showTime(double seconds);
+  // Rows of nothing removed are left out.
+  void showRemoved(const std::vector<RemovedOf>& tissues, const std::vector<RemovedOf>& structures);
+  void showIdle();
+
+ private:
+  QLabel *title_, *goal_, *steps_, *hands_, *time_, *removed_, *keys_;
+};
+
+// The card's steps, numbered, as rich text.
+QString stepsWords(const CardText& card);
+// Which tool is in which hand, as the scene has it: "Right hand: burr, 6 mm".
+QString toolWords(const Scene& scene);
+
+}  // namespace trephine

@@ -1,0 +1,23 @@
+// Over the lower edge of the view while the mouse is a hand: which hand it has, and how hard that
+// presses. Legible from two metres.
+#pragma once
+
+#include <QLabel>
+
+#include "ui/common/floating_card.h"
+#include "ui/train/force_bar.h"
+
+namespace trephine {
+
+class HandBar : public FloatingCard {
+  Q_OBJECT
+ public:
+  explicit HandBar(QWidget& over);
+  void showHand(const QString& hand, const QColor& colour, double push_N, double most_N);
+
+ private:
+  QLabel *hand_, *push_;
+  ForceBar* bar_;
+};
+
+}  // namespace trephine

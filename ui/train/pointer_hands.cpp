@@ -1,0 +1,109 @@
+#include "ui/train/pointer_hands.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "ui/common/settings.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kTilt_rad = 0.087;  // 5 degrees a key
+
+std::int64_t now_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+}  // namespace
+
+PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
+  connect(&view_, &ViewWidget::pointed, this, &PointerHands::point);
+  connect(&view_, &ViewWidget::pointerStepped, this, &PointerHands::step);
+  connect(&view_, &ViewWidget::toolTilted, this, &PointerHands::tilt);
+  connect(&view_, &ViewWidget::toolStraightened, this, [this] {
+    if (session_) session_->straightenHand(active_);
+  });
+  connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
+    setPush(push_N() + notches * readWithin(settings::kPushStep_N, 0.05, 1.0));
+  });
+  connect(&view_, &ViewWidget::otherHandWanted, this, &PointerHands::takeOther);
+}
+
+void PointerHands::begin(Session* session) {
+  session_ = session;
+  place_.reset();
+  active_ = 0;
+  if (session_) {
+    const std::string main = read(settings::kMainHand).toStdString();
+    const std::vector<SceneArm>& arms = session_->scene().arms;
+    const auto found = std::ranges::find(arms, main, &SceneArm::name);
+    active_ = found == arms.end() ? arms.size() - 1 : std::size_t(found - arms.begin());
+  }
+  emit changed();
+}
+
+double PointerHands::push_N() const {
+  return session_ ? session_->handPush_N(active_) : 0.0;
+}
+
+double PointerHands::mostPush_N() const {
+  return session_ ? session_->mostPush_N(active_) : 0.0;
+}
+
+void PointerHands::setPush(double push_N) {
+  if (!session_) return;
+  if (!place_) step(0, 0);  // keys alone: from the middle of the view
+  (void)session_->setPush(active_, std::clamp(push_N, 0.0, mostPush_N()));
+  emit changed();
+}
+
+void PointerHands::takeOther() {
+  if (!session_ || session_->scene().arms.size() < 2) return;
+  (void)session_->releaseHand(active_);
+  active_ = (active_ + 1) % session_->scene().arms.size();
+  send();
+  emit changed();
+}
+
+void PointerHands::point(const QPointF& place) {
+  if (!session_) return;
+  const bool first = !place_;
+  place_ = place;
+  send();
+  if (first) emit changed();
+}
+
+// From where the pointer was last, or from the middle: by so many steps of the keys.
+void PointerHands::step(int right, int up) {
+  if (!session_) return;
+  const QRectF all = view_.rect();
+  const QPointF from = place_.value_or(all.center());
+  const double pixels = readWithin(settings::kKeyStep_mm, 0.1, 5.0) / view_.mmPerUnitAt(from);
+  const QPointF to = from + QPointF(right * pixels, -up * pixels);
+  point({std::clamp(to.x(), all.left(), all.right()), std::clamp(to.y(), all.top(), all.bottom())});
+}
+
+void PointerHands::tilt(int right, int up) {
+  if (!session_) return;
+  const ViewCamera& camera = view_.camera();
+  if (right != 0) session_->turnHand(active_, camera.up(), kTilt_rad * right);
+  if (up != 0) session_->turnHand(active_, camera.right(), -kTilt_rad * up);
+}
+
+void PointerHands::follow() {
+  if (place_) send();
+}
+
+void PointerHands::send() {
+  if (!session_ || !place_) return;
+  const std::optional<ViewCamera::Ray> ray = view_.rayAt(*place_);
+  if (!ray) return;
+  PointerSample sample{now_ns(), ray->from_mm, ray->direction, {}};
+  if (const std::optional<Picked> picked = view_.pickAt(*place_)) {
+    sample.depth_mm = glm::dot(picked->at_mm - ray->from_mm, glm::normalize(ray->direction));
+  }
+  (void)session_->point(active_, sample);
+}
+
+}  // namespace trephine

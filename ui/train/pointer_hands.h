@@ -1,0 +1,50 @@
+// The mouse and the keys as a hand: the tool goes where the pointer is, the wheel sets how hard it
+// presses, Shift and arrow keys tilt it, Tab takes the other hand. Of simulated arms; what it sends
+// is recorded by the session.
+#pragma once
+
+#include <QObject>
+#include <QPointF>
+#include <optional>
+
+#include "session/session.h"
+#include "ui/views/view_widget.h"
+
+namespace trephine {
+
+class PointerHands : public QObject {
+  Q_OBJECT
+ public:
+  explicit PointerHands(ViewWidget& view);
+
+  // An exercise has started; its hands rest until the pointer comes into the view, or a script has
+  // them. Null: it is over.
+  void begin(Session* session);
+  // Once a picture: where the pointer is the tissue may have changed.
+  void follow();
+
+  // The arm that the pointer has, and how hard it presses.
+  std::size_t active() const { return active_; }
+  double push_N() const;
+  double mostPush_N() const;
+  // Somebody has pointed since the exercise began.
+  bool taken() const { return place_.has_value(); }
+  void takeOther();
+  void setPush(double push_N);
+
+ signals:
+  void changed();  // active(), push_N(), taken()
+
+ private:
+  void point(const QPointF& place);
+  void send();
+  void step(int right, int up);
+  void tilt(int right, int up);
+
+  ViewWidget& view_;
+  Session* session_ = nullptr;
+  std::size_t active_ = 0;
+  std::optional<QPointF> place_;  // of the view
+};
+
+}  // namespace trephine

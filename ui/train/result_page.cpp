@@ -1,0 +1,95 @@
+#include "ui/train/result_page.h"
+
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kWidest = 560;
+
+QString row(const QString& what, const QString& value) {
+  return QStringLiteral("<tr><td>%1&nbsp;&nbsp;&nbsp;</td><td align='right'>%2</td></tr>")
+      .arg(what.toHtmlEscaped(), value.toHtmlEscaped());
+}
+
+QString title(const QString& text) {
+  return QStringLiteral("<tr><td colspan='2'><b>%1</b></td></tr>").arg(text.toHtmlEscaped());
+}
+
+}  // namespace
+
+ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
+  setObjectName("resultPage");
+  title_ = new QLabel;
+  title_->setObjectName("resultTitle");
+  title_->setProperty("heading", true);
+  title_->setWordWrap(true);
+  time_ = new QLabel;
+  time_->setObjectName("resultTime");
+  time_->setProperty("large", true);
+  rows_ = new QLabel;
+  rows_->setObjectName("resultRows");
+  rows_->setTextFormat(Qt::RichText);
+  rows_->setWordWrap(true);
+  auto* purpose = new QLabel(purposeText());
+  purpose->setProperty("quiet", true);
+  again_ = new QPushButton(tr("Try &again (F5)"));
+  again_->setObjectName("resultAgain");
+  again_->setProperty("primary", true);
+  replay_ = new QPushButton(tr("&Replay"));
+  replay_->setObjectName("resultReplay");
+  look_ = new QPushButton(tr("&Look at it"));
+  look_->setObjectName("resultLook");
+  look_->setToolTip(tr("Closes this page: the tissue stays as it was left until the next start"));
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  for (QPushButton* each : {again_, replay_, look_}) buttons->addWidget(each);
+  buttons->addStretch(1);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(20, 16, 20, 16);
+  layout->setSpacing(10);
+  layout->addWidget(title_);
+  layout->addWidget(time_);
+  layout->addWidget(rows_);
+  layout->addLayout(buttons);
+  layout->addWidget(purpose, 0, Qt::AlignCenter);
+  connect(again_, &QPushButton::clicked, this, &ResultPage::againWanted);
+  connect(replay_, &QPushButton::clicked, this, &ResultPage::replayWanted);
+  connect(look_, &QPushButton::clicked, this, &ResultPage::lookWanted);
+}
+
+void ResultPage::showResult(const ExerciseResult& result) {
+  title_->setText(tr("Done: %1").arg(result.exercise));
+  time_->setText(tr("Time %1").arg(timeWords(std::uint32_t(result.seconds))));
+  QString html = title(tr("Removed"));
+  double all = 0.0;
+  for (const RemovedOf& one : result.tissues) {
+    all += one.mm3;
+    if (one.mm3 > 0.0) html += row(one.name, volumeWords(one.mm3));
+  }
+  if (!(all > 0.0)) html += row(tr("nothing"), {});
+  bool any = false;
+  for (const CutStructure& one : result.structures) {
+    if (!(one.cut_ml > 0.0)) continue;
+    if (!std::exchange(any, true)) html += title(tr("Of the structures"));
+    html += row(toQt(one.name), tr("%1 of %2").arg(volumeWords(1000.0 * one.cut_ml),
+                                                   volumeWords(1000.0 * one.ml)));
+  }
+  html += title(tr("Way of the tools"));
+  for (const ExerciseResult::Way& way : result.ways) {
+    html += row(way.hand, tr("%1 cm, at most %2 N")
+                              .arg(way.mm / 10.0, 0, 'f', 1)
+                              .arg(way.most_N, 0, 'f', 1));
+  }
+  if (result.late > 0) html += row(tr("Steps of touch that came late"), QString::number(result.late));
+  rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
+  replay_->setEnabled(result.recorded);
+  show();
+  place();
+}
+
+}  // namespace trephine

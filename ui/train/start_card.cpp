@@ -1,0 +1,86 @@
+#include "ui/train/start_card.h"
+
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include "ui/common/words.h"
+#include "ui/train/exercise_panel.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kWidest = 560;
+}  // namespace
+
+StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
+  setObjectName("startCard");
+  title_ = new QLabel;
+  title_->setObjectName("startCardTitle");
+  title_->setProperty("heading", true);
+  goal_ = new QLabel;
+  goal_->setObjectName("startCardGoal");
+  goal_->setProperty("large", true);
+  steps_ = new QLabel;
+  steps_->setObjectName("startCardSteps");
+  hands_ = new QLabel;
+  hands_->setObjectName("startCardHands");
+  keys_ = new QLabel(tr("Without arms: the mouse is the hand. Move it over the tissue, press with "
+                        "the wheel, change hands with Tab."));
+  keys_->setProperty("quiet", true);
+  for (QLabel* label : {title_, goal_, steps_, hands_, keys_}) label->setWordWrap(true);
+  start_ = new QPushButton(tr("&Start (F5)"));
+  start_->setObjectName("startCardStart");
+  start_->setProperty("primary", true);
+  start_->setProperty("big", true);
+  choose_ = new QPushButton(tr("&Choose a case"));
+  choose_->setObjectName("startCardChoose");
+  choose_->setProperty("primary", true);
+  choose_->setProperty("big", true);
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  buttons->addWidget(start_);
+  buttons->addWidget(choose_);
+  buttons->addStretch(1);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(20, 16, 20, 16);
+  layout->setSpacing(10);
+  layout->addWidget(title_);
+  layout->addWidget(goal_);
+  layout->addWidget(steps_);
+  layout->addWidget(hands_);
+  layout->addWidget(keys_);
+  layout->addLayout(buttons);
+  connect(start_, &QPushButton::clicked, this, &StartCard::startWanted);
+  connect(choose_, &QPushButton::clicked, this, &StartCard::caseWanted);
+}
+
+void StartCard::showNoCase() {
+  title_->setText(tr("There is no case to practise on yet"));
+  goal_->setText(tr("Choose one of your own or a built-in one."));
+  for (QWidget* part : {static_cast<QWidget*>(steps_), static_cast<QWidget*>(hands_),
+                        static_cast<QWidget*>(keys_), static_cast<QWidget*>(start_)}) {
+    part->hide();
+  }
+  choose_->show();
+  show();
+  place();
+}
+
+void StartCard::showExercise(const Scene& scene, const QString& language, bool may_start) {
+  const CardText* card = cardFor(scene, language.toStdString());
+  title_->setText(toQt(scene.name));
+  goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
+  steps_->setText(card ? stepsWords(*card) : QString());
+  hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
+  steps_->setVisible(card && !card->steps.empty());
+  for (QWidget* part : {static_cast<QWidget*>(hands_), static_cast<QWidget*>(keys_),
+                        static_cast<QWidget*>(start_)}) {
+    part->show();
+  }
+  start_->setEnabled(may_start);
+  choose_->hide();
+  show();
+  place();
+}
+
+}  // namespace trephine

@@ -1,0 +1,30 @@
+// What stands over the view before an exercise: its goal, its steps, which tool is in which hand and
+// how to move it, and the button that starts it; or, without a case, where to get one.
+#pragma once
+
+#include <QLabel>
+#include <QPushButton>
+
+#include "scene/scene.h"
+#include "ui/common/floating_card.h"
+
+namespace trephine {
+
+class StartCard : public FloatingCard {
+  Q_OBJECT
+ public:
+  explicit StartCard(QWidget& over);
+
+  void showNoCase();
+  void showExercise(const Scene& scene, const QString& language, bool may_start);
+
+ signals:
+  void startWanted();
+  void caseWanted();
+
+ private:
+  QLabel *title_, *goal_, *steps_, *hands_, *keys_;
+  QPushButton *start_, *choose_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,48 @@
+// The last ten seconds of a value as a line that runs to the left: what was sent, and behind it what
+// was demanded, where there is that.
+#pragma once
+
+#include <QColor>
+#include <QString>
+#include <QWidget>
+#include <vector>
+
+namespace trephine {
+
+class TraceView : public QWidget {
+  Q_OBJECT
+ public:
+  static constexpr double kShown_s = 10.0;
+
+  // `unit` of the values; the scale reaches from `low` to `high` at least, and further where values
+  // do.
+  TraceView(const QString& title, const QString& unit, double low, double high,
+            QWidget* parent = nullptr);
+
+  void setColour(const QColor& colour) { colour_ = colour; }
+  void setLimits(double low, double high);
+  // At a time that does not fall; what is older than ten seconds goes. Of an earlier time than the
+  // last one the trace begins anew.
+  void add(double time_s, double value);
+  void add(double time_s, double value, double demanded);
+  void clear();
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+  struct Sample {
+    double time_s, value, demanded;
+  };
+  const std::vector<Sample>& samples() const { return samples_; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QString title_, unit_;
+  double low_, high_;
+  QColor colour_;
+  bool two_ = false;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace trephine

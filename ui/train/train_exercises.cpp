@@ -1,0 +1,162 @@
+// Which exercise it is, and whether the case is what it is for.
+#include <QMessageBox>
+#include <QPushButton>
+#include <algorithm>
+
+#include "base/system.h"
+#include "ui/common/question.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "ui/train/train_workspace.h"
+
+namespace trephine {
+
+void TrainWorkspace::fillScenes() {
+  std::vector<std::filesystem::path> files;
+  std::error_code ec;
+  for (std::filesystem::directory_iterator it(resourceFolder() / "scenes", ec), end;
+       !ec && it != end; it.increment(ec)) {
+    if (it->path().extension() == ".json") files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files) {
+    if (Result<Scene> scene = readScene(file)) scenes_->addItem(toQt(scene->name), toQt(file));
+  }
+  showInUse();
+}
+
+void TrainWorkspace::chooseScene(int index) {
+  const auto file = toPath(scenes_->itemData(index).toString());
+  showInUse();  // until the other is on its way: it may be asked about, or not be had
+  // A built-in case changes with the exercise, and its structures with it.
+  const std::optional<Case>& of = workstation_.currentCase();
+  std::vector<Bench::Loss> losses{Bench::Loss::cuts, Bench::Loss::tissues};
+  if (of && of->built_in) losses.insert(losses.begin(), Bench::Loss::structures);
+  bench_.unlessLost(losses, [this, file] { workstation_.useScene(file); });
+  view_->setFocus();
+}
+
+// In the list of exercises; without a scene, the one that an imported case would get.
+void TrainWorkspace::showInUse() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  if (!scene) {
+    scenes_->setCurrentIndex(scenes_->findData(toQt(defaultScene("cranium"))));
+    return arms_->showController({});
+  }
+  const QString file = toQt(workstation_.sceneFile());
+  int index = scenes_->findData(file);
+  if (index < 0) index = scenes_->findText(toQt(scene->name));
+  if (index < 0) {
+    scenes_->addItem(toQt(scene->name), file);
+    index = scenes_->count() - 1;
+  }
+  scenes_->setCurrentIndex(index);
+  arms_->showController(scene->controller);
+}
+
+void TrainWorkspace::showScene() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  if (!scene) return;
+  showInUse();
+  arms_->setScene(*scene);
+  exercise_->setScene(*scene, read(settings::kLanguage));
+  showOutline();
+  showCard();
+}
+
+// What is said before it starts; nothing while one runs, or once one has ended and is looked at.
+void TrainWorkspace::showCard() {
+  using Phase = Workstation::Phase;
+  const Phase phase = workstation_.phase();
+  const bool idle = phase == Phase::ready || phase == Phase::empty;
+  if (!idle || !here_) {
+    card_->hide();
+    if (!here_ || phase == Phase::running) result_->hide();
+    return;
+  }
+  if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
+  if (result_shown_ || bench_.carved()) return card_->hide();
+  card_->showExercise(*workstation_.scene(), read(settings::kLanguage), start_->isEnabled());
+}
+
+void TrainWorkspace::showOutline() {
+  const std::optional<Scene>& scene = workstation_.scene();
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!scene || !of || !scene->outline) return view_->setOutline({}, false, 1.0);
+  view_->setOutline(outlineOn(*scene, of->landmarks, *of->volume, of->labels.get()),
+                    scene->outline->closed, scene->outline->width_mm);
+}
+
+void TrainWorkspace::showLocks() {
+  arms_->setLocked(workstation_.isLocked(Lock::controller)
+                       ? tr("Locked: an educator can unlock it (menu File)")
+                       : QString());
+}
+
+// Until it is open, or cannot be had.
+void TrainWorkspace::showOpening(const Scene& scene, const std::filesystem::path& file) {
+  scenes_->setPlaceholderText(toQt(scene.name));  // where the list has it not yet
+  const int index = scenes_->findData(toQt(file));
+  scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(toQt(scene.name)));
+  arms_->showController(scene.controller);
+}
+
+// Which exercise the case has, where that is news, and that it is for something else.
+void TrainWorkspace::sayWhatIsOpen() {
+  const QString exercise = toQt(workstation_.scene()->name);
+  QString words;
+  if (!exercise_said_.isEmpty() && exercise != exercise_said_) {
+    words = tr("The exercise is now \"%1\".").arg(exercise);
+  }
+  exercise_said_ = exercise;
+  for (const Warning& warning : workstation_.currentCase()->warnings) {
+    if (warning.code != "OTHER_ANATOMY" && warning.code != "NO_VAULT") continue;
+    words += (words.isEmpty() ? "" : " ") + toQt(warning.text) + '.';
+  }
+  if (!words.isEmpty()) bench_.say(words);
+}
+
+// Before an exercise starts on a case that is not what it is for, once a case and exercise.
+void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of || of->warnings.empty() || warned_) return go_on();
+  QStringList words;
+  bool lacks = false, no_place = false;
+  std::string fits;
+  for (const Warning& warning : of->warnings) {
+    words << toQt(warning.text) + (warning.text.ends_with('.') ? "" : ".");
+    lacks = lacks || warning.code == "LACKS_STRUCTURE";
+    no_place = no_place || warning.code == "NO_LANDMARK";
+    if (warning.code == "OTHER_ANATOMY") fits = exerciseAnatomy(of->anatomy->region);
+  }
+  const QString next = !fits.empty() ? tr("Choose an exercise that fits, or go on as it is.")
+                       : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
+                       : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
+                                  : tr("Choose an exercise that fits, or go on as it is.");
+  QMessageBox* question =
+      ask(bench_.window(), "misfitQuestion", words.join('\n'), next, tr("&Go on as it is"), [this, go_on] {
+        warned_ = true;
+        go_on();
+      });
+  if (!fits.empty()) {
+    const std::filesystem::path file = defaultScene(fits);
+    const int index = scenes_->findData(toQt(file));
+    auto* other = question->addButton(tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
+                                      QMessageBox::AcceptRole);
+    other->setObjectName("changeExercise");
+    connect(
+        other, &QPushButton::clicked, this,
+        [this, file] {
+          bench_.unlessLost({Bench::Loss::cuts, Bench::Loss::tissues},
+                            [this, file] { workstation_.useScene(file); });
+        },
+        Qt::QueuedConnection);
+  } else if (lacks) {
+    auto* make = question->addButton(tr("&Make it"), QMessageBox::AcceptRole);
+    make->setObjectName("makeStructure");
+    connect(make, &QPushButton::clicked, this, &TrainWorkspace::structureWanted,
+            Qt::QueuedConnection);
+  }
+}
+
+}  // namespace trephine

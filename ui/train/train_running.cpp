@@ -1,0 +1,208 @@
+// What Train shows while an exercise runs, and what is done with one.
+#include "render/tool_view.h"
+#include "ui/common/words.h"
+#include "ui/train/train_workspace.h"
+#include "volume/cut_structures.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
+constexpr int kRatesEvery_ms = 1000;
+constexpr int kRemovedEvery_ms = 500;
+constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
+
+QColor colourOf(const Vec3& rgb) {
+  return QColor::fromRgbF(float(rgb.r), float(rgb.g), float(rgb.b));
+}
+
+QString handName(const SceneArm& arm) {
+  if (arm.name == "left") return TrainWorkspace::tr("Left hand");
+  if (arm.name == "right") return TrainWorkspace::tr("Right hand");
+  return toQt(arm.name);
+}
+
+std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
+  std::vector<ToolView> tools;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const SceneTool* tool = scene.findTool(scene.arms[i].tool);
+    const ArmRecord& arm = state.record.arms[i];
+    if (!tool || !isFinite(arm.proxy_position_mm)) continue;
+    const QColor colour = armColour(scene.arms[i], i);
+    tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
+                             arm.tissue_class >= 0,
+                             Vec3(colour.redF(), colour.greenF(), colour.blueF())));
+  }
+  return tools;
+}
+
+}  // namespace
+
+void TrainWorkspace::tick() {
+  Session* session = workstation_.session();
+  if (!session) return;
+  const LoopState& state = session->state();
+  views_->pullChanges(session->grid());
+  showTools(toolViews(session->scene(), state));
+  hands_->follow();
+  arms_->follow(state);
+  if (panel_clock_.elapsed() >= kPanelEvery_ms) {
+    panel_clock_.restart();
+    showState(*session, state);
+  }
+  if (rate_clock_.elapsed() >= kRatesEvery_ms) showRates();
+  workstation_.checkRecording();
+  if (session->finished()) workstation_.stop();
+}
+
+void TrainWorkspace::showTools(const std::vector<ToolView>& tools) {
+  view_->setTools(tools);
+  views_->setTools(tools);
+}
+
+void TrainWorkspace::showState(Session& session, const LoopState& state) {
+  views_->pullChanges(session.grid());
+  constexpr double kOld_s = 0.1;
+  LoopState shown = state;
+  if (session.standsStillFor_s() > kOld_s) {  // what was sent last is not what is sent now
+    for (ArmRecord& arm : shown.record.arms) {
+      arm.faults |= kFaultLate;
+      arm.sent_N = arm.demanded_N = Vec3(0.0);
+    }
+  }
+  arms_->showState(shown, session.scene().tissues, limits_N_);
+  if (state.ticks > 0 && workstation_.session()) workstation_.noteController(state.controller);
+  if (workstation_.session()) {
+    pause_->setChecked(state.paused);
+    for (std::size_t i = 0; i < session.scene().arms.size(); ++i) {
+      touched_ = touched_ || state.record.arms[i].tissue_class >= 0;
+    }
+    touched_ = touched_ || hands_->taken();
+    notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
+    exercise_->showTime(double(state.seconds));
+    if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
+    showHand();
+    bench_.undoAction()->setEnabled(state.can_undo);
+    bench_.redoAction()->setEnabled(state.can_redo);
+    showRewind(state);
+  }
+}
+
+// Of the tissues as the session counts them, of the structures as the views' copy shows them.
+void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
+  removed_clock_.restart();
+  const std::vector<Tissue>& tissues = session.scene().tissues.tissues;
+  const double voxel_mm3 = session.grid().geometry().voxelVolume_mm3();
+  std::vector<RemovedOf> removed, of_structures;
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    std::uint64_t voxels = 0;
+    for (std::size_t arm = 0; arm < session.scene().arms.size(); ++arm) {
+      voxels += state.removed[arm][t];
+    }
+    removed.push_back({toQt(tissues[t].name), colourOf(tissues[t].colour),
+                       double(voxels) * voxel_mm3});
+  }
+  const std::optional<Case>& of = workstation_.currentCase();
+  const VolumeMirror& mirror = views_->mirror();
+  if (of && of->structures && !(mirror.touched() == VoxelBox{})) {
+    for (const auto& [label, mm3] :
+         cutWithin(*of->structures, *of->volume, mirror.volume(), mirror.touched())) {
+      if (const Structure* s = of->structures->find(label)) {
+        of_structures.push_back({toQt(s->name), colourOf(s->colour), mm3});
+      }
+    }
+  }
+  exercise_->showRemoved(removed, of_structures);
+}
+
+void TrainWorkspace::showHand() {
+  Session* session = workstation_.session();
+  if (!session || !here_ || !hands_->taken()) return hand_bar_->hide();
+  const SceneArm& arm = session->scene().arms[hands_->active()];
+  hand_bar_->showHand(handName(arm), armColour(arm, hands_->active()), hands_->push_N(),
+                      hands_->mostPush_N());
+}
+
+// All arms at once: whoever clutches one wants to find room for both hands.
+void TrainWorkspace::clutch() {
+  Session* session = workstation_.session();
+  if (!session) return;
+  const ViewCamera& camera = view_->camera();
+  // A device's x is to the right, its y up, its z towards the hand.
+  const Quat rotation = glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward()));
+  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+    const bool sent = clutch_->isChecked() ? session->clutch(i, true)
+                                           : session->clutch(i, false, rotation);
+    if (!sent) bench_.say(tr("Busy: try again in a moment."));
+  }
+}
+
+void TrainWorkspace::recentre() {
+  Session* session = workstation_.session();
+  if (!session) return;
+  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+    if (!session->recentre(i)) bench_.say(tr("Busy: try again in a moment."));
+  }
+}
+
+void TrainWorkspace::showResult(const Session& session, const RunReport& report) {
+  ExerciseResult result;
+  result.exercise = toQt(session.scene().name);
+  result.seconds = double(report.ticks) / report.rate_hz;
+  for (const auto& [id, mm3] : report.removed_mm3) {
+    const Tissue* tissue = session.scene().tissues.find(id);
+    if (tissue) result.tissues.push_back({toQt(tissue->name), colourOf(tissue->colour), mm3});
+  }
+  result.structures = report.structures_cut;
+  for (std::size_t i = 0; i < report.arms.size(); ++i) {
+    result.ways.push_back({handName(session.scene().arms[i]), report.arms[i].statistics.path_mm,
+                           report.arms[i].statistics.max_force_N});
+  }
+  result.recorded = session.recordingStatus() && report.events_dropped == 0;
+  result.late = report.missed_deadlines;
+  result_shown_ = true;
+  if (here_) result_->showResult(result);
+}
+
+void TrainWorkspace::showRates() {
+  const double seconds = double(rate_clock_.restart()) / 1000.0;
+  Session* session = workstation_.session();
+  if (!session) return;
+  const LoopState& state = session->state();
+  const double haptic_hz = double(state.ticks - ticks_shown_) / seconds;
+  ticks_shown_ = state.ticks;
+  QString rates = tr("%1 pictures/s \u00b7 touch %2 Hz, %3 missed")
+                      .arg(double(frames_) / seconds, 0, 'f', 0)
+                      .arg(haptic_hz, 0, 'f', 0)
+                      .arg(state.missed);
+  if (const double behind_s = session->recorderBehind_s(); behind_s >= kBehind_s) {
+    rates += tr(" \u00b7 recording %1 s behind").arg(behind_s, 0, 'f', 1);
+  }
+  emit ratesChanged(rates);
+  frames_ = 0;
+}
+
+void TrainWorkspace::command(CommandKind kind) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  if (!session->send(kind)) return bench_.say(tr("Busy: try again in a moment."));
+}
+
+void TrainWorkspace::rewind(std::uint32_t second) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  if (!session->rewind(second)) return bench_.say(tr("Busy: try again in a moment."));
+  going_back_ = {second, session->state().ticks};
+  showRewind(session->state());
+}
+
+void TrainWorkspace::showRewind(const LoopState& state) {
+  if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
+    bench_.say(backWords(going_back_->second, state, *workstation_.scene()));
+    going_back_.reset();
+  }
+  rewind_->showTime(state.seconds, state.busy || going_back_);
+}
+
+}  // namespace trephine
