@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <new>
+#include <tuple>
 #include <utility>
 
 #include "base/file.h"
@@ -49,6 +50,10 @@ bool alike(const std::vector<CaseStructure>& a, const std::vector<CaseStructure>
   return std::ranges::equal(a, b, [](const CaseStructure& one, const CaseStructure& other) {
     return one.name == other.name && one.ml == other.ml;
   });
+}
+
+Error nameTaken() {
+  return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
 }
 
 // A case's folder, and none that a name could lead to from there.
@@ -229,13 +234,13 @@ std::vector<ListedCase> CaseLibrary::list() const {
   return cases;
 }
 
-Status CaseLibrary::nameIsFree(const std::string& name, const std::string& id) const {
-  const std::string folded = foldedName(name);
+std::set<std::string> CaseLibrary::namesBeside(const std::string& id) const {
+  std::set<std::string> names;
   for (const ListedCase& other : list()) {
-    if (other.id == id || foldedName(other.record.name) != folded) continue;
-    return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
+    const std::string name = foldedName(other.record.name);
+    if (other.id != id && !name.empty()) names.insert(name);
   }
-  return {};
+  return names;
 }
 
 Status CaseLibrary::writeRecord(const CaseRecord& record, const Part& part) const {
@@ -250,7 +255,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (!of.name.empty()) {
     Result<std::string> name = caseNameFrom(of.name);
     if (!name) return name.error();
-    if (Status free = nameIsFree(*name, ""); !free) return free.error();
+    if (namesBeside("").contains(foldedName(*name))) return nameTaken();
     record.name = *name;
   }
   const SourceKeys source = sourceKeys(of.source);
@@ -273,7 +278,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   };
 
   progress.at(0.0, "Saving the case");
-  record.volume_sha256 = of.volume_sha256.empty() ? volumeSha256(volume) : of.volume_sha256;
+  record.volume_sha256 = volumeSha256(volume);
   record.region = of.region;
   record.grid = volume.geometry;
   if (of.report) record.verdict = verdictOf(*of.report);
@@ -320,20 +325,21 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (progress.cancelled()) return cancelled();
   const std::string day = timeText("%Y-%m-%d");
   record.imported = timeText("%Y-%m-%dT%H:%M:%S");
-  std::error_code ec;
-  for (int number = 1;; ++number) {
-    record.id = neutralId(of.region, day, number);
+  const std::set<std::string> taken = namesBeside("");
+  if (taken.contains(foldedName(record.name))) return nameTaken();
+  for (int number = 1; record.id.empty(); ++number) {
+    std::error_code ec;
+    const std::string id = neutralId(of.region, day, number);
+    const fs::file_status there = fs::symlink_status(folders_.caseFolder(id), ec);
     const std::string neutral = neutralName(of.region, day, number);
-    if (fs::exists(fs::symlink_status(folders_.caseFolder(record.id), ec))) continue;
-    if (record.name.empty() && !nameIsFree(neutral, "")) continue;
+    if (fs::exists(there) || (record.name.empty() && taken.contains(foldedName(neutral)))) continue;
+    record.id = id;
     if (record.name.empty()) record.name = neutral;
-    break;
   }
-  if (Status free = nameIsFree(record.name, ""); !free) return free.error();
   record.folder = folders_.caseFolder(record.id);
   if (Status written = writeRecord(record, part); !written) return failed(written.error());
   if (!record.names_key.empty()) {
-    const Status kept = folders_.writePrivate(record.names_key, pretty(guard.toJson()));
+    const Status kept = part.writePrivate(record.names_key, pretty(guard.toJson()));
     if (!kept) return failed(kept.error());
   }
   if (Status there = part.becomeCase(record.folder); !there) return failed(there.error());
@@ -435,7 +441,7 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
   if (!part) return ofStorage(part.error(), folders_, 1 << 16);
   const Result<FileLock> list_lock = folders_.lock();
   if (!list_lock) return list_lock.error();
-  if (Status free = nameIsFree(*name, id); !free) return free.error();
+  if (namesBeside(id).contains(foldedName(*name))) return nameTaken();
   Result<CaseRecord> now = record(id);
   if (!now) return now;
   now->name = *name;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,7 @@ namespace trephine {
 // What becomes a case. Without a report there are no card and no verdict; without a source,
 // nothing that it may not be called.
 struct NewCase {
-  std::shared_ptr<const Volume> volume;
-  std::string volume_sha256{};                     // of its voxels; empty: taken here
+  std::shared_ptr<const Volume> volume;            // never null
   std::shared_ptr<const LabelMap> structures{};    // on the volume's grid; null: none
   std::optional<ImportReport> report{};            // CtFolder::report(), after read()
   std::optional<Provenance> provenance{};
@@ -96,7 +96,8 @@ class CaseLibrary {
   Result<CaseRecord> record(const std::string& id) const;
   Status writeRecord(const CaseRecord& record, const case_folders::Part& part) const;
   void mendRows(const CaseRecord& of) const;
-  Status nameIsFree(const std::string& name, const std::string& id) const;
+  // Folded, of all cases but that one.
+  std::set<std::string> namesBeside(const std::string& id) const;
 
   case_folders::Folders folders_;
 };
