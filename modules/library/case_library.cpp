@@ -94,7 +94,8 @@ bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
   constexpr double kSame_mm = 1e-6;  // a header's digits, over the whole of a scan
   const Vec3 last(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0, 1);
+    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0,
+                        1);
     if (!(glm::length(Vec3(one * at) - Vec3(other * at)) < kSame_mm)) return false;
   }
   return true;
@@ -124,8 +125,10 @@ LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<War
       name = "label " + std::to_string(s.label) + " " + std::to_string(n);
     }
     s.name = name;
-    warnings.push_back({"RENAMED_STRUCTURE", "The name of a structure told who the patient is: it is "
-                                             "now called '" + name + "'"});
+    warnings.push_back({"RENAMED_STRUCTURE",
+                        "The name of a structure told who the patient is: it is "
+                        "now called '" +
+                            name + "'"});
   }
   return map;
 }
@@ -272,7 +275,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   Result<Part> made = Part::make(folders_, Part::Of::wholeCase);
   if (!made) return ofStorage(made.error(), folders_, needed);
   Part& part = *made;
-  const auto failed = [&](const Error& error) { 
+  const auto failed = [&](const Error& error) {
     part.drop();
     return ofStorage(error, folders_, needed);
   };
@@ -290,8 +293,8 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (of.structures && !of.structures->structures.empty()) {
     const LabelMap map = withoutIdentity(*of.structures, source, saved.warnings);
     record.structures = structuresOf(map);
-    const Status written = writeSegmentation(map, part / kStructuresFile, false,
-                                             Progress(progress, 0.7, 0.8));
+    const Status written =
+        writeSegmentation(map, part / kStructuresFile, false, Progress(progress, 0.7, 0.8));
     if (!written) return failed(written.error());
   }
   progress.at(0.8, "Drawing the case's picture");
@@ -377,8 +380,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   }
   if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
   if (has(kStructuresFile)) {
-    auto segmentation =
-        readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
+    auto segmentation = readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
     if (!segmentation) return failed(segmentation.error(), kStructuresFile);
     LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
     if (!sameGrid(map.geometry, volume->geometry)) {
@@ -400,9 +402,9 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
     loaded.provenance = *std::move(provenance);
   }
   loaded.volume = std::make_shared<const Volume>(*std::move(volume));
-  const std::vector<CaseStructure> listed = std::exchange(
-      loaded.record.structures,
-      loaded.structures ? structuresOf(*loaded.structures) : std::vector<CaseStructure>());
+  const std::vector<CaseStructure> listed =
+      std::exchange(loaded.record.structures, loaded.structures ? structuresOf(*loaded.structures)
+                                                                : std::vector<CaseStructure>());
   if (!alike(listed, loaded.record.structures)) mendRows(loaded.record);
   progress.at(1.0, "The case is open");
   return loaded;
@@ -430,10 +432,11 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
   if (!was->names_key.empty() && !isNeutralName(*name) && *name != was->name) {
     const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(was->names_key));
     if (!guard) {
-      return Error{"NAME_UNCHECKED",
-                   "Whether this name tells who the patient is cannot be checked: what the case may "
-                   "not be called is not on this computer",
-                   id, "Keep the name, or import the CT again"};
+      return Error{
+          "NAME_UNCHECKED",
+          "Whether this name tells who the patient is cannot be checked: what the case may "
+          "not be called is not on this computer",
+          id, "Keep the name, or import the CT again"};
     }
     if (Status told = guard->check(*name); !told) return told.error();
   }
@@ -476,8 +479,8 @@ Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const Labe
   if (!sameGrid(structures.geometry, was->grid)) return wrongGrid();
   std::vector<std::string> new_names;
   for (const Structure& s : structures.structures) {
-    const bool old = std::ranges::find(was->structures, s.name, &CaseStructure::name) !=
-                     was->structures.end();
+    const bool old =
+        std::ranges::find(was->structures, s.name, &CaseStructure::name) != was->structures.end();
     if (!old && s.name != "label " + std::to_string(s.label)) new_names.push_back(s.name);
   }
   if (!new_names.empty() && !was->names_key.empty()) {
@@ -493,8 +496,7 @@ Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const Labe
   if (!part) return ofStorage(part.error(), folders_, needed);
   const bool none = structures.structures.empty();
   if (!none) {
-    const Status written =
-        writeSegmentation(structures, *part / kStructuresFile, false, progress);
+    const Status written = writeSegmentation(structures, *part / kStructuresFile, false, progress);
     if (!written) return ofStorage(written.error(), folders_, needed);
   }
   const Result<FileLock> list_lock = folders_.lock();

@@ -28,14 +28,14 @@ namespace trephine {
 // What becomes a case. Without a report there are no card and no verdict; without a source,
 // nothing that it may not be called.
 struct NewCase {
-  std::shared_ptr<const Volume> volume;            // never null
-  std::shared_ptr<const LabelMap> structures{};    // on the volume's grid; null: none
-  std::optional<ImportReport> report{};            // CtFolder::report(), after read()
+  std::shared_ptr<const Volume> volume;          // never null
+  std::shared_ptr<const LabelMap> structures{};  // on the volume's grid; null: none
+  std::optional<ImportReport> report{};          // CtFolder::report(), after read()
   std::optional<Provenance> provenance{};
-  Json tissues = Json::object();                   // a tissue set; {}: none
-  BodyRegion region = BodyRegion::not_sure;        // anatomyOf() tells
-  SourceIdentity source{};                         // CtFolder::sourceIdentity(); compared, not kept
-  std::string name{};                              // as a person calls it; empty: a neutral one
+  Json tissues = Json::object();             // a tissue set; {}: none
+  BodyRegion region = BodyRegion::not_sure;  // anatomyOf() tells
+  SourceIdentity source{};                   // CtFolder::sourceIdentity(); compared, not kept
+  std::string name{};                        // as a person calls it; empty: a neutral one
 };
 
 struct SavedCase {

@@ -59,7 +59,8 @@ TEST_F(CaseLibraryTest, GivesBackWhatWasSaved) {
   const auto loaded = CaseLibrary(storage()).load(record.id);
   ASSERT_TRUE(loaded) << loaded.error().sentence();
   EXPECT_EQ(loaded->volume->hu, of.volume->hu);
-  EXPECT_LT(glm::length(loaded->volume->geometry.centre_mm() - of.volume->geometry.centre_mm()), 1e-9);
+  EXPECT_LT(glm::length(loaded->volume->geometry.centre_mm() - of.volume->geometry.centre_mm()),
+            1e-9);
   ASSERT_TRUE(loaded->structures);
   EXPECT_EQ(loaded->structures->labels, of.structures->labels);
   EXPECT_EQ(loaded->structures->find("liver")->tissue, "liver");
@@ -429,7 +430,8 @@ TEST_F(CaseLibraryTest, LeavesNothingOnADiskThatFillsUpMeanwhile) {
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == 77) {
-    std::printf("[ figures  ] no disk could be mounted here: RLIMIT_FSIZE stands in for a full one\n");
+    std::printf(
+        "[ figures  ] no disk could be mounted here: RLIMIT_FSIZE stands in for a full one\n");
     const FileSizeLimit limit(3000);
     EXPECT_FALSE(library_.save(smallCase()));
     EXPECT_EQ(entriesIn(storage() / ".parts"), 0u);

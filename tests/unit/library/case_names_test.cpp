@@ -26,7 +26,8 @@ class CaseOfJaneDoe : public ::testing::Test {
       volume.hu[n] = std::int16_t(n % 24 < 4 ? -1000 : int(n * 7919 % 300) - 20);
     }
     const fs::path source = temporary_ / "DOE^JANE" / "4711-SECRET";
-    ASSERT_TRUE(writeCtSeries(volume, {"CT of Jane Doe", "HEAD", "DOE^JANE", "4711-SECRET"}, source));
+    ASSERT_TRUE(
+        writeCtSeries(volume, {"CT of Jane Doe", "HEAD", "DOE^JANE", "4711-SECRET"}, source));
     // What is no slice is looked at and left out, which the report says.
     std::ofstream(source / "Letter of Jane Doe.txt") << "Dear Mrs Doe";
     auto ct = CtFolder::scan(source, Progress());
@@ -107,8 +108,9 @@ TEST_F(CaseOfJaneDoe, CallsAStructureByItsLabelWhereItsNameTellsWhoSheIs) {
 }
 
 TEST_F(CaseOfJaneDoe, IsCalledAfterNothingOfHerNeitherNowNorLater) {
-  const std::vector<std::string> refused{"Jane Doe",  "DOE^JANE", "jane_doe",    "Doe's head",
-                                         "4711-secret", "case 4711 SECRET", "IM0003", "im 3.dcm"};
+  const std::vector<std::string> refused{"Jane Doe",   "DOE^JANE",    "jane_doe",
+                                         "Doe's head", "4711-secret", "case 4711 SECRET",
+                                         "IM0003",     "im 3.dcm"};
   for (const std::string& name : refused) {
     NewCase named = case_;
     named.name = name;
@@ -150,7 +152,8 @@ TEST_F(CaseOfJaneDoe, MayBeCalledAnythingElseThatNoOtherCaseIs) {
 
 TEST_F(CaseOfJaneDoe, KeepsWhatItMayNotBeCalledForItsOwnerAlone) {
   const CaseRecord record = saved();
-  struct stat folder {}, file {};
+  struct stat folder {
+  }, file{};
   ASSERT_EQ(::stat((storage() / "private").c_str(), &folder), 0);
   ASSERT_EQ(::stat((storage() / "private" / (record.names_key + ".json")).c_str(), &file), 0);
   EXPECT_EQ(folder.st_mode & 0777, 0700u);

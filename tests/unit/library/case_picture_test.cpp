@@ -141,8 +141,8 @@ TEST(CasePicture, IsAPngThatSaysWhatItIsFor) {
 
 TEST(CasePicture, OfALargeHeadTakesLessThanHalfASecond) {
   const Volume small = painted(cube(128, 2.0), [](const Vec3& at) {
-    return ball(at, Vec3(0.0), 78.0, 30.0, ball(at, Vec3(0.0), 84.0, 900.0,
-                ball(at, Vec3(0.0), 95.0, 40.0, -1000.0)));
+    return ball(at, Vec3(0.0), 78.0, 30.0,
+                ball(at, Vec3(0.0), 84.0, 900.0, ball(at, Vec3(0.0), 95.0, 40.0, -1000.0)));
   });
   Volume large{small.geometry, {}};
   large.geometry.size = {512, 512, 300};

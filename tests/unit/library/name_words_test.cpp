@@ -49,7 +49,8 @@ TEST(NameWords, OfThePatientAreRefusedInAnyOrderAndAnyWriting) {
                            "liver of Jane", "Doe 2", "case (JANE)", "JANE2", "j\xC3\xA1ne"}) {
     EXPECT_TRUE(refused(name, jane())) << name;
   }
-  for (const char* name : {"Head 2026-11-24 1", "Janet's liver", "doer", "Liver with a tumour", "J D"}) {
+  for (const char* name :
+       {"Head 2026-11-24 1", "Janet's liver", "doer", "Liver with a tumour", "J D"}) {
     EXPECT_FALSE(refused(name, jane())) << name;
   }
 }
@@ -112,8 +113,11 @@ TEST(CaseName, IsOneVisibleLineOfAtMostEightyCharacters) {
   for (int n = 0; n < 80; ++n) eighty += "ü";
   EXPECT_TRUE(caseNameFrom(eighty));
   EXPECT_FALSE(caseNameFrom(eighty + "u"));
-  for (const char* bad : {"", "  ", "...", "a\nb", "a\tb", "\xff\xfe", "a\xE2\x80\x8B" "b",
-                          "a\xE2\x80\xAE" "b"}) {
+  for (const char* bad : {"", "  ", "...", "a\nb", "a\tb", "\xff\xfe",
+                          "a\xE2\x80\x8B"
+                          "b",
+                          "a\xE2\x80\xAE"
+                          "b"}) {
     const auto name = caseNameFrom(bad);
     ASSERT_FALSE(name) << bad;
     EXPECT_EQ(name.error().code, "BAD_NAME");
