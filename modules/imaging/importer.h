@@ -35,8 +35,8 @@ class CtFolder {
   const ImportReport& report() const;
   // Whom and what each series of the report is of, in its order. Nothing of it is in the report.
   std::vector<ScreenNames> screenNames() const;
-  // What its files say of whom it is, with their own names and those of the folders that they lie in:
-  // for the screen, and so that no case is called after any of it. Empty where there is no such
+  // What its files say of whom it is, with their own names and those of the folders that they lie
+  // in: for the screen, and so that no case is called after any of it. Empty where there is no such
   // series.
   SourceIdentity sourceIdentity(const std::string& uid) const;
   // The volume files that look like label maps of a CT beside them. None without such a CT.

@@ -117,25 +117,6 @@ Status Folders::roomFor(std::uint64_t bytes) const {
                storage_.string(), "Free some space, or choose another storage folder"};
 }
 
-Status Folders::writePrivate(const std::string& key, std::string_view text) const {
-  const fs::path file = privateFile(key);
-  Status written = replaceFile(file, [&](const fs::path& temporary) -> Status {
-    const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    if (fd < 0) return writeError(file, errno);
-    std::size_t done = 0;
-    int error = 0;
-    while (done < text.size() && error == 0) {
-      const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
-      if (n >= 0) done += std::size_t(n);
-      if (n < 0 && errno != EINTR) error = errno;
-    }
-    if (::close(fd) != 0 && error == 0) error = errno;
-    if (error != 0) return writeError(file, error);
-    return {};
-  });
-  return written ? syncFolder(file.parent_path()) : written;
-}
-
 void Folders::removePrivate(const std::string& key) const {
   std::error_code ec;
   if (isKey(key)) fs::remove(privateFile(key), ec);
@@ -179,6 +160,26 @@ Status Part::replace(const char* name, const fs::path& case_folder) const {
   fs::rename(path_ / name, case_folder / name, ec);
   if (ec) return writeError(case_folder / name, ec.value());
   return syncFolder(case_folder);
+}
+
+Status Part::writePrivate(const std::string& key, std::string_view text) const {
+  const fs::path file = folders_.privateFile(key), here = path_ / "private.json";
+  const int fd = ::open(here.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0) return writeError(file, errno);
+  std::size_t done = 0;
+  int error = 0;
+  while (done < text.size() && error == 0) {
+    const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
+    if (n >= 0) done += std::size_t(n);
+    if (n < 0 && errno != EINTR) error = errno;
+  }
+  if (error == 0 && ::fsync(fd) != 0) error = errno;
+  if (::close(fd) != 0 && error == 0) error = errno;
+  std::error_code ec;
+  if (error == 0) fs::rename(here, file, ec);
+  if (ec) error = ec.value();
+  if (error != 0) return writeError(file, error);
+  return syncFolder(file.parent_path());
 }
 
 Status Part::becomeCase(const fs::path& case_folder) {

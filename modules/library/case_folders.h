@@ -67,8 +67,6 @@ class Folders {
   void sweep() const;
   // CANNOT_WRITE where less than that is free; what cannot be told is not in the way.
   Status roomFor(std::uint64_t bytes) const;
-  // Writes private/KEY.json, readable by its owner alone.
-  Status writePrivate(const std::string& key, std::string_view text) const;
   void removePrivate(const std::string& key) const;
   // Removes those of other keys. The lock of the list is held.
   void keepPrivateOf(const std::set<std::string>& keys) const;
@@ -93,6 +91,9 @@ class Part {
   void drop();
   // Puts the file in the place of one in a case. CANNOT_WRITE.
   Status replace(const char* name, const std::filesystem::path& case_folder) const;
+  // Writes private/KEY.json, readable by its owner alone. The case.json that names it is already
+  // here: what is swept takes it along. CANNOT_WRITE.
+  Status writePrivate(const std::string& key, std::string_view text) const;
   // The whole folder becomes that case: from here it is there. The lock of the list is held.
   Status becomeCase(const std::filesystem::path& case_folder);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <new>
+#include <tuple>
 #include <utility>
 
 #include "base/file.h"
@@ -51,6 +52,10 @@ bool alike(const std::vector<CaseStructure>& a, const std::vector<CaseStructure>
   });
 }
 
+Error nameTaken() {
+  return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
+}
+
 // A case's folder, and none that a name could lead to from there.
 bool isFolderName(const std::string& id) {
   return !id.empty() && id[0] != '.' && id.find('/') == id.npos && id.find('\0') == id.npos;
@@ -89,7 +94,8 @@ bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
   constexpr double kSame_mm = 1e-6;  // a header's digits, over the whole of a scan
   const Vec3 last(a.size[0] - 1, a.size[1] - 1, a.size[2] - 1);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0, 1);
+    const glm::dvec4 at(corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0,
+                        1);
     if (!(glm::length(Vec3(one * at) - Vec3(other * at)) < kSame_mm)) return false;
   }
   return true;
@@ -119,8 +125,10 @@ LabelMap withoutIdentity(LabelMap map, const SourceKeys& source, std::vector<War
       name = "label " + std::to_string(s.label) + " " + std::to_string(n);
     }
     s.name = name;
-    warnings.push_back({"RENAMED_STRUCTURE", "The name of a structure told who the patient is: it is "
-                                             "now called '" + name + "'"});
+    warnings.push_back({"RENAMED_STRUCTURE",
+                        "The name of a structure told who the patient is: it is "
+                        "now called '" +
+                            name + "'"});
   }
   return map;
 }
@@ -229,13 +237,13 @@ std::vector<ListedCase> CaseLibrary::list() const {
   return cases;
 }
 
-Status CaseLibrary::nameIsFree(const std::string& name, const std::string& id) const {
-  const std::string folded = foldedName(name);
+std::set<std::string> CaseLibrary::namesBeside(const std::string& id) const {
+  std::set<std::string> names;
   for (const ListedCase& other : list()) {
-    if (other.id == id || foldedName(other.record.name) != folded) continue;
-    return Error{"NAME_TAKEN", "Another case has this name", "", "Choose another name"};
+    const std::string name = foldedName(other.record.name);
+    if (other.id != id && !name.empty()) names.insert(name);
   }
-  return {};
+  return names;
 }
 
 Status CaseLibrary::writeRecord(const CaseRecord& record, const Part& part) const {
@@ -250,7 +258,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (!of.name.empty()) {
     Result<std::string> name = caseNameFrom(of.name);
     if (!name) return name.error();
-    if (Status free = nameIsFree(*name, ""); !free) return free.error();
+    if (namesBeside("").contains(foldedName(*name))) return nameTaken();
     record.name = *name;
   }
   const SourceKeys source = sourceKeys(of.source);
@@ -267,13 +275,13 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   Result<Part> made = Part::make(folders_, Part::Of::wholeCase);
   if (!made) return ofStorage(made.error(), folders_, needed);
   Part& part = *made;
-  const auto failed = [&](const Error& error) { 
+  const auto failed = [&](const Error& error) {
     part.drop();
     return ofStorage(error, folders_, needed);
   };
 
   progress.at(0.0, "Saving the case");
-  record.volume_sha256 = of.volume_sha256.empty() ? volumeSha256(volume) : of.volume_sha256;
+  record.volume_sha256 = volumeSha256(volume);
   record.region = of.region;
   record.grid = volume.geometry;
   if (of.report) record.verdict = verdictOf(*of.report);
@@ -285,8 +293,8 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (of.structures && !of.structures->structures.empty()) {
     const LabelMap map = withoutIdentity(*of.structures, source, saved.warnings);
     record.structures = structuresOf(map);
-    const Status written = writeSegmentation(map, part / kStructuresFile, false,
-                                             Progress(progress, 0.7, 0.8));
+    const Status written =
+        writeSegmentation(map, part / kStructuresFile, false, Progress(progress, 0.7, 0.8));
     if (!written) return failed(written.error());
   }
   progress.at(0.8, "Drawing the case's picture");
@@ -320,20 +328,21 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   if (progress.cancelled()) return cancelled();
   const std::string day = timeText("%Y-%m-%d");
   record.imported = timeText("%Y-%m-%dT%H:%M:%S");
-  std::error_code ec;
-  for (int number = 1;; ++number) {
-    record.id = neutralId(of.region, day, number);
+  const std::set<std::string> taken = namesBeside("");
+  if (taken.contains(foldedName(record.name))) return nameTaken();
+  for (int number = 1; record.id.empty(); ++number) {
+    std::error_code ec;
+    const std::string id = neutralId(of.region, day, number);
+    const fs::file_status there = fs::symlink_status(folders_.caseFolder(id), ec);
     const std::string neutral = neutralName(of.region, day, number);
-    if (fs::exists(fs::symlink_status(folders_.caseFolder(record.id), ec))) continue;
-    if (record.name.empty() && !nameIsFree(neutral, "")) continue;
+    if (fs::exists(there) || (record.name.empty() && taken.contains(foldedName(neutral)))) continue;
+    record.id = id;
     if (record.name.empty()) record.name = neutral;
-    break;
   }
-  if (Status free = nameIsFree(record.name, ""); !free) return free.error();
   record.folder = folders_.caseFolder(record.id);
   if (Status written = writeRecord(record, part); !written) return failed(written.error());
   if (!record.names_key.empty()) {
-    const Status kept = folders_.writePrivate(record.names_key, pretty(guard.toJson()));
+    const Status kept = part.writePrivate(record.names_key, pretty(guard.toJson()));
     if (!kept) return failed(kept.error());
   }
   if (Status there = part.becomeCase(record.folder); !there) return failed(there.error());
@@ -371,8 +380,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   }
   if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
   if (has(kStructuresFile)) {
-    auto segmentation =
-        readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
+    auto segmentation = readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
     if (!segmentation) return failed(segmentation.error(), kStructuresFile);
     LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
     if (!sameGrid(map.geometry, volume->geometry)) {
@@ -394,9 +402,9 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
     loaded.provenance = *std::move(provenance);
   }
   loaded.volume = std::make_shared<const Volume>(*std::move(volume));
-  const std::vector<CaseStructure> listed = std::exchange(
-      loaded.record.structures,
-      loaded.structures ? structuresOf(*loaded.structures) : std::vector<CaseStructure>());
+  const std::vector<CaseStructure> listed =
+      std::exchange(loaded.record.structures, loaded.structures ? structuresOf(*loaded.structures)
+                                                                : std::vector<CaseStructure>());
   if (!alike(listed, loaded.record.structures)) mendRows(loaded.record);
   progress.at(1.0, "The case is open");
   return loaded;
@@ -424,10 +432,11 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
   if (!was->names_key.empty() && !isNeutralName(*name) && *name != was->name) {
     const Result<NameGuard> guard = NameGuard::read(folders_.privateFile(was->names_key));
     if (!guard) {
-      return Error{"NAME_UNCHECKED",
-                   "Whether this name tells who the patient is cannot be checked: what the case may "
-                   "not be called is not on this computer",
-                   id, "Keep the name, or import the CT again"};
+      return Error{
+          "NAME_UNCHECKED",
+          "Whether this name tells who the patient is cannot be checked: what the case may "
+          "not be called is not on this computer",
+          id, "Keep the name, or import the CT again"};
     }
     if (Status told = guard->check(*name); !told) return told.error();
   }
@@ -435,7 +444,7 @@ Result<CaseRecord> CaseLibrary::rename(const std::string& id, const std::string&
   if (!part) return ofStorage(part.error(), folders_, 1 << 16);
   const Result<FileLock> list_lock = folders_.lock();
   if (!list_lock) return list_lock.error();
-  if (Status free = nameIsFree(*name, id); !free) return free.error();
+  if (namesBeside(id).contains(foldedName(*name))) return nameTaken();
   Result<CaseRecord> now = record(id);
   if (!now) return now;
   now->name = *name;
@@ -470,8 +479,8 @@ Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const Labe
   if (!sameGrid(structures.geometry, was->grid)) return wrongGrid();
   std::vector<std::string> new_names;
   for (const Structure& s : structures.structures) {
-    const bool old = std::ranges::find(was->structures, s.name, &CaseStructure::name) !=
-                     was->structures.end();
+    const bool old =
+        std::ranges::find(was->structures, s.name, &CaseStructure::name) != was->structures.end();
     if (!old && s.name != "label " + std::to_string(s.label)) new_names.push_back(s.name);
   }
   if (!new_names.empty() && !was->names_key.empty()) {
@@ -487,8 +496,7 @@ Result<CaseRecord> CaseLibrary::saveStructures(const std::string& id, const Labe
   if (!part) return ofStorage(part.error(), folders_, needed);
   const bool none = structures.structures.empty();
   if (!none) {
-    const Status written =
-        writeSegmentation(structures, *part / kStructuresFile, false, progress);
+    const Status written = writeSegmentation(structures, *part / kStructuresFile, false, progress);
     if (!written) return ofStorage(written.error(), folders_, needed);
   }
   const Result<FileLock> list_lock = folders_.lock();

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,14 @@ namespace trephine {
 // What becomes a case. Without a report there are no card and no verdict; without a source,
 // nothing that it may not be called.
 struct NewCase {
-  std::shared_ptr<const Volume> volume;
-  std::string volume_sha256{};                     // of its voxels; empty: taken here
-  std::shared_ptr<const LabelMap> structures{};    // on the volume's grid; null: none
-  std::optional<ImportReport> report{};            // CtFolder::report(), after read()
+  std::shared_ptr<const Volume> volume;          // never null
+  std::shared_ptr<const LabelMap> structures{};  // on the volume's grid; null: none
+  std::optional<ImportReport> report{};          // CtFolder::report(), after read()
   std::optional<Provenance> provenance{};
-  Json tissues = Json::object();                   // a tissue set; {}: none
-  BodyRegion region = BodyRegion::not_sure;        // anatomyOf() tells
-  SourceIdentity source{};                         // CtFolder::sourceIdentity(); compared, not kept
-  std::string name{};                              // as a person calls it; empty: a neutral one
+  Json tissues = Json::object();             // a tissue set; {}: none
+  BodyRegion region = BodyRegion::not_sure;  // anatomyOf() tells
+  SourceIdentity source{};                   // CtFolder::sourceIdentity(); compared, not kept
+  std::string name{};                        // as a person calls it; empty: a neutral one
 };
 
 struct SavedCase {
@@ -96,7 +96,8 @@ class CaseLibrary {
   Result<CaseRecord> record(const std::string& id) const;
   Status writeRecord(const CaseRecord& record, const case_folders::Part& part) const;
   void mendRows(const CaseRecord& of) const;
-  Status nameIsFree(const std::string& name, const std::string& id) const;
+  // Folded, of all cases but that one.
+  std::set<std::string> namesBeside(const std::string& id) const;
 
   case_folders::Folders folders_;
 };

@@ -85,7 +85,8 @@ Field fieldOf(const Volume& volume, const VoxelBox& box, double step_mm, bool me
       float* row = &field.values[field.grid.indexOf(0, j, k)];
       for (int c = 0; c < block[2]; ++c) {
         for (int b = 0; b < block[1]; ++b) {
-          const int from_j = box.low[1] + j * stride[1] + b, from_k = box.low[2] + k * stride[2] + c;
+          const int from_j = box.low[1] + j * stride[1] + b,
+                    from_k = box.low[2] + k * stride[2] + c;
           const std::int16_t* hu = &volume.hu[g.indexOf(box.low[0], from_j, from_k)];
           for (int i = 0; i < field.grid.size[0]; ++i) {
             int sum = 0;
@@ -229,7 +230,8 @@ Field boneField(const Volume& volume, const Field& coarse, const std::vector<std
   double mm3 = 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int size = volume.geometry.size[axis];
-    const int stride = int(std::lround(g.spacing_mm[int(axis)] / volume.geometry.spacing_mm[int(axis)]));
+    const int stride =
+        int(std::lround(g.spacing_mm[int(axis)] / volume.geometry.spacing_mm[int(axis)]));
     box.low[axis] = std::max((low[axis] - 2) * stride, 0);
     box.high[axis] = std::min((high[axis] + 3) * stride, size);
     mm3 *= (box.high[axis] - box.low[axis]) * volume.geometry.spacing_mm[int(axis)];
@@ -302,8 +304,8 @@ CasePicture skullPicture(const Volume& volume, const Field& coarse,
       const double facing = std::max(0.0, glm::dot(normal, eye));
       const double near = (glm::dot(pixel, eye) + reach_mm - n * step_mm - depth.low) /
                           std::max(depth.length(), 1.0);
-      const double shade = (0.16 + 0.22 * facing + 0.66 * lit) *
-                           (0.45 + 0.55 * std::clamp(near * 1.15, 0.0, 1.0));
+      const double shade =
+          (0.16 + 0.22 * facing + 0.66 * lit) * (0.45 + 0.55 * std::clamp(near * 1.15, 0.0, 1.0));
       return glm::min(Vec3(246, 234, 212) * shade, Vec3(255.0));
     }
     return kBackground;

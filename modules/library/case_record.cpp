@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kFormat = "trephine.case";
 constexpr int kVersion = 1;
-constexpr Range kSize{1, 2048}, kSpacing_mm{1e-4, 1e4}, kPlace_mm{-1e6, 1e6}, kCosines{-1.001, 1.001};
+constexpr Range kSize{1, 2048}, kSpacing_mm{1e-4, 1e4}, kPlace_mm{-1e6, 1e6},
+    kCosines{-1.001, 1.001};
 constexpr Range kMl{0, 1e9}, kShares{0, 1};
 
 Json vectorJson(const Vec3& v) {
@@ -49,19 +50,20 @@ Json toJson(const CaseRecord& record) {
     structures.push_back({{"name", s.name}, {"ml", s.ml}, {"colour", vectorJson(s.colour)}});
   }
   const GridGeometry& g = record.grid;
-  Json json = {{"format", kFormat},
-               {"version", kVersion},
-               {"name", record.name},
-               {"imported", record.imported},
-               {"region", regionText(record.region)},
-               {"size", g.size},
-               {"spacing_mm", vectorJson(g.spacing_mm)},
-               {"origin_mm", vectorJson(g.origin_mm)},
-               {"direction",
-                {vectorJson(g.direction[0]), vectorJson(g.direction[1]), vectorJson(g.direction[2])}},
-               {"volume_sha256", record.volume_sha256},
-               {"verdict", record.verdict ? verdictName(*record.verdict) : ""},
-               {"structures", std::move(structures)}};
+  Json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"name", record.name},
+      {"imported", record.imported},
+      {"region", regionText(record.region)},
+      {"size", g.size},
+      {"spacing_mm", vectorJson(g.spacing_mm)},
+      {"origin_mm", vectorJson(g.origin_mm)},
+      {"direction",
+       {vectorJson(g.direction[0]), vectorJson(g.direction[1]), vectorJson(g.direction[2])}},
+      {"volume_sha256", record.volume_sha256},
+      {"verdict", record.verdict ? verdictName(*record.verdict) : ""},
+      {"structures", std::move(structures)}};
   if (!record.names_key.empty()) json["names_key"] = record.names_key;
   return json;
 }

@@ -83,9 +83,8 @@ Json NameGuard::toJson() const {
   for (const auto& [hash, kind] : hashes_) {
     refused.push_back({{"hash", hash}, {"kind", identityKindName(kind)}});
   }
-  return {{"format", "trephine.names"},     {"version", kVersion},
-          {"salt", salt_},                  {"iterations", iterations_},
-          {"most_words", most_words_},      {"lengths", lengths_},
+  return {{"format", "trephine.names"},   {"version", kVersion},       {"salt", salt_},
+          {"iterations", iterations_},    {"most_words", most_words_}, {"lengths", lengths_},
           {"refused", std::move(refused)}};
 }
 

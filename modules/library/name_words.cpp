@@ -59,9 +59,8 @@ bool isAccent(char32_t c) {
 // Characters as they are compared, but for their case.
 std::u32string plain(std::string_view text) {
   std::u32string out = ucs4(fromUtf8(text).normalized(QString::NormalizationForm_KD));
-  std::erase_if(out, [](char32_t c) {
-    return isAccent(c) || QChar::category(c) == QChar::Other_Format;
-  });
+  std::erase_if(
+      out, [](char32_t c) { return isAccent(c) || QChar::category(c) == QChar::Other_Format; });
   out = ucs4(fromUcs4(out).normalized(QString::NormalizationForm_C));
   for (char32_t& c : out) {
     if (c >= 0x30A1 && c <= 0x30F6) c -= 0x60;  // katakana to hiragana
@@ -84,8 +83,7 @@ bool partsWords(char32_t a, char32_t b) {
 
 // A German umlaut is written as one letter or as two.
 std::vector<std::string> spellings(std::string_view text) {
-  const QString folded =
-      fromUtf8(text).normalized(QString::NormalizationForm_C).toCaseFolded();
+  const QString folded = fromUtf8(text).normalized(QString::NormalizationForm_C).toCaseFolded();
   QString two_letters = folded;
   for (const auto& [one, two] : {std::pair(u"ä", u"ae"), {u"ö", u"oe"}, {u"ü", u"ue"}}) {
     two_letters.replace(QString::fromUtf16(one), QString::fromUtf16(two));
@@ -236,9 +234,8 @@ Result<std::string> caseNameFrom(std::string_view text) {
   if (!isUtf8(text)) return bad("The name is no valid text");
   const std::u32string given = ucs4(fromUtf8(text));
   constexpr char32_t kJoiner = 0x200D, kNonJoiner = 0x200C;  // within words of some scripts
-  const bool hidden = std::ranges::any_of(given, [&](char32_t c) {
-    return !QChar::isPrint(c) && c != kJoiner && c != kNonJoiner;
-  });
+  const bool hidden = std::ranges::any_of(
+      given, [&](char32_t c) { return !QChar::isPrint(c) && c != kJoiner && c != kNonJoiner; });
   if (hidden) return bad("The name holds characters that cannot be seen, or more than one line");
   const QString name = fromUcs4(given).simplified();
   if (ucs4(name).size() > std::size_t(kLongestCaseName)) return bad("The name is too long");

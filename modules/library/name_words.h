@@ -28,7 +28,7 @@ std::string foldedName(std::string_view name);
 // they are or by their hashes.
 struct SourceKeys {
   std::map<std::string, IdentityKind> keys;
-  int most_words = 2;              // that a key which a name may not hold is written in
+  int most_words = 2;       // that a key which a name may not hold is written in
   std::set<int> lengths{};  // in characters, of such keys in scripts that leave no blanks
 };
 SourceKeys sourceKeys(const SourceIdentity& source);

@@ -4,11 +4,11 @@
 
 #include <QImage>
 #include <QString>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-
-#include "volume/phantom.h"
+#include <vector>
 
 namespace trephine {
 namespace {
@@ -131,7 +131,7 @@ TEST(CasePicture, IsMadeOfAnyVolume) {
 }
 
 TEST(CasePicture, IsAPngThatSaysWhatItIsFor) {
-  const std::string png = pngOf(casePicture(*makePhantom("abdomen"), BodyRegion::abdomen));
+  const std::string png = pngOf(CasePicture{std::vector<std::uint8_t>(256 * 192 * 3, 90)});
   QImage image;
   ASSERT_TRUE(image.loadFromData(QByteArray::fromStdString(png), "PNG"));
   EXPECT_EQ(image.width(), 256);
@@ -140,19 +140,17 @@ TEST(CasePicture, IsAPngThatSaysWhatItIsFor) {
 }
 
 TEST(CasePicture, OfALargeHeadTakesLessThanHalfASecond) {
-  const Volume cranium = *makePhantom("cranium");
-  Volume large;
-  large.geometry = cranium.geometry;
+  const Volume small = painted(cube(128, 2.0), [](const Vec3& at) {
+    return ball(at, Vec3(0.0), 78.0, 30.0,
+                ball(at, Vec3(0.0), 84.0, 900.0, ball(at, Vec3(0.0), 95.0, 40.0, -1000.0)));
+  });
+  Volume large{small.geometry, {}};
   large.geometry.size = {512, 512, 300};
-  for (int axis = 0; axis < 3; ++axis) {
-    large.geometry.spacing_mm[axis] *= double(cranium.geometry.size[std::size_t(axis)]) /
-                                       large.geometry.size[std::size_t(axis)];
-  }
+  large.geometry.spacing_mm = {0.5, 0.5, 256.0 / 300.0};
   large.hu.resize(large.geometry.voxelCount());
-  const Index3 size = cranium.geometry.size;
   for (std::size_t n = 0; n < large.hu.size(); ++n) {
     const Index3 at = large.geometry.indicesOf(n);
-    large.hu[n] = cranium.at(at[0] * size[0] / 512, at[1] * size[1] / 512, at[2] * size[2] / 300);
+    large.hu[n] = small.at(at[0] / 4, at[1] / 4, at[2] * 128 / 300);
   }
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
