@@ -121,14 +121,13 @@ TEST(Outline, CostsNoRayAndStaysWhereAToolInTheTissueIsHidden) {
 
   ToolView tool;
   tool.shape = ToolShape::blade;
-  tool.length_mm = 16.0;
-  tool.pose_mm.position = Vec3(kRing_mm, 0, -8);  // within the ball, its blade behind the line
-  tool.pose_mm.orientation = Quat(1, 0, 0, 0);
+  tool.length_mm = 24.0;
+  tool.pose_mm.position = Vec3(0, 0, -12);  // within the shell, behind the ring
   renderer.setTools({tool});
   const Picture hidden = renderer.picture();
   EXPECT_GT(shareSeen(hidden, renderer, ringOn(kFront)), 0.97);
 
-  tool.pose_mm.position = Vec3(kRing_mm, -40, -8);  // before it
+  tool.pose_mm.position = Vec3(0, -40, -12);  // before it
   renderer.setTools({tool});
   EXPECT_LT(shareSeen(renderer.picture(), renderer, ringOn(kFront)), 0.97);
   renderer.setTools({});

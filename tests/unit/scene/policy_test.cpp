@@ -13,7 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json settings() { return {{"format", "trephine.settings"}, {"version", 1}}; }
+Json settings() {
+  return {{"format", "trephine.settings"}, {"version", 1}};
+}
 Policy locking(const Json& locks) {
   Json json = settings();
   json["locks"] = locks;
@@ -124,9 +126,13 @@ TEST(Policy, ALockIsAFlagOrAValue) {
   EXPECT_EQ(locking({{"controller", true}}).locks, Locks{Lock::controller});
   EXPECT_EQ(locking({{"controller", false}, {"rate", false}}).locks, Locks{});
   EXPECT_EQ(locking({{"rate", 500}}).rate_hz, 500.0);
-  for (const auto& [key, value] : std::initializer_list<std::pair<const char*, Json>>{
-           {"controller", "strong"}, {"controller", 5}, {"tissues", "bone"}, {"rate", "fast"},
-           {"rate", 1}, {"colour", true}}) {
+  for (const auto& [key, value] :
+       std::initializer_list<std::pair<const char*, Json>>{{"controller", "strong"},
+                                                           {"controller", 5},
+                                                           {"tissues", "bone"},
+                                                           {"rate", "fast"},
+                                                           {"rate", 1},
+                                                           {"colour", true}}) {
     Json json = settings();
     json["locks"] = {{key, value}};
     const Result<Policy> policy = parsePolicy(json, "settings.json");
