@@ -32,8 +32,8 @@ class Composer {
   // Tools into the picture that is there, inside this part of it. `tools` holds their colour and
   // depth and has the window's size. Tissue in front of a tool hides it, or tints it where it can
   // be seen through. With an opacity below 1 what is behind shines through.
-  void drawTools(const Canvas& tools, double opacity, const DepthRange& range,
-                 const Canvas* volume, const Span& span, const PixelRect& part);
+  void drawTools(const Canvas& tools, double opacity, const DepthRange& range, const Canvas* volume,
+                 const Span& span, const PixelRect& part);
   void drawLines(const ScreenLines& lines, int width, int height);
   void release();
   // Why the shaders could not be built; empty where they could.

@@ -39,13 +39,13 @@ void SceneRenderer::Parts::drawOutline(const Canvas* shown, const Span& span) {
   const auto box = outline.box();
   if (!box) return;
   outline.lift(camera);
-  drawSolids(*outline_renderer, kOutlineOpacity, {around(box->data(), box->size(), 2)}, scene.framebuffer(), shown,
-             span);
+  drawSolids(*outline_renderer, kOutlineOpacity, {around(box->data(), box->size(), 2)},
+             scene.framebuffer(), shown, span);
 }
 
-void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity, const std::vector<PixelRect>& parts,
-                                      unsigned int framebuffer, const Canvas* shown,
-                                      const Span& span) {
+void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,
+                                      const std::vector<PixelRect>& parts, unsigned int framebuffer,
+                                      const Canvas* shown, const Span& span) {
   if (std::ranges::all_of(parts, &PixelRect::empty)) return;
   tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
   glEnable(GL_SCISSOR_TEST);
