@@ -211,7 +211,7 @@ TEST_F(PolicyFile, TheProblemIsSaidWithEverySceneThatItKeepsOut) {
   const Policy policy = readPolicy(file_);
   const Status status = checkScene(policy, *readScene(shippedFile()), "/somewhere/own/scene.json");
   expectLocked(status, "tissues, a controller, a rate");
-  EXPECT_NE(status.error().next.find("Everything is locked"), std::string::npos);
+  EXPECT_NE(status.error().next.find("Everything is locked: "), std::string::npos);
   EXPECT_TRUE(checkScene(policy, *readScene(shippedFile()), shippedFile()));
 }
 
