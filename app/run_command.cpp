@@ -154,6 +154,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   if (!script_file.empty()) {
     Result<OperatorScript> script = readOperatorScript(script_file, *scene);
     if (!script) return script.error();
+    if (Status may = checkLocks(*script, locksOf(policy, *scene)); !may) return may.error();
     options.script = *std::move(script);
   }
   const double seconds =

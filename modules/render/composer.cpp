@@ -45,6 +45,7 @@ uniform sampler2D depths;
 uniform sampler2D before;
 uniform bool shown;
 uniform bool parallel;
+uniform float opacity;
 uniform vec2 range;
 uniform vec2 span;
 uniform vec2 beyond;
@@ -57,7 +58,7 @@ void main()
   vec3 tool = texelFetch(toolColour, here, 0).rgb;
   float t = parallel ? mix(range.x, range.y, d)
                      : range.x * range.y / (range.y - d * (range.y - range.x));
-  if (!shown) { colour = vec4(tool, 1.0); return; }
+  if (!shown) { colour = vec4(tool, opacity); return; }
   ivec2 last = textureSize(volume, 0) - 1;
   vec2 at = (gl_FragCoord.xy + beyond) / span * vec2(textureSize(volume, 0)) - 0.5;
   vec2 low = floor(at);
@@ -78,7 +79,7 @@ void main()
     seen += w.x * w.y * (1.0 - front.a);
   }
   if (seen < 0.02) discard;  // what is there stays: the tissue, or a line on it
-  colour = vec4(sum, 1.0);
+  colour = vec4(sum, opacity);
 }
 )";
 
@@ -206,8 +207,8 @@ void Composer::drawVolume(const Canvas* volume, const Span& span, int width, int
   quad({0, 0, width, height});
 }
 
-void Composer::drawTools(const Canvas& tools, const DepthRange& range, const Canvas* volume,
-                         const Span& span, const PixelRect& part) {
+void Composer::drawTools(const Canvas& tools, double opacity, const DepthRange& range,
+                         const Canvas* volume, const Span& span, const PixelRect& part) {
   if (part.empty() || !prepare()) return;
   glViewport(0, 0, tools.width(), tools.height());
   glUseProgram(tools_);
@@ -218,10 +219,14 @@ void Composer::drawTools(const Canvas& tools, const DepthRange& range, const Can
   read(tools_, "before", 4, volume ? volume->texture(2) : 0);
   set(tools_, "shown", volume ? 1 : 0);
   set(tools_, "parallel", range.parallel ? 1 : 0);
+  glUniform1f(glGetUniformLocation(tools_, "opacity"), float(opacity));
   set(tools_, "range", {range.near_mm, range.far_mm});
   set(tools_, "span", span.pixels);
   set(tools_, "beyond", span.beyond);
+  if (opacity < 1.0) glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE);
   quad(part);
+  glDisable(GL_BLEND);
   glActiveTexture(GL_TEXTURE0);
 }
 

@@ -31,8 +31,8 @@ class Composer {
   void drawVolume(const Canvas* volume, const Span& span, int width, int height);
   // Tools into the picture that is there, inside this part of it. `tools` holds their colour and
   // depth and has the window's size. Tissue in front of a tool hides it, or tints it where it can
-  // be seen through.
-  void drawTools(const Canvas& tools, const DepthRange& range, const Canvas* volume,
+  // be seen through. With an opacity below 1 what is behind shines through.
+  void drawTools(const Canvas& tools, double opacity, const DepthRange& range, const Canvas* volume,
                  const Span& span, const PixelRect& part);
   void drawLines(const ScreenLines& lines, int width, int height);
   void release();

@@ -105,8 +105,8 @@ void OutlineDrawing::show(const std::vector<Vec3>& points_mm, bool closed, doubl
   }
   for (vtkActor* actor : {p.line.Get(), p.rim.Get()}) actor->VisibilityOff();
   p.box.Reset();
-  const bool finite =
-      isFinite(width_mm) && std::ranges::all_of(points_mm, [](const Vec3& v) { return isFinite(v); });
+  const bool finite = isFinite(width_mm) &&
+                      std::ranges::all_of(points_mm, [](const Vec3& v) { return isFinite(v); });
   if (!finite || !(width_mm > 0.0)) return;
   const std::vector<Vec3> points = different(points_mm, closed);
   if (points.size() < 2) return;

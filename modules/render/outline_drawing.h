@@ -1,4 +1,5 @@
-// A line that is drawn on the tissue: a flat colour with a dark rim, seen on bone and on liver.
+// A line that is drawn on the tissue: a flat colour with a dark rim, seen on bone and on liver, and
+// through which a cut along it is seen (kOutlineOpacity in scene_tools.cpp).
 #pragma once
 
 #include <array>

@@ -120,7 +120,7 @@ struct SceneRenderer::Parts {
   void drawOutline(const Canvas* shown, const Span& span);  // into `scene`
   void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
   // What a renderer shows in these parts of the window, where tissue leaves it visible.
-  void drawSolids(vtkRenderer& solids, const std::vector<PixelRect>& parts,
+  void drawSolids(vtkRenderer& solids, double opacity, const std::vector<PixelRect>& parts,
                   unsigned int framebuffer, const Canvas* shown, const Span& span);
   void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const;
 };

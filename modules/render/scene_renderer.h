@@ -99,8 +99,8 @@ class SceneRenderer {
   // What is on the screen.
   const Volume& copy() const;
   void setTools(const std::vector<ToolView>& tools);
-  // A line on the tissue, until another is set; without points none. Hidden where tissue lies before
-  // it, seen where it lies on a surface. Tools pass before it. Like them it costs no ray.
+  // A line on the tissue, until another is set; without points none. Hidden where tissue lies
+  // before it, seen where it lies on a surface. Tools pass before it. Like them it costs no ray.
   void setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm);
 
   void resize(int width, int height);  // device pixels

@@ -18,6 +18,13 @@
 
 namespace trephine {
 
+namespace {
+
+// A cut is to be seen under the line along which it is made.
+constexpr double kOutlineOpacity = 0.65;
+
+}  // namespace
+
 void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* shown,
                                      const Span& span) {
   std::vector<PixelRect> parts;
@@ -25,20 +32,20 @@ void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* sho
     const PixelRect part = around(box.data(), box.size(), 2);
     if (!part.empty()) parts.push_back(part);
   }
-  drawSolids(*tool_renderer, parts, framebuffer, shown, span);
+  drawSolids(*tool_renderer, 1.0, parts, framebuffer, shown, span);
 }
 
 void SceneRenderer::Parts::drawOutline(const Canvas* shown, const Span& span) {
   const auto box = outline.box();
   if (!box) return;
   outline.lift(camera);
-  drawSolids(*outline_renderer, {around(box->data(), box->size(), 2)}, scene.framebuffer(), shown,
-             span);
+  drawSolids(*outline_renderer, kOutlineOpacity, {around(box->data(), box->size(), 2)},
+             scene.framebuffer(), shown, span);
 }
 
-void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, const std::vector<PixelRect>& parts,
-                                      unsigned int framebuffer, const Canvas* shown,
-                                      const Span& span) {
+void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,
+                                      const std::vector<PixelRect>& parts, unsigned int framebuffer,
+                                      const Canvas* shown, const Span& span) {
   if (std::ranges::all_of(parts, &PixelRect::empty)) return;
   tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
   glEnable(GL_SCISSOR_TEST);
@@ -59,7 +66,7 @@ void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, const std::vector<Pix
   // A part that lies in another would be drawn twice, which changes nothing: what is read is not
   // what is written.
   for (const PixelRect& part : parts) {
-    composer.drawTools(tool_layer, range, shown, span, part);
+    composer.drawTools(tool_layer, opacity, range, shown, span, part);
   }
 }
 

@@ -24,20 +24,18 @@ Policy allLocked(const fs::path& file, Error why) {
   Policy policy;
   for (const auto& [name, lock] : kLockNames) policy.locks.insert(lock);
   policy.folder = file.parent_path();
+  why.what = "Everything is locked: " + why.what;
   policy.problem = std::move(why);
   return policy;
 }
 
 Error unreadable(const fs::path& file, const std::string& why) {
-  return {"POLICY_UNREADABLE",
-          "Everything is locked, since the workstation's settings cannot be read: " + why,
-          file.string(), "An administrator must correct the file or take it away"};
+  return {"POLICY_UNREADABLE", "The workstation's settings cannot be read: " + why, file.string(),
+          "An administrator must correct the file or take it away"};
 }
 
 Error unsafe(const fs::path& path) {
-  return {"POLICY_UNSAFE",
-          "Everything is locked, since others than an administrator could change the workstation's "
-          "settings",
+  return {"POLICY_UNSAFE", "Others than an administrator could change the workstation's settings",
           path.string(),
           "An administrator must make it root's own, and take from group and others the right to "
           "write (chown root, chmod go-w)"};

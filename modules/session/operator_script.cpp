@@ -142,6 +142,21 @@ Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, con
   return parseOperatorScript(*json, file.string(), scene);
 }
 
+Status checkLocks(const OperatorScript& script, const Locks& locks) {
+  for (const ScriptCommand& command : script.commands) {
+    const CommandKind kind = command.command.kind;
+    const bool controller = kind == CommandKind::controller && locks.contains(Lock::controller);
+    const bool tissues = kind == CommandKind::tissues && locks.contains(Lock::tissues);
+    if (!controller && !tissues) continue;
+    return Error{"LOCKED",
+                 std::string("The script would change the ") +
+                     (controller ? "controller" : "tissues") +
+                     ", which the workstation or the exercise locks",
+                 "script '" + script.name + "'", "Choose another script, or ask an educator"};
+  }
+  return {};
+}
+
 ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
                                const std::vector<LandmarkFrame>& landmarks)
     : period_s_(1.0 / scene.rate_hz),

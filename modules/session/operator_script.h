@@ -50,6 +50,10 @@ Result<OperatorScript> readOperatorScript(const std::filesystem::path& file, con
 Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& file,
                                            const Scene& scene);
 
+// LOCKED where one of its commands would change what is locked (scene/policy.h), also a script of
+// the scene's own.
+Status checkLocks(const OperatorScript& script, const Locks& locks);
+
 // Plays a script: a pure function of the tick number. Straight lines between waypoints, at rest
 // before the first and after the last; an arm without waypoints stays where its device's origin is.
 class ScriptOperator : public Operator {

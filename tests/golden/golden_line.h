@@ -28,6 +28,7 @@ struct GoldenLine {
   std::optional<ViewPreset> preset;  // none: the looks of the scene
   std::optional<StandardView> side;  // none: the scene's own view
   std::vector<double> orbit_deg;     // from there to the right and up
+  bool outline = false;              // the scene's
   std::vector<double> carved_mm;  // radius and depth of a hole at the view's landmark; none: {0, 0}
 
   // A slice.
@@ -98,6 +99,7 @@ inline GoldenLine lineOf(JsonReader reader) {
                                     {"inferior", StandardView::inferior}});
   line.orbit_deg = {0.0, 0.0};
   if (reader.has("orbit_deg")) line.orbit_deg = reader.numbers("orbit_deg", 2, {-180.0, 180.0});
+  line.outline = reader.boolean("outline", false);
   line.carved_mm = {0.0, 0.0};
   if (reader.has("carved_mm")) line.carved_mm = reader.numbers("carved_mm", 2, {0.0, 100.0, "mm"});
   return line;

@@ -72,7 +72,7 @@ TEST_P(Golden, IsDrawnAsItWasAndNoWrongPicturePassesForIt) {
   if (line.slice) {
     EXPECT_LT(likenessOf("another window", drawn(line, Change::window)), line.ssim);
   }
-  if (line.overlay != Overlay::none) {
+  if (line.overlay != Overlay::none || line.outline) {
     EXPECT_LT(likenessOf("without colours", drawn(line, Change::colours)), line.ssim);
   }
   std::printf("\n");

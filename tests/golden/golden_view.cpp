@@ -68,6 +68,11 @@ Result<Picture> drawnVolume(const GoldenLine& line, const GoldenCase& shown, Vol
   }
   renderer.orbit(line.orbit_deg[0] + (change == Change::view ? 12.0 : 0.0), line.orbit_deg[1]);
   renderer.zoom(line.zoom);
+  if (line.outline && change != Change::colours) {
+    const SceneOutline& outline = *shown.scene.outline;
+    renderer.setOutline(outlineOn(shown.scene, shown.of.landmarks, *shown.of.volume),
+                        outline.closed, outline.width_mm);
+  }
   if (change == Change::driver) renderer.setSampleDistance(0.9 * SceneRenderer::kSampleDistance);
   if (line.carved_mm[0] > 0.0) {
     if (!landmark) return Error{"NO_LANDMARK", "There is no place for the hole", line.name, ""};

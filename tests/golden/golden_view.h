@@ -14,7 +14,7 @@ enum class Change {
   view,     // from beside; another slice
   tissue,   // without the one that the picture is to show
   window,   // another HU window; of slices
-  colours,  // without the overlay; of slices that have one
+  colours,  // without the overlay or the outline; of what has one
 };
 
 // Errors: those of cases and of SceneRenderer::offscreen.

@@ -385,6 +385,7 @@ class Explain(LabTest):
                           if knob in recommended])
         text = subprocess.run([LAB, "explain", scene], capture_output=True,
                               text=True, check=True).stdout
+        self.assertEqual(text.splitlines()[1].strip(), answer["goal"])
         self.assertIn(f"points_blade: 16 (recommended: {recommended['points_blade']})", text)
         self.assertNotIn("{", text, "words, no JSON")
         for said in ("right arm", "'bounded'", "solid tissue stops a tool", "a tick"):

@@ -42,7 +42,9 @@ TEST(Pin, HasASaltOfItsOwn) {
 }
 
 TEST(Pin, HasFourToTwelveDigitsOrLetters) {
-  for (const char* wrong : {"", "123", "1234567890123", "12 34", "12-34", "\xC3\xA4" "bcd"}) {
+  for (const char* wrong : {"", "123", "1234567890123", "12 34", "12-34",
+                            "\xC3\xA4"
+                            "bcd"}) {
     const Result<Pin> made = makePin(wrong);
     ASSERT_FALSE(made) << wrong;
     EXPECT_EQ(made.error().code, "BAD_PIN");
@@ -53,9 +55,13 @@ TEST(Pin, HasFourToTwelveDigitsOrLetters) {
 }
 
 TEST(Pin, OfAFileThatCannotBeIsRefusedByField) {
-  const std::pair<const char*, Json> wrong[] = {
-      {"algorithm", "md5"}, {"iterations", 1},    {"iterations", 1e12}, {"salt_hex", "00"},
-      {"salt_hex", 5},      {"hash_hex", "beef"}, {"hash_hex", std::string(64, 'g')}};
+  const std::pair<const char*, Json> wrong[] = {{"algorithm", "md5"},
+                                                {"iterations", 1},
+                                                {"iterations", 1e12},
+                                                {"salt_hex", "00"},
+                                                {"salt_hex", 5},
+                                                {"hash_hex", "beef"},
+                                                {"hash_hex", std::string(64, 'g')}};
   for (const auto& [key, value] : wrong) {
     Json json = toJson(known());
     json[key] = value;

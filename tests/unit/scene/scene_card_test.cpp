@@ -7,8 +7,12 @@
 namespace trephine {
 namespace {
 
-std::filesystem::path file() { return resourceFolder() / "scenes" / "burr-hole.json"; }
-Json shipped() { return *readJsonFile(file()); }
+std::filesystem::path file() {
+  return resourceFolder() / "scenes" / "burr-hole.json";
+}
+Json shipped() {
+  return *readJsonFile(file());
+}
 
 TEST(SceneCard, EveryShippedSceneHasOneInBothLanguages) {
   for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
@@ -76,8 +80,7 @@ TEST(SceneCard, ThatCannotBeReadAtAGlanceIsRefusedByField) {
     wrong.change(json["card"]);
     const Result<Scene> scene = parseScene(json, file());
     ASSERT_FALSE(scene) << wrong.field;
-    EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos)
-        << scene.error().sentence();
+    EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos) << scene.error().sentence();
   }
   // Characters are counted, not bytes: Chinese has as much room.
   Json json = shipped();

@@ -6,8 +6,12 @@
 namespace trephine {
 namespace {
 
-std::filesystem::path file() { return resourceFolder() / "scenes" / "burr-hole.json"; }
-Json shipped() { return *readJsonFile(file()); }
+std::filesystem::path file() {
+  return resourceFolder() / "scenes" / "burr-hole.json";
+}
+Json shipped() {
+  return *readJsonFile(file());
+}
 
 // A ball of bone of this radius around `centre_mm`, in air.
 Volume ball(const Vec3& centre_mm, double radius_mm) {
@@ -128,17 +132,28 @@ TEST(Outline, ThatCannotBeIsRefusedByField) {
       {"outline.points", [](Json& o) { o["points"] = Json(257, o["points"][0]); }},
       {"outline.points", [](Json& o) { o["points"] = 3; }},
       {"outline.points", [](Json& o) { o.erase("points"); }},
-      {"outline.points[2]", [](Json& o) { o["points"][2] = {1, 2}; }},
+      {"outline.points[2]",
+       [](Json& o) {
+         o["points"][2] = {1, 2};
+       }},
       {"outline.points[2]", [](Json& o) { o["points"][2] = "there"; }},
-      {"outline.points[2]", [](Json& o) { o["points"][2] = {1, 2, 1e300}; }},
-      {"outline.points", [](Json& o) { o["points"][2] = {0, 0, 9000}; }},
+      {"outline.points[2]",
+       [](Json& o) {
+         o["points"][2] = {1, 2, 1e300};
+       }},
+      {"outline.points",
+       [](Json& o) {
+         o["points"][2] = {0, 0, 9000};
+       }},
       {"outline.width_mm", [](Json& o) { o["width_mm"] = 0.1; }},
       {"outline.width_mm", [](Json& o) { o["width_mm"] = 11; }},
       {"outline.closed", [](Json& o) { o["closed"] = 1; }},
       {"outline.colour", [](Json& o) { o["colour"] = "red"; }},
       {"outline", [](Json& o) { o["frame"]["landmark"] = "nose"; }},
       {"outline.frame.rotation_wxyz",
-       [](Json& o) { o["frame"]["rotation_wxyz"] = {0.5, 0, 0, 0}; }},
+       [](Json& o) {
+         o["frame"]["rotation_wxyz"] = {0.5, 0, 0, 0};
+       }},
       {"outline.frame.centre_mm", [](Json& o) { o["frame"].erase("centre_mm"); }},
   };
   for (const Wrong& wrong : all) {
@@ -146,8 +161,7 @@ TEST(Outline, ThatCannotBeIsRefusedByField) {
     wrong.change(json["outline"]);
     const Result<Scene> scene = parseScene(json, file());
     ASSERT_FALSE(scene) << wrong.field;
-    EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos)
-        << scene.error().sentence();
+    EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos) << scene.error().sentence();
   }
 }
 

@@ -141,5 +141,24 @@ TEST(OperatorScript, NamesWhatIsWrong) {
   }
 }
 
+TEST(OperatorScript, ChangesNothingThatIsLocked) {
+  const Scene scene = cranium();
+  Json json = script();
+  json["commands"] = Json::array({{{"t", 0.5}, {"do", "controller"}, {"controller", "off"}}});
+  const auto off = *parseOperatorScript(json, "script.json", scene);
+  EXPECT_TRUE(checkLocks(off, {}));
+  EXPECT_TRUE(checkLocks(off, {Lock::tissues, Lock::rate}));
+  ASSERT_FALSE(checkLocks(off, {Lock::controller}));
+  EXPECT_EQ(checkLocks(off, {Lock::controller}).error().code, "LOCKED");
+  json["commands"] = Json::array(
+      {{{"t", 0.5}, {"do", "tissues"}, {"tissues", {{"bone", {{"damping_Ns_per_m", 1}}}}}}});
+  const auto softer = *parseOperatorScript(json, "script.json", scene);
+  EXPECT_TRUE(checkLocks(softer, {Lock::controller, Lock::rate}));
+  EXPECT_FALSE(checkLocks(softer, {Lock::tissues}));
+  json["commands"] = Json::array({{{"t", 0.5}, {"do", "undo"}}});
+  EXPECT_TRUE(checkLocks(*parseOperatorScript(json, "script.json", scene),
+                         {Lock::controller, Lock::tissues, Lock::rate}));
+}
+
 }  // namespace
 }  // namespace trephine
