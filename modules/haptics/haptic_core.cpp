@@ -35,6 +35,7 @@ HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
   // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
   // paper's tools do.
   if (proxy && !driven && arm.tool.made_from.kind == ToolKind::burr) cutting = Cutting::nothing;
+  scene_map = arm.map;
   removed.reserve(Removal::kMostVoxels);
   removed_indices.reserve(Removal::kMostVoxels);
 }
@@ -197,6 +198,11 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
         arm.limiter.change();
       }
       break;
+    case CommandKind::clutch_on:
+    case CommandKind::clutch_off:
+    case CommandKind::recentre:
+      if (command.arm >= 0 && std::size_t(command.arm) < arms_.size()) releaseArm(command);
+      break;
   }
 }
 
@@ -210,21 +216,21 @@ void HapticCore::forgetLaws() {
 // The controller begins without credit. After voxels were put back (`restored`), the laws begin
 // anew too, and there is no force until the tool is out of tissue.
 void HapticCore::forgetForces(bool restored) {
-  if (restored) forgetLaws();
-  for (Arm& arm : arms_) {
-    forgetController(arm.controller);
-    arm.contact.forget();
-    arm.removal.forget();
-    arm.work.forget();
-    if (arm.proxy) arm.proxy->changed();
-    if (restored) {
-      arm.limiter.restored();
-      arm.waiting = arm.proxy.has_value();
-      arm.let_go_share = arm.hooked_s = 0.0;
-    } else {
-      arm.limiter.change();
-    }
-  }
+  for (Arm& arm : arms_) forgetForce(arm, restored);
+}
+
+void HapticCore::forgetForce(Arm& arm, bool restored) {
+  forgetController(arm.controller);
+  arm.contact.forget();
+  arm.removal.forget();
+  arm.work.forget();
+  if (arm.proxy) arm.proxy->changed();
+  if (!restored) return arm.limiter.change();
+  for (Law& law : arm.laws) forgetLaw(law);
+  for (Law& law : arm.rendered_laws) forgetLaw(law);
+  arm.limiter.restored();
+  arm.waiting = arm.proxy.has_value();
+  arm.let_go_share = arm.hooked_s = 0.0;
 }
 
 void HapticCore::finishRestore() {

@@ -81,6 +81,12 @@ class HapticCore {
     // Their linear indices, sorted; filled only where another arm may have removed one of them too.
     std::vector<std::uint32_t> removed_indices;
     std::optional<Pose> last_pose;  // device
+    Pose tool_mm;                   // where the tool is, and stays while its arm is clutched
+    bool clutched = false;
+    // A new map that this command asks for, made with the arm's next sample.
+    CommandKind remap = CommandKind::none;
+    std::optional<Quat> turn_to;  // of the map
+    WorkspaceMap scene_map;
     HandWork work;
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
     Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes
@@ -106,6 +112,8 @@ class HapticCore {
   void followLateness(const TickInput& input);
   void forgetLaws();
   void forgetForces(bool restored);
+  void forgetForce(Arm& arm, bool restored);
+  void releaseArm(const Command& command);
   void finishRestore();
   void useTissues(const TissueTable& before);
   void setElasticTissues();
@@ -123,6 +131,10 @@ class HapticCore {
   void send(ArmTick& now);
   void giveWork(ArmTick& now);
   void record(ArmTick& now);
+
+  // Parts of sample (haptic_core_clutch.cpp).
+  void engageArm(ArmTick& now, const Pose& device_m);
+  void recentreArm(ArmTick& now, const Pose& device_m);
 
   // Parts of moveProxy, touch and giveWork (haptic_core_touch.cpp).
   void startAtArm(ArmTick& now);

@@ -66,12 +66,14 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   if (!sample(now)) return;
   moveProxy(now);
   touch(now);
-  demand(now);
-  render(now);
-  bound(now);
+  if (!now.arm.clutched) {
+    demand(now);
+    render(now);
+    bound(now);
+  }
   checkFinite(now);
   send(now);
-  giveWork(now);
+  if (!now.arm.clutched) giveWork(now);
   record(now);
 }
 
@@ -102,15 +104,21 @@ bool HapticCore::sample(ArmTick& now) {
   }
 
   const Pose pose{sample.position_m, sample.orientation};
+  if (arm.remap == CommandKind::clutch_off) engageArm(now, pose);
+  if (arm.remap == CommandKind::recentre) recentreArm(now, pose);
   const Pose before = arm.last_pose.value_or(pose);
   const Vec3 moved_m = pose.position - before.position;
   arm.energy_out_J += arm.limiter.sent_N() * moved_m;  // by the force held since the last tick
   now.velocity_m_s = moved_m / T;
   Motion& motion = now.motion;
-  motion.arm_mm = map.toPatient_mm(pose);
-  motion.velocity_m_s = map.velocityToPatient(now.velocity_m_s);
-  motion.angular_velocity_rad_s =
-      map.rotation * (smallTurn(before.orientation, pose.orientation) / T);
+  if (arm.clutched) {  // for the tool its arm stands still
+    motion.arm_mm = arm.tool_mm;
+  } else {
+    motion.arm_mm = map.toPatient_mm(pose);
+    motion.velocity_m_s = map.velocityToPatient(now.velocity_m_s);
+    motion.angular_velocity_rad_s =
+        map.rotation * (smallTurn(before.orientation, pose.orientation) / T);
+  }
   now.jumped = glm::length(motion.velocity_m_s) > Removal::kFastest_m_s;
   if (!now.jumped) {
     arm.work.move(arm.limiter.sent_N(), moved_m, map.force_scale / map.motion_scale);
@@ -207,6 +215,7 @@ void HapticCore::send(ArmTick& now) {
   out.clamped_N = clampForce(out.bounded_N, now.parameters.max_force_N);
   const bool open = !paused_ && arm.faults == 0;
   // While voxels come back in slices, tissue may yet fill in around the tool.
+  if (arm.clutched) now.in_contact = now.contact.touching;
   const bool in_tissue = (arm.proxy ? arm.waiting : now.in_contact) || journal_.busy();
   if (arm.waiting && !arm.limiter.waitingForAir()) arm.limiter.restored();
   out.sent_N =
@@ -215,8 +224,8 @@ void HapticCore::send(ArmTick& now) {
   if (arm.not_as_stated) out.controller_parts |= kPartArmNotAsStated;
   if (out.clamped_N != out.bounded_N) out.controller_parts |= kPartClamp;
   if (out.sent_N != out.clamped_N) out.controller_parts |= kPartLimiter;
-  arm.cuts =
-      open && arm.cutting != Cutting::nothing && !journal_.busy() && !arm.limiter.waitingForAir();
+  arm.cuts = open && !arm.clutched && arm.cutting != Cutting::nothing && !journal_.busy() &&
+             !arm.limiter.waitingForAir();
 }
 
 // The work of this tick that may pay for cutting.
@@ -243,6 +252,7 @@ void HapticCore::record(ArmTick& now) {
   if (arm.waiting || arm.limiter.waitingForAir()) out.tool_state |= kToolWaits;
   if (arm.proxy && arm.proxy->held()) out.tool_state |= kToolHeld;
   if (arm.let_go_share > 0.0) out.tool_state |= kToolLetGo;
+  if (arm.clutched) out.tool_state |= kToolClutched;
   out.energy_out_J = arm.energy_out_J;
   out.hand_work_J = arm.work.done_J();
   out.stored_J = arm.work.stored_J();

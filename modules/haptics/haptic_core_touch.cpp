@@ -26,17 +26,17 @@ void HapticCore::moveProxy(ArmTick& now) {
   const bool first = !arm.placed;
   arm.placed = true;
   if (first) startAtArm(now);
-  if (!arm.proxy) return;
-  if (arm.waiting) {
+  if (arm.proxy && arm.waiting) {
     if (journal_.busy()) {
       arm.proxy->place(motion.arm_mm);
     } else if (!first) {
       arm.waiting = startsInTissue(arm, motion.arm_mm);
     }
-    return;
+  } else if (arm.proxy) {
+    followArm(now);
+    motion.pose_mm = arm.proxy->pose_mm();
   }
-  followArm(now);
-  motion.pose_mm = arm.proxy->pose_mm();
+  arm.tool_mm = motion.pose_mm;
 }
 
 // A tool that starts in tissue has no force and cuts nothing until it has been out of it.

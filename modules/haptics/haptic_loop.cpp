@@ -158,6 +158,8 @@ void HapticLoop::publish(const TickRecord& record) {
   for (int arm = 0; arm < kMaxArms; ++arm) {
     for (int c = 0; c < kMaxTissues; ++c) state.removed[arm][c] = journal.removed(arm, c);
   }
+  const std::vector<ArmParameters>& arms = core_.parameters().arms;
+  for (std::size_t i = 0; i < arms.size(); ++i) state.maps[i] = arms[i].map;
   state.controller = core_.controller();
   state.paused = core_.paused();
   state.busy = journal.busy();

@@ -61,6 +61,7 @@ struct LoopState {
   bool can_undo = false;
   bool can_redo = false;
   std::uint32_t seconds = 0;  // without pauses; back to any of which one can rewind
+  std::array<WorkspaceMap, kMaxArms> maps{};  // as clutching left them
 };
 
 class HapticLoop {

@@ -35,13 +35,21 @@ struct TickInput {
 
 // Live and scripted input to the writer of the voxels, applied at the start of a tick.
 enum class CommandKind : std::int32_t {
-  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues, rewind
+  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues, rewind,
+  // Of one arm. Clutched, it moves without force, and its tool stays where it is. Off again, its
+  // map is set so that the tool stays there; re-centred, so that the arm, where it is, is where the
+  // scene puts its device's origin.
+  clutch_on, clutch_off, recentre
 };
 
 struct Command {
   CommandKind kind = CommandKind::none;
-  std::int32_t value = 0;  // controller: a ControllerKind; rewind: to this second of the session
+  // controller: a ControllerKind; rewind: to this second of the session; clutch_off: 1, the map
+  // turns to `rotation`, device axes to patient axes; 0, it keeps its own.
+  std::int32_t value = 0;
   TissueTable tissues{};   // tissues: the new table
+  std::int32_t arm = -1;   // clutch_on, clutch_off, recentre
+  Quat rotation{1, 0, 0, 0};
 };
 
 // Zero force and no removal while any stands. Each but kFaultLate stays until clear_faults.
@@ -59,6 +67,7 @@ enum ToolState : std::uint32_t {
       1u << 0,          // it started in tissue: no force and no cutting until it has been out of it
   kToolHeld = 1u << 1,  // solid tissue keeps it from its arm
   kToolLetGo = 1u << 2,  // was hooked; the force fades, then the tool goes to its arm
+  kToolClutched = 1u << 3,  // its arm moves without it
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.

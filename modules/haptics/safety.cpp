@@ -60,7 +60,12 @@ Vec3 OutputLimiter::limit(const Vec3& clamped_N, bool touching, bool open, std::
                           double period_s) {
   if (!open) {
     change();
+    fading_ = 0.0;
     return sent_N_ = Vec3(0.0);
+  }
+  if (released_ && !waiting_for_air_) {
+    fading_ = std::max(0.0, fading_ - period_s / kFade_s);
+    return sent_N_ = (fading_ * lateGain(late_ns)) * fading_N_;
   }
   if (late_ns > kHoldLate_ns) {
     change();

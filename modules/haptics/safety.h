@@ -16,6 +16,7 @@ Vec3 clampForce(const Vec3& force_N, double max_N);
 constexpr double kSlew_N_per_s = 50.0;  // 0.05 N per ms
 constexpr double kCatchUp_s = 0.5;
 constexpr double kCatchUpAtStart_s = 0.1;  // from rest
+constexpr double kFade_s = 0.02;           // of the force of an arm that is clutched
 
 // One tick towards `target_N`: the result has its direction, and is at most `step_N` longer than
 // the part of `sent_before_N` along that direction. It may fall or change its direction at once.
@@ -70,6 +71,18 @@ class OutputLimiter {
     gain_ = 0.0;
   }
 
+  // The arm is clutched: its force fades to nothing over 20 ms, from what was sent last, and stays
+  // away until engage(), after which it rises as after any change.
+  void release() {
+    released_ = true;
+    fading_N_ = sent_N_;
+    fading_ = 1.0;
+  }
+  void engage() {
+    released_ = false;
+    change();
+  }
+
   // The force to send this tick. `open` is false in a pause or a fault.
   Vec3 limit(const Vec3& clamped_N, bool touching, bool open, std::int64_t late_ns,
              double period_s);
@@ -84,6 +97,9 @@ class OutputLimiter {
   double gain_ = 1.0;                      // of a ramp in, to 1 within 0.2 s
   double catch_up_s_ = kCatchUpAtStart_s;  // above 0: the rise is limited by kSlew
   bool waiting_for_air_ = false;
+  bool released_ = false;
+  Vec3 fading_N_{0.0};   // what was sent when it was released,
+  double fading_ = 0.0;  // and the share of it that is left
 };
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 #include "session/operator_script.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/names.h"
 
@@ -8,7 +9,7 @@ namespace trephine {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, CommandKind>, 9> kCommandNames{
+constexpr std::array<std::pair<std::string_view, CommandKind>, 12> kCommandNames{
     {{"undo", CommandKind::undo},
      {"redo", CommandKind::redo},
      {"reset", CommandKind::reset},
@@ -17,7 +18,10 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 9> kCommandNames{
      {"clear_faults", CommandKind::clear_faults},
      {"controller", CommandKind::controller},
      {"tissues", CommandKind::tissues},
-     {"rewind", CommandKind::rewind}}};
+     {"rewind", CommandKind::rewind},
+     {"clutch_on", CommandKind::clutch_on},
+     {"clutch_off", CommandKind::clutch_off},
+     {"recentre", CommandKind::recentre}}};
 
 constexpr std::size_t kMostWaypoints = 100'000;
 constexpr std::size_t kMostCommands = 10'000;
@@ -61,7 +65,26 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
   }
 }
 
-ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
+// A command of one arm, and where its map turns to.
+void readArmCommand(JsonReader& item, const Scene& scene, Command& command) {
+  const std::string name = item.text("arm");
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    if (scene.arms[i].name == name) command.arm = std::int32_t(i);
+  }
+  if (command.arm < 0) item.fail("arm", "The scene has no arm '" + name + "'");
+  if (command.kind != CommandKind::clutch_off || !item.has("rotation_xyzw")) return;
+  const auto q = item.numbers("rotation_xyzw", 4, {-1, 1});
+  const Quat rotation(q[3], q[0], q[1], q[2]);
+  constexpr double kUnit = 1e-3;
+  if (std::abs(glm::length(rotation) - 1.0) > kUnit) {
+    item.fail("rotation_xyzw", "This is no rotation: its four numbers are not of length 1");
+    return;
+  }
+  command.value = 1;
+  command.rotation = glm::normalize(rotation);
+}
+
+ScriptCommand readCommand(JsonReader& item, const Scene& scene, TissueSet& tissues) {
   ScriptCommand out;
   out.time_s = item.number("t", kScriptTime_s);
   const std::string name = item.text("do");
@@ -79,6 +102,7 @@ ScriptCommand readCommand(JsonReader& item, TissueSet& tissues) {
       item.fail("controller", "Unknown controller '" + wanted + "'");
     }
   }
+  if (out.command.kind >= CommandKind::clutch_on) readArmCommand(item, scene, out.command);
   if (out.command.kind == CommandKind::rewind) {
     const std::int64_t second = item.integer("to_s", {0, out.time_s, "s"});
     out.command.value = std::int32_t(second);
@@ -125,7 +149,7 @@ Result<OperatorScript> parseOperatorScript(const Json& json, const std::string& 
   TissueSet tissues = scene.tissues;
   if (reader.has("commands")) {
     for (JsonReader& item : reader.objects("commands", kMostCommands)) {
-      ScriptCommand command = readCommand(item, tissues);
+      ScriptCommand command = readCommand(item, scene, tissues);
       if (!script.commands.empty() && command.time_s < script.commands.back().time_s) {
         item.fail("t", "Commands stand in order of time");
       }
@@ -164,6 +188,12 @@ ScriptOperator::ScriptOperator(const OperatorScript& script, const Scene& scene,
       damping_(script.hand_damping_Ns_per_m),
       tracks_(scene.arms.size()),
       commands_(script.commands) {
+  for (ScriptCommand& timed : commands_) {
+    Command& command = timed.command;
+    if (command.kind == CommandKind::clutch_off && command.value == 1) {
+      command.rotation = landmarks[std::size_t(command.arm)].rotation * command.rotation;
+    }
+  }
   for (const ScriptHand& hand : script.hands) {
     for (std::size_t i = 0; i < scene.arms.size(); ++i) {
       if (scene.arms[i].name != hand.arm) continue;

@@ -91,6 +91,7 @@ Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmR
 Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const WorkspaceMap& map,
                          const Reach& reach, double T) {
   if (!rest_m_) rest_m_ = arm.device_position_m;
+  if (arm.tool_state & kToolClutched) return *rest_m_;
   const Vec3 arm_mm = map.toPatient_mm({arm.device_position_m, Quat(1, 0, 0, 0)}).position;
   const Vec3 rest_mm = map.toPatient_mm({*rest_m_, Quat(1, 0, 0, 0)}).position;
   const bool waits = (arm.tool_state & kToolWaits) != 0;

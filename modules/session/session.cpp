@@ -430,7 +430,7 @@ Status Session::setTissues(const TissueSet& tissues) {
 
 void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
   if (hands_.hands[arm].held || state().paused) return;
-  const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
+  const WorkspaceMap map = this->map(arm);
   LiveHands::Hand& hand = hands_.hands[arm];
   if (!hand.live || hand.pointed) {  // taken over from a script, from rest, or from the pointer
     hand.live = true;
@@ -446,8 +446,31 @@ void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
 }
 
 Vec3 Session::handTarget_mm(std::size_t arm) const {
-  const WorkspaceMap map = scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
-  return map.toPatient_mm({hands_.hands[arm].position_m, Quat(1, 0, 0, 0)}).position;
+  const LiveHands::Hand& hand = hands_.hands[arm];
+  const LoopState& now = loop_->state().value();
+  const Vec3 at_m = hand.pointed ? now.record.arms[arm].device_position_m : hand.position_m;
+  return map(arm).toPatient_mm({at_m, Quat(1, 0, 0, 0)}).position;
+}
+
+WorkspaceMap Session::map(std::size_t arm) const {
+  const LoopState& now = loop_->state().value();
+  return now.ticks > 0 ? now.maps[arm] : scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
+}
+
+bool Session::clutch(std::size_t arm, bool on, const Quat& rotation) {
+  const double length = glm::length(rotation);
+  if (!(length > 0.0) || !isFinite(length)) return false;
+  const CommandKind kind = on ? CommandKind::clutch_on : CommandKind::clutch_off;
+  return loop_->commands().push({kind, 1, {}, std::int32_t(arm), rotation / length});
+}
+
+bool Session::clutch(std::size_t arm, bool on) {
+  const CommandKind kind = on ? CommandKind::clutch_on : CommandKind::clutch_off;
+  return loop_->commands().push({kind, 0, {}, std::int32_t(arm)});
+}
+
+bool Session::recentre(std::size_t arm) {
+  return loop_->commands().push({CommandKind::recentre, 0, {}, std::int32_t(arm)});
 }
 
 double Session::mostPush_N(std::size_t arm) const {
@@ -503,8 +526,7 @@ void Session::turnHand(std::size_t arm, const Vec3& axis, double by_rad) {
   const double length = glm::length(axis);
   if (!(length > 0.0) || !isFinite(length) || !isFinite(by_rad)) return;
   LiveHands::Hand& hand = hands_.hands[arm];
-  const Vec3 of_device =
-      glm::conjugate(scene_.arms[arm].map.fixed.value_or(WorkspaceMap{}).rotation) * axis / length;
+  const Vec3 of_device = glm::conjugate(map(arm).rotation) * axis / length;
   const Quat turned = glm::normalize(glm::angleAxis(by_rad, of_device) * hand.turned);
   if (2.0 * std::acos(std::min(1.0, std::abs(turned.w))) > kMostTurn_rad) return;
   hand.turned = turned;

@@ -119,6 +119,16 @@ class Session {
   static constexpr double kMostTurn_rad = 1.2;
   static constexpr std::int64_t kNow = -1;  // the clock's; freewheeling, the last sample's
 
+  // Clutches an arm: its force fades within 20 ms, its tool stays where it is and the arm moves
+  // freely. Off again, the arm moves the tool from where both are, by `rotation`, device axes to
+  // patient axes, so that a hand's motion follows a view; the force comes back as after a pause. A
+  // tool that this turns in tissue waits until it is out. False when 64 commands are waiting.
+  bool clutch(std::size_t arm, bool on, const Quat& rotation);
+  bool clutch(std::size_t arm, bool on);  // keeps the rotation
+  // Puts the tool where the scene starts it, with the arm where it is now, and turns the map back.
+  // Out of tissue: where it comes into some, it waits.
+  bool recentre(std::size_t arm);
+
   // The newest state of the loop. Owner thread.
   const LoopState& state();
   // What became of the recording so far.
@@ -139,6 +149,7 @@ class Session {
   void leaveBehind(std::size_t held, bool watchdog_ended);
   void note(const Event& event);
   void holdHands(bool hold);
+  WorkspaceMap map(std::size_t arm) const;  // as clutching left it
   void beginOutside();
   bool playPointer(std::size_t arm, std::int64_t time_ns, bool put_down);
   void stopPushing();

@@ -89,7 +89,9 @@ std::vector<RecordField> fieldsOfEvents() {
           field("value", at.value, Type::u32),
           field("command", at.command.kind, Type::i32),
           field("command_value", at.command.value, Type::i32),
-          field("tissue_count", at.command.tissues.count, Type::i32)};
+          field("tissue_count", at.command.tissues.count, Type::i32),
+          field("command_arm", at.command.arm, Type::i32),
+          {"command_rotation_xyzw", offsetIn(&at, &at.command.rotation), Type::f64, 4}};
 }
 
 // A field for each of a tissue's numbers, and for what else the tick keeps of one. A number that an

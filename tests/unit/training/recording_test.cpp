@@ -2,6 +2,7 @@
 #include <hdf5.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 
@@ -267,6 +268,66 @@ TEST(Recording, OfVersion5HasCreditAndLearntScaleInFieldsOfTheirOwn) {
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_EQ((*part)[i].arms[0].credit_J, (*all)[1290 + i].arms[0].credit_J);
   }
+}
+
+// data/version6.h5 was made by the last program that wrote version 6: 2000 ticks on slab(), with a
+// change of the controller, of the tissues, a pause and an undo.
+TEST(Recording, OfVersion6ReplaysIdenticallyAndNamesNoArmInItsCommands) {
+  const auto reader = SessionReader::open(TREPHINE_TEST_TRAINING_DATA "/version6.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto events = (*reader)->events();
+  ASSERT_TRUE(events.ok()) << events.error().sentence();
+  ASSERT_GE(events->size(), 6u);
+  for (const Event& event : *events) {
+    EXPECT_EQ(event.command.arm, -1);
+    EXPECT_EQ(event.command.rotation, Quat(1, 0, 0, 0));
+  }
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field
+                                                              : "");
+  EXPECT_EQ(result->ticks, 2000u);
+}
+
+TEST(Recording, KeepsWhichArmWasClutchedAndWhereItsMapTurned) {
+  test::TemporaryFolder folder;
+  const Scene scene = sceneWithOneArm();
+  Grid grid(slab());
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      folder / "a.h5", {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+  const Quat turned = glm::angleAxis(0.3, Vec3(0, 0, 1));
+  for (std::uint64_t t = 0; t < 3000; ++t) {
+    TickInput input;
+    input.tick = t;
+    input.journal = core.journalState();
+    input.arms[0].position_m = Vec3(1e-6 * double(t), 0, 4e-3 - 4e-6 * double(t % 1500));
+    std::vector<Command> commands;
+    if (t == 1200) commands.push_back({CommandKind::clutch_on, 0, {}, 0});
+    if (t == 1500) commands.push_back({CommandKind::clutch_off, 1, {}, 0, turned});
+    if (t == 2600) commands.push_back({CommandKind::recentre, 0, {}, 0});
+    TickRecord record;
+    core.tick(input, commands.data(), commands.size(), record);
+    (*recorder)->add(record);
+    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
+    for (const Event& e : core.events()) (*recorder)->add(e);
+  }
+  ASSERT_TRUE((*recorder)->finish({3000, 0, 0, volumeSha256(grid.snapshot())}).ok());
+  const auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto events = *(*reader)->events();
+  const auto off = std::find_if(events.begin(), events.end(), [](const Event& event) {
+    return event.command.kind == CommandKind::clutch_off;
+  });
+  ASSERT_NE(off, events.end());
+  EXPECT_EQ(off->tick, 1500u);
+  EXPECT_EQ(off->command.arm, 0);
+  EXPECT_EQ(off->command.rotation, turned);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field
+                                                              : "");
+  EXPECT_EQ(result->ticks, 3000u);
 }
 
 TEST(Recording, RefusesToReplayWhatWasDropped) {
