@@ -33,6 +33,7 @@ int exercise(const ExerciseOptions& options, bool json) {
 }
 
 int run(int argc, char** argv) {
+  const Policy policy = policyAtStart();
   std::string path, scene, out;
   double seconds = 0.0;
   bool json = false;
@@ -67,7 +68,7 @@ int run(int argc, char** argv) {
       read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
   colours::applyTheme(application, theme, readWithin(settings::kTextScale, 80, 200));
   if (!scene.empty()) {
-    ExerciseOptions options{scene, {}, out};
+    ExerciseOptions options{scene, {}, out, policy};
     if (seconds > 0.0) options.seconds = seconds;
     if (out.empty()) {
       const Result<std::filesystem::path> temporary = temporaryFolder();
@@ -86,7 +87,7 @@ int run(int argc, char** argv) {
     QApplication::exec();
     return 1;
   }
-  MainWindow window;
+  MainWindow window({}, policy);
   if (!path.empty()) window.openOnceShown(path);
   window.show();
   return QApplication::exec();

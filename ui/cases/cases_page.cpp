@@ -8,6 +8,7 @@
 #include <QPainter>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <map>
 
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
@@ -45,6 +46,14 @@ QPixmap cardPicture(const CaseEntry& entry) {
   painter.drawText(empty.rect(), Qt::AlignCenter,
                    entry.problem ? CasesPage::tr("damaged") : CasesPage::tr("no picture yet"));
   return empty;
+}
+
+// As it is, also where it is chosen.
+QIcon cardIcon(const CaseEntry& entry) {
+  const QPixmap picture = cardPicture(entry);
+  QIcon icon(picture);
+  icon.addPixmap(picture, QIcon::Selected);
+  return icon;
 }
 
 }  // namespace
@@ -227,7 +236,7 @@ void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   cards_->clear();
   for (CaseEntry& entry : entries_) {
     if (entry.picture.isNull()) entry.picture = pictures[entry.id];
-    auto* item = new QListWidgetItem(QIcon(cardPicture(entry)), cardWords(entry), cards_);
+    auto* item = new QListWidgetItem(cardIcon(entry), cardWords(entry), cards_);
     item->setData(kIdRole, toQt(entry.id));
     item->setToolTip(detailWords(entry));
     item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
@@ -245,7 +254,7 @@ void CasesPage::showPicture(const std::string& id, const QImage& picture) {
   }
   for (int i = 0; i < cards_->count(); ++i) {
     const CaseEntry* entry = find(cards_->item(i)->data(kIdRole).toString().toStdString());
-    if (entry && entry->id == id) cards_->item(i)->setIcon(QIcon(cardPicture(*entry)));
+    if (entry && entry->id == id) cards_->item(i)->setIcon(cardIcon(*entry));
   }
   showChosen();
 }

@@ -239,7 +239,6 @@ void CasesWorkspace::saveCase() {
   NewCase made = import_to_save_.value_or(NewCase{});
   import_to_save_ = made;  // for another try
   made.volume = of->volume;
-  made.volume_sha256 = of->sha256;
   made.structures = of->structures;
   made.provenance = of->provenance;
   made.region = of->anatomy ? of->anatomy->region : BodyRegion::not_sure;

@@ -60,7 +60,8 @@ inline const Setting<double> kPushStep_N{"mouse/push_step_N", 0.2};   // a notch
 inline const Setting<double> kKeyStep_mm{"keys/step_mm", 1.0};        // an arrow key
 // Of the window itself.
 inline const Setting<QByteArray> kGeometry{"window/geometry", {}};
-inline const Setting<QByteArray> kColumns{"window/columns", {}};
+// Of the columns beside the views, for each workspace: its name follows.
+inline constexpr const char* kColumns = "window/columns/";
 inline const Setting<QString> kWorkspace{"window/workspace", "cases"};
 inline const Setting<bool> kLeftPanel{"window/left_panel", true};
 inline const Setting<bool> kRightPanel{"window/right_panel", true};

@@ -59,12 +59,14 @@ double percentile(std::vector<double> values, double share) {
 Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progress& progress) {
   Result<Scene> scene = readScene(options.scene);
   if (!scene) return scene.error();
+  if (Status may = checkScene(options.policy, *scene, options.scene); !may) return may.error();
   if (scene->operator_file.empty()) {
     return Error{"NO_OPERATOR", "The scene has no script to play", options.scene.string(),
                  "Name one under 'operator' in the scene"};
   }
   Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
   if (!script) return script.error();
+  if (Status may = checkLocks(*script, locksOf(options.policy, *scene)); !may) return may.error();
   if (Status made = makeFolder(options.out); !made) return made.error();
   const double seconds = options.seconds.value_or(script->duration_s());
 
@@ -73,7 +75,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   std::vector<double> frame_ms;
   Heartbeat heartbeat;
   QEventLoop loop;
-  MainWindow window(options.out);
+  MainWindow window(options.out, options.policy);
   // As large as it is in every exercise, whatever its user is used to: it is measured.
   window.views().setLayout({ViewLayout::Kind::one_large, 0});
   window.show(Place::train);

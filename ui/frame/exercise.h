@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/progress.h"
+#include "scene/policy.h"
 #include "session/run_statistics.h"
 
 namespace trephine {
@@ -14,6 +15,7 @@ struct ExerciseOptions {
   std::filesystem::path scene;
   std::optional<double> seconds;  // absent: as long as the scene's script
   std::filesystem::path out;      // recording and picture go there
+  Policy policy{};                // what the workstation locks
 };
 
 struct ExerciseOutcome {

@@ -13,6 +13,7 @@
 #include "ui/common/words.h"
 #include "ui/frame/settings_dialog.h"
 #include "ui/frame/shortcuts_page.h"
+#include "ui/frame/unlock_dialog.h"
 
 namespace trephine {
 
@@ -27,8 +28,12 @@ MainWindow::~MainWindow() {
 // --- Workspaces ---
 
 void MainWindow::show(Place place) {
-  if (place == place_ && shown_) return rail_->show(place);
-  room(place_).workspace->leave();
+  if (place == place_ && entered_) return rail_->show(place);
+  if (entered_) {
+    keepColumns();
+    room(place_).workspace->leave();
+  }
+  entered_ = true;
   place_ = place;
   const Room& now = room(place);
   if (now.parts.page) {
@@ -42,6 +47,7 @@ void MainWindow::show(Place place) {
   bar_->setVisible(!now.parts.page);
   rail_->show(place);
   showPanels();
+  restoreColumns();
   now.workspace->enter();
   showHint();
   if (!now.parts.page) view().setFocus();
@@ -103,11 +109,28 @@ void MainWindow::keyPressEvent(QKeyEvent* event) {
 
 // --- What is remembered ---
 
+void MainWindow::keepColumns() {
+  if (room(place_).parts.page) return;
+  const std::string key = std::string(settings::kColumns) + room(place_).name;
+  write(Setting<QByteArray>{key.c_str(), {}}, columns_->saveState());
+}
+
+void MainWindow::restoreColumns() {
+  if (room(place_).parts.page) return;
+  const std::string key = std::string(settings::kColumns) + room(place_).name;
+  const QByteArray kept = read(Setting<QByteArray>{key.c_str(), {}});
+  const int all = columns_->width();
+  const QWidget *left = room(place_).parts.left, *right = room(place_).parts.right;
+  const int left_width = left ? left->sizeHint().width() : 0;
+  const int right_width = right ? right->sizeHint().width() : 0;
+  if (kept.isEmpty() || !columns_->restoreState(kept)) {
+    columns_->setSizes({left_width, all - left_width - right_width, right_width});
+  }
+}
+
 void MainWindow::restore() {
   const QByteArray geometry = read(settings::kGeometry);
   if (!geometry.isEmpty()) (void)restoreGeometry(geometry);
-  const QByteArray columns = read(settings::kColumns);
-  if (!columns.isEmpty()) (void)columns_->restoreState(columns);
   left_panel_->setChecked(read(settings::kLeftPanel));
   right_panel_->setChecked(read(settings::kRightPanel));
   const QString name = read(settings::kWorkspace);
@@ -118,7 +141,7 @@ void MainWindow::restore() {
 
 void MainWindow::keep() {
   write(settings::kGeometry, saveGeometry());
-  write(settings::kColumns, columns_->saveState());
+  keepColumns();
   write(settings::kLeftPanel, left_panel_->isChecked());
   write(settings::kRightPanel, right_panel_->isChecked());
   write(settings::kWorkspace, QString(room(place_).name));
@@ -126,10 +149,7 @@ void MainWindow::keep() {
 
 void MainWindow::showEvent(QShowEvent* event) {
   QMainWindow::showEvent(event);
-  if (std::exchange(shown_, true)) return;
-  const Place wanted = std::exchange(place_, Place::cases);
-  show(wanted);
-  showPanels();
+  if (!entered_) show(place_);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
@@ -186,7 +206,26 @@ void MainWindow::showShortcuts() {
 }
 
 void MainWindow::showSettings() {
-  auto* dialog = new SettingsDialog(toQt(bench_.recordings().parent_path()), false, this);
+  (new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this))->open();
+}
+
+void MainWindow::showLocks() {
+  const bool locked = workstation().anyLocked();
+  const Policy& policy = workstation().policy();
+  unlock_->setEnabled(locked && policy.pin.has_value());
+  locked_->setVisible(locked);
+  locked_->setToolTip(policy.problem ? toQt(policy.problem->sentence())
+                      : policy.pin   ? tr("An educator's PIN unlocks it (menu File)")
+                                     : tr("Nothing on this workstation unlocks it"));
+}
+
+void MainWindow::askForPin() {
+  if (!workstation().policy().pin) return;
+  auto* dialog = new UnlockDialog(*workstation().policy().pin, this);
+  connect(dialog, &UnlockDialog::unlocked, this, [this] {
+    workstation().unlock();
+    bench_.say(tr("Unlocked for teaching until Trephine is closed."));
+  });
   dialog->open();
 }
 

@@ -75,11 +75,15 @@ class MainWindow : public QMainWindow {
   const Room& room(Place place) const { return rooms_[std::size_t(place)]; }
   void showPanels();
   void showHint();
+  void keepColumns();
+  void restoreColumns();
   void restore();
   void keep();
   void showAbout();
   void showShortcuts();
   void showSettings();
+  void showLocks();
+  void askForPin();
 
   SlipGuard slip_guard_;
   Bench bench_;
@@ -94,14 +98,15 @@ class MainWindow : public QMainWindow {
   QWidget* views_page_;
   QSplitter* columns_;
   QToolBar* bar_;
-  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_;
-  QLabel *hint_, *rates_;
+  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
+      *unlock_;
+  QLabel *hint_, *rates_, *locked_;
   QWidget* opening_box_;
   QProgressBar* opening_;
   QString hint_words_, help_words_;
   bool close_when_saved_ = false;
   bool may_close_ = false;  // nothing unsaved is left to ask about
-  bool shown_ = false;
+  bool entered_ = false;    // a workspace
 };
 
 }  // namespace trephine

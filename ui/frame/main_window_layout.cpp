@@ -6,6 +6,7 @@
 #include <QVBoxLayout>
 
 #include "ui/common/actions.h"
+#include "ui/common/colours.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
@@ -14,7 +15,6 @@
 namespace trephine {
 
 namespace {
-constexpr int kLeftWidth = 300, kRightWidth = 270, kMiddleWidth = 634;
 constexpr int kProgressSteps = 1000, kProgressWidth = 140;
 }  // namespace
 
@@ -68,7 +68,6 @@ void MainWindow::buildWorkspaces() {
   columns_->setStretchFactor(1, 1);
   columns_->setStretchFactor(2, 0);
   columns_->setChildrenCollapsible(false);
-  columns_->setSizes({kLeftWidth, kMiddleWidth, kRightWidth});
   views_page_ = columns_;
   pages_->addWidget(views_page_);
 
@@ -99,6 +98,8 @@ void MainWindow::buildActions() {
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
+  unlock_ = makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
+                       tr("With an educator's PIN, until Trephine is closed"));
 }
 
 void MainWindow::buildBars() {
@@ -134,7 +135,10 @@ void MainWindow::buildBars() {
   opening_->setFixedWidth(kProgressWidth);
   auto* cancel = new QPushButton(tr("Cancel"));
   cancel->setObjectName("cancelOpening");
-  connect(cancel, &QPushButton::clicked, &workstation(), &Workstation::cancelOpening);
+  connect(cancel, &QPushButton::clicked, this, [this] {
+    workstation().cancelOpening();
+    workstation().cancelSaving();
+  });
   opening_box_ = new QWidget;
   auto* opening_row = new QHBoxLayout(opening_box_);
   opening_row->setContentsMargins(0, 0, 0, 0);
@@ -144,12 +148,17 @@ void MainWindow::buildBars() {
   rates_ = new QLabel;
   rates_->setObjectName("rates");
   rates_->setProperty("quiet", true);
+  locked_ = new QLabel(tr("Locked"));
+  locked_->setObjectName("locked");
+  locked_->setContentsMargins(8, 0, 8, 0);
+  colours::setText(*locked_, colours::kCaution);
   auto* purpose = new QLabel(purposeText());
   purpose->setObjectName("purpose");
   purpose->setContentsMargins(12, 0, 6, 0);
   statusBar()->addWidget(hint_, 1);
   statusBar()->addPermanentWidget(opening_box_);
   statusBar()->addPermanentWidget(rates_);
+  statusBar()->addPermanentWidget(locked_);
   statusBar()->addPermanentWidget(purpose);
 }
 
@@ -159,15 +168,16 @@ void MainWindow::buildMenus() {
   file->addSeparator();
   file->addActions({picture_, volume_});
   file->addSeparator();
-  file->addAction(settings_);
+  file->addActions({settings_, unlock_});
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
-  menuBar()
-      ->addMenu(tr("&Exercise"))
-      ->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction(),
+  QMenu* exercise = menuBar()->addMenu(tr("&Exercise"));
+  exercise->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction(),
                     train_->forceOnAction(), bench_.undoAction(), bench_.redoAction(),
                     train_->backAction(), train_->resetAction()});
+  exercise->addSeparator();
+  exercise->addActions(train_->handActions());
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view->addActions(rail_->actions());
   view->addSeparator();
@@ -203,6 +213,10 @@ void MainWindow::connectParts() {
   });
   connect(train_, &TrainWorkspace::ratesChanged, rates_, &QLabel::setText);
   connect(train_, &TrainWorkspace::structureWanted, prepare_, &PrepareWorkspace::makeMissing);
+  connect(train_, &TrainWorkspace::replayWanted, this, [this] {
+    show(Place::review);
+    review_->replayNewest();
+  });
   connect(look_, &QAction::triggered, &bench_, &Bench::lookAtCase);
   connect(picture_, &QAction::triggered, &bench_, &Bench::askToSavePicture);
   connect(volume_, &QAction::triggered, this, [this] { bench_.askToSaveVolume({}); });
@@ -212,6 +226,9 @@ void MainWindow::connectParts() {
   connect(full_screen_, &QAction::toggled, this,
           [this](bool full) { full ? showFullScreen() : showNormal(); });
   connect(settings_, &QAction::triggered, this, &MainWindow::showSettings);
+  connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
+  connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
+  showLocks();
 
   Workstation& workstation = bench_.workstation();
   const auto showPhase = [this] {
@@ -236,7 +253,11 @@ void MainWindow::connectParts() {
   connect(&workstation, &Workstation::savingProgressed, this,
           [this](double fraction, const QString& step) {
             bench_.say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
+            opening_box_->show();
+            opening_->setToolTip(step);
+            opening_->setValue(int(fraction * kProgressSteps));
           });
+  connect(&workstation, &Workstation::savingEnded, opening_box_, &QWidget::hide);
   connect(
       &workstation, &Workstation::savingEnded, this,
       [this] {

@@ -24,6 +24,11 @@ void PrepareWorkspace::connectTissues() {
   connect(&workstation_, &Workstation::controllerChanged, this, [this] {
     if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
   });
+  connect(&workstation_, &Workstation::locksChanged, this, [this] {
+    tissues_->setLocked(workstation_.isLocked(Lock::tissues)
+                            ? tr("Locked: an educator can unlock the tissues (menu File).")
+                            : QString());
+  });
   // They may be about to go.
   connect(&workstation_, &Workstation::openingProgressed, this, [this] {
     if (!workstation_.isPlacing()) tissues_->setEnabled(false);

@@ -21,6 +21,7 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   connectTissues();
   connectStructures();
   connectExports();
+  showUndo();
 }
 
 Workspace::Parts PrepareWorkspace::parts() {

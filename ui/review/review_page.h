@@ -19,6 +19,7 @@ class ReviewPage : public QWidget {
 
   // `in_use` is the sha256 of the open case's voxels, or empty.
   void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use);
+  void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
   void showProgress(double fraction, const QString& step);
   void endProgress();
   void showOutcome(const QString& words);

@@ -28,6 +28,10 @@ void ReviewWorkspace::list() {
         if (!rows) return;
         const std::optional<Case>& of = bench_.workstation().currentCase();
         page_->showRecordings(*rows, of ? of->sha256 : "");
+        if (std::exchange(replay_newest_, false) && !rows->empty()) {
+          page_->selectNewest();
+          replay(rows->front());
+        }
       });
 }
 

@@ -16,6 +16,8 @@ class ReviewWorkspace : public Workspace {
   Symbol symbol() const override { return Symbol::review; }
   Parts parts() override;
   void enter() override { list(); }
+  // Once the list is there.
+  void replayNewest() { replay_newest_ = true; }
 
  private:
   void list();
@@ -23,6 +25,7 @@ class ReviewWorkspace : public Workspace {
 
   Bench& bench_;
   ReviewPage* page_;
+  bool replay_newest_ = false;
   BackgroundTask listing_, replaying_;
 };
 

@@ -159,6 +159,8 @@ void TissuePanel::build() {
   layout->setSpacing(10);
   layout->addLayout(buildPresets());
   layout->addWidget(list_);
+  locked_words_ = notice("tissuesLocked", this);
+  layout->addWidget(locked_words_);
   layout->addWidget(editor_);
   layout->addWidget(felt_);
   layout->addStretch(1);
@@ -286,6 +288,13 @@ void TissuePanel::select(const std::string& id) {
   }
 }
 
+void TissuePanel::setLocked(const QString& why) {
+  locked_ = why;
+  locked_words_->setText(why);
+  locked_words_->setVisible(!why.isEmpty());
+  editor_->setEnabled(current() && why.isEmpty());
+}
+
 void TissuePanel::setLabelsOpen(bool open) {
   labels_open_ = open;
   showSelected();
@@ -357,7 +366,7 @@ const Tissue& TissuePanel::declared(const Tissue& tissue) const {
 void TissuePanel::showSelected() {
   if (listing_) return;
   const Tissue* tissue = current();
-  editor_->setEnabled(tissue);
+  editor_->setEnabled(tissue && locked_.isEmpty());
   if (!tissue) return;
   title_->setText(toQt(tissue->name));
   low_->show(tissue->hu_min);

@@ -31,6 +31,8 @@ class TissuePanel : public QWidget {
   // How the view shows them; a preset that the set has nothing for is not offered.
   void setLooks(const TissueLooks& looks);
   void select(const std::string& id);
+  // Why numbers, colours and opacities may not be changed; empty: they may.
+  void setLocked(const QString& why);
   // Without a label map a tissue can be freed from a label, but not restricted to one.
   void setLabelsOpen(bool open);
   // The firmest tissue that the arms show, and what the scene's laws together demand of one: what
@@ -77,6 +79,8 @@ class TissuePanel : public QWidget {
   ControllerKind in_force_ = ControllerKind::bounded;
   bool listing_ = false;
   bool labels_open_ = false;
+  QString locked_;
+  QLabel* locked_words_;
   QListWidget* list_;
   std::vector<LookBox*> look_boxes_;  // by row of the list
   QLabel* presets_title_;

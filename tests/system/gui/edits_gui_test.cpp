@@ -186,7 +186,7 @@ class EditsGuiTest : public test::WindowTest {
   void theSameExerciseOnAnotherCaseAsksNothingAndAnotherExerciseAsksOnce() {
     enter("huLow", "300");
     QVERIFY(workstation().tissuesEdited());
-    QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
+    prepareBuiltIn("cranium");
     QVERIFY(!question());
     QVERIFY(workstation().isOpening());
     workstation().cancelOpening();
@@ -254,11 +254,11 @@ class EditsGuiTest : public test::WindowTest {
     QVERIFY(workstation().session()->state().controller == ControllerKind::bounded);
   }
 
-  void afterTypingPageUpMovesTheHandAndNotTheThreshold() {
+  void afterTypingPageUpIsTheHandsAndNotTheThresholds() {
     enter("huLow", "230");
     QCOMPARE(bone().hu_min, 230);
     QVERIFY(view().hasFocus());
-    QSignalSpy moved(&view(), &ViewWidget::handMoved);
+    QSignalSpy moved(&view(), &ViewWidget::pushStepped);
     QTest::keyClick(QApplication::focusWidget(), Qt::Key_PageUp);
     QCOMPARE(moved.count(), 1);
     QCOMPARE(bone().hu_min, 230);

@@ -101,27 +101,40 @@ class WindowTest : public QObject {
     QTest::mouseRelease(handle, button, {}, to.toPoint());
   }
 
-  // The right hand towards the patient, in the exercise's view: the wheel.
-  void pushHand(int notches, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+  enum class Hand { left, right };
+  // The mouse has this hand from here on: Tab.
+  void takeHand(Hand hand) {
+    auto* shown = find<QLabel>("activeHand");
+    const QString wanted = hand == Hand::left ? "Left hand" : "Right hand";
+    pointAt(window_->view().rect().center());
+    for (int n = 0; n < 2 && shown->text() != wanted; ++n) {
+      QTest::keyClick(&window_->view(), Qt::Key_Tab);
+      QTest::qWait(50);
+    }
+    QCOMPARE(shown->text(), wanted);
+  }
+  void pointAt(QPoint place) {
+    QTest::mouseMove(&window_->view(), place);
+    QTest::qWait(50);
+  }
+  // How hard the hand presses at the middle of the exercise's view: the wheel.
+  void pushHand(int notches) {
     ViewWidget& view = window_->view();
     const QPointF at = QRectF(view.rect()).center();
     for (int i = 0; i < std::abs(notches); ++i) {
       QWheelEvent event(at, view.mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
-                        modifiers, Qt::NoScrollPhase, false);
+                        Qt::NoModifier, Qt::NoScrollPhase, false);
       QCoreApplication::sendEvent(&view, &event);
       QTest::qWait(15);
     }
   }
-  void dragHand(QPoint by, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    ViewWidget& view = window_->view();
-    const QPoint from = view.rect().center();
-    constexpr int kSteps = 20;
-    QTest::mousePress(&view, Qt::LeftButton, modifiers, from);
+  void dragHand(QPoint by) {
+    const QPoint from = window_->view().rect().center();
+    constexpr int kSteps = 40;
     for (int i = 1; i <= kSteps; ++i) {
-      QTest::mouseMove(&view, from + by * i / kSteps);
+      QTest::mouseMove(&window_->view(), from + by * i / kSteps);
       QTest::qWait(20);
     }
-    QTest::mouseRelease(&view, Qt::LeftButton, modifiers, from + by);
   }
   static std::uint64_t removedVoxels(Session& session) {
     std::uint64_t sum = 0;
@@ -130,19 +143,18 @@ class WindowTest : public QObject {
     }
     return sum;
   }
-  // Down into the tissue, sideways, and well out until the stroke has ended; then as high above it
-  // as before, so that the next cut is as deep. Where the machine was so busy that a step came
-  // 20 ms late the arms are without force and cut nothing: then, as a person would, one waits for
-  // the force or asks for it, and makes the cut again.
-  void cut(QPoint across, Qt::KeyboardModifiers modifiers = Qt::NoModifier,
-           std::uint64_t enough = 0) {
+  // Onto the tissue, sideways, and out of it until the stroke has ended. Where the machine was so
+  // busy that a step came 20 ms late the arms are without force and cut nothing: then, as a person
+  // would, one waits for the force or asks for it, and makes the cut again.
+  void cut(QPoint across, Hand hand = Hand::right, std::uint64_t enough = 0) {
     for (int attempt = 0; attempt < 5; ++attempt) {
+      takeHand(hand);
       const std::uint64_t standing = removedVoxels(*workstation().session());
-      pushHand(30, modifiers);
-      dragHand(attempt % 2 == 0 ? across : -across, modifiers);
-      pushHand(-34, modifiers);
-      QTest::qWait(500);
-      pushHand(4, modifiers);
+      pushHand(15);
+      QTest::qWait(1000);
+      dragHand(attempt % 2 == 0 ? across : -across);
+      pushHand(-15);
+      QTest::qWait(1500);
       // Fewer voxels: the force went in the middle of it.
       if (removedVoxels(*workstation().session()) > standing + enough) return;
       qInfo("little or nothing was cut: once more");
@@ -153,6 +165,21 @@ class WindowTest : public QObject {
       QTest::qWait(1500);
       find<QAction>("forceBack")->trigger();
     }
+  }
+
+  // A built-in case, from its card.
+  void prepareBuiltIn(const char* name) {
+    window_->show(Place::cases);
+    auto* cards = find<QListWidget>("cases");
+    const auto row = [&] {
+      for (int i = 0; i < cards->count(); ++i) {
+        if (cards->item(i)->data(Qt::UserRole).toString() == name) return i;
+      }
+      return -1;
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(row() >= 0, 30000);
+    cards->setCurrentRow(row());
+    QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
   }
 
   QTemporaryDir temporary_;

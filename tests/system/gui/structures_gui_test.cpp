@@ -337,7 +337,7 @@ class StructuresGuiTest : public test::WindowTest {
   void unsavedStructuresAreAskedAboutBeforeTheyGo() {
     views().setTool(SliceTool::eraser);
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
-    QTest::mouseClick(find<QPushButton>("craniumPhantom"), Qt::LeftButton);
+    prepareBuiltIn("cranium");
     QTRY_VERIFY(window_->findChild<QMessageBox*>("structuresUnsaved"));
     window_->findChild<QMessageBox*>("structuresUnsaved")->reject();
     QTest::qWait(100);

@@ -157,7 +157,7 @@ class ViewToolsGuiTest : public QObject {
     QVERIFY(differentPixels(before, boxed) > 100);
     // The handle of the patient's left face lies at the right of the picture's middle.
     const GridGeometry& g = view().shownVolume().geometry;
-    const QSignalSpy moved(&view(), &ViewWidget::handMoved);
+    const QSignalSpy moved(&view(), &ViewWidget::pointed);
     const ViewCamera& camera = view().camera();
     const Vec3 face =
         g.toPatient_mm(Vec3(g.size[0] - 0.5, (g.size[1] - 1) / 2.0, (g.size[2] - 1) / 2.0));

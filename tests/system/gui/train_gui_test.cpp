@@ -1,0 +1,278 @@
+// Training without arms and without a manual: the card says what to do, the keys alone are enough,
+// both hands are reached, what is locked stays, and the result says what was done.
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSignalSpy>
+#include <QToolBar>
+#include <QtTest>
+
+#include "gui_support.h"
+#include "ui/common/words.h"
+#include "ui/train/trace_view.h"
+
+using namespace trephine;
+
+namespace {
+constexpr int kLong_ms = 120000;
+}  // namespace
+
+class TrainGuiTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  std::filesystem::path scene_;
+
+  ViewWidget& view() { return window_->view(); }
+  void open(const Policy& policy = {}) {
+    QFile::remove(windowSettings().fileName());
+    window_ =
+        std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")), policy);
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QApplication::setActiveWindow(window_.get());
+  }
+  void openScene(const std::filesystem::path& file) {
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    window_->open(file);
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QTRY_VERIFY(view().isVisible());
+  }
+  // To whatever has the focus.
+  void key(int which, Qt::KeyboardModifiers modifiers = Qt::NoModifier, int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      QWidget* to = QApplication::focusWidget();
+      QTest::keyClick(to ? to : window_.get(), Qt::Key(which), modifiers);
+      QTest::qWait(15);
+    }
+  }
+  void stop() {
+    workstation().stop();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+  }
+
+ private slots:
+  void initTestCase() {
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+  }
+  void init() { open(); }
+  void cleanup() { window_.reset(); }
+
+  void beforeTheStartTheCardSaysWhatToDoWithWhichHand() {
+    openScene(scene_);
+    QVERIFY(window_->place() == Place::train);
+    QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
+    const CardText* card = cardFor(*workstation().scene(), "en");
+    QVERIFY(card);
+    QCOMPARE(find<QLabel>("startCardGoal")->text(), toQt(card->goal));
+    QVERIFY(find<QLabel>("startCardSteps")->text().contains(toQt(card->steps.front())));
+    QCOMPARE(find<QLabel>("startCardHands")->text(), toQt(card->hands));
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-card.png"));
+    write(settings::kLanguage, QString("zh_TW"));
+    window_->show(Place::prepare);
+    QVERIFY(!find<QWidget>("startCard")->isVisible());
+    window_->show(Place::train);
+    QCOMPARE(find<QLabel>("startCardGoal")->text(),
+             toQt(cardFor(*workstation().scene(), "zh_TW")->goal));
+  }
+
+  void theWholePathGoesByKeysAlone() {
+    // Cases: the built-in cranium's card, Return.
+    window_->show(Place::cases);
+    auto* cards = find<QListWidget>("cases");
+    QTRY_VERIFY_WITH_TIMEOUT(cards->count() >= 2, kLong_ms);
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    cards->setFocus();
+    key(Qt::Key_Home);
+    key(Qt::Key_Return);
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QVERIFY(window_->place() == Place::train);
+    QTRY_VERIFY_WITH_TIMEOUT(view().canDraw().ok(), kLong_ms);
+    key(Qt::Key_F5);
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    QTRY_VERIFY(find<QFrame>("readyNotice")->isVisible());
+    QVERIFY(view().hasFocus());
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      key(Qt::Key_Right);
+      key(Qt::Key_PageDown, Qt::NoModifier, 10);
+      QTest::qWait(1500);
+      key(Qt::Key_Right, Qt::NoModifier, 6);
+      QTest::qWait(500);
+      key(Qt::Key_PageUp, Qt::NoModifier, 15);
+      QTest::qWait(1500);
+      if (removedVoxels(*workstation().session()) > 20) break;
+      QTest::qWait(1500);
+      key(Qt::Key_F, Qt::ControlModifier);
+    }
+    QVERIFY(!find<QFrame>("readyNotice")->isVisible());
+    const std::uint64_t removed = removedVoxels(*workstation().session());
+    QVERIFY2(removed > 20, qPrintable(QString::number(removed)));
+    QTRY_VERIFY(find<QLabel>("exerciseRemoved")->text().contains("Bone"));
+    key(Qt::Key_Z, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) < removed, 10000);
+    key(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) == removed, 10000);
+    QSignalSpy saved(&workstation(), &Workstation::saved);
+    key(Qt::Key_S, Qt::ControlModifier);
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+    auto* name = find<QFileDialog>("saveDialog")->findChild<QLineEdit*>("fileNameEdit");
+    name->selectAll();
+    QTest::keyClicks(name, temporary_.filePath("by-keys.mha"));
+    QTest::keyClick(name, Qt::Key_Return);
+    QVERIFY(saved.count() == 1 || saved.wait(kLong_ms));
+    QVERIFY(QFile::exists(temporary_.filePath("by-keys.mha")));
+    QApplication::setActiveWindow(window_.get());
+    view().setFocus();
+    key(Qt::Key_Period, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+    QVERIFY(find<QLabel>("resultRows")->text().contains("Bone"));
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-result.png"));
+  }
+
+  void whileItRunsForceAndEnergyAreTraced() {
+    openScene(scene_);
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    takeHand(Hand::right);
+    pushHand(8);
+    auto* force = window_->findChild<TraceView*>("rightForceTrace");
+    QVERIFY(force);
+    const auto strongest = [&] {
+      double most = 0.0;
+      for (const TraceView::Sample& s : force->samples()) most = std::max(most, s.value);
+      return most;
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(strongest() > 0.5, 15000);
+    QVERIFY(force->samples().back().time_s - force->samples().front().time_s <
+            3.0 * TraceView::kShown_s);
+    QVERIFY(window_->findChild<TraceView*>("rightEnergyTrace")->samples().size() > 10);
+    QVERIFY(find<QLabel>("pushWords")->text().contains("N"));
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-running.png"));
+    // The other hand stays where it is, without force.
+    takeHand(Hand::left);
+    QTRY_VERIFY_WITH_TIMEOUT(
+        glm::length(workstation().session()->state().record.arms[1].sent_N) < 0.05, 10000);
+    stop();
+  }
+
+  void whatIsLockedStaysAndThePinUnlocksIt() {
+    window_.reset();
+    Policy policy;
+    policy.locks = {Lock::controller, Lock::tissues, Lock::rate};
+    const Result<Pin> pin = makePin("4711");
+    QVERIFY(pin.ok());
+    policy.pin = *pin;
+    open(policy);
+    QVERIFY(find<QLabel>("locked")->isVisible());
+    // A scene of one's own, by path: refused.
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    window_->open(scene_);
+    QTRY_COMPARE(failed.count(), 1);
+    QVERIFY(!workstation().currentCase());
+    window_->findChild<QMessageBox*>("errorDialog")->close();
+    QTest::qWait(50);
+    // The product's own is open to all, but not to change.
+    openScene(resourceFolder() / "scenes" / "cranium.json");
+    const TissueSet tissues = workstation().scene()->tissues;
+    QVERIFY(!find<QComboBox>("controller")->isEnabled());
+    showTissues();
+    window_->findChild<TissuePanel*>()->select("bone");
+    QVERIFY(!find<QSpinBox>("huLow")->isEnabled());
+    QVERIFY(find<QLabel>("tissuesLocked")->isVisible());
+    TissueSet others = tissues;
+    others.tissues.back().hu_max += 10;
+    workstation().setTissues(others);
+    workstation().setController(ControllerKind::off);
+    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
+    for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
+    QTest::qWait(50);
+    // The PIN: a wrong one changes nothing.
+    for (const char* text : {"0000", "4711"}) {
+      if (!window_->findChild<QDialog*>("unlockDialog")) find<QAction>("unlockTeaching")->trigger();
+      QTRY_VERIFY(window_->findChild<QDialog*>("unlockDialog"));
+      find<QLineEdit>("pin")->setText(text);
+      QTest::mouseClick(find<QPushButton>("unlock"), Qt::LeftButton);
+      if (std::string(text) == "0000") {
+        QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("pinSaid")->text().contains("not the PIN"), 20000);
+        QVERIFY(workstation().anyLocked());
+      }
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().anyLocked(), 20000);
+    QVERIFY(!find<QLabel>("locked")->isVisible());
+    QVERIFY(find<QComboBox>("controller")->isEnabled());
+    workstation().setController(ControllerKind::off);
+    QVERIFY(workstation().scene()->controller == ControllerKind::off);
+  }
+
+  void allKeysAreShownAndFound() {
+    find<QAction>("keys")->trigger();
+    QTRY_VERIFY(window_->findChild<QDialog*>("shortcutsPage"));
+    auto* list = find<QTreeWidget>("shortcuts");
+    QStringList keys;
+    for (int i = 0; i < list->topLevelItemCount(); ++i) {
+      for (int k = 0; k < list->topLevelItem(i)->childCount(); ++k) {
+        keys << list->topLevelItem(i)->child(k)->text(1);
+      }
+    }
+    // Every action of the window that has a key is on the page.
+    for (const QAction* action : window_->findChildren<QAction*>()) {
+      if (action->shortcut().isEmpty() || action->objectName().isEmpty()) continue;
+      const QString key = action->shortcut().toString(QKeySequence::NativeText);
+      QVERIFY2(keys.join('\n').contains(key), qPrintable(action->objectName() + ' ' + key));
+    }
+    QTest::keyClicks(find<QLineEdit>("findKey"), "pause");
+    int shown = 0;
+    for (int i = 0; i < list->topLevelItemCount(); ++i) shown += !list->topLevelItem(i)->isHidden();
+    QVERIFY(shown >= 1 && shown < list->topLevelItemCount());
+  }
+
+  void settingsAreKeptAndTakeEffect() {
+    find<QAction>("settings")->trigger();
+    QTRY_VERIFY(window_->findChild<QDialog*>("settingsDialog"));
+    auto* hand = find<QComboBox>("mainHand");
+    hand->setCurrentIndex(hand->findData("left"));
+    find<QDoubleSpinBox>("pushStep")->setValue(0.5);
+    find<QDialog>("settingsDialog")->findChild<QPushButton*>()->window();
+    for (QPushButton* button : find<QDialog>("settingsDialog")->findChildren<QPushButton*>()) {
+      if (button->text().contains("Save")) QTest::mouseClick(button, Qt::LeftButton);
+    }
+    QCOMPARE(read(settings::kMainHand), QString("left"));
+    openScene(scene_);
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    pointAt(view().rect().center());
+    QTRY_COMPARE(find<QLabel>("activeHand")->text(), QString("Left hand"));
+    pushHand(2);
+    QCOMPARE(workstation().session()->handPush_N(0), 1.0);
+    stop();
+  }
+
+  void thePlaceAndTheWorkspaceComeBack() {
+    openScene(scene_);
+    window_->resize(1100, 700);
+    find<QAction>("rightPanel")->trigger();
+    window_->close();
+    QTRY_VERIFY(!window_->isVisible());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")));
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QVERIFY(window_->place() == Place::train);
+    QCOMPARE(window_->size(), QSize(1100, 700));
+    QVERIFY(!find<QAction>("rightPanel")->isChecked());
+    QVERIFY2(find<QPushButton>("startCardChoose")->isVisible(), "the next step is offered");
+  }
+};
+
+int main(int argc, char** argv) { return test::runInWindow<TrainGuiTest>(argc, argv); }
+
+#include "train_gui_test.moc"
