@@ -40,16 +40,9 @@ void PointerHand::comeOut(Way& way, double target_mm, double T) const {
 void PointerHand::hover(Way& way, double T) const {
   if (!way.seen_mm) return;
   const double target_mm = std::min(*way.seen_mm, 0.0) - kHover_mm;
-  if (target_mm < way.rest_mm) {
-    const double slower = std::min(1.0, T / kHover_s);
-    const double goal_mm = way.touches ? target_mm : way.rest_mm - slower * (way.rest_mm - target_mm);
-    return comeOut(way, goal_mm, T);
-  }
-  if (way.touches) {  // no further: what it touches need not be what is seen
-    way.rest_mm += (way.arm_mm - way.rest_mm) * std::min(1.0, T / kRelax_s);
-    return;
-  }
-  way.rest_mm += std::min(kHover_mm_s * T, (target_mm - way.rest_mm) * std::min(1.0, T / kHover_s));
+  const double step_mm = (target_mm - way.rest_mm) * std::min(1.0, T / kHover_s);
+  if (step_mm < 0.0) return comeOut(way, way.rest_mm + step_mm, T);
+  if (!plane_mm_) way.rest_mm += std::min(kHover_mm_s * T, step_mm);  // else it has come out here
 }
 
 void PointerHand::goAside(Way& way, double push_N, double most_N, double T) const {
@@ -70,7 +63,8 @@ void PointerHand::goAside(Way& way, double push_N, double most_N, double T) cons
 }
 
 // Where the pointer is, on the plane across the tool. A hole that is being made is not followed
-// down: from a push to where the pointer next goes elsewhere it is the plane that the push began on.
+// down: from a push, or a touch of tissue that is not seen, to where the pointer next goes elsewhere
+// it is the plane on which that began.
 Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmRecord& arm,
                           bool presses, bool touches) {
   const double slope = glm::dot(at.direction, along);
@@ -81,7 +75,7 @@ Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmR
                     glm::distance(pointed(*plane_mm_), pressed_mm_) > kElsewhere_mm;
   if (left) plane_mm_.reset();
   const Vec3 place_mm = plane_mm_.value_or(seen_mm_.value_or(arm.proxy_position_mm));
-  if (presses) {
+  if (presses || (touches && !plane_mm_)) {
     plane_mm_ = place_mm;
     pressed_mm_ = pointed(place_mm);
   }
@@ -117,10 +111,9 @@ Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const Wor
   way.touched_mm = depthOf(touched_mm_);
   way.touches = touches;
 
-  const bool elsewhere = glm::length(way.arm_aside_mm) > kElsewhere_mm;
   if (presses) {
     press(way, to.push_N, T);
-  } else if (waits || (touches && elsewhere && !to.put_down)) {
+  } else if (waits || (touches && !to.put_down)) {
     comeOut(way, way.rest_mm - kHover_mm, T);
   } else if (to.put_down) {
     comeOut(way, way.touched_mm ? *way.touched_mm - kSpare_mm : way.rest_mm, T);

@@ -125,7 +125,8 @@ Done done(const Exercise& exercise, double rate_hz, const std::filesystem::path&
   for (std::size_t i = 0; i < users.size(); ++i) {
     const ArmRecord& arm = session.state().record.arms[i];
     EXPECT_EQ(arm.tool_state & (kToolWaits | kToolHeld), 0u) << exercise.name << ": it came out";
-    EXPECT_EQ(glm::length(arm.sent_N) < 0.2, true) << exercise.name;
+    EXPECT_LT(glm::length(arm.sent_N), 0.05) << exercise.name;
+    EXPECT_EQ(arm.tissue_class, -1) << exercise.name;
   }
   for (const auto& arm : out.report.arms) EXPECT_LE(arm.statistics.max_force_N, 3.3);
   EXPECT_EQ(out.report.events_dropped, 0u);
