@@ -141,6 +141,15 @@ TEST(PointerHand, DraggedAsideInAHoleGrindsItsWallAndIsNotThrown) {
   for (const CarveRecord& carve : dragged.carves) (carve.tick < 3000 ? before : after)++;
   EXPECT_GT(after, 20u);
   EXPECT_LT(fastest_mm(dragged), 0.35);
+  double most_N = 0.0, farthest_mm = 0.0;
+  for (std::size_t n = 3000; n < dragged.ticks.size(); ++n) {
+    const ArmRecord& arm = dragged.ticks[n];
+    most_N = std::max(most_N, dragged.sent_N(n));
+    farthest_mm = std::max(farthest_mm,
+                           glm::distance(arm.patient_position_mm, arm.proxy_position_mm));
+  }
+  EXPECT_LT(most_N, 3.15) << "as hard as a hand pulls, and not with all that the arm has";
+  EXPECT_LT(farthest_mm, 8.0);
 }
 
 TEST(PointerHand, AtNoPushComesOutAndGoesWhereThePointerIsWithoutAJolt) {
@@ -281,6 +290,21 @@ TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   EXPECT_EQ(arm.tool_state, 0u) << "out, and ready";
   EXPECT_EQ(arm.tissue_class, -1);
   EXPECT_EQ(session.report().removed_voxels, 0u) << "and cut nothing since";
+}
+
+TEST(PointerHand, InTissueThatCameBackItComesOutFirstHoweverItIsPushed) {
+  bool reset = false;
+  const Played again = run({{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}, {6.0, 4, 0, 2.0}}, true,
+                           [&](Session& session, double now_s) {
+                             if (now_s < 2.5 || reset) return;
+                             reset = session.send(CommandKind::reset);
+                             EXPECT_TRUE(session.setPush(kArm, 2.0));
+                           });
+  ASSERT_TRUE(reset);
+  std::size_t waited = 0;
+  for (const ArmRecord& arm : again.ticks) waited += (arm.tool_state & kToolWaits) != 0;
+  EXPECT_GT(waited, 50u);
+  EXPECT_LT(waited, 1500u);
 }
 
 TEST(PointerHand, PressesAsHardAfterAPauseAsBeforeAndStaysInIt) {
