@@ -353,8 +353,8 @@ bool Session::send(CommandKind kind) {
 bool Session::push(CommandKind kind) {
   const bool held = hands_.hands[0].held;
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
-  const bool restores = kind == CommandKind::undo || kind == CommandKind::redo ||
-                        kind == CommandKind::reset;
+  const bool restores =
+      kind == CommandKind::undo || kind == CommandKind::redo || kind == CommandKind::reset;
   if (restores) stopPushing();
   const bool sent = loop_->commands().push({kind, 0, {}});
   if (sent ? kind == CommandKind::resume : !held) holdHands(false);

@@ -169,9 +169,9 @@ TEST(OperatorScript, ClutchesAnArmAndTurnsItsMapInLandmarkAxes) {
 
 TEST(OperatorScript, RefusesAClutchOfNoArmAndARotationThatIsNone) {
   const Scene scene = cranium();
-  for (const char* wrong : {R"([{"t": 1, "do": "clutch_on"}])",
-                            R"([{"t": 1, "do": "clutch_on", "arm": "third"}])",
-                            R"([{"t": 1, "do": "clutch_off", "arm": "left",
+  for (const char* wrong :
+       {R"([{"t": 1, "do": "clutch_on"}])", R"([{"t": 1, "do": "clutch_on", "arm": "third"}])",
+        R"([{"t": 1, "do": "clutch_off", "arm": "left",
                                  "rotation_xyzw": [0, 0, 0, 0.5]}])"}) {
     Json json = script();
     json["commands"] = *parseJson(wrong, "commands");
