@@ -44,8 +44,7 @@ void HapticCore::engageArm(ArmTick& now, const Pose& device_m) {
   if (arm.turn_to) map.rotation = *arm.turn_to;
   map.centre_mm += tool_mm.position - map.toPatient_mm(device_m).position;
   const Pose arm_mm = map.toPatient_mm(device_m);
-  const bool turned =
-      glm::length(smallTurn(tool_mm.orientation, arm_mm.orientation)) > kTurned_rad;
+  const bool turned = glm::length(smallTurn(tool_mm.orientation, arm_mm.orientation)) > kTurned_rad;
   const bool in_tissue = turned && (wouldTouch(arm, tool_mm) || startsInTissue(arm, arm_mm));
   arm.limiter.engage();
   forgetForce(arm, in_tissue);

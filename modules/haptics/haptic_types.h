@@ -35,11 +35,22 @@ struct TickInput {
 
 // Live and scripted input to the writer of the voxels, applied at the start of a tick.
 enum class CommandKind : std::int32_t {
-  none, undo, redo, reset, pause, resume, clear_faults, controller, tissues, rewind,
+  none,
+  undo,
+  redo,
+  reset,
+  pause,
+  resume,
+  clear_faults,
+  controller,
+  tissues,
+  rewind,
   // Of one arm. Clutched, it moves without force, and its tool stays where it is. Off again, its
   // map is set so that the tool stays there; re-centred, so that the arm, where it is, is where the
   // scene puts its device's origin.
-  clutch_on, clutch_off, recentre
+  clutch_on,
+  clutch_off,
+  recentre
 };
 
 struct Command {
@@ -66,7 +77,7 @@ enum ToolState : std::uint32_t {
   kToolWaits =
       1u << 0,          // it started in tissue: no force and no cutting until it has been out of it
   kToolHeld = 1u << 1,  // solid tissue keeps it from its arm
-  kToolLetGo = 1u << 2,  // was hooked; the force fades, then the tool goes to its arm
+  kToolLetGo = 1u << 2,     // was hooked; the force fades, then the tool goes to its arm
   kToolClutched = 1u << 3,  // its arm moves without it
 };
 

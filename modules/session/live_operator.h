@@ -20,7 +20,7 @@ struct LiveHands {
     double damping_Ns_per_m = 0.0;
     bool held = false;  // in a pause: rests at `held_m`, whoever moves it otherwise
     Vec3 held_m{0.0};
-    bool pointed = false;  // live, and goes where the pointer is; `position_m` is not used
+    bool pointed = false;     // live, and goes where the pointer is; `position_m` is not used
     Quat turned{1, 0, 0, 0};  // the tool, device frame; reached smoothly
   };
   std::array<Hand, kMaxArms> hands{};

@@ -11,12 +11,13 @@ constexpr double kOut_mm_s = 60.0, kOut_N = 2.0;
 constexpr double kHover_mm_s = 100.0, kHover_s = 0.1;
 constexpr double kAside_mm_s = 60.0;  // across the ray per N that is left, where it touches
 constexpr double kLeastAside_N = 0.5;
-constexpr double kSpare_mm = 5.0;     // how far a tool that is put down stays off what it touched
+constexpr double kSpare_mm = 5.0;      // how far a tool that is put down stays off what it touched
 constexpr double kElsewhere_mm = 3.0;  // so far aside a pointer wants the tool out first
 constexpr double kRelax_s = 0.05, kGiveIn_s = 0.02;
 // From the tool to the rest point at most: short of what lets a hooked tool go.
 constexpr double kFarthest_mm = 12.0;
-constexpr double kLeastSlope = 0.3;  // of the ray to the tool: flatter, and it presses along the ray
+constexpr double kLeastSlope =
+    0.3;  // of the ray to the tool: flatter, and it presses along the ray
 
 }  // namespace
 
@@ -32,24 +33,16 @@ void PointerHand::press(Way& way, double push_N, double T) const {
 
 // Backwards, unless something keeps it in.
 void PointerHand::comeOut(Way& way, double target_mm, double T) const {
-  const double speed =
-      std::clamp(kPerNewton_mm_s * 2.0 * (kOut_N + way.pull_N()), 0.0, kOut_mm_s);
+  const double speed = std::clamp(kPerNewton_mm_s * 2.0 * (kOut_N + way.pull_N()), 0.0, kOut_mm_s);
   way.rest_mm -= std::clamp(way.rest_mm - target_mm, 0.0, speed * T);
 }
 
 void PointerHand::hover(Way& way, double T) const {
   if (!way.seen_mm) return;
   const double target_mm = std::min(*way.seen_mm, 0.0) - kHover_mm;
-  if (target_mm < way.rest_mm) {
-    const double slower = std::min(1.0, T / kHover_s);
-    const double goal_mm = way.touches ? target_mm : way.rest_mm - slower * (way.rest_mm - target_mm);
-    return comeOut(way, goal_mm, T);
-  }
-  if (way.touches) {  // no further: what it touches need not be what is seen
-    way.rest_mm += (way.arm_mm - way.rest_mm) * std::min(1.0, T / kRelax_s);
-    return;
-  }
-  way.rest_mm += std::min(kHover_mm_s * T, (target_mm - way.rest_mm) * std::min(1.0, T / kHover_s));
+  const double step_mm = (target_mm - way.rest_mm) * std::min(1.0, T / kHover_s);
+  if (step_mm < 0.0) return comeOut(way, way.rest_mm + step_mm, T);
+  if (!plane_mm_) way.rest_mm += std::min(kHover_mm_s * T, step_mm);  // else it has come out here
 }
 
 void PointerHand::goAside(Way& way, double push_N, double most_N, double T) const {
@@ -63,14 +56,16 @@ void PointerHand::goAside(Way& way, double push_N, double most_N, double T) cons
     step_mm = std::min(step_mm, kAside_mm_s * T * std::max(0.0, left_N - along_N));
     const double size_N = glm::length(pull_N);
     if (size_N > left_N) {
-      way.aside_mm -= pull_N * ((1.0 - left_N / size_N) * std::min(1.0, T / kGiveIn_s) * way.mm_per_N);
+      way.aside_mm -=
+          pull_N * ((1.0 - left_N / size_N) * std::min(1.0, T / kGiveIn_s) * way.mm_per_N);
     }
   }
   way.aside_mm *= apart_mm > step_mm ? 1.0 - step_mm / apart_mm : 0.0;
 }
 
 // Where the pointer is, on the plane across the tool. A hole that is being made is not followed
-// down: from a push to where the pointer next goes elsewhere it is the plane that the push began on.
+// down: from a push, or a touch of tissue that is not seen, to where the pointer next goes
+// elsewhere it is the plane on which that began.
 Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmRecord& arm,
                           bool presses, bool touches) {
   const double slope = glm::dot(at.direction, along);
@@ -81,7 +76,7 @@ Vec3 PointerHand::onPlane(const PointerSample& at, const Vec3& along, const ArmR
                     glm::distance(pointed(*plane_mm_), pressed_mm_) > kElsewhere_mm;
   if (left) plane_mm_.reset();
   const Vec3 place_mm = plane_mm_.value_or(seen_mm_.value_or(arm.proxy_position_mm));
-  if (presses) {
+  if (presses || (touches && !plane_mm_)) {
     plane_mm_ = place_mm;
     pressed_mm_ = pointed(place_mm);
   }
@@ -117,10 +112,9 @@ Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const Wor
   way.touched_mm = depthOf(touched_mm_);
   way.touches = touches;
 
-  const bool elsewhere = glm::length(way.arm_aside_mm) > kElsewhere_mm;
   if (presses) {
     press(way, to.push_N, T);
-  } else if (waits || (touches && elsewhere && !to.put_down)) {
+  } else if (waits || (touches && !to.put_down)) {
     comeOut(way, way.rest_mm - kHover_mm, T);
   } else if (to.put_down) {
     comeOut(way, way.touched_mm ? *way.touched_mm - kSpare_mm : way.rest_mm, T);

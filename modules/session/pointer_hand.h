@@ -4,7 +4,7 @@
 // and k the spring, the hand pulls by F = k (r - x) / s, s the motion scale, and all is said of F,
 // along the tool and across it:
 //   along, push P > 0:  dr/dt = 15 mm/s per N of (P - F), at most 20 mm/s forwards
-//   along, push 0:      to 4 mm before what is seen; where it touches only backwards
+//   along, push 0:      to 4 mm before what is seen; out of whatever it touches
 //   across:             to where the pointer is, slower as F comes to what P leaves of the arm's
 // So a push is a force and not a depth: it builds up where the tool is stopped, goes on while it
 // overcomes the tissue, and nothing springs on where a resistance ends.
@@ -64,7 +64,7 @@ class PointerHand {
 
   std::optional<Vec3> rest_m_;      // device
   std::optional<Vec3> seen_mm_;     // the last place that was seen
-  std::optional<Vec3> plane_mm_;    // a place of the plane that a push began on
+  std::optional<Vec3> plane_mm_;    // a place of the plane on which a push or touch began
   Vec3 pressed_mm_{0.0};            // the pointer on it when it pressed last
   std::optional<Vec3> touched_mm_;  // the tip where it touched last, or where this push began
   bool pressing_ = false;

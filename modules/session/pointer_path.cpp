@@ -19,7 +19,8 @@ bool PointerPath::take() {
   next_ = input;
   if (!started_) return true;
   // Late: it takes the time that it took, from now.
-  const std::int64_t took_ns = std::clamp<std::int64_t>(input.at.time_ns - last_time_ns_, 0, kDelay_ns);
+  const std::int64_t took_ns =
+      std::clamp<std::int64_t>(input.at.time_ns - last_time_ns_, 0, kDelay_ns);
   at_.at.time_ns = std::min(at_.at.time_ns, input.at.time_ns - took_ns);
   return true;
 }

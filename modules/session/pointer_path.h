@@ -13,10 +13,10 @@ namespace trephine {
 
 // Where a pointer was: the ray from the eye through it.
 struct PointerSample {
-  std::int64_t time_ns = 0;           // std::chrono::steady_clock; freewheeling, of the session
-  Vec3 origin_mm{0.0};                // patient
-  Vec3 direction{0.0, 0.0, -1.0};     // patient, away from the eye; any length
-  std::optional<double> depth_mm{};   // from `origin_mm` to the tissue seen there; none: over air
+  std::int64_t time_ns = 0;          // std::chrono::steady_clock; freewheeling, of the session
+  Vec3 origin_mm{0.0};               // patient
+  Vec3 direction{0.0, 0.0, -1.0};    // patient, away from the eye; any length
+  std::optional<double> depth_mm{};  // from `origin_mm` to the tissue seen there; none: over air
 };
 
 // A sample, and what the hand does there.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <limits>
 #include <new>
 #include <system_error>
@@ -12,9 +11,8 @@
 #include "base/memory.h"
 #include "base/rt/thread.h"
 #include "base/system.h"
-#include "haptics/watchdog.h"
 #include "session/arm_devices.h"
-#include "session/hand_start.h"
+#include "session/session_engine.h"
 #include "volume/case_memory.h"
 
 namespace trephine {
@@ -45,28 +43,6 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
 }
 
 }  // namespace
-
-// What the haptic thread and the watchdog work on, each of which owns it too: a thread that a
-// device holds goes on with it after the session.
-struct Session::Engine {
-  Engine(HapticCore& core, std::vector<LoopDevice> devices, std::unique_ptr<Operator> script)
-      : oper(std::move(script), live_hands, core.parameters().period_s),
-        loop(core, std::move(devices), &oper),
-        watchdog(loop) {}
-
-  rt::ParameterSet<LiveHands> live_hands;
-  LiveOperator oper;
-  HapticLoop loop;
-  Watchdog watchdog;
-  std::atomic<bool> stop{false}, finished{false};
-  std::optional<rt::LockedMemory> locked;  // from before the first tick to the end of stop()
-  std::atomic<bool> memory_known{false};
-
-  // Until the loop's thread has ended, or nothing more is to be waited for.
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool ended = false;
-};
 
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension) {
@@ -353,8 +329,8 @@ bool Session::send(CommandKind kind) {
 bool Session::push(CommandKind kind) {
   const bool held = hands_.hands[0].held;
   if (kind == CommandKind::pause) holdHands(true);  // before the force goes
-  const bool restores = kind == CommandKind::undo || kind == CommandKind::redo ||
-                        kind == CommandKind::reset;
+  const bool restores =
+      kind == CommandKind::undo || kind == CommandKind::redo || kind == CommandKind::reset;
   if (restores) stopPushing();
   const bool sent = loop_->commands().push({kind, 0, {}});
   if (sent ? kind == CommandKind::resume : !held) holdHands(false);
@@ -365,36 +341,6 @@ bool Session::push(CommandKind kind) {
     engine_->live_hands.write(hands_);
   }
   return sent;
-}
-
-void Session::beginOutside() {
-  std::vector<double> reach_mm;
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
-    reach_mm.push_back(1000.0 * scale * capabilities_[i].workspace_m[2] / 2.0);
-  }
-  const std::vector<double> back_mm = drawnBack_mm(core_->parameters(), *grid_, reach_mm);
-  for (const LoopDevice& d : loop_->devices()) {
-    if (!d.device->takesTargets()) continue;  // a real arm is where it is
-    for (std::size_t i : d.arms) {
-      const double scale = scene_.arms[i].map.fixed.value_or(WorkspaceMap{}).motion_scale;
-      begin_m_[i] = Vec3(0.0, 0.0, back_mm[i] / (1000.0 * scale));
-      hands_.hands[i].live = true;
-      hands_.hands[i].position_m = *begin_m_[i];
-    }
-  }
-  engine_->live_hands.write(hands_);
-}
-
-void Session::holdHands(bool hold) {
-  const LoopState& now = state();
-  if (now.ticks == 0) return;  // nobody has looked where the arms are
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    LiveHands::Hand& hand = hands_.hands[i];
-    if (hold && !hand.held) hand.held_m = now.record.arms[i].device_position_m;
-    hand.held = hold;
-  }
-  engine_->live_hands.write(hands_);
 }
 
 bool Session::rewind(std::uint32_t second) {
@@ -426,116 +372,6 @@ Status Session::setTissues(const TissueSet& tissues) {
   }
   scene_.tissues = tissues;
   return {};
-}
-
-void Session::moveHand(std::size_t arm, const Vec3& by_mm) {
-  if (hands_.hands[arm].held || state().paused) return;
-  const WorkspaceMap map = this->map(arm);
-  LiveHands::Hand& hand = hands_.hands[arm];
-  if (!hand.live || hand.pointed) {  // taken over from a script, from rest, or from the pointer
-    hand.live = true;
-    hand.pointed = false;
-    hand.position_m = state().record.arms[arm].device_position_m;
-  }
-  hand.position_m += glm::conjugate(map.rotation) * by_mm / (1000.0 * map.motion_scale);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double half_m = capabilities_[arm].workspace_m[axis] / 2.0;
-    hand.position_m[axis] = std::clamp(hand.position_m[axis], -half_m, half_m);
-  }
-  engine_->live_hands.write(hands_);
-}
-
-Vec3 Session::handTarget_mm(std::size_t arm) const {
-  const LiveHands::Hand& hand = hands_.hands[arm];
-  const LoopState& now = loop_->state().value();
-  const Vec3 at_m = hand.pointed ? now.record.arms[arm].device_position_m : hand.position_m;
-  return map(arm).toPatient_mm({at_m, Quat(1, 0, 0, 0)}).position;
-}
-
-WorkspaceMap Session::map(std::size_t arm) const {
-  const LoopState& now = loop_->state().value();
-  return now.ticks > 0 ? now.maps[arm] : scene_.arms[arm].map.fixed.value_or(WorkspaceMap{});
-}
-
-bool Session::clutch(std::size_t arm, bool on, const Quat& rotation) {
-  const double length = glm::length(rotation);
-  if (!(length > 0.0) || !isFinite(length)) return false;
-  const CommandKind kind = on ? CommandKind::clutch_on : CommandKind::clutch_off;
-  return loop_->commands().push({kind, 1, {}, std::int32_t(arm), rotation / length});
-}
-
-bool Session::clutch(std::size_t arm, bool on) {
-  const CommandKind kind = on ? CommandKind::clutch_on : CommandKind::clutch_off;
-  return loop_->commands().push({kind, 0, {}, std::int32_t(arm)});
-}
-
-bool Session::recentre(std::size_t arm) {
-  return loop_->commands().push({CommandKind::recentre, 0, {}, std::int32_t(arm)});
-}
-
-double Session::mostPush_N(std::size_t arm) const {
-  return PointerHand::kMostShare * scene_.arms[arm].max_force_N;
-}
-
-bool Session::point(std::size_t arm, const PointerSample& sample) {
-  const double length = glm::length(sample.direction);
-  const bool ray = isFinite(sample.origin_mm) && isFinite(length) && length > 0.0 &&
-                   isFinite(sample.depth_mm.value_or(0.0));
-  if (!ray || !simulated_[arm]) return false;
-  std::optional<PointerSample>& last = pointer_[arm];
-  const std::int64_t after_ns = last ? last->time_ns : sample.time_ns;
-  last = sample;
-  last->direction /= length;
-  last->time_ns = std::max(sample.time_ns, after_ns);
-  LiveHands::Hand& hand = hands_.hands[arm];
-  if (!hand.pointed) {
-    hand.live = hand.pointed = true;
-    engine_->live_hands.write(hands_);
-  }
-  return playPointer(arm, last->time_ns, false);
-}
-
-// The last sample once more, at this time.
-bool Session::playPointer(std::size_t arm, std::int64_t time_ns, bool put_down) {
-  if (!pointer_[arm] || !hands_.hands[arm].pointed) return false;
-  PointerSample& at = *pointer_[arm];
-  const std::int64_t now_ns = running_ ? HostClock().now_ns() : at.time_ns;
-  if (time_ns == kNow || (running_ && time_ns > now_ns)) time_ns = now_ns;
-  at.time_ns = std::max(at.time_ns, time_ns);
-  return engine_->oper.path(arm).push({at, push_N_[arm], put_down});
-}
-
-bool Session::setPush(std::size_t arm, double push_N, std::int64_t time_ns) {
-  push_N_[arm] = push_N > 0.0 ? std::min(push_N, mostPush_N(arm)) : 0.0;
-  return playPointer(arm, time_ns, false);
-}
-
-bool Session::releaseHand(std::size_t arm, std::int64_t time_ns) {
-  push_N_[arm] = 0.0;
-  return playPointer(arm, time_ns, true);
-}
-
-// Tissue comes back around the tools: they come out, and stay there.
-void Session::stopPushing() {
-  for (std::size_t i = 0; i < scene_.arms.size(); ++i) {
-    if (push_N_[i] > 0.0) (void)setPush(i, 0.0);
-  }
-}
-
-void Session::turnHand(std::size_t arm, const Vec3& axis, double by_rad) {
-  const double length = glm::length(axis);
-  if (!(length > 0.0) || !isFinite(length) || !isFinite(by_rad)) return;
-  LiveHands::Hand& hand = hands_.hands[arm];
-  const Vec3 of_device = glm::conjugate(map(arm).rotation) * axis / length;
-  const Quat turned = glm::normalize(glm::angleAxis(by_rad, of_device) * hand.turned);
-  if (2.0 * std::acos(std::min(1.0, std::abs(turned.w))) > kMostTurn_rad) return;
-  hand.turned = turned;
-  engine_->live_hands.write(hands_);
-}
-
-void Session::straightenHand(std::size_t arm) {
-  hands_.hands[arm].turned = Quat(1, 0, 0, 0);
-  engine_->live_hands.write(hands_);
 }
 
 const LoopState& Session::state() {

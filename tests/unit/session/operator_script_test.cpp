@@ -158,6 +158,43 @@ TEST(OperatorScript, ChangesNothingThatIsLocked) {
   json["commands"] = Json::array({{{"t", 0.5}, {"do", "undo"}}});
   EXPECT_TRUE(checkLocks(*parseOperatorScript(json, "script.json", scene),
                          {Lock::controller, Lock::tissues, Lock::rate}));
+
+TEST(OperatorScript, ClutchesAnArmAndTurnsItsMapInLandmarkAxes) {
+  Scene scene = withFixedMaps(cranium(), {{"vault", {}}});
+  Json json = script();
+  json["commands"] = *parseJson(
+      R"([{"t": 1, "do": "clutch_on", "arm": "right"},
+          {"t": 2, "do": "clutch_off", "arm": "right", "rotation_xyzw": [0, 0, 0.6, 0.8]},
+          {"t": 3, "do": "clutch_off", "arm": "left"}, {"t": 4, "do": "recentre", "arm": "left"}])",
+      "commands");
+  const auto read = parseOperatorScript(json, "s", scene);
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  const LandmarkFrame turned{Vec3(0.0), Quat(0.8, 0.0, 0.0, 0.6)};
+  ScriptOperator oper(*read, scene, {turned, turned});
+  std::vector<Command> given;
+  Command command;
+  while (oper.command(5000, command)) given.push_back(command);
+  ASSERT_EQ(given.size(), 4u);
+  EXPECT_EQ(given[0].kind, CommandKind::clutch_on);
+  EXPECT_EQ(given[0].arm, 1);
+  EXPECT_EQ(given[1].value, 1);
+  EXPECT_NEAR(given[1].rotation.z, 2.0 * 0.6 * 0.8, 1e-12) << "of the landmark, then its own";
+  EXPECT_EQ(given[2].kind, CommandKind::clutch_off);
+  EXPECT_EQ(given[2].value, 0) << "keeps its rotation";
+  EXPECT_EQ(given[3].kind, CommandKind::recentre);
+  EXPECT_EQ(given[3].arm, 0);
+}
+
+TEST(OperatorScript, RefusesAClutchOfNoArmAndARotationThatIsNone) {
+  const Scene scene = cranium();
+  for (const char* wrong :
+       {R"([{"t": 1, "do": "clutch_on"}])", R"([{"t": 1, "do": "clutch_on", "arm": "third"}])",
+        R"([{"t": 1, "do": "clutch_off", "arm": "left",
+                                 "rotation_xyzw": [0, 0, 0, 0.5]}])"}) {
+    Json json = script();
+    json["commands"] = *parseJson(wrong, "commands");
+    EXPECT_FALSE(parseOperatorScript(json, "s", scene).ok()) << wrong;
+  }
 }
 
 }  // namespace

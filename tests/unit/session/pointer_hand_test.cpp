@@ -109,7 +109,8 @@ TEST(PointerHand, HoversOffWhatIsSeenWithoutForceAndFollowsThePointer) {
 }
 
 TEST(PointerHand, PressesWithTheForceThatIsSetAndStopsAtWhatItCannotCut) {
-  const Played pressed = run({{0, 4, 0, 0}, {0.5, 4, 0, 1.0}, {3.0, 4, 0, 2.5}, {5.0, 4, 0, 2.5}}, false);
+  const Played pressed =
+      run({{0, 4, 0, 0}, {0.5, 4, 0, 1.0}, {3.0, 4, 0, 2.5}, {5.0, 4, 0, 2.5}}, false);
   EXPECT_NEAR(pressed.sent_N(2990), 1.0, 0.15);
   EXPECT_NEAR(pressed.sent_N(4990), 2.5, 0.25);
   EXPECT_TRUE(pressed.ticks[4990].tool_state & kToolHeld);
@@ -126,12 +127,12 @@ TEST(PointerHand, PressesWithTheForceThatIsSetAndStopsAtWhatItCannotCut) {
 
 TEST(PointerHand, DraggedAsideInAHoleGrindsItsWallAndIsNotThrown) {
   const Played dragged = run({{0, 4, 0, 0},
-                           {0.5, 4, 0, 2.0},
-                           {2.5, 4, 0, 0.3},
-                           {3.0, 4, 0, 0.3},
-                           {3.2, 34, 0, 0.3},
-                           {4.5, 34, 0, 0.3}},
-                          true);
+                              {0.5, 4, 0, 2.0},
+                              {2.5, 4, 0, 0.3},
+                              {3.0, 4, 0, 0.3},
+                              {3.2, 34, 0, 0.3},
+                              {4.5, 34, 0, 0.3}},
+                             true);
   const double in_hole_mm = dragged.tool_mm(3000).x;
   EXPECT_NEAR(in_hole_mm, 4.0, 1.0);
   EXPECT_LT(dragged.tool_mm(3000).z, -2.0);
@@ -141,16 +142,25 @@ TEST(PointerHand, DraggedAsideInAHoleGrindsItsWallAndIsNotThrown) {
   for (const CarveRecord& carve : dragged.carves) (carve.tick < 3000 ? before : after)++;
   EXPECT_GT(after, 20u);
   EXPECT_LT(fastest_mm(dragged), 0.35);
+  double most_N = 0.0, farthest_mm = 0.0;
+  for (std::size_t n = 3000; n < dragged.ticks.size(); ++n) {
+    const ArmRecord& arm = dragged.ticks[n];
+    most_N = std::max(most_N, dragged.sent_N(n));
+    farthest_mm =
+        std::max(farthest_mm, glm::distance(arm.patient_position_mm, arm.proxy_position_mm));
+  }
+  EXPECT_LT(most_N, 3.15) << "as hard as a hand pulls, and not with all that the arm has";
+  EXPECT_LT(farthest_mm, 8.0);
 }
 
 TEST(PointerHand, AtNoPushComesOutAndGoesWhereThePointerIsWithoutAJolt) {
   const Played out = run({{0, 4, 0, 0},
-                       {0.5, 4, 0, 2.0},
-                       {2.5, 4, 0, 0},
-                       {2.6, 4, 0, 0},
-                       {2.8, 20, 0, 0},
-                       {5.0, 20, 0, 0}},
-                      true);
+                          {0.5, 4, 0, 2.0},
+                          {2.5, 4, 0, 0},
+                          {2.6, 4, 0, 0},
+                          {2.8, 20, 0, 0},
+                          {5.0, 20, 0, 0}},
+                         true);
   EXPECT_LT(out.tool_mm(2500).z, -2.0);
   EXPECT_EQ(out.ticks[4990].tissue_class, -1);
   EXPECT_NEAR(out.tool_mm(4990).x, 20.0, 0.5);
@@ -168,7 +178,8 @@ TEST(PointerHand, AtNoPushComesOutAndGoesWhereThePointerIsWithoutAJolt) {
 
 TEST(PointerHand, InAirGoesNoFartherThanItsReach) {
   // Beside the head.
-  const Played air = run({{0, 0, 0, 0}, {0.5, 0, 70, 0}, {1.5, 0, 70, 3.0}, {5.0, 0, 70, 3.0}}, false);
+  const Played air =
+      run({{0, 0, 0, 0}, {0.5, 0, 70, 0}, {1.5, 0, 70, 3.0}, {5.0, 0, 70, 3.0}}, false);
   const double before_mm = air.tool_mm(1500).z;
   EXPECT_EQ(air.ticks[4990].tissue_class, -1);
   EXPECT_GT(air.tool_mm(4990).z, before_mm - PointerHand::kReach_mm - PointerHand::kHover_mm - 1.0);
@@ -177,12 +188,12 @@ TEST(PointerHand, InAirGoesNoFartherThanItsReach) {
 TEST(PointerHand, ThatIsPutDownInAKerfComesOutAndRestsThereAndIsTakenUpSmoothly) {
   bool released = false;
   const Played rest = run({{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {5.0, 4, 0, 2.0}, {6.0, 4, 0, 0}}, true,
-                       [&](Session& session, double now_s) {
-                         if (now_s < 2.0 || now_s > 2.3 || released) return;
-                         // What waits is played first; from then on it is not in use.
-                         released = session.releaseHand(kArm);
-                         EXPECT_EQ(session.handPush_N(kArm), 0.0);
-                       });
+                          [&](Session& session, double now_s) {
+                            if (now_s < 2.0 || now_s > 2.3 || released) return;
+                            // What waits is played first; from then on it is not in use.
+                            released = session.releaseHand(kArm);
+                            EXPECT_EQ(session.handPush_N(kArm), 0.0);
+                          });
   ASSERT_TRUE(released);
   EXPECT_LT(fastest_mm(rest), 0.3);
 }
@@ -283,18 +294,33 @@ TEST(PointerHand, AnUndoTakesThePushAwayAndTheToolComesOut) {
   EXPECT_EQ(session.report().removed_voxels, 0u) << "and cut nothing since";
 }
 
+TEST(PointerHand, InTissueThatCameBackItComesOutFirstHoweverItIsPushed) {
+  bool reset = false;
+  const Played again = run({{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 4, 0, 2.0}, {6.0, 4, 0, 2.0}},
+                           true, [&](Session& session, double now_s) {
+                             if (now_s < 2.5 || reset) return;
+                             reset = session.send(CommandKind::reset);
+                             EXPECT_TRUE(session.setPush(kArm, 2.0));
+                           });
+  ASSERT_TRUE(reset);
+  std::size_t waited = 0;
+  for (const ArmRecord& arm : again.ticks) waited += (arm.tool_state & kToolWaits) != 0;
+  EXPECT_GT(waited, 50u);
+  EXPECT_LT(waited, 1500u);
+}
+
 TEST(PointerHand, PressesAsHardAfterAPauseAsBeforeAndStaysInIt) {
   std::vector<double> device_z;
-  const Played paused = run({{0, 4, 0, 0}, {0.5, 4, 0, 1.5}, {6.0, 4, 0, 1.5}}, false,
-                         [&](Session& session, double now_s) {
-                           if (now_s > 2.5 && now_s < 2.8) session.send(CommandKind::pause);
-                           if (now_s > 3.5 && now_s < 3.8) session.send(CommandKind::resume);
-                           if (now_s > 3.0 && now_s < 3.5) {
-                             EXPECT_EQ(session.state().record.arms[kArm].sent_N, Vec3(0.0));
-                             device_z.push_back(
-                                 session.state().record.arms[kArm].device_position_m.z);
-                           }
-                         });
+  const Played paused =
+      run({{0, 4, 0, 0}, {0.5, 4, 0, 1.5}, {6.0, 4, 0, 1.5}}, false,
+          [&](Session& session, double now_s) {
+            if (now_s > 2.5 && now_s < 2.8) session.send(CommandKind::pause);
+            if (now_s > 3.5 && now_s < 3.8) session.send(CommandKind::resume);
+            if (now_s > 3.0 && now_s < 3.5) {
+              EXPECT_EQ(session.state().record.arms[kArm].sent_N, Vec3(0.0));
+              device_z.push_back(session.state().record.arms[kArm].device_position_m.z);
+            }
+          });
   ASSERT_GE(device_z.size(), 2u);
   EXPECT_NEAR(device_z.front(), device_z.back(), 1e-4);
   EXPECT_NEAR(paused.sent_N(5990), 1.5, 0.2);
@@ -305,29 +331,30 @@ TEST(PointerHand, PressesAsHardAfterAPauseAsBeforeAndStaysInIt) {
 
 TEST(PointerHand, WithTurnsHandsAndClutchesReplaysBitForBit) {
   const Quat view = glm::angleAxis(0.4, Vec3(0, 0, 1));
-  const Played all = run({{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 8, 0, 0.3}, {3.0, 12, 4, 0}, {6.0, 12, 4, 1.0}},
-                      true, [&](Session& session, double now_s) {
-                        const auto at = [&](double t_s) { return now_s <= t_s && t_s < now_s + 0.256; };
-                        if (at(0.8)) session.turnHand(kArm, Vec3(0, 1, 0), 0.2);
-                        if (at(1.5)) {
-                          EXPECT_TRUE(session.clutch(kArm, true));
-                        }
-                        if (at(2.2)) {
-                          EXPECT_TRUE(session.clutch(kArm, false));
-                        }
-                        if (at(3.5)) {
-                          EXPECT_TRUE(session.clutch(kArm, true));
-                        }
-                        if (at(4.0)) {
-                          EXPECT_TRUE(session.clutch(kArm, false, view));
-                        }
-                        if (at(4.5)) {
-                          EXPECT_TRUE(session.recentre(kArm));
-                        }
-                        if (at(5.0)) {
-                          EXPECT_TRUE(session.releaseHand(kArm));
-                        }
-                      });
+  const Played all =
+      run({{0, 4, 0, 0}, {0.5, 4, 0, 2.0}, {2.0, 8, 0, 0.3}, {3.0, 12, 4, 0}, {6.0, 12, 4, 1.0}},
+          true, [&](Session& session, double now_s) {
+            const auto at = [&](double t_s) { return now_s <= t_s && t_s < now_s + 0.256; };
+            if (at(0.8)) session.turnHand(kArm, Vec3(0, 1, 0), 0.2);
+            if (at(1.5)) {
+              EXPECT_TRUE(session.clutch(kArm, true));
+            }
+            if (at(2.2)) {
+              EXPECT_TRUE(session.clutch(kArm, false));
+            }
+            if (at(3.5)) {
+              EXPECT_TRUE(session.clutch(kArm, true));
+            }
+            if (at(4.0)) {
+              EXPECT_TRUE(session.clutch(kArm, false, view));
+            }
+            if (at(4.5)) {
+              EXPECT_TRUE(session.recentre(kArm));
+            }
+            if (at(5.0)) {
+              EXPECT_TRUE(session.releaseHand(kArm));
+            }
+          });
   int of_the_arm = 0;
   for (const Event& event : all.events) of_the_arm += event.command.arm == int(kArm);
   EXPECT_EQ(of_the_arm, 5);

@@ -17,7 +17,7 @@ struct Inside {
 };
 
 inline void lookInside(const Volume& volume, const TissueTable& tissues, const BodyPart& part,
-                const Pose& pose_mm, Inside& inside) {
+                       const Pose& pose_mm, Inside& inside) {
   const GridGeometry& g = volume.geometry;
   const Vec3 from_mm = pose_mm.position + pose_mm.orientation * (1000.0 * part.from_m);
   const Vec3 along_mm = pose_mm.orientation * (1000.0 * (part.to_m - part.from_m));
