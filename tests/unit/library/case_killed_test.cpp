@@ -76,7 +76,7 @@ TEST(CaseKilled, WhileItIsSavedIsThereWholeOrNotAtAll) {
   }
   std::printf("[ figures  ] a save takes %.0f ms; of 20, %d ended before they were killed\n",
               std::chrono::duration<double, std::milli>(whole).count(), ended);
-  EXPECT_EQ(there, ended + 1);
+  EXPECT_GE(there, ended + 1);  // some were killed when it was there already
   EXPECT_LT(ended, 20);
 }
 

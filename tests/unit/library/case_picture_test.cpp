@@ -67,10 +67,11 @@ TEST(CasePicture, OfAHeadIsItsBoneAndNothingOfItsSkin) {
 }
 
 TEST(CasePicture, LeavesOutWhatIsBrightAndNoPartOfTheSkull) {
-  // A plate behind the head, towards the eye, as bright as bone.
+  // A plate behind the head and a screw beside it, towards the eye, as bright as bone.
   const auto with_plate = [](bool plate) {
     return painted(cube(100, 2.0), [=](const Vec3& at) {
       if (plate && at.y > 80.0 && at.y < 88.0 && std::abs(at.x) < 60.0) return 1200.0;
+      if (plate && glm::length(at - Vec3(50.0, 50.0, 22.0)) < 6.0) return 1200.0;
       return ball(at, Vec3(0.0), 60.0, 900.0, -1000.0);
     });
   };

@@ -76,6 +76,13 @@ TEST(NameWords, AreNotThoseOfStudyFolderOrFileAsAWhole) {
   }
 }
 
+TEST(NameWords, OfAFolderAreComparedInAnyOrder) {
+  SourceIdentity anonymous;
+  anonymous.addFile("/ct/DOE JANE/IM1");
+  EXPECT_TRUE(refused("Jane Doe", anonymous));
+  EXPECT_FALSE(refused("Jane Doe's liver", anonymous)) << "of folders only the whole is compared";
+}
+
 TEST(NameWords, OfFilesThatAreCountedAreRefusedByWhatTheyShare) {
   SourceIdentity source;
   for (int n = 1; n <= 900; ++n) source.addFile("/ct/Miller" + std::to_string(n) + ".dcm");

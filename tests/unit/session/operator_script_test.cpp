@@ -158,6 +158,7 @@ TEST(OperatorScript, ChangesNothingThatIsLocked) {
   json["commands"] = Json::array({{{"t", 0.5}, {"do", "undo"}}});
   EXPECT_TRUE(checkLocks(*parseOperatorScript(json, "script.json", scene),
                          {Lock::controller, Lock::tissues, Lock::rate}));
+}
 
 TEST(OperatorScript, ClutchesAnArmAndTurnsItsMapInLandmarkAxes) {
   Scene scene = withFixedMaps(cranium(), {{"vault", {}}});
