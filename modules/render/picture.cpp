@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "base/file.h"
+#include "base/purpose.h"
 
 namespace trephine {
 
@@ -148,6 +149,7 @@ Status writePng(const Picture& picture, const std::filesystem::path& file) {
   return replaceFile(file, [&](const std::filesystem::path& target) -> Status {
     vtkNew<vtkPNGWriter> writer;
     const ErrorFlag error(writer);
+    writer->AddText("Description", kPurpose);
     writer->SetFileName(target.c_str());
     writer->SetInputData(image);
     writer->Write();

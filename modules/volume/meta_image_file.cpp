@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/purpose.h"
 #include "volume/file_format.h"
 
 namespace trephine::file_format {
@@ -165,7 +166,7 @@ std::string exact(const Vec3& v) {
 std::string headerText(const GridGeometry& g, VoxelType type) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out << "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+  out << "ObjectType = Image\nNDims = 3\nComment = " << kPurpose << "\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       << "CompressedData = False\nTransformMatrix = " << exact(g.direction[0]) << " "
       << exact(g.direction[1]) << " " << exact(g.direction[2])
       << "\nOffset = " << exact(g.origin_mm) << "\nCenterOfRotation = 0 0 0\n"

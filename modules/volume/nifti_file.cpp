@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 
+#include "base/purpose.h"
 #include "volume/file_format.h"
 #include "volume/gzip_writer.h"
 #include "volume/voxel_reader.h"
@@ -172,7 +173,8 @@ std::string headerFor(const GridGeometry& g, VoxelType type) {
                                float(g.spacing_mm.y), float(g.spacing_mm.z), 1, 1, 1, 1});
   put(108, float(kVoxelsFrom));
   put(123, std::uint8_t(2));  // mm
-  put(148, std::array{'T', 'r', 'e', 'p', 'h', 'i', 'n', 'e'});
+  const std::string made = std::string("Trephine: ") + kPurpose;  // of 80 characters
+  std::copy_n(made.data(), std::min<std::size_t>(made.size(), 79), bytes.data() + 148);
   put(252, std::array<std::int16_t, 2>{1, 2});  // a scanner's place by qform, an aligned by sform
   put(256, std::array<float, 6>{float(q.x), float(q.y), float(q.z), float(ras[3].x),
                                 float(ras[3].y), float(ras[3].z)});

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "base/purpose.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/written_values.h"
 
@@ -71,6 +72,7 @@ OFCondition fillSlice(DcmDataset& data, const Writing& writing, int k, std::vect
   put(DCM_BodyPartExamined, writing.text.body_part);
   // General Image, Image Plane, CT Image.
   put(DCM_ImageType, "DERIVED\\PRIMARY\\AXIAL");
+  put(DCM_ImageComments, kPurpose);
   put(DCM_InstanceNumber, std::to_string(k + 1));
   put(DCM_ImagePositionPatient, decimalsText({position.x, position.y, position.z}));
   put(DCM_ImageOrientationPatient,

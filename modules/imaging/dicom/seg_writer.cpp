@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/memory.h"
+#include "base/purpose.h"
 #include "base/system.h"
 #include "imaging/common/cielab.h"
 #include "imaging/common/text.h"
@@ -296,6 +297,7 @@ Status writeSegmentation(const LabelMap& map, const std::vector<Written>& struct
   DcmFileFormat dicom;
   DcmDataset& data = *dicom.getDataset();
   if (step.good()) step(segmentation->writeDataset(data));
+  step(data.putAndInsertString(DCM_ImageComments, kPurpose));
   step(data.putAndInsertString(DCM_ContentDate, kNoDay));
   step(data.putAndInsertString(DCM_ContentTime, kNoTime));
   step(data.putAndInsertString(DCM_PatientName, cleanUtf8(text.patient_name).c_str()));

@@ -1,0 +1,137 @@
+// A picture of every workspace at every size, with a real case and a cut in progress, for whoever
+// looks at the window as a designer does. What a program can see of that is checked: no label is cut
+// off, none shows a dash alone, and what the page is for is said on it.
+#include <QComboBox>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QScreen>
+#include <QSignalSpy>
+#include <QtTest>
+#include <cstdlib>
+
+#include "gui_support.h"
+#include "ui/common/placing.h"
+#include "ui/common/words.h"
+
+using namespace trephine;
+
+namespace {
+constexpr int kLong_ms = 240000;
+}  // namespace
+
+class ScreensTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  QSize size_;
+  QString prefix_;
+
+  void take(const QString& name) {
+    QTest::qWait(1500);  // the views refine
+    const QString file = QString(TREPHINE_ARTEFACTS "/screen-%1-%2.png").arg(prefix_, name);
+    QVERIFY(window_->grab().save(file));
+    QStringList wrong;
+    for (const QLabel* label : window_->findChildren<QLabel*>()) {
+      if (!label->isVisible() || label->text().isEmpty() || !label->pixmap().isNull() ||
+          dynamic_cast<const ElidedLabel*>(label) || label->textFormat() == Qt::RichText) {
+        continue;
+      }
+      const QString what = label->objectName() + " \"" + label->text() + '"';
+      const int needed = label->wordWrap() ? label->heightForWidth(label->width())
+                                           : label->fontMetrics().boundingRect(
+                                                 QRect(0, 0, 4000, 4000), 0, label->text()).width();
+      const bool cut_off = label->wordWrap() ? needed > label->height() + 2
+                                             : needed > label->width() + 2;
+      if (cut_off) wrong << "cut off: " + what;
+    }
+    QVERIFY2(wrong.isEmpty(), qPrintable(name + ": " + wrong.join("; ")));
+    auto* purpose = find<QLabel>("purpose");
+    QCOMPARE(purpose->visibleRegion().boundingRect(), purpose->rect());
+  }
+
+ private slots:
+  void initTestCase() { QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS)); }
+
+  void everyWorkspace_data() {
+    QTest::addColumn<QSize>("size");
+    const bool scaled = qEnvironmentVariableIsSet("QT_SCALE_FACTOR");
+    if (scaled) {
+      QTest::newRow("1920x1080-at-2") << QSize(952, 504);
+      return;
+    }
+    QTest::newRow("1024x700") << QSize(1024, 700);
+    QTest::newRow("1280x800") << QSize(1280, 800);
+    QTest::newRow("1920x1080") << QSize(1920, 1050);
+  }
+  void everyWorkspace() {
+    QFETCH(QSize, size);
+    prefix_ = QTest::currentDataTag();
+    QFile::remove(windowSettings().fileName());
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath(prefix_ + "/sessions")));
+    window_->resize(size);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    QApplication::setActiveWindow(window_.get());
+    QTRY_VERIFY_WITH_TIMEOUT(find<QListWidget>("cases")->count() >= 2, kLong_ms);
+    take("cases-first");
+    window_->show(Place::train);
+    take("train-no-case");
+
+    // The real head, where it is at hand.
+    const char* data = std::getenv("TREPHINE_TEST_DATA");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    if (data) {
+      window_->open(std::filesystem::path(data) / "head-ct-gantry-tilt");
+      auto* import = find<QPushButton>("import");
+      QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
+      take("import");
+      QTest::mouseClick(import, Qt::LeftButton);
+      auto* open_case = find<QPushButton>("openCase");
+      QTRY_VERIFY_WITH_TIMEOUT(open_case->isVisible() || opened.count() > 0, kLong_ms);
+      if (open_case->isVisible()) {
+        take("import-asking");
+        for (const char* keep : {"choice_FACE_keep", "choice_COUCH_keep"}) {
+          if (auto* choice = window_->findChild<QRadioButton*>(keep)) choice->click();
+        }
+        QTest::mouseClick(open_case, Qt::LeftButton);
+      }
+      QTRY_VERIFY_WITH_TIMEOUT(opened.count() > 0, kLong_ms);
+      QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
+    } else {
+      prepareBuiltIn("cranium");
+      QTRY_VERIFY_WITH_TIMEOUT(opened.count() > 0, kLong_ms);
+    }
+    showTissues();
+    window_->findChild<TissuePanel*>()->select("bone");
+    take("prepare-tissues");
+    showStructures();
+    take("prepare-structures");
+    window_->show(Place::train);
+    take("train-card");
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    take("train-ready");
+    cut({60, 0});
+    takeHand(Hand::right);
+    pushHand(8);
+    QTest::qWait(2000);
+    take("train-cutting");
+    find<QAction>("pause")->trigger();
+    take("train-paused");
+    find<QAction>("stop")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+    take("train-result");
+    window_->show(Place::review);
+    take("review");
+    window_->show(Place::cases);
+    take("cases");
+    window_.reset();
+  }
+};
+
+int main(int argc, char** argv) { return test::runInWindow<ScreensTest>(argc, argv); }
+
+#include "screens_test.moc"
