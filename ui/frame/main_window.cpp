@@ -119,7 +119,7 @@ void MainWindow::restoreColumns() {
   if (room(place_).parts.page) return;
   const std::string key = std::string(settings::kColumns) + room(place_).name;
   const QByteArray kept = read(Setting<QByteArray>{key.c_str(), {}});
-  const int all = columns_->width();
+  const int all = centralWidget()->width() - rail_->width();  // it may not be laid out yet
   const QWidget *left = room(place_).parts.left, *right = room(place_).parts.right;
   const int left_width = left ? left->sizeHint().width() : 0;
   const int right_width = right ? right->sizeHint().width() : 0;

@@ -7,6 +7,7 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QRegularExpression>
+#include <QSet>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
@@ -33,11 +34,13 @@ QString keysOf(const QAction& action) {
   return keys.join(ShortcutsPage::tr(" or "));
 }
 
-void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions) {
+void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions,
+             QSet<const QAction*>& listed) {
   for (const QAction* action : actions) {
     if (action->menu()) {
-      addRows(group, action->menu()->actions());
-    } else if (!action->shortcut().isEmpty()) {
+      addRows(group, action->menu()->actions(), listed);
+    } else if (!action->shortcut().isEmpty() && !listed.contains(action)) {
+      listed.insert(action);
       new QTreeWidgetItem(group, {plain(action->text()), keysOf(*action), meaning(*action)});
     }
   }
@@ -65,12 +68,16 @@ ShortcutsPage::ShortcutsPage(const QMainWindow& window,
     group->setFirstColumnSpanned(true);
     return group;
   };
-  for (const QAction* menu : window.menuBar()->actions()) {
-    if (!menu->menu()) continue;
-    QTreeWidgetItem* group = addGroup(plain(menu->text()));
-    addRows(group, menu->menu()->actions());
+  QSet<const QAction*> listed;
+  const auto addAll = [&](const QString& title, const QList<QAction*>& actions) {
+    QTreeWidgetItem* group = addGroup(title);
+    addRows(group, actions, listed);
     if (group->childCount() == 0) delete group;
+  };
+  for (const QAction* menu : window.menuBar()->actions()) {
+    if (menu->menu()) addAll(plain(menu->text()), menu->menu()->actions());
   }
+  addAll(tr("In lists and panels"), window.findChildren<QAction*>());
   for (const auto& [title, words] : views) {
     QTreeWidgetItem* group = addGroup(title);
     // "Key: what it does. Key: ..."

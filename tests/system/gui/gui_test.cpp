@@ -227,6 +227,7 @@ class GuiTest : public test::WindowTest {
     QVERIFY(view().shownVolume().geometry.size == written_.geometry.size);
     QVERIFY(view().shownVolume().hu == written_.hu);
 
+    QTest::qWait(500);  // the workspace is laid out
     opened_ = casePicture();
     QVERIFY(opened_.width > 0);
     Picture empty = opened_;

@@ -13,6 +13,7 @@
 
 #include "gui_support.h"
 #include "ui/common/words.h"
+#include "tissue/tissue_edits.h"
 #include "ui/train/trace_view.h"
 
 using namespace trephine;
@@ -117,6 +118,7 @@ class TrainGuiTest : public test::WindowTest {
     QTRY_VERIFY(find<QLabel>("exerciseRemoved")->text().contains("Bone"));
     key(Qt::Key_Z, Qt::ControlModifier);
     QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) < removed, 10000);
+    QTRY_VERIFY(find<QAction>("redo")->isEnabled());
     key(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) == removed, 10000);
     QSignalSpy saved(&workstation(), &Workstation::saved);
@@ -241,7 +243,6 @@ class TrainGuiTest : public test::WindowTest {
     auto* hand = find<QComboBox>("mainHand");
     hand->setCurrentIndex(hand->findData("left"));
     find<QDoubleSpinBox>("pushStep")->setValue(0.5);
-    find<QDialog>("settingsDialog")->findChild<QPushButton*>()->window();
     for (QPushButton* button : find<QDialog>("settingsDialog")->findChildren<QPushButton*>()) {
       if (button->text().contains("Save")) QTest::mouseClick(button, Qt::LeftButton);
     }

@@ -313,10 +313,6 @@ TEST_F(PanelTest, NoCaseIsOpenedWhileAnExerciseRunsOrAnotherIsBeingOpened) {
   panel.setOpeningAllowed(false);
   EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
   panel.setOpeningAllowed(true);
-  panel.showProgress(0.5, "Reading");
-  EXPECT_FALSE(folder.isEnabled() || another.isEnabled());
-  panel.endProgress();
-  EXPECT_TRUE(folder.isEnabled() && another.isEnabled());
 }
 
 TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
