@@ -56,13 +56,15 @@ void MainWindow::show(Place place) {
 // A column that the workspace has nothing for, or that a person has hidden, is not there.
 void MainWindow::showPanels() {
   const Workspace::Parts& parts = room(place_).parts;
-  const auto put = [](QStackedWidget* into, QWidget* part, bool wanted) {
-    if (part) into->setCurrentWidget(part);
-    into->setVisible(part && wanted);
+  const auto put = [this](QWidget* into, QWidget* Workspace::Parts::*part, bool wanted) {
+    for (const Room& one : rooms_) {
+      if (QWidget* its = one.parts.*part) its->setVisible(one.place == place_);
+    }
+    into->setVisible(room(place_).parts.*part && wanted);
   };
-  put(left_, parts.left, left_panel_->isChecked());
-  put(right_, parts.right, right_panel_->isChecked());
-  put(below_, parts.below, true);
+  put(left_, &Workspace::Parts::left, left_panel_->isChecked());
+  put(right_, &Workspace::Parts::right, right_panel_->isChecked());
+  put(below_, &Workspace::Parts::below, true);
   left_panel_->setEnabled(parts.left);
   right_panel_->setEnabled(parts.right);
 }

@@ -94,7 +94,8 @@ class MainWindow : public QMainWindow {
   std::array<Room, 4> rooms_;  // by place
   Place place_ = Place::cases;
   Rail* rail_;
-  QStackedWidget *pages_, *left_, *below_, *right_;
+  QStackedWidget* pages_;
+  QWidget *left_, *below_, *right_;  // each holds one part a workspace
   QWidget* views_page_;
   QSplitter* columns_;
   QToolBar* bar_;

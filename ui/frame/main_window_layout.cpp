@@ -42,17 +42,19 @@ void MainWindow::buildWorkspaces() {
             Room{Place::review, "review", review_, {}, {}}};
   rail_ = new Rail(*this);
   pages_ = new QStackedWidget;
-  left_ = new QStackedWidget;
-  below_ = new QStackedWidget;
-  right_ = new QStackedWidget;
-  below_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
+  // Not stacks: those would be as wide as their widest page, whichever is shown.
+  for (QWidget** slot : {&left_, &below_, &right_}) {
+    *slot = new QWidget;
+    auto* slot_layout = new QVBoxLayout(*slot);
+    slot_layout->setContentsMargins(0, 0, 0, 0);
+  }
   for (Room& one : rooms_) {
     one.parts = one.workspace->parts();
     rail_->add(one.place, *one.workspace);
     if (one.parts.page) pages_->addWidget(one.parts.page);
-    if (one.parts.left) left_->addWidget(one.parts.left);
-    if (one.parts.right) right_->addWidget(one.parts.right);
-    if (one.parts.below) below_->addWidget(one.parts.below);
+    if (one.parts.left) left_->layout()->addWidget(one.parts.left);
+    if (one.parts.right) right_->layout()->addWidget(one.parts.right);
+    if (one.parts.below) below_->layout()->addWidget(one.parts.below);
   }
   auto* middle = new QWidget;
   auto* middle_layout = new QVBoxLayout(middle);

@@ -5,7 +5,7 @@
 namespace trephine {
 
 namespace {
-constexpr int kIcon = 26, kWidth = 76;
+constexpr int kIcon = 24, kWidth = 66;
 }  // namespace
 
 Rail::Rail(QWidget& window) : QWidget(&window), window_(window) {

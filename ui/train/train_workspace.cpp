@@ -16,7 +16,7 @@ namespace trephine {
 namespace {
 
 constexpr int kFrame_ms = 16;
-constexpr int kLeftWidth = 240;
+constexpr int kLeftWidth = 165;
 
 }  // namespace
 

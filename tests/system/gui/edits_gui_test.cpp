@@ -91,15 +91,23 @@ class EditsGuiTest : public test::WindowTest {
     auto* scenes = find<QComboBox>("scenes");
     const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
     QWidget* tabs = find<QTabWidget>("prepareTabs")->tabBar();
-    for (QWidget* widget :
-         {find<QWidget>("huLow"), find<QWidget>("huHigh"), find<QWidget>("damping"),
-          find<QWidget>("stiffness"), find<QWidget>("friction"), find<QWidget>("opacity"),
-          find<QWidget>("controller"), find<QWidget>("scenes"), tabs}) {
-      QVERIFY2(widget->isVisible(), qPrintable(widget->objectName()));
-      wheelOver(widget, -3);
-      wheelOver(widget, 1);
-      QVERIFY2(view().hasFocus(), qPrintable(widget->objectName()));
+    const QList<QWidget*> of_prepare{find<QWidget>("huLow"),     find<QWidget>("huHigh"),
+                                     find<QWidget>("damping"),   find<QWidget>("stiffness"),
+                                     find<QWidget>("friction"),  find<QWidget>("opacity"),
+                                     find<QWidget>("scenes"),    tabs};
+    for (Place place : {Place::prepare, Place::train}) {
+      window_->show(place);
+      QTest::qWait(50);
+      view().setFocus();
+      for (QWidget* widget :
+           place == Place::prepare ? of_prepare : QList<QWidget*>{controller, scenes}) {
+        QVERIFY2(widget->isVisible(), qPrintable(widget->objectName()));
+        wheelOver(widget, -3);
+        wheelOver(widget, 1);
+        QVERIFY2(view().hasFocus(), qPrintable(widget->objectName()));
+      }
     }
+    showTissues();
     QVERIFY(sameSet(workstation().scene()->tissues, tissues));
     QCOMPARE(controller->currentIndex(), controller_was);
     QCOMPARE(scenes->currentIndex(), scene_was);
@@ -241,6 +249,7 @@ class EditsGuiTest : public test::WindowTest {
     find<QAction>("start")->trigger();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     wheelOverEverythingChangesNothing();
+    window_->show(Place::train);
     auto* controller = find<QComboBox>("controller");
     controller->setFocus();
     QTest::keyClick(controller, Qt::Key_PageDown);
@@ -255,6 +264,7 @@ class EditsGuiTest : public test::WindowTest {
   }
 
   void afterTypingPageUpIsTheHandsAndNotTheThresholds() {
+    showTissues();
     enter("huLow", "230");
     QCOMPARE(bone().hu_min, 230);
     QVERIFY(view().hasFocus());
@@ -271,8 +281,10 @@ class EditsGuiTest : public test::WindowTest {
     QVERIFY(felt->isVisible());
     QVERIFY2(felt->text().contains("at most"), qPrintable(felt->text()));
     auto* controller = find<QComboBox>("controller");
+    window_->show(Place::train);
     choose(controller, controller->findData(int(ControllerKind::off)));
     QVERIFY(view().hasFocus());
+    showTissues();
     QTRY_VERIFY(!felt->text().contains("at most"));
     QVERIFY2(felt->text().contains("may shake"), qPrintable(felt->text()));
     keepGrab("felt-off-1280x800.png");

@@ -106,6 +106,7 @@ class EntryGuiTest : public test::WindowTest {
     QVERIFY(glm::length(entry().position_mm - place) < 1e-9);
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    window_->show(Place::prepare);
   }
 
   void aClickOnWhatIsSeenIn3DPlacesItThere() {

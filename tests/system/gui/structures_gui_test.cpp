@@ -258,6 +258,10 @@ class StructuresGuiTest : public test::WindowTest {
 
   void whileItRunsStructuresStayAndSayWhy() {
     const double before = ml("liver");
+    showStructures();
+    views().setLayout({ViewLayout::Kind::four, 0});
+    QTest::qWait(200);
+    views().setTool(SliceTool::brush);
     drag(in_liver_mm_, in_liver_mm_ + Vec3(10, 0, 0));
     --clicks_;
     QCOMPARE(ml("liver"), before);
