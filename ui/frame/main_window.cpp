@@ -5,6 +5,7 @@
 #include <QMimeData>
 #include <QStatusBar>
 #include <QTimer>
+#include <algorithm>
 #include <utility>
 
 #include "base/system.h"
@@ -123,7 +124,8 @@ void MainWindow::restoreColumns() {
   const QByteArray kept = read(Setting<QByteArray>{key.c_str(), {}});
   const int all = centralWidget()->width() - rail_->width();  // it may not be laid out yet
   const QWidget *left = room(place_).parts.left, *right = room(place_).parts.right;
-  const int left_width = left ? left->sizeHint().width() : 0;
+  // The views are what one looks at: a column of words has a fifth at most.
+  const int left_width = left ? std::min(left->sizeHint().width(), all / 5) : 0;
   const int right_width = right ? right->sizeHint().width() : 0;
   if (kept.isEmpty() || !columns_->restoreState(kept)) {
     columns_->setSizes({left_width, all - left_width - right_width, right_width});

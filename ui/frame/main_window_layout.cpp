@@ -147,7 +147,7 @@ void MainWindow::buildBars() {
   opening_row->addWidget(opening_);
   opening_row->addWidget(cancel);
   opening_box_->hide();
-  rates_ = new QLabel;
+  rates_ = new ElidedLabel;
   rates_->setObjectName("rates");
   rates_->setProperty("quiet", true);
   locked_ = new QLabel(tr("Locked"));

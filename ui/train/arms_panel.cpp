@@ -54,7 +54,7 @@ QString forceScaleWords(const SceneArm& arm) {
 ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   auto* inside = new QWidget(this);
   cards_layout_ = new QVBoxLayout(inside);
-  cards_layout_->setContentsMargins(10, 10, 10, 10);
+  cards_layout_->setContentsMargins(6, 8, 6, 8);
   cards_layout_->setSpacing(10);
   auto* area = new QScrollArea(this);
   area->setWidget(inside);
@@ -168,7 +168,7 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   changed->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   form->addRow(changed, card.parts);
   auto* layout = new QVBoxLayout(frame);
-  layout->setContentsMargins(10, 8, 10, 8);
+  layout->setContentsMargins(8, 8, 8, 8);
   layout->setSpacing(6);
   layout->addWidget(title);
   layout->addWidget(card.bar);

@@ -94,7 +94,7 @@ void TraceView::paintEvent(QPaintEvent*) {
   const QRectF words(0, 0, width(), line);
   painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, title_);
   painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter,
-                   tr("%1 to %2 %3, 10 s")
+                   tr("%1 to %2 %3")
                        .arg(low, 0, 'g', 3)
                        .arg(high, 0, 'g', 3)
                        .arg(unit_));

@@ -16,7 +16,7 @@ namespace trephine {
 namespace {
 
 constexpr int kFrame_ms = 16;
-constexpr int kLeftWidth = 165;
+constexpr int kLeftWidth = 165, kRightWidth = 262;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   notice_ = new StateNotice(views_);
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
-  arms_->setMinimumWidth(240);
+  arms_->setMinimumWidth(kRightWidth);
   exercise_ = new ExercisePanel;
   exercise_page_ = scrolled(exercise_, "exercisePage");
   exercise_page_->setMinimumWidth(kLeftWidth);
