@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
@@ -229,7 +230,8 @@ const CaseEntry* CasesPage::chosen() const {
 
 void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   const CaseEntry* before = chosen();
-  const std::string keep = before ? before->id : open_;
+  std::string keep = before ? before->id : open_;
+  if (!to_select_.empty()) keep = std::exchange(to_select_, {});
   std::map<std::string, QImage> pictures;  // that were made here
   for (const CaseEntry& entry : entries_) pictures[entry.id] = entry.picture;
   entries_ = entries;

@@ -24,6 +24,7 @@ class CasesPage : public QWidget {
   // A card that another was made of in the meantime, its picture perhaps.
   void showPicture(const std::string& id, const QImage& picture);
   void select(const std::string& id);
+  void selectOnceThere(const std::string& id) { to_select_ = id; }  // with the next list
   // Which is open (an id), and a few lines about it; `saved`: the library has it.
   void showOpen(const std::string& id, const QString& about, bool saved);
   // The one that was open last, by id; empty: none.
@@ -61,7 +62,7 @@ class CasesPage : public QWidget {
   void takeNextStep(bool train);
 
   std::vector<CaseEntry> entries_;
-  std::string open_, recent_;
+  std::string open_, recent_, to_select_;
   bool open_saved_ = true, any_open_ = false;
   QString open_about_, said_;
   bool at_hand_ = false, allowed_ = true;

@@ -45,7 +45,7 @@ CasesWorkspace::CasesWorkspace(Bench& bench)
     : Workspace(&bench),
       bench_(bench),
       workstation_(bench.workstation()),
-      library_(std::make_shared<CaseLibrary>(bench.storage())) {
+      library_(bench.library()) {
   QWidget& window = *bench.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
@@ -261,7 +261,7 @@ void CasesWorkspace::saveCase() {
 
 void CasesWorkspace::saved(const SavedCase& saved) {
   import_to_save_.reset();
-  workstation_.setStored(saved.record.id);
+  workstation_.setStored(saved.record.id, saved.record.name);
   const QString name = toQt(saved.record.name);
   write(settings::kRecentCases,
         (QStringList{toQt(saved.record.id)} + read(settings::kRecentCases)).mid(0, kMostRecent));
@@ -270,7 +270,7 @@ void CasesWorkspace::saved(const SavedCase& saved) {
       tr("Saved as \"%1\", without a word of who the patient is. You may remove the stick.")
           .arg(name);
   page_->sayInStrip(words);
-  page_->select(saved.record.id);
+  page_->selectOnceThere(saved.record.id);
   bench_.say(words);
   emit caseSaved(name);
 }
@@ -282,6 +282,11 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
       },
       [this](Result<CaseRecord> renamed) {
         if (!renamed) return bench_.report(renamed.error());
+        const std::optional<Case>& open = workstation_.currentCase();
+        if (open && open->stored == renamed->id) {
+          workstation_.setStored(renamed->id, renamed->name);
+          showCase();
+        }
         list();
         bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
       });

@@ -56,7 +56,7 @@ class CasesWorkspace : public Workspace {
   QStackedWidget* pages_;
   CasesPage* page_;
   ImportPage* import_;
-  std::shared_ptr<CaseLibrary> library_;
+  std::shared_ptr<CaseLibrary> library_;  // the bench's
   std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
   Place then_ = Place::prepare;            // once the case that opens is there
   bool list_again_ = false;

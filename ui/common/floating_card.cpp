@@ -16,6 +16,7 @@ void FloatingCard::place() {
   if (!layout()) return;
   const QWidget* over = parentWidget();
   const int width = std::min(widest_, over->width() - 2 * kMargin);
+  fit(width, over->height() - 2 * kMargin);
   layout()->activate();
   const int wanted = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(width)
                                                    : layout()->totalSizeHint().height();

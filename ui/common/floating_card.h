@@ -17,6 +17,8 @@ class FloatingCard : public QFrame {
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  // Leaves away what has no room: the card is so wide, and so high at most.
+  virtual void fit(int /*width*/, int /*most_height*/) {}
   void showEvent(QShowEvent* event) override;
 
  private:

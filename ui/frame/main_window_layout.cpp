@@ -168,7 +168,7 @@ void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu(tr("&File"));
   file->addActions(cases_->openActions());
   file->addSeparator();
-  file->addActions({picture_, volume_});
+  file->addActions({prepare_->saveInCaseAction(), volume_, picture_});
   file->addSeparator();
   file->addActions({settings_, unlock_});
   file->addSeparator();

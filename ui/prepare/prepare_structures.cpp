@@ -10,6 +10,7 @@
 #include "imaging/segmentation/overlap_order.h"
 #include "imaging/structure_importer.h"
 #include "scene/entry_point.h"
+#include "scene/scene_structures.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/prepare/prepare_workspace.h"
@@ -451,11 +452,56 @@ void PrepareWorkspace::saveStructuresThen(Bench::Next then) {
   dialog->open();
 }
 
+bool PrepareWorkspace::isStored() const {
+  const std::optional<Case>& of = workstation_.currentCase();
+  return of && !of->stored.empty();
+}
+
+void PrepareWorkspace::saveInCase(Bench::Next then) {
+  if (!isStored()) {
+    return bench_.say(tr("This case is not one of the library's: save to a file instead."));
+  }
+  std::shared_ptr<const LabelMap> map;  // null: as it was
+  if (editor_.edited()) {
+    map = editor_.finished();
+    if (!map) {  // none is left
+      LabelMap none;
+      none.geometry = workstation_.currentCase()->volume->geometry;
+      map = std::make_shared<const LabelMap>(std::move(none));
+    }
+  }
+  const std::uint64_t changes = editor_.changes();
+  std::optional<TissueSet> tissues;
+  if (workstation_.tissuesEdited()) tissues = workstation_.scene()->tissues;
+  workstation_.save(
+      tr("Structures and tissues are saved in the case."),
+      [library = bench_.library(), id = workstation_.currentCase()->stored, map,
+       tissues](const Progress& progress) -> Status {
+        if (map) {
+          const auto saved = library->saveStructures(id, *map, progress);
+          if (!saved) return saved.error();
+        }
+        return tissues ? library->saveTissues(id, toJson(unplaced(*tissues))) : Status();
+      },
+      [this, changes, tissues, then = std::move(then)] {
+        editor_.markSaved(changes);
+        if (tissues) workstation_.tissuesSaved(*tissues);
+        if (then) then();
+      });
+}
+
 void PrepareWorkspace::unlessStructuresAreLost(Bench::Next go_on) {
   if (!editor_.edited()) return go_on();
   QMessageBox* question = ask(bench_.window(), "structuresUnsaved",
                               tr("The structures have been made or changed and not saved."),
                               tr("Going on takes them away."), tr("&Go on without them"), go_on);
+  if (isStored()) {
+    auto* in_case = question->addButton(tr("Save in the &case"), QMessageBox::AcceptRole);
+    in_case->setObjectName("saveInCaseFirst");
+    connect(
+        in_case, &QPushButton::clicked, this, [this, go_on] { saveInCase(go_on); },
+        Qt::QueuedConnection);
+  }
   auto* save = question->addButton(tr("&Save structures\u2026"), QMessageBox::AcceptRole);
   save->setObjectName("saveFirst");
   connect(

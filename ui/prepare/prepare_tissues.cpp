@@ -140,11 +140,14 @@ void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
                               bench_.window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(tr("Save them to a file? Discarded changes cannot be had back."));
+  box->setInformativeText(
+      isStored() ? tr("Save them in the case? Discarded changes cannot be had back.")
+                 : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
   connect(box, &QMessageBox::finished, this, [this, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
+    if (isStored()) return saveInCase(go_on);
     QFileDialog* dialog = bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
     connect(dialog, &QFileDialog::fileSelected, this,
             [this, go_on](const QString& file) { workstation_.saveTissues(toPath(file), go_on); });

@@ -1,5 +1,6 @@
 #include "ui/prepare/prepare_workspace.h"
 
+#include "ui/common/actions.h"
 #include "ui/common/placing.h"
 
 namespace trephine {
@@ -10,6 +11,10 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
       workstation_(bench.workstation()),
       views_(&bench.views()),
       view_(&bench.view()) {
+  save_in_case_ = makeAction(*bench.window(), Symbol::save, "saveInCase", tr("Save in the case"),
+                             QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S),
+                             tr("Keep changed structures and tissues in the case"));
+  connect(save_in_case_, &QAction::triggered, this, [this] { saveInCase({}); });
   tissues_ = new TissuePanel;
   structures_ = new StructurePanel(editor_);
   tabs_ = new QTabWidget;

@@ -30,6 +30,7 @@ class PrepareWorkspace : public Workspace {
   // The structure that the exercise needs and the case lacks: with the tool that makes it.
   void makeMissing();
   bool structuresEdited() const { return editor_.edited(); }
+  QAction* saveInCaseAction() const { return save_in_case_; }
 
  private:
   void connectTissues();
@@ -69,6 +70,9 @@ class PrepareWorkspace : public Workspace {
   void askToSaveStructures();
   void saveStructuresThen(Bench::Next then);
   void unlessStructuresAreLost(Bench::Next go_on);
+  // Structures and tissues, where they have been changed, into the case of the library.
+  bool isStored() const;
+  void saveInCase(Bench::Next then);
   // Where the exercise enters; from nowhere: out of what was clicked.
   void placeEntry(const Vec3& at_mm, const Vec3& from_mm);
   void leaveEntry();
@@ -85,6 +89,7 @@ class PrepareWorkspace : public Workspace {
   FourUp* views_;
   ViewWidget* view_;
   StructureEditor editor_;
+  QAction* save_in_case_;
   QTabWidget* tabs_;
   TissuePanel* tissues_;
   StructurePanel* structures_;

@@ -72,15 +72,22 @@ void StartCard::showExercise(const Scene& scene, const QString& language, bool m
   goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
   steps_->setText(card ? stepsWords(*card) : QString());
   hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
-  steps_->setVisible(card && !card->steps.empty());
-  for (QWidget* part : {static_cast<QWidget*>(hands_), static_cast<QWidget*>(keys_),
-                        static_cast<QWidget*>(start_)}) {
-    part->show();
-  }
+  start_->show();
   start_->setEnabled(may_start);
   choose_->hide();
   show();
   place();
+}
+
+// The panel at the left says all of it, too.
+void StartCard::fit(int width, int most_height) {
+  if (start_->isHidden()) return;
+  for (QLabel* part : {steps_, hands_, keys_}) part->setVisible(!part->text().isEmpty());
+  for (QLabel* part : {keys_, hands_, steps_}) {
+    layout()->activate();
+    if (layout()->totalHeightForWidth(width) <= most_height) return;
+    part->hide();
+  }
 }
 
 }  // namespace trephine

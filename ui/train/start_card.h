@@ -22,6 +22,9 @@ class StartCard : public FloatingCard {
   void startWanted();
   void caseWanted();
 
+ protected:
+  void fit(int width, int most_height) override;
+
  private:
   QLabel *title_, *goal_, *steps_, *hands_, *keys_;
   QPushButton *start_, *choose_;

@@ -31,6 +31,7 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
       window_(window),
       storage_(recordings.empty() ? storageFolder(policy) : recordings.parent_path()),
       recordings_(recordings.empty() ? storage_ / "sessions" : std::move(recordings)),
+      library_(std::make_shared<CaseLibrary>(storage_)),
       views_(new FourUp(&window)),
       workstation_(policy) {
   undo_ = makeAction(window_, Symbol::undo, "undo", tr("Undo"), QKeySequence(Qt::CTRL | Qt::Key_Z),

@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "library/case_library.h"
 #include "ui/views/four_up.h"
 #include "ui/work/workspace.h"
 #include "ui/work/workstation.h"
@@ -33,6 +34,8 @@ class Bench : public QObject {
   QWidget* window() const { return &window_; }
   const std::filesystem::path& recordings() const { return recordings_; }
   const std::filesystem::path& storage() const { return storage_; }
+  // For work in the background.
+  const std::shared_ptr<CaseLibrary>& library() const { return library_; }
 
   // Of the exercise while one runs, else of what is prepared: who serves them enables them.
   QAction* undoAction() const { return undo_; }
@@ -93,6 +96,7 @@ class Bench : public QObject {
 
   QMainWindow& window_;
   std::filesystem::path storage_, recordings_;
+  std::shared_ptr<CaseLibrary> library_;
   FourUp* views_;
   Workstation workstation_;
   std::array<Guard, 3> guards_;

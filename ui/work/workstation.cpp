@@ -265,8 +265,10 @@ void Workstation::openStored(std::function<Result<Stored>(const Progress&)> load
   openInBackground(std::move(opening));
 }
 
-void Workstation::setStored(const std::string& id) {
-  if (case_) case_->stored = id;
+void Workstation::setStored(const std::string& id, const std::string& name) {
+  if (!case_) return;
+  case_->stored = id;
+  if (!name.empty()) case_->name = name;  // what its series was called may name somebody
 }
 
 // What a person is asked of a file that could be used as it is; the file is then not used yet.

@@ -42,8 +42,8 @@ class Workstation : public QObject {
     std::optional<TissueSet> tissues;
   };
   void openStored(std::function<Result<Stored>(const Progress&)> load);
-  // The library has the open case now, as that id, or no longer.
-  void setStored(const std::string& id);
+  // The library has the open case now, as that id and under that name, or no longer.
+  void setStored(const std::string& id, const std::string& name = {});
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
   void useScene(const std::filesystem::path& file);
   // The structures of the open case from a file; what a person has to decide comes as
@@ -110,6 +110,8 @@ class Workstation : public QObject {
   bool tissuesEdited() const;
   // Others were, which wait for a case unlike the open one.
   bool tissuesWait() const { return edited_other_.has_value(); }
+  // They are these on disk now.
+  void tissuesSaved(const TissueSet& as) { declared_tissues_ = as; }
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 

@@ -127,6 +127,10 @@ class CasesGuiTest : public test::WindowTest {
     QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 3, kLong_ms);
     QVERIFY2(idOfMine().startsWith("head-"), qPrintable(idOfMine()));
     QVERIFY(find<QLabel>("nextStepTitle")->text().contains("remove the stick"));
+    // From here on it is called by its name alone, and it is the one that is chosen.
+    QVERIFY2(!find<QLabel>("caseLabel")->text().contains("Jane"),
+             qPrintable(find<QLabel>("caseLabel")->text()));
+    QCOMPARE(cards()->currentItem()->data(Qt::UserRole).toString(), idOfMine());
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/cases-saved.png"));
   }
 
@@ -180,6 +184,28 @@ class CasesGuiTest : public test::WindowTest {
     QCOMPARE(workstation().currentCase()->sha256, sha);
     QCOMPARE(workstation().currentCase()->stored, id.toStdString());
     QVERIFY(window_->place() == Place::prepare);
+  }
+
+  void whatIsPreparedIsKeptInTheCase() {
+    showTissues();
+    window_->findChild<TissuePanel*>()->select("bone");
+    auto* damping = find<QDoubleSpinBox>("damping");
+    const double before = damping->value();
+    damping->setValue(before + 1.0);
+    QVERIFY(workstation().tissuesEdited());
+    QSignalSpy saved(&workstation(), &Workstation::saved);
+    find<QAction>("saveInCase")->trigger();
+    QVERIFY(saved.count() == 1 || saved.wait(kLong_ms));
+    QVERIFY(!workstation().tissuesEdited());
+    prepareBuiltIn("abdomen");
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().currentCase()->built_in && !workstation().isOpening(),
+                             kLong_ms);
+    window_->show(Place::cases);
+    choose(idOfMine());
+    QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
+    QCOMPARE(workstation().scene()->tissues.find("bone")->damping_Ns_per_m.value, before + 1.0);
+    QVERIFY(!workstation().tissuesEdited());
   }
 
   void aFolderThatIsRenamedUnderneathIsSaidAndTheCaseIsFoundAgain() {

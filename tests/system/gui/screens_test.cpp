@@ -110,6 +110,7 @@ class ScreensTest : public test::WindowTest {
     take("prepare-structures");
     window_->show(Place::train);
     take("train-card");
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     window_->startExercise();
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
