@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/purpose.h"
 #include "volume/two_threads.h"
 
 namespace trephine {
@@ -361,7 +362,7 @@ CasePicture casePicture(const Volume& volume, BodyRegion region) {
 
 std::string pngOf(const CasePicture& picture) {
   QImage image(picture.rgb.data(), kWidth, kHeight, kWidth * 3, QImage::Format_RGB888);
-  image.setText("Description", "For training, not for diagnosis or treatment planning");
+  image.setText("Description", kPurpose);
   QBuffer png;
   png.open(QBuffer::WriteOnly);
   image.save(&png, "PNG");

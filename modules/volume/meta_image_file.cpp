@@ -166,7 +166,8 @@ std::string exact(const Vec3& v) {
 std::string headerText(const GridGeometry& g, VoxelType type) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out << "ObjectType = Image\nNDims = 3\nComment = " << kPurpose << "\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+  out << "ObjectType = Image\nNDims = 3\nComment = " << kPurpose
+      << "\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       << "CompressedData = False\nTransformMatrix = " << exact(g.direction[0]) << " "
       << exact(g.direction[1]) << " " << exact(g.direction[2])
       << "\nOffset = " << exact(g.origin_mm) << "\nCenterOfRotation = 0 0 0\n"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "file_size_limit.h"
 #include "support.h"
 
 namespace trephine {
@@ -26,27 +27,6 @@ std::string contentOf(const fs::path& file) {
 std::size_t filesIn(const fs::path& folder) {
   return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
-
-// Stands in for a full disk: a write past `bytes` fails with EFBIG while this lives.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    rlimit lower = limit_;
-    lower.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &lower);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit limit_{};
-};
 
 TEST(WriteTextFile, WritesANewFile) {
   const test::TemporaryFolder folder;
@@ -69,7 +49,7 @@ TEST(WriteTextFile, KeepsTheOldFileWhenTheDiskIsFull) {
   ASSERT_TRUE(writeTextFile(file, "old"));
   Status status;
   {
-    FileSizeLimit limit(4096);
+    test::FileSizeLimit limit(4096);
     status = writeTextFile(file, std::string(100000, 'x'));
   }
   ASSERT_FALSE(status);

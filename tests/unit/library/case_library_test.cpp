@@ -12,6 +12,7 @@
 
 #include "base/json.h"
 #include "cases.h"
+#include "file_size_limit.h"
 #include "imaging/importer.h"
 
 namespace trephine {
@@ -345,31 +346,10 @@ TEST_F(CaseLibraryTest, GivesTwoThatSaveAtOnceTwoNames) {
   EXPECT_EQ(library_.list().size(), 2u);
 }
 
-// A write past `bytes` of a file fails while this lives.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    rlimit lower = limit_;
-    lower.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &lower);
-  }
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit limit_{};
-};
-
 TEST_F(CaseLibraryTest, LeavesNothingWhereAFileCannotBeWrittenToItsEnd) {
   const CaseRecord before = saved();
   for (const rlim_t bytes : {100, 3000, 7000}) {  // within case.json's, and the volume's, length
-    const FileSizeLimit limit(bytes);
+    const test::FileSizeLimit limit(bytes);
     const auto result = library_.save(smallCase());
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, "CANNOT_WRITE");
@@ -432,7 +412,7 @@ TEST_F(CaseLibraryTest, LeavesNothingOnADiskThatFillsUpMeanwhile) {
   if (WEXITSTATUS(status) == 77) {
     std::printf(
         "[ figures  ] no disk could be mounted here: RLIMIT_FSIZE stands in for a full one\n");
-    const FileSizeLimit limit(3000);
+    const test::FileSizeLimit limit(3000);
     EXPECT_FALSE(library_.save(smallCase()));
     EXPECT_EQ(entriesIn(storage() / ".parts"), 0u);
     return;
