@@ -13,28 +13,36 @@ constexpr std::size_t kMaxEventsPerTick = 64;
 
 }  // namespace
 
-HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
-                     const GridGeometry& geometry)
-    : contact(arm.tool, geometry),
-      removal(arm.tool, geometry, all.removal, all.period_s),
-      points(all.force_at == ForceAt::tip ? 1 : arm.tool.points_m.size()) {
+HapticCore::ArmTool::ArmTool(const Tool& tool, const HapticParameters& all,
+                             const GridGeometry& geometry)
+    : made(tool),
+      contact(tool, geometry),
+      removal(tool, geometry, all.removal, all.period_s),
+      points(all.force_at == ForceAt::tip ? 1 : tool.points_m.size()) {
   for (LawKind kind : all.laws) {
     laws.push_back(makeLaw(kind, points.size()));
     rendered_laws.push_back(makeLaw(kind, points.size()));
     if (kind == LawKind::elastic) {
-      proxy.emplace(arm.tool, geometry);
-      sphere.emplace(geometry, 1000.0 * arm.tool.sphere_radius_m, sphereDirections(arm.tool.blunt));
+      proxy.emplace(tool, geometry);
+      sphere.emplace(geometry, 1000.0 * tool.sphere_radius_m, sphereDirections(tool.blunt));
     }
   }
+  const bool driven = tool.made_from.motor_W > 0.0;
+  cutting = driven ? Cutting::driven : Cutting::by_hand;
+  // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
+  // paper's tools do.
+  if (proxy && !driven && tool.made_from.kind == ToolKind::burr) cutting = Cutting::nothing;
+}
+
+HapticCore::Arm::Arm(const ArmParameters& arm, const HapticParameters& all,
+                     const GridGeometry& geometry) {
+  tools.reserve(1 + arm.other_tools.size());
+  tools.emplace_back(arm.tool, all, geometry);
+  for (const Tool& other : arm.other_tools) tools.emplace_back(other, all, geometry);
   for (const auto& [name, kind] : kControllerNames) {
     controllers.push_back(makeController(kind, arm.dynamics, all.period_s));
   }
   controller = controllers[std::size_t(all.controller)];
-  const bool driven = arm.tool.made_from.motor_W > 0.0;
-  cutting = driven ? Cutting::driven : Cutting::by_hand;
-  // A burr without a motor cuts nothing, but where there is no barrier: there it cuts as the seed
-  // paper's tools do.
-  if (proxy && !driven && arm.tool.made_from.kind == ToolKind::burr) cutting = Cutting::nothing;
   scene_map = arm.map;
   removed.reserve(Removal::kMostVoxels);
   removed_indices.reserve(Removal::kMostVoxels);
@@ -87,8 +95,10 @@ void HapticCore::useTissues(const TissueTable& before) {
   }
   if (elastic_) setElasticTissues();
   for (Arm& arm : arms_) {
-    if (!same_cuts) arm.removal.forget();
-    if (arm.proxy) arm.proxy->changed();
+    if (!same_cuts) arm.tool().removal.forget();
+    for (ArmTool& tool : arm.tools) {
+      if (tool.proxy) tool.proxy->changed();
+    }
   }
 }
 
@@ -109,7 +119,7 @@ void HapticCore::setElasticTissues() {
 
 CarveJournal::Credits HapticCore::credits() const {
   CarveJournal::Credits out{};
-  for (std::size_t i = 0; i < arms_.size(); ++i) out[i] = arms_[i].removal.credit_J();
+  for (std::size_t i = 0; i < arms_.size(); ++i) out[i] = arms_[i].tool().removal.credit_J();
   return out;
 }
 
@@ -161,9 +171,15 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::redo:
       if (journal_.startRedo(credits())) forgetForces(true);
       break;
-    case CommandKind::reset:
-      if (journal_.startReset(credits())) forgetForces(true);
+    case CommandKind::reset: {
+      const bool restores = journal_.startReset(credits());
+      for (std::size_t i = 0; i < arms_.size(); ++i) {
+        arms_[i].wanted = 0;  // the scene's, at once where the tool waits for air anyhow
+        if (restores && arms_[i].in_hand != 0) takeTool(i, tick);
+      }
+      if (restores) forgetForces(true);
       break;
+    }
     case CommandKind::rewind:
       if (command.value >= 0 && journal_.startRewind(std::size_t(command.value), credits())) {
         forgetForces(true);
@@ -179,7 +195,7 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::clear_faults:
       for (Arm& arm : arms_) arm.faults = 0;
       lateness_.clear();
-      forgetLaws();
+      for (Arm& arm : arms_) forgetLaws(arm);
       forgetForces(false);
       break;
     case CommandKind::controller:
@@ -203,14 +219,19 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
     case CommandKind::recentre:
       if (command.arm >= 0 && std::size_t(command.arm) < arms_.size()) releaseArm(command);
       break;
+    case CommandKind::tool: {
+      if (command.arm < 0 || std::size_t(command.arm) >= arms_.size()) break;
+      Arm& arm = arms_[std::size_t(command.arm)];
+      const bool known = command.value >= 0 && std::size_t(command.value) < arm.tools.size();
+      if (known) arm.wanted = std::size_t(command.value);
+      break;
+    }
   }
 }
 
-void HapticCore::forgetLaws() {
-  for (Arm& arm : arms_) {
-    for (Law& law : arm.laws) forgetLaw(law);
-    for (Law& law : arm.rendered_laws) forgetLaw(law);
-  }
+void HapticCore::forgetLaws(Arm& arm) {
+  for (Law& law : arm.tool().laws) forgetLaw(law);
+  for (Law& law : arm.tool().rendered_laws) forgetLaw(law);
 }
 
 // The controller begins without credit. After voxels were put back (`restored`), the laws begin
@@ -221,22 +242,26 @@ void HapticCore::forgetForces(bool restored) {
 
 void HapticCore::forgetForce(Arm& arm, bool restored) {
   forgetController(arm.controller);
-  arm.contact.forget();
-  arm.removal.forget();
+  arm.tool().contact.forget();
+  arm.tool().removal.forget();
   arm.work.forget();
-  if (arm.proxy) arm.proxy->changed();
+  for (ArmTool& tool : arm.tools) {
+    if (tool.proxy) tool.proxy->changed();
+  }
   if (!restored) return arm.limiter.change();
-  for (Law& law : arm.laws) forgetLaw(law);
-  for (Law& law : arm.rendered_laws) forgetLaw(law);
+  forgetLaws(arm);
   arm.limiter.restored();
-  arm.waiting = arm.proxy.has_value();
+  arm.waiting = arm.tool().proxy.has_value();
   arm.let_go_share = arm.hooked_s = 0.0;
 }
 
 void HapticCore::finishRestore() {
   for (std::size_t i = 0; i < arms_.size(); ++i) {
-    arms_[i].removal.setCredit(journal_.credits()[i]);
-    arms_[i].removal.forget();
+    arms_[i].tool().removal.setCredit(journal_.credits()[i]);
+    arms_[i].tool().removal.forget();
+    for (ArmTool& tool : arms_[i].tools) {
+      if (tool.proxy) tool.proxy->changed();
+    }
   }
 }
 

@@ -60,22 +60,37 @@ class HapticCore {
   std::uint64_t nonFinite() const { return nonfinite_; }
   std::size_t unknownBricks() const { return bricks_->unknown(); }  // of which air is not known
   bool journalFull() const { return journal_.full(); }
+  // Which of its tools an arm has, and which it is to have: another one while that waits.
+  std::size_t toolInHand(std::size_t arm) const { return arms_[arm].in_hand; }
+  std::size_t toolWanted(std::size_t arm) const { return arms_[arm].wanted; }
 
  private:
-  struct Arm {
-    Arm(const ArmParameters& parameters, const HapticParameters& all, const GridGeometry& geometry);
+  // One of an arm's tools, and what is kept for it from tick to tick while it is in hand.
+  struct ArmTool {
+    ArmTool(const Tool& tool, const HapticParameters& all, const GridGeometry& geometry);
 
+    Tool made;
     std::vector<Law> laws;           // of the model: what the tissue demands
     std::vector<Law> rendered_laws;  // of what the controller lets the arm render
-    std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
-    Controller controller;
-    OutputLimiter limiter;
     ToolContact contact;
     // Both only with the elastic law: without it the tool is where the arm is.
     std::optional<ContactSphere> sphere;
     std::optional<Proxy> proxy;
     Removal removal;
     std::vector<TouchPoint> points;
+    Cutting cutting = Cutting::by_hand;
+  };
+  struct Arm {
+    Arm(const ArmParameters& parameters, const HapticParameters& all, const GridGeometry& geometry);
+
+    ArmTool& tool() { return tools[in_hand]; }
+    const ArmTool& tool() const { return tools[in_hand]; }
+
+    std::vector<ArmTool> tools;  // all are made before the first tick
+    std::size_t in_hand = 0, wanted = 0;
+    std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
+    Controller controller;
+    OutputLimiter limiter;
     std::vector<RemovedVoxel> removed;                   // of this tick
     Index3 removed_low{0, 0, 0}, removed_high{0, 0, 0};  // their bounds
     // Their linear indices, sorted; filled only where another arm may have removed one of them too.
@@ -90,7 +105,6 @@ class HapticCore {
     HandWork work;
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes
     Vec3 last_elastic_Nm{0.0};  // of the rendered springs in the tick before, patient axes
-    Cutting cutting = Cutting::by_hand;
     bool cuts = false;           // may remove in this tick
     bool placed = false;         // the proxy was placed at the arm's first pose
     bool waiting = false;        // without force, until it is out of tissue
@@ -110,7 +124,7 @@ class HapticCore {
 
   void apply(const Command& command, std::uint64_t tick);
   void followLateness(const TickInput& input);
-  void forgetLaws();
+  void forgetLaws(Arm& arm);
   void forgetForces(bool restored);
   void forgetForce(Arm& arm, bool restored);
   void releaseArm(const Command& command);
@@ -136,15 +150,20 @@ class HapticCore {
   void engageArm(ArmTick& now, const Pose& device_m);
   void recentreArm(ArmTick& now, const Pose& device_m);
 
+  // Another tool in hand (haptic_core_tool.cpp).
+  void changeTool(ArmTick& now);
+  bool mayChangeTool(ArmTick& now);
+  void takeTool(std::size_t index, std::uint64_t tick);
+
   // Parts of moveProxy, touch and giveWork (haptic_core_touch.cpp).
   void startAtArm(ArmTick& now);
-  bool startsInTissue(Arm& arm, const Pose& arm_mm);
+  bool startsInTissue(ArmTool& tool, const Pose& arm_mm);
   void followArm(ArmTick& now);
   void letGoOfHook(ArmTick& now);
-  bool wouldTouch(const Arm& arm, const Pose& pose_mm) const;
-  void touchPoints(Arm& arm, const Tool& tool, const Motion& motion) const;
-  void pressOnElastic(const Arm& arm, const Tool& tool, const Motion& motion, LawInput& in) const;
-  bool atWork(const Arm& arm, const Tool& tool) const;
+  bool wouldTouch(const ArmTool& tool, const Pose& pose_mm) const;
+  void touchPoints(ArmTool& tool, const Motion& motion) const;
+  void pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const;
+  bool atWork(const Arm& arm) const;
   TissueAround tissueAround() const {
     return {writer_.grid(), *bricks_, lookup_, parameters_.tissues};
   }

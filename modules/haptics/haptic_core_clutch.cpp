@@ -45,16 +45,17 @@ void HapticCore::engageArm(ArmTick& now, const Pose& device_m) {
   map.centre_mm += tool_mm.position - map.toPatient_mm(device_m).position;
   const Pose arm_mm = map.toPatient_mm(device_m);
   const bool turned = glm::length(smallTurn(tool_mm.orientation, arm_mm.orientation)) > kTurned_rad;
-  const bool in_tissue = turned && (wouldTouch(arm, tool_mm) || startsInTissue(arm, arm_mm));
+  const bool in_tissue =
+      turned && (wouldTouch(arm.tool(), tool_mm) || startsInTissue(arm.tool(), arm_mm));
   arm.limiter.engage();
   forgetForce(arm, in_tissue);
-  for (std::vector<Law>* laws : {&arm.laws, &arm.rendered_laws}) {
+  for (std::vector<Law>* laws : {&arm.tool().laws, &arm.tool().rendered_laws}) {
     for (Law& law : *laws) {
       if (std::holds_alternative<CoulombLaw>(law)) forgetLaw(law);
     }
   }
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);
-  if (turned && arm.proxy) arm.proxy->place(arm_mm);
+  if (turned && arm.tool().proxy) arm.tool().proxy->place(arm_mm);
 }
 
 void HapticCore::recentreArm(ArmTick& now, const Pose& device_m) {
@@ -67,7 +68,7 @@ void HapticCore::recentreArm(ArmTick& now, const Pose& device_m) {
   arm.limiter.engage();
   forgetForce(arm, true);
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);
-  if (arm.proxy) arm.proxy->place(map.toPatient_mm(device_m));
+  if (arm.tool().proxy) arm.tool().proxy->place(map.toPatient_mm(device_m));
 }
 
 }  // namespace trephine

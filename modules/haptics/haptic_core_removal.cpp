@@ -46,16 +46,17 @@ void HapticCore::sweepTools(const TickRecord& record) {
 void HapticCore::sweepTool(Arm& arm, const ArmRecord& moved) {
   const GridGeometry& geometry = writer_.grid().geometry();
   Pose front_mm{moved.proxy_position_mm, moved.proxy_orientation};
-  const bool held = arm.proxy && arm.proxy->held();
+  ArmTool& tool = arm.tool();
+  const bool held = tool.proxy && tool.proxy->held();
   if (held) {
     const Vec3& s = geometry.spacing_mm;
-    front_mm = arm.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
+    front_mm = tool.proxy->ahead_mm(std::max({0.5 * s.x, 0.5 * s.y, 0.5 * s.z, kLeastAhead_mm}));
   }
-  arm.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.removed);
+  tool.removal.sweep(writer_.grid(), *bricks_, lookup_, parameters_.tissues, front_mm, arm.removed);
   if (!held || !arm.removed.empty()) return;
-  for (const Proxy::Blocker& blocker : arm.proxy->blockers()) {
-    arm.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
-                     arm.removed);
+  for (const Proxy::Blocker& blocker : tool.proxy->blockers()) {
+    tool.removal.take(geometry.indicesOf(blocker.voxel), blocker.tissue_class, parameters_.tissues,
+                      arm.removed);
   }
 }
 
@@ -83,7 +84,7 @@ void HapticCore::eraseOf(std::size_t place, const std::array<std::size_t, kMaxAr
       if (alsoRemoves(arms_[order[later]], removed.voxel)) sharers |= 1u << order[later];
     }
     if (!erase(owner, removed, voxel, paid ? sharers : 0, tick)) {
-      arms_[owner].removal.returnWork(removed.cost_J);  // those after it may still remove it
+      arms_[owner].tool().removal.returnWork(removed.cost_J);  // those after it may still remove it
       continue;
     }
     ++record.arms[owner].removed_voxels;
@@ -97,7 +98,7 @@ void HapticCore::returnShares(const RemovedVoxel& removed, std::size_t owner,
   const double share_J = removed.cost_J / (1 + std::popcount(sharers));
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     if (i == owner || (sharers >> i & 1u)) {
-      arms_[i].removal.returnWork(removed.cost_J - share_J);
+      arms_[i].tool().removal.returnWork(removed.cost_J - share_J);
     }
   }
 }
@@ -108,10 +109,12 @@ void HapticCore::endStrokes() {
   });
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     Arm& arm = arms_[i];
-    if (solid_went && arm.proxy) arm.proxy->removed();
+    for (ArmTool& tool : arm.tools) {
+      if (solid_went && tool.proxy) tool.proxy->removed();
+    }
     if (!arm.cuts) continue;
     const int arm_number = int(i);
-    arm.air_ticks = arm.contact.contact().touching() ? 0 : arm.air_ticks + 1;
+    arm.air_ticks = arm.tool().contact.contact().touching() ? 0 : arm.air_ticks + 1;
     if (journal_.inStroke(arm_number) && arm.air_ticks > stroke_gap_ticks_) {
       journal_.endStroke(arm_number);
     }

@@ -64,6 +64,7 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   ArmTick now{input, index, arms_[index], parameters_.arms[index], out};
   out = ArmRecord{};
   if (!sample(now)) return;
+  changeTool(now);
   moveProxy(now);
   touch(now);
   if (!now.arm.clutched) {
@@ -95,10 +96,10 @@ bool HapticCore::sample(ArmTick& now) {
     ++nonfinite_;
     latch(now.index, kFaultNonFinite, now.input.tick);
     arm.limiter.zero();
-    arm.contact.forget();
+    arm.tool().contact.forget();
     arm.last_pose.reset();
     out.energy_out_J = arm.energy_out_J;
-    out.cutting_credit_J = arm.removal.credit_J();
+    out.cutting_credit_J = arm.tool().removal.credit_J();
     out.faults = arm.faults;
     return false;
   }
@@ -129,7 +130,7 @@ bool HapticCore::sample(ArmTick& now) {
 
 // The force that the tissue demands.
 void HapticCore::demand(ArmTick& now) {
-  for (Law& law : now.arm.laws) addLaw(law, now.contact, now.model);
+  for (Law& law : now.arm.tool().laws) addLaw(law, now.contact, now.model);
   now.model_N = now.model.at(now.motion.velocity_m_s);
   now.out.demanded_N = now.parameters.map.forceToDevice(now.model_N);
   now.out.demanded_torque_Nm = now.parameters.map.torqueToDevice(now.model.torque_Nm);
@@ -144,7 +145,7 @@ void HapticCore::render(ArmTick& now) {
   Impedance& share = now.contact.share;
   share = {shareOf(limited.damping, demanded.damping),
            shareOf(limited.stiffness, demanded.stiffness)};
-  for (Law& law : now.arm.rendered_laws) addLaw(law, now.contact, now.rendered);
+  for (Law& law : now.arm.tool().rendered_laws) addLaw(law, now.contact, now.rendered);
   now.out.rendered_share = shareOf(now.rendered.at(now.motion.velocity_m_s), now.model_N, share);
   now.stored_J = givenBack_J(now.model, now.rendered, share.stiffness,
                              now.parameters.max_force_N / map.force_scale / now.out.rendered_share);
@@ -196,11 +197,10 @@ void HapticCore::checkFinite(ArmTick& now) {
   if (now.finite) return;
   ++nonfinite_;
   latch(now.index, kFaultNonFinite, now.input.tick);
-  for (Law& law : arm.laws) forgetLaw(law);
-  for (Law& law : arm.rendered_laws) forgetLaw(law);
+  forgetLaws(arm);
   forgetController(arm.controller);
   arm.work.forget();
-  if (arm.proxy) arm.proxy->place(motion.arm_mm);
+  if (arm.tool().proxy) arm.tool().proxy->place(motion.arm_mm);
   arm.last_elastic_Nm = Vec3(0.0);
   if (!isFinite(arm.energy_out_J)) arm.energy_out_J = Vec3(0.0);
   out.velocity_m_s = out.demanded_N = out.demanded_torque_Nm = out.bounded_N = Vec3(0.0);
@@ -216,7 +216,7 @@ void HapticCore::send(ArmTick& now) {
   const bool open = !paused_ && arm.faults == 0;
   // While voxels come back in slices, tissue may yet fill in around the tool.
   if (arm.clutched) now.in_contact = now.contact.touching;
-  const bool in_tissue = (arm.proxy ? arm.waiting : now.in_contact) || journal_.busy();
+  const bool in_tissue = (arm.tool().proxy ? arm.waiting : now.in_contact) || journal_.busy();
   if (arm.waiting && !arm.limiter.waitingForAir()) arm.limiter.restored();
   out.sent_N =
       arm.limiter.limit(out.clamped_N, in_tissue, open, now.input.late_ns, parameters_.period_s);
@@ -224,17 +224,16 @@ void HapticCore::send(ArmTick& now) {
   if (arm.not_as_stated) out.controller_parts |= kPartArmNotAsStated;
   if (out.clamped_N != out.bounded_N) out.controller_parts |= kPartClamp;
   if (out.sent_N != out.clamped_N) out.controller_parts |= kPartLimiter;
-  arm.cuts = open && !arm.clutched && arm.cutting != Cutting::nothing && !journal_.busy() &&
+  arm.cuts = open && !arm.clutched && arm.tool().cutting != Cutting::nothing && !journal_.busy() &&
              !arm.limiter.waitingForAir();
 }
 
 // The work of this tick that may pay for cutting.
 void HapticCore::giveWork(ArmTick& now) {
   Arm& arm = now.arm;
-  const Tool& tool = now.parameters.tool;
   const double T = parameters_.period_s;
-  const bool at_work = atWork(arm, tool);
-  const double motor_J = at_work ? T * tool.made_from.motor_W : 0.0;
+  const bool at_work = atWork(arm);
+  const double motor_J = at_work ? T * arm.tool().made.made_from.motor_W : 0.0;
   if (now.finite && !now.jumped) {
     // By the model's own force, the mean of both ends of the period.
     arm.work.take(-0.5 * T * glm::dot(arm.last_model_N + now.model_N, now.motion.velocity_m_s));
@@ -242,21 +241,22 @@ void HapticCore::giveWork(ArmTick& now) {
   arm.last_model_N = now.finite ? now.model_N : Vec3(0.0);
   const double more_J =
       now.finite ? arm.work.hold(now.stored_J, now.out.rendered_share, motor_J) : 0.0;
-  arm.removal.giveWork(at_work && !now.jumped ? more_J : 0.0, arm.work.lost_J(),
-                       parameters_.tissues);
+  arm.tool().removal.giveWork(at_work && !now.jumped ? more_J : 0.0, arm.work.lost_J(),
+                              parameters_.tissues);
 }
 
 void HapticCore::record(ArmTick& now) {
   const Arm& arm = now.arm;
   ArmRecord& out = now.out;
   if (arm.waiting || arm.limiter.waitingForAir()) out.tool_state |= kToolWaits;
-  if (arm.proxy && arm.proxy->held()) out.tool_state |= kToolHeld;
+  if (arm.tool().proxy && arm.tool().proxy->held()) out.tool_state |= kToolHeld;
   if (arm.let_go_share > 0.0) out.tool_state |= kToolLetGo;
   if (arm.clutched) out.tool_state |= kToolClutched;
+  if (arm.wanted != arm.in_hand) out.tool_state |= kToolToCome;
   out.energy_out_J = arm.energy_out_J;
   out.hand_work_J = arm.work.done_J();
   out.stored_J = arm.work.stored_J();
-  out.cutting_credit_J = arm.removal.credit_J();
+  out.cutting_credit_J = arm.tool().removal.credit_J();
   out.faults = arm.faults;
 }
 

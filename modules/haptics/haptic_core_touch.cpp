@@ -13,28 +13,29 @@ constexpr double kHooked_mm = 15.0, kHooked_s = 0.5, kLetGo_s = 0.2;
 
 }  // namespace
 
-bool HapticCore::wouldTouch(const Arm& arm, const Pose& pose_mm) const {
-  return arm.contact.wouldTouch(writer_.grid(), *bricks_, lookup_, pose_mm);
+bool HapticCore::wouldTouch(const ArmTool& tool, const Pose& pose_mm) const {
+  return tool.contact.wouldTouch(writer_.grid(), *bricks_, lookup_, pose_mm);
 }
 
 // The tool's pose in this tick. Where the scene has no elastic law it is the arm's. In a pause or a
 // fault it only moves through air.
 void HapticCore::moveProxy(ArmTick& now) {
   Arm& arm = now.arm;
+  ArmTool& tool = arm.tool();
   Motion& motion = now.motion;
   motion.pose_mm = motion.arm_mm;
   const bool first = !arm.placed;
   arm.placed = true;
   if (first) startAtArm(now);
-  if (arm.proxy && arm.waiting) {
+  if (tool.proxy && arm.waiting) {
     if (journal_.busy()) {
-      arm.proxy->place(motion.arm_mm);
+      tool.proxy->place(motion.arm_mm);
     } else if (!first) {
-      arm.waiting = startsInTissue(arm, motion.arm_mm);
+      arm.waiting = startsInTissue(tool, motion.arm_mm);
     }
-  } else if (arm.proxy) {
+  } else if (tool.proxy) {
     followArm(now);
-    motion.pose_mm = arm.proxy->pose_mm();
+    motion.pose_mm = tool.proxy->pose_mm();
   }
   arm.tool_mm = motion.pose_mm;
 }
@@ -42,53 +43,56 @@ void HapticCore::moveProxy(ArmTick& now) {
 // A tool that starts in tissue has no force and cuts nothing until it has been out of it.
 void HapticCore::startAtArm(ArmTick& now) {
   Arm& arm = now.arm;
-  if (arm.proxy) arm.proxy->place(now.motion.arm_mm);
-  if (!startsInTissue(arm, now.motion.arm_mm)) return;
-  arm.waiting = arm.proxy.has_value();
+  ArmTool& tool = arm.tool();
+  if (tool.proxy) tool.proxy->place(now.motion.arm_mm);
+  if (!startsInTissue(tool, now.motion.arm_mm)) return;
+  arm.waiting = tool.proxy.has_value();
   events_.push_back({now.input.tick, EventKind::starts_in_tissue, std::int32_t(now.index), 0, {}});
 }
 
 // The tool at its arm. Its body is looked at only where none of its points is in tissue.
-bool HapticCore::startsInTissue(Arm& arm, const Pose& arm_mm) {
-  const bool touches = wouldTouch(arm, arm_mm);
-  if (!arm.proxy) return touches;
-  if (touches) arm.proxy->place(arm_mm);
-  return touches || arm.proxy->standsInSolid(tissueAround(), arm_mm);
+bool HapticCore::startsInTissue(ArmTool& tool, const Pose& arm_mm) {
+  const bool touches = wouldTouch(tool, arm_mm);
+  if (!tool.proxy) return touches;
+  if (touches) tool.proxy->place(arm_mm);
+  return touches || tool.proxy->standsInSolid(tissueAround(), arm_mm);
 }
 
 void HapticCore::followArm(ArmTick& now) {
   Arm& arm = now.arm;
+  ArmTool& tool = arm.tool();
   const bool still = paused_ || arm.faults != 0;
-  const Pose before = arm.proxy->pose_mm();
+  const Pose before = tool.proxy->pose_mm();
   const bool may_cut = !still && !journal_.busy();
-  arm.proxy->follow(tissueAround(), now.motion.arm_mm, may_cut ? arm.cutting : Cutting::nothing);
+  tool.proxy->follow(tissueAround(), now.motion.arm_mm, may_cut ? tool.cutting : Cutting::nothing);
   if (!still) {
     letGoOfHook(now);
-  } else if (wouldTouch(arm, arm.proxy->pose_mm())) {
-    arm.proxy->hold(before);
+  } else if (wouldTouch(tool, tool.proxy->pose_mm())) {
+    tool.proxy->hold(before);
   }
 }
 
 void HapticCore::letGoOfHook(ArmTick& now) {
   Arm& arm = now.arm;
+  ArmTool& tool = arm.tool();
   const Pose& arm_mm = now.motion.arm_mm;
   const double T = parameters_.period_s;
   if (arm.let_go_share == 0.0) {
-    const bool far = arm.proxy->held() && glm::length(arm.proxy->pull().shift_mm) > kHooked_mm;
-    arm.hooked_s = far && !wouldTouch(arm, arm_mm) ? arm.hooked_s + T : 0.0;
+    const bool far = tool.proxy->held() && glm::length(tool.proxy->pull().shift_mm) > kHooked_mm;
+    arm.hooked_s = far && !wouldTouch(tool, arm_mm) ? arm.hooked_s + T : 0.0;
     if (arm.hooked_s < kHooked_s) return;
     events_.push_back({now.input.tick, EventKind::let_go, std::int32_t(now.index), 0, {}});
   }
   arm.let_go_share += T / kLetGo_s;
-  arm.proxy->fade(std::max(0.0, 1.0 - arm.let_go_share));
-  if (arm.let_go_share < 1.0 && arm.proxy->held()) return;
-  if (!wouldTouch(arm, arm_mm)) arm.proxy->place(arm_mm);
+  tool.proxy->fade(std::max(0.0, 1.0 - arm.let_go_share));
+  if (arm.let_go_share < 1.0 && tool.proxy->held()) return;
+  if (!wouldTouch(tool, arm_mm)) tool.proxy->place(arm_mm);
   arm.let_go_share = arm.hooked_s = 0.0;
 }
 
 // Which of the tool's points lie in which tissue: what the laws are told.
 void HapticCore::touch(ArmTick& now) {
-  Arm& arm = now.arm;
+  ArmTool& tool = now.arm.tool();
   ArmRecord& out = now.out;
   const Motion& motion = now.motion;
   out.patient_position_mm = motion.arm_mm.position;
@@ -98,61 +102,62 @@ void HapticCore::touch(ArmTick& now) {
   out.velocity_m_s = motion.velocity_m_s;
 
   const Contact& contact =
-      arm.contact.update(writer_.grid(), *bricks_, lookup_, parameters_.tissues, motion.pose_mm);
-  touchPoints(arm, now.parameters.tool, motion);
+      tool.contact.update(writer_.grid(), *bricks_, lookup_, parameters_.tissues, motion.pose_mm);
+  touchPoints(tool, motion);
   LawInput& in = now.contact;
   in.tip_m = 0.001 * motion.pose_mm.position;
   in.velocity_m_s = motion.velocity_m_s;
   in.tool_direction = motion.pose_mm.orientation * Vec3(0.0, 0.0, -1.0);
-  in.points = arm.points;
+  in.points = tool.points;
   in.touching = contact.touching();
-  in.tip_class = arm.contact.classes()[0];
+  in.tip_class = tool.contact.classes()[0];
   in.tissues = &parameters_.tissues;
-  if (arm.proxy) pressOnElastic(arm, now.parameters.tool, motion, in);
+  if (tool.proxy) pressOnElastic(tool, motion, in);
 
   out.tissue_class = contact.tissue_class;
-  if (arm.proxy && firmer(parameters_.tissues, arm.proxy->heldBy(), out.tissue_class)) {
-    out.tissue_class = arm.proxy->heldBy();
+  if (tool.proxy && firmer(parameters_.tissues, tool.proxy->heldBy(), out.tissue_class)) {
+    out.tissue_class = tool.proxy->heldBy();
   }
   out.points_in_tissue = contact.points;
 }
 
-void HapticCore::touchPoints(Arm& arm, const Tool& tool, const Motion& motion) const {
+void HapticCore::touchPoints(ArmTool& tool, const Motion& motion) const {
   if (parameters_.force_at == ForceAt::tip) {
-    arm.points[0].tissue_class = arm.contact.contact().tissue_class;
+    tool.points[0].tissue_class = tool.contact.contact().tissue_class;
     return;
   }
-  const std::span<const std::int8_t> classes = arm.contact.classes();
+  const std::span<const std::int8_t> classes = tool.contact.classes();
   for (std::size_t i = 0; i < classes.size(); ++i) {
-    TouchPoint& p = arm.points[i];
+    TouchPoint& p = tool.points[i];
     p.tissue_class = classes[i];
     if (classes[i] < 0) continue;
-    p.weight = tool.weights[i];
-    p.lever_m = motion.pose_mm.orientation * tool.points_m[i];
+    p.weight = tool.made.weights[i];
+    p.lever_m = motion.pose_mm.orientation * tool.made.points_m[i];
     p.rotational_m_s = glm::cross(motion.angular_velocity_rad_s, p.lever_m);
   }
 }
 
 // For the elastic law: the pull of the proxy that solid tissue holds, and the push of soft tissue
 // on the contact sphere.
-void HapticCore::pressOnElastic(const Arm& arm, const Tool& tool, const Motion& motion,
-                                LawInput& in) const {
-  in.sphere_radius_m = tool.sphere_radius_m;
-  in.sphere_m = -tool.sphere_radius_m * in.tool_direction;
-  in.pull = arm.proxy->pull();
-  const int c = in.tip_class >= 0 ? in.tip_class : arm.contact.contact().tissue_class;
-  in.parts = !tool.blunt && (c < 0 || parameters_.tissues.classes[std::size_t(c)].cuttable != 0);
+void HapticCore::pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const {
+  in.sphere_radius_m = tool.made.sphere_radius_m;
+  in.sphere_m = -tool.made.sphere_radius_m * in.tool_direction;
+  in.pull = tool.proxy->pull();
+  const int c = in.tip_class >= 0 ? in.tip_class : tool.contact.contact().tissue_class;
+  in.parts =
+      !tool.made.blunt && (c < 0 || parameters_.tissues.classes[std::size_t(c)].cuttable != 0);
   if (!soft_push_) return;
-  in.push = arm.sphere->push(writer_.grid(), *bricks_, stiffness_,
-                             motion.pose_mm.position + 1000.0 * in.sphere_m);
+  in.push = tool.sphere->push(writer_.grid(), *bricks_, stiffness_,
+                              motion.pose_mm.position + 1000.0 * in.sphere_m);
 }
 
 // Whether the tool is at something that it may cut: its motor works on it, and what is lost there
 // pays for cutting.
-bool HapticCore::atWork(const Arm& arm, const Tool& tool) const {
+bool HapticCore::atWork(const Arm& arm) const {
   if (!arm.cuts) return false;
-  if (arm.proxy && !arm.proxy->blockers().empty()) return true;
-  const auto classes = arm.contact.classes().first(tool.cutting_points);
+  const ArmTool& tool = arm.tool();
+  if (tool.proxy && !tool.proxy->blockers().empty()) return true;
+  const auto classes = tool.contact.classes().first(tool.made.cutting_points);
   return std::any_of(classes.begin(), classes.end(), [this](std::int8_t c) {
     return c >= 0 && parameters_.tissues.classes[std::size_t(c)].cuttable;
   });

@@ -159,7 +159,11 @@ void HapticLoop::publish(const TickRecord& record) {
     for (int c = 0; c < kMaxTissues; ++c) state.removed[arm][c] = journal.removed(arm, c);
   }
   const std::vector<ArmParameters>& arms = core_.parameters().arms;
-  for (std::size_t i = 0; i < arms.size(); ++i) state.maps[i] = arms[i].map;
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    state.maps[i] = arms[i].map;
+    state.tools[i] = std::int32_t(core_.toolInHand(i));
+    state.wanted_tools[i] = std::int32_t(core_.toolWanted(i));
+  }
   state.controller = core_.controller();
   state.paused = core_.paused();
   state.busy = journal.busy();

@@ -62,6 +62,9 @@ struct LoopState {
   bool can_redo = false;
   std::uint32_t seconds = 0;  // without pauses; back to any of which one can rewind
   std::array<WorkspaceMap, kMaxArms> maps{};  // as clutching left them
+  // Which of its tools each arm has, 0 the one it started with; which it is to have, another one
+  // while that waits until the one in hand is out of tissue.
+  std::array<std::int32_t, kMaxArms> tools{}, wanted_tools{};
 };
 
 class HapticLoop {

@@ -39,6 +39,12 @@ Status validate(const HapticParameters& parameters) {
     if (Status s = validate(arm.dynamics, of); !s) return s;
     if (Status s = validate(arm.map, of); !s) return s;
     if (Status s = checkNumber(kMaxForce, arm.max_force_N, of); !s) return s;
+    if (arm.other_tools.size() >= kMostTools) {
+      return Error{"TOO_MANY_TOOLS",
+                   "An arm has " + std::to_string(1 + arm.other_tools.size()) +
+                       " tools, and at most " + std::to_string(kMostTools) + " are kept ready",
+                   of, "Take the others out"};
+    }
   }
   for (int c = 0; c < parameters.tissues.count; ++c) {
     for (const TissueNumber& number : kTissueNumbers) {

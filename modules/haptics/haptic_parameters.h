@@ -16,11 +16,14 @@
 
 namespace trephine {
 
+constexpr std::size_t kMostTools = 4;  // of an arm
+
 struct ArmParameters {
-  Tool tool;
+  Tool tool;  // in hand at first
   WorkspaceMap map;
   double max_force_N = 0.0;
   ArmDynamics dynamics;
+  std::vector<Tool> other_tools{};  // it may be given these: numbers 1 and on, `tool` is 0
 };
 
 struct HapticParameters {
@@ -38,7 +41,7 @@ struct HapticParameters {
 };
 
 // Errors: IMPOSSIBLE_NUMBER of an arm's dynamics, map or limit, of the period, or of a tissue;
-// TOO_MANY_ARMS.
+// TOO_MANY_ARMS, TOO_MANY_TOOLS.
 Status validate(const HapticParameters& parameters);
 
 }  // namespace trephine

@@ -50,16 +50,20 @@ enum class CommandKind : std::int32_t {
   // scene puts its device's origin.
   clutch_on,
   clutch_off,
-  recentre
+  recentre,
+  // Of one arm: it takes another of its tools, once neither that nor the one in hand would touch
+  // tissue and the arm has no force.
+  tool
 };
 
 struct Command {
   CommandKind kind = CommandKind::none;
   // controller: a ControllerKind; rewind: to this second of the session; clutch_off: 1, the map
-  // turns to `rotation`, device axes to patient axes; 0, it keeps its own.
+  // turns to `rotation`, device axes to patient axes; 0, it keeps its own; tool: which of the
+  // arm's (ArmParameters).
   std::int32_t value = 0;
   TissueTable tissues{};   // tissues: the new table
-  std::int32_t arm = -1;   // clutch_on, clutch_off, recentre
+  std::int32_t arm = -1;   // clutch_on, clutch_off, recentre, tool
   Quat rotation{1, 0, 0, 0};
 };
 
@@ -79,6 +83,7 @@ enum ToolState : std::uint32_t {
   kToolHeld = 1u << 1,  // solid tissue keeps it from its arm
   kToolLetGo = 1u << 2,     // was hooked; the force fades, then the tool goes to its arm
   kToolClutched = 1u << 3,  // its arm moves without it
+  kToolToCome = 1u << 4,    // another tool is wanted, and comes once this one is out of tissue
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.
@@ -137,15 +142,23 @@ struct CarveRecord {
 // silenced: the watchdog took the force away before this tick.
 // starts_in_tissue: an arm has no force and cuts nothing until it has been out of tissue.
 // let_go: a tool that was hooked behind solid tissue went to its arm, which was free.
+// tool_changed: from this tick on the arm has another of its tools, by a command or a reset.
 enum class EventKind : std::int32_t {
-  command, fault, journal_full, stroke_began, silenced, starts_in_tissue, let_go
+  command,
+  fault,
+  journal_full,
+  stroke_began,
+  silenced,
+  starts_in_tissue,
+  let_go,
+  tool_changed
 };
 
 struct Event {
   std::uint64_t tick = 0;
   EventKind kind = EventKind::command;
   std::int32_t arm = -1;
-  std::uint32_t value = 0;  // fault bits
+  std::uint32_t value = 0;  // fault bits; tool_changed: which of the arm's tools
   Command command{};
 };
 

@@ -63,6 +63,15 @@ class Removal {
     passing_ = false;
   }
 
+  // The arm had another tool until now: what that spent is spent, and what it had left is heat.
+  void follow(const Removal& before) {
+    credit_J_ = recent_J_ = 0.0;
+    lost_J_ = before.lost_J_;
+    spent_J_ = before.spent_J_;
+    last_.reset();
+    forget();
+  }
+
   double credit_J() const { return credit_J_; }
   // After an undo the credit before the stroke, after a redo no more than before the undo. It fades
   // from there as if just given.

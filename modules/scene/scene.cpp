@@ -10,6 +10,12 @@ const SceneTool* Scene::findTool(const std::string& id) const {
   return it == tools.end() ? nullptr : &*it;
 }
 
+const SceneTool* Scene::toolOf(std::size_t arm, std::size_t number) const {
+  if (number == 0) return findTool(arms[arm].tool);
+  const std::vector<std::string>& others = arms[arm].other_tools;
+  return number <= others.size() ? findTool(others[number - 1]) : nullptr;
+}
+
 const Landmark* Scene::findLandmarkById(const std::string& id) const {
   auto it =
       std::find_if(landmarks.begin(), landmarks.end(), [&](const auto& l) { return l.id == id; });
@@ -131,8 +137,11 @@ HapticParameters hapticParameters(const Scene& scene) {
   for (const SceneArm& arm : scene.arms) {
     ArmDynamics dynamics = arm.dynamics.value_or(ArmDynamics{});
     dynamics.peak_force_N = arm.max_force_N;
+    std::vector<Tool> others;
+    for (const std::string& id : arm.other_tools) others.push_back(scene.findTool(id)->tool);
     parameters.arms.push_back({scene.findTool(arm.tool)->tool,
-                               arm.map.fixed.value_or(WorkspaceMap{}), arm.max_force_N, dynamics});
+                               arm.map.fixed.value_or(WorkspaceMap{}), arm.max_force_N, dynamics,
+                               std::move(others)});
   }
   return parameters;
 }

@@ -37,7 +37,8 @@ struct SceneArm {
   std::string plugin;                 // device plugin, "simulated"
   std::uint32_t device_arm = 0;       // its place in the plugin's enumeration
   std::string device_config;          // file of the plugin's configuration, empty for none
-  std::string tool;                   // a tool's id
+  std::string tool;                   // a tool's id: in hand at first
+  std::vector<std::string> other_tools;  // ids of those that it may be given; kMostTools in all
   SceneMap map;
   double max_force_N = 3.3;           // no more than this, whatever the device can give
   std::optional<ArmDynamics> dynamics;  // of the device that moved it: in recordings
@@ -74,6 +75,8 @@ struct Scene {
   Locks locks;                          // what is not changed while it is practised
 
   const SceneTool* findTool(const std::string& id) const;
+  // The tools of an arm by number, as ArmParameters counts them; null beyond the last.
+  const SceneTool* toolOf(std::size_t arm, std::size_t number) const;
   const Landmark* findLandmarkById(const std::string& id) const;
 };
 

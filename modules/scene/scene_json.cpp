@@ -44,6 +44,7 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
     }
   }
   arm.tool = item.text("tool");
+  if (item.has("other_tools")) arm.other_tools = item.texts("other_tools", kMostTools - 1);
   arm.map = readMap(item.object("map"));
   readNumbers(item, kArmNumbers, arm);
   if (item.has("dynamics")) {
@@ -118,6 +119,18 @@ void checkNamesDiffer(JsonReader& reader, const char* list, const Items& items, 
   }
 }
 
+void checkToolsOf(JsonReader& reader, const Scene& scene, const SceneArm& arm) {
+  std::set<std::string> seen{arm.tool};
+  for (const std::string& id : arm.other_tools) {
+    if (seen.insert(id).second) continue;
+    reader.fail("arms", "The arm '" + arm.name + "' names the tool '" + id + "' twice");
+  }
+  for (const std::string& id : seen) {
+    if (scene.findTool(id)) continue;
+    reader.fail("arms", "The arm '" + arm.name + "' names the unknown tool '" + id + "'");
+  }
+}
+
 // What one field cannot say: names that must exist, things that must be there once.
 void checkReferences(JsonReader& reader, const Scene& scene) {
   for (const Landmark& landmark : scene.landmarks) {
@@ -142,9 +155,7 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
     if (!devices.insert(arm.plugin + "/" + std::to_string(arm.device_arm)).second) {
       reader.fail("arms", "The arm '" + arm.name + "' uses a device that another arm uses");
     }
-    if (!scene.findTool(arm.tool)) {
-      reader.fail("arms", "The arm '" + arm.name + "' names the unknown tool '" + arm.tool + "'");
-    }
+    checkToolsOf(reader, scene, arm);
     if (!arm.map.fixed && !scene.findLandmarkById(arm.map.landmark)) {
       reader.fail("arms", "The arm '" + arm.name + "' names the unknown landmark '" +
                               arm.map.landmark + "'");
@@ -284,6 +295,7 @@ Json toJson(const Scene& scene) {
     }
     writeNumbers(device, kDeviceNumbers, a);
     Json arm{{"name", a.name}, {"device", device}, {"tool", a.tool}, {"map", map}};
+    if (!a.other_tools.empty()) arm["other_tools"] = a.other_tools;
     writeNumbers(arm, kArmNumbers, a);
     if (a.dynamics) writeNumbers(arm["dynamics"], kArmDynamicsNumbers, *a.dynamics);
     arms.push_back(arm);

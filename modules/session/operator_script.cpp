@@ -9,7 +9,7 @@ namespace trephine {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, CommandKind>, 12> kCommandNames{
+constexpr std::array<std::pair<std::string_view, CommandKind>, 13> kCommandNames{
     {{"undo", CommandKind::undo},
      {"redo", CommandKind::redo},
      {"reset", CommandKind::reset},
@@ -21,7 +21,8 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 12> kCommandNames
      {"rewind", CommandKind::rewind},
      {"clutch_on", CommandKind::clutch_on},
      {"clutch_off", CommandKind::clutch_off},
-     {"recentre", CommandKind::recentre}}};
+     {"recentre", CommandKind::recentre},
+     {"tool", CommandKind::tool}}};
 
 constexpr std::size_t kMostWaypoints = 100'000;
 constexpr std::size_t kMostCommands = 10'000;
@@ -65,6 +66,19 @@ void readTissueChange(JsonReader changes, const Json& names, TissueSet& set) {
   }
 }
 
+// Which of the arm's tools a command names.
+void readTool(JsonReader& item, const Scene& scene, Command& command) {
+  const std::string id = item.text("tool");
+  if (command.arm < 0) return;
+  const SceneArm& arm = scene.arms[std::size_t(command.arm)];
+  const auto found = std::find(arm.other_tools.begin(), arm.other_tools.end(), id);
+  if (found != arm.other_tools.end()) {
+    command.value = std::int32_t(1 + (found - arm.other_tools.begin()));
+  } else if (id != arm.tool) {
+    item.fail("tool", "The arm '" + arm.name + "' has no tool '" + id + "'");
+  }
+}
+
 // A command of one arm, and where its map turns to.
 void readArmCommand(JsonReader& item, const Scene& scene, Command& command) {
   const std::string name = item.text("arm");
@@ -72,6 +86,7 @@ void readArmCommand(JsonReader& item, const Scene& scene, Command& command) {
     if (scene.arms[i].name == name) command.arm = std::int32_t(i);
   }
   if (command.arm < 0) item.fail("arm", "The scene has no arm '" + name + "'");
+  if (command.kind == CommandKind::tool) readTool(item, scene, command);
   if (command.kind != CommandKind::clutch_off || !item.has("rotation_xyzw")) return;
   const auto q = item.numbers("rotation_xyzw", 4, {-1, 1});
   const Quat rotation(q[3], q[0], q[1], q[2]);

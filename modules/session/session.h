@@ -129,6 +129,13 @@ class Session {
   // Out of tissue: where it comes into some, it waits.
   bool recentre(std::size_t arm);
 
+  // Gives an arm another of its tools (Scene::toolOf), once neither that nor the one in hand
+  // touches tissue and the arm has no force; until then it waits (LoopState::wanted_tools), and the
+  // number of the one in hand takes the wish back. Also in a pause. An undo or a rewind changes no
+  // tool; a reset gives each arm the one that it began with. False for a tool that the arm does not
+  // have, and when 64 commands are waiting.
+  bool changeTool(std::size_t arm, std::size_t tool);
+
   // The newest state of the loop. Owner thread.
   const LoopState& state();
   // What became of the recording so far.

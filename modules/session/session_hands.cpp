@@ -82,6 +82,11 @@ bool Session::recentre(std::size_t arm) {
   return loop_->commands().push({CommandKind::recentre, 0, {}, std::int32_t(arm)});
 }
 
+bool Session::changeTool(std::size_t arm, std::size_t tool) {
+  if (arm >= scene_.arms.size() || !scene_.toolOf(arm, tool)) return false;
+  return loop_->commands().push({CommandKind::tool, std::int32_t(tool), {}, std::int32_t(arm)});
+}
+
 double Session::mostPush_N(std::size_t arm) const {
   return PointerHand::kMostShare * scene_.arms[arm].max_force_N;
 }

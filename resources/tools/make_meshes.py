@@ -111,10 +111,10 @@ def blade():
     return triangles + loft((tip + edge, centre, 0.0), rings, (tip + edge + 105.0, centre, 0.0))
 
 
-def burr6():
-    """A fluted ball of 6 mm on a shaft of 2.4 mm in a drill; the origin is the ball's centre."""
-    sides, radius, shaft, flutes, turns = 64, 3.0, 1.2, 8, 0.11
-    handle = 27.0  # 30 mm from the tip
+def burr(radius, shaft):
+    """A fluted ball on a shaft in a drill, each by its radius; the origin is the ball's centre."""
+    sides, flutes, turns = 64, 8, 0.11
+    handle = 30.0 - radius  # 30 mm from the tip
     rings = []
     bands = 18
     for band in range(1, bands):
@@ -130,16 +130,18 @@ def burr6():
             cut = 1.0 - tooth / 0.75 if tooth < 0.75 else (tooth - 0.75) / 0.25
             return across * (1.0 - 0.17 * math.sin(polar) ** 2 * cut)
         rings.append(ring(x, fluted, sides))
-    rings += revolved([(2.9, shaft), (24.0, shaft), (handle, shaft)], sides)
+    rings += revolved([(radius - 0.1, shaft), (handle - 3.0, shaft), (handle, shaft)], sides)
     rings += revolved([(handle, 2.1), (handle + 0.6, 2.5), (handle + 9.0, 3.0),
-                       (handle + 9.6, 4.0)] + grooved(38.0, 50.0, 4.4, 0.35, 4) +
-                      [(54.0, 5.0), (66.0, 7.6), (70.0, 8.0), (71.0, 7.7), (72.0, 8.0),
-                       (118.0, 8.0), (121.0, 7.0), (122.0, 5.0)], sides)
-    rings += revolved([(122.0, 3.2), (130.0, 2.8)], sides)
-    return loft((-radius, 0.0, 0.0), rings, (130.0, 0.0, 0.0))
+                       (handle + 9.6, 4.0)] + grooved(handle + 11.0, handle + 23.0, 4.4, 0.35, 4) +
+                      [(handle + x, r) for x, r in (
+                          (27.0, 5.0), (39.0, 7.6), (43.0, 8.0), (44.0, 7.7), (45.0, 8.0),
+                          (91.0, 8.0), (94.0, 7.0), (95.0, 5.0))], sides)
+    rings += revolved([(handle + 95.0, 3.2), (handle + 103.0, 2.8)], sides)
+    return loft((-radius, 0.0, 0.0), rings, (handle + 103.0, 0.0, 0.0))
 
 
-TOOLS = {"needle": needle, "blade": blade, "burr6": burr6}
+TOOLS = {"needle": needle, "blade": blade, "burr4": lambda: burr(2.0, 1.0),
+         "burr6": lambda: burr(3.0, 1.2)}
 
 
 def stl(name, triangles):

@@ -25,7 +25,7 @@ Status writeExercisePicture(Session& session, const std::shared_ptr<const Volume
   const LoopState& state = session.state();
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     const ArmRecord& arm = state.record.arms[i];
-    tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
+    tools.push_back(toolView(*scene.toolOf(i, std::size_t(state.tools[i])),
                              {arm.proxy_position_mm, arm.proxy_orientation}, arm.tissue_class >= 0,
                              Vec3(0.75, 0.78, 0.82)));
   }

@@ -204,6 +204,7 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
         {{"name", arm.name},
          {"plugin", arm.plugin},
          {"tool", arm.tool},
+         {"other_tools", arm.other_tools},
          {"points", tool.points_m.size()},
          {"renderable", {{"b_max_Ns_per_m", most.b_max}, {"k_max_N_per_m", most.k_max}}}});
     const auto add = [&](const std::string& part, const std::function<void()>& call) {
@@ -369,6 +370,9 @@ std::string explanationText(const Json& explained) {
     add("  %s arm: %s, tool '%s' of %d points; shows at most %.3g N s/m and %.4g N/m\n",
         word(arm, "name").c_str(), word(arm, "plugin").c_str(), word(arm, "tool").c_str(),
         arm.at("points").get<int>(), number(most, "b_max_Ns_per_m"), number(most, "k_max_N_per_m"));
+    for (const Json& other : arm.at("other_tools")) {
+      text += "    may be given the tool '" + other.get<std::string>() + "'\n";
+    }
   }
   for (const Json& b : explained.at("bounded")) {
     add("  '%s' is firmer than the %s arm shows: of %.4g N s/m and %.4g N/m, %.4g and %.4g are "

@@ -13,7 +13,7 @@
 namespace trephine {
 
 // -> {scene, goal (of its card; null: none), case, rate_hz, controller, laws, removal, tissues,
-//     arms:[{name, plugin, tool, points, renderable}],
+//     arms:[{name, plugin, tool, other_tools, points, renderable}],
 //     warnings:[{code, text}] as of a run of the scene's own script in its own case: tools that
 //     start in tissue; null where it has no case or no script,
 //     settings:[{knob, setting, recommended}] where `recommended.json` is among the resources,
