@@ -111,8 +111,11 @@ def blade():
     return triangles + loft((tip + edge, centre, 0.0), rings, (tip + edge + 105.0, centre, 0.0))
 
 
-def burr(radius, shaft):
-    """A fluted ball on a shaft in a drill, each by its radius; the origin is the ball's centre."""
+def burr(radius, shaft, straight=0.0):
+    """A fluted ball on a shaft in a drill, each by its radius; the origin is the ball's centre.
+
+    With a straight part the ball is drawn out to a rod with round ends, towards the shaft.
+    """
     sides, flutes, turns = 64, 8, 0.11
     handle = 30.0 - radius  # 30 mm from the tip
     rings = []
@@ -123,6 +126,7 @@ def burr(radius, shaft):
         x = -radius * math.cos(polar)
         if x > 0 and across < shaft + 0.1:
             break
+        x += straight if x > 0 else 0.0
 
         def fluted(angle, polar=polar, across=across):
             # A tooth rises slowly to the ball's own radius and falls off steeply.
@@ -130,7 +134,7 @@ def burr(radius, shaft):
             cut = 1.0 - tooth / 0.75 if tooth < 0.75 else (tooth - 0.75) / 0.25
             return across * (1.0 - 0.17 * math.sin(polar) ** 2 * cut)
         rings.append(ring(x, fluted, sides))
-    rings += revolved([(radius - 0.1, shaft), (handle - 3.0, shaft), (handle, shaft)], sides)
+    rings += revolved([(radius + straight - 0.1, shaft), (handle - 3.0, shaft), (handle, shaft)], sides)
     rings += revolved([(handle, 2.1), (handle + 0.6, 2.5), (handle + 9.0, 3.0),
                        (handle + 9.6, 4.0)] + grooved(handle + 11.0, handle + 23.0, 4.4, 0.35, 4) +
                       [(handle + x, r) for x, r in (
@@ -141,7 +145,7 @@ def burr(radius, shaft):
 
 
 TOOLS = {"needle": needle, "blade": blade, "burr4": lambda: burr(2.0, 1.0),
-         "burr6": lambda: burr(3.0, 1.2)}
+         "burr6": lambda: burr(3.0, 1.2), "craniotome": lambda: burr(1.2, 0.6, straight=7.6)}
 
 
 def stl(name, triangles):

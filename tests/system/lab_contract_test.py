@@ -200,7 +200,8 @@ class StartsInTissue(LabTest):
         scene["arms"][0]["map"]["offset_mm"] = [0, 0, -3]
         for part, folder in (("tissues", "tissues"), ("operator", "operators")):
             scene[part] = str(SCENES.parent / folder / Path(scene[part]).name)
-        scene["tools"][0]["file"] = str(SCENES.parent / "tools" / "burr6.json")
+        for tool in scene["tools"]:
+            tool["file"] = str((SCENES / tool["file"]).resolve())
         scene["arms"][0]["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
         (self.folder / "scene.json").write_text(json.dumps(scene))
         rest = {"format": "trephine.operator", "version": 1, "name": "rest",
@@ -357,6 +358,7 @@ class Explain(LabTest):
     def test_explain_lists_what_is_instantiated_and_its_cost(self):
         answer = lab("explain", SCENES / "liver.json")
         self.assertEqual([arm["name"] for arm in answer["arms"]], ["left", "right"])
+        self.assertEqual([arm["other_tools"] for arm in answer["arms"]], [["blade"], ["needle"]])
         parts = {cost["part"] for cost in answer["cost"]}
         self.assertEqual(parts, {"proxy", "contact", "law viscous", "law coulomb", "law elastic", "law rupture",
                                  "controller bounded", "clamp and gate", "removal sweep",
@@ -404,6 +406,7 @@ class BadInput(LabTest):
         scene = json.loads((SCENES / "cranium.json").read_text())
         for arm in scene["arms"]:
             arm["device"].pop("config")
+            del arm["other_tools"]
         scene["tissues"] = json.loads((SCENES.parent / "tissues" / "cranium.json").read_text())
         scene["tools"] = [{"id": "blade", "kind": "blade", "length_mm": 16, "points": 16}]
         scene.pop("operator")

@@ -100,6 +100,7 @@ class RealAbdomen(LabTest):
         if label is not None:
             tissues["tissues"][0]["label"] = label
         arm = scene["arms"][1]
+        del arm["other_tools"]
         arm["device"]["config"] = str(SCENES / arm["device"]["config"])
         arm["map"] = {"centre_mm": [0, -185, 425], "rotation_wxyz": [1, 0, 0, 0],
                       "motion_scale": 1.5, "force_scale": 1.0}

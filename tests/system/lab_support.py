@@ -82,6 +82,7 @@ def small_scene(folder, tool=None):
     for part, where in (("tissues", "tissues"), ("operator", "operators")):
         scene[part] = str(SCENES.parent / where / Path(scene[part]).name)
     arm = scene["arms"][0]
+    del arm["other_tools"]
     arm["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
     scene["tools"] = [{"id": arm["tool"], **(tool or {"file": str(SCENES.parent / "tools" / "blade.json")})}]
     scene["case"] = str(small_head(folder / "head.nii.gz"))

@@ -106,6 +106,7 @@ class Exercise(PatientsScanTest):
         scene = json.loads((SCENES / "cranium.json").read_text())
         for arm in scene["arms"]:
             arm["device"]["config"] = str(SCENES / arm["device"]["config"])
+            del arm["other_tools"]
         scene["tissues"] = str(SCENES / scene["tissues"])
         scene["operator"] = str(SCENES / scene["operator"])
         scene["tools"] = [{"id": "blade", "kind": "blade", "length_mm": 16, "points": 16,

@@ -34,6 +34,20 @@ TEST(Scene, TheCraniumSceneHasTwoArmsWithBlades) {
   EXPECT_EQ(hapticParameters(scene).arms.size(), 2u);
 }
 
+TEST(Scene, AnArmHasItsToolsByNumberTheFirstIsInHand) {
+  const Scene scene = *readScene(shippedFile());
+  ASSERT_EQ(scene.arms[1].other_tools.size(), 2u);
+  EXPECT_EQ(scene.toolOf(1, 0)->id, "blade");
+  EXPECT_EQ(scene.toolOf(1, 1)->id, "craniotome");
+  EXPECT_EQ(scene.toolOf(1, 2)->id, "burr");
+  EXPECT_EQ(scene.toolOf(1, 3), nullptr);
+  const ArmParameters arm = hapticParameters(scene).arms[1];
+  EXPECT_EQ(arm.tool.made_from.kind, ToolKind::blade);
+  ASSERT_EQ(arm.other_tools.size(), 2u);
+  EXPECT_EQ(arm.other_tools[0].made_from.shape, BurrShape::cylinder);
+  EXPECT_EQ(arm.other_tools[1].made_from.radius_mm, 3.0);
+}
+
 TEST(Scene, SurvivesARoundTripWithoutItsFiles) {
   Scene scene = *readScene(shippedFile());
   const auto landmarks = std::vector<PlacedLandmark>{
@@ -48,6 +62,7 @@ TEST(Scene, SurvivesARoundTripWithoutItsFiles) {
     EXPECT_EQ(a.rotation, b.rotation);
     EXPECT_EQ(scene.findTool("blade")->tool.points_m, copy->findTool("blade")->tool.points_m);
   }
+  EXPECT_EQ(copy->arms[0].other_tools, scene.arms[0].other_tools);
   EXPECT_EQ(toJson(*copy), toJson(scene));
 }
 
@@ -99,6 +114,21 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
       {"unknown tissue", [](Json& s) { s["landmarks"][0]["tissue"] = "cheese"; }, "landmarks",
        "cheese"},
       {"unknown tool", [](Json& s) { s["arms"][0]["tool"] = "spoon"; }, "arms", "spoon"},
+      {"unknown other tool", [](Json& s) { s["arms"][0]["other_tools"][0] = "spoon"; }, "arms",
+       "unknown tool 'spoon'"},
+      {"other tool twice", [](Json& s) { s["arms"][0]["other_tools"][1] = "craniotome"; }, "arms",
+       "'craniotome' twice"},
+      {"the tool itself once more", [](Json& s) { s["arms"][1]["other_tools"][0] = "blade"; },
+       "arms", "'blade' twice"},
+      {"too many tools",
+       [](Json& s) {
+         s["arms"][0]["other_tools"] = {"a", "b", "c", "d"};
+       },
+       "arms[0].other_tools", "at most 3"},
+      {"other tools that are no list", [](Json& s) { s["arms"][0]["other_tools"] = "burr"; },
+       "arms[0].other_tools", "burr"},
+      {"other tool that is no text", [](Json& s) { s["arms"][0]["other_tools"][0] = 7; },
+       "arms[0].other_tools", "7"},
       {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale",
        "-1"},
       {"same device", [](Json& s) { s["arms"][1]["device"]["arm"] = 0; }, "arms", "right"},
@@ -278,7 +308,10 @@ class ToolFile : public testing::Test {
     scene_["tools"] = Json::array({{{"id", "blade"}, {"file", "tool.json"}}});
     scene_["operator"] = "";
     scene_["tissues"] = (resourceFolder() / "tissues" / "cranium.json").string();
-    for (Json& arm : scene_["arms"]) arm["device"].erase("config");
+    for (Json& arm : scene_["arms"]) {
+      arm["device"].erase("config");
+      arm.erase("other_tools");
+    }
     tool_ = *readJsonFile(resourceFolder() / "tools" / "blade.json");
     tool_["mesh"] = (resourceFolder() / "tools" / "blade.stl").string();
   }

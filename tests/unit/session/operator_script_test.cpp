@@ -186,6 +186,27 @@ TEST(OperatorScript, ClutchesAnArmAndTurnsItsMapInLandmarkAxes) {
   EXPECT_EQ(given[3].arm, 0);
 }
 
+TEST(OperatorScript, GivesAnArmAnotherOfItsToolsByName) {
+  Json json = script();
+  json["commands"] = *parseJson(
+      R"([{"t": 1, "do": "tool", "arm": "right", "tool": "burr"},
+          {"t": 2, "do": "tool", "arm": "right", "tool": "blade"}])",
+      "commands");
+  const auto read = parseOperatorScript(json, "s", cranium());
+  ASSERT_TRUE(read.ok()) << read.error().sentence();
+  ASSERT_EQ(read->commands.size(), 2u);
+  EXPECT_EQ(read->commands[0].command.kind, CommandKind::tool);
+  EXPECT_EQ(read->commands[0].command.arm, 1);
+  EXPECT_EQ(read->commands[0].command.value, 2);
+  EXPECT_EQ(read->commands[1].command.value, 0);
+  for (const char* wrong : {R"([{"t": 1, "do": "tool", "arm": "right", "tool": "spoon"}])",
+                            R"([{"t": 1, "do": "tool", "arm": "third", "tool": "blade"}])",
+                            R"([{"t": 1, "do": "tool", "arm": "right"}])"}) {
+    json["commands"] = *parseJson(wrong, "commands");
+    EXPECT_FALSE(parseOperatorScript(json, "s", cranium()).ok()) << wrong;
+  }
+}
+
 TEST(OperatorScript, RefusesAClutchOfNoArmAndARotationThatIsNone) {
   const Scene scene = cranium();
   for (const char* wrong :

@@ -205,6 +205,56 @@ TEST(Session, UndoRewindAndParametersWhileItCutsLeaveARecordingThatReplaysIdenti
   EXPECT_EQ(result->ticks, 6000u);
 }
 
+// The right hand takes a burr in air, wishes its blade back in the bone, and has it once it is out.
+TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
+  test::TemporaryFolder folder;
+  auto made =
+      Session::create(cranium(), test::placed(cranium(), smallHead()), scripted(folder / "s.h5"));
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  Session& session = **made;
+  EXPECT_FALSE(session.changeTool(1, 3)) << "it has three";
+  EXPECT_FALSE(session.changeTool(2, 0)) << "there are two arms";
+  EXPECT_TRUE(session.changeTool(1, 2));
+  bool wished = false, waited = false, undone = false;
+  std::uint64_t by_burr = 0;
+  const auto cut = [](const LoopState& now) {
+    std::uint64_t voxels = 0;
+    for (const std::uint64_t of_tissue : now.removed[1]) voxels += of_tissue;
+    return voxels;
+  };
+  const Progress talk([&](double, const std::string&) {
+    const LoopState& now = session.state();
+    if (now.ticks == 0) return;
+    const bool touches = now.record.arms[1].tissue_class >= 0;
+    if (!wished) {
+      EXPECT_EQ(now.tools[1], 2);
+      EXPECT_EQ(now.tools[0], 0) << "the other hand keeps its own";
+      if (touches && cut(now) > 20) wished = session.changeTool(1, 0);
+    } else if (now.wanted_tools[1] != now.tools[1]) {
+      waited = waited || touches;
+      by_burr = cut(now);
+    } else if (now.tools[1] == 0 && !undone && now.can_undo) {
+      undone = session.send(CommandKind::undo);
+    }
+  });
+  ASSERT_TRUE(session.freewheel(14.0, talk).ok());
+  EXPECT_TRUE(waited);
+  EXPECT_TRUE(undone);
+  EXPECT_EQ(session.state().tools[1], 0);
+  EXPECT_LT(cut(session.state()), by_burr);
+  const auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  std::vector<std::uint32_t> changed;
+  const auto events = (*reader)->events();
+  for (const Event& event : *events) {
+    if (event.kind == EventKind::tool_changed) changed.push_back(event.value);
+  }
+  EXPECT_EQ(changed, (std::vector<std::uint32_t>{2, 0}));
+  const auto result = replay(**reader, smallHead());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << result->first_difference->field;
+}
+
 // Every event of a recording of a kind, as the tick had it.
 std::size_t commandsIn(const std::filesystem::path& recording) {
   const auto events = (*SessionReader::open(recording))->events();

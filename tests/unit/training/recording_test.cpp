@@ -330,6 +330,68 @@ TEST(Recording, KeepsWhichArmWasClutchedAndWhereItsMapTurned) {
   EXPECT_EQ(result->ticks, 3000u);
 }
 
+// data/version7.h5 was made by the last program that wrote version 7: 2000 ticks on slab(), with a
+// clutch, an undo and a re-centring.
+TEST(Recording, OfVersion7ReplaysIdenticallyWithTheOneToolOfItsArm) {
+  const auto reader = SessionReader::open(TREPHINE_TEST_TRAINING_DATA "/version7.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto scene = parseScene((*reader)->header().scene, "it");
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  EXPECT_TRUE(scene->arms[0].other_tools.empty());
+  EXPECT_GT((*reader)->carves()->size(), 20u);
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field
+                                                              : "");
+  EXPECT_EQ(result->ticks, 2000u);
+}
+
+TEST(Recording, KeepsWhichToolAnArmTookAndWhen) {
+  test::TemporaryFolder folder;
+  Scene scene = sceneWithOneArm();
+  scene.tools.push_back({"burr", makeBurr(0.002, 16, 2, 0.02), {}});
+  scene.arms[0].other_tools = {"burr"};
+  Grid grid(slab());
+  HapticCore core(hapticParameters(scene), *grid.takeWriter());
+  auto recorder = SessionRecorder::create(
+      folder / "a.h5", {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
+  for (std::uint64_t t = 0; t < 2000; ++t) {
+    TickInput input;
+    input.tick = t;
+    input.journal = core.journalState();
+    // Into the slab and out again.
+    const double way = double(t % 1000) / 500.0;
+    input.arms[0].position_m = Vec3(1e-6 * double(t), 0, 3e-3 - 5e-3 * std::min(way, 2.0 - way));
+    std::vector<Command> commands;
+    if (t == 500) commands.push_back({CommandKind::tool, 1, {}, 0});
+    TickRecord record;
+    core.tick(input, commands.data(), commands.size(), record);
+    (*recorder)->add(record);
+    for (const CarveRecord& c : core.carves()) (*recorder)->add(c);
+    for (const Event& e : core.events()) (*recorder)->add(e);
+  }
+  ASSERT_TRUE((*recorder)->finish({2000, 0, 0, volumeSha256(grid.snapshot())}).ok());
+  const auto reader = SessionReader::open(folder / "a.h5");
+  ASSERT_TRUE(reader.ok()) << reader.error().sentence();
+  const auto events = *(*reader)->events();
+  const auto changed = std::find_if(events.begin(), events.end(), [](const Event& event) {
+    return event.kind == EventKind::tool_changed;
+  });
+  ASSERT_NE(changed, events.end());
+  EXPECT_EQ(changed->value, 1u);
+  EXPECT_GT(changed->tick, 550u) << "not before it is out of the bone";
+  EXPECT_LT(changed->tick, 1000u);
+  const auto ticks = (*reader)->ticks(0, 2000);
+  for (const TickRecord& tick : *ticks) {
+    const bool waits = (tick.arms[0].tool_state & kToolToCome) != 0;
+    EXPECT_EQ(waits, tick.tick >= 500 && tick.tick < changed->tick) << tick.tick;
+  }
+  const auto result = replay(**reader, slab());
+  ASSERT_TRUE(result.ok()) << result.error().sentence();
+  EXPECT_TRUE(result->identical) << (result->first_difference ? result->first_difference->field
+                                                              : "");
+}
+
 TEST(Recording, RefusesToReplayWhatWasDropped) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 100, true, 3);

@@ -256,9 +256,10 @@ TEST_F(PlacedTest, ASceneThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
   Json scene = *readJsonFile(resourceFolder() / "scenes" / "cranium.json");
   scene.erase("case");
   scene["landmarks"][0]["from"] = {0.5, 0.5, -0.2};  // from below
-  for (Json* name :
-       {&scene["tissues"], &scene["operator"], &scene["tools"][0]["file"],
-        &scene["arms"][0]["device"]["config"], &scene["arms"][1]["device"]["config"]}) {
+  std::vector<Json*> names{&scene["tissues"], &scene["operator"]};
+  for (Json& tool : scene["tools"]) names.push_back(&tool["file"]);
+  for (Json& arm : scene["arms"]) names.push_back(&arm["device"]["config"]);
+  for (Json* name : names) {
     *name = (resourceFolder() / "scenes" / name->get<std::string>()).lexically_normal().string();
   }
   ASSERT_TRUE(writeTextFile(folder_ / "below.json", scene.dump()));
