@@ -17,7 +17,6 @@ void HapticCore::changeTool(ArmTick& now) {
 bool HapticCore::mayChangeTool(ArmTick& now) {
   Arm& arm = now.arm;
   if (!arm.placed) return true;  // it starts with the tool that is wanted
-  if (journal_.busy() || arm.waiting || arm.limiter.waitingForAir()) return false;
   if (glm::length(arm.limiter.sent_N()) > kSlew_N_per_s * parameters_.period_s) return false;
   const ArmTool& tool = arm.tool();
   if ((tool.proxy && tool.proxy->held()) || wouldTouch(tool, arm.tool_mm)) return false;

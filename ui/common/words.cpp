@@ -86,6 +86,20 @@ QString verdictWord(Verdict verdict) {
   return {};
 }
 
+QString toolWord(const SceneTool& tool) {
+  const ToolDescription& made = tool.tool.made_from;
+  switch (made.kind) {
+    case ToolKind::needle:
+      return tr("needle, %1 mm").arg(made.length_mm);
+    case ToolKind::blade:
+      return tr("blade, %1 mm").arg(made.length_mm);
+    case ToolKind::burr:
+      return made.shape == BurrShape::cylinder ? tr("rod burr, %1 mm").arg(2.0 * made.radius_mm)
+                                               : tr("burr, %1 mm").arg(2.0 * made.radius_mm);
+  }
+  return {};
+}
+
 QString controllerWord(ControllerKind kind) {
   switch (kind) {
     case ControllerKind::off:

@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "haptics/haptic_types.h"
 #include "imaging/importer.h"
+#include "scene/scene_tool.h"
 
 namespace trephine {
 
@@ -21,6 +22,8 @@ QString purposeText();
 
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
+// "burr, 6 mm": of a burr how thick it is, else how long.
+QString toolWord(const SceneTool& tool);
 // What a controller does, in a sentence.
 QString controllerMeaning(ControllerKind kind);
 // What makes the sent force another than the demanded one: the parts of the controller that acted

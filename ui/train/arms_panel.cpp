@@ -45,6 +45,10 @@ QString armName(const SceneArm& arm) {
   return toQt(arm.name);
 }
 
+QString toolWaitsWords() {
+  return ArmsPanel::tr("Take the tool out of the tissue: then it is changed.");
+}
+
 QString forceScaleWords(const SceneArm& arm) {
   const double force = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
   if (force == 1.0) return ArmsPanel::tr("Felt = as the tissue is modelled");
@@ -102,13 +106,14 @@ void ArmsPanel::setScene(const Scene& scene) {
   for (QWidget* card : card_widgets_) delete card;
   card_widgets_.clear();
   cards_.clear();
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene.arms[i], i));
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) cards_.push_back(addCard(scene, i));
   period_s_ = 1.0 / scene.rate_hz;
   controller_->setCurrentIndex(controller_->findData(int(scene.controller)));
   showIdle();
 }
 
-ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
+ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
+  const SceneArm& arm = scene.arms[index];
   auto* frame = new QFrame(this);
   frame->setProperty("card", true);
   const QString prefix = toQt(arm.name);
@@ -123,6 +128,8 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
             value(frame, prefix + "Energy"),
             value(frame, prefix + "Parts"),
             value(frame, prefix + "Faults"),
+            new QComboBox(frame),
+            value(frame, prefix + "ToolWaits"),
             new ForceBar(frame),
             new TraceView(tr("Force"), tr("N"), 0.0, arm.max_force_N, frame),
             new TraceView(tr("Energy given out"), tr("mJ"), -10.0, 2.0, frame),
@@ -144,6 +151,21 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   card.parts->setToolTip(forceChangeMeanings());
   card.faults->setWordWrap(true);
   colours::setText(*card.faults, colours::kBad);
+
+  card.tool->setObjectName(prefix + "Tool");
+  card.tool->setAccessibleName(tr("Tool"));
+  card.tool->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  for (std::size_t n = 0; n <= arm.other_tools.size(); ++n) {
+    card.tool->addItem(toolWord(*scene.toolOf(index, n)));
+  }
+  card.tool->setToolTip(arm.other_tools.empty()
+                            ? tr("The exercise has one tool for this arm")
+                            : tr("Which tool the hand has, while the exercise runs"));
+  card.tool_waits->setWordWrap(true);
+  card.tool_waits->setText(toolWaitsWords());
+  colours::setText(*card.tool_waits, colours::kCaution);
+  connect(card.tool, &QComboBox::activated, this,
+          [this, index](int number) { emit toolWanted(index, std::size_t(number)); });
 
   for (TraceView* trace : {card.force_trace, card.energy_trace}) {
     trace->setColour(armColour(arm, index));
@@ -170,13 +192,17 @@ ArmsPanel::Card ArmsPanel::addCard(const SceneArm& arm, std::size_t index) {
   auto* layout = new QVBoxLayout(frame);
   layout->setContentsMargins(8, 8, 8, 8);
   layout->setSpacing(6);
-  layout->addWidget(title);
+  auto* head = new QHBoxLayout;
+  head->addWidget(title);
+  head->addWidget(card.tool, 1);
+  layout->addLayout(head);
   layout->addWidget(card.bar);
   layout->addLayout(force_row);
   layout->addWidget(card.force_trace);
   layout->addWidget(scale);
   layout->addLayout(form);
   layout->addWidget(card.energy_trace);
+  layout->addWidget(card.tool_waits);
   layout->addWidget(card.faults);
   cards_layout_->insertWidget(int(index), frame);
   card_widgets_.push_back(frame);
@@ -202,6 +228,8 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.energy->setText(tr("%1 mJ").arg(0.1 * tenths, 0, 'f', 1));
     colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
     card.parts->setText(forceChangeWords(arm, state.paused));
+    showTool(card, state.tools[i], state.wanted_tools[i]);
+    card.tool->setEnabled(card.tool->count() > 1);
     const bool touching =
         arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
     card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
@@ -242,6 +270,12 @@ void ArmsPanel::follow(const LoopState& state) {
   }
 }
 
+void ArmsPanel::showTool(Card& card, std::int32_t in_hand, std::int32_t wanted) {
+  // A person may be choosing.
+  if (!card.tool->view()->isVisible()) card.tool->setCurrentIndex(in_hand);
+  card.tool_waits->setVisible(wanted != in_hand);
+}
+
 void ArmsPanel::setLocked(const QString& why) {
   controller_->setEnabled(why.isEmpty());
   controller_->setToolTip(why);
@@ -263,6 +297,8 @@ void ArmsPanel::showIdle() {
     colours::setText(*card.energy, colours::kText);
     card.demanded->clear();
     card.faults->hide();
+    showTool(card, 0, 0);
+    card.tool->setEnabled(false);
   }
   missed_->setText(QStringLiteral("\u2013"));
   dropped_->setText(QStringLiteral("\u2013"));

@@ -36,16 +36,20 @@ class ArmsPanel : public QWidget {
 
  signals:
   void controllerWanted(trephine::ControllerKind kind);
+  void toolWanted(std::size_t arm, std::size_t tool);  // Scene::toolOf
 
  private:
   struct Card {
     QLabel *contact, *position, *force, *demanded, *energy, *parts, *faults;
+    QComboBox* tool;
+    QLabel* tool_waits;
     ForceBar* bar;
     TraceView *force_trace, *energy_trace;
     double device_per_model;  // energy
     EnergyWatch watch;
   };
-  Card addCard(const SceneArm& arm, std::size_t index);
+  Card addCard(const Scene& scene, std::size_t index);
+  static void showTool(Card& card, std::int32_t in_hand, std::int32_t wanted);
 
   QVBoxLayout* cards_layout_;
   std::vector<QWidget*> card_widgets_;
@@ -60,6 +64,8 @@ class ArmsPanel : public QWidget {
 QColor armColour(const SceneArm& arm, std::size_t index);
 // "Left arm".
 QString armName(const SceneArm& arm);
+// While another tool waits for the one in hand to be out of tissue.
+QString toolWaitsWords();
 // How what is felt follows from what the tissue does: "Felt as the tissue is."
 QString forceScaleWords(const SceneArm& arm);
 

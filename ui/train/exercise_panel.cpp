@@ -51,10 +51,11 @@ QString stepsWords(const CardText& card) {
   return html + QStringLiteral("</ol>");
 }
 
-QString toolWords(const Scene& scene) {
+QString toolWords(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand) {
   QStringList lines;
-  for (const SceneArm& arm : scene.arms) {
-    lines << ExercisePanel::tr("%1: %2").arg(armName(arm), toQt(arm.tool));
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    const SceneTool& tool = *scene.toolOf(i, std::size_t(in_hand[i]));
+    lines << ExercisePanel::tr("%1: %2").arg(armName(scene.arms[i]), toolWord(tool));
   }
   return lines.join('\n');
 }
@@ -64,6 +65,7 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   title_->setProperty("heading", true);
   goal_ = wrapped("exerciseGoal");
   steps_ = wrapped("exerciseSteps", Qt::RichText);
+  tools_ = wrapped("exerciseTools");
   hands_ = wrapped("exerciseHands");
   time_ = new QLabel;
   time_->setObjectName("exerciseTime");
@@ -85,6 +87,7 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   layout->addWidget(goal_);
   layout->addWidget(steps_);
   layout->addWidget(heading(tr("Hands")));
+  layout->addWidget(tools_);
   layout->addWidget(hands_);
   layout->addWidget(keys_);
   layout->addStretch(1);
@@ -97,7 +100,14 @@ void ExercisePanel::setScene(const Scene& scene, const QString& language) {
   goal_->setText(card ? toQt(card->goal) : tr("Cut as the exercise's name says."));
   steps_->setText(card ? stepsWords(*card) : QString());
   steps_->setVisible(card && !card->steps.empty());
-  hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
+  hands_->setText(card ? toQt(card->hands) : QString());
+  hands_->setVisible(!hands_->text().isEmpty());
+  showTools(scene, {});
+}
+
+void ExercisePanel::showTools(const Scene& scene,
+                              const std::array<std::int32_t, kMaxArms>& in_hand) {
+  tools_->setText(toolWords(scene, in_hand));
 }
 
 void ExercisePanel::showTime(double seconds) {

@@ -4,6 +4,7 @@
 
 #include <QLabel>
 #include <QWidget>
+#include <array>
 #include <vector>
 
 #include "scene/scene.h"
@@ -26,17 +27,19 @@ class ExercisePanel : public QWidget {
 
   void setScene(const Scene& scene, const QString& language);
   void showTime(double seconds);
+  // By arm, as Scene::toolOf counts them.
+  void showTools(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand);
   // Rows of nothing removed are left out.
   void showRemoved(const std::vector<RemovedOf>& tissues, const std::vector<RemovedOf>& structures);
   void showIdle();
 
  private:
-  QLabel *title_, *goal_, *steps_, *hands_, *time_, *removed_, *keys_;
+  QLabel *title_, *goal_, *steps_, *tools_, *hands_, *time_, *removed_, *keys_;
 };
 
 // The card's steps, numbered, as rich text.
 QString stepsWords(const CardText& card);
-// Which tool is in which hand, as the scene has it: "Right hand: burr, 6 mm".
-QString toolWords(const Scene& scene);
+// Which tool is in which hand, as the scene has it: "Right arm: burr, 6 mm".
+QString toolWords(const Scene& scene, const std::array<std::int32_t, kMaxArms>& in_hand = {});
 
 }  // namespace trephine

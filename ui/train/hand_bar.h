@@ -1,5 +1,5 @@
-// Over the lower edge of the view while the mouse is a hand: which hand it has, and how hard that
-// presses. Legible from two metres.
+// Over the lower edge of the view while the mouse is a hand: which hand it has with which tool, and
+// how hard that presses. Legible from two metres.
 #pragma once
 
 #include <QLabel>
@@ -13,10 +13,12 @@ class HandBar : public FloatingCard {
   Q_OBJECT
  public:
   explicit HandBar(QWidget& over);
-  void showHand(const QString& hand, const QColor& colour, double push_N, double most_N);
+  // `waits`: another tool is wanted, and comes once this one is out of tissue.
+  void showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
+                double push_N, double most_N);
 
  private:
-  QLabel *hand_, *push_;
+  QLabel *hand_, *tool_, *push_, *waits_;
   ForceBar* bar_;
 };
 

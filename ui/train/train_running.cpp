@@ -26,7 +26,7 @@ QString handName(const SceneArm& arm) {
 std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
   std::vector<ToolView> tools;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const SceneTool* tool = scene.findTool(scene.arms[i].tool);
+    const SceneTool* tool = scene.toolOf(i, std::size_t(state.tools[i]));
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.proxy_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
@@ -81,6 +81,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     touched_ = touched_ || hands_->taken();
     notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
     exercise_->showTime(double(state.seconds));
+    exercise_->showTools(session.scene(), state.tools);
     if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
     showHand();
     bench_.undoAction()->setEnabled(state.can_undo);
@@ -117,11 +118,41 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
 }
 
 void TrainWorkspace::showHand() {
+  showChangeTool();
   Session* session = workstation_.session();
   if (!session || !here_ || !hands_->taken()) return hand_bar_->hide();
-  const SceneArm& arm = session->scene().arms[hands_->active()];
-  hand_bar_->showHand(handName(arm), armColour(arm, hands_->active()), hands_->push_N(),
+  const std::size_t active = hands_->active();
+  const SceneArm& arm = session->scene().arms[active];
+  const LoopState& state = session->state();
+  const SceneTool& tool = *session->scene().toolOf(active, std::size_t(state.tools[active]));
+  hand_bar_->showHand(handName(arm), armColour(arm, active), toolWord(tool),
+                      state.wanted_tools[active] != state.tools[active], hands_->push_N(),
                       hands_->mostPush_N());
+}
+
+// Of the hand that the mouse and the keys have.
+void TrainWorkspace::showChangeTool() {
+  const Session* session = workstation_.session();
+  const bool alone = session && session->scene().arms[hands_->active()].other_tools.empty();
+  change_tool_->setEnabled(session && !alone);
+  const QString key = change_tool_->shortcut().toString(QKeySequence::NativeText);
+  const QString tip = alone ? tr("The exercise has one tool for this hand")
+                            : tr("The hand takes the next of its tools, out of the tissue");
+  change_tool_->setToolTip(tr("%1 (%2)").arg(tip, key));
+}
+
+void TrainWorkspace::giveTool(std::size_t arm, std::size_t tool) {
+  Session* session = workstation_.session();
+  if (session && !session->changeTool(arm, tool)) bench_.say(tr("Busy: try again in a moment."));
+  view_->setFocus();
+}
+
+void TrainWorkspace::nextTool() {
+  Session* session = workstation_.session();
+  if (!session) return;
+  const std::size_t arm = hands_->active();
+  const std::size_t tools = 1 + session->scene().arms[arm].other_tools.size();
+  giveTool(arm, (std::size_t(session->state().wanted_tools[arm]) + 1) % tools);
 }
 
 // All arms at once: whoever clutches one wants to find room for both hands.

@@ -87,6 +87,9 @@ void TrainWorkspace::buildActions() {
                       QKeySequence(Qt::CTRL | Qt::Key_R), tr("Put all tissue back"));
   other_hand_ = makeAction(window, Symbol::train, "otherHand", tr("Other hand"), {},
                            tr("The mouse takes the other hand; in the view Tab"));
+  change_tool_ = makeAction(window, Symbol::train, "changeTool", tr("Change tool"),
+                            QKeySequence(Qt::CTRL | Qt::Key_T),
+                            tr("The hand takes the next of its tools, out of the tissue"));
   clutch_ = makeAction(window, Symbol::train, "clutch", tr("Clutch"),
                        QKeySequence(Qt::CTRL | Qt::Key_K),
                        tr("The arms move freely and their tools stay, until it is pressed again: "
@@ -119,6 +122,8 @@ void TrainWorkspace::connectParts() {
   connect(scenes_, &QComboBox::activated, this, &TrainWorkspace::chooseScene);
   connect(hands_, &PointerHands::changed, this, &TrainWorkspace::showHand);
   connect(other_hand_, &QAction::triggered, hands_, &PointerHands::takeOther);
+  connect(change_tool_, &QAction::triggered, this, &TrainWorkspace::nextTool);
+  connect(arms_, &ArmsPanel::toolWanted, this, &TrainWorkspace::giveTool);
   connect(clutch_, &QAction::triggered, this, &TrainWorkspace::clutch);
   connect(recentre_, &QAction::triggered, this, &TrainWorkspace::recentre);
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
@@ -190,6 +195,7 @@ void TrainWorkspace::showPhase() {
     notice_->showIdle();
   }
   for (QAction* action : handActions()) action->setEnabled(running);
+  showChangeTool();
   showCard();
   showReset();
   view_->setTraining(running);

@@ -39,7 +39,7 @@ class TrainWorkspace : public Workspace {
   QAction* stopAction() const { return stop_; }
   QAction* pauseAction() const { return pause_; }
   QAction* resetAction() const { return reset_; }
-  QList<QAction*> handActions() const { return {other_hand_, clutch_, recentre_}; }
+  QList<QAction*> handActions() const { return {other_hand_, change_tool_, clutch_, recentre_}; }
   QAction* forceOnAction() const { return notice_->forceOnAction(); }
   QAction* backAction() const { return rewind_->backAction(); }
 
@@ -84,6 +84,9 @@ class TrainWorkspace : public Workspace {
   void showOutline();
   void showLocks();
   void showResult(const Session& session, const RunReport& report);
+  void showChangeTool();
+  void giveTool(std::size_t arm, std::size_t tool);
+  void nextTool();
   void clutch();
   void recentre();
 
@@ -91,7 +94,7 @@ class TrainWorkspace : public Workspace {
   Workstation& workstation_;
   FourUp* views_;
   ViewWidget* view_;
-  QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_;
+  QAction *start_, *stop_, *pause_, *reset_, *clutch_, *recentre_, *other_hand_, *change_tool_;
   QComboBox* scenes_;
   ArmsPanel* arms_;
   StateNotice* notice_;  // over the views

@@ -115,16 +115,18 @@ TEST(ToolChange, TheForceGoesOnFromNothingAndRisesSlowly) {
   arm.tick({tool(1)});
   Vec3 before_N = arm.now().sent_N;
   int since = -1;
-  double most_N = 0.0;
+  double most_N = 0.0, credit_J = 0.0;
   for (int n = 0; n < 3000; ++n) {
     // Out as a hand goes, and pressed anew.
-    arm.rest_mm.z = n < 400 ? -4.0 + 0.03 * n : std::max(-4.0, 8.0 - 0.05 * (n - 400));
+    arm.rest_mm.z = n < 400 ? -4.0 + 0.03 * n : std::max(-4.0, 8.0 - 0.3 * (n - 400));
     arm.tick();
     const Vec3 now_N = arm.now().sent_N;
     if (inHand(arm) == 1 && since < 0) {
       since = 0;
       EXPECT_LE(glm::length(before_N), 0.05 + 1e-9);
       EXPECT_LE(glm::length(now_N), 0.05 + 1e-9);
+      EXPECT_GT(credit_J, 0.0);
+      EXPECT_EQ(arm.now().credit_J, 0.0) << "the controller begins anew";
     }
     if (since >= 0) {
       EXPECT_LE(glm::length(now_N) - glm::length(before_N), 0.05 + 1e-9) << since << " ms later";
@@ -132,9 +134,38 @@ TEST(ToolChange, TheForceGoesOnFromNothingAndRisesSlowly) {
       if (++since == 500) break;
     }
     before_N = now_N;
+    credit_J = arm.now().credit_J;
   }
   EXPECT_EQ(since, 500);
   EXPECT_GT(most_N, 1.0) << "the other tool is felt";
+}
+
+// Soft tissue pushes on a needle's sphere a little before the needle touches it.
+TEST(ToolChange, AForceInAirIsWaitedForToo) {
+  Volume wall = test::boneSlab();
+  for (std::size_t n = 0; n < wall.hu.size(); ++n) {
+    wall.hu[n] = wall.geometry.indicesOf(n)[0] >= 16 ? test::kBoneHu : kAirHu;
+  }
+  HapticParameters p = threeTools();
+  p.arms[0].tool = makeNeedle(0.05);
+  p.arms[0].other_tools = {makeNeedle(0.04)};
+  p.tissues = test::boneTable(4.0, 800.0, 0.35);
+  test::Bench bench(p, wall);
+  for (int n = 0; n < 1000; ++n) bench.at({-4.7 + 0.003 * n, 0, 0});
+  ASSERT_EQ(bench.record.arms[0].tissue_class, -1);
+  ASSERT_GT(glm::length(bench.record.arms[0].sent_N), 0.1);
+  for (int n = 0; n < 100; ++n) bench.at({-1.7, 0, 0}, {tool(1)});
+  EXPECT_EQ(bench.core.toolInHand(0), 0u);
+  for (int n = 0; n < 1000; ++n) {
+    const double before_N = glm::length(bench.record.arms[0].sent_N);
+    bench.at({-1.7 - 0.001 * n, 0, 0});
+    for (const Event& event : bench.core.events()) {
+      if (event.kind == EventKind::tool_changed) {
+        EXPECT_LE(before_N, 0.05 + 1e-9);
+      }
+    }
+  }
+  EXPECT_EQ(bench.core.toolInHand(0), 1u);
 }
 
 // The encoder hides about 0.1 mJ of each contact, with or without a change.
@@ -291,6 +322,7 @@ TEST(ToolChange, AllocatesNothingAndEveryForceIsFiniteAndBounded) {
   std::mt19937 random(7);
   std::array<int, 4> taken{};
   std::vector<Command> none, one(1);
+  const std::uint64_t allocations = rt::guardedAllocations();
   constexpr CommandKind kOthers[] = {CommandKind::undo, CommandKind::redo, CommandKind::pause,
                                      CommandKind::resume, CommandKind::reset};
   for (int n = 0; n < 20'000; ++n) {
@@ -319,6 +351,7 @@ TEST(ToolChange, AllocatesNothingAndEveryForceIsFiniteAndBounded) {
     ASSERT_TRUE(isFinite(arm.now().proxy_position_mm)) << n;
   }
   for (const int ticks : taken) EXPECT_GT(ticks, 500);
+  EXPECT_EQ(rt::guardedAllocations(), allocations);
 }
 
 }  // namespace
