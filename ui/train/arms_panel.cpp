@@ -156,7 +156,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   card.tool->setAccessibleName(tr("Tool"));
   card.tool->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (std::size_t n = 0; n <= arm.other_tools.size(); ++n) {
-    card.tool->addItem(toolWord(*scene.toolOf(index, n)));
+    if (const SceneTool* tool = scene.toolOf(index, n)) card.tool->addItem(toolWord(*tool));
   }
   card.tool->setToolTip(arm.other_tools.empty()
                             ? tr("The exercise has one tool for this arm")

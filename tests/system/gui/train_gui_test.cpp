@@ -1,5 +1,6 @@
 // Training without arms and without a manual: the card says what to do, the keys alone are enough,
 // both hands are reached, what is locked stays, and the result says what was done.
+#include <QAbstractItemView>
 #include <QComboBox>
 #include <QFileDialog>
 #include <QLabel>
@@ -12,8 +13,8 @@
 #include <QtTest>
 
 #include "gui_support.h"
-#include "ui/common/words.h"
 #include "tissue/tissue_edits.h"
+#include "ui/common/words.h"
 #include "ui/train/trace_view.h"
 
 using namespace trephine;
@@ -163,6 +164,89 @@ class TrainGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(
         glm::length(workstation().session()->state().record.arms[1].sent_N) < 0.05, 10000);
     stop();
+  }
+
+  void aHandsToolIsChangedSeenAndCutsItsOwnHole() {
+    openScene(scene_);
+    auto* change = find<QAction>("changeTool");
+    QVERIFY(!change->isEnabled());
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    takeHand(Hand::right);
+    Session& session = *workstation().session();
+    auto *named = find<QLabel>("handTool"), *waits = find<QLabel>("handToolWaits");
+    auto* chosen = find<QComboBox>("rightTool");
+    QTRY_COMPARE(named->text(), "blade, 16 mm");
+    QCOMPARE(chosen->currentText(), "blade, 16 mm");
+    const auto inHand = [&] { return session.state().tools[1]; };
+    // Voxels that a press of the tool in hand takes, in one place.
+    const auto hole = [&] {
+      for (int attempt = 0; attempt < 5; ++attempt) {
+        pushHand(12);
+        QTest::qWait(2500);
+        pushHand(-12);
+        QTest::qWait(1500);
+        const std::uint64_t voxels = removedVoxels(session);
+        const bool whole = voxels > 0 && session.state().record.arms[1].faults == 0;
+        find<QAction>("undo")->trigger();
+        QTest::qWait(500);
+        if (whole) return voxels;
+        find<QAction>("forceBack")->trigger();
+      }
+      return std::uint64_t(0);
+    };
+    const std::uint64_t by_blade = hole();
+    QTRY_COMPARE(removedVoxels(session), 0u);
+    QTest::qWait(1500);  // until the view has been refined
+    const QImage with_blade = view().grabFramebuffer();
+    // By its key to the last of three: the picture changes where the tool is.
+    key(Qt::Key_T, Qt::ControlModifier);
+    QTRY_COMPARE(inHand(), 1);
+    QTRY_COMPARE(named->text(), "rod burr, 2.4 mm");
+    key(Qt::Key_T, Qt::ControlModifier);
+    QTRY_COMPARE(inHand(), 2);
+    QTRY_COMPARE(named->text(), "burr, 6 mm");
+    QCOMPARE(chosen->currentText(), "burr, 6 mm");
+    QVERIFY(find<QLabel>("exerciseTools")->text().contains("Right arm: burr, 6 mm"));
+    QVERIFY(find<QLabel>("exerciseTools")->text().contains("Left arm: blade, 16 mm"));
+    QTest::qWait(1500);
+    const QImage with_burr = view().grabFramebuffer();
+    QCOMPARE(with_burr.size(), with_blade.size());
+    int other = 0;
+    for (int y = 0; y < with_burr.height(); ++y) {
+      for (int x = 0; x < with_burr.width(); ++x) {
+        other += qAbs(qGray(with_burr.pixel(x, y)) - qGray(with_blade.pixel(x, y))) > 24;
+      }
+    }
+    QVERIFY2(other > 150, qPrintable(QString::number(other)));
+    const std::uint64_t by_burr = hole();
+    QVERIFY2(by_blade > 0 && by_burr > by_blade + by_blade / 2,
+             qPrintable(QString("blade %1, burr %2").arg(by_blade).arg(by_burr)));
+    // In the tissue it waits, and says so; out of it, it comes.
+    const auto touches = [&] { return session.state().record.arms[1].tissue_class >= 0; };
+    pushHand(6);
+    QTRY_VERIFY_WITH_TIMEOUT(touches(), 5000);
+    QVERIFY(!waits->isVisible());
+    key(Qt::Key_T, Qt::ControlModifier);
+    QTRY_VERIFY(waits->isVisible());
+    QVERIFY(find<QLabel>("rightToolWaits")->isVisible());
+    QVERIFY(!find<QLabel>("leftToolWaits")->isVisible());
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-tool-waits.png"));
+    QCOMPARE(inHand(), 2);
+    pushHand(-6);
+    QTRY_COMPARE_WITH_TIMEOUT(inHand(), 0, 10000);
+    QTRY_VERIFY(!waits->isVisible());
+    QTRY_COMPARE(named->text(), "blade, 16 mm");
+    // On the arm's card by name.
+    chosen->setFocus();
+    chosen->showPopup();
+    QTest::keyClick(chosen->view(), Qt::Key_Down);
+    QTest::keyClick(chosen->view(), Qt::Key_Return);
+    QTRY_COMPARE(inHand(), 1);
+    QVERIFY(view().hasFocus());
+    stop();
+    QVERIFY(!change->isEnabled());
   }
 
   void whatIsLockedStaysAndThePinUnlocksIt() {

@@ -125,6 +125,48 @@ TEST(PointerHand, PressesWithTheForceThatIsSetAndStopsAtWhatItCannotCut) {
   EXPECT_EQ(inside.voxels, 0);
 }
 
+// A burr of 6 mm instead of the blade: it stops at its own surface, not at the blade's.
+TEST(PointerHand, StopsWithTheToolThatItWasGivenAtWhatThatCannotCut) {
+  const auto give = [](Session& session, double now_s) {
+    if (now_s > 0.0 && now_s < 0.3) {
+      EXPECT_TRUE(session.changeTool(kArm, 2));
+    }
+    if (now_s > 1.0) {
+      EXPECT_EQ(session.state().tools[kArm], 2);
+    }
+  };
+  const Played pressed =
+      run({{0, 4, 0, 0}, {1.0, 4, 0, 1.0}, {3.0, 12, 0, 2.5}, {5.0, 12, 0, 2.5}}, false, give);
+  EXPECT_NEAR(pressed.sent_N(4990), 2.5, 0.3);
+  EXPECT_TRUE(pressed.ticks[4990].tool_state & kToolHeld);
+  test::Inside inside;
+  for (std::size_t n = 1000; n < pressed.ticks.size(); n += 20) {
+    const Pose drawn_mm{pressed.ticks[n].proxy_position_mm, pressed.ticks[n].proxy_orientation};
+    for (const BodyPart& part : pressed.parameters.arms[kArm].other_tools[1].body) {
+      test::lookInside(smallHead(), pressed.parameters.tissues, part, drawn_mm, inside);
+    }
+  }
+  EXPECT_EQ(inside.voxels, 0);
+  EXPECT_LT(fastest_mm(pressed), 0.35);
+}
+
+TEST(PointerHand, TheOtherToolCutsItsOwnHole) {
+  std::array<std::size_t, 2> cut{};
+  for (const std::size_t tool : {0, 2}) {
+    const auto give = [&](Session& session, double now_s) {
+      if (now_s > 0.0 && now_s < 0.3) {
+        EXPECT_TRUE(session.changeTool(kArm, tool));
+      }
+    };
+    const Played pressed =
+        run({{0, 4, 0, 0}, {1.0, 4, 0, 2.0}, {4.0, 4, 0, 0}, {5.0, 4, 0, 0}}, true, give);
+    cut[tool / 2] = pressed.carves.size();
+  }
+  EXPECT_GT(cut[0], 20u);
+  EXPECT_GT(double(cut[1]), 1.3 * double(cut[0]));
+  std::printf("%zu %zu\n", cut[0], cut[1]);
+}
+
 TEST(PointerHand, DraggedAsideInAHoleGrindsItsWallAndIsNotThrown) {
   const Played dragged = run({{0, 4, 0, 0},
                               {0.5, 4, 0, 2.0},

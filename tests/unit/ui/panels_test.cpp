@@ -340,6 +340,46 @@ TEST_F(PanelTest, AnArmShowsItsForceItsTissueAndItsFault) {
   EXPECT_FALSE(find<QLabel>(panel, "rightFaults").isHidden());
 }
 
+TEST_F(PanelTest, AnArmsToolIsNamedAndChosenFromThoseThatTheExerciseGivesIt) {
+  ArmsPanel panel;
+  Scene scene;
+  scene.tissues = twoTissues();
+  scene.tools = {{"a", makeBurr(0.003, 16, 2, 0.03), {}}, {"b", makeBlade(0.016, 4), {}}};
+  scene.arms.resize(2);
+  scene.arms[0].name = "left";
+  scene.arms[1].name = "right";
+  scene.arms[0].tool = scene.arms[1].tool = "a";
+  scene.arms[1].other_tools = {"b"};
+  panel.setScene(scene);
+  auto &left = find<QComboBox>(panel, "leftTool"), &right = find<QComboBox>(panel, "rightTool");
+  EXPECT_EQ(right.currentText(), "burr, 6 mm");
+  EXPECT_FALSE(right.isEnabled()) << "nothing runs";
+  LoopState state;
+  panel.showState(state, scene.tissues, {3.3, 3.3});
+  EXPECT_FALSE(left.isEnabled());
+  EXPECT_TRUE(left.toolTip().contains("one tool"));
+  ASSERT_TRUE(right.isEnabled());
+  ASSERT_EQ(right.count(), 2);
+  std::vector<std::pair<std::size_t, std::size_t>> wanted;
+  QObject::connect(&panel, &ArmsPanel::toolWanted,
+                   [&](std::size_t arm, std::size_t tool) { wanted.emplace_back(arm, tool); });
+  right.setCurrentIndex(1);
+  emit right.activated(1);
+  ASSERT_EQ(wanted.size(), 1u);
+  EXPECT_EQ(wanted[0], (std::pair<std::size_t, std::size_t>(1, 1)));
+  // It waits for the tool to be out of tissue.
+  state.wanted_tools[1] = 1;
+  panel.showState(state, scene.tissues, {3.3, 3.3});
+  EXPECT_EQ(right.currentText(), "burr, 6 mm") << "as it is";
+  EXPECT_FALSE(find<QLabel>(panel, "rightToolWaits").isHidden());
+  EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").text().contains("out of the tissue"));
+  EXPECT_TRUE(find<QLabel>(panel, "leftToolWaits").isHidden());
+  state.tools[1] = 1;
+  panel.showState(state, scene.tissues, {3.3, 3.3});
+  EXPECT_EQ(right.currentText(), "blade, 16 mm");
+  EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").isHidden());
+}
+
 TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
   ArmsPanel panel;
   Scene scene;
