@@ -9,6 +9,8 @@ namespace trephine {
 
 namespace {
 
+// Steps up and as many down do not come back to 0 exactly, and the tool would stay where it is.
+constexpr double kLeastPush_N = 0.01;
 constexpr double kTilt_rad = 0.087;  // 5 degrees a key
 
 std::int64_t now_ns() {
@@ -54,7 +56,8 @@ double PointerHands::mostPush_N() const {
 void PointerHands::setPush(double push_N) {
   if (!session_) return;
   if (!place_) step(0, 0);  // keys alone: from the middle of the view
-  (void)session_->setPush(active_, std::clamp(push_N, 0.0, mostPush_N()));
+  const double wanted_N = push_N < kLeastPush_N ? 0.0 : std::min(push_N, mostPush_N());
+  (void)session_->setPush(active_, wanted_N);
   emit changed();
 }
 

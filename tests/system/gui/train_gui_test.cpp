@@ -226,7 +226,10 @@ class TrainGuiTest : public test::WindowTest {
     // In the tissue it waits, and says so; out of it, it comes.
     const auto touches = [&] { return session.state().record.arms[1].tissue_class >= 0; };
     pushHand(6);
-    QTRY_VERIFY_WITH_TIMEOUT(touches(), 5000);
+    QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(session) > 10, 10000);
+    find<QAction>("pause")->trigger();  // it would soon be through
+    QTRY_VERIFY(session.state().paused);
+    QVERIFY(touches());
     QVERIFY(!waits->isVisible());
     key(Qt::Key_T, Qt::ControlModifier);
     QTRY_VERIFY(waits->isVisible());
@@ -235,6 +238,8 @@ class TrainGuiTest : public test::WindowTest {
     QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-tool-waits.png"));
     QCOMPARE(inHand(), 2);
     pushHand(-6);
+    QCOMPARE(find<QLabel>("pushWords")->text(), "hovers");
+    find<QAction>("pause")->trigger();
     QTRY_COMPARE_WITH_TIMEOUT(inHand(), 0, 10000);
     QTRY_VERIFY(!waits->isVisible());
     QTRY_COMPARE(named->text(), "blade, 16 mm");
@@ -244,7 +249,7 @@ class TrainGuiTest : public test::WindowTest {
     QTest::keyClick(chosen->view(), Qt::Key_Down);
     QTest::keyClick(chosen->view(), Qt::Key_Return);
     QTRY_COMPARE(inHand(), 1);
-    QVERIFY(view().hasFocus());
+    QVERIFY(window_->focusWidget() == &view());
     stop();
     QVERIFY(!change->isEnabled());
   }
