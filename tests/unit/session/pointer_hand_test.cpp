@@ -164,7 +164,6 @@ TEST(PointerHand, TheOtherToolCutsItsOwnHole) {
   }
   EXPECT_GT(cut[0], 20u);
   EXPECT_GT(double(cut[1]), 1.3 * double(cut[0]));
-  std::printf("%zu %zu\n", cut[0], cut[1]);
 }
 
 TEST(PointerHand, DraggedAsideInAHoleGrindsItsWallAndIsNotThrown) {
