@@ -2,15 +2,15 @@
 #include "ui/work/workstation.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "base/file.h"
 #include "base/system.h"
+#include "file_size_limit.h"
 #include "qt_support.h"
 #include "shells.h"
 #include "support.h"
@@ -162,16 +162,12 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
   ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
 
   // As a disk that is full from here on: no file grows.
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old{}, small{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  small = {4096, old.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
+  std::optional<test::FileSizeLimit> full(4096);
   const bool heard = waitFor([&] {
     workstation_.checkRecording();
     return !said.empty();
   });
-  setrlimit(RLIMIT_FSIZE, &old);
+  full.reset();
   ASSERT_TRUE(heard);
   EXPECT_EQ(said.front().code, "CANNOT_WRITE");
   ASSERT_TRUE(workstation_.session());
