@@ -118,4 +118,5 @@ void Workstation::stop() {
                  if (stuck) fail(*stuck);
                });
 }
+
 }  // namespace trephine

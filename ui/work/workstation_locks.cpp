@@ -23,6 +23,7 @@ bool Workstation::refuseLocked(Lock lock, const char* what) {
         "Ask an educator, who can unlock it with a PIN (menu File)"});
   return true;
 }
+
 void Workstation::setTissues(const TissueSet& tissues) {
   if (!scene_) return;
   if (refuseLocked(Lock::tissues, "The tissues are")) return emit sceneChanged();  // as they were
@@ -46,4 +47,5 @@ void Workstation::setController(ControllerKind kind) {
     fail({"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"});
   }
 }
+
 }  // namespace trephine

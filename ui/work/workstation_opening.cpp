@@ -30,8 +30,10 @@ struct Workstation::Opened {
   // The case comes from there, and its own tissues with it.
   std::function<Result<Stored>(const Progress&)> load{};
   std::optional<TissueSet> tissues{};
+  std::optional<Error> no_tissues{};
   Volume mirror{};
 };
+
 namespace {
 
 bool sameIds(const TissueSet& a, const TissueSet& b) {
@@ -43,6 +45,7 @@ bool sameIds(const TissueSet& a, const TissueSet& b) {
 std::filesystem::path defaultScene(const std::string& anatomy) {
   return resourceFolder() / "scenes" / (anatomy == "abdomen" ? "liver.json" : "cranium.json");
 }
+
 bool Workstation::mayOpen() {
   if (phase_ != Phase::empty && phase_ != Phase::ready) {
     fail({"BUSY", "An exercise is running", "", "Stop it, then open the other case"});
@@ -55,20 +58,23 @@ bool Workstation::mayOpen() {
   return true;
 }
 
-std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& file) {
+// The only way to a scene: what is locked is asked each time, since its file may have changed.
+Result<Scene> Workstation::allowedScene(const std::filesystem::path& file, const Policy* policy) {
   Result<Scene> scene = readScene(file);
-  if (!scene) {
-    fail(scene.error());
-    return {};
-  }
-  if (Status may = unlocked_ ? Status() : checkScene(policy_, *scene, file); !may) {
-    fail(may.error());
-    return {};
-  }
+  if (!scene) return scene;
+  if (Status may = policy ? checkScene(*policy, *scene, file) : Status(); !may) return may.error();
   // An arm that is not there now may be when the exercise starts, which then asks again.
   (void)readArmDynamics(*scene);
-  return *std::move(scene);
+  return scene;
 }
+
+std::optional<Scene> Workstation::readSceneOrFail(const std::filesystem::path& file) {
+  Result<Scene> scene = allowedScene(file, unlocked_ ? nullptr : &policy_);
+  if (scene) return *std::move(scene);
+  fail(scene.error());
+  return {};
+}
+
 bool Workstation::isScene(const std::filesystem::path& path) {
   const auto isSidecar = [&] { return isVolumeFile(path) && !readScene(path); };  // of a .raw
   return path.extension() == ".json" && !isSidecar();
@@ -129,14 +135,16 @@ void Workstation::useLabels(const std::filesystem::path& file, const Answers& an
 }
 
 bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structures) {
-  return case_ && phase_ == Phase::ready && !isOpening() && placeAgain(structures);
+  return case_ && phase_ == Phase::ready && !isOpening() && placeAgain(structures).ok();
 }
 
 bool Workstation::placeEntry(const std::optional<Landmark>& entry) {
   if (!case_ || phase_ != Phase::ready || isOpening()) return false;
   entry_ = entry;
-  if (placeAgain(case_->structures)) return true;
+  const Status begun = placeAgain(case_->structures);
+  if (begun) return true;
   entry_ = entry_before_;
+  fail(begun.error());
   return false;
 }
 
@@ -147,10 +155,9 @@ void Workstation::enterAt(Scene& scene) const {
 }
 
 // The open case in its scene, as that is on disk.
-bool Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
-  Result<Scene> scene = readScene(scene_file_);
-  if (!scene) return false;
-  (void)readArmDynamics(*scene);
+Status Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
+  Result<Scene> scene = allowedScene(scene_file_, unlocked_ ? nullptr : &policy_);
+  if (!scene) return scene.error();
   useCase(*scene, scene_->case_source);
   enterAt(*scene);
   const bool same = structures == case_->structures;
@@ -158,7 +165,7 @@ bool Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) 
                  true};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
-  return true;
+  return {};
 }
 
 void Workstation::openSource(Scene scene, const std::filesystem::path& scene_file,
@@ -240,14 +247,15 @@ void Workstation::openInBackground(Opened opening) {
   const std::shared_ptr<const Volume> shown = case_ ? case_->volume : nullptr;
   const auto asked = std::make_shared<Asked>();
   opening_.run(
-      [opening = std::move(opening), shown,
-       asked](const Progress& all) mutable -> Result<Opened> {
+      [opening = std::move(opening), shown, asked,
+       policy = unlocked_ ? std::optional<Policy>() : policy_](const Progress& all) mutable -> Result<Opened> {
         constexpr double kLoaded = 0.7;  // of the work
         if (opening.load) {
           Result<Stored> stored = opening.load(Progress(all, 0.0, kLoaded));
           if (!stored) return stored.error();
           opening.of = std::move(stored->of);
           opening.tissues = std::move(stored->tissues);
+          opening.no_tissues = std::move(stored->no_tissues);
         }
         const Progress progress(all, opening.load ? kLoaded : 0.0, 1.0);
         opening.load = nullptr;
@@ -269,8 +277,7 @@ void Workstation::openInBackground(Opened opening) {
             opening.any_scene ? exerciseAnatomy(opening.of->anatomy->region) : "";
         if (!fits.empty() && fits != opening.scene.anatomy) {
           const std::filesystem::path file = defaultScene(fits);
-          if (Result<Scene> other = readScene(file)) {
-            (void)readArmDynamics(*other);
+          if (Result<Scene> other = allowedScene(file, policy ? &*policy : nullptr)) {
             useCase(*other, "");
             opening.scene = *std::move(other);
             opening.scene_file = file;
@@ -372,6 +379,7 @@ void Workstation::opened(Result<Opened> outcome) {
   emit caseOpened();
   setPhase(Phase::ready);
   if (outcome->no_labels) fail(*outcome->no_labels);
+  if (outcome->no_tissues && may_edit) fail(*outcome->no_tissues);
   if (case_->misfit) fail(*case_->misfit);
 }
 
@@ -382,4 +390,5 @@ std::optional<LandmarkFrame> Workstation::viewLandmark() const {
   }
   return {};
 }
+
 }  // namespace trephine

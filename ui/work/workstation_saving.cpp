@@ -2,6 +2,7 @@
 #include <QTimer>
 
 #include "base/file.h"
+#include "base/purpose.h"
 #include "scene/scene_structures.h"
 #include "tissue/tissue_edits.h"
 #include "ui/work/workstation.h"
@@ -25,9 +26,11 @@ bool Workstation::tissuesEdited() const {
 }
 
 void Workstation::saveTissues(const std::filesystem::path& file, std::function<void()> then) {
+  Json json = toJson(unplaced(scene_->tissues));
+  json["purpose"] = kPurpose;
   save(
       tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
-      [text = toJson(unplaced(scene_->tissues)).dump(1) + '\n', file](const Progress&) {
+      [text = json.dump(1) + '\n', file](const Progress&) {
         return writeTextFile(file, text);
       },
       [this, tissues = scene_->tissues, then = std::move(then)] {

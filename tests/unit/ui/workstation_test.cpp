@@ -423,5 +423,36 @@ TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
   EXPECT_EQ(said->code, "NO_OPENGL");
 }
 
+// A file of the trainee's own may change while it is open.
+TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
+  Policy policy;
+  policy.locks = {Lock::controller};
+  policy.controller = ControllerKind::bounded;
+  Workstation locked(policy);
+  std::optional<Error> said;
+  QObject::connect(&locked, &Workstation::failed, &locked, [&](const Error& e) { said = e; });
+  const std::filesystem::path scenes = resourceFolder() / "scenes", file = folder_ / "own.json";
+  Json scene = *readJsonFile(scenes / "cranium.json");
+  for (const char* key : {"tissues", "operator"}) scene[key] = scenes / scene[key].get<std::string>();
+  for (Json& tool : scene["tools"]) tool["file"] = scenes / tool["file"].get<std::string>();
+  for (Json& arm : scene["arms"]) {
+    Json& config = arm["device"]["config"];
+    config = scenes / config.get<std::string>();
+  }
+  scene["case"] = "";
+  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+  locked.openPath(file);
+  locked.openImported(caseOf(std::make_shared<const Volume>(ball())));
+  ASSERT_TRUE(waitFor([&] { return locked.phase() == Workstation::Phase::ready; }));
+  ASSERT_EQ(locked.sceneFile(), file);
+  said.reset();
+  scene["controller"] = "off";
+  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+  EXPECT_FALSE(locked.placeEntry(std::nullopt));
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->code, "LOCKED");
+  EXPECT_EQ(locked.scene()->controller, ControllerKind::bounded);
+}
+
 }  // namespace
 }  // namespace trephine
