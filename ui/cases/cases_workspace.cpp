@@ -32,7 +32,7 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
   Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}};
   const std::string file = id + "/tissues.json";
   std::optional<Error> problem = loaded->tissues_problem;
-  if (!problem && loaded->tissues.empty()) problem = Error{"MISSING_FILE", "It is not there", file, ""};
+  if (!problem && loaded->tissues.empty()) problem = Error{"MISSING_FILE", "There are none", file, ""};
   if (!problem) {
     Result<TissueSet> set = parseTissueSet(loaded->tissues, file);
     set ? void(stored.tissues = *std::move(set)) : void(problem = set.error());
