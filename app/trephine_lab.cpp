@@ -7,6 +7,7 @@
 #include "app/lab_commands.h"
 #include "app/signals.h"
 #include "base/log.h"
+#include "base/purpose.h"
 #include "base/system.h"
 #include "base/time_left.h"
 
@@ -17,7 +18,7 @@ trephine::Progress progress(trephine::withTimeLeft(trephine::reportToTerminal));
 int run(int argc, char** argv) {
   using namespace trephine;
   const Policy policy = policyAtStart();
-  CLI::App app{"Trephine's laboratory. For training, not for diagnosis or treatment planning."};
+  CLI::App app{std::string("Trephine's laboratory. ") + kPurpose + "."};
   app.require_subcommand(1);
   app.set_version_flag("--version", buildName());
   bool json = false;

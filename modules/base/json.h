@@ -56,7 +56,8 @@ class JsonReader {
   // The raw value; null where absent. Not for numbers: they would have no range.
   const Json& raw(const char* key);
 
-  // Checks `format` and `version`: a newer version is refused by name.
+  // Checks `format` and `version`: a newer version is refused by name. A text `purpose` may stand
+  // beside them.
   void format(const char* format, int version);
 
   // Records a problem found by the caller; `field` is the key, "" the object itself.

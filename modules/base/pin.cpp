@@ -1,13 +1,10 @@
 #include "base/pin.h"
 
-#include <openssl/crypto.h>
-#include <openssl/evp.h>
-#include <openssl/rand.h>
-
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <vector>
+
+#include "base/hex.h"
+#include "base/stretched_hash.h"
 
 namespace trephine {
 
@@ -18,38 +15,7 @@ constexpr const char* kAlgorithm = "pbkdf2-sha256";
 constexpr int kIterations = 600'000;
 // Of a file: the work that a person waits for has an end.
 constexpr Range kIterationRange{10'000, 10'000'000};
-constexpr std::size_t kSaltBytes = 16, kHashBytes = 32, kMostSaltBytes = 64;
-
-using Bytes = std::vector<std::uint8_t>;
-using Hash = std::array<std::uint8_t, kHashBytes>;
-
-std::string hexOf(const std::uint8_t* bytes, std::size_t count) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) {
-    text += kDigits[bytes[i] >> 4];
-    text += kDigits[bytes[i] & 15];
-  }
-  return text;
-}
-
-// Empty for what is no hex.
-Bytes bytesOf(std::string_view hex) {
-  const auto digit = [](char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-  };
-  Bytes bytes;
-  if (hex.size() % 2 != 0) return {};
-  for (std::size_t i = 0; i < hex.size(); i += 2) {
-    const int high = digit(hex[i]), low = digit(hex[i + 1]);
-    if (high < 0 || low < 0) return {};
-    bytes.push_back(std::uint8_t(16 * high + low));
-  }
-  return bytes;
-}
+constexpr int kSaltBytes = 16, kHashBytes = 32, kMostSaltBytes = 64;
 
 bool mayBePin(std::string_view text) {
   const auto allowed = [](char c) {
@@ -59,9 +25,18 @@ bool mayBePin(std::string_view text) {
          std::ranges::all_of(text, allowed);
 }
 
-bool hashOf(std::string_view text, const Bytes& salt, int iterations, Hash& hash) {
-  return PKCS5_PBKDF2_HMAC(text.data(), int(text.size()), salt.data(), int(salt.size()), iterations,
-                           EVP_sha256(), int(hash.size()), hash.data()) == 1;
+// Zero for what is no hex.
+int bytesIn(const std::string& hex) {
+  const auto bytes = bytesOfHex(hex);
+  return bytes ? int(bytes->size()) : 0;
+}
+
+// Empty for what is no salt.
+std::string hashOf(std::string_view text, const std::string& salt_hex, int iterations) {
+  const auto salt = bytesOfHex(salt_hex);
+  if (!salt || salt->empty()) return {};
+  return stretchedHash(text, {reinterpret_cast<const char*>(salt->data()), salt->size()},
+                       iterations, kHashBytes);
 }
 
 }  // namespace
@@ -71,23 +46,18 @@ Result<Pin> makePin(std::string_view text) {
     return Error{"BAD_PIN", "A PIN has 4 to 12 digits or letters from A to Z, and nothing else", "",
                  "Choose another"};
   }
-  Bytes salt(kSaltBytes);
-  Hash hash{};
-  if (RAND_bytes(salt.data(), int(salt.size())) != 1 || !hashOf(text, salt, kIterations, hash)) {
-    return Error{"NO_RANDOM_NUMBERS", "The system gave no random numbers to keep the PIN with", "",
-                 "Try again"};
-  }
-  return Pin{kIterations, hexOf(salt.data(), salt.size()), hexOf(hash.data(), hash.size())};
+  const Result<std::string> salt = randomHex(kSaltBytes);
+  if (!salt) return salt.error();
+  return Pin{kIterations, *salt, hashOf(text, *salt, kIterations)};
 }
 
 bool pinMatches(const Pin& pin, std::string_view text) {
-  const Bytes wanted = bytesOf(pin.hash_hex), salt = bytesOf(pin.salt_hex);
-  Hash hash{};
-  if (!mayBePin(text) || wanted.size() != hash.size() || salt.empty() ||
-      !kIterationRange.holds(pin.iterations) || !hashOf(text, salt, pin.iterations, hash)) {
+  const auto wanted = bytesOfHex(pin.hash_hex);
+  if (!mayBePin(text) || !wanted || int(wanted->size()) != kHashBytes ||
+      !kIterationRange.holds(pin.iterations)) {
     return false;
   }
-  return CRYPTO_memcmp(hash.data(), wanted.data(), hash.size()) == 0;
+  return sameSecret(hashOf(text, pin.salt_hex, pin.iterations), hexOf(*wanted));
 }
 
 Pin readPin(JsonReader reader) {
@@ -100,12 +70,12 @@ Pin readPin(JsonReader reader) {
   pin.salt_hex = reader.text("salt_hex");
   pin.hash_hex = reader.text("hash_hex");
   if (!reader.ok()) return pin;
-  const std::size_t salt = bytesOf(pin.salt_hex).size();
+  const int salt = bytesIn(pin.salt_hex);
   if (salt < kSaltBytes || salt > kMostSaltBytes) {
     reader.fail("salt_hex", "The salt is not 32 to 128 digits of hex",
                 "Copy it as trephine-lab pin printed it");
   }
-  if (bytesOf(pin.hash_hex).size() != kHashBytes) {
+  if (bytesIn(pin.hash_hex) != kHashBytes) {
     reader.fail("hash_hex", "The hash is not 64 digits of hex",
                 "Copy it as trephine-lab pin printed it");
   }

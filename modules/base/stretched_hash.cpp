@@ -1,40 +1,32 @@
 #include "base/stretched_hash.h"
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <openssl/rand.h>
 
-#include <array>
-#include <span>
 #include <vector>
+
+#include "base/hex.h"
 
 namespace trephine {
 
-namespace {
-
-std::string hexOf(std::span<const unsigned char> bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
+std::string stretchedHash(std::string_view text, std::string_view salt, int iterations, int bytes) {
+  std::vector<std::uint8_t> digest(std::size_t(bytes), 0);
+  const bool made =
+      PKCS5_PBKDF2_HMAC(text.data(), int(text.size()),
+                        reinterpret_cast<const unsigned char*>(salt.data()), int(salt.size()),
+                        iterations, EVP_sha256(), bytes, digest.data()) == 1;
+  return made ? hexOf(digest) : std::string();
 }
 
-}  // namespace
-
-std::string stretchedHash(std::string_view text, std::string_view salt, int iterations) {
-  std::array<unsigned char, 16> digest{};
-  PKCS5_PBKDF2_HMAC(text.data(), int(text.size()),
-                    reinterpret_cast<const unsigned char*>(salt.data()), int(salt.size()),
-                    iterations, EVP_sha256(), int(digest.size()), digest.data());
-  return hexOf(digest);
+bool sameSecret(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 Result<std::string> randomHex(int bytes) {
-  std::vector<unsigned char> random(std::size_t(bytes), 0);
+  std::vector<std::uint8_t> random(std::size_t(bytes), 0);
   if (RAND_bytes(random.data(), bytes) != 1) {
-    return Error{"NO_RANDOM", "The system gives no random numbers", "", "Restart the computer"};
+    return Error{"NO_RANDOM_NUMBERS", "The system gives no random numbers", "", "Try again"};
   }
   return hexOf(random);
 }

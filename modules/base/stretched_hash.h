@@ -11,11 +11,15 @@ namespace trephine {
 // About 20 ms of one core of 2024; to be kept beside the hashes, so that it can grow.
 constexpr int kStretchIterations = 50000;
 
-// PBKDF2-HMAC-SHA256 as 32 lower-case hexadecimal digits; the same for the same three.
+// `bytes` of PBKDF2-HMAC-SHA256 as lower-case hexadecimal digits; the same for the same four.
+// The salt is any bytes, at least one iteration is made. Empty where the hash cannot be had.
 std::string stretchedHash(std::string_view text, std::string_view salt,
-                          int iterations = kStretchIterations);
+                          int iterations = kStretchIterations, int bytes = 16);
 
-// That many bytes nobody can foresee, as hexadecimal digits. Error: NO_RANDOM.
+// Whether two texts are the same; how much of them is does not show in the time.
+bool sameSecret(std::string_view a, std::string_view b);
+
+// That many bytes nobody can foresee, as hexadecimal digits. Error: NO_RANDOM_NUMBERS.
 Result<std::string> randomHex(int bytes);
 
 }  // namespace trephine

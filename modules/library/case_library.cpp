@@ -392,11 +392,12 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   for (const char* file : {kProvenanceFile, kTissuesFile}) {
     if (!has(file)) continue;
     Result<Json> json = readJsonFile(folder / file);
-    if (!json) return failed(json.error(), file);
     if (file == kTissuesFile) {
-      loaded.tissues = *std::move(json);
+      if (json) loaded.tissues = *std::move(json);
+      if (!json) loaded.tissues_problem = failed(json.error(), file);
       continue;
     }
+    if (!json) return failed(json.error(), file);
     Result<Provenance> provenance = provenanceFrom(*json, id + "/" + file);
     if (!provenance) return provenance.error();
     loaded.provenance = *std::move(provenance);

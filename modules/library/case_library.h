@@ -56,6 +56,7 @@ struct LoadedCase {
   std::shared_ptr<const LabelMap> structures;  // null: none
   std::optional<Provenance> provenance;
   Json tissues = Json::object();  // {}: none
+  std::optional<Error> tissues_problem{};  // there are some, and they cannot be read
 };
 
 class CaseLibrary {
@@ -75,7 +76,8 @@ class CaseLibrary {
   // OUT_OF_MEMORY.
   Result<SavedCase> save(const NewCase& of, const Progress& progress = Progress());
 
-  // Voxels and grid are compared with what was saved. Errors: NO_SUCH_CASE, CASE_PART_MISSING,
+  // Voxels and grid are compared with what was saved. A case whose tissues cannot be read opens
+  // without them. Errors: NO_SUCH_CASE, CASE_PART_MISSING,
   // CASE_CHANGED, those of list(), of readVolume and of readSegmentation, CANCELLED.
   Result<LoadedCase> load(const std::string& id, const Progress& progress = Progress());
 

@@ -18,7 +18,7 @@ class NameGuard {
  public:
   NameGuard() = default;  // refuses nothing
 
-  // About 20 ms for each of 20 to 60 texts, on two threads. Errors: CANCELLED, NO_RANDOM.
+  // About 20 ms for each of 20 to 60 texts, on two threads. Errors: CANCELLED, NO_RANDOM_NUMBERS.
   static Result<NameGuard> of(const SourceKeys& source, const Progress& progress = Progress());
   // Of the file that toJson() was written to. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD.
   static Result<NameGuard> read(const std::filesystem::path& file);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/file.h"
+#include "base/purpose.h"
 #include "plot/canvas.h"
 #include "plot/checks.h"
 #include "plot/clip.h"
@@ -428,8 +429,9 @@ Result<Drawing> draw(const Plot& plot, Theme theme) {
 }
 
 Status writePng(const Plot& plot, Theme theme, const std::filesystem::path& file) {
-  const Result<Drawing> drawing = draw(plot, theme);
+  Result<Drawing> drawing = draw(plot, theme);
   if (!drawing) return drawing.error();
+  drawing->image.setText("Description", kPurpose);
   return replaceFile(file, [&](const std::filesystem::path& target) -> Status {
     if (drawing->image.save(QString::fromStdString(target.string()), "PNG")) return {};
     return Error{"WRITE_FAILED", "The picture could not be written", file.string(),

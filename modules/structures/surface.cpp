@@ -17,6 +17,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/purpose.h"
 
 namespace trephine {
 
@@ -119,7 +120,8 @@ Result<SurfaceWritten> writeSurface(const LabelMap& map, int label,
       vtkNew<vtkSTLWriter> writer;
       writer->SetInputConnection(smooth->GetOutputPort());
       writer->SetFileTypeToBinary();
-      writer->SetHeader("Trephine: for training, not for diagnosis or treatment planning");
+      const std::string made = std::string("Trephine: ") + kPurpose;  // of 80 characters
+      writer->SetHeader(made.c_str());
       writer->SetFileName(temporary.c_str());
       const vtkNew<vtkCallbackCommand> said_below;  // instead of VTK's own words on stderr
       writer->AddObserver(vtkCommand::ErrorEvent, said_below);

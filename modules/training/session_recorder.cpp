@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/purpose.h"
 #include "training/recording_layout.h"
 
 namespace trephine {
@@ -191,6 +192,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
 
   writeVersion(f.file);
   writeText(f.file, "format", "trephine.session");
+  writeText(f.file, "purpose", kPurpose);
   Json volume = {{"sha256", header.volume_sha256}, {"geometry", geometryJson(header.geometry)}};
   if (!header.labels_sha256.empty()) volume["labels_sha256"] = header.labels_sha256;
   const std::string scene_text = header.scene.dump(1), volume_text = volume.dump(1);

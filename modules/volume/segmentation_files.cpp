@@ -16,6 +16,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/memory.h"
+#include "base/purpose.h"
 #include "volume/case_memory.h"
 #include "volume/file_format.h"
 #include "volume/gzip_writer.h"
@@ -268,8 +269,8 @@ std::string nrrdHeader(const LabelMap& map, bool reversed) {
   }
   char line[512];
   std::string text =
-      "NRRD0004\n# Made by Trephine: for training, not for diagnosis or treatment planning\n"
-      "type: unsigned char\ndimension: 3\nspace: left-posterior-superior\n";
+      std::string("NRRD0004\n# Made by Trephine: ") + kPurpose +
+      "\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n";
   std::snprintf(line, sizeof line, "sizes: %d %d %d\n", g.size[0], g.size[1], g.size[2]);
   text += line;
   text += "space directions:";
@@ -333,7 +334,7 @@ std::string sidecarText(const LabelMap& map) {
     rows.push_back(std::move(row));
   }
   const Json all = {
-      {"format", "trephine.structures"}, {"version", 1}, {"structures", std::move(rows)}};
+      {"format", "trephine.structures"}, {"version", 1}, {"purpose", kPurpose}, {"structures", std::move(rows)}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -6,13 +6,13 @@ import os
 import pty
 import shutil
 import subprocess
+import time
 import unittest
-from pathlib import Path
 
-from lab_support import LAB, SCENES, LabTest, small_scene, without_display
+from lab_support import (LAB, PATIENCE_S, SCENES, TRAINEE, WINDOW, LabTest, TraineeTest,
+                         without_display)
 
 PRODUCT = SCENES / "cranium-one-arm.json"
-TRAINEE = 65534  # "nobody": owns nothing that these tests need
 
 
 class Pin(LabTest):
@@ -76,43 +76,11 @@ class Pin(LabTest):
         self.assertIn("not the same", shown)
 
 
-def can_mount():
-    return subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode == 0
-
-
-class Locked(LabTest):
-    """With an /etc of its own, in a mount namespace of its own."""
-
-    def setUp(self):
-        super().setUp()
-        if os.geteuid() != 0 or not can_mount():
-            self.skipTest("Only root can put another /etc in the place of this one")
-        self.etc = self.folder / "etc"
-        self.etc.mkdir()
-        for file in Path("/etc").iterdir():  # what programs need to start
-            if file.name in ("alternatives", "ld.so.cache", "passwd", "group", "fonts"):
-                subprocess.run(["cp", "-a", file, self.etc], check=True)
-        self.folder.chmod(0o755)
-        (self.etc / "trephine").mkdir()
-        self.own = small_scene(self.folder)  # a scene of the user's
-        self.head = self.folder / "head.nii.gz"
-
-    def settings(self, locks, owner=0, mode=0o644):
-        file = self.etc / "trephine" / "settings.json"
-        file.write_text(json.dumps({"format": "trephine.settings", "version": 1, "locks": locks}))
-        os.chown(file, owner, owner)
-        file.chmod(mode)
-
+class Locked(TraineeTest):
     def run_as_trainee(self, scene, *arguments, environment=()):
         """The answer of `run` in 0.05 s of a scene."""
-        out = self.folder / "out"
-        shutil.rmtree(out, ignore_errors=True)
-        out.mkdir()
-        os.chown(out, TRAINEE, TRAINEE)
-        command = ["unshare", "-m", "bash", "-c",
-                   f'mount --make-rprivate / && mount --bind "{self.etc}" /etc && exec "$@"', "_",
-                   "setpriv", f"--reuid={TRAINEE}", f"--regid={TRAINEE}", "--clear-groups",
-                   LAB, "run", scene, "--out", out, "--seconds", "0.05", "--json", *arguments]
+        command = self.as_trainee(LAB, "run", scene, "--out", self.trainees_folder("out"),
+                                  "--seconds", "0.05", "--json", *arguments)
         done = subprocess.run(command, capture_output=True, text=True, timeout=240,
                               env={**without_display(), **dict(environment)})
         self.assertTrue(done.stdout, done.stderr)
@@ -154,6 +122,111 @@ class Locked(LabTest):
                 self.settings({}, owner, mode)
                 answer = self.run_as_trainee(self.own)
                 self.assert_locked(answer, "tissues, a controller, a rate", "Everything is locked")
+
+
+@unittest.skipUnless(WINDOW and os.environ.get("DISPLAY"), "needs the window and a display")
+class LockedWindow(TraineeTest):
+    """The window's own program, as a trainee starts it."""
+
+    LOCKS = {"controller": "bounded", "tissues": True, "rate": 1000}
+
+    def setUp(self):
+        super().setUp()
+        self.settings(self.LOCKS)
+        self.home = self.trainees_folder("home")
+        self.config = self.trainees_folder("home/config")
+        self.environment = {**os.environ, "HOME": str(self.home),
+                            "XDG_CONFIG_HOME": str(self.config),
+                            "XDG_DATA_HOME": str(self.trainees_folder("home/data")),
+                            "XDG_RUNTIME_DIR": str(self.trainees_folder("home/run"))}
+        if key := os.environ.get("XAUTHORITY"):
+            mine = self.home / "xauthority"
+            shutil.copy(key, mine)
+            os.chown(mine, TRAINEE, TRAINEE)
+            self.environment["XAUTHORITY"] = str(mine)
+
+    def own_scenes(self, folder=None):
+        """Scenes of the trainee's own: what of each is locked, and its file."""
+        scene = json.loads(self.own.read_text())
+        changes = {"controller": {"controller": "off"}, "rate": {"rate_hz": 2000}, "tissues": {}}
+        for locked, change in changes.items():
+            self.assertTrue(all(key in scene for key in change), change)
+            file = (folder or self.folder) / f"{locked}.json"
+            file.write_text(json.dumps(scene | change))
+            yield locked, file
+
+    def exercise(self, scene, environment=()):
+        """The window's answer after 0.2 s of a scene, and its recordings."""
+        out = self.trainees_folder("out")
+        command = self.as_trainee(WINDOW, "--exercise", scene, "--seconds", "0.2", "--out", out,
+                                  "--json")
+        done = subprocess.run(command, capture_output=True, text=True, timeout=240,
+                              env={**self.environment, **dict(environment)})
+        self.assertTrue(done.stdout, done.stderr)
+        return json.loads(done.stdout), list(out.rglob("*.h5"))
+
+    def assert_refused(self, answer, recordings, locked):
+        self.assert_error(answer, "LOCKED", locked)
+        self.assertEqual(recordings, [])
+
+    def assert_as_shipped(self, answer, recordings):
+        self.assertEqual(answer["ticks"], 200, answer)
+        run = recordings[0].read_bytes()
+        shipped = json.loads(PRODUCT.read_text())
+        self.assertIn(b'"controller":"bounded"', run)
+        self.assertEqual(shipped["controller"], "bounded")
+        tissues = json.loads((PRODUCT.parent / shipped["tissues"]).read_text())["tissues"]
+        for tissue in tissues:
+            value = tissue["mechanics"]["damping_Ns_per_m"]["value"]
+            self.assertIn(json.dumps(value).encode(), run)
+
+    def test_an_exercise_of_ones_own_is_refused_in_a_sentence(self):
+        for locked, scene in self.own_scenes():
+            with self.subTest(locked):
+                answer, recordings = self.exercise(scene)
+                self.assert_refused(answer, recordings, locked)
+
+    def test_the_products_own_runs_as_it_is_shipped_whatever_the_users_settings_say(self):
+        (self.config / "trephine").mkdir()
+        (self.config / "trephine" / "window.ini").write_text(
+            "[locks]\ncontroller=false\ntissues=false\nrate=false\n"
+            "[General]\ncontroller=off\nrate_hz=2000\nlanguage=en\n")
+        (self.config / "trephine" / "settings.json").write_text(
+            json.dumps({"format": "trephine.settings", "version": 1, "locks": {}}))
+        self.assert_as_shipped(*self.exercise(PRODUCT))
+        for locked, scene in self.own_scenes():
+            answer, recordings = self.exercise(scene)
+            self.assert_refused(answer, recordings, locked)
+
+    def test_the_environment_brings_nothing_that_is_locked(self):
+        resources = self.folder / "resources"
+        shutil.copytree(SCENES.parent, resources)
+        for file in (resources / "tissues").iterdir():
+            file.write_text(file.read_text().replace('"value": 1', '"value": 2'))
+        environment = {"TREPHINE_RESOURCES": str(resources), "TREPHINE_PLUGINS": str(resources),
+                       "XDG_CONFIG_DIRS": str(self.config)}
+        for locked, scene in self.own_scenes(resources / "scenes"):
+            answer, recordings = self.exercise(scene, environment)
+            self.assert_refused(answer, recordings, locked)
+        self.assert_as_shipped(*self.exercise(PRODUCT, environment))
+
+    def test_a_path_is_refused_in_the_open_window(self):
+        for locked, scene in self.own_scenes():
+            with self.subTest(locked):
+                log = self.folder / "log"
+                with open(log, "w") as said:
+                    process = subprocess.Popen(self.as_trainee(WINDOW, scene), stderr=said,
+                                               stdout=said, env=self.environment)
+                self.addCleanup(process.kill)
+                deadline = time.monotonic() + PATIENCE_S
+                while "LOCKED" not in log.read_text() and time.monotonic() < deadline:
+                    self.assertIsNone(process.poll(), log.read_text())
+                    time.sleep(0.1)
+                self.assertIn("LOCKED", log.read_text())
+                self.assertNotIn(scene.name, log.read_text())
+                process.terminate()
+                process.wait(PATIENCE_S)
+                self.assertEqual(list(self.home.rglob("*.h5")), [])
 
 
 if __name__ == "__main__":

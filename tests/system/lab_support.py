@@ -4,6 +4,7 @@ import csv
 import gzip
 import json
 import os
+import shutil
 import struct
 import subprocess
 import tempfile
@@ -15,6 +16,7 @@ LAB = os.environ["TREPHINE_LAB"]
 WINDOW = os.environ["TREPHINE"]
 SOURCE = Path(os.environ["TREPHINE_SOURCE"])
 SCENES = SOURCE / "resources" / "scenes"
+TRAINEE = 65534  # "nobody": owns nothing that these tests need
 PATIENCE_S = 120  # with a busy machine; alone nothing that waits for it takes more than seconds
 
 
@@ -174,6 +176,48 @@ class PatientsScanTest(LabTest):
         for name in (self.FOLDER, self.FILE):
             self.assertNotIn(name, done.stderr, arguments)
         return done.stderr
+
+
+def can_mount():
+    return subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode == 0
+
+
+class TraineeTest(LabTest):
+    """As an account without rights, with an /etc of its own, in a mount namespace of its own."""
+
+    def setUp(self):
+        super().setUp()
+        if os.geteuid() != 0 or not can_mount():
+            self.skipTest("Only root can put another /etc in the place of this one")
+        self.etc = self.folder / "etc"
+        self.etc.mkdir()
+        for file in Path("/etc").iterdir():  # what programs need to start
+            if file.name in ("alternatives", "ld.so.cache", "passwd", "group", "fonts"):
+                subprocess.run(["cp", "-a", file, self.etc], check=True)
+        self.folder.chmod(0o755)
+        (self.etc / "trephine").mkdir()
+        self.own = small_scene(self.folder)  # a scene of the user's
+        self.head = self.folder / "head.nii.gz"
+
+    def settings(self, locks, owner=0, mode=0o644):
+        file = self.etc / "trephine" / "settings.json"
+        file.write_text(json.dumps({"format": "trephine.settings", "version": 1, "locks": locks}))
+        os.chown(file, owner, owner)
+        file.chmod(mode)
+
+    def as_trainee(self, *command):
+        """The same command, as a trainee runs it."""
+        return ["unshare", "-m", "bash", "-c",
+                f'mount --make-rprivate / && mount --bind "{self.etc}" /etc && exec "$@"', "_",
+                "setpriv", f"--reuid={TRAINEE}", f"--regid={TRAINEE}", "--clear-groups",
+                *map(str, command)]
+
+    def trainees_folder(self, name):
+        folder = self.folder / name
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        os.chown(folder, TRAINEE, TRAINEE)
+        return folder
 
 
 def data_folder():

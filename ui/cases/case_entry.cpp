@@ -4,7 +4,7 @@
 #include <QDateTime>
 #include <QLocale>
 
-#include "library/case_picture.h"
+#include "base/system.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/words.h"
 #include "volume/phantom.h"
@@ -35,7 +35,6 @@ QString structureNames(const Structures& structures, int most) {
   return more > 0 ? tr("%1 and %2 more").arg(first).arg(more) : first;
 }
 
-// Pictures and hashes of the built-in cases cost a second: they are made once a program.
 CaseEntry builtIn(const std::string& name) {
   CaseEntry entry;
   entry.id = name;
@@ -44,6 +43,7 @@ CaseEntry builtIn(const std::string& name) {
       (name == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in")).toStdString();
   entry.record.region = name == "cranium" ? BodyRegion::head : BodyRegion::abdomen;
   if (const auto geometry = phantomGeometry(name)) entry.record.grid = *geometry;
+  (void)entry.picture.load(toQt(resourceFolder() / "cases" / (name + ".png")));
   return entry;
 }
 

@@ -8,7 +8,6 @@
 #include <QPainter>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "ui/common/colours.h"
@@ -45,7 +44,7 @@ QPixmap cardPicture(const CaseEntry& entry) {
   painter.drawRect(empty.rect().adjusted(0, 0, -1, -1));
   painter.setPen(colours::kQuiet);
   painter.drawText(empty.rect(), Qt::AlignCenter,
-                   entry.problem ? CasesPage::tr("damaged") : CasesPage::tr("no picture yet"));
+                   entry.problem ? CasesPage::tr("damaged") : CasesPage::tr("no picture"));
   return empty;
 }
 
@@ -232,12 +231,9 @@ void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   const CaseEntry* before = chosen();
   std::string keep = before ? before->id : open_;
   if (!to_select_.empty()) keep = std::exchange(to_select_, {});
-  std::map<std::string, QImage> pictures;  // that were made here
-  for (const CaseEntry& entry : entries_) pictures[entry.id] = entry.picture;
   entries_ = entries;
   cards_->clear();
-  for (CaseEntry& entry : entries_) {
-    if (entry.picture.isNull()) entry.picture = pictures[entry.id];
+  for (const CaseEntry& entry : entries_) {
     auto* item = new QListWidgetItem(cardIcon(entry), cardWords(entry), cards_);
     item->setData(kIdRole, toQt(entry.id));
     item->setToolTip(detailWords(entry));
@@ -248,17 +244,6 @@ void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   if (!cards_->currentItem() && cards_->count() > 0) cards_->setCurrentRow(0);
   showChosen();
   showStrip();
-}
-
-void CasesPage::showPicture(const std::string& id, const QImage& picture) {
-  for (CaseEntry& entry : entries_) {
-    if (entry.id == id) entry.picture = picture;
-  }
-  for (int i = 0; i < cards_->count(); ++i) {
-    const CaseEntry* entry = find(cards_->item(i)->data(kIdRole).toString().toStdString());
-    if (entry && entry->id == id) cards_->item(i)->setIcon(cardIcon(*entry));
-  }
-  showChosen();
 }
 
 void CasesPage::select(const std::string& id) {

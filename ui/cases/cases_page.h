@@ -21,8 +21,6 @@ class CasesPage : public QWidget {
   explicit CasesPage(QWidget* parent = nullptr);
 
   void showCases(const std::vector<CaseEntry>& entries);
-  // A card that another was made of in the meantime, its picture perhaps.
-  void showPicture(const std::string& id, const QImage& picture);
   void select(const std::string& id);
   void selectOnceThere(const std::string& id) { to_select_ = id; }  // with the next list
   // Which is open (an id), and a few lines about it; `saved`: the library has it.
@@ -38,7 +36,6 @@ class CasesPage : public QWidget {
 
  signals:
   void folderWanted();
-  void fileWanted();
   void seriesWanted();
   void trainWanted(const trephine::CaseEntry& entry);
   void prepareWanted(const trephine::CaseEntry& entry);

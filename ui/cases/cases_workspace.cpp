@@ -5,7 +5,6 @@
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
-#include "library/case_picture.h"
 #include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
@@ -30,11 +29,22 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
   of.provenance = loaded->provenance;
   of.name = loaded->record.name;
   of.stored = id;
-  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}};
-  if (loaded->tissues.empty()) return stored;
-  // One that cannot be used any more is no reason not to open the case.
-  if (Result<TissueSet> set = parseTissueSet(loaded->tissues, "tissues.json")) {
-    stored.tissues = *std::move(set);
+  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}};
+  const std::string file = id + "/tissues.json";
+  std::optional<Error> problem = loaded->tissues_problem;
+  if (!problem && loaded->tissues.empty()) problem = Error{"MISSING_FILE", "There are none", file, ""};
+  if (!problem) {
+    Result<TissueSet> set = parseTissueSet(loaded->tissues, file);
+    set ? void(stored.tissues = *std::move(set)) : void(problem = set.error());
+  }
+  // No reason not to open the case.
+  if (problem) {
+    stored.no_tissues = Error{
+        "NO_TISSUES",
+        "The file with the case's own tissues cannot be used, so it has those of the exercise (" +
+            problem->what + ")",
+        problem->where,
+        "Put the file back and open the case again; or set the tissues and save them in the case"};
   }
   return stored;
 }
@@ -44,8 +54,7 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
 CasesWorkspace::CasesWorkspace(Bench& bench)
     : Workspace(&bench),
       bench_(bench),
-      workstation_(bench.workstation()),
-      library_(bench.library()) {
+      workstation_(bench.workstation()) {
   QWidget& window = *bench.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
@@ -167,7 +176,7 @@ void CasesWorkspace::open(const std::filesystem::path& path) {
 
 void CasesWorkspace::list() {
   const bool begun = listing_.run(
-      [library = library_, recordings = bench_.recordings()](const Progress& progress) {
+      [library = bench_.library(), recordings = bench_.recordings()](const Progress& progress) {
         return listCases(*library, recordings, progress);
       },
       [this](Result<std::vector<CaseEntry>> entries) {
@@ -175,33 +184,8 @@ void CasesWorkspace::list() {
         page_->showCases(*entries);
         const QStringList recent = read(settings::kRecentCases);
         page_->setRecent(recent.isEmpty() ? std::string() : recent.front().toStdString());
-        if (!std::exchange(pictures_made_, true)) makePictures();
       });
   list_again_ = !begun;
-}
-
-// Of the built-in cases, once: the library's have theirs on the disk.
-void CasesWorkspace::makePictures() {
-  using Pictures = std::vector<std::pair<std::string, QImage>>;
-  pictures_.run(
-      [](const Progress& progress) -> Result<Pictures> {
-        Pictures made;
-        for (const auto& [name, region] : {std::pair{"cranium", BodyRegion::head},
-                                           std::pair{"abdomen", BodyRegion::abdomen}}) {
-          if (progress.cancelled()) return Error{"CANCELLED", "", "", ""};
-          const Result<Case> of = readCase(phantomSource(name), progress);
-          if (!of) continue;
-          const CasePicture picture = casePicture(*of->volume, region);
-          const QImage image(picture.rgb.data(), CasePicture::kWidth, CasePicture::kHeight,
-                             3 * CasePicture::kWidth, QImage::Format_RGB888);
-          made.emplace_back(name, image.copy());
-        }
-        return made;
-      },
-      [this](Result<Pictures> made) {
-        if (!made) return;
-        for (const auto& [id, picture] : *made) page_->showPicture(id, picture);
-      });
 }
 
 void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
@@ -226,7 +210,7 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   }
   bench_.unlessLost(losses, begin([this, id = entry.id, folder = entry.record.folder] {
     bench_.setCaseSource(folder);
-    workstation_.openStored([library = library_, id](const Progress& progress) {
+    workstation_.openStored([library = bench_.library(), id](const Progress& progress) {
       return storedCase(*library, id, progress);
     });
   }));
@@ -246,7 +230,7 @@ void CasesWorkspace::saveCase() {
   const auto done = std::make_shared<SavedCase>();
   workstation_.save(
       tr("The case is saved. You may remove the stick."),
-      [library = library_, made, done](const Progress& progress) -> Status {
+      [library = bench_.library(), made, done](const Progress& progress) -> Status {
         Result<SavedCase> written = library->save(made, progress);
         if (!written) return written.error();
         *done = *std::move(written);
@@ -277,7 +261,7 @@ void CasesWorkspace::saved(const SavedCase& saved) {
 
 void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
   changing_.run(
-      [library = library_, id = entry.id, to = name.toStdString()](const Progress&) {
+      [library = bench_.library(), id = entry.id, to = name.toStdString()](const Progress&) {
         return library->rename(id, to);
       },
       [this](Result<CaseRecord> renamed) {
@@ -303,7 +287,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                 .arg(exercises),
       tr("&Delete it"), [this, entry] {
         changing_.run(
-            [library = library_, id = entry.id](const Progress&) { return library->remove(id); },
+            [library = bench_.library(), id = entry.id](const Progress&) { return library->remove(id); },
             [this, entry](Status removed) {
               if (!removed) bench_.report(removed.error());
               const std::optional<Case>& open = workstation_.currentCase();

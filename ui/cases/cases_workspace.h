@@ -38,7 +38,6 @@ class CasesWorkspace : public Workspace {
   void askForFile();
   void askForScene();
   void list();
-  void makePictures();
   void openEntry(const CaseEntry& entry, Place then);
   void openPhantom(const std::string& name);
   void saveCase();
@@ -56,12 +55,10 @@ class CasesWorkspace : public Workspace {
   QStackedWidget* pages_;
   CasesPage* page_;
   ImportPage* import_;
-  std::shared_ptr<CaseLibrary> library_;  // the bench's
   std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
   Place then_ = Place::prepare;            // once the case that opens is there
   bool list_again_ = false;
-  bool pictures_made_ = false;
-  BackgroundTask listing_, changing_, pictures_;  // last: joined before what they use goes
+  BackgroundTask listing_, changing_;  // last: joined before what they use goes
 };
 
 }  // namespace trephine

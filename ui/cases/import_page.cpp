@@ -187,7 +187,6 @@ void ImportPage::showStep(Step step) {
                         static_cast<QWidget*>(cancel_)}) {
     part->setVisible(working);
   }
-  purpose_->setVisible(!working);
   close_->setVisible(!working && step != Step::asking);
   // Also while it cannot be used: what follows Cancel at its place is Close, never Import.
   import_->setVisible(step != Step::asking);

@@ -107,7 +107,7 @@ class ImportPage : public QWidget {
   QWidget *size_box_, *labels_box_;
   QComboBox* labels_;
   QLabel *size_note_, *loss_, *couch_, *face_;
-  QLabel *status_, *purpose_;
+  QLabel* status_;
   QProgressBar* progress_;
   QPushButton *open_folder_, *open_file_, *scan_on_, *report_, *cancel_, *close_, *back_, *import_,
       *take_found_, *open_case_;

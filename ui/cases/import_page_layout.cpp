@@ -165,10 +165,7 @@ QLayout* ImportPage::buildBottomRow() {
       tr("Look only at the files beside those of this series, and at no others"));
   open_case_ = button("openCase", tr("&Open the case"));
   open_case_->setProperty("primary", true);
-  purpose_ = new ElidedLabel(purposeText());
-  purpose_->setProperty("quiet", true);
   auto* row = new QHBoxLayout;
-  row->addWidget(purpose_);
   row->addWidget(status_);
   row->addWidget(progress_, 1);
   row->addStretch(1);

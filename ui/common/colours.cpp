@@ -111,6 +111,14 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           .arg(2.3 * font.pointSizeF()));
 }
 
+QColor of(const Vec3& rgb) {
+  return QColor::fromRgbF(float(rgb.x), float(rgb.y), float(rgb.z));
+}
+
+Vec3 rgbOf(const QColor& colour) {
+  return {colour.redF(), colour.greenF(), colour.blueF()};
+}
+
 void setText(QLabel& label, const QColor& colour) {
   QPalette palette = label.palette();
   if (palette.color(QPalette::WindowText) == colour) return;

@@ -6,6 +6,8 @@
 #include <QColor>
 #include <QLabel>
 
+#include "base/math.h"
+
 namespace trephine::colours {
 
 // Of the theme that was applied; the dark one until then.
@@ -27,6 +29,10 @@ enum class Theme { dark, light };
 // Fusion style, palette and a few style rules; text so many per cent of its usual size. Before the
 // first widget.
 void applyTheme(QApplication& application, Theme theme = Theme::dark, int text_percent = 100);
+
+// A tissue's or structure's colour, each part from 0 to 1, and back.
+QColor of(const Vec3& rgb);
+Vec3 rgbOf(const QColor& colour);
 
 void setText(QLabel& label, const QColor& colour);
 

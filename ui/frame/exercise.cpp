@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
+#include "ui/views/saved_picture.h"
 
 namespace trephine {
 
@@ -138,7 +139,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   Result<Picture> picture = window.view().picture();
   if (!picture) return picture.error();
   const std::filesystem::path file = freshFile(options.out, "picture", ".png");
-  if (Status written = writePng(*picture, file); !written) return written.error();
+  if (Status written = writePng(withPurpose(*picture), file); !written) return written.error();
   outcome.report.picture = file.string();
   outcome.frames = int(frame_ms.size());
   outcome.frame_median_ms = percentile(frame_ms, 0.5);

@@ -36,11 +36,13 @@ void PrepareWorkspace::connectExports() {
   connect(structures_, &StructurePanel::saveSurfaceWanted, this, &PrepareWorkspace::askToSaveSurface);
 }
 
-// Of the case that was read by this window from DICOM, in the folder that was opened last.
+// Of the case that was read by this window from DICOM, in the folder that was opened last; one of
+// the library's lies in a folder without it.
 bool PrepareWorkspace::sourceAtHand() const {
   const std::optional<Case>& of = workstation_.currentCase();
-  return of && of->provenance && !of->provenance->source_ids.series.empty() &&
-         !bench_.caseSource().empty();
+  const std::filesystem::path& source = bench_.caseSource();
+  return of && of->provenance && !of->provenance->source_ids.series.empty() && !source.empty() &&
+         source.parent_path() != bench_.storage() / "cases";
 }
 
 void PrepareWorkspace::askToSaveDicom(bool for_source) {

@@ -14,7 +14,7 @@ namespace {
 
 QIcon swatch(const Vec3& colour) {
   QPixmap pixmap(16, 16);
-  pixmap.fill(QColor::fromRgbF(float(colour.x), float(colour.y), float(colour.z)));
+  pixmap.fill(colours::of(colour));
   QIcon icon(pixmap);
   icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
   return icon;
@@ -129,13 +129,12 @@ void StructurePanel::chooseColour(int label) {
   const std::shared_ptr<const LabelMap> map = editor_.map();
   const Structure* of = map ? map->find(label) : nullptr;
   if (!of) return;
-  const Vec3 c = of->colour;
-  auto* dialog = new QColorDialog(QColor::fromRgbF(float(c.x), float(c.y), float(c.z)), this);
+  auto* dialog = new QColorDialog(colours::of(of->colour), this);
   dialog->setObjectName("structureColour");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Colour of %1").arg(toQt(of->name)));
   connect(dialog, &QColorDialog::colorSelected, this, [this, label](const QColor& colour) {
-    const Vec3 chosen(colour.redF(), colour.greenF(), colour.blueF());
+    const Vec3 chosen = colours::rgbOf(colour);
     if (editor_.setColour(label, chosen)) emit colourChosen(label, chosen);
   });
   dialog->open();

@@ -20,10 +20,6 @@ namespace {
 constexpr int kOpacitySteps = 1000;
 const char* const kOwnSource = "tuned here, uncited";
 
-QColor toColour(const Vec3& c) {
-  return QColor::fromRgbF(float(c.x), float(c.y), float(c.z));
-}
-
 QIcon swatch(const QColor& colour, bool hidden) {
   QPixmap pixmap(32, 32);
   pixmap.fill(Qt::transparent);
@@ -341,7 +337,7 @@ void TissuePanel::showList() {
     item.setText(toQt(tissue.name));
     const TissueLook look = lookOf(tissue, looks_);
     look_boxes_[std::size_t(i)]->show(tissue, look);
-    item.setIcon(swatch(toColour(tissue.colour), look == TissueLook::hidden));
+    item.setIcon(swatch(colours::of(tissue.colour), look == TissueLook::hidden));
     item.setToolTip(tr("%1 to %2 HU%3%4")
                         .arg(tissue.hu_min)
                         .arg(tissue.hu_max)
@@ -384,7 +380,7 @@ void TissuePanel::showSelected() {
 void TissuePanel::showOutcome() {
   const Tissue* tissue = current();
   if (!tissue) return;
-  colour_->setIcon(swatch(toColour(tissue->colour), false));
+  colour_->setIcon(swatch(colours::of(tissue->colour), false));
   for (QSpinBox* box : {low_, high_}) {
     box->setToolTip(tr("Source: %1").arg(toQt(tissue->hu_source)));
   }
@@ -403,14 +399,14 @@ void TissuePanel::showOutcome() {
 void TissuePanel::chooseColour() {
   const Tissue* tissue = current();
   if (!tissue) return;
-  auto* dialog = new QColorDialog(toColour(tissue->colour), this);
+  auto* dialog = new QColorDialog(colours::of(tissue->colour), this);
   dialog->setObjectName("colourDialog");
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setWindowTitle(tr("Colour of %1").arg(toQt(tissue->name)));
   connect(dialog, &QColorDialog::colorSelected, this, [this](const QColor& colour) {
     if (!current()) return;
     Tissue wanted = *current();
-    wanted.colour = {colour.redF(), colour.greenF(), colour.blueF()};
+    wanted.colour = colours::rgbOf(colour);
     (void)apply(wanted);
   });
   dialog->open();

@@ -1,5 +1,6 @@
 // What Train shows while an exercise runs, and what is done with one.
 #include "render/tool_view.h"
+#include "ui/common/colours.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 #include "volume/cut_structures.h"
@@ -12,10 +13,6 @@ constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kRemovedEvery_ms = 500;
 constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
-
-QColor colourOf(const Vec3& rgb) {
-  return QColor::fromRgbF(float(rgb.r), float(rgb.g), float(rgb.b));
-}
 
 QString handName(const SceneArm& arm) {
   if (arm.name == "left") return TrainWorkspace::tr("Left hand");
@@ -32,7 +29,7 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const QColor colour = armColour(scene.arms[i], i);
     tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0,
-                             Vec3(colour.redF(), colour.greenF(), colour.blueF())));
+                             colours::rgbOf(colour)));
   }
   return tools;
 }
@@ -101,7 +98,7 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
     for (std::size_t arm = 0; arm < session.scene().arms.size(); ++arm) {
       voxels += state.removed[arm][t];
     }
-    removed.push_back({toQt(tissues[t].name), colourOf(tissues[t].colour),
+    removed.push_back({toQt(tissues[t].name), colours::of(tissues[t].colour),
                        double(voxels) * voxel_mm3});
   }
   const std::optional<Case>& of = workstation_.currentCase();
@@ -110,7 +107,7 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
     for (const auto& [label, mm3] :
          cutWithin(*of->structures, *of->volume, mirror.volume(), mirror.touched())) {
       if (const Structure* s = of->structures->find(label)) {
-        of_structures.push_back({toQt(s->name), colourOf(s->colour), mm3});
+        of_structures.push_back({toQt(s->name), colours::of(s->colour), mm3});
       }
     }
   }
@@ -183,7 +180,7 @@ void TrainWorkspace::showResult(const Session& session, const RunReport& report)
   result.seconds = double(report.ticks) / report.rate_hz;
   for (const auto& [id, mm3] : report.removed_mm3) {
     const Tissue* tissue = session.scene().tissues.find(id);
-    if (tissue) result.tissues.push_back({toQt(tissue->name), colourOf(tissue->colour), mm3});
+    if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
   }
   result.structures = report.structures_cut;
   for (std::size_t i = 0; i < report.arms.size(); ++i) {

@@ -125,8 +125,7 @@ void SliceView::paintTools(QPainter& painter) const {
   for (const ToolView& tool : tools_) {
     if (!isFinite(tool.pose_mm)) continue;
     const ToolMark mark = markOf(tool);
-    QColor colour =
-        QColor::fromRgbF(float(tool.colour.x), float(tool.colour.y), float(tool.colour.z));
+    QColor colour = colours::of(tool.colour);
     if (!mark.in_slice) colour.setAlpha(150);
     const auto draw = [&](const QColor& with, double thick) {
       painter.setBrush(Qt::NoBrush);

@@ -5,12 +5,13 @@
 #include <QPushButton>
 #include <QSettings>
 
-#include "render/picture.h"
+#include "base/log.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "ui/views/saved_picture.h"
 
 namespace trephine {
 
@@ -51,6 +52,7 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
 }
 
 void Bench::report(const Error& error) {
+  spdlog::warn("Said in the window: {}", error.code);  // no more: the rest may name files
   showError(&window_, error);
   emit failed(error);
 }
@@ -173,7 +175,7 @@ void Bench::savePicture(const QString& file) {
   Result<Picture> picture = view().picture();
   if (!picture) return report(picture.error());
   workstation_.save(tr("The picture is saved."),
-                    [picture = *std::move(picture), path = toPath(file)](const Progress&) {
+                    [picture = withPurpose(*picture), path = toPath(file)](const Progress&) {
                       return writePng(picture, path);
                     });
 }

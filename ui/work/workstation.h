@@ -40,6 +40,7 @@ class Workstation : public QObject {
   struct Stored {
     Case of;
     std::optional<TissueSet> tissues;
+    std::optional<Error> no_tissues{};  // why there are none: said once it is open
   };
   void openStored(std::function<Result<Stored>(const Progress&)> load);
   // The library has the open case now, as that id and under that name, or no longer.
@@ -175,11 +176,13 @@ class Workstation : public QObject {
   static Result<Case> withAnswered(const Case& of, const Opened& opening, Asked& asked,
                                    const Progress& progress);
   bool mayOpen();
+  // `policy`: null where nothing is locked any more. Any thread.
+  static Result<Scene> allowedScene(const std::filesystem::path& file, const Policy* policy);
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
                   bool same_scene = false);
   void enterAt(Scene& scene) const;
-  bool placeAgain(const std::shared_ptr<const LabelMap>& structures);
+  Status placeAgain(const std::shared_ptr<const LabelMap>& structures);
   void openInBackground(Opened opening);
   void keepEdits(Opened& opened);
   void opened(Result<Opened> outcome);

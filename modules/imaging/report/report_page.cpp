@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/purpose.h"
 #include "base/system.h"
 #include "imaging/common/text.h"
 #include "imaging/dicom/transfer_syntax.h"
@@ -170,8 +171,8 @@ std::string reportPage(const ImportReport& report) {
       "<style>@page { size: A4; margin: 15mm } body { font-family: sans-serif; font-size: 9pt }"
       " h2 { font-size: 14pt } h3 { font-size: 10pt; margin: 8px 0 2px 0 }"
       " table { font-size: 8pt; border-collapse: collapse }</style></head><body>\n"
-      "<h2>CT import report</h2>\n<p>For training, not for diagnosis or treatment planning. "
-      "This page names no patient.</p>\n";
+      "<h2>CT import report</h2>\n<p>" +
+      std::string(kPurpose) + ". This page names no patient.</p>\n";
   if (report.error) {
     html +=
         "<p><b>" + escaped(report.error->what) + ".</b> " + escaped(report.error->next) + ".</p>\n";

@@ -1,6 +1,9 @@
 // Cases as a clinician makes them: a folder that names its patient becomes a case without a name,
 // saved by itself; it is renamed, practised on, closed, opened again and deleted. Every file that
 // was written on the way is looked at.
+#include <spdlog/sinks/basic_file_sink.h>
+
+#include <QBuffer>
 #include <QDialog>
 #include <QDirIterator>
 #include <QFileDialog>
@@ -13,10 +16,14 @@
 #include <QRadioButton>
 #include <QSignalSpy>
 #include <QStatusBar>
+#include <QToolButton>
 #include <QtTest>
 
+#include "base/log.h"
+#include "base/purpose.h"
 #include "gui_support.h"
 #include "imaging/dicom/ct_writer.h"
+#include "packed_words.h"
 #include "ui/common/words.h"
 
 using namespace trephine;
@@ -25,7 +32,9 @@ namespace {
 
 constexpr int kLong_ms = 120000;
 const char* const kFolderName = "DOE^JANE";
-const char* const kDescription = "Head of Jane Doe";
+const char* const kId = "4711-SECRET";
+const char* const kFileWord = "JDOE1970";
+const CtSeriesText kText{"Head of Jane Doe", "HEAD", kFolderName, kId};
 
 }  // namespace
 
@@ -41,6 +50,7 @@ class CasesGuiTest : public test::WindowTest {
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
     QApplication::setActiveWindow(window_.get());
   }
+  QString exports() { return temporary_.filePath("exports"); }
   QListWidget* cards() { return find<QListWidget>("cases"); }
   QStringList ids() {
     QStringList ids;
@@ -91,9 +101,17 @@ class CasesGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    const Status made = writeCtSeries(test::coarseCranium(2), {kDescription, "HEAD", kFolderName, "4711-SECRET"},
+    const Status made = writeCtSeries(test::coarseCranium(2), kText,
                                       toPath(temporary_.filePath(kFolderName)));
     QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
+    QDir source(temporary_.filePath(kFolderName));
+    for (const QString& name : source.entryList(QDir::Files)) {
+      QVERIFY(source.rename(name, kFileWord + ('-' + name)));
+    }
+    auto log = spdlog::basic_logger_mt("log", temporary_.filePath("log.txt").toStdString());
+    log->set_level(spdlog::level::trace);
+    spdlog::set_default_logger(log);
+    log->info("The log of this test");
     open();
   }
 
@@ -114,6 +132,16 @@ class CasesGuiTest : public test::WindowTest {
     auto* import = find<QPushButton>("import");
     QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
     QVERIFY(import->isVisible());
+    QVERIFY(QDir().mkpath(exports()));
+    for (const char* name : {"report.html", "report.pdf"}) {
+      QSignalSpy saved(&workstation(), &Workstation::saved);
+      QTest::mouseClick(find<QPushButton>("saveReport"), Qt::LeftButton);
+      QTRY_VERIFY(window_->findChild<QFileDialog*>("saveDialog"));
+      emit find<QFileDialog>("saveDialog")->fileSelected(exports() + '/' + name);
+      find<QFileDialog>("saveDialog")->close();
+      QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
+      QTest::qWait(10);
+    }
     QTest::mouseClick(import, Qt::LeftButton);
     auto* open_case = find<QPushButton>("openCase");
     QTRY_VERIFY_WITH_TIMEOUT(open_case->isVisible(), kLong_ms);
@@ -160,8 +188,8 @@ class CasesGuiTest : public test::WindowTest {
     QTest::mouseClick(find<QPushButton>("startCardStart"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(started.count() == 1, kLong_ms);
     cut({60, 0});
-    save("saveVolume", temporary_.filePath("out-volume.mha"));
-    save("savePicture", temporary_.filePath("out-picture.png"));
+    save("saveVolume", exports() + "/running.mha");
+    save("savePicture", exports() + "/running.png");
     find<QAction>("stop")->trigger();
     QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
     QVERIFY(find<QLabel>("resultRows")->text().contains("mm"));
@@ -227,31 +255,123 @@ class CasesGuiTest : public test::WindowTest {
     QTRY_COMPARE_WITH_TIMEOUT(idOfMine(), id, kLong_ms);
   }
 
+  // All that the window gives to others, of the case that the library has.
+  void itIsExportedInEveryWayThereIs() {
+    window_->show(Place::cases);
+    choose(idOfMine());
+    QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(
+        !workstation().currentCase()->stored.empty() && !workstation().isOpening(), kLong_ms);
+    showStructures();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QToolButton>("structureSkull")->isEnabled(), kLong_ms);
+    QTest::mouseClick(find<QToolButton>("structureSkull"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("saveStructures")->isEnabled(), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    QVERIFY(!find<QAction>("saveForSource")->isEnabled());  // its source is not known any more
+    save("saveLabelMap", exports() + "/structures.nii.gz");
+    save("saveLabelMap", exports() + "/structures.seg.nrrd");
+    save("saveSurface", exports() + "/skull.stl");
+    QSignalSpy saved(&workstation(), &Workstation::saved);
+    find<QAction>("saveDicom")->trigger();
+    QTRY_VERIFY(window_->findChild<QFileDialog*>("dicomDialog"));
+    emit find<QFileDialog>("dicomDialog")->fileSelected(exports() + "/dicom");
+    find<QFileDialog>("dicomDialog")->close();
+    QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
+    for (const char* name : {"carved.mha", "carved.nii", "carved.nii.gz"}) {
+      save("saveVolume", exports() + '/' + name);
+    }
+    save("savePicture", exports() + "/picture.png");
+    saved.clear();
+    workstation().saveTissues(toPath(exports() + "/tissues.json"), [] {});
+    QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
+    find<QAction>("saveInCase")->trigger();
+    QVERIFY(saved.wait(kLong_ms));
+  }
+
+  void everyExportSaysOnceWhatItIsFor() {
+    int files = 0;
+    QDirIterator it(exports(), QDir::Files, QDirIterator::Subdirectories);
+    while (it.hasNext()) {
+      const QString path = it.next();
+      if (path.endsWith(".pdf")) continue;  // has no letters but pictures of them
+      const int count = test::countIn(test::bytesOfFile(toPath(path)), kPurpose);
+      QVERIFY2(count == 1, qPrintable(QString("%1: %2 times").arg(path).arg(count)));
+      ++files;
+    }
+    QVERIFY2(files >= 10, qPrintable(QString::number(files)));
+    const QDir sessions(storage() + "/sessions");
+    for (const QString& name : sessions.entryList({"*.h5"})) {
+      QCOMPARE(test::countIn(test::bytesOfFile(toPath(sessions.filePath(name))), kPurpose), 1);
+    }
+    // And to be seen: below the picture is a strip with it.
+    const QImage saved(exports() + "/picture.png");
+    const Result<Picture> seen = window_->view().picture();
+    QVERIFY(seen);
+    QCOMPARE(saved.width(), seen->width);
+    QVERIFY2(saved.height() >= seen->height + 10, qPrintable(QString::number(saved.height())));
+  }
+
+  void everyWorkspaceSaysOnceWhatItIsFor() {
+    for (const Place place : {Place::cases, Place::prepare, Place::train, Place::review}) {
+      window_->show(place);
+      int count = 0;
+      for (const QLabel* label : window_->findChildren<QLabel*>()) {
+        count += label->isVisible() && label->text().contains(purposeText());
+      }
+      QCOMPARE(count, 1);
+    }
+  }
+
+  void theSearchFindsANameHoweverItIsPacked() {
+    const std::vector<std::string> words{"SECRET", "JANE"};
+    const QByteArray text("It is of Secret.");
+    QByteArray zlib = qCompress(text);
+    zlib.remove(0, 4);  // Qt's own head
+    const QByteArray noise("\x01\x00\x02", 3);
+    QCOMPARE(test::wordIn((noise + zlib + noise).toStdString(), words), std::string("SECRET"));
+    QImage picture(4, 4, QImage::Format_RGB888);
+    picture.fill(Qt::black);
+    picture.setText("Comment", QString(200, 'x') + "secret");  // long ones are packed
+    QByteArray png;
+    QBuffer buffer(&png);
+    buffer.open(QIODevice::WriteOnly);
+    QVERIFY(picture.save(&buffer, "PNG"));
+    QVERIFY(!png.contains("secret"));
+    QCOMPARE(test::wordIn(png.toStdString(), words), std::string("SECRET"));
+    const QString wide("a secret");
+    const QByteArray utf16(reinterpret_cast<const char*>(wide.utf16()), 2 * wide.size());
+    QCOMPARE(test::wordIn(utf16.toStdString(), words), std::string("SECRET"));
+    QCOMPARE(test::wordIn("of jane", words), std::string("JANE"));
+    QCOMPARE(test::wordIn("of nobody", words), std::string());
+  }
+
   // Its own folder of DICOM is the source, and is left out.
   void noFileThatWasWrittenNamesThePatient() {
     window_.reset();  // settings are written
-    QStringList roots{storage(), QFileInfo(windowSettings().fileName()).absolutePath()};
-    int files = 0;
-    const auto look = [&](const QString& path) {
-      QFile file(path);
-      QVERIFY2(file.open(QIODevice::ReadOnly), qPrintable(path));
-      ++files;
-      const QByteArray bytes = file.readAll().toUpper();
-      for (const char* word : {"DOE", "JANE"}) {
-        QVERIFY2(!bytes.contains(word) || path.endsWith(".mha") || path.endsWith(".h5"),
-                 qPrintable(path + " has " + word));
-      }
-      for (const char* word : {"DOE^JANE", "DOE JANE", "JANE DOE", "4711-SECRET"}) {
-        QVERIFY2(!bytes.contains(word), qPrintable(path + " has " + word));
-      }
-      QVERIFY2(!path.mid(temporary_.path().size()).contains("DOE"), qPrintable(path));
-    };
-    for (const QString& root : roots) {
-      QDirIterator it(root, QDir::Files | QDir::Hidden, QDirIterator::Subdirectories);
-      while (it.hasNext()) look(it.next());
+    std::vector<std::string> words{"DOE^JANE", "DOE JANE", "JANE DOE",  "JANE^DOE", "DOE, JANE",
+                                   "DOE_JANE", "JANE_DOE", "DOE-JANE",  "JANEDOE",  "DOEJANE",
+                                   kId,        "SECRET",   kFileWord,   "DOE",      "JANE"};
+    const CtSeriesUids uids = ctSeriesUids(test::coarseCranium(2), kText);
+    for (const std::string& uid : {uids.study, uids.series, uids.frame_of_reference}) {
+      words.push_back(uid);
     }
-    for (const char* name : {"out-volume.mha", "out-picture.png"}) look(temporary_.filePath(name));
-    QVERIFY2(files >= 10, qPrintable(QString::number(files)));
+    words.insert(words.end(), uids.slices.begin(), uids.slices.end());
+    int files = 0;
+    for (const QString& root : {storage(), exports(), temporary_.filePath("log.txt"),
+                                QFileInfo(windowSettings().fileName()).absolutePath()}) {
+      QStringList paths;
+      if (QFileInfo(root).isFile()) paths << root;
+      QDirIterator it(root, QDir::Files | QDir::Hidden, QDirIterator::Subdirectories);
+      while (it.hasNext()) paths << it.next();
+      for (const QString& path : paths) {
+        ++files;
+        const std::string found = test::wordIn(test::bytesOfFile(toPath(path)), words);
+        QVERIFY2(found.empty(), qPrintable(path + " has " + toQt(found)));
+        const std::string name = path.mid(temporary_.path().size()).toStdString();
+        QVERIFY2(test::wordIn(name, words).empty(), qPrintable(path));
+      }
+    }
+    QVERIFY2(files >= 100, qPrintable(QString::number(files)));
     open();
   }
 
@@ -273,7 +393,10 @@ class CasesGuiTest : public test::WindowTest {
     QVERIFY(!QDir(storage() + "/cases/" + id).exists());
   }
 
-  void cleanupTestCase() { window_.reset(); }
+  void cleanupTestCase() {
+    window_.reset();
+    spdlog::drop_all();
+  }
 };
 
 int main(int argc, char** argv) { return test::runInWindow<CasesGuiTest>(argc, argv); }

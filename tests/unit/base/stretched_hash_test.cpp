@@ -9,6 +9,8 @@ TEST(StretchedHash, IsPbkdf2OfHmacSha256) {
   // RFC 7914, section 11, its first 16 bytes.
   EXPECT_EQ(stretchedHash("passwd", "salt", 1), "55ac046e56e3089fec1691c22544b605");
   EXPECT_EQ(stretchedHash("Password", "NaCl", 80000), "4ddcd8f60b98be21830cee5ef22701f9");
+  EXPECT_EQ(stretchedHash("passwd", "salt", 1, 32),
+            "55ac046e56e3089fec1691c22544b605f94185216dde0465e68b9d57c20dacbc");
 }
 
 TEST(StretchedHash, DiffersWithTheSalt) {

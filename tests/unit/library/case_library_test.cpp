@@ -210,7 +210,12 @@ TEST_F(CaseLibraryTest, SaysWhichPartOfACaseIsNotAsItWasSaved) {
   EXPECT_EQ(whereOf(), "UNREADABLE " + record.id + "/structures.seg.nrrd");
   fs::remove(record.folder / "structures.seg.nrrd");
   std::ofstream(record.folder / "tissues.json") << "[";
-  EXPECT_EQ(whereOf(), "BAD_JSON " + record.id + "/tissues.json");
+  const auto loaded = library_.load(record.id);
+  ASSERT_TRUE(loaded) << "the case is worth more than its tissues";
+  EXPECT_TRUE(loaded->tissues.empty());
+  ASSERT_TRUE(loaded->tissues_problem);
+  EXPECT_EQ(loaded->tissues_problem->code + " " + loaded->tissues_problem->where,
+            "BAD_JSON " + record.id + "/tissues.json");
 }
 
 TEST_F(CaseLibraryTest, KnowsAFolderThatWasRenamedUnderneathByItsNewName) {

@@ -7,8 +7,14 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
+#include <utility>
 #include <vector>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 namespace {
@@ -138,6 +144,27 @@ TEST(CasePicture, IsAPngThatSaysWhatItIsFor) {
   EXPECT_EQ(image.width(), 256);
   EXPECT_EQ(image.height(), 192);
   EXPECT_NE(image.text("Description").indexOf("not for diagnosis"), -1);
+}
+
+// What the list of cases shows of them. TREPHINE_RENEW_PICTURES=1 writes the files.
+TEST(CasePicture, OfTheBuiltInCasesIsTheOneInTheResources) {
+  for (const auto& [name, region] :
+       {std::pair{"cranium", BodyRegion::head}, std::pair{"abdomen", BodyRegion::abdomen}}) {
+    const auto volume = makePhantom(name);
+    ASSERT_TRUE(volume) << name;
+    const CasePicture picture = casePicture(*volume, region);
+    const auto file = resourceFolder() / "cases" / (std::string(name) + ".png");
+    if (std::getenv("TREPHINE_RENEW_PICTURES")) {
+      ASSERT_TRUE(writeTextFile(file, pngOf(picture)));
+    }
+    QImage shipped;
+    ASSERT_TRUE(shipped.load(QString::fromStdString(file.string()))) << file;
+    const QImage made(picture.rgb.data(), CasePicture::kWidth, CasePicture::kHeight,
+                      3 * CasePicture::kWidth, QImage::Format_RGB888);
+    EXPECT_EQ(shipped.convertToFormat(QImage::Format_RGB888), made)
+        << file << " is another picture: look at it after TREPHINE_RENEW_PICTURES=1";
+    EXPECT_NE(shipped.text("Description").indexOf("not for diagnosis"), -1);
+  }
 }
 
 TEST(CasePicture, OfALargeHeadTakesLessThanHalfASecond) {

@@ -1,11 +1,11 @@
 // What is recorded, and what of it replays.
 #include <hdf5.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <fstream>
+#include <optional>
 
+#include "file_size_limit.h"
 #include "recording_support.h"
 #include "support.h"
 #include "training/recording_layout.h"
@@ -417,12 +417,7 @@ TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   auto recorder = SessionRecorder::create(
       folder / "a.h5", {toJson(scene), volumeSha256(slab()), grid.geometry(), "test"}, 1);
   ASSERT_TRUE(recorder.ok());
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old{}, small{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  small = old;
-  small.rlim_cur = 4'000'000;
-  setrlimit(RLIMIT_FSIZE, &small);
+  std::optional<test::FileSizeLimit> full(4'000'000);
   Status status;
   std::uint64_t ticks = 0;
   // Positions without a pattern, so that compression cannot make room.
@@ -445,7 +440,7 @@ TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
     EXPECT_EQ(status.error().code, "CANNOT_WRITE");
   }
   EXPECT_FALSE((*recorder)->finish({ticks, 0, 0, ""}).ok());
-  setrlimit(RLIMIT_FSIZE, &old);
+  full.reset();
   const auto reader = SessionReader::open(folder / "a.h5");
   ASSERT_TRUE(reader.ok()) << reader.error().sentence();
   EXPECT_GT((*reader)->tickCount(), 0u);

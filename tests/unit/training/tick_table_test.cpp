@@ -1,10 +1,8 @@
 #include "training/tick_table.h"
 
-#include <sys/resource.h>
-
-#include <csignal>
 #include <fstream>
 
+#include "file_size_limit.h"
 #include "scene/scene.h"
 #include "support.h"
 #include "training/session_recorder.h"
@@ -73,18 +71,13 @@ TEST(TickTable, NamesTheCauseWhereItCannotBeWritten) {
   EXPECT_EQ(written.error().sentence().find("space"), std::string::npos);
 }
 
-// Stands in for a full disk: a write past so many bytes fails.
 TEST(TickTable, ForWhichTheDiskHasNoRoomSaysSoAndLeavesNothing) {
   test::TemporaryFolder folder;
   const auto reader = *SessionReader::open(recordTwoTicks(folder, "right"));
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  rlimit small = old;
-  small.rlim_cur = 100;
-  setrlimit(RLIMIT_FSIZE, &small);
-  const Status written = writeTickTable(*reader, folder / "t.csv");
-  setrlimit(RLIMIT_FSIZE, &old);
+  const Status written = [&] {
+    const test::FileSizeLimit full(100);
+    return writeTickTable(*reader, folder / "t.csv");
+  }();
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().code, "CANNOT_WRITE");
   EXPECT_NE(written.error().sentence().find("Free some space"), std::string::npos)

@@ -2,15 +2,15 @@
 #include "ui/work/workstation.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "base/file.h"
 #include "base/system.h"
+#include "file_size_limit.h"
 #include "qt_support.h"
 #include "shells.h"
 #include "support.h"
@@ -162,16 +162,12 @@ TEST_F(WorkstationTest, ARecordingThatFailsIsSaidOnceAtOnceAndTheExerciseGoesOn)
   ASSERT_TRUE(waitFor([&] { return workstation_.session() != nullptr; }));
 
   // As a disk that is full from here on: no file grows.
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old{}, small{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  small = {4096, old.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
+  std::optional<test::FileSizeLimit> full(4096);
   const bool heard = waitFor([&] {
     workstation_.checkRecording();
     return !said.empty();
   });
-  setrlimit(RLIMIT_FSIZE, &old);
+  full.reset();
   ASSERT_TRUE(heard);
   EXPECT_EQ(said.front().code, "CANNOT_WRITE");
   ASSERT_TRUE(workstation_.session());
@@ -426,6 +422,37 @@ TEST_F(WorkstationTest, NothingIsStartedFromAWindowThatCannotDraw) {
   EXPECT_EQ(shown.phase(), Workstation::Phase::ready);
   ASSERT_TRUE(said);
   EXPECT_EQ(said->code, "NO_OPENGL");
+}
+
+// A file of the trainee's own may change while it is open.
+TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
+  Policy policy;
+  policy.locks = {Lock::controller};
+  policy.controller = ControllerKind::bounded;
+  Workstation locked(policy);
+  std::optional<Error> said;
+  QObject::connect(&locked, &Workstation::failed, &locked, [&](const Error& e) { said = e; });
+  const std::filesystem::path scenes = resourceFolder() / "scenes", file = folder_ / "own.json";
+  Json scene = *readJsonFile(scenes / "cranium.json");
+  for (const char* key : {"tissues", "operator"}) scene[key] = scenes / scene[key].get<std::string>();
+  for (Json& tool : scene["tools"]) tool["file"] = scenes / tool["file"].get<std::string>();
+  for (Json& arm : scene["arms"]) {
+    Json& config = arm["device"]["config"];
+    config = scenes / config.get<std::string>();
+  }
+  scene["case"] = "";
+  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+  locked.openPath(file);
+  locked.openImported(caseOf(std::make_shared<const Volume>(ball())));
+  ASSERT_TRUE(waitFor([&] { return locked.phase() == Workstation::Phase::ready; }));
+  ASSERT_EQ(locked.sceneFile(), file);
+  said.reset();
+  scene["controller"] = "off";
+  ASSERT_TRUE(writeTextFile(file, scene.dump()));
+  EXPECT_FALSE(locked.placeEntry(std::nullopt));
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->code, "LOCKED");
+  EXPECT_EQ(locked.scene()->controller, ControllerKind::bounded);
 }
 
 }  // namespace

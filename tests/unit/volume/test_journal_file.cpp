@@ -1,15 +1,14 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <random>
 #include <thread>
 
 #include "carve_bench.h"
 #include "carve_model.h"
+#include "file_size_limit.h"
 #include "volume/journal_file.h"
 
 namespace trephine {
@@ -28,24 +27,6 @@ class JournalFileTest : public ::testing::Test {
   ~JournalFileTest() override { std::filesystem::remove_all(folder); }
 
   std::filesystem::path folder;
-};
-
-// No file of this process grows beyond `bytes` while it lives: a full disk, as the writer sees it.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~SmallDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
 };
 
 TEST_F(JournalFileTest, AFolderThatIsNotThereIsRefused) {
@@ -121,7 +102,7 @@ TEST_F(JournalFileTest, AFullDiskIsSaidOnceAndEveryWayBackStillWorks) {
   int errors = 0;
   std::size_t voxel = 0;
   {
-    const SmallDisk disk(4000 + 3);  // 500 entries and less than half of one
+    const test::FileSizeLimit disk(4000 + 3);  // 500 entries and less than half of one
     for (; voxel < 3000 && bench.journal.hasRoom(1); ++voxel) {
       ASSERT_TRUE(bench.journal.erase(bench.writer, 0, voxel, 0));
       if (voxel == 300) bench.mark();

@@ -1,13 +1,12 @@
 // .nii.gz: what is written, whatever the threads, the disk and a person who cancels do; and what is
 // read, ours and from elsewhere, whole and damaged.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <system_error>
 #include <thread>
 
 #include "file_bytes.h"
+#include "file_size_limit.h"
 #include "support.h"
 #include "unit/without_threads.h"
 #include "volumes.h"
@@ -202,15 +201,10 @@ TEST_F(GzippedVolumes, NoticeAFullDiskAsItHappens) {
   for (const char* name : {"a.nii", "a.nii.gz"}) {
     int slabs = 0;
     const Progress watched([&](double, const std::string&) { ++slabs; });
-    rlimit before{};
-    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-    rlimit limit = before;
-    limit.rlim_cur = 1 << 20;  // within the first slab
-    auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    const Status status = writeVolume(slabsOf(volume), folder / name, watched);
-    setrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, handler);
+    const Status status = [&] {
+      const test::FileSizeLimit full(1 << 20);  // within the first slab
+      return writeVolume(slabsOf(volume), folder / name, watched);
+    }();
     ASSERT_FALSE(status) << name;
     EXPECT_EQ(status.error().code, "CANNOT_WRITE");
     EXPECT_EQ(slabs, 1) << name << ": it went on";

@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstring>
 #include <limits>
 
 #include "file_bytes.h"
+#include "file_size_limit.h"
 #include "support.h"
 #include "volumes.h"
 
@@ -304,15 +303,10 @@ TEST(VolumeFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
     const auto whole = fs::file_size(other / name);
     for (const auto room : {rlim_t(40000), rlim_t(whole - 20)}) {
       ASSERT_TRUE(writeVolume(old, file));
-      rlimit limit{}, before{};
-      ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-      auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
-      limit = before;
-      limit.rlim_cur = room;
-      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-      const Status status = writeVolume(larger, file);
-      setrlimit(RLIMIT_FSIZE, &before);
-      std::signal(SIGXFSZ, handler);
+      const Status status = [&] {
+        const test::FileSizeLimit full(room);
+        return writeVolume(larger, file);
+      }();
       ASSERT_FALSE(status) << name;
       EXPECT_EQ(status.error().code, "CANNOT_WRITE") << name;
       const auto read = readVolume(file);

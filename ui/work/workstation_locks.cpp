@@ -1,0 +1,51 @@
+// What a trainee may not change, and the changes that ask first.
+#include "ui/work/workstation.h"
+
+namespace trephine {
+
+bool Workstation::isLocked(Lock lock) const {
+  if (unlocked_) return false;
+  return scene_ ? locksOf(policy_, *scene_).contains(lock) : policy_.isLocked(lock);
+}
+
+bool Workstation::anyLocked() const {
+  return isLocked(Lock::controller) || isLocked(Lock::tissues) || isLocked(Lock::rate);
+}
+
+void Workstation::unlock() {
+  unlocked_ = true;
+  emit locksChanged();
+}
+
+bool Workstation::refuseLocked(Lock lock, const char* what) {
+  if (!isLocked(lock)) return false;
+  fail({"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
+        "Ask an educator, who can unlock it with a PIN (menu File)"});
+  return true;
+}
+
+void Workstation::setTissues(const TissueSet& tissues) {
+  if (!scene_) return;
+  if (refuseLocked(Lock::tissues, "The tissues are")) return emit sceneChanged();  // as they were
+  scene_->tissues = tissues;
+  if (!session()) return;
+  if (Status set = session_->setTissues(tissues); !set) fail(set.error());
+}
+
+void Workstation::noteController(ControllerKind in_force) {
+  if (std::exchange(in_force_, in_force) != in_force) emit controllerChanged();
+}
+
+void Workstation::setController(ControllerKind kind) {
+  if (!scene_) return;
+  if (kind != scene_->controller && refuseLocked(Lock::controller, "The controller is")) {
+    return emit controllerChanged();
+  }
+  scene_->controller = kind;
+  if (!session()) noteController(kind);
+  if (session() && !session_->setController(kind)) {
+    fail({"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"});
+  }
+}
+
+}  // namespace trephine
