@@ -138,6 +138,12 @@ class Session {
 
   // The newest state of the loop. Owner thread.
   const LoopState& state();
+  // The strokes that began so far, those undone among them, as far as they are known: within 50 ms.
+  struct Stroke {
+    double second = 0.0;  // of the session, without pauses, as LoopState counts them
+    std::int32_t arm = 0;
+  };
+  std::vector<Stroke> strokes() const;
   // What became of the recording so far.
   Status recordingStatus() const;
   // How much of the session is not on disk yet; 0 where nothing is recorded any more. Owner thread.
@@ -204,7 +210,11 @@ class Session {
   std::atomic<bool> stop_recorder_{false};
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;
+  std::vector<Stroke> strokes_;
+  std::uint64_t paused_ticks_ = 0;                 // the recorder's, to the last resume
+  std::optional<std::uint64_t> paused_since_tick_;  // and since then
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
+  mutable std::mutex strokes_mutex_;  // so too
   std::optional<Error> failure_;
 };
 

@@ -17,7 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-constexpr std::size_t kMostFaults = 1000;  // in a report
+constexpr std::size_t kMostFaults = 1000;    // in a report
+constexpr std::size_t kMostStrokes = 10'000;  // to be shown
 
 }  // namespace
 
@@ -72,7 +73,20 @@ void Session::note(const Event& event) {
     const std::string name(controllerName(ControllerKind(command.value)));
     if (name != controllers_.back()) controllers_.push_back(name);
   }
+  if (event.kind == EventKind::command && command.kind == CommandKind::pause) {
+    if (!paused_since_tick_) paused_since_tick_ = event.tick;
+  } else if (event.kind == EventKind::command && command.kind == CommandKind::resume) {
+    if (paused_since_tick_) paused_ticks_ += event.tick - *paused_since_tick_;
+    paused_since_tick_.reset();
+  }
   if (event.arm < 0) return;
+  if (event.kind == EventKind::stroke_began) {
+    std::lock_guard lock(strokes_mutex_);
+    if (strokes_.size() < kMostStrokes) {
+      strokes_.push_back({double(event.tick - paused_ticks_) / scene_.rate_hz, event.arm});
+    }
+    return;
+  }
   const auto warn = [&](const Warning& warning) {
     if (warnings_.size() < kMostFaults) warnings_.push_back(warning);
     spdlog::warn("{}", warning.text);
@@ -107,6 +121,11 @@ void Session::noteFailure(const Error& error) {
   if (failure_) return;
   failure_ = error;
   spdlog::error("{}. {}.", error.what, error.next);  // `where` may name a folder
+}
+
+std::vector<Session::Stroke> Session::strokes() const {
+  std::lock_guard lock(strokes_mutex_);
+  return strokes_;
 }
 
 Status Session::recordingStatus() const {

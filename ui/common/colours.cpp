@@ -103,6 +103,7 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           "QLabel[noticeTitle=\"true\"] { font-size: %11pt; font-weight: bold; color: %8; }"
           "QFrame[overlay=\"true\"] { background: %4; border: 1px solid %3; border-radius: 8px; }"
           "QLabel[large=\"true\"] { font-size: %9pt; }"
+          "QLabel[largest=\"true\"] { font-size: %11pt; font-weight: bold; }"
           "QPushButton[big=\"true\"] { font-size: %9pt; padding: 8px 22px; }")
           .arg(kText.name(), kRaised.name(), kLine.name(), kPanel.name(), kQuiet.name(),
                kAccent.darker(125).name(), kAccent.name(), kCaution.name())

@@ -21,8 +21,10 @@ void FloatingCard::place() {
   const int wanted = layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(width)
                                                    : layout()->totalSizeHint().height();
   const int height = std::min(wanted, over->height() - 2 * kMargin);
+  const bool to_corners = (over->width() - width) / 2 < kCorner;
+  const int bottom = to_corners ? kAboveCorners : kMargin;
   const int y = at_ == At::top      ? kMargin
-                : at_ == At::bottom ? over->height() - height - kMargin
+                : at_ == At::bottom ? over->height() - height - bottom
                                     : (over->height() - height) / 2;
   setGeometry((over->width() - width) / 2, y, width, height);
   raise();

@@ -23,6 +23,7 @@ class FloatingCard : public QFrame {
 
  private:
   static constexpr int kMargin = 12;
+  static constexpr int kCorner = 110, kAboveCorners = 56;  // where a view has its scale
   At at_;
   int widest_;
 };

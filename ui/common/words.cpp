@@ -31,7 +31,7 @@ constexpr PartWords kPartWords[] = {
     {kPartDamping, QT_TRANSLATE_NOOP("Words", "damped"),
      QT_TRANSLATE_NOOP("Words",
                        "a little damping goes with each spring, so that it does not ring.")},
-    {kPartCredit, QT_TRANSLATE_NOOP("Words", "energy held back"),
+    {kPartCredit, QT_TRANSLATE_NOOP("Words", "held back, not to push by itself"),
      QT_TRANSLATE_NOOP("Words",
                        "the force would give the hand more energy than the hand put in, so it is "
                        "made smaller.")},
@@ -39,18 +39,18 @@ constexpr PartWords kPartWords[] = {
      QT_TRANSLATE_NOOP("Words",
                        "the tool rests, so the force stays as it is and does not buzz between two "
                        "steps of the encoder.")},
-    {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's greatest force"),
+    {kPartClamp, QT_TRANSLATE_NOOP("Words", "at the arm's limit"),
      QT_TRANSLATE_NOOP("Words", "the tissue demands more force than the arm has.")},
     {kPartLimiter, QT_TRANSLATE_NOOP("Words", "rising slowly"),
      QT_TRANSLATE_NOOP(
          "Words",
          "after a pause, a change or a late step the force comes back slowly, so that "
          "it does not kick.")},
-    {kPartEstimate, QT_TRANSLATE_NOOP("Words", "between encoder steps"),
+    {kPartEstimate, QT_TRANSLATE_NOOP("Words", "smooth between encoder steps"),
      QT_TRANSLATE_NOOP("Words",
                        "the encoder tells the place in steps; the force is that of the estimated "
                        "place and speed between them.")},
-    {kPartPrediction, QT_TRANSLATE_NOOP("Words", "ahead of the delay"),
+    {kPartPrediction, QT_TRANSLATE_NOOP("Words", "timed for the arm's delay"),
      QT_TRANSLATE_NOOP(
          "Words",
          "a force acts a moment after it is computed, so it is that of the place where "
@@ -126,15 +126,15 @@ QString controllerMeaning(ControllerKind kind) {
 }
 
 QString forceChangeWords(const ArmRecord& arm, bool paused) {
-  if (paused) return tr("no force: paused");
-  if (arm.faults == kFaultLate) return tr("no force until the computer keeps up");
-  if (arm.faults != 0) return tr("no force until asked for");
-  if (arm.tool_state & kToolWaits) return tr("no force until drawn out");
+  if (paused) return tr("off: paused");
+  if (arm.faults == kFaultLate) return tr("off until the computer keeps up");
+  if (arm.faults != 0) return tr("off until asked for");
+  if (arm.tool_state & kToolWaits) return tr("off until the tool is drawn out");
   QStringList words;
   for (const PartWords& part : kPartWords) {
     if (arm.controller_parts & part.part) words << tr(part.words);
   }
-  return words.isEmpty() ? tr("nothing") : words.join(", ");
+  return words.isEmpty() ? tr("as the tissue demands") : words.join(", ");
 }
 
 QString forceChangeMeanings() {
@@ -144,7 +144,7 @@ QString forceChangeMeanings() {
   }
   return tr("<p>What is changed in the force that the tissue demands, before it is sent.</p>") +
          rows +
-         tr("<p><b>no force</b>: in a pause, a fault, and tissue that the tool did not come into, "
+         tr("<p><b>off</b>: in a pause, a fault, and tissue that the tool did not come into, "
             "nothing is sent.</p>");
 }
 

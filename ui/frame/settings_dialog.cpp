@@ -64,7 +64,18 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   step_->setSingleStep(0.5);
   step_->setLimits(0.1, 5.0);
   step_->show(readWithin(settings::kKeyStep_mm, 0.1, 5.0));
-  later_ = new QLabel(tr("Folder, language, theme and text take effect when Trephine starts again."));
+  arm_limit_ = new DecimalField("armLimit");
+  arm_limit_->setSuffix(tr(" N"));
+  arm_limit_->setDecimals(1);
+  arm_limit_->setSingleStep(0.5);
+  arm_limit_->setLimits(settings::kArmsLeast_N, settings::kArmsMost_N);
+  arm_limit_->show(
+      readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N, settings::kArmsMost_N));
+  swapped_ = new QCheckBox(tr("The arms are plugged in the other wa&y round"));
+  swapped_->setObjectName("armsSwapped");
+  swapped_->setChecked(read(settings::kArmsSwapped));
+  later_ = new QLabel(tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
+                         "Trephine starts again."));
   later_->setProperty("quiet", true);
   later_->setWordWrap(true);
 
@@ -74,6 +85,8 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   form->addRow(tr("&Language"), language_);
   form->addRow(tr("&Theme"), theme_);
   form->addRow(tr("Size of te&xt"), text_->withReason());
+  form->addRow(tr("An arm &gives at most"), arm_limit_->withReason());
+  form->addRow(QString(), swapped_);
   form->addRow(tr("The mouse &begins with the"), hand_);
   form->addRow(tr("One notch of the &wheel pushes by"), push_->withReason());
   form->addRow(tr("An &arrow key moves by"), step_->withReason());
@@ -98,7 +111,8 @@ void SettingsDialog::chooseFolder() {
 }
 
 void SettingsDialog::save() {
-  for (bool refused : {text_->isRefused(), push_->isRefused(), step_->isRefused()}) {
+  for (bool refused : {text_->isRefused(), push_->isRefused(), step_->isRefused(),
+                       arm_limit_->isRefused()}) {
     if (refused) return;  // it says why
   }
   if (storage_->isEnabled() && storage_->isModified()) {
@@ -107,6 +121,8 @@ void SettingsDialog::save() {
   write(settings::kLanguage, language_->currentData().toString());
   write(settings::kTheme, theme_->currentData().toString());
   write(settings::kTextScale, text_->wanted());
+  write(settings::kArmsLimit_N, arm_limit_->wanted());
+  write(settings::kArmsSwapped, swapped_->isChecked());
   write(settings::kMainHand, hand_->currentData().toString());
   write(settings::kPushStep_N, push_->wanted());
   write(settings::kKeyStep_mm, step_->wanted());

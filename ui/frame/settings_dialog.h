@@ -27,7 +27,8 @@ class SettingsDialog : public QDialog {
   QLineEdit* storage_;
   QComboBox *language_, *theme_, *hand_;
   WholeNumberField* text_;
-  DecimalField *push_, *step_;
+  DecimalField *push_, *step_, *arm_limit_;
+  QCheckBox* swapped_;
   QLabel* later_;
 };
 

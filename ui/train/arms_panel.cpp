@@ -4,6 +4,7 @@
 #include <QFormLayout>
 #include <QFrame>
 #include <QScrollArea>
+#include <algorithm>
 #include <cmath>
 
 #include "ui/common/colours.h"
@@ -87,7 +88,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   auto* common = new QFormLayout;
   common->setVerticalSpacing(6);
   common->addRow(quiet(tr("Kept steady by"), inside), controller_);
-  common->addRow(quiet(tr("Steps of touch"), inside), missed_);
+  common->addRow(quiet(tr("Force in time"), inside), missed_);
   common->addRow(quiet(tr("Recording"), inside), dropped_);
   cards_layout_->addLayout(common);
   cards_layout_->addWidget(journal_);
@@ -186,7 +187,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   form->addRow(quiet(tr("Touches"), frame), card.contact);
   form->addRow(quiet(tr("Tip"), frame), card.position);
   form->addRow(quiet(tr("Energy"), frame), card.energy);
-  QLabel* changed = quiet(tr("Changed"), frame);
+  QLabel* changed = quiet(tr("Force is"), frame);
   changed->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   form->addRow(changed, card.parts);
   auto* layout = new QVBoxLayout(frame);
@@ -250,7 +251,11 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.faults->setText(wrong.join('\n'));
     card.faults->setVisible(!wrong.isEmpty());
   }
-  missed_->setText(state.missed == 0 ? tr("all on time") : tr("%1 late").arg(state.missed));
+  const double late_share = double(state.missed) / double(std::max<std::uint64_t>(1, state.ticks));
+  missed_->setText(state.missed == 0 ? tr("always")
+                                     : tr("%1 times late (%2 %)")
+                                           .arg(state.missed)
+                                           .arg(100.0 * late_share, 0, 'f', 2));
   colours::setText(*missed_, state.missed > 0 ? colours::kCaution : colours::kText);
   dropped_->setText(state.dropped == 0 ? tr("whole") : tr("not whole: it cannot be replayed"));
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);

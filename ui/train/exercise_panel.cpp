@@ -69,7 +69,7 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   hands_ = wrapped("exerciseHands");
   time_ = new QLabel;
   time_->setObjectName("exerciseTime");
-  time_->setProperty("large", true);
+  time_->setProperty("largest", true);
   removed_ = wrapped("exerciseRemoved", Qt::RichText);
   keys_ = wrapped("exerciseKeys");
   keys_->setProperty("quiet", true);

@@ -79,13 +79,13 @@ void ResultPage::showResult(const ExerciseResult& result) {
     html += row(toQt(one.name), tr("%1 of %2").arg(volumeWords(1000.0 * one.cut_ml),
                                                    volumeWords(1000.0 * one.ml)));
   }
-  html += title(tr("Way of the tools"));
+  html += title(tr("Path of the tools"));
   for (const ExerciseResult::Way& way : result.ways) {
     html += row(way.hand, tr("%1 cm, at most %2 N")
                               .arg(way.mm / 10.0, 0, 'f', 1)
                               .arg(way.most_N, 0, 'f', 1));
   }
-  if (result.late > 0) html += row(tr("Steps of touch that came late"), QString::number(result.late));
+  if (result.late > 0) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
   replay_->setEnabled(result.recorded);
   show();

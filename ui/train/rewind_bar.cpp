@@ -2,12 +2,15 @@
 
 #include <QHBoxLayout>
 #include <QKeyEvent>
+#include <QPainter>
 #include <QProxyStyle>
 #include <QSignalBlocker>
+#include <QStyleOptionSlider>
 #include <QWheelEvent>
 #include <algorithm>
 #include <initializer_list>
 
+#include "ui/common/colours.h"
 #include "ui/common/icons.h"
 #include "ui/common/words.h"
 
@@ -28,15 +31,44 @@ class ClickedPlace : public QProxyStyle {
   }
 };
 
+constexpr int kMarkHeight = 7, kFaint = 90;
+
+}  // namespace
+
 class TimeSlider : public QSlider {
  public:
+  struct Mark {
+    double second;
+    QColor colour;
+  };
+
   explicit TimeSlider(QWidget* parent) : QSlider(Qt::Horizontal, parent) {
     auto* style = new ClickedPlace;
     style->setParent(this);
     setStyle(style);
   }
 
+  void setMarks(std::vector<Mark> marks, std::optional<std::uint32_t> gone_back_to) {
+    marks_ = std::move(marks);
+    gone_back_to_ = gone_back_to;
+    update();
+  }
+
  protected:
+  void paintEvent(QPaintEvent* event) override {
+    QSlider::paintEvent(event);
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    for (const Mark& mark : marks_) {
+      painter.fillRect(QRectF(xOf(mark.second) - 1.0, height() - kMarkHeight, 2.0, kMarkHeight),
+                       mark.colour);
+    }
+    if (!gone_back_to_) return;
+    const double x = xOf(*gone_back_to_);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(colours::kCaution);
+    painter.drawPolygon(QPolygonF({{x - 5.0, 0.0}, {x + 5.0, 0.0}, {x, 8.0}}));
+  }
   // The wheel moves a hand in the view beside it, and must not go back by a slip.
   void wheelEvent(QWheelEvent* event) override { event->ignore(); }
   // Home belongs to the view but where the slider has the focus.
@@ -47,9 +79,19 @@ class TimeSlider : public QSlider {
     }
     return QSlider::event(event);
   }
-};
 
-}  // namespace
+ private:
+  double xOf(double second) const {
+    QStyleOptionSlider option;
+    initStyleOption(&option);
+    const int handle = style()->pixelMetric(QStyle::PM_SliderLength, &option, this);
+    const double share = maximum() > 0 ? std::min(1.0, second / maximum()) : 0.0;
+    return 0.5 * handle + share * (width() - handle);
+  }
+
+  std::vector<Mark> marks_;
+  std::optional<std::uint32_t> gone_back_to_;
+};
 
 std::uint32_t RewindHistory::before(std::uint32_t now, std::uint32_t by) const {
   std::uint32_t second = now;
@@ -62,6 +104,21 @@ std::uint32_t RewindHistory::before(std::uint32_t now, std::uint32_t by) const {
     second = jump->to;
   }
   return second - std::min(by, second);
+}
+
+bool RewindHistory::stands(double second, std::uint32_t now) const {
+  std::uint32_t end = now;
+  for (auto jump = jumps_.rbegin(); jump != jumps_.rend(); ++jump) {
+    if (end != now && jump->from >= end) continue;  // made later than where the way has come
+    if (second > jump->from) return true;
+    end = jump->to;
+  }
+  return second <= end;
+}
+
+std::optional<std::uint32_t> RewindHistory::last() const {
+  if (jumps_.empty()) return {};
+  return jumps_.back().to;
 }
 
 RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
@@ -89,7 +146,7 @@ RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
   time_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   const QFontMetrics metrics = time_->fontMetrics();
   time_->setMinimumWidth(std::max(metrics.horizontalAdvance(tr("Going back\u2026")),
-                                  metrics.horizontalAdvance(tr("%1 of %2").arg("00:00", "00:00"))));
+                                  metrics.horizontalAdvance(tr("%1, tissue of %2").arg("00:00", "00:00"))));
   // By the Tab key only: a click must leave the keys to the hands in the view.
   for (QWidget* widget : std::initializer_list<QWidget*>{back_button_, slider_}) {
     widget->setFocusPolicy(Qt::TabFocus);
@@ -125,9 +182,41 @@ void RewindBar::showTime(std::uint32_t now, bool going_back) {
   }
 }
 
+void RewindBar::showStrokes(const std::vector<Stroke>& strokes) {
+  if (strokes.size() == strokes_.size()) return;
+  strokes_ = strokes;
+  showMarks();
+}
+
+void RewindBar::noteReset() {
+  tissue_history_.went(now_, 0);
+  strokes_at_jump_ = strokes_.size();
+  showMarks();
+}
+
+// Until something is cut again.
+std::optional<std::uint32_t> RewindBar::goneBackTo() const {
+  if (strokes_.size() > strokes_at_jump_) return {};
+  return tissue_history_.last();
+}
+
+void RewindBar::showMarks() {
+  std::vector<TimeSlider::Mark> marks;
+  for (const Stroke& stroke : strokes_) {
+    QColor colour = stroke.colour;
+    if (!tissue_history_.stands(stroke.second, now_)) colour.setAlpha(kFaint);
+    marks.push_back({stroke.second, colour});
+  }
+  slider_->setMarks(std::move(marks), goneBackTo());
+}
+
 void RewindBar::showIdle() {
   now_ = 0;
   rewind_history_.forget();
+  tissue_history_.forget();
+  strokes_.clear();
+  strokes_at_jump_ = 0;
+  showMarks();
   setUsable(false);
   had_focus_ = nullptr;
   follow();
@@ -169,7 +258,10 @@ void RewindBar::follow() {
 void RewindBar::showChosen() {
   const auto chosen = std::uint32_t(slider_->value());
   const bool newest = slider_->value() == slider_->maximum();
-  time_->setText(newest ? timeWords(now_) : tr("%1 of %2").arg(timeWords(chosen), timeWords(now_)));
+  const std::optional<std::uint32_t> tissue = goneBackTo();
+  time_->setText(!newest   ? tr("%1 of %2").arg(timeWords(chosen), timeWords(now_))
+                 : !tissue ? timeWords(now_)
+                           : tr("%1, tissue of %2").arg(timeWords(now_), timeWords(*tissue)));
 }
 
 void RewindBar::askChosen() {
@@ -188,6 +280,9 @@ void RewindBar::goBack() {
 void RewindBar::ask(std::uint32_t second) {
   keys_.stop();
   rewind_history_.went(now_, second);
+  tissue_history_.went(now_, second);
+  strokes_at_jump_ = strokes_.size();
+  showMarks();
   emit rewindAsked(second);
 }
 

@@ -174,10 +174,10 @@ void TrainWorkspace::recentre() {
   }
 }
 
-void TrainWorkspace::showResult(const Session& session, const RunReport& report) {
+void TrainWorkspace::showResult(Session& session, const RunReport& report) {
   ExerciseResult result;
   result.exercise = toQt(session.scene().name);
-  result.seconds = double(report.ticks) / report.rate_hz;
+  result.seconds = session.state().seconds;
   for (const auto& [id, mm3] : report.removed_mm3) {
     const Tissue* tissue = session.scene().tissues.find(id);
     if (tissue) result.tissues.push_back({toQt(tissue->name), colours::of(tissue->colour), mm3});
@@ -200,10 +200,12 @@ void TrainWorkspace::showRates() {
   const LoopState& state = session->state();
   const double haptic_hz = double(state.ticks - ticks_shown_) / seconds;
   ticks_shown_ = state.ticks;
-  QString rates = tr("%1 pictures/s \u00b7 touch %2 Hz, %3 missed")
-                      .arg(double(frames_) / seconds, 0, 'f', 0)
-                      .arg(haptic_hz, 0, 'f', 0)
-                      .arg(state.missed);
+  QString rates = tr("Force %1 times a second").arg(haptic_hz, 0, 'f', 0);
+  if (frames_ > 0) {  // a picture in which nothing moves is not drawn again
+    rates = tr("Picture %1 \u00b7 force %2 times a second")
+                .arg(double(frames_) / seconds, 0, 'f', 0)
+                .arg(haptic_hz, 0, 'f', 0);
+  }
   if (const double behind_s = session->recorderBehind_s(); behind_s >= kBehind_s) {
     rates += tr(" \u00b7 recording %1 s behind").arg(behind_s, 0, 'f', 1);
   }
@@ -229,6 +231,14 @@ void TrainWorkspace::showRewind(const LoopState& state) {
   if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
     bench_.say(backWords(going_back_->second, state, *workstation_.scene()));
     going_back_.reset();
+  }
+  if (const Session* session = workstation_.session()) {
+    std::vector<RewindBar::Stroke> strokes;
+    for (const Session::Stroke& stroke : session->strokes()) {
+      const auto arm = std::size_t(stroke.arm);
+      strokes.push_back({stroke.second, armColour(session->scene().arms[arm], arm)});
+    }
+    rewind_->showStrokes(strokes);
   }
   rewind_->showTime(state.seconds, state.busy || going_back_);
 }

@@ -222,7 +222,10 @@ void TrainWorkspace::reset() {
     ask(bench_.window(), "resetQuestion", tr("Put all tissue back?"),
         tr("Undo cannot bring the cuts again; the bar of seconds still leads back to them. Hands "
            "that mouse and keys move go back to where they began."),
-        tr("&Put back"), [this] { command(CommandKind::reset); });
+        tr("&Put back"), [this] {
+          command(CommandKind::reset);
+          rewind_->noteReset();
+        });
   } else if (workstation_.phase() == Workstation::Phase::ready) {
     bench_.unlessLost({Bench::Loss::cuts}, [this] { bench_.showWholeCase(); });
   }

@@ -83,7 +83,7 @@ class TrainWorkspace : public Workspace {
   void showRemoved(Session& session, const LoopState& state);
   void showOutline();
   void showLocks();
-  void showResult(const Session& session, const RunReport& report);
+  void showResult(Session& session, const RunReport& report);
   void showChangeTool();
   void giveTool(std::size_t arm, std::size_t tool);
   void nextTool();

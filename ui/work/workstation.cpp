@@ -1,5 +1,7 @@
 #include "ui/work/workstation.h"
 
+#include "ui/common/settings.h"
+
 #include <QDateTime>
 
 #include "base/file.h"
@@ -34,6 +36,18 @@ void Workstation::fail(const Error& error) {
 
 // --- The exercise ---
 
+Scene withArmsOfThisPlace(Scene scene) {
+  const double most_N = readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N,
+                                   settings::kArmsMost_N);
+  for (SceneArm& arm : scene.arms) arm.max_force_N = std::min(arm.max_force_N, most_N);
+  if (read(settings::kArmsSwapped) && scene.arms.size() == 2) {
+    std::swap(scene.arms[0].plugin, scene.arms[1].plugin);
+    std::swap(scene.arms[0].device_arm, scene.arms[1].device_arm);
+    std::swap(scene.arms[0].device_config, scene.arms[1].device_config);
+  }
+  return scene;
+}
+
 void Workstation::start(const std::filesystem::path& recordings,
                         std::optional<OperatorScript> script, double seconds) {
   if (phase_ != Phase::ready || isOpening()) return;
@@ -46,7 +60,7 @@ void Workstation::start(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = *scene_, of = *case_, again, recordings, stem, script = std::move(script)](
+      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem, script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;

@@ -14,6 +14,10 @@
 
 namespace trephine {
 
+// The scene with what the settings say of the arms of this place: which is which, and how much force
+// they may give at most.
+Scene withArmsOfThisPlace(Scene scene);
+
 class Workstation : public QObject {
   Q_OBJECT
  public:

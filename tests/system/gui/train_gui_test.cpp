@@ -58,6 +58,15 @@ class TrainGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
 
+  void startTraining() {
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    window_->startExercise();
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+  }
+  const ArmRecord& arm(std::size_t which) {
+    return workstation().session()->state().record.arms[which];
+  }
+
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
@@ -252,6 +261,171 @@ class TrainGuiTest : public test::WindowTest {
     QVERIFY(window_->focusWidget() == &view());
     stop();
     QVERIFY(!change->isEnabled());
+  }
+
+  void tabGivesTheMouseTheOtherHandAndTheFirstRests() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    pushHand(5);
+    QVERIFY(workstation().session()->handPush_N(1) > 0.5);
+    find<QAction>("otherHand")->trigger();
+    QTRY_COMPARE(find<QLabel>("activeHand")->text(), "Left hand");
+    QTRY_COMPARE_WITH_TIMEOUT(workstation().session()->handPush_N(1), 0.0, 10000);
+    const Vec3 before = arm(0).patient_position_mm;
+    pointAt(view().rect().center() + QPoint(40, 0));
+    QTRY_VERIFY_WITH_TIMEOUT(glm::distance(arm(0).patient_position_mm, before) > 2.0, 10000);
+    stop();
+  }
+
+  void shiftAndArrowsTiltTheTool() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    QTest::qWait(500);
+    const Quat before = arm(1).proxy_orientation;
+    const auto turned = [&] {
+      return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(before, arm(1).proxy_orientation))));
+    };
+    key(Qt::Key_Left, Qt::ShiftModifier, 5);
+    QTRY_VERIFY_WITH_TIMEOUT(turned() > 0.1, 10000);
+    key(Qt::Key_Right, Qt::ShiftModifier, 5);
+    QTRY_VERIFY_WITH_TIMEOUT(turned() < 0.02, 10000);
+    stop();
+  }
+
+  void aClutchTakesTheForceAwayAndAfterItAHandMovesAsTheViewLooks() {
+    openScene(scene_);
+    startTraining();
+    Session& session = *workstation().session();
+    auto* clutch = find<QAction>("clutch");
+    const auto across = [&] { return session.state().maps[1].rotation * Vec3(1, 0, 0); };
+    const auto up = [&] { return session.state().maps[1].rotation * Vec3(0, 1, 0); };
+    QTRY_VERIFY(session.state().ticks > 100);
+    const Vec3 first_across = across(), first_up = up();
+    view().setFocus();
+    key(Qt::Key_K, Qt::ControlModifier);
+    QVERIFY(clutch->isChecked());
+    QTRY_VERIFY(arm(0).tool_state & kToolClutched);
+    QTRY_VERIFY(arm(1).tool_state & kToolClutched);
+    key(Qt::Key_K, Qt::ControlModifier);
+    QVERIFY(!clutch->isChecked());
+    const ViewCamera& camera = view().camera();
+    QTRY_VERIFY_WITH_TIMEOUT(glm::dot(across(), camera.right()) > 0.999, 10000);
+    QVERIFY(glm::dot(up(), camera.up()) > 0.999);
+    QVERIFY(!(arm(1).tool_state & kToolClutched));
+    key(Qt::Key_L, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(glm::dot(across(), first_across) > 0.999, 10000);
+    QVERIFY(glm::dot(up(), first_up) > 0.999);
+
+    takeHand(Hand::right);
+    pushHand(5);
+    QTRY_VERIFY_WITH_TIMEOUT(glm::length(arm(1).sent_N) > 0.3, 10000);
+    view().setFocus();
+    key(Qt::Key_K, Qt::ControlModifier);
+    QTRY_VERIFY(glm::length(arm(1).sent_N) < 0.01);
+    const Vec3 tool = arm(1).proxy_position_mm;
+    pushHand(-5);
+    QTest::qWait(500);
+    QVERIFY2(glm::distance(arm(1).proxy_position_mm, tool) < 0.5, "its tool stays");
+    stop();
+    QVERIFY(!clutch->isChecked());
+  }
+
+  void theChosenControllerIsInForceAndInTheRecording() {
+    openScene(scene_);
+    startTraining();
+    auto* controller = find<QComboBox>("controller");
+    controller->setCurrentIndex(controller->findData(int(ControllerKind::seed)));
+    emit controller->activated(controller->currentIndex());
+    QTRY_VERIFY(workstation().session()->state().controller == ControllerKind::seed);
+    stop();
+    QVERIFY(workstation().scene()->controller == ControllerKind::seed);
+  }
+
+  void theBarOfSecondsMarksStrokesAndSaysWhereOneIsAfterGoingBack() {
+    openScene(scene_);
+    startTraining();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().session()->state().seconds >= 2, 20000);
+    cut({40, 0});
+    Session& session = *workstation().session();
+    QTRY_VERIFY(!session.strokes().empty());
+    QCOMPARE(session.strokes().back().arm, 1);
+    const double second = session.strokes().back().second;
+    QVERIFY(second >= 2.0 && second <= double(session.state().seconds) + 1.0);
+    auto* slider = find<QSlider>("rewindSlider");
+    const auto marked = [&] {
+      const QImage picture = slider->grab().toImage();
+      int pixels = 0;
+      for (int y = picture.height() - 6; y < picture.height(); ++y) {
+        for (int x = 0; x < picture.width(); ++x) {
+          pixels += picture.pixelColor(x, y) == colours::kRightArm;
+        }
+      }
+      return pixels;
+    };
+    QTRY_VERIFY(marked() > 0);
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-strokes.png"));
+    slider->setFocus();
+    key(Qt::Key_Home);
+    QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(session) == 0, 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("rewindTime")->text().endsWith("tissue of 0:00"), 10000);
+    QCOMPARE(marked(), 0);
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-gone-back.png"));
+    stop();
+  }
+
+  void fromTheResultOneLooksAtItTriesAgainOrSeesItReplayed() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    stop();
+    auto* result = find<QWidget>("resultPage");
+    QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
+    QTest::mouseClick(find<QPushButton>("resultLook"), Qt::LeftButton);
+    QVERIFY(!result->isVisible());
+    QVERIFY2(workstation().carved(), "the tissue stays as it was left");
+    // Again: from whole tissue, after the question for what was not saved.
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    find<QAction>("start")->trigger();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("cutsQuestion"));
+    auto* question = find<QMessageBox>("cutsQuestion");
+    QTest::mouseClick(question->findChild<QPushButton*>("goOnAnyway"), Qt::LeftButton);
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    QCOMPARE(removedVoxels(*workstation().session()), 0u);
+    stop();
+    QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
+    QTest::mouseClick(find<QPushButton>("resultReplay"), Qt::LeftButton);
+    QVERIFY(window_->place() == Place::review);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"), kLong_ms);
+  }
+
+  void theArmsOfThisPlaceGiveNoMoreThanTheSettingsSay() {
+    openScene(scene_);
+    write(settings::kArmsLimit_N, 1.0);
+    startTraining();
+    for (const SceneArm& of : workstation().session()->scene().arms) QCOMPARE(of.max_force_N, 1.0);
+    takeHand(Hand::right);
+    pushHand(15);
+    double most = 0.0;
+    QElapsedTimer clock;
+    clock.start();
+    while (clock.elapsed() < 3000) {
+      QTest::qWait(20);
+      most = std::max(most, glm::length(arm(1).sent_N));
+    }
+    QVERIFY2(most > 0.2 && most <= 1.0001, qPrintable(QString::number(most)));
+    stop();
+    const Scene& scene = *workstation().scene();
+    QCOMPARE(scene.arms[0].max_force_N, 3.3);  // the exercise itself is as it was
+    write(settings::kArmsLimit_N, settings::kArmsMost_N);
+    write(settings::kArmsSwapped, true);
+    startTraining();
+    const Scene& swapped = workstation().session()->scene();
+    QCOMPARE(swapped.arms[0].device_arm, scene.arms[1].device_arm);
+    QCOMPARE(swapped.arms[1].device_arm, scene.arms[0].device_arm);
+    stop();
+    write(settings::kArmsSwapped, false);
   }
 
   void whatIsLockedStaysAndThePinUnlocksIt() {

@@ -408,16 +408,16 @@ TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
 
 TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {
   ArmRecord arm;
-  EXPECT_EQ(forceChangeWords(arm, false), "nothing");
+  EXPECT_EQ(forceChangeWords(arm, false), "as the tissue demands");
   arm.controller_parts = kPartLimiter;
   EXPECT_EQ(forceChangeWords(arm, false), "rising slowly");
-  EXPECT_EQ(forceChangeWords(arm, true), "no force: paused");
+  EXPECT_EQ(forceChangeWords(arm, true), "off: paused");
   arm.tool_state = kToolWaits;
-  EXPECT_EQ(forceChangeWords(arm, false), "no force until drawn out");
+  EXPECT_EQ(forceChangeWords(arm, false), "off until the tool is drawn out");
   arm.faults = kFaultLate;
-  EXPECT_EQ(forceChangeWords(arm, false), "no force until the computer keeps up");
+  EXPECT_EQ(forceChangeWords(arm, false), "off until the computer keeps up");
   arm.faults = kFaultLate | kFaultStalled;
-  EXPECT_EQ(forceChangeWords(arm, false), "no force until asked for");
+  EXPECT_EQ(forceChangeWords(arm, false), "off until asked for");
 }
 
 TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
@@ -431,7 +431,7 @@ TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
     ArmRecord arm;
     arm.controller_parts = bit;
     const QString words = forceChangeWords(arm, false);
-    EXPECT_NE(words, "nothing") << bit;
+    EXPECT_NE(words, "as the tissue demands") << bit;
     EXPECT_TRUE(help.contains("<b>" + words + "</b>: ")) << words.toStdString();
   }
 }

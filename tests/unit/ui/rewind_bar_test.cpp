@@ -181,5 +181,53 @@ TEST(RewindHistory, GoesByTheTimeOfThePersonAtWork) {
   EXPECT_EQ(way.before(60, 100), 0u);
 }
 
+TEST(RewindHistory, WhatLiesBehindAJumpStandsNoMoreAndWhatCameAfterItDoes) {
+  RewindHistory history;
+  EXPECT_TRUE(history.stands(12.5, 70));
+  history.went(70, 40);
+  EXPECT_TRUE(history.stands(39.9, 75));
+  EXPECT_FALSE(history.stands(50.0, 75));
+  EXPECT_TRUE(history.stands(72.0, 75));
+  history.went(80, 20);  // before the first jump: what it left is as it was
+  EXPECT_TRUE(history.stands(15.0, 81));
+  EXPECT_FALSE(history.stands(30.0, 81));
+  EXPECT_FALSE(history.stands(72.0, 81));
+  EXPECT_TRUE(history.stands(80.5, 81));
+}
+
+TEST_F(RewindBarTest, AfterGoingBackItSaysOfWhichSecondTheTissueIsUntilItIsCutAgain) {
+  bar_.showStrokes({{12.0, Qt::red}, {55.0, Qt::red}});
+  key(Qt::Key_PageDown);
+  pause();
+  ASSERT_EQ(asked_, std::vector<std::uint32_t>{60});
+  bar_.showTime(72, false);
+  EXPECT_EQ(time(), "1:12, tissue of 1:00");
+  bar_.showStrokes({{12.0, Qt::red}, {55.0, Qt::red}, {73.2, Qt::red}});
+  bar_.showTime(74, false);
+  EXPECT_EQ(time(), "1:14");
+}
+
+TEST_F(RewindBarTest, AStrokeHasAMarkThatIsFaintOnceOneWentBackToBeforeIt) {
+  const auto redPixels = [&] {
+    const QImage picture = bar_.grab().toImage();
+    int strong = 0;
+    for (int y = 0; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) {
+        const QColor c = picture.pixelColor(x, y);
+        strong += c.red() > 230 && c.green() < 40 && c.blue() < 40;
+      }
+    }
+    return strong;
+  };
+  EXPECT_EQ(redPixels(), 0);
+  bar_.showStrokes({{12.0, QColor(255, 0, 0)}, {55.0, QColor(255, 0, 0)}});
+  const int both = redPixels();
+  EXPECT_GT(both, 8);
+  bar_.noteReset();
+  bar_.showTime(71, false);
+  EXPECT_EQ(redPixels(), 0) << "all is put back";
+  EXPECT_EQ(time(), "1:11, tissue of 0:00");
+}
+
 }  // namespace
 }  // namespace trephine
