@@ -172,13 +172,14 @@ class LockedWindow(TraineeTest):
     def assert_as_shipped(self, answer, recordings):
         self.assertEqual(answer["ticks"], 200, answer)
         run = recordings[0].read_bytes()
+        begin = run.index(b'{\n "format": "trephine.scene"')
+        scene = json.loads(run[begin:run.index(b"\0", begin)])
         shipped = json.loads(PRODUCT.read_text())
-        self.assertIn(b'"controller":"bounded"', run)
-        self.assertEqual(shipped["controller"], "bounded")
-        tissues = json.loads((PRODUCT.parent / shipped["tissues"]).read_text())["tissues"]
-        for tissue in tissues:
-            value = tissue["mechanics"]["damping_Ns_per_m"]["value"]
-            self.assertIn(json.dumps(value).encode(), run)
+        tissues = json.loads((PRODUCT.parent / shipped["tissues"]).read_text())
+        self.assertEqual((scene["controller"], scene["rate_hz"]), ("bounded", 1000))
+        for mine, theirs in zip(scene["tissues"]["tissues"], tissues["tissues"], strict=True):
+            self.assertEqual((mine["id"], mine["hu"], mine["mechanics"]["damping_Ns_per_m"]),
+                             (theirs["id"], theirs["hu"], theirs["mechanics"]["damping_Ns_per_m"]))
 
     def test_an_exercise_of_ones_own_is_refused_in_a_sentence(self):
         for locked, scene in self.own_scenes():
