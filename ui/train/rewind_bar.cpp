@@ -170,6 +170,10 @@ RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
   showIdle();
 }
 
+bool RewindBar::choosing() const {
+  return slider_->isSliderDown() || keys_.isActive();
+}
+
 void RewindBar::showTime(std::uint32_t now, bool going_back) {
   now_ = now;
   setUsable(!going_back);

@@ -68,7 +68,7 @@ class RewindBar : public QWidget {
   void keyPressEvent(QKeyEvent* event) override;
 
  private:
-  bool choosing() const { return slider_->isSliderDown() || keys_.isActive(); }
+  bool choosing() const;
   void setUsable(bool usable);
   void follow();
   void askChosen();
