@@ -1,0 +1,52 @@
+// How long events kept the window's event loop from coming round, and which did.
+#pragma once
+
+#include <QApplication>
+#include <QString>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace trephine {
+
+struct Stall {
+  double ms = 0.0;         // no other event could be handled
+  double waited_ms = 0.0;  // of it: other threads and programs had the processors
+  double cpu_ms = 0.0;     // of it: the window's thread computed
+  QString by;              // the event that took most of it: what, to whom, how long
+  // What it would have been on a machine with nothing else to do.
+  double own_ms() const { return ms - waited_ms; }
+};
+
+// An application that times what it delivers. Events that are handled one after the other before
+// the loop comes round count as one stall; what runs between events (a test's own code, waiting)
+// counts as none.
+class TimedApplication : public QApplication {
+ public:
+  using Watcher = std::function<void(const Stall&)>;
+  TimedApplication(int& argc, char** argv);
+  ~TimedApplication() override;
+
+  // Called after each event with the stall as it is then; on the window's thread.
+  void setWatcher(Watcher watcher) { watcher_ = std::move(watcher); }
+  bool notify(QObject* receiver, QEvent* event) override;
+
+ private:
+  struct Times {
+    std::int64_t wall_ns, waited_ns, cpu_ns;
+  };
+  Times now() const;
+  void add(const Times& from);
+  void comeRound();
+
+  Watcher watcher_;
+  int schedule_ = -1;                   // file of this thread's time without a processor
+  std::vector<std::int64_t> inner_ns_;  // of each event being handled: that of events within it
+  Times began_{}, round_{};
+  std::int64_t ended_ns_ = 0, most_ns_ = 0;
+  bool asked_ = false;  // the loop says when it comes round
+  QObject probe_;
+  QString by_;
+};
+
+}  // namespace trephine
