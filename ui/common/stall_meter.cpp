@@ -7,7 +7,9 @@
 #include <QAbstractEventDispatcher>
 #include <QMetaEnum>
 #include <QThread>
+#include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 namespace trephine {
 
@@ -21,6 +23,8 @@ std::int64_t clock_ns(clockid_t clock) {
   ::clock_gettime(clock, &now);
   return std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
+
+constexpr std::int64_t kTold_ns = 5'000'000;  // what took less is not named
 
 QEvent::Type roundEvent() {
   static const auto type = QEvent::Type(QEvent::registerEventType());
@@ -54,7 +58,8 @@ TimedApplication::~TimedApplication() {
 }
 
 TimedApplication::Times TimedApplication::now() const {
-  Times times{clock_ns(CLOCK_MONOTONIC), 0, clock_ns(CLOCK_THREAD_CPUTIME_ID)};
+  Times times{clock_ns(CLOCK_MONOTONIC), 0, clock_ns(CLOCK_THREAD_CPUTIME_ID),
+              clock_ns(CLOCK_PROCESS_CPUTIME_ID)};
   char text[80] = {};
   if (schedule_ >= 0 && ::pread(schedule_, text, sizeof text - 1, 0) > 0) {
     char* second = nullptr;
@@ -69,16 +74,22 @@ void TimedApplication::add(const Times& from) {
   round_.wall_ns += to.wall_ns - from.wall_ns;
   round_.waited_ns += to.waited_ns - from.waited_ns;
   round_.cpu_ns += to.cpu_ns - from.cpu_ns;
+  round_.program_ns += to.program_ns - from.program_ns;
   ended_ns_ = to.wall_ns;
   if (!watcher_) return;
-  watcher_({double(round_.wall_ns) * 1e-6, double(round_.waited_ns) * 1e-6,
-            double(round_.cpu_ns) * 1e-6,
-            QString("%1, %2 ms").arg(by_).arg(double(most_ns_) * 1e-6, 0, 'f', 0)});
+  // While the thread waited all processors were busy: with this program's other threads as far as
+  // those ran at all in the stall, and for the rest with other programs.
+  const double beside_ns =
+      double(round_.program_ns - round_.cpu_ns) / double(std::thread::hardware_concurrency());
+  watcher_({double(round_.wall_ns) * 1e-6, double(round_.cpu_ns) * 1e-6,
+            double(round_.waited_ns) * 1e-6,
+            std::max(0.0, double(round_.waited_ns) - beside_ns) * 1e-6,
+            by_.join("; ")});
 }
 
 void TimedApplication::comeRound() {
   round_ = {};
-  most_ns_ = 0;
+  by_.clear();
 }
 
 bool TimedApplication::notify(QObject* receiver, QEvent* event) {
@@ -106,9 +117,8 @@ bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   const std::int64_t own_ns = all_ns - inner_ns_.back();
   inner_ns_.pop_back();
   if (!inner_ns_.empty()) inner_ns_.back() += all_ns;
-  if (own_ns > most_ns_) {
-    most_ns_ = own_ns;
-    by_ = described(type, of, name);
+  if (own_ns > kTold_ns) {
+    by_ << QString("%1, %2 ms").arg(described(type, of, name)).arg(double(own_ns) * 1e-6, 0, 'f', 0);
   }
   if (!outermost) return taken;
   add(began_);

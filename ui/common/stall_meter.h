@@ -2,7 +2,7 @@
 #pragma once
 
 #include <QApplication>
-#include <QString>
+#include <QStringList>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -11,11 +11,12 @@ namespace trephine {
 
 struct Stall {
   double ms = 0.0;         // no other event could be handled
-  double waited_ms = 0.0;  // of it: other threads and programs had the processors
   double cpu_ms = 0.0;     // of it: the window's thread computed
-  QString by;              // the event that took most of it: what, to whom, how long
-  // What it would have been on a machine with nothing else to do.
-  double own_ms() const { return ms - waited_ms; }
+  double waited_ms = 0.0;  // of it: that thread was ready, and other threads had all processors
+  double others_ms = 0.0;  // of that: those of other programs had, at the least
+  QString by;              // the events that took most of it: what, to whom, how long
+  // What it would have been, at the most, on a machine with nothing else to do.
+  double own_ms() const { return ms - others_ms; }
 };
 
 // An application that times what it delivers. Events that are handled one after the other before
@@ -33,7 +34,7 @@ class TimedApplication : public QApplication {
 
  private:
   struct Times {
-    std::int64_t wall_ns, waited_ns, cpu_ns;
+    std::int64_t wall_ns, waited_ns, cpu_ns, program_ns;  // the last: of all threads
   };
   Times now() const;
   void add(const Times& from);
@@ -43,10 +44,10 @@ class TimedApplication : public QApplication {
   int schedule_ = -1;                   // file of this thread's time without a processor
   std::vector<std::int64_t> inner_ns_;  // of each event being handled: that of events within it
   Times began_{}, round_{};
-  std::int64_t ended_ns_ = 0, most_ns_ = 0;
+  std::int64_t ended_ns_ = 0;
   bool asked_ = false;  // the loop says when it comes round
   QObject probe_;
-  QString by_;
+  QStringList by_;
 };
 
 }  // namespace trephine

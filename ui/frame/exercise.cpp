@@ -125,7 +125,9 @@ Json toJson(const ExerciseOutcome& outcome) {
   json["frames"] = outcome.frames;
   json["frame_ms"] = {{"median", outcome.frame_median_ms}, {"p99", outcome.frame_p99_ms}};
   json["longest_stall_ms"] = outcome.longest_stall.ms;
-  json["longest_stall"] = {{"waited_ms", outcome.longest_stall.waited_ms},
+  json["longest_stall"] = {{"cpu_ms", outcome.longest_stall.cpu_ms},
+                           {"waited_ms", outcome.longest_stall.waited_ms},
+                           {"others_ms", outcome.longest_stall.others_ms},
                            {"by", outcome.longest_stall.by.toStdString()}};
   return json;
 }

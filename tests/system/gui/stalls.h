@@ -32,9 +32,10 @@ class Stalls {
     bool within = true;
     for (const auto& [test, stall] : longest_) {
       char line[400];
-      std::snprintf(line, sizeof line, "%s %4.0f ms (computing %4.0f, other programs' %4.0f beside) %s: %s",
+      std::snprintf(line, sizeof line, "%s %4.0f ms (computing %3.0f, waiting for a processor %3.0f; %4.0f with other "
+                    "programs') %s: %s",
                     stall.own_ms() > kBar_ms ? "STALL" : "     ", stall.own_ms(), stall.cpu_ms,
-                    stall.waited_ms, test.c_str(), stall.by.toUtf8().constData());
+                    stall.waited_ms, stall.ms, test.c_str(), stall.by.toUtf8().constData());
       lines.emplace(stall.own_ms(), line);
       within = within && stall.own_ms() <= kBar_ms;
     }
