@@ -24,6 +24,7 @@ std::int64_t clock_ns(clockid_t clock) {
   return std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
+constexpr std::int64_t kShort_ns = 30'000'000;
 constexpr std::int64_t kTold_ns = 5'000'000;  // what took less is not named
 
 QEvent::Type roundEvent() {
@@ -41,7 +42,7 @@ QString described(const QEvent::Type type, const char* of, const QString& name) 
 
 TimedApplication::TimedApplication(int& argc, char** argv)
     : QApplication(argc, argv),
-      schedule_(::open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC)) {
+      processors_file_(::open("/proc/stat", O_RDONLY | O_CLOEXEC)) {
   // A loop within an event, of a menu or a drag.
   const QAbstractEventDispatcher* dispatcher = QAbstractEventDispatcher::instance();
   connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, [this] {
@@ -54,40 +55,50 @@ TimedApplication::TimedApplication(int& argc, char** argv)
 }
 
 TimedApplication::~TimedApplication() {
-  if (schedule_ >= 0) ::close(schedule_);
+  if (processors_file_ >= 0) ::close(processors_file_);
 }
 
-TimedApplication::Times TimedApplication::now() const {
-  Times times{clock_ns(CLOCK_MONOTONIC), 0, clock_ns(CLOCK_THREAD_CPUTIME_ID),
-              clock_ns(CLOCK_PROCESS_CPUTIME_ID)};
-  char text[80] = {};
-  if (schedule_ >= 0 && ::pread(schedule_, text, sizeof text - 1, 0) > 0) {
-    char* second = nullptr;
-    (void)std::strtoll(text, &second, 10);  // on a processor
-    times.waited_ns = std::strtoll(second, nullptr, 10);
+TimedApplication::Times TimedApplication::now() {
+  return {clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_THREAD_CPUTIME_ID)};
+}
+
+// Of /proc/stat the first line: "cpu" and the ticks in user, nice, system, idle, iowait, irq,
+// softirq and steal.
+TimedApplication::Processors TimedApplication::processors() const {
+  Processors all{clock_ns(CLOCK_MONOTONIC), 0, clock_ns(CLOCK_PROCESS_CPUTIME_ID)};
+  char text[200] = {};
+  if (processors_file_ < 0 || ::pread(processors_file_, text, sizeof text - 1, 0) < 5) return all;
+  const std::int64_t tick_ns = 1'000'000'000 / ::sysconf(_SC_CLK_TCK);
+  char* at = text + 3;
+  for (int field = 0; field < 8; ++field) {
+    const std::int64_t ticks = std::strtoll(at, &at, 10);
+    if (field != 3 && field != 4) all.busy_ns += ticks * tick_ns;
   }
-  return times;
+  return all;
+}
+
+double TimedApplication::othersShare() const {
+  const Processors to = processors();
+  const double all_ns =
+      double(to.wall_ns - before_.wall_ns) * double(std::thread::hardware_concurrency());
+  const double others_ns =
+      double(to.busy_ns - before_.busy_ns) - double(to.program_ns - before_.program_ns);
+  return std::clamp(others_ns / all_ns, 0.0, 1.0);
 }
 
 void TimedApplication::add(const Times& from) {
   const Times to = now();
   round_.wall_ns += to.wall_ns - from.wall_ns;
-  round_.waited_ns += to.waited_ns - from.waited_ns;
   round_.cpu_ns += to.cpu_ns - from.cpu_ns;
-  round_.program_ns += to.program_ns - from.program_ns;
   ended_ns_ = to.wall_ns;
   if (!watcher_) return;
-  // While the thread waited all processors were busy: with this program's other threads as far as
-  // those ran at all in the stall, and for the rest with other programs.
-  const double beside_ns =
-      double(round_.program_ns - round_.cpu_ns) / double(std::thread::hardware_concurrency());
-  watcher_({double(round_.wall_ns) * 1e-6, double(round_.cpu_ns) * 1e-6,
-            double(round_.waited_ns) * 1e-6,
-            std::max(0.0, double(round_.waited_ns) - beside_ns) * 1e-6,
-            by_.join("; ")});
+  // The ticks of the processors are 10 ms long: of what was shorter nothing is known.
+  const double share = round_.wall_ns > kShort_ns ? othersShare() : 0.0;
+  watcher_({double(round_.wall_ns) * 1e-6, double(round_.cpu_ns) * 1e-6, share, by_.join("; ")});
 }
 
 void TimedApplication::comeRound() {
+  if (clock_ns(CLOCK_MONOTONIC) - before_.wall_ns > kShort_ns) before_ = processors();
   round_ = {};
   by_.clear();
 }

@@ -10,13 +10,10 @@
 namespace trephine {
 
 struct Stall {
-  double ms = 0.0;         // no other event could be handled
-  double cpu_ms = 0.0;     // of it: the window's thread computed
-  double waited_ms = 0.0;  // of it: that thread was ready, and other threads had all processors
-  double others_ms = 0.0;  // of that: those of other programs had, at the least
-  QString by;              // the events that took most of it: what, to whom, how long
-  // What it would have been, at the most, on a machine with nothing else to do.
-  double own_ms() const { return ms - others_ms; }
+  double ms = 0.0;            // no other event could be handled
+  double cpu_ms = 0.0;        // of it: the window's thread computed
+  double others_share = 0.0;  // of all processors, about then: what other programs had of them
+  QString by;                 // the events that took most of it: what, to whom, how long
 };
 
 // An application that times what it delivers. Events that are handled one after the other before
@@ -34,14 +31,20 @@ class TimedApplication : public QApplication {
 
  private:
   struct Times {
-    std::int64_t wall_ns, waited_ns, cpu_ns, program_ns;  // the last: of all threads
+    std::int64_t wall_ns, cpu_ns;
   };
-  Times now() const;
+  struct Processors {  // since the machine started
+    std::int64_t wall_ns, busy_ns, program_ns;
+  };
+  static Times now();
+  Processors processors() const;
+  double othersShare() const;
   void add(const Times& from);
   void comeRound();
 
   Watcher watcher_;
-  int schedule_ = -1;                   // file of this thread's time without a processor
+  int processors_file_ = -1;
+  Processors before_{};
   std::vector<std::int64_t> inner_ns_;  // of each event being handled: that of events within it
   Times began_{}, round_{};
   std::int64_t ended_ns_ = 0;

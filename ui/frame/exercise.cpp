@@ -126,8 +126,7 @@ Json toJson(const ExerciseOutcome& outcome) {
   json["frame_ms"] = {{"median", outcome.frame_median_ms}, {"p99", outcome.frame_p99_ms}};
   json["longest_stall_ms"] = outcome.longest_stall.ms;
   json["longest_stall"] = {{"cpu_ms", outcome.longest_stall.cpu_ms},
-                           {"waited_ms", outcome.longest_stall.waited_ms},
-                           {"others_ms", outcome.longest_stall.others_ms},
+                           {"others_share", outcome.longest_stall.others_share},
                            {"by", outcome.longest_stall.by.toStdString()}};
   return json;
 }
