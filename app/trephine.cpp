@@ -93,6 +93,10 @@ int run(int argc, char** argv) {
     return 1;
   }
   MainWindow window({}, policy);
+  QObject::connect(&window, &MainWindow::usable, [] {
+    spdlog::info("The window is usable, {:.0f} ms after the start of the program",
+                 msSinceProcessStart());
+  });
   if (!path.empty()) window.openOnceShown(path);
   window.show();
   return QApplication::exec();

@@ -175,6 +175,7 @@ void CasesWorkspace::list() {
         page_->showCases(*entries);
         const QStringList recent = read(settings::kRecentCases);
         page_->setRecent(recent.isEmpty() ? std::string() : recent.front().toStdString());
+        emit listed();
         if (!std::exchange(pictures_made_, true)) makePictures();
       });
   list_again_ = !begun;

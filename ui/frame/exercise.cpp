@@ -65,6 +65,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
       });
   QObject::connect(&workstation, &Workstation::sessionStarted, &loop, [&] {
     step = Step::running;
+    outcome.session_ms = msSinceProcessStart();
   });
   QObject::connect(&workstation, &Workstation::sessionEnded, &loop, [&](Session& session) {
     step = Step::ending;
@@ -122,6 +123,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
 Json toJson(const ExerciseOutcome& outcome) {
   Json json = toJson(outcome.report);
   json["start_ms"] = outcome.start_ms;
+  json["session_ms"] = outcome.session_ms;
   json["frames"] = outcome.frames;
   json["frame_ms"] = {{"median", outcome.frame_median_ms}, {"p99", outcome.frame_p99_ms}};
   json["longest_stall_ms"] = outcome.longest_stall.ms;

@@ -22,6 +22,7 @@ struct ExerciseOptions {
 struct ExerciseOutcome {
   RunReport report;
   double start_ms = 0.0;  // from the start of the process to the first picture of the volume
+  double session_ms = 0.0;  // to the exercise's first tick, within some ms
   int frames = 0;         // painted while the exercise ran, and how long each took
   double frame_median_ms = 0.0, frame_p99_ms = 0.0;
   Stall longest_stall;            // of the window's event loop while the exercise ran
