@@ -61,12 +61,17 @@ int run(int argc, char** argv) {
   const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
   if (!display) printError("exercise", display.error(), json);
   if (!display && !can_say) return 1;
-  QApplication application(argc, argv);
+  std::unique_ptr<QApplication> application;
+  if (scene.empty()) {
+    application = std::make_unique<QApplication>(argc, argv);
+  } else {
+    application = std::make_unique<TimedApplication>(argc, argv);
+  }
   QApplication::setApplicationName("trephine");
   QApplication::setApplicationDisplayName("Trephine");
   const colours::Theme theme =
       read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
-  colours::applyTheme(application, theme, readWithin(settings::kTextScale, 80, 200));
+  colours::applyTheme(*application, theme, readWithin(settings::kTextScale, 80, 200));
   if (!scene.empty()) {
     ExerciseOptions options{scene, {}, out, policy};
     if (seconds > 0.0) options.seconds = seconds;
@@ -88,6 +93,10 @@ int run(int argc, char** argv) {
     return 1;
   }
   MainWindow window({}, policy);
+  QObject::connect(&window, &MainWindow::usable, [] {
+    spdlog::info("The window is usable, {:.0f} ms after the start of the program",
+                 msSinceProcessStart());
+  });
   if (!path.empty()) window.openOnceShown(path);
   window.show();
   return QApplication::exec();

@@ -6,7 +6,8 @@ namespace trephine {
 
 namespace {
 
-constexpr int kFewestRows = 8;  // each strip costs a millisecond or two beside its rays
+// Each strip costs a millisecond or two beside its rays.
+constexpr int kFewestRows = 8, kFewestColumns = 64;
 
 }  // namespace
 
@@ -48,12 +49,18 @@ void CastPlan::add(PixelRect rect) {
 
 std::optional<PixelRect> CastPlan::next(double pixels) {
   if (rects_.empty()) return std::nullopt;
-  PixelRect& rect = rects_.front();
-  const double rows = std::max(double(kFewestRows), pixels / rect.width());
+  const PixelRect rect = rects_.front();
+  rects_.erase(rects_.begin());
   PixelRect strip = rect;
+  const double rows = std::max(double(kFewestRows), pixels / rect.width());
   if (rows < rect.height()) strip.low_y = rect.high_y - int(rows);
-  rect.high_y = strip.low_y;
-  if (rect.empty()) rects_.erase(rects_.begin());
+  const double columns = std::max(double(kFewestColumns), pixels / strip.height());
+  if (columns < rect.width()) strip.high_x = rect.low_x + int(columns);
+  // What is left: beside it, then below it.
+  const PixelRect below{rect.low_x, rect.low_y, rect.high_x, strip.low_y};
+  const PixelRect beside{strip.high_x, strip.low_y, rect.high_x, rect.high_y};
+  if (!below.empty()) rects_.insert(rects_.begin(), below);
+  if (!beside.empty()) rects_.insert(rects_.begin(), beside);
   return strip;
 }
 

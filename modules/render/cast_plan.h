@@ -29,7 +29,7 @@ class CastPlan {
   void setNone(int width, int height);
   // These too; what lies outside of the picture is left out. Those that overlap are cast once.
   void add(PixelRect rect);
-  // The next strip, from the top, of at most so many pixels but at least some rows.
+  // The next strip, from the top, of at most so many pixels, but at least a small block.
   std::optional<PixelRect> next(double pixels);
 
   bool done() const { return rects_.empty(); }

@@ -13,11 +13,11 @@ namespace {
 // would let it flicker.
 constexpr std::chrono::milliseconds kPause(150);
 constexpr double kFirstStrip = 12000.0;  // pixels, before any was measured
-constexpr double kTelling = 4000.0;
+constexpr double kTelling = 4000.0, kTelling_ms = 10.0;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kWary = 0.4;  // of the first strip: what lies there may be dearer than the last
 // Where nothing is known of what a picture takes, or the whole window is put in order with it.
-constexpr double kFirstStep = 5.0;
+constexpr double kFirstStep = 8.0;
 constexpr double kCoarsestSketch = 8.0, kLongestRayStep = 2.0;
 
 double msSince(std::chrono::steady_clock::time_point start) {
@@ -77,7 +77,7 @@ void VolumePictures::castSome(Picture& picture, double budget_ms, const Cast& ca
     picture.took_ms += took_ms;
     picture.strip_pixels = strip->pixels();
     // A small cut's strip is mostly what each strip costs beside its rays.
-    if (strip->pixels() >= kTelling || pixels_per_ms_ == 0.0) {
+    if (strip->pixels() >= kTelling || took_ms > kTelling_ms || pixels_per_ms_ == 0.0) {
       pixels_per_ms_ = strip->pixels() / picture.ray_step / took_ms;
     }
     const double left_ms = budget_ms - msSince(start);

@@ -184,6 +184,7 @@ void CasesWorkspace::list() {
         page_->showCases(*entries);
         const QStringList recent = read(settings::kRecentCases);
         page_->setRecent(recent.isEmpty() ? std::string() : recent.front().toStdString());
+        emit listed();
       });
   list_again_ = !begun;
 }

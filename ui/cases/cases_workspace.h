@@ -31,6 +31,7 @@ class CasesWorkspace : public Workspace {
 
  signals:
   void caseSaved(const QString& name);  // what was imported, under this name
+  void listed();                        // the cards are those on the disk
 
  private:
   void connectParts();

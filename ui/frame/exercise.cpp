@@ -1,13 +1,12 @@
 #include "ui/frame/exercise.h"
 
-#include <QApplication>
-#include <QElapsedTimer>
 #include <QEventLoop>
 #include <QTimer>
 #include <algorithm>
 #include <cmath>
 
 #include "base/file.h"
+#include "ui/common/stall_meter.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
 #include "ui/views/saved_picture.h"
@@ -16,37 +15,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kHeartbeat_ms = 5;
 constexpr int kCancelPoll_ms = 50;
-
-// Measures the longest time for which the event loop did not come round.
-class Heartbeat {
- public:
-  Heartbeat() {
-    timer_.setTimerType(Qt::PreciseTimer);
-    timer_.setInterval(kHeartbeat_ms);
-    QObject::connect(&timer_, &QTimer::timeout, &timer_, [this] { beat(); });
-  }
-  void start() {
-    longest_ms_ = 0.0;
-    since_.start();
-    timer_.start();
-  }
-  void stop() {
-    beat();
-    timer_.stop();
-  }
-  double longest_ms() const { return longest_ms_; }
-
- private:
-  void beat() {
-    longest_ms_ = std::max(longest_ms_, double(since_.nsecsElapsed()) * 1e-6);
-    since_.restart();
-  }
-  QTimer timer_;
-  QElapsedTimer since_;
-  double longest_ms_ = 0.0;
-};
 
 }  // namespace
 
@@ -74,7 +43,6 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   ExerciseOutcome outcome;
   std::optional<Error> failure;
   std::vector<double> frame_ms;
-  Heartbeat heartbeat;
   QEventLoop loop;
   MainWindow window(options.out, options.policy);
   // As large as it is in every exercise, whatever its user is used to: it is measured.
@@ -98,16 +66,21 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
       });
   QObject::connect(&workstation, &Workstation::sessionStarted, &loop, [&] {
     step = Step::running;
-    heartbeat.start();
+    outcome.session_ms = msSinceProcessStart();
   });
   QObject::connect(&workstation, &Workstation::sessionEnded, &loop, [&](Session& session) {
-    heartbeat.stop();
     step = Step::ending;
     outcome.report = session.report();
     QTimer::singleShot(0, &loop, &QEventLoop::quit);
   });
   QObject::connect(&workstation, &Workstation::recordingFailed, &loop,
                    [&](const Error& error) { outcome.failure = error; });
+  auto* timed = dynamic_cast<TimedApplication*>(QApplication::instance());
+  if (timed) {
+    timed->setWatcher([&](const Stall& stall) {
+      if (step == Step::running && stall.ms > outcome.longest_stall.ms) outcome.longest_stall = stall;
+    });
+  }
   QTimer cancelling;
   QObject::connect(&cancelling, &QTimer::timeout, &loop, [&] {
     if (!progress.cancelled()) return;
@@ -123,6 +96,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   window.show();
   window.open(options.scene);
   if (!failure) loop.exec();
+  if (timed) timed->setWatcher({});
   const Error cancelled{"CANCELLED", "The exercise was cancelled", "", ""};
   if (step != Step::ending && progress.cancelled()) return cancelled;
   if (step != Step::ending && failure) return *failure;
@@ -144,26 +118,29 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   outcome.frames = int(frame_ms.size());
   outcome.frame_median_ms = percentile(frame_ms, 0.5);
   outcome.frame_p99_ms = percentile(frame_ms, 0.99);
-  outcome.longest_stall_ms = heartbeat.longest_ms();
   return outcome;
 }
 
 Json toJson(const ExerciseOutcome& outcome) {
   Json json = toJson(outcome.report);
   json["start_ms"] = outcome.start_ms;
+  json["session_ms"] = outcome.session_ms;
   json["frames"] = outcome.frames;
   json["frame_ms"] = {{"median", outcome.frame_median_ms}, {"p99", outcome.frame_p99_ms}};
-  json["longest_stall_ms"] = outcome.longest_stall_ms;
+  json["longest_stall_ms"] = outcome.longest_stall.ms;
+  json["longest_stall"] = {{"cpu_ms", outcome.longest_stall.cpu_ms},
+                           {"others_share", outcome.longest_stall.others_share},
+                           {"by", outcome.longest_stall.by.toStdString()}};
   return json;
 }
 
 std::string toText(const ExerciseOutcome& outcome) {
-  char line[200];
+  char line[300];
   std::snprintf(line, sizeof line,
                 "Window: first picture after %.0f ms, %d pictures, median %.1f ms, p99 %.1f ms, "
-                "longest stall %.0f ms\n",
+                "longest stall %.0f ms (%s)\n",
                 outcome.start_ms, outcome.frames, outcome.frame_median_ms, outcome.frame_p99_ms,
-                outcome.longest_stall_ms);
+                outcome.longest_stall.ms, outcome.longest_stall.by.toUtf8().constData());
   return toText(outcome.report) + line;
 }
 

@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "scene/policy.h"
 #include "session/run_statistics.h"
+#include "ui/common/stall_meter.h"
 
 namespace trephine {
 
@@ -21,13 +22,15 @@ struct ExerciseOptions {
 struct ExerciseOutcome {
   RunReport report;
   double start_ms = 0.0;  // from the start of the process to the first picture of the volume
+  double session_ms = 0.0;  // to the exercise's first tick, within some ms
   int frames = 0;         // painted while the exercise ran, and how long each took
   double frame_median_ms = 0.0, frame_p99_ms = 0.0;
-  double longest_stall_ms = 0.0;  // of the window's event loop
+  Stall longest_stall;            // of the window's event loop while the exercise ran
   std::optional<Error> failure;   // the recording's, or CANCELLED; the rest holds all the same
 };
 
-// Needs a QApplication; runs its event loop. Opens the scene's case in a window, plays its default
+// Needs a TimedApplication (of another QApplication the stalls are not known); runs its event
+// loop. Opens the scene's case in a window, plays its default
 // script in real time, and takes a picture at the end. A recording that fails ends nothing: nobody
 // is there to be asked. The Error is what the window would have said of an exercise that did not
 // run.

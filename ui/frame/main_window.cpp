@@ -153,7 +153,12 @@ void MainWindow::keep() {
 
 void MainWindow::showEvent(QShowEvent* event) {
   QMainWindow::showEvent(event);
-  if (!entered_) show(place_);
+  if (entered_) return;
+  show(place_);
+  // A timer of no time comes when all that waits to be painted is.
+  const auto once_idle = [this] { QTimer::singleShot(0, this, &MainWindow::usable); };
+  if (place_ != Place::cases) return once_idle();
+  connect(cases_, &CasesWorkspace::listed, this, once_idle, Qt::SingleShotConnection);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

@@ -48,6 +48,8 @@ class MainWindow : public QMainWindow {
   using QMainWindow::show;
 
  signals:
+  // Once: the workspace stands on the screen, in Cases with its cards, and answers.
+  void usable();
   // Beside the dialog that is shown.
   void failed(const trephine::Error& error);
 

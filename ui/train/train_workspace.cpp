@@ -45,6 +45,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   hands_ = new PointerHands(*view_);
   connectParts();
   fillScenes();
+  frame_timer_.setObjectName("frame");
   frame_timer_.setInterval(kFrame_ms);
   rate_clock_.start();
   panel_clock_.start();

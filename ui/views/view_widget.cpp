@@ -63,12 +63,14 @@ ViewWidget::ViewWidget(QWidget* parent)
   level_->setWordWrap(true);
   strip_->hide();
   connectTools();
+  still_.setObjectName("still");
   still_.setSingleShot(true);
   connect(&still_, &QTimer::timeout, this, [this] {
     moving_ = false;
     renderer_.setMoving(false);
     refine_.start(0);  // when nothing else is to be done
   });
+  refine_.setObjectName("refine");
   refine_.setSingleShot(true);
   connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
 }

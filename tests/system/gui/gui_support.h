@@ -2,7 +2,6 @@
 #pragma once
 
 #include <QAction>
-#include <QApplication>
 #include <QDir>
 #include <QFile>
 #include <QStandardPaths>
@@ -17,11 +16,13 @@
 #include "base/system.h"
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
+#include "ui/common/stall_meter.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
+#include "stalls.h"
 
 namespace trephine::test {
 
@@ -195,13 +196,15 @@ int runInWindow(int argc, char** argv) {
     std::printf("SKIP: %s\n", display.error().sentence().c_str());
     return 77;
   }
-  QApplication application(argc, argv);
+  TimedApplication application(argc, argv);
   QApplication::setApplicationName("trephine-test");
   QStandardPaths::setTestModeEnabled(true);
   QFile::remove(windowSettings().fileName());  // of a test before
   colours::applyTheme(application);
   Test test;
-  return QTest::qExec(&test, argc, argv);
+  Stalls stalls(application);
+  const int failed = QTest::qExec(&test, argc, argv);
+  return stalls.report(test.metaObject()->className()) ? failed : failed + 1;
 }
 
 }  // namespace trephine::test

@@ -52,6 +52,15 @@ TEST(CastPlan, StripsCoverEveryPixelOnce) {
   for (const int times : count) ASSERT_EQ(times, 1);
 }
 
+TEST(CastPlan, WhereRaysAreDearAStripIsNotAsWideAsThePicture) {
+  CastPlan plan;
+  plan.setWhole(1000, 100);
+  const PixelRect strip = *plan.next(600.0);
+  EXPECT_EQ(strip, (PixelRect{0, 92, 75, 100}));
+  EXPECT_EQ(plan.next(600.0)->low_x, 75) << "the next lies beside it";
+  EXPECT_EQ(plan.next(1.0)->pixels(), 512.0) << "at least";
+}
+
 TEST(CastPlan, CutsThatOverlapAreCastTogetherAndWhatLiesOutsideNotAtAll) {
   CastPlan plan;
   plan.setNone(100, 100);

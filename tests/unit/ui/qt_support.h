@@ -1,20 +1,21 @@
 #pragma once
 
-#include <QApplication>
 #include <QElapsedTimer>
 #include <QtGlobal>
 #include <functional>
 
+#include "ui/common/stall_meter.h"
+
 namespace trephine::test {
 
 // One for the whole program, drawing nowhere.
-inline QApplication& application() {
+inline TimedApplication& application() {
   static int argc = 1;
   static char name[] = "test_ui";
   static char* argv[] = {name, nullptr};
   qputenv("QT_QPA_PLATFORM", "offscreen");
   // Never destroyed: Qt's own statics go before it and it needs them.
-  static auto* instance = new QApplication(argc, argv);
+  static auto* instance = new TimedApplication(argc, argv);
   return *instance;
 }
 

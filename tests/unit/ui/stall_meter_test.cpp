@@ -1,0 +1,90 @@
+#include "ui/common/stall_meter.h"
+
+#include <gtest/gtest.h>
+
+#include <QTimer>
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "qt_support.h"
+
+namespace trephine {
+namespace {
+
+using std::chrono::milliseconds;
+
+class StallMeter : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    application_.setWatcher([this](const Stall& stall) {
+      if (stall.ms > longest_.ms) longest_ = stall;
+    });
+  }
+  void TearDown() override { application_.setWatcher({}); }
+  static void after(int ms, QObject& context, std::function<void()> work) {
+    QTimer::singleShot(ms, &context, std::move(work));
+  }
+
+  TimedApplication& application_ = test::application();
+  Stall longest_;
+};
+
+TEST_F(StallMeter, SaysHowLongAnEventTookAndWhoHadIt) {
+  QObject slow;
+  slow.setObjectName("slow");
+  bool done = false;
+  QMetaObject::invokeMethod(
+      &slow,
+      [&] {
+        std::this_thread::sleep_for(milliseconds(60));
+        done = true;
+      },
+      Qt::QueuedConnection);
+  ASSERT_TRUE(test::waitFor([&] { return done; }));
+  EXPECT_GE(longest_.ms, 60.0);
+  EXPECT_TRUE(longest_.by.startsWith("MetaCall to QObject slow, ")) << longest_.by.toStdString();
+  EXPECT_LT(longest_.cpu_ms, 30.0) << "it slept";
+}
+
+TEST_F(StallMeter, EventsBetweenWhichNothingElseIsHandledAreOneStall) {
+  QObject slow;
+  int done = 0;
+  for (int i = 0; i < 3; ++i) {
+    QMetaObject::invokeMethod(
+        &slow,
+        [&] {
+          std::this_thread::sleep_for(milliseconds(20));
+          ++done;
+        },
+        Qt::QueuedConnection);
+  }
+  ASSERT_TRUE(test::waitFor([&] { return done == 3; }));
+  EXPECT_GE(longest_.ms, 60.0);
+}
+
+TEST_F(StallMeter, WhatRunsBetweenTwoEventsIsNone) {
+  QObject quick;
+  int done = 0;
+  for (int i = 0; i < 2; ++i) {
+    std::this_thread::sleep_for(milliseconds(60));
+    after(0, quick, [&] { ++done; });
+    ASSERT_TRUE(test::waitFor([&] { return done == i + 1; }));
+  }
+  EXPECT_LT(longest_.ms, 60.0);
+}
+
+TEST_F(StallMeter, EventsThatTheLoopComesRoundBetweenAreNotAddedUp) {
+  QObject quick;
+  int done = 0;
+  std::function<void()> again = [&] {
+    std::this_thread::sleep_for(milliseconds(10));
+    if (++done < 20) after(0, quick, again);
+  };
+  after(0, quick, again);
+  ASSERT_TRUE(test::waitFor([&] { return done == 20; }));
+  EXPECT_LT(longest_.ms, 100.0) << longest_.by.toStdString();
+}
+
+}  // namespace
+}  // namespace trephine
