@@ -251,6 +251,9 @@ class HourGuiTest : public test::WindowTest {
   }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<HourGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  qputenv("QTEST_FUNCTION_TIMEOUT", "10000000");  // ms; Qt gives a function five minutes
+  return test::runInWindow<HourGuiTest>(argc, argv);
+}
 
 #include "hour_gui_test.moc"
