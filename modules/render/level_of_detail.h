@@ -8,7 +8,7 @@ namespace trephine {
 class LevelOfDetail {
  public:
   // Of rays; leaves a share of a 15th of a second to putting the picture together and showing it.
-  static constexpr double kBudget_ms = 56.0;
+  static constexpr double kBudget_ms = 50.0;
   static constexpr double kCoarsest = 8.0;
 
   // Pixels between two rays, each way; 1 is full quality.

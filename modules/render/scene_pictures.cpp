@@ -97,7 +97,12 @@ void SceneRenderer::Parts::drawAt(double level) {
 }
 
 bool SceneRenderer::Parts::work(double budget_ms) {
-  if ((!fitted || may_need_more) && !mirror->empty()) fit();
+  const bool others = !fitted;
+  if ((!fitted || may_need_more) && !mirror->empty()) {
+    fit();
+    // Sending a volume takes its time: its first picture is the next call's.
+    if (others && drawsVolume() && budget_ms < std::numeric_limits<double>::infinity()) return false;
+  }
   if (!drawsVolume()) return std::exchange(scene_stale, false);
   if (!volume.labelsSent()) {
     const auto begun = std::chrono::steady_clock::now();
@@ -175,7 +180,7 @@ PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
 }
 
 void SceneRenderer::Parts::compose(unsigned int framebuffer) {
-  const Canvas* shown = drawsVolume() ? &pictures.canvas() : nullptr;
+  const Canvas* shown = drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
   const Span span = shown ? pictures.span() : Span{};
   if (scene_stale || scene.width() != width || scene.height() != height) {
     scene.bind(width, height, {Canvas::Image::colour});

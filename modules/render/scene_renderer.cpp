@@ -237,6 +237,10 @@ bool SceneRenderer::complete() const {
   return !p.drawsVolume() || (p.pictures.complete() && p.volume.labelsSent());
 }
 
+bool SceneRenderer::stale() const {
+  return parts_->drawsVolume() && parts_->pictures.stale();
+}
+
 Index3 SceneRenderer::reduction() const {
   return parts_->reduction;
 }

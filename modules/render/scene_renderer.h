@@ -114,6 +114,8 @@ class SceneRenderer {
   // Works for about so long on a finer picture. True when there is another to paint.
   bool refine(double budget_ms);
   bool complete() const;
+  // The volume has no picture as it is to be seen now: the next paint makes one.
+  bool stale() const;
   // How many voxels became one for the display, where the graphics card takes no more; {1, 1, 1}
   // where it shows all. Known once it is painted.
   Index3 reduction() const;

@@ -37,6 +37,7 @@ class VolumePictures {
   // anew.
   void castAt(double step, double ray_step, const Cast& cast);
   // The shown one is what is there now, at full quality.
+  bool stale() const { return stale_; }
   bool complete() const { return !stale_ && shown_.step == 1.0 && shown_.plan.done(); }
 
   const Canvas& canvas() const { return shown_.canvas; }

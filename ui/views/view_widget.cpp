@@ -208,7 +208,9 @@ void ViewWidget::paintGL() {
   renderer_.setLines(lines);
   renderer_.paint(defaultFramebufferObject(), kCut_ms);
   if (!moving_ && !renderer_.complete()) refine_.start(0);
-  emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume());
+  const bool stale = renderer_.stale();  // its volume was sent, and no more
+  if (stale) QTimer::singleShot(0, this, qOverload<>(&ViewWidget::update));
+  emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume() && !stale);
   showLevel();
   if (const Status refused = renderer_.refusal(); !refused && !refusal_said_) {
     refusal_said_ = true;
