@@ -20,6 +20,10 @@ namespace {
 
 constexpr int kMostRecent = 10;
 
+Error stillChanging() {
+  return {"BUSY", "The change before is still being written", "", "Try again in a moment"};
+}
+
 // As the window works on it.
 Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& id,
                                        const Progress& progress) {
@@ -261,7 +265,7 @@ void CasesWorkspace::saved(const SavedCase& saved) {
 }
 
 void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
-  changing_.run(
+  const bool begun = changing_.run(
       [library = bench_.library(), id = entry.id, to = name.toStdString()](const Progress&) {
         return library->rename(id, to);
       },
@@ -275,6 +279,7 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
         list();
         bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
       });
+  if (!begun) bench_.report(stillChanging());
 }
 
 void CasesWorkspace::askToDelete(const CaseEntry& entry) {
@@ -287,7 +292,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                "recordings of %1 exercises stay, but cannot be replayed without it.")
                 .arg(exercises),
       tr("&Delete it"), [this, entry] {
-        changing_.run(
+        const bool begun = changing_.run(
             [library = bench_.library(), id = entry.id](const Progress&) { return library->remove(id); },
             [this, entry](Status removed) {
               if (!removed) bench_.report(removed.error());
@@ -296,6 +301,7 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
               list();
               showCase();
             });
+        if (!begun) bench_.report(stillChanging());
       });
 }
 

@@ -184,7 +184,6 @@ class CasesControlsGuiTest : public test::WindowTest {
     window_->show(Place::cases);
     click("anotherSeries");
     waitForSeries();
-    click("cropReset");
     QTRY_VERIFY_WITH_TIMEOUT(!canvas()->image().isNull(), kLong_ms);
     const QRect all = canvas()->rect();
     const QPoint from = all.center() - QPoint(40, 30), to = all.center() + QPoint(40, 30);
@@ -204,6 +203,7 @@ class CasesControlsGuiTest : public test::WindowTest {
     window_->show(Place::cases);
     click("anotherSeries");
     waitForSeries();
+    find<QSpinBox>("cropTo1")->setValue(10);
     click("cropReset");
     import();
     QVERIFY(opensAs(whole));
@@ -244,7 +244,8 @@ class CasesControlsGuiTest : public test::WindowTest {
       auto* dialog = find<QInputDialog>("renameDialog");
       dialog->setTextValue(name);
       dialog->accept();
-      QTRY_COMPARE_WITH_TIMEOUT(nameOnDisk(), QString(name), kLong_ms);
+      QTRY_COMPARE_WITH_TIMEOUT(find<QLabel>("caseName")->text(), QString(name), kLong_ms);
+      QCOMPARE(nameOnDisk(), QString(name));
       QTRY_VERIFY(!window_->findChild<QInputDialog*>("renameDialog"));
     }
   }
