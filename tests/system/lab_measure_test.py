@@ -53,7 +53,8 @@ class WholeScenes(LabTest):
         self.assertLessEqual({"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                               "block of bone"}, scenes)
         self.assertEqual({row["kind"] for row in answer["rows"]}, {"rest", "swing", "creep"})
-        self.assertEqual({row["tool"] for row in answer["rows"]}, {"burr", "blade", "needle"})
+        self.assertEqual({row["tool"] for row in answer["rows"]},
+                         {"burr", "small burr", "craniotome", "blade", "needle"})
         # A tool that a scene's hand holds in tissue feels it.
         self.assertEqual([row for row in answer["rows"] if "pressed" in row["place"]
                           and row["kind"] == "rest" and not row["felt"]], [])

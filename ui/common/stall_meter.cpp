@@ -10,13 +10,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace trephine {
 
 namespace {
-
-// Events that follow each other faster were not waited between.
-constexpr std::int64_t kAtOnce_ns = 1'000'000;
 
 std::int64_t clock_ns(clockid_t clock) {
   timespec now{};
@@ -26,11 +24,6 @@ std::int64_t clock_ns(clockid_t clock) {
 
 constexpr std::int64_t kShort_ns = 30'000'000;
 constexpr std::int64_t kTold_ns = 5'000'000;  // what took less is not named
-
-QEvent::Type roundEvent() {
-  static const auto type = QEvent::Type(QEvent::registerEventType());
-  return type;
-}
 
 QString described(const QEvent::Type type, const char* of, const QString& name) {
   const char* key = QMetaEnum::fromType<QEvent::Type>().valueToKey(type);
@@ -43,15 +36,10 @@ QString described(const QEvent::Type type, const char* of, const QString& name) 
 TimedApplication::TimedApplication(int& argc, char** argv)
     : QApplication(argc, argv),
       processors_file_(::open("/proc/stat", O_RDONLY | O_CLOEXEC)) {
-  // A loop within an event, of a menu or a drag.
+  // Whether it may wait or not, the loop says one of the two each time it comes round.
   const QAbstractEventDispatcher* dispatcher = QAbstractEventDispatcher::instance();
-  connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, [this] {
-    if (!inner_ns_.empty()) add(began_);
-    comeRound();
-  });
-  connect(dispatcher, &QAbstractEventDispatcher::awake, this, [this] {
-    if (!inner_ns_.empty()) began_ = now();
-  });
+  connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, &TimedApplication::comeRound);
+  connect(dispatcher, &QAbstractEventDispatcher::awake, this, &TimedApplication::comeRound);
 }
 
 TimedApplication::~TimedApplication() {
@@ -86,11 +74,11 @@ double TimedApplication::othersShare() const {
   return std::clamp(others_ns / all_ns, 0.0, 1.0);
 }
 
-void TimedApplication::add(const Times& from) {
+void TimedApplication::add() {
   const Times to = now();
-  round_.wall_ns += to.wall_ns - from.wall_ns;
-  round_.cpu_ns += to.cpu_ns - from.cpu_ns;
-  ended_ns_ = to.wall_ns;
+  round_.wall_ns += to.wall_ns - began_.wall_ns;
+  round_.cpu_ns += to.cpu_ns - began_.cpu_ns;
+  began_ = to;
   if (!watcher_) return;
   // The ticks of the processors are 10 ms long: of what was shorter nothing is known.
   const double share = round_.wall_ns > kShort_ns ? othersShare() : 0.0;
@@ -98,7 +86,12 @@ void TimedApplication::add(const Times& from) {
 }
 
 void TimedApplication::comeRound() {
+  if (inner_ns_.size() > loop_depth_) {  // a loop begins within an event
+    add();
+    loop_depth_ = inner_ns_.size();
+  }
   if (clock_ns(CLOCK_MONOTONIC) - before_.wall_ns > kShort_ns) before_ = processors();
+  began_ = now();
   round_ = {};
   by_.clear();
 }
@@ -106,21 +99,13 @@ void TimedApplication::comeRound() {
 bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   if (QThread::currentThread() != thread()) return QApplication::notify(receiver, event);
   const QEvent::Type type = event->type();
-  if (type == roundEvent() && receiver == &probe_) {
-    asked_ = false;
-    if (inner_ns_.empty()) comeRound();
-    return true;
-  }
   // It may be gone afterwards.
   const QObject* named = receiver->inherits("QTimer") && receiver->parent() ? receiver->parent()
                                                                             : receiver;
   const char* of = named->metaObject()->className();
   const QString name = named->objectName();
-  const bool outermost = inner_ns_.empty();
-  if (outermost) {
-    began_ = now();
-    if (began_.wall_ns - ended_ns_ > kAtOnce_ns) comeRound();
-  }
+  const std::size_t depth = inner_ns_.size(), loop_depth = loop_depth_;
+  if (depth == loop_depth) began_ = now();
   const std::int64_t from_ns = clock_ns(CLOCK_MONOTONIC);
   inner_ns_.push_back(0);
   const bool taken = QApplication::notify(receiver, event);
@@ -128,13 +113,11 @@ bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   const std::int64_t own_ns = all_ns - inner_ns_.back();
   inner_ns_.pop_back();
   if (!inner_ns_.empty()) inner_ns_.back() += all_ns;
-  if (own_ns > kTold_ns) {
+  const bool looped = std::exchange(loop_depth_, loop_depth) != loop_depth;
+  if (!looped && own_ns > kTold_ns) {
     by_ << QString("%1, %2 ms").arg(described(type, of, name)).arg(double(own_ns) * 1e-6, 0, 'f', 0);
   }
-  if (!outermost) return taken;
-  add(began_);
-  if (!asked_) QCoreApplication::postEvent(&probe_, new QEvent(roundEvent()), Qt::LowEventPriority);
-  asked_ = true;
+  if (depth == loop_depth) add();
   return taken;
 }
 

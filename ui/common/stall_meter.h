@@ -17,8 +17,9 @@ struct Stall {
 };
 
 // An application that times what it delivers. Events that are handled one after the other before
-// the loop comes round count as one stall; what runs between events (a test's own code, waiting)
-// counts as none.
+// the loop comes round, which is when it looks for input, count as one stall; what runs between
+// events (a test's own code, waiting) counts as none. A loop within an event, of a dialog or a drag,
+// comes round as well.
 class TimedApplication : public QApplication {
  public:
   using Watcher = std::function<void(const Stall&)>;
@@ -39,17 +40,15 @@ class TimedApplication : public QApplication {
   static Times now();
   Processors processors() const;
   double othersShare() const;
-  void add(const Times& from);
+  void add();
   void comeRound();
 
   Watcher watcher_;
   int processors_file_ = -1;
   Processors before_{};
   std::vector<std::int64_t> inner_ns_;  // of each event being handled: that of events within it
+  std::size_t loop_depth_ = 0;          // events within which the innermost loop runs
   Times began_{}, round_{};
-  std::int64_t ended_ns_ = 0;
-  bool asked_ = false;  // the loop says when it comes round
-  QObject probe_;
   QStringList by_;
 };
 

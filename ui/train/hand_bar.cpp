@@ -1,14 +1,12 @@
 #include "ui/train/hand_bar.h"
 
-#include <QHBoxLayout>
-
 #include "ui/common/colours.h"
 #include "ui/train/arms_panel.h"
 
 namespace trephine {
 
 namespace {
-constexpr int kWidest = 460;
+constexpr int kWidest = 460, kNarrowestForceBar = 60;
 }  // namespace
 
 HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
@@ -29,15 +27,22 @@ HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
   push_ = new QLabel;
   push_->setObjectName("pushWords");
   push_->setProperty("large", true);
-  auto* line = new QHBoxLayout;
-  line->setSpacing(10);
-  line->addWidget(hand_);
-  line->addWidget(tool_);
-  line->addWidget(bar_, 1);
-  line->addWidget(push_);
+  bar_->setMinimumWidth(kNarrowestForceBar);
+  auto* held = new QHBoxLayout;
+  auto* pushed = new QHBoxLayout;
+  lines_ = new QBoxLayout(QBoxLayout::LeftToRight);
+  for (QBoxLayout* line : std::initializer_list<QBoxLayout*>{held, pushed, lines_}) {
+    line->setSpacing(10);
+  }
+  held->addWidget(hand_);
+  held->addWidget(tool_, 1);
+  pushed->addWidget(bar_, 1);
+  pushed->addWidget(push_);
+  lines_->addLayout(held);
+  lines_->addLayout(pushed, 1);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(12, 6, 12, 6);
-  layout->addLayout(line);
+  layout->addLayout(lines_);
   layout->addWidget(waits_);
 }
 
@@ -52,6 +57,15 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
   push_->setMinimumWidth(push_->fontMetrics().horizontalAdvance(tr("presses %1 N").arg("0.0")));
   show();
   place();
+}
+
+void HandBar::fit(int width, int) {
+  lines_->setDirection(QBoxLayout::LeftToRight);
+  lines_->setSpacing(10);
+  layout()->invalidate();  // or it knows the width of the other direction
+  if (layout()->totalMinimumSize().width() <= width) return;
+  lines_->setDirection(QBoxLayout::TopToBottom);
+  lines_->setSpacing(4);
 }
 
 }  // namespace trephine

@@ -2,6 +2,7 @@
 // how hard that presses. Legible from two metres.
 #pragma once
 
+#include <QBoxLayout>
 #include <QLabel>
 
 #include "ui/common/floating_card.h"
@@ -18,6 +19,9 @@ class HandBar : public FloatingCard {
                 double push_N, double most_N);
 
  private:
+  void fit(int width, int most_height) override;
+
+  QBoxLayout* lines_;  // hand and tool beside the push, or above it where that is too wide
   QLabel *hand_, *tool_, *push_, *waits_;
   ForceBar* bar_;
 };

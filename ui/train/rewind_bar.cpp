@@ -113,7 +113,7 @@ bool RewindHistory::stands(double second, std::uint32_t now) const {
     if (second > jump->from) return true;
     end = jump->to;
   }
-  return second <= end;
+  return end == now || second <= end;  // the running second counts
 }
 
 std::optional<std::uint32_t> RewindHistory::last() const {

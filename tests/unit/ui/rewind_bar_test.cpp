@@ -184,6 +184,7 @@ TEST(RewindHistory, GoesByTheTimeOfThePersonAtWork) {
 TEST(RewindHistory, WhatLiesBehindAJumpStandsNoMoreAndWhatCameAfterItDoes) {
   RewindHistory history;
   EXPECT_TRUE(history.stands(12.5, 70));
+  EXPECT_TRUE(history.stands(70.8, 70)) << "in the running second";
   history.went(70, 40);
   EXPECT_TRUE(history.stands(39.9, 75));
   EXPECT_FALSE(history.stands(50.0, 75));
@@ -193,6 +194,7 @@ TEST(RewindHistory, WhatLiesBehindAJumpStandsNoMoreAndWhatCameAfterItDoes) {
   EXPECT_FALSE(history.stands(30.0, 81));
   EXPECT_FALSE(history.stands(72.0, 81));
   EXPECT_TRUE(history.stands(80.5, 81));
+  EXPECT_TRUE(history.stands(81.5, 81));
 }
 
 TEST_F(RewindBarTest, AfterGoingBackItSaysOfWhichSecondTheTissueIsUntilItIsCutAgain) {
