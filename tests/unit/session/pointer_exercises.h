@@ -18,7 +18,8 @@ struct Exercise {
   std::vector<std::vector<Pointed>> arms;  // the scene's order
 };
 
-// A push goes in; then a touch of it holds the depth while the pointer goes round.
+// A push goes in; then a touch of it holds the depth while the pointer goes round; a tool comes out
+// before it goes aside, or it cuts as much of that as it was late.
 inline const Exercise kBurrHole{"burr-hole",
                          {{{0, 20, 20, 0},
                            {0.5, 0, 0, 0},
@@ -36,7 +37,8 @@ inline const Exercise kWindowOneArm{"cranium-one-arm",
                                {9.0, -9, 9, 0.1},
                                {11.0, -9, -9, 0.1},
                                {12.5, -9, -9, 0},
-                               {13.5, -30, -9, 0}}}};
+                               {13.5, -9, -9, 0},
+                               {14.5, -30, -9, 0}}}};
 inline const Exercise kWindow{"cranium",
                        {{{0, -30, -10, 0},
                          {0.5, 1, -10, 0},
@@ -46,7 +48,8 @@ inline const Exercise kWindow{"cranium",
                          {7.5, -15, 10, 0.1},
                          {9.5, 1, 10, 0.1},
                          {10.5, 1, 10, 0},
-                         {11.5, -30, 10, 0}},
+                         {11.5, 1, 10, 0},
+                         {12.5, -30, 10, 0}},
                         {{0, 30, -10, 0},
                          {0.5, -1, -10, 0},
                          {1.0, -1, -10, 2.0},
@@ -55,7 +58,8 @@ inline const Exercise kWindow{"cranium",
                          {7.5, 15, 10, 0.1},
                          {9.5, -1, 10, 0.1},
                          {10.5, -1, 10, 0},
-                         {11.5, 30, 10, 0}}}};
+                         {11.5, -1, 10, 0},
+                         {12.5, 30, 10, 0}}}};
 inline const std::vector<Pointed> kSlice{{0, 8, -60, 0},     {0.5, 8, -42, 0},    {1.0, 8, -42, 2.5},
                                   {5.0, 8, -42, 0.2}, {9.0, 40, -42, 0.2}, {10.0, 40, -42, 0},
                                   {11.5, 40, -60, 0}};
