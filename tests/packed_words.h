@@ -39,7 +39,9 @@ inline std::string inflated(std::string_view bytes, int bits, std::size_t& used)
 inline std::string unpacked(std::string_view bytes) {
   std::string all;
   for (std::size_t i = 0; i + 2 < bytes.size(); ++i) {
-    const auto at = [&](std::size_t n) { return i + n < bytes.size() ? std::uint8_t(bytes[i + n]) : 0; };
+    const auto at = [&](std::size_t n) {
+      return i + n < bytes.size() ? std::uint8_t(bytes[i + n]) : 0;
+    };
     const bool gzip = at(0) == 0x1f && at(1) == 0x8b && at(2) == 8;
     const bool zlib = (at(0) & 15) == 8 && at(0) < 0x80 && (at(0) * 256 + at(1)) % 31 == 0;
     const bool zip = bytes.substr(i, 4) == "PK\x03\x04";

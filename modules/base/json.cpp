@@ -339,7 +339,7 @@ const Json& JsonReader::raw(const char* key) {
 
 void JsonReader::format(const char* format, int version) {
   std::string found = text("format");
-  (void)text("purpose", "");  // kPurpose: what is saved for others says it
+  (void)text("purpose", "");     // kPurpose: what is saved for others says it
   constexpr double kAny = 1e15;  // each has an answer of its own below
   std::int64_t number = integer("version", {-kAny, kAny});
   if (!ok()) return;

@@ -24,7 +24,7 @@ struct Case {
   std::optional<Provenance> provenance;  // of what was imported
   std::string name;                      // for the screen alone: it may be a series' description
   bool built_in = false;
-  std::string stored;                    // its id in the workstation's library; empty: not there
+  std::string stored;  // its id in the workstation's library; empty: not there
   std::optional<Anatomy> anatomy;              // what it shows; none where it was not asked
   std::shared_ptr<const LabelMap> structures;  // fitted to the volume; null: none
   bool structures_built_in = false;  // they came with it, and a file that is given replaces them

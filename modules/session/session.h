@@ -211,7 +211,7 @@ class Session {
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;
   std::vector<Stroke> strokes_;
-  std::uint64_t paused_ticks_ = 0;                 // the recorder's, to the last resume
+  std::uint64_t paused_ticks_ = 0;                  // the recorder's, to the last resume
   std::optional<std::uint64_t> paused_since_tick_;  // and since then
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
   mutable std::mutex strokes_mutex_;  // so too

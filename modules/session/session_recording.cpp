@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kDrainEvery = 20ms;
-constexpr std::size_t kMostFaults = 1000;    // in a report
+constexpr std::size_t kMostFaults = 1000;     // in a report
 constexpr std::size_t kMostStrokes = 10'000;  // to be shown
 
 }  // namespace

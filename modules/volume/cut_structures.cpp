@@ -32,12 +32,12 @@ std::vector<std::pair<int, double>> cutWithin(const LabelMap& structures, const 
                                               std::size_t most) {
   const GridGeometry& grid = before.geometry;
   const std::size_t count = grid.voxelCount();
-  if (structures.labels.size() != count || now.hu.size() != count ||
-      before.hu.size() != count) {
+  if (structures.labels.size() != count || now.hu.size() != count || before.hu.size() != count) {
     return {};
   }
   std::size_t within = 1;
-  for (int axis = 0; axis < 3; ++axis) within *= std::size_t(std::max(0, box.high[axis] - box.low[axis]));
+  for (int axis = 0; axis < 3; ++axis)
+    within *= std::size_t(std::max(0, box.high[axis] - box.low[axis]));
   if (within > most) return {};
   std::array<std::size_t, 256> cut{};
   for (int k = box.low[2]; k < box.high[2]; ++k) {

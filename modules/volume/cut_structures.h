@@ -24,8 +24,8 @@ struct CutStructure {
 std::vector<CutStructure> cutStructures(const LabelMap& structures, const Volume& before,
                                         const Grid& after);
 
-// While it is being cut: mm3 of each label, by label, that differ within the box. The box has at most
-// `most` voxels, else there are no rows: it is for who asks often. `now` is a copy.
+// While it is being cut: mm3 of each label, by label, that differ within the box. The box has at
+// most `most` voxels, else there are no rows: it is for who asks often. `now` is a copy.
 std::vector<std::pair<int, double>> cutWithin(const LabelMap& structures, const Volume& before,
                                               const Volume& now, const VoxelBox& box,
                                               std::size_t most = 4'000'000);

@@ -268,9 +268,8 @@ std::string nrrdHeader(const LabelMap& map, bool reversed) {
     g.direction[2] = -g.direction[2];
   }
   char line[512];
-  std::string text =
-      std::string("NRRD0004\n# Made by Trephine: ") + kPurpose +
-      "\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n";
+  std::string text = std::string("NRRD0004\n# Made by Trephine: ") + kPurpose +
+                     "\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\n";
   std::snprintf(line, sizeof line, "sizes: %d %d %d\n", g.size[0], g.size[1], g.size[2]);
   text += line;
   text += "space directions:";
@@ -333,8 +332,10 @@ std::string sidecarText(const LabelMap& map) {
     if (!s.tissue.empty()) row["tissue"] = s.tissue;
     rows.push_back(std::move(row));
   }
-  const Json all = {
-      {"format", "trephine.structures"}, {"version", 1}, {"purpose", kPurpose}, {"structures", std::move(rows)}};
+  const Json all = {{"format", "trephine.structures"},
+                    {"version", 1},
+                    {"purpose", kPurpose},
+                    {"structures", std::move(rows)}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

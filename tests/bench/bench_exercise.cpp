@@ -1,6 +1,6 @@
-// An exercise in the real window, its script over and over, run after run: how many ticks were missed, how often lateness
-// took force away, and how often a bare thread that ticks beside it, at the same rate and priority
-// and with nothing to do, was as late. Needs a screen (Xvfb will do).
+// An exercise in the real window, its script over and over, run after run: how many ticks were
+// missed, how often lateness took force away, and how often a bare thread that ticks beside it, at
+// the same rate and priority and with nothing to do, was as late. Needs a screen (Xvfb will do).
 //   bench_exercise SCENE [SECONDS [RUNS]]      60 seconds, five times
 #include <unistd.h>
 
@@ -23,7 +23,7 @@
 namespace trephine {
 namespace {
 
-constexpr int kPriority = 80;  // of the haptic thread
+constexpr int kPriority = 80;         // of the haptic thread
 constexpr double kAllowed_s = 120.0;  // for what is not the exercise
 
 struct Lateness {
@@ -173,9 +173,9 @@ int run(const std::string& file, double seconds, int runs) {
     const double from_s = 1e-3 * answer["session_ms"].get<double>();
     const Lateness loop = recorded(answer["recording"].get<std::string>(), period_ns);
     const Lateness beside = bare.between(from_s, from_s + seconds, 1'000'000);
-    std::printf("%-4d %-9s %8llu %7.3f %% %8llu %6llu %10.2f %8.1f %6.0f ms %4.0f ms\n", i, "haptic",
-                (unsigned long long)loop.ticks, loop.kept_percent(), (unsigned long long)loop.reduced,
-                (unsigned long long)loop.away, loop.longest_ms,
+    std::printf("%-4d %-9s %8llu %7.3f %% %8llu %6llu %10.2f %8.1f %6.0f ms %4.0f ms\n", i,
+                "haptic", (unsigned long long)loop.ticks, loop.kept_percent(),
+                (unsigned long long)loop.reduced, (unsigned long long)loop.away, loop.longest_ms,
                 answer["frames"].get<double>() / seconds, answer["frame_ms"]["p99"].get<double>(),
                 answer["longest_stall_ms"].get<double>());
     std::printf("%-4s %-9s %8llu %7.3f %% %8llu %6llu %10.2f%s\n", "", "bare",
@@ -187,8 +187,10 @@ int run(const std::string& file, double seconds, int runs) {
              loop.away <= beside.away;
   }
   std::filesystem::remove_all(folder, ec);
-  std::printf("bar: at least 99.9 %% on time, force reduced (over 5 ms late) and taken away (over "
-              "20 ms) no more often than the bare thread is as late: %s\n", within ? "met" : "missed");
+  std::printf(
+      "bar: at least 99.9 %% on time, force reduced (over 5 ms late) and taken away (over "
+      "20 ms) no more often than the bare thread is as late: %s\n",
+      within ? "met" : "missed");
   return within ? 0 : 1;
 }
 
@@ -200,5 +202,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bench_exercise SCENE [SECONDS [RUNS]]\n");
     return 1;
   }
-  return trephine::run(argv[1], argc > 2 ? std::atof(argv[2]) : 60.0, argc > 3 ? std::atoi(argv[3]) : 5);
+  return trephine::run(argv[1], argc > 2 ? std::atof(argv[2]) : 60.0,
+                       argc > 3 ? std::atoi(argv[3]) : 5);
 }

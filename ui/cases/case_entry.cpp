@@ -20,10 +20,9 @@ QString tr(const char* text) {
 }
 
 QString regionWords(BodyRegion region) {
-  return region == BodyRegion::head ? tr("A head")
-         : region == BodyRegion::abdomen
-             ? tr("An abdomen")
-             : tr("What it shows is not known");
+  return region == BodyRegion::head      ? tr("A head")
+         : region == BodyRegion::abdomen ? tr("An abdomen")
+                                         : tr("What it shows is not known");
 }
 
 template <class Structures>
@@ -77,7 +76,8 @@ QString detailWords(const CaseEntry& entry) {
   if (!record.structures.empty()) {
     lines << tr("Structures: %1").arg(structureNames(record.structures, kStructuresNamed));
   }
-  if (record.bytes > 0) lines << tr("%1 on the disk").arg(megabytes(double(record.bytes) / 1048576.0));
+  if (record.bytes > 0)
+    lines << tr("%1 on the disk").arg(megabytes(double(record.bytes) / 1048576.0));
   return lines.join('\n');
 }
 
@@ -86,8 +86,8 @@ QString caseWords(const Case& of) {
   if (!of.name.empty()) about = toQt(of.name) + '\n' + about;
   if (of.anatomy) {
     const bool open_vault = of.anatomy->region == BodyRegion::head && !of.anatomy->vault;
-    about += '\n' + (open_vault ? tr("A head whose vault is not whole")
-                                : regionWords(of.anatomy->region));
+    about += '\n' +
+             (open_vault ? tr("A head whose vault is not whole") : regionWords(of.anatomy->region));
   }
   if (of.structures && !of.structures->structures.empty()) {
     about += '\n' + tr("with %1").arg(structureNames(of.structures->structures, kStructuresNamed));

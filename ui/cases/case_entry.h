@@ -14,11 +14,11 @@
 namespace trephine {
 
 struct CaseEntry {
-  std::string id;       // the library's; of a built-in one its name, "cranium", "abdomen"
+  std::string id;  // the library's; of a built-in one its name, "cranium", "abdomen"
   bool built_in = false;
-  CaseRecord record;                       // of the library; of a built-in one its name, grid and hash
-  std::optional<Error> problem;            // why it cannot be opened
-  QImage picture;                          // null: there is none
+  CaseRecord record;             // of the library; of a built-in one its name, grid and hash
+  std::optional<Error> problem;  // why it cannot be opened
+  QImage picture;                // null: there is none
   std::vector<ListedRecording> exercises;  // done on it, the newest first
 };
 

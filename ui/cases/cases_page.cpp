@@ -175,7 +175,7 @@ QWidget* CasesPage::buildDetails() {
   layout->addStretch(1);
   const auto withChosen = [this](auto signal) {
     return [this, signal] {
-      if (const CaseEntry* entry = chosen()) emit (this->*signal)(*entry);
+      if (const CaseEntry* entry = chosen()) emit(this->*signal)(*entry);
     };
   };
   connect(train_, &QPushButton::clicked, this, withChosen(&CasesPage::trainWanted));
@@ -333,8 +333,9 @@ void CasesPage::showStrip() {
     words = tr("Or choose another case below, or open a folder of CT.");
   } else {
     title = tr("Choose a case to practise on");
-    words = tr("Take one of the built-in cases below, or open a folder of CT: it becomes a case of "
-               "yours. It can be dropped on this window, too.");
+    words =
+        tr("Take one of the built-in cases below, or open a folder of CT: it becomes a case of "
+           "yours. It can be dropped on this window, too.");
   }
   strip_title_->setText(title);
   strip_words_->setText(words);

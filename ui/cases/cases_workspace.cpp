@@ -36,7 +36,8 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
   Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}};
   const std::string file = id + "/tissues.json";
   std::optional<Error> problem = loaded->tissues_problem;
-  if (!problem && loaded->tissues.empty()) problem = Error{"MISSING_FILE", "There are none", file, ""};
+  if (!problem && loaded->tissues.empty())
+    problem = Error{"MISSING_FILE", "There are none", file, ""};
   if (!problem) {
     Result<TissueSet> set = parseTissueSet(loaded->tissues, file);
     set ? void(stored.tissues = *std::move(set)) : void(problem = set.error());
@@ -56,9 +57,7 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
 }  // namespace
 
 CasesWorkspace::CasesWorkspace(Bench& bench)
-    : Workspace(&bench),
-      bench_(bench),
-      workstation_(bench.workstation()) {
+    : Workspace(&bench), bench_(bench), workstation_(bench.workstation()) {
   QWidget& window = *bench.window();
   open_ = makeAction(window, Symbol::open, "open", tr("Open folder\u2026"), QKeySequence::Open,
                      tr("Open a folder of CT"));
@@ -100,8 +99,8 @@ void CasesWorkspace::connectParts() {
   connect(page_, &CasesPage::deleteWanted, this, &CasesWorkspace::askToDelete);
   connect(page_, &CasesPage::reportWanted, this, &CasesWorkspace::showReport);
   connect(&listing_, &BackgroundTask::ended, this, [this] {
-    if (std::exchange(list_again_, false)) QMetaObject::invokeMethod(this, &CasesWorkspace::list,
-                                                                     Qt::QueuedConnection);
+    if (std::exchange(list_again_, false))
+      QMetaObject::invokeMethod(this, &CasesWorkspace::list, Qt::QueuedConnection);
   });
 
   connect(import_, &ImportPage::opened, this, [this] {
@@ -151,9 +150,9 @@ void CasesWorkspace::askForFolder() {
 }
 
 void CasesWorkspace::askForFile() {
-  QFileDialog* dialog =
-      bench_.fileDialog("fileDialog", tr("Open a file of CT"),
-                        tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
+  QFileDialog* dialog = bench_.fileDialog(
+      "fileDialog", tr("Open a file of CT"),
+      tr("Any file (*);;Volumes (*.nii *.nii.gz *.nrrd *.nhdr *.mha *.mhd *.raw)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this](const QString& file) { open(toPath(file)); });
   dialog->open();
@@ -207,18 +206,18 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   const std::string anatomy = entry.built_in ? entry.id : exerciseAnatomy(entry.record.region);
   if (anatomy.empty() || !workstation_.sceneFits(anatomy)) losses.push_back(Bench::Loss::tissues);
   if (entry.built_in) {
-    return bench_.unlessLost(
-        losses, begin([this, name = entry.id] {
-          bench_.setCaseSource({});
-          workstation_.openPhantom(name);
-        }));
+    return bench_.unlessLost(losses, begin([this, name = entry.id] {
+                               bench_.setCaseSource({});
+                               workstation_.openPhantom(name);
+                             }));
   }
-  bench_.unlessLost(losses, begin([this, id = entry.id, folder = entry.record.folder] {
-    bench_.setCaseSource(folder);
-    workstation_.openStored([library = bench_.library(), id](const Progress& progress) {
-      return storedCase(*library, id, progress);
-    });
-  }));
+  bench_.unlessLost(
+      losses, begin([this, id = entry.id, folder = entry.record.folder] {
+        bench_.setCaseSource(folder);
+        workstation_.openStored([library = bench_.library(), id](const Progress& progress) {
+          return storedCase(*library, id, progress);
+        });
+      }));
 }
 
 // The case that is open, whole or not at all, in the background: it can be looked at meanwhile.
@@ -265,20 +264,19 @@ void CasesWorkspace::saved(const SavedCase& saved) {
 }
 
 void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
-  const bool begun = changing_.run(
-      [library = bench_.library(), id = entry.id, to = name.toStdString()](const Progress&) {
-        return library->rename(id, to);
-      },
-      [this](Result<CaseRecord> renamed) {
-        if (!renamed) return bench_.report(renamed.error());
-        const std::optional<Case>& open = workstation_.currentCase();
-        if (open && open->stored == renamed->id) {
-          workstation_.setStored(renamed->id, renamed->name);
-          showCase();
-        }
-        list();
-        bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
-      });
+  const bool begun =
+      changing_.run([library = bench_.library(), id = entry.id,
+                     to = name.toStdString()](const Progress&) { return library->rename(id, to); },
+                    [this](Result<CaseRecord> renamed) {
+                      if (!renamed) return bench_.report(renamed.error());
+                      const std::optional<Case>& open = workstation_.currentCase();
+                      if (open && open->stored == renamed->id) {
+                        workstation_.setStored(renamed->id, renamed->name);
+                        showCase();
+                      }
+                      list();
+                      bench_.say(tr("It is called \"%1\" now.").arg(toQt(renamed->name)));
+                    });
   if (!begun) bench_.report(stillChanging());
 }
 
@@ -292,15 +290,17 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                "recordings of %1 exercises stay, but cannot be replayed without it.")
                 .arg(exercises),
       tr("&Delete it"), [this, entry] {
-        const bool begun = changing_.run(
-            [library = bench_.library(), id = entry.id](const Progress&) { return library->remove(id); },
-            [this, entry](Status removed) {
-              if (!removed) bench_.report(removed.error());
-              const std::optional<Case>& open = workstation_.currentCase();
-              if (removed && open && open->stored == entry.id) workstation_.setStored({});
-              list();
-              showCase();
-            });
+        const bool begun =
+            changing_.run([library = bench_.library(),
+                           id = entry.id](const Progress&) { return library->remove(id); },
+                          [this, entry](Status removed) {
+                            if (!removed) bench_.report(removed.error());
+                            const std::optional<Case>& open = workstation_.currentCase();
+                            if (removed && open && open->stored == entry.id)
+                              workstation_.setStored({});
+                            list();
+                            showCase();
+                          });
         if (!begun) bench_.report(stillChanging());
       });
 }

@@ -13,11 +13,11 @@
 
 #include "session/case.h"
 #include "ui/cases/choice_panel.h"
-#include "ui/work/import_task.h"
 #include "ui/cases/report_card.h"
 #include "ui/cases/series_list.h"
 #include "ui/cases/size_panel.h"
 #include "ui/views/slice_preview.h"
+#include "ui/work/import_task.h"
 
 namespace trephine {
 
@@ -80,8 +80,8 @@ class ImportPage : public QWidget {
   void answered();
   void openCase();
   void back();
-  const SeriesReport* selected() const;  // as the last read left it
-  SeriesReport* before();                // the same before it was read
+  const SeriesReport* selected() const;           // as the last read left it
+  SeriesReport* before();                         // the same before it was read
   double neededMb(const ImportRequest& request);  // of memory, by the selected series
   void listSelected();
   Answers& answers() { return answers_[list_->selectedUid()]; }

@@ -6,7 +6,8 @@
 
 namespace trephine {
 
-FloatingCard::FloatingCard(QWidget& over, At at, int widest) : QFrame(&over), at_(at), widest_(widest) {
+FloatingCard::FloatingCard(QWidget& over, At at, int widest)
+    : QFrame(&over), at_(at), widest_(widest) {
   setProperty("overlay", true);
   over.installEventFilter(this);
   hide();

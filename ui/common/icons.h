@@ -5,8 +5,24 @@
 
 namespace trephine {
 
-enum class Symbol { open, start, stop, pause, undo, redo, reset, back, picture, save, view,
-                    cases, prepare, train, review, settings };
+enum class Symbol {
+  open,
+  start,
+  stop,
+  pause,
+  undo,
+  redo,
+  reset,
+  back,
+  picture,
+  save,
+  view,
+  cases,
+  prepare,
+  train,
+  review,
+  settings
+};
 
 QIcon symbolIcon(Symbol symbol);
 

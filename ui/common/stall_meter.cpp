@@ -34,8 +34,7 @@ QString described(const QEvent::Type type, const char* of, const QString& name) 
 }  // namespace
 
 TimedApplication::TimedApplication(int& argc, char** argv)
-    : QApplication(argc, argv),
-      processors_file_(::open("/proc/stat", O_RDONLY | O_CLOEXEC)) {
+    : QApplication(argc, argv), processors_file_(::open("/proc/stat", O_RDONLY | O_CLOEXEC)) {
   // Whether it may wait or not, the loop says one of the two each time it comes round.
   const QAbstractEventDispatcher* dispatcher = QAbstractEventDispatcher::instance();
   connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, &TimedApplication::comeRound);
@@ -100,8 +99,8 @@ bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   if (QThread::currentThread() != thread()) return QApplication::notify(receiver, event);
   const QEvent::Type type = event->type();
   // It may be gone afterwards.
-  const QObject* named = receiver->inherits("QTimer") && receiver->parent() ? receiver->parent()
-                                                                            : receiver;
+  const QObject* named =
+      receiver->inherits("QTimer") && receiver->parent() ? receiver->parent() : receiver;
   const char* of = named->metaObject()->className();
   const QString name = named->objectName();
   const std::size_t depth = inner_ns_.size(), loop_depth = loop_depth_;
@@ -115,7 +114,9 @@ bool TimedApplication::notify(QObject* receiver, QEvent* event) {
   if (!inner_ns_.empty()) inner_ns_.back() += all_ns;
   const bool looped = std::exchange(loop_depth_, loop_depth) != loop_depth;
   if (!looped && own_ns > kTold_ns) {
-    by_ << QString("%1, %2 ms").arg(described(type, of, name)).arg(double(own_ns) * 1e-6, 0, 'f', 0);
+    by_ << QString("%1, %2 ms")
+               .arg(described(type, of, name))
+               .arg(double(own_ns) * 1e-6, 0, 'f', 0);
   }
   if (depth == loop_depth) add();
   return taken;

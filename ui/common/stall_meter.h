@@ -18,8 +18,8 @@ struct Stall {
 
 // An application that times what it delivers. Events that are handled one after the other before
 // the loop comes round, which is when it looks for input, count as one stall; what runs between
-// events (a test's own code, waiting) counts as none. A loop within an event, of a dialog or a drag,
-// comes round as well.
+// events (a test's own code, waiting) counts as none. A loop within an event, of a dialog or a
+// drag, comes round as well.
 class TimedApplication : public QApplication {
  public:
   using Watcher = std::function<void(const Stall&)>;

@@ -78,7 +78,8 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   auto* timed = dynamic_cast<TimedApplication*>(QApplication::instance());
   if (timed) {
     timed->setWatcher([&](const Stall& stall) {
-      if (step == Step::running && stall.ms > outcome.longest_stall.ms) outcome.longest_stall = stall;
+      if (step == Step::running && stall.ms > outcome.longest_stall.ms)
+        outcome.longest_stall = stall;
     });
   }
   QTimer cancelling;

@@ -192,7 +192,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 // --- Saying ---
 
 void MainWindow::showHint() {
-  hint_->setText(!help_words_.isEmpty()        ? help_words_
+  hint_->setText(!help_words_.isEmpty()    ? help_words_
                  : room(place_).parts.page ? QString()
                                            : hint_words_);
 }
@@ -215,7 +215,8 @@ void MainWindow::showShortcuts() {
 }
 
 void MainWindow::showSettings() {
-  (new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this))->open();
+  (new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this))
+      ->open();
 }
 
 void MainWindow::showLocks() {

@@ -23,8 +23,8 @@ namespace trephine {
 class MainWindow : public QMainWindow {
   Q_OBJECT
  public:
-  // Recordings go into `recordings`, cases beside it; empty: into the storage folder. `policy`: what
-  // the workstation locks.
+  // Recordings go into `recordings`, cases beside it; empty: into the storage folder. `policy`:
+  // what the workstation locks.
   explicit MainWindow(std::filesystem::path recordings = {}, const Policy& policy = {},
                       QWidget* parent = nullptr);
 

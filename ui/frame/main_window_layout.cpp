@@ -86,10 +86,9 @@ void MainWindow::buildActions() {
   picture_ = makeAction(*this, Symbol::picture, "savePicture", tr("Save picture\u2026"),
                         QKeySequence(Qt::Key_F12), tr("Save the 3-D view as a picture"));
   volume_ = makeAction(*this, Symbol::save, "saveVolume", tr("Save volume\u2026"),
-                       QKeySequence::Save,
-                       tr("Save the volume as it is now, with what was cut"));
-  look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"),
-                     QKeySequence(Qt::Key_Home), tr("Look at the case as at the start"));
+                       QKeySequence::Save, tr("Save the volume as it is now, with what was cut"));
+  look_ = makeAction(*this, Symbol::view, "resetView", tr("Reset view"), QKeySequence(Qt::Key_Home),
+                     tr("Look at the case as at the start"));
   left_panel_ = makeAction(*this, Symbol::view, "leftPanel", tr("Left panel"),
                            QKeySequence(Qt::CTRL | Qt::Key_B), tr("Show or hide the left panel"));
   right_panel_ = makeAction(*this, Symbol::view, "rightPanel", tr("Right panel"),
@@ -100,8 +99,8 @@ void MainWindow::buildActions() {
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
-  unlock_ = makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
-                       tr("With an educator's PIN, until Trephine is closed"));
+  unlock_ = makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"),
+                       {}, tr("With an educator's PIN, until Trephine is closed"));
 }
 
 void MainWindow::buildBars() {
@@ -176,8 +175,8 @@ void MainWindow::buildMenus() {
   quit->setObjectName("quit");
   QMenu* exercise = menuBar()->addMenu(tr("&Exercise"));
   exercise->addActions({train_->startAction(), train_->stopAction(), train_->pauseAction(),
-                    train_->forceOnAction(), bench_.undoAction(), bench_.redoAction(),
-                    train_->backAction(), train_->resetAction()});
+                        train_->forceOnAction(), bench_.undoAction(), bench_.redoAction(),
+                        train_->backAction(), train_->resetAction()});
   exercise->addSeparator();
   exercise->addActions(train_->handActions());
   QMenu* view = menuBar()->addMenu(tr("&View"));
@@ -191,8 +190,8 @@ void MainWindow::buildMenus() {
   for (QAction* tool : this->view().tools().all())
     tool ? view->addAction(tool) : void(view->addSeparator());
   QMenu* help = menuBar()->addMenu(tr("&Help"));
-  QAction* keys = help->addAction(tr("&Keys"), QKeySequence(Qt::Key_F1), this,
-                                  &MainWindow::showShortcuts);
+  QAction* keys =
+      help->addAction(tr("&Keys"), QKeySequence(Qt::Key_F1), this, &MainWindow::showShortcuts);
   keys->setObjectName("keys");
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 }

@@ -41,9 +41,9 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   auto* storage_row = new QHBoxLayout;
   storage_row->addWidget(storage_, 1);
   storage_row->addWidget(browse);
-  language_ = choices("language",
-                      {{"en", tr("English")}, {"zh_TW", QStringLiteral("\u7e41\u9ad4\u4e2d\u6587")}},
-                      read(settings::kLanguage));
+  language_ = choices(
+      "language", {{"en", tr("English")}, {"zh_TW", QStringLiteral("\u7e41\u9ad4\u4e2d\u6587")}},
+      read(settings::kLanguage));
   theme_ = choices("theme", {{"dark", tr("Dark")}, {"light", tr("Light")}}, read(settings::kTheme));
   text_ = new WholeNumberField("textPercent");
   text_->setSuffix(tr(" %"));
@@ -74,8 +74,9 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   swapped_ = new QCheckBox(tr("The arms are plugged in the other wa&y round"));
   swapped_->setObjectName("armsSwapped");
   swapped_->setChecked(read(settings::kArmsSwapped));
-  later_ = new QLabel(tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
-                         "Trephine starts again."));
+  later_ = new QLabel(
+      tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
+         "Trephine starts again."));
   later_->setProperty("quiet", true);
   later_->setWordWrap(true);
 
@@ -111,8 +112,8 @@ void SettingsDialog::chooseFolder() {
 }
 
 void SettingsDialog::save() {
-  for (bool refused : {text_->isRefused(), push_->isRefused(), step_->isRefused(),
-                       arm_limit_->isRefused()}) {
+  for (bool refused :
+       {text_->isRefused(), push_->isRefused(), step_->isRefused(), arm_limit_->isRefused()}) {
     if (refused) return;  // it says why
   }
   if (storage_->isEnabled() && storage_->isModified()) {

@@ -34,8 +34,7 @@ QString keysOf(const QAction& action) {
   return keys.join(ShortcutsPage::tr(" or "));
 }
 
-void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions,
-             QSet<const QAction*>& listed) {
+void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions, QSet<const QAction*>& listed) {
   for (const QAction* action : actions) {
     if (action->menu()) {
       addRows(group, action->menu()->actions(), listed);
@@ -48,8 +47,8 @@ void addRows(QTreeWidgetItem* group, const QList<QAction*>& actions,
 
 }  // namespace
 
-ShortcutsPage::ShortcutsPage(const QMainWindow& window,
-                             const QList<QPair<QString, QString>>& views, QWidget* parent)
+ShortcutsPage::ShortcutsPage(const QMainWindow& window, const QList<QPair<QString, QString>>& views,
+                             QWidget* parent)
     : QDialog(parent) {
   setObjectName("shortcutsPage");
   setWindowTitle(tr("Keys"));
@@ -84,8 +83,9 @@ ShortcutsPage::ShortcutsPage(const QMainWindow& window,
     for (QString part : words.split(QStringLiteral(". "), Qt::SkipEmptyParts)) {
       if (part.endsWith('.')) part.chop(1);
       const int colon = int(part.indexOf(QStringLiteral(": ")));
-      new QTreeWidgetItem(group, colon < 0 ? QStringList{part, {}, {}}
-                                           : QStringList{{}, part.left(colon), part.mid(colon + 2)});
+      new QTreeWidgetItem(group, colon < 0
+                                     ? QStringList{part, {}, {}}
+                                     : QStringList{{}, part.left(colon), part.mid(colon + 2)});
     }
   }
   list->expandAll();

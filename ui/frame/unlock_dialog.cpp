@@ -33,21 +33,20 @@ UnlockDialog::UnlockDialog(const Pin& pin, QWidget* parent) : QDialog(parent), p
 }
 
 void UnlockDialog::check() {
-  const bool begun = checking_.run(
-      [pin = pin_, text = text_->text().toStdString()](const Progress&) -> Result<bool> {
-        return pinMatches(pin, text);
-      },
-      [this](Result<bool> matches) {
-        unlock_->setEnabled(true);
-        text_->clear();
-        if (matches && *matches) {
-          emit unlocked();
-          return accept();
-        }
-        said_->setText(tr("That is not the PIN. Nothing is unlocked."));
-        colours::setText(*said_, colours::kBad);
-        text_->setFocus();
-      });
+  const bool begun =
+      checking_.run([pin = pin_, text = text_->text().toStdString()](
+                        const Progress&) -> Result<bool> { return pinMatches(pin, text); },
+                    [this](Result<bool> matches) {
+                      unlock_->setEnabled(true);
+                      text_->clear();
+                      if (matches && *matches) {
+                        emit unlocked();
+                        return accept();
+                      }
+                      said_->setText(tr("That is not the PIN. Nothing is unlocked."));
+                      colours::setText(*said_, colours::kBad);
+                      text_->setFocus();
+                    });
   if (begun) unlock_->setEnabled(false);
 }
 

@@ -33,7 +33,8 @@ void PrepareWorkspace::connectExports() {
         tr("Give it only to whom the CT may be given. \"DICOM folder\" names nobody."),
         tr("&Choose a folder\u2026"), [this] { askToSaveDicom(true); });
   });
-  connect(structures_, &StructurePanel::saveSurfaceWanted, this, &PrepareWorkspace::askToSaveSurface);
+  connect(structures_, &StructurePanel::saveSurfaceWanted, this,
+          &PrepareWorkspace::askToSaveSurface);
 }
 
 // Of the case that was read by this window from DICOM, in the folder that was opened last; one of
@@ -47,7 +48,8 @@ bool PrepareWorkspace::sourceAtHand() const {
 
 void PrepareWorkspace::askToSaveDicom(bool for_source) {
   // A name that is not there yet is a folder that will be made.
-  QFileDialog* dialog = bench_.fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
+  QFileDialog* dialog =
+      bench_.fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
   dialog->setAcceptMode(QFileDialog::AcceptSave);
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setOption(QFileDialog::ShowDirsOnly);
@@ -104,7 +106,7 @@ void PrepareWorkspace::askToSaveSurface() {
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return;
   QFileDialog* dialog = bench_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
-                                   fileNameOf(of->name), tr("Surface (*.stl)"));
+                                          fileNameOf(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
     if (!bench_.keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),

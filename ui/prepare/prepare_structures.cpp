@@ -113,7 +113,8 @@ void PrepareWorkspace::connectStructures() {
   });
   connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showStructures);
   connect(&workstation_, &Workstation::placingFailed, this, &PrepareWorkspace::placingFailed);
-  connect(&workstation_, &Workstation::structuresAsked, this, &PrepareWorkspace::askAboutStructures);
+  connect(&workstation_, &Workstation::structuresAsked, this,
+          &PrepareWorkspace::askAboutStructures);
   connect(&workstation_, &Workstation::overlapAsked, this, &PrepareWorkspace::askAboutOverlap);
   connect(&workstation_, &Workstation::thresholdAsked, this, &PrepareWorkspace::askForThreshold);
   connect(tabs_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
@@ -173,7 +174,8 @@ void PrepareWorkspace::placingFailed() {
 // Of those that came from a file: beside the window, which goes on.
 void PrepareWorkspace::showStructureReport() {
   const Case& of = *workstation_.currentCase();
-  if (auto* before = bench_.window()->findChild<StructureReport*>()) before->close();  // of another file
+  if (auto* before = bench_.window()->findChild<StructureReport*>())
+    before->close();  // of another file
   if (of.structure_cards.empty()) return;
   (new StructureReport(of, bench_.window()))->show();
 }
@@ -256,7 +258,8 @@ void PrepareWorkspace::structureToolChanged(SliceTool tool) {
 void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (workstation_.phase() != Workstation::Phase::ready || !of) {
-    return bench_.say(tr("The entry point cannot be changed while an exercise runs: stop it first."));
+    return bench_.say(
+        tr("The entry point cannot be changed while an exercise runs: stop it first."));
   }
   const Scene& scene = *workstation_.scene();
   const Landmark* landmark = entryLandmark(scene);
@@ -272,7 +275,7 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   bench_.unlessLost({Bench::Loss::cuts}, [this, entry] {
     entry_asked_ = workstation_.placeEntry(entry);
     bench_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
-                     : tr("Busy: try again in a moment."));
+                            : tr("Busy: try again in a moment."));
   });
 }
 
@@ -281,7 +284,7 @@ void PrepareWorkspace::leaveEntry() {
   bench_.unlessLost({Bench::Loss::cuts}, [this] {
     entry_asked_ = workstation_.placeEntry({});
     bench_.say(entry_asked_ ? tr("The exercise enters at its own place again.")
-                     : tr("Busy: try again in a moment."));
+                            : tr("Busy: try again in a moment."));
   });
 }
 
@@ -324,14 +327,15 @@ void PrepareWorkspace::showUndo() {
   QAction *undo_action = bench_.undoAction(), *redo_action = bench_.redoAction();
   undo_action->setEnabled(undo.has_value());
   redo_action->setEnabled(redo.has_value());
-  undo_action->setToolTip(undo            ? tr("Undo: %1").arg(*undo)
-                    : bench_.cutsUnsaved() ? tr("The exercise has ended: its cuts stay until Reset")
-                                    : tr("Nothing to undo"));
+  undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
+                          : bench_.cutsUnsaved()
+                              ? tr("The exercise has ended: its cuts stay until Reset")
+                              : tr("Nothing to undo"));
   redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
 }
 
 void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,
-                                    const Answers& answers, const std::string& option) {
+                                          const Answers& answers, const std::string& option) {
   ask(bench_.window(), "structuresQuestion", toQt(error.what) + '.',
       tr("What is used as it is may be felt and cut in the wrong place."),
       tr("&Use it all the same"),
@@ -342,7 +346,7 @@ void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesys
 }
 
 void PrepareWorkspace::askAboutOverlap(const std::vector<std::string>& names,
-                                 const std::filesystem::path& file, const Answers& answers) {
+                                       const std::filesystem::path& file, const Answers& answers) {
   auto* dialog = new OverlapDialog(names, bench_.window());
   connect(dialog, &QDialog::accepted, this, [this, dialog, file, answers = answers]() mutable {
     answers["OVERLAP"] = orderAnswer(dialog->order());
@@ -374,14 +378,13 @@ void PrepareWorkspace::askForThreshold(const std::filesystem::path& file, const 
 
 // What was grown and reaches too far, perhaps, before an exercise runs on it.
 void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
-  QMessageBox* question =
-      ask(bench_.window(), "previewQuestion",
-          tr("What was grown does not count yet, and may be too large."),
-          tr("Look at it in the slices first, or start with it or without."), tr("&Take it"),
-          [this, go_on] {
-            editor_.takePreview();
-            beforeStart(go_on);
-          });
+  QMessageBox* question = ask(bench_.window(), "previewQuestion",
+                              tr("What was grown does not count yet, and may be too large."),
+                              tr("Look at it in the slices first, or start with it or without."),
+                              tr("&Take it"), [this, go_on] {
+                                editor_.takePreview();
+                                beforeStart(go_on);
+                              });
   auto* without = question->addButton(tr("Start &without it"), QMessageBox::AcceptRole);
   without->setObjectName("startWithout");
   connect(
@@ -396,8 +399,7 @@ void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
 // An exercise runs on what was made a moment ago.
 void PrepareWorkspace::beforeStart(Bench::Next go_on) {
   if (editor_.busy()) {
-    return bench_.say(
-        tr("A structure is being made: wait for it, or cancel it, and start then."));
+    return bench_.say(tr("A structure is being made: wait for it, or cancel it, and start then."));
   }
   if (editor_.preview() && editor_.preview()->leaked) return askAboutPreview(std::move(go_on));
   if (editor_.preview()) editor_.takePreview();
@@ -438,7 +440,9 @@ void PrepareWorkspace::saveStructuresThen(Bench::Next then) {
          "with names beside it (*.mha)"));
   connect(dialog, &QFileDialog::fileSelected, this,
           [this, copy, changes, then = std::move(then)](const QString& file) {
-            if (!bench_.keepsTheCase(structuresFile(toPath(file))) || !bench_.keepsTheCase(toPath(file))) return;
+            if (!bench_.keepsTheCase(structuresFile(toPath(file))) ||
+                !bench_.keepsTheCase(toPath(file)))
+              return;
             workstation_.save(
                 tr("The structures are saved as %1.").arg(QFileInfo(file).fileName()),
                 [copy, path = toPath(file)](const Progress& progress) {

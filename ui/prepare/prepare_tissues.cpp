@@ -134,21 +134,21 @@ void PrepareWorkspace::structureLookWanted(int label, TissueLook look) {
 
 void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
   if (!workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
-  auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
-                              tr("The tissues have been changed and not saved."),
-                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                              bench_.window());
+  auto* box = new QMessageBox(
+      QMessageBox::Question, tr("Trephine"), tr("The tissues have been changed and not saved."),
+      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, bench_.window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(
-      isStored() ? tr("Save them in the case? Discarded changes cannot be had back.")
-                 : tr("Save them to a file? Discarded changes cannot be had back."));
+  box->setInformativeText(isStored()
+                              ? tr("Save them in the case? Discarded changes cannot be had back.")
+                              : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
   connect(box, &QMessageBox::finished, this, [this, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
     if (isStored()) return saveInCase(go_on);
-    QFileDialog* dialog = bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
+    QFileDialog* dialog =
+        bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));
     connect(dialog, &QFileDialog::fileSelected, this,
             [this, go_on](const QString& file) { workstation_.saveTissues(toPath(file), go_on); });
     dialog->open();

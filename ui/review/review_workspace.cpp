@@ -20,19 +20,17 @@ Workspace::Parts ReviewWorkspace::parts() {
 }
 
 void ReviewWorkspace::list() {
-  listing_.run(
-      [folder = bench_.recordings()](const Progress& progress) {
-        return listRecordings(folder, progress);
-      },
-      [this](Result<std::vector<ListedRecording>> rows) {
-        if (!rows) return;
-        const std::optional<Case>& of = bench_.workstation().currentCase();
-        page_->showRecordings(*rows, of ? of->sha256 : "");
-        if (std::exchange(replay_newest_, false) && !rows->empty()) {
-          page_->selectNewest();
-          replay(rows->front());
-        }
-      });
+  listing_.run([folder = bench_.recordings()](
+                   const Progress& progress) { return listRecordings(folder, progress); },
+               [this](Result<std::vector<ListedRecording>> rows) {
+                 if (!rows) return;
+                 const std::optional<Case>& of = bench_.workstation().currentCase();
+                 page_->showRecordings(*rows, of ? of->sha256 : "");
+                 if (std::exchange(replay_newest_, false) && !rows->empty()) {
+                   page_->selectNewest();
+                   replay(rows->front());
+                 }
+               });
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {

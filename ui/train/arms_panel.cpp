@@ -252,10 +252,10 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.faults->setVisible(!wrong.isEmpty());
   }
   const double late_share = double(state.missed) / double(std::max<std::uint64_t>(1, state.ticks));
-  missed_->setText(state.missed == 0 ? tr("always")
-                                     : tr("%1 times late (%2 %)")
-                                           .arg(state.missed)
-                                           .arg(100.0 * late_share, 0, 'f', 2));
+  missed_->setText(
+      state.missed == 0
+          ? tr("always")
+          : tr("%1 times late (%2 %)").arg(state.missed).arg(100.0 * late_share, 0, 'f', 2));
   colours::setText(*missed_, state.missed > 0 ? colours::kCaution : colours::kText);
   dropped_->setText(state.dropped == 0 ? tr("whole") : tr("not whole: it cannot be replayed"));
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);

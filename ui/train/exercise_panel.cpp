@@ -28,8 +28,9 @@ QString rows(const QString& title, const std::vector<RemovedOf>& removed) {
   QString html;
   for (const RemovedOf& one : removed) {
     if (!(one.mm3 > 0.0)) continue;
-    html += QStringLiteral("<tr><td style='color:%1'>\u25a0&nbsp;</td><td>%2&nbsp;&nbsp;</td>"
-                           "<td align='right'>%3</td></tr>")
+    html += QStringLiteral(
+                "<tr><td style='color:%1'>\u25a0&nbsp;</td><td>%2&nbsp;&nbsp;</td>"
+                "<td align='right'>%3</td></tr>")
                 .arg(one.colour.name(), one.name.toHtmlEscaped(), volumeWords(one.mm3));
   }
   if (html.isEmpty()) return {};

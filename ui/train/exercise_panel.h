@@ -1,5 +1,5 @@
-// What the exercise asks for, and how it goes: goal, steps and hands of its card; the time; what was
-// removed of each tissue and structure.
+// What the exercise asks for, and how it goes: goal, steps and hands of its card; the time; what
+// was removed of each tissue and structure.
 #pragma once
 
 #include <QLabel>

@@ -76,14 +76,13 @@ void ResultPage::showResult(const ExerciseResult& result) {
   for (const CutStructure& one : result.structures) {
     if (!(one.cut_ml > 0.0)) continue;
     if (!std::exchange(any, true)) html += title(tr("Of the structures"));
-    html += row(toQt(one.name), tr("%1 of %2").arg(volumeWords(1000.0 * one.cut_ml),
-                                                   volumeWords(1000.0 * one.ml)));
+    html += row(toQt(one.name),
+                tr("%1 of %2").arg(volumeWords(1000.0 * one.cut_ml), volumeWords(1000.0 * one.ml)));
   }
   html += title(tr("Path of the tools"));
   for (const ExerciseResult::Way& way : result.ways) {
-    html += row(way.hand, tr("%1 cm, at most %2 N")
-                              .arg(way.mm / 10.0, 0, 'f', 1)
-                              .arg(way.most_N, 0, 'f', 1));
+    html += row(way.hand,
+                tr("%1 cm, at most %2 N").arg(way.mm / 10.0, 0, 'f', 1).arg(way.most_N, 0, 'f', 1));
   }
   if (result.late > 0) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));

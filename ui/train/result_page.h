@@ -1,5 +1,5 @@
-// What an exercise came to, over the view: what was removed of what, the time, the way of the tools,
-// and what can be done next.
+// What an exercise came to, over the view: what was removed of what, the time, the way of the
+// tools, and what can be done next.
 #pragma once
 
 #include <QLabel>

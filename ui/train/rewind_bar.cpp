@@ -145,8 +145,9 @@ RewindBar::RewindBar(QWidget* parent) : QWidget(parent) {
   time_->setObjectName("rewindTime");
   time_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   const QFontMetrics metrics = time_->fontMetrics();
-  time_->setMinimumWidth(std::max(metrics.horizontalAdvance(tr("Going back\u2026")),
-                                  metrics.horizontalAdvance(tr("%1, tissue of %2").arg("00:00", "00:00"))));
+  time_->setMinimumWidth(
+      std::max(metrics.horizontalAdvance(tr("Going back\u2026")),
+               metrics.horizontalAdvance(tr("%1, tissue of %2").arg("00:00", "00:00"))));
   // By the Tab key only: a click must leave the keys to the hands in the view.
   for (QWidget* widget : std::initializer_list<QWidget*>{back_button_, slider_}) {
     widget->setFocusPolicy(Qt::TabFocus);

@@ -1,7 +1,7 @@
 // The way back through a running exercise: a slider over its seconds, and "Back 10 s". The time of
-// the exercise runs on whatever one goes back to, so the slider's end is always now. Each stroke has
-// a mark in its arm's colour, faint where one went back to before it; after going back a pointer
-// shows of which second the tissue is, until it is cut again.
+// the exercise runs on whatever one goes back to, so the slider's end is always now. Each stroke
+// has a mark in its arm's colour, faint where one went back to before it; after going back a
+// pointer shows of which second the tissue is, until it is cut again.
 #pragma once
 
 #include <QAction>

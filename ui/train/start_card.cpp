@@ -24,8 +24,9 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
   steps_->setObjectName("startCardSteps");
   hands_ = new QLabel;
   hands_->setObjectName("startCardHands");
-  keys_ = new QLabel(tr("Without arms: the mouse is the hand. Move it over the tissue, press with "
-                        "the wheel, change hands with Tab."));
+  keys_ =
+      new QLabel(tr("Without arms: the mouse is the hand. Move it over the tissue, press with "
+                    "the wheel, change hands with Tab."));
   keys_->setProperty("quiet", true);
   for (QLabel* label : {title_, goal_, steps_, hands_, keys_}) label->setWordWrap(true);
   start_ = new QPushButton(tr("&Start (F5)"));

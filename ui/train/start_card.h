@@ -1,5 +1,5 @@
-// What stands over the view before an exercise: its goal, its steps, which tool is in which hand and
-// how to move it, and the button that starts it; or, without a case, where to get one.
+// What stands over the view before an exercise: its goal, its steps, which tool is in which hand
+// and how to move it, and the button that starts it; or, without a case, where to get one.
 #pragma once
 
 #include <QLabel>

@@ -162,11 +162,11 @@ void StateNotice::show(bool paused, const ForceNotice& force, bool ready) {
           : tr("%1 (%2)").arg(force.mend, force_on_->shortcut().toString(QKeySequence::NativeText));
   const bool without_force = !force.title.isEmpty();
   ready = ready && !paused && !without_force;
-  const bool same =
-      isHidden() == !(paused || without_force || ready) && pause_.frame->isHidden() != paused &&
-      ready_.frame->isHidden() != ready &&
-      force_.frame->isHidden() != without_force && force_.title->text() == force.title &&
-      force_.why->text() == force.why && force_.button->text() == mend;
+  const bool same = isHidden() == !(paused || without_force || ready) &&
+                    pause_.frame->isHidden() != paused && ready_.frame->isHidden() != ready &&
+                    force_.frame->isHidden() != without_force &&
+                    force_.title->text() == force.title && force_.why->text() == force.why &&
+                    force_.button->text() == mend;
   if (same) return;
   // A button that goes would leave the keys to whatever comes next in the window.
   const bool had_focus = isAncestorOf(window()->focusWidget());

@@ -1,6 +1,6 @@
 // What stands between the hand and the tissue in a running exercise, said large over the view: the
-// pause, arms that are without force, or that all is ready. Words, and one button that mends it. Mouse and wheel
-// beside the buttons go on to the view below.
+// pause, arms that are without force, or that all is ready. Words, and one button that mends it.
+// Mouse and wheel beside the buttons go on to the view below.
 #pragma once
 
 #include <QAction>

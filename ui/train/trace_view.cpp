@@ -78,7 +78,8 @@ void TraceView::paintEvent(QPaintEvent*) {
   };
   if (low < 0.0) {
     painter.setPen(QPen(colours::kLine, 1.0, Qt::DashLine));
-    painter.drawLine(QPointF(frame.left(), at(now, 0.0).y()), QPointF(frame.right(), at(now, 0.0).y()));
+    painter.drawLine(QPointF(frame.left(), at(now, 0.0).y()),
+                     QPointF(frame.right(), at(now, 0.0).y()));
   }
   painter.setClipRect(frame);
   const auto draw = [&](double Sample::*value, const QColor& colour, double width) {
@@ -94,10 +95,7 @@ void TraceView::paintEvent(QPaintEvent*) {
   const QRectF words(0, 0, width(), line);
   painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, title_);
   painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter,
-                   tr("%1 to %2 %3")
-                       .arg(low, 0, 'g', 3)
-                       .arg(high, 0, 'g', 3)
-                       .arg(unit_));
+                   tr("%1 to %2 %3").arg(low, 0, 'g', 3).arg(high, 0, 'g', 3).arg(unit_));
 }
 
 }  // namespace trephine

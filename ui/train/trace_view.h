@@ -1,5 +1,5 @@
-// The last ten seconds of a value as a line that runs to the left: what was sent, and behind it what
-// was demanded, where there is that.
+// The last ten seconds of a value as a line that runs to the left: what was sent, and behind it
+// what was demanded, where there is that.
 #pragma once
 
 #include <QColor>

@@ -133,11 +133,11 @@ void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
                        : lacks    ? tr("Make the structure in the slices first, or go on as it is.")
                        : no_place ? tr("Click where it is to enter (I) first, or go on as it is.")
                                   : tr("Choose an exercise that fits, or go on as it is.");
-  QMessageBox* question =
-      ask(bench_.window(), "misfitQuestion", words.join('\n'), next, tr("&Go on as it is"), [this, go_on] {
-        warned_ = true;
-        go_on();
-      });
+  QMessageBox* question = ask(bench_.window(), "misfitQuestion", words.join('\n'), next,
+                              tr("&Go on as it is"), [this, go_on] {
+                                warned_ = true;
+                                go_on();
+                              });
   if (!fits.empty()) {
     const std::filesystem::path file = defaultScene(fits);
     const int index = scenes_->findData(toQt(file));

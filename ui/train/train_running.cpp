@@ -28,8 +28,7 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     if (!tool || !isFinite(arm.proxy_position_mm)) continue;
     const QColor colour = armColour(scene.arms[i], i);
     tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
-                             arm.tissue_class >= 0,
-                             colours::rgbOf(colour)));
+                             arm.tissue_class >= 0, colours::rgbOf(colour)));
   }
   return tools;
 }
@@ -98,8 +97,8 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
     for (std::size_t arm = 0; arm < session.scene().arms.size(); ++arm) {
       voxels += state.removed[arm][t];
     }
-    removed.push_back({toQt(tissues[t].name), colours::of(tissues[t].colour),
-                       double(voxels) * voxel_mm3});
+    removed.push_back(
+        {toQt(tissues[t].name), colours::of(tissues[t].colour), double(voxels) * voxel_mm3});
   }
   const std::optional<Case>& of = workstation_.currentCase();
   const VolumeMirror& mirror = views_->mirror();
@@ -160,8 +159,8 @@ void TrainWorkspace::clutch() {
   // A device's x is to the right, its y up, its z towards the hand.
   const Quat rotation = glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward()));
   for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
-    const bool sent = clutch_->isChecked() ? session->clutch(i, true)
-                                           : session->clutch(i, false, rotation);
+    const bool sent =
+        clutch_->isChecked() ? session->clutch(i, true) : session->clutch(i, false, rotation);
     if (!sent) bench_.say(tr("Busy: try again in a moment."));
   }
 }

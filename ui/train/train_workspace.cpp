@@ -7,8 +7,8 @@
 
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
-#include "ui/common/question.h"
 #include "ui/common/placing.h"
+#include "ui/common/question.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -76,9 +76,9 @@ void TrainWorkspace::buildActions() {
   QWidget& window = *bench_.window();
   start_ = makeAction(window, Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
                       tr("Start the exercise"));
-  stop_ = makeAction(window, Symbol::stop, "stop", tr("Stop"),
-                     QKeySequence(Qt::CTRL | Qt::Key_Period),
-                     tr("End the exercise and its recording"));
+  stop_ =
+      makeAction(window, Symbol::stop, "stop", tr("Stop"), QKeySequence(Qt::CTRL | Qt::Key_Period),
+                 tr("End the exercise and its recording"));
   pause_ =
       makeAction(window, Symbol::pause, "pause", tr("Pause"), QKeySequence(Qt::CTRL | Qt::Key_P),
                  tr("Hold: no force and no cutting until it is released; in the view Space"));
@@ -91,14 +91,14 @@ void TrainWorkspace::buildActions() {
   change_tool_ = makeAction(window, Symbol::train, "changeTool", tr("Change tool"),
                             QKeySequence(Qt::CTRL | Qt::Key_T),
                             tr("The hand takes the next of its tools, out of the tissue"));
-  clutch_ = makeAction(window, Symbol::train, "clutch", tr("Clutch"),
-                       QKeySequence(Qt::CTRL | Qt::Key_K),
-                       tr("The arms move freely and their tools stay, until it is pressed again: "
-                          "then a hand's motion follows the view"));
+  clutch_ =
+      makeAction(window, Symbol::train, "clutch", tr("Clutch"), QKeySequence(Qt::CTRL | Qt::Key_K),
+                 tr("The arms move freely and their tools stay, until it is pressed again: "
+                    "then a hand's motion follows the view"));
   clutch_->setCheckable(true);
-  recentre_ = makeAction(window, Symbol::train, "recentre", tr("Re-centre"),
-                         QKeySequence(Qt::CTRL | Qt::Key_L),
-                         tr("The tools are where the exercise starts, with the arms where they are"));
+  recentre_ = makeAction(
+      window, Symbol::train, "recentre", tr("Re-centre"), QKeySequence(Qt::CTRL | Qt::Key_L),
+      tr("The tools are where the exercise starts, with the arms where they are"));
 }
 
 void TrainWorkspace::connectParts() {
@@ -165,13 +165,13 @@ void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double 
   // What nobody sees moves no arm.
   bench_.go(Place::train);
   if (const Status& drawing = view_->canDraw(); !drawing) return bench_.report(drawing.error());
-  workstation_.start(bench_.recordings(), std::move(script),
-                     seconds);
+  workstation_.start(bench_.recordings(), std::move(script), seconds);
 }
 
 void TrainWorkspace::start() {
   bench_.beforeStart([this] {
-    unlessItDoesNotFit([this] { bench_.unlessLost({Bench::Loss::cuts}, [this] { startExercise(); }); });
+    unlessItDoesNotFit(
+        [this] { bench_.unlessLost({Bench::Loss::cuts}, [this] { startExercise(); }); });
   });
 }
 

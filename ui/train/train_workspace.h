@@ -105,9 +105,9 @@ class TrainWorkspace : public Workspace {
   ResultPage* result_;
   HandBar* hand_bar_;
   PointerHands* hands_;
-  bool here_ = false;           // this workspace is the one that is shown
-  bool touched_ = false;        // something has been, in this exercise
-  bool result_shown_ = false;   // instead of the card, until it is closed
+  bool here_ = false;          // this workspace is the one that is shown
+  bool touched_ = false;       // something has been, in this exercise
+  bool result_shown_ = false;  // instead of the card, until it is closed
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_;
   std::vector<double> limits_N_;  // of the running session's arms

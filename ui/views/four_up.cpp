@@ -127,9 +127,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
     slider->setValue(k);
   });
   connect(made.slider, &QSlider::valueChanged, made.view, &SliceView::setSlice);
-  connect(made.view, &SliceView::focused, this, [this] {
-    emit helpChanged(sliceHelp());
-  });
+  connect(made.view, &SliceView::focused, this, [this] { emit helpChanged(sliceHelp()); });
   return made;
 }
 

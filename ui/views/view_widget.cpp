@@ -363,8 +363,8 @@ void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
   last_ = event->position();
   if (!(event->buttons() & Qt::LeftButton)) endStroke();
   if (isBrush(tool_)) showCursor();
-  const bool points = event->buttons() == Qt::NoButton || (event->buttons() == Qt::LeftButton &&
-                                                           !dragged_ && !moving_light_);
+  const bool points = event->buttons() == Qt::NoButton ||
+                      (event->buttons() == Qt::LeftButton && !dragged_ && !moving_light_);
   if (training_ && points && renderer_.hasVolume()) return emit pointed(last_);
   if (event->buttons() == Qt::NoButton || moved.isNull() || !renderer_.hasVolume()) return;
   const double ratio = devicePixelRatioF();

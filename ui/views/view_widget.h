@@ -2,10 +2,9 @@
 // the camera. It knows no session: what a hand does with its movement is told by a signal.
 //
 // While an exercise runs the pointer is where the tool goes, and what is over the view is told by
-// signals: the wheel or Page Up and Down press, arrow keys move the pointer, with Shift they tilt the
-// tool, Shift+Home straightens it, Tab takes the other hand.
-// The squares of the crop box and the clip plane are dragged with the left button, and while the
-// light is to be moved, the light.
+// signals: the wheel or Page Up and Down press, arrow keys move the pointer, with Shift they tilt
+// the tool, Shift+Home straightens it, Tab takes the other hand. The squares of the crop box and
+// the clip plane are dragged with the left button, and while the light is to be moved, the light.
 // Right drag turns the camera, middle drag shifts it, Ctrl+wheel zooms; without an exercise the
 // left button, the wheel and the keys move the camera too. With a tool for structures in hand the
 // left button works at what is seen under the pointer instead; what comes of it is not the view's.

@@ -192,8 +192,8 @@ void ImportTask::makePicture(const Wanted& wanted) {
   task_.run(
       [folder = folder_, uid = wanted.uid,
        index = wanted.index < 0 ? series->slices / 2 : wanted.index,
-       is_ct = series->modality == "CT",
-       turned = mirroringOf(series->geometry.direction)](const Progress& progress) -> Result<QImage> {
+       is_ct = series->modality == "CT", turned = mirroringOf(series->geometry.direction)](
+          const Progress& progress) -> Result<QImage> {
         const Result<SlicePicture> slice = folder->slice(uid, index, progress);
         if (!slice) return slice.error();
         const HuWindow window = is_ct ? kWideWindow : wholeRange(*slice);

@@ -107,7 +107,7 @@ class ImportTask : public QObject {
   std::function<void()> next_;  // starts it
   std::optional<Wanted> wanted_;
   std::deque<Wanted> pictures_;  // of an index below 0, the middle one
-  BackgroundTask task_;  // last, so that it is joined before what it works on goes
+  BackgroundTask task_;          // last, so that it is joined before what it works on goes
 };
 
 }  // namespace trephine

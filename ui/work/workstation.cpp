@@ -1,19 +1,17 @@
 #include "ui/work/workstation.h"
 
-#include "ui/common/settings.h"
-
 #include <QDateTime>
 
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
+#include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
 
 namespace trephine {
 
-Workstation::Workstation(const Policy& policy, QObject* parent)
-    : QObject(parent), policy_(policy) {
+Workstation::Workstation(const Policy& policy, QObject* parent) : QObject(parent), policy_(policy) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
   connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
@@ -37,8 +35,8 @@ void Workstation::fail(const Error& error) {
 // --- The exercise ---
 
 Scene withArmsOfThisPlace(Scene scene) {
-  const double most_N = readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N,
-                                   settings::kArmsMost_N);
+  const double most_N =
+      readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N, settings::kArmsMost_N);
   for (SceneArm& arm : scene.arms) arm.max_force_N = std::min(arm.max_force_N, most_N);
   if (read(settings::kArmsSwapped) && scene.arms.size() == 2) {
     std::swap(scene.arms[0].plugin, scene.arms[1].plugin);
@@ -60,7 +58,8 @@ void Workstation::start(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem, script = std::move(script)](
+      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem,
+       script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         if (Status made = makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;

@@ -9,13 +9,13 @@
 
 #include "scene/policy.h"
 #include "session/session.h"
-#include "ui/work/import_task.h"
 #include "ui/common/background_task.h"
+#include "ui/work/import_task.h"
 
 namespace trephine {
 
-// The scene with what the settings say of the arms of this place: which is which, and how much force
-// they may give at most.
+// The scene with what the settings say of the arms of this place: which is which, and how much
+// force they may give at most.
 Scene withArmsOfThisPlace(Scene scene);
 
 class Workstation : public QObject {
@@ -211,7 +211,7 @@ class Workstation : public QObject {
   std::optional<Case> case_;
   std::optional<Landmark> entry_;         // instead of the scene's landmark of that id
   std::optional<Landmark> entry_before_;  // in the case as it is placed
-  TissueTable placed_with_{};  // its landmarks were found in
+  TissueTable placed_with_{};             // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<const Grid> carved_;

@@ -20,10 +20,10 @@ namespace trephine {
 struct Workstation::Opened {
   Scene scene;
   std::filesystem::path scene_file;
-  std::optional<Case> of;   // none: the scene's own is read
-  bool same_scene = false;  // its tissues stay as they are edited
-  std::string labels_file{};  // instead of what the case has; empty: that stays
-  Answers answers{};          // about them
+  std::optional<Case> of;            // none: the scene's own is read
+  bool same_scene = false;           // its tissues stay as they are edited
+  std::string labels_file{};         // instead of what the case has; empty: that stays
+  Answers answers{};                 // about them
   bool structures_alone = false;     // the open case with others of them
   bool any_scene = false;            // nobody chose the scene: one that fits what the case shows
   std::optional<Error> no_labels{};  // why the case opened without them
@@ -248,7 +248,8 @@ void Workstation::openInBackground(Opened opening) {
   const auto asked = std::make_shared<Asked>();
   opening_.run(
       [opening = std::move(opening), shown, asked,
-       policy = unlocked_ ? std::optional<Policy>() : policy_](const Progress& all) mutable -> Result<Opened> {
+       policy = unlocked_ ? std::optional<Policy>()
+                          : policy_](const Progress& all) mutable -> Result<Opened> {
         constexpr double kLoaded = 0.7;  // of the work
         if (opening.load) {
           Result<Stored> stored = opening.load(Progress(all, 0.0, kLoaded));

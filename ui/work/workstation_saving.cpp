@@ -30,9 +30,7 @@ void Workstation::saveTissues(const std::filesystem::path& file, std::function<v
   json["purpose"] = kPurpose;
   save(
       tr("The tissues are saved. A scene uses them where it names that file under 'tissues'."),
-      [text = json.dump(1) + '\n', file](const Progress&) {
-        return writeTextFile(file, text);
-      },
+      [text = json.dump(1) + '\n', file](const Progress&) { return writeTextFile(file, text); },
       [this, tissues = scene_->tissues, then = std::move(then)] {
         declared_tissues_ = tissues;
         then();

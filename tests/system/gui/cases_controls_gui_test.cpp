@@ -91,14 +91,16 @@ class CasesControlsGuiTest : public test::WindowTest {
   }
   void waitForSeries() {
     QTRY_VERIFY_WITH_TIMEOUT(find<ImportPage>("importPage")->isVisible(), kLong_ms);
-    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking() && series()->count() == 1, kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().import().isWorking() && series()->count() == 1,
+                             kLong_ms);
   }
   // What the import makes of the series, once the case is open and saved.
   void import() {
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     click("import");
     QVERIFY(QTest::qWaitFor(
-        [&] { return opened.count() == 1 || find<QPushButton>("openCase")->isVisible(); }, kLong_ms));
+        [&] { return opened.count() == 1 || find<QPushButton>("openCase")->isVisible(); },
+        kLong_ms));
     if (opened.isEmpty()) {
       for (QRadioButton* keep : window_->findChildren<QRadioButton*>()) {
         if (keep->objectName().endsWith("_keep") && keep->isVisible()) keep->click();
@@ -275,7 +277,8 @@ class CasesControlsGuiTest : public test::WindowTest {
     QVERIFY(window_->place() == Place::review);
     QTRY_COMPARE_WITH_TIMEOUT(find<QTreeWidget>("recordings")->topLevelItemCount(), 1, kLong_ms);
     click("replay");
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
+                             kLong_ms);
   }
 
   void aDoubleClickOnACardTrainsOnIt() {
@@ -310,6 +313,8 @@ class CasesControlsGuiTest : public test::WindowTest {
   void cleanupTestCase() { window_.reset(); }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<CasesControlsGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<CasesControlsGuiTest>(argc, argv);
+}
 
 #include "cases_controls_gui_test.moc"

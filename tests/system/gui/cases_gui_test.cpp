@@ -101,8 +101,8 @@ class CasesGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
-    const Status made = writeCtSeries(test::coarseCranium(2), kText,
-                                      toPath(temporary_.filePath(kFolderName)));
+    const Status made =
+        writeCtSeries(test::coarseCranium(2), kText, toPath(temporary_.filePath(kFolderName)));
     QVERIFY2(made.ok(), made.ok() ? "" : made.error().sentence().c_str());
     QDir source(temporary_.filePath(kFolderName));
     for (const QString& name : source.entryList(QDir::Files)) {
@@ -348,9 +348,9 @@ class CasesGuiTest : public test::WindowTest {
   // Its own folder of DICOM is the source, and is left out.
   void noFileThatWasWrittenNamesThePatient() {
     window_.reset();  // settings are written
-    std::vector<std::string> words{"DOE^JANE", "DOE JANE", "JANE DOE",  "JANE^DOE", "DOE, JANE",
-                                   "DOE_JANE", "JANE_DOE", "DOE-JANE",  "JANEDOE",  "DOEJANE",
-                                   kId,        "SECRET",   kFileWord,   "DOE",      "JANE"};
+    std::vector<std::string> words{"DOE^JANE", "DOE JANE", "JANE DOE", "JANE^DOE", "DOE, JANE",
+                                   "DOE_JANE", "JANE_DOE", "DOE-JANE", "JANEDOE",  "DOEJANE",
+                                   kId,        "SECRET",   kFileWord,  "DOE",      "JANE"};
     const CtSeriesUids uids = ctSeriesUids(test::coarseCranium(2), kText);
     for (const std::string& uid : {uids.study, uids.series, uids.frame_of_reference}) {
       words.push_back(uid);
@@ -399,6 +399,8 @@ class CasesGuiTest : public test::WindowTest {
   }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<CasesGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<CasesGuiTest>(argc, argv);
+}
 
 #include "cases_gui_test.moc"

@@ -91,10 +91,10 @@ class EditsGuiTest : public test::WindowTest {
     auto* scenes = find<QComboBox>("scenes");
     const int controller_was = controller->currentIndex(), scene_was = scenes->currentIndex();
     QWidget* tabs = find<QTabWidget>("prepareTabs")->tabBar();
-    const QList<QWidget*> of_prepare{find<QWidget>("huLow"),     find<QWidget>("huHigh"),
-                                     find<QWidget>("damping"),   find<QWidget>("stiffness"),
-                                     find<QWidget>("friction"),  find<QWidget>("opacity"),
-                                     find<QWidget>("scenes"),    tabs};
+    const QList<QWidget*> of_prepare{find<QWidget>("huLow"),    find<QWidget>("huHigh"),
+                                     find<QWidget>("damping"),  find<QWidget>("stiffness"),
+                                     find<QWidget>("friction"), find<QWidget>("opacity"),
+                                     find<QWidget>("scenes"),   tabs};
     for (Place place : {Place::prepare, Place::train}) {
       window_->show(place);
       QTest::qWait(50);

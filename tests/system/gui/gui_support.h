@@ -14,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "stalls.h"
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
 #include "ui/common/stall_meter.h"
@@ -22,7 +23,6 @@
 #include "ui/frame/start_up.h"
 #include "volume/phantom.h"
 #include "volume/volume_files.h"
-#include "stalls.h"
 
 namespace trephine::test {
 

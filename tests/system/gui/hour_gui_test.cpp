@@ -36,7 +36,8 @@ double exerciseSeconds() {
 std::size_t entriesOf(const char* folder) {
   std::error_code ec;
   std::size_t n = 0;
-  for (std::filesystem::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+  for (std::filesystem::directory_iterator it(folder, ec), end; !ec && it != end;
+       it.increment(ec)) {
     ++n;
   }
   return n;
@@ -180,7 +181,8 @@ class HourGuiTest : public test::WindowTest {
     }
     QVERIFY(!late_ns.empty());
     std::sort(late_ns.begin(), late_ns.end());
-    const auto on_time = std::upper_bound(late_ns.begin(), late_ns.end(), 500'000) - late_ns.begin();
+    const auto on_time =
+        std::upper_bound(late_ns.begin(), late_ns.end(), 500'000) - late_ns.begin();
     after.on_time_percent = 100.0 * double(on_time) / double(late_ns.size());
     after.p99_late_us = double(late_ns[late_ns.size() * 99 / 100]) * 1e-3;
     after.most_late_ms = double(late_ns.back()) * 1e-6;
@@ -224,10 +226,11 @@ class HourGuiTest : public test::WindowTest {
       volumes_mb += after.volume_mb;
     }
     const After &first = after_.front(), &second = after_[1], &last = after_.back();
-    std::printf("recordings %.0f MB an hour, %zu saved volumes %.0f MB; memory %+.0f MB since the "
-                "second exercise\n",
-                recordings_mb * 3600.0 / (seconds * double(kCases.size())), kCases.size(), volumes_mb,
-                last.memory_mb - second.memory_mb);
+    std::printf(
+        "recordings %.0f MB an hour, %zu saved volumes %.0f MB; memory %+.0f MB since the "
+        "second exercise\n",
+        recordings_mb * 3600.0 / (seconds * double(kCases.size())), kCases.size(), volumes_mb,
+        last.memory_mb - second.memory_mb);
     QVERIFY2(last.memory_mb <= second.memory_mb + kMostGrown_mb, "memory piles up");
     QCOMPARE(last.descriptors, second.descriptors);
     QCOMPARE(last.threads, second.threads);

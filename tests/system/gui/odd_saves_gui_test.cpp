@@ -55,10 +55,12 @@ int saveInAWindow(int argc, char** argv, const QString& storage, const QString& 
   Result<Volume> read = readVolume(toPath(volume));
   if (!read) return 1;
   workstation.openImported(caseOf(std::make_shared<const Volume>(*std::move(read))));
-  if (!QTest::qWaitFor([&] { return workstation.phase() == Workstation::Phase::ready; }, kLong_ms)) return 1;
+  if (!QTest::qWaitFor([&] { return workstation.phase() == Workstation::Phase::ready; }, kLong_ms))
+    return 1;
   say("saving");
   window->findChild<QPushButton*>("saveCase")->click();
-  if (!QTest::qWaitFor([&] { return !workstation.currentCase()->stored.empty(); }, kLong_ms)) return 1;
+  if (!QTest::qWaitFor([&] { return !workstation.currentCase()->stored.empty(); }, kLong_ms))
+    return 1;
   say("saved");
   setDamping(*window, kMore);
   QSignalSpy saved(&workstation, &Workstation::saved);
@@ -82,7 +84,8 @@ class OddSavesGuiTest : public test::WindowTest {
   }
   // What the window said in a dialog, which goes.
   QString said() {
-    if (!QTest::qWaitFor([&] { return window_->findChild<QMessageBox*>("errorDialog"); }, kLong_ms)) {
+    if (!QTest::qWaitFor([&] { return window_->findChild<QMessageBox*>("errorDialog"); },
+                         kLong_ms)) {
       return {};
     }
     auto* dialog = find<QMessageBox>("errorDialog");
@@ -92,8 +95,7 @@ class OddSavesGuiTest : public test::WindowTest {
     return words;
   }
   void openVolume() {
-    workstation().openImported(
-        caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
+    workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(4))));
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
   void prepareMine(const QString& id) {
@@ -146,7 +148,8 @@ class OddSavesGuiTest : public test::WindowTest {
       QVERIFY2(words.contains("What to do"), qPrintable(words));
     }
     QVERIFY(onlyCase().isEmpty());
-    QCOMPARE(QDir(storage() + "/.parts").entryList(QDir::AllEntries | QDir::NoDotAndDotDot).size(), 0);
+    QCOMPARE(QDir(storage() + "/.parts").entryList(QDir::AllEntries | QDir::NoDotAndDotDot).size(),
+             0);
     QVERIFY(workstation().currentCase()->stored.empty());
     QVERIFY(find<QPushButton>("saveCase")->isVisible());
     QVERIFY(find<QLabel>("nextStepTitle")->text().contains("not saved"));
@@ -193,7 +196,8 @@ class OddSavesGuiTest : public test::WindowTest {
     const QByteArray whole = kept.readAll();
     kept.close();
     const QByteArray wrong = QByteArray(whole).replace("\"opacity\": ", "\"opacity\": -1");
-    for (const QByteArray& spoilt : {QByteArray(), QByteArray("{\"format\":"), whole.left(whole.size() / 2), QByteArray("[]"), wrong}) {
+    for (const QByteArray& spoilt : {QByteArray(), QByteArray("{\"format\":"),
+                                     whole.left(whole.size() / 2), QByteArray("[]"), wrong}) {
       window_.reset();
       QFile::remove(windowSettings().fileName());
       QVERIFY(QFile::remove(file));
@@ -209,7 +213,8 @@ class OddSavesGuiTest : public test::WindowTest {
       QVERIFY2(words.contains("own tissues cannot be used") && words.contains("tissues.json") &&
                    words.contains("What to do"),
                qPrintable(words));
-      QVERIFY(workstation().currentCase() && workstation().currentCase()->stored == id.toStdString());
+      QVERIFY(workstation().currentCase() &&
+              workstation().currentCase()->stored == id.toStdString());
       QCOMPARE(dampingNow(), old);
       QCOMPARE(QFile(file).exists(), !spoilt.isEmpty());  // it is left for who can mend it
       if (spoilt.isEmpty()) {
@@ -265,7 +270,8 @@ class OddSavesGuiTest : public test::WindowTest {
       out += child.readAllStandardOutput();
       ended += n > 0 && out.contains("changed");
       CaseLibrary library(toPath(storage()));
-      QCOMPARE(QDir(storage() + "/.parts").entryList(QDir::AllEntries | QDir::NoDotAndDotDot).size(), 0);
+      QCOMPARE(
+          QDir(storage() + "/.parts").entryList(QDir::AllEntries | QDir::NoDotAndDotDot).size(), 0);
       const auto cases = library.list();
       QVERIFY(int(cases.size()) == there || int(cases.size()) == there + 1);
       QVERIFY(!out.contains("saved") || int(cases.size()) == there + 1);
@@ -282,14 +288,15 @@ class OddSavesGuiTest : public test::WindowTest {
                  qPrintable(QString::number(damping(*set))));
       }
     }
-    qInfo("a save and a change take %.0f ms; of 20, %d ended before they were killed, %d cases", whole_ms,
-          ended, there);
+    qInfo("a save and a change take %.0f ms; of 20, %d ended before they were killed, %d cases",
+          whole_ms, ended, there);
     QVERIFY(ended < 20);
     open();
     auto* cards = find<QListWidget>("cases");
     QTRY_COMPARE_WITH_TIMEOUT(cards->count(), there + 2, kLong_ms);
     for (int i = 0; i < cards->count(); ++i) {
-      QVERIFY2(!cards->item(i)->text().contains("Cannot be opened"), qPrintable(cards->item(i)->text()));
+      QVERIFY2(!cards->item(i)->text().contains("Cannot be opened"),
+               qPrintable(cards->item(i)->text()));
     }
   }
 
@@ -301,7 +308,8 @@ class OddSavesGuiTest : public test::WindowTest {
     Json device = *readJsonFile(config.get<std::string>());
     device["vanish_after_s"] = 1.5;
     QVERIFY(writeTextFile(folder / "vanishing-arm.json", device.dump()));
-    for (Json& arm : scene["arms"]) arm["device"]["config"] = (folder / "vanishing-arm.json").string();
+    for (Json& arm : scene["arms"])
+      arm["device"]["config"] = (folder / "vanishing-arm.json").string();
     QVERIFY(writeTextFile(file, scene.dump()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     window_->open(file);
@@ -314,7 +322,8 @@ class OddSavesGuiTest : public test::WindowTest {
     auto* title = find<QLabel>("forceNoticeTitle");
     auto* why = find<QLabel>("forceNoticeWhy");
     QVERIFY2(title->text().contains("NO FORCE"), qPrintable(title->text()));
-    QVERIFY2(why->text().contains("cable") || why->text().contains("connect"), qPrintable(why->text()));
+    QVERIFY2(why->text().contains("cable") || why->text().contains("connect"),
+             qPrintable(why->text()));
     auto* mend = find<QPushButton>("forceOn");
     QVERIFY(mend->isVisible());
     QVERIFY2(mend->text().contains("Try again"), qPrintable(mend->text()));
@@ -330,8 +339,7 @@ class OddSavesGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     const QStringList recordings = QDir(storage() + "/sessions").entryList({"*.h5"});
     QCOMPARE(recordings.size(), 1);
-    const auto reader =
-        SessionReader::open(toPath(storage() + "/sessions/" + recordings.front()));
+    const auto reader = SessionReader::open(toPath(storage() + "/sessions/" + recordings.front()));
     QVERIFY(reader.ok());
     const auto again = replay(**reader, *workstation().currentCase()->volume);
     QVERIFY2(again.ok(), again ? "" : again.error().sentence().c_str());

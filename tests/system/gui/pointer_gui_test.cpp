@@ -179,9 +179,11 @@ class PointerGuiTest : public test::WindowTest {
       Run run;
       practise(exercise, rate_hz, run);
       if (QTest::currentTestFailed()) return;
-      std::printf("%-16s %4.0f/s (%4.0f reached the window) %7.1f mm3, uncut bone in a tool %.2f mm "
-                  "deep at most\n", exercise.name.c_str(), rate_hz, run.moves_per_s, run.removed_mm3,
-                  std::max(0.0, run.inside.deepest_mm));
+      std::printf(
+          "%-16s %4.0f/s (%4.0f reached the window) %7.1f mm3, uncut bone in a tool %.2f mm "
+          "deep at most\n",
+          exercise.name.c_str(), rate_hz, run.moves_per_s, run.removed_mm3,
+          std::max(0.0, run.inside.deepest_mm));
       std::fflush(stdout);
       for (const std::string& what : test::missing(exercise, run.cut)) qWarning("%s", what.c_str());
       QVERIFY2(test::missing(exercise, run.cut).empty(), "the exercise is not finished");
@@ -206,6 +208,8 @@ class PointerGuiTest : public test::WindowTest {
   void theLiverWithBothArms() { finishAtAnyRate(test::kLiver); }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<PointerGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<PointerGuiTest>(argc, argv);
+}
 
 #include "pointer_gui_test.moc"

@@ -1,6 +1,6 @@
 // A picture of every workspace at every size, with a real case and a cut in progress, for whoever
-// looks at the window as a designer does. What a program can see of that is checked: no label is cut
-// off, none shows a dash alone, and what the page is for is said on it.
+// looks at the window as a designer does. What a program can see of that is checked: no label is
+// cut off, none shows a dash alone, and what the page is for is said on it.
 #include <QComboBox>
 #include <QLabel>
 #include <QListWidget>
@@ -39,11 +39,13 @@ class ScreensTest : public test::WindowTest {
         continue;
       }
       const QString what = label->objectName() + " \"" + label->text() + '"';
-      const int needed = label->wordWrap() ? label->heightForWidth(label->width())
-                                           : label->fontMetrics().boundingRect(
-                                                 QRect(0, 0, 4000, 4000), 0, label->text()).width();
-      const bool cut_off = label->wordWrap() ? needed > label->height() + 2
-                                             : needed > label->width() + 2;
+      const int needed = label->wordWrap()
+                             ? label->heightForWidth(label->width())
+                             : label->fontMetrics()
+                                   .boundingRect(QRect(0, 0, 4000, 4000), 0, label->text())
+                                   .width();
+      const bool cut_off =
+          label->wordWrap() ? needed > label->height() + 2 : needed > label->width() + 2;
       if (cut_off) wrong << "cut off: " + what;
     }
     QVERIFY2(wrong.isEmpty(), qPrintable(name + ": " + wrong.join("; ")));
@@ -133,6 +135,8 @@ class ScreensTest : public test::WindowTest {
   }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<ScreensTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<ScreensTest>(argc, argv);
+}
 
 #include "screens_test.moc"

@@ -32,8 +32,7 @@ class TrainGuiTest : public test::WindowTest {
   ViewWidget& view() { return window_->view(); }
   void open(const Policy& policy = {}) {
     QFile::remove(windowSettings().fileName());
-    window_ =
-        std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")), policy);
+    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")), policy);
     window_->resize(1280, 800);
     window_->show();
     QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
@@ -397,7 +396,8 @@ class TrainGuiTest : public test::WindowTest {
     QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
     QTest::mouseClick(find<QPushButton>("resultReplay"), Qt::LeftButton);
     QVERIFY(window_->place() == Place::review);
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
+                             kLong_ms);
   }
 
   void theArmsOfThisPlaceGiveNoMoreThanTheSettingsSay() {
@@ -537,6 +537,8 @@ class TrainGuiTest : public test::WindowTest {
   }
 };
 
-int main(int argc, char** argv) { return test::runInWindow<TrainGuiTest>(argc, argv); }
+int main(int argc, char** argv) {
+  return test::runInWindow<TrainGuiTest>(argc, argv);
+}
 
 #include "train_gui_test.moc"

@@ -14,7 +14,8 @@ TEST(Hex, GoesThereAndBack) {
 }
 
 TEST(Hex, IsAnEvenNumberOfItsDigits) {
-  for (const char* wrong : {"0", "0g", "0x00", " 00", "00-"}) EXPECT_FALSE(bytesOfHex(wrong)) << wrong;
+  for (const char* wrong : {"0", "0g", "0x00", " 00", "00-"})
+    EXPECT_FALSE(bytesOfHex(wrong)) << wrong;
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ TEST(ExerciseAnswer, HoldsWhatRunPrintsAndTheWindowsFigures) {
   }
   EXPECT_EQ(json["frames"], 3);
   EXPECT_EQ(json["frame_ms"]["p99"], 5.0);
-  for (const char* key : {"start_ms", "frames", "frame_ms", "longest_stall_ms", "longest_stall",
-                          "session_ms"}) {
+  for (const char* key :
+       {"start_ms", "frames", "frame_ms", "longest_stall_ms", "longest_stall", "session_ms"}) {
     json.erase(key);
   }
   EXPECT_EQ(json, toJson(outcome.report));

@@ -434,7 +434,8 @@ TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
   QObject::connect(&locked, &Workstation::failed, &locked, [&](const Error& e) { said = e; });
   const std::filesystem::path scenes = resourceFolder() / "scenes", file = folder_ / "own.json";
   Json scene = *readJsonFile(scenes / "cranium.json");
-  for (const char* key : {"tissues", "operator"}) scene[key] = scenes / scene[key].get<std::string>();
+  for (const char* key : {"tissues", "operator"})
+    scene[key] = scenes / scene[key].get<std::string>();
   for (Json& tool : scene["tools"]) tool["file"] = scenes / tool["file"].get<std::string>();
   for (Json& arm : scene["arms"]) {
     Json& config = arm["device"]["config"];
