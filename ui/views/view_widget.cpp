@@ -1,11 +1,13 @@
 #include "ui/views/view_widget.h"
 
+#include <QAbstractEventDispatcher>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ui/views/view_tools.h"
 
@@ -73,6 +75,11 @@ ViewWidget::ViewWidget(QWidget* parent)
   refine_.setObjectName("refine");
   refine_.setSingleShot(true);
   connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
+  // Each time it comes round the loop says one of the two.
+  const QAbstractEventDispatcher* loop = QAbstractEventDispatcher::instance();
+  const auto came_round = [this] { worked_ = false; };
+  connect(loop, &QAbstractEventDispatcher::aboutToBlock, this, came_round);
+  connect(loop, &QAbstractEventDispatcher::awake, this, came_round);
 }
 
 ViewWidget::~ViewWidget() {
@@ -192,6 +199,7 @@ void ViewWidget::fitHint() {
 
 void ViewWidget::paintGL() {
   if (resizing_) return;
+  worked_ = true;
   QElapsedTimer timer;
   timer.start();
   fitRenderer();  // the screen may have changed under the window
@@ -221,6 +229,8 @@ void ViewWidget::paintGL() {
 
 void ViewWidget::refine() {
   if (!isVisible() || !context() || moving_) return;
+  // Input is looked for after each picture and each step towards a finer one.
+  if (std::exchange(worked_, true)) return refine_.start(0);
   QElapsedTimer timer;
   timer.start();
   makeCurrent();

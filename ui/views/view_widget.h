@@ -156,6 +156,7 @@ class ViewWidget : public QOpenGLWidget {
   std::shared_ptr<const LabelMap> stroke_labels_;  // as they were when it began
   bool training_ = false;
   bool resizing_ = false;
+  bool worked_ = false;  // since the event loop came round
   bool moving_ = false;
   bool refusal_said_ = false;
 };
