@@ -57,6 +57,7 @@ int run(int argc, char** argv) {
   }
 
   setUpLog(!scene.empty());
+  prepareMemory();
   const Status display = prepareDisplay();
   const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
   if (!display) printError("exercise", display.error(), json);

@@ -39,6 +39,7 @@ void VolumePictures::startAnew() {
   pixels_per_ms_ = 0.0;
   level_ = LevelOfDetail();
   stale_ = true;
+  warm_ = false;
 }
 
 void VolumePictures::start(Picture& picture, double step, double ray_step) {
@@ -146,6 +147,15 @@ void VolumePictures::sketchCuts(double budget_ms, const Cast& cast) {
   fresh_.setNone(size.x, size.y);
 }
 
+// The first ray waits until OpenGL has made the shader: some 70 ms in software. Alone, and nowhere to
+// be seen, so that the first picture does not take that long too.
+void VolumePictures::warmUp(const Cast& cast) {
+  using Image = Canvas::Image;
+  allocated_ = sketch_.bind(2, 2, {Image::colour, Image::depths_mm, Image::colour}) && allocated_;
+  cast(sketch_, {glm::dvec2(width_, height_), {}}, {0, 0, 1, 1}, 1.0);
+  warm_ = true;
+}
+
 // Software OpenGL takes some 70 ms to get ready for the first: here no cut waits for them.
 void VolumePictures::readySketches() {
   using Image = Canvas::Image;
@@ -172,6 +182,10 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   const Clock::time_point begun = Clock::now();
   bool changed = false;
   const bool unknown = pixels_per_ms_ == 0.0 && budget_ms < kNoLimit;
+  if (unknown && stale_ && !warm_) {
+    warmUp(cast);
+    return false;
+  }
   if (std::exchange(stale_, false)) {
     next_.step = 0.0;
     const bool resized = std::exchange(resized_, false) && budget_ms < kNoLimit;
@@ -230,6 +244,7 @@ void VolumePictures::release() {
   }
   sketch_.release();
   sketches_ready_ = false;
+  warm_ = false;
   stale_ = true;
   allocated_ = true;
 }

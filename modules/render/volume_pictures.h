@@ -65,6 +65,7 @@ class VolumePictures {
   void castSome(Picture& picture, double budget_ms, const Cast& cast);
   void addCut(const PixelRect& part);  // to the shown one
   void sketchCuts(double budget_ms, const Cast& cast);
+  void warmUp(const Cast& cast);
   void readySketches();
   void finishNext();
   double expected_ms(const CastPlan& plan) const;  // of the shown one
@@ -79,6 +80,7 @@ class VolumePictures {
   int width_ = 1;
   int height_ = 1;
   bool stale_ = true;
+  bool warm_ = false;  // the caster has cast what it is to cast now
   bool resized_ = false;
   bool allocated_ = true;
   double pixels_per_ms_ = 0.0;  // of the last strip, at usual steps

@@ -1,5 +1,6 @@
 #include "ui/frame/start_up.h"
 
+#include <malloc.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -11,6 +12,12 @@
 #include "render/display_probe.h"
 
 namespace trephine {
+
+void prepareMemory() {
+  // Left alone the C library raises this limit to the largest block that was ever freed.
+  constexpr int kOwnPages_bytes = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, kOwnPages_bytes);
+}
 
 Status prepareDisplay() {
   // The OpenGL that VTK was built for is X's, by GLX; a Wayland desktop has an X server beside it.

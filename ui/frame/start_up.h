@@ -10,6 +10,10 @@ namespace trephine {
 // window may be shown all the same, but no view).
 Status prepareDisplay();
 
+// Voxels go back to the system when they are let go of, instead of leaving holes in which the next
+// case's have no room. Before the first case.
+void prepareMemory();
+
 // Milliseconds since the system started this process.
 double msSinceProcessStart();
 

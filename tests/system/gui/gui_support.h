@@ -192,6 +192,7 @@ class WindowTest : public QObject {
 // A test program's main(): skipped, with exit code 77, where nothing can be drawn.
 template <class Test>
 int runInWindow(int argc, char** argv) {
+  prepareMemory();
   if (Status display = prepareDisplay(); !display) {
     std::printf("SKIP: %s\n", display.error().sentence().c_str());
     return 77;

@@ -34,6 +34,7 @@ struct Run {
   double removed_mm3 = 0.0;
   double moves_per_s = 0.0;  // that reached the window
   test::Inside inside;
+  bool late = false;  // by more than 20 ms, which takes the force away
 };
 
 }  // namespace
@@ -162,6 +163,8 @@ class PointerGuiTest : public test::WindowTest {
       run.removed_mm3 += mm3;
     }
     for (const ArmFault& fault : report.faults) {
+      run.late = run.late || fault.fault == kFaultLate || fault.fault == kFaultStalled;
+      if (run.late) continue;
       QFAIL(qPrintable(QString("fault %1 at tick %2").arg(fault.fault).arg(fault.tick)));
     }
     run.cut.carved = workstation().carved();
@@ -178,7 +181,15 @@ class PointerGuiTest : public test::WindowTest {
     for (const double rate_hz : kRates_hz) {
       Run run;
       practise(exercise, rate_hz, run);
+      // A machine that was so late that the force went says nothing of the rate.
+      for (int attempt = 0; run.late && attempt < 3; ++attempt) {
+        if (QTest::currentTestFailed()) return;
+        qInfo("the force went as the machine was late: once more");
+        run = {};
+        practise(exercise, rate_hz, run);
+      }
       if (QTest::currentTestFailed()) return;
+      QVERIFY2(!run.late, "the machine was late each time");
       std::printf(
           "%-16s %4.0f/s (%4.0f reached the window) %7.1f mm3, uncut bone in a tool %.2f mm "
           "deep at most\n",
