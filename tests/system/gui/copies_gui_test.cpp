@@ -47,7 +47,7 @@ class CopiesGuiTest : public test::WindowTest {
   }
   void settle() {
     bool whole = false;
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 10 && !(whole && i > 1); ++i) {
       QSignalSpy painted(&window_->view(), &ViewWidget::framePainted);
       window_->view().update();
       QVERIFY(painted.wait(kLong_ms));

@@ -219,6 +219,7 @@ class GuiTest : public test::WindowTest {
     QTest::mouseClick(open_case, Qt::LeftButton);
     QVERIFY(opened.wait(kLong_ms));
     QVERIFY(!window_->findChild<QMessageBox*>("errorDialog"));
+    painted.clear();
     QTRY_VERIFY_WITH_TIMEOUT(!painted.empty() && painted.back().at(1).toBool(), kLong_ms);
 
     QVERIFY(find<QLabel>("caseLabel")->text().startsWith(kDescription));
