@@ -71,6 +71,7 @@ class CopiesGuiTest : public test::WindowTest {
     window_->startExercise();
     [&] { QTRY_VERIFY_WITH_TIMEOUT(workstation().session(), kLong_ms); }();
     QTest::qWait(1500);
+    waitUntilSteady();
     return test::privateDirtyMb() - before_mb;
   }
   void stop() {
