@@ -5,6 +5,8 @@
 #include <QSignalSpy>
 #include <QtTest>
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include "gui_support.h"
 #include "training/session_reader.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr int kLong_ms = 120000;
 constexpr double kNotch_N = 0.1;  // the pushes of the paths are whole notches
+constexpr int kMostRounds = 3;
 constexpr double kRates_hz[] = {60.0, 125.0, 1000.0};
 
 glm::dvec2 at(const std::vector<Pointed>& path, double t_s) {
@@ -177,32 +180,51 @@ class PointerGuiTest : public test::WindowTest {
     window_->open(resourceFolder() / "scenes" / (exercise.name + ".json"));
     QVERIFY(opened.count() > 0 || opened.wait(kLong_ms));
     QTest::qWait(1000);
-    double least_mm3 = 1e9, most_mm3 = 0.0;
-    for (const double rate_hz : kRates_hz) {
-      Run run;
-      practise(exercise, rate_hz, run);
-      // A machine that was so late that the force went says nothing of the rate.
-      for (int attempt = 0; run.late && attempt < 3; ++attempt) {
+    // Real time: the same path at the same rate differs by some percent between runs of a busy
+    // machine. What differs is therefore done again, and the medians are compared.
+    std::map<double, std::vector<double>> removed_mm3;
+    for (int round = 0; round < kMostRounds; ++round) {
+      for (const double rate_hz : kRates_hz) {
+        finish(exercise, rate_hz, removed_mm3[rate_hz]);
         if (QTest::currentTestFailed()) return;
-        qInfo("the force went as the machine was late: once more");
-        run = {};
-        practise(exercise, rate_hz, run);
       }
-      if (QTest::currentTestFailed()) return;
-      QVERIFY2(!run.late, "the machine was late each time");
-      std::printf(
-          "%-16s %4.0f/s (%4.0f reached the window) %7.1f mm3, uncut bone in a tool %.2f mm "
-          "deep at most\n",
-          exercise.name.c_str(), rate_hz, run.moves_per_s, run.removed_mm3,
-          std::max(0.0, run.inside.deepest_mm));
+      double least_mm3 = 1e9, most_mm3 = 0.0;
+      for (auto& [rate_hz, of_mm3] : removed_mm3) {
+        std::ranges::sort(of_mm3);
+        const double median_mm3 = of_mm3[of_mm3.size() / 2];
+        least_mm3 = std::min(least_mm3, median_mm3);
+        most_mm3 = std::max(most_mm3, median_mm3);
+      }
+      std::printf("%-16s medians of %d within %.1f %%\n", exercise.name.c_str(), round + 1,
+                  100.0 * (most_mm3 / least_mm3 - 1.0));
       std::fflush(stdout);
-      for (const std::string& what : test::missing(exercise, run.cut)) qWarning("%s", what.c_str());
-      QVERIFY2(test::missing(exercise, run.cut).empty(), "the exercise is not finished");
-      QCOMPARE(run.inside.voxels, 0);
-      least_mm3 = std::min(least_mm3, run.removed_mm3);
-      most_mm3 = std::max(most_mm3, run.removed_mm3);
+      if (round != 1 && most_mm3 < 1.05 * least_mm3) return;
     }
-    QVERIFY2(most_mm3 < 1.05 * least_mm3, "not the same at any rate");
+    QFAIL("not the same at any rate");
+  }
+
+  void finish(const test::Exercise& exercise, double rate_hz, std::vector<double>& removed_mm3) {
+    Run run;
+    practise(exercise, rate_hz, run);
+    // A machine that was so late that the force went says nothing of the rate.
+    for (int attempt = 0; run.late && attempt < 3; ++attempt) {
+      if (QTest::currentTestFailed()) return;
+      qInfo("the force went as the machine was late: once more");
+      run = {};
+      practise(exercise, rate_hz, run);
+    }
+    if (QTest::currentTestFailed()) return;
+    QVERIFY2(!run.late, "the machine was late each time");
+    std::printf(
+        "%-16s %4.0f/s (%4.0f reached the window) %7.1f mm3, uncut bone in a tool %.2f mm "
+        "deep at most\n",
+        exercise.name.c_str(), rate_hz, run.moves_per_s, run.removed_mm3,
+        std::max(0.0, run.inside.deepest_mm));
+    std::fflush(stdout);
+    for (const std::string& what : test::missing(exercise, run.cut)) qWarning("%s", what.c_str());
+    QVERIFY2(test::missing(exercise, run.cut).empty(), "the exercise is not finished");
+    QCOMPARE(run.inside.voxels, 0);
+    removed_mm3.push_back(run.removed_mm3);
   }
 
  private slots:
