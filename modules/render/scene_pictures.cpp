@@ -101,8 +101,8 @@ bool SceneRenderer::Parts::work(double budget_ms) {
   if ((!fitted || may_need_more) && !mirror->empty()) {
     fit();
     // Sending a volume takes its time: its first picture is the next call's.
-    if (others && drawsVolume() && budget_ms < std::numeric_limits<double>::infinity())
-      return false;
+    const bool limited = budget_ms < std::numeric_limits<double>::infinity();
+    if (others && drawsVolume() && limited) return false;
   }
   if (!drawsVolume()) return std::exchange(scene_stale, false);
   if (!volume.labelsSent()) {

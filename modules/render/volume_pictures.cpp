@@ -42,12 +42,15 @@ void VolumePictures::startAnew() {
   warm_ = false;
 }
 
-void VolumePictures::start(Picture& picture, double step, double ray_step) {
-  const int columns = int(std::ceil(width_ / step)), rows = int(std::ceil(height_ / step));
+void VolumePictures::bind(Canvas& canvas, int columns, int rows) {
   using Image = Canvas::Image;
   allocated_ =
-      picture.canvas.bind(columns, rows, {Image::colour, Image::depths_mm, Image::colour}) &&
-      allocated_;
+      canvas.bind(columns, rows, {Image::colour, Image::depths_mm, Image::colour}) && allocated_;
+}
+
+void VolumePictures::start(Picture& picture, double step, double ray_step) {
+  const int columns = int(std::ceil(width_ / step)), rows = int(std::ceil(height_ / step));
+  bind(picture.canvas, columns, rows);
   picture.plan.setWhole(columns, rows);
   picture.step = step;
   picture.ray_step = ray_step;
@@ -122,11 +125,7 @@ void VolumePictures::sketchCuts(double budget_ms, const Cast& cast) {
   const glm::ivec2 fewer = (size + by - 1) / by, beyond = (fewer * by - size) / 2;
   Span span{glm::dvec2(fewer * by) * shown_.step, {}};
   span.beyond = 0.5 * (span.pixels - glm::dvec2(width_, height_));
-  using Image = Canvas::Image;
-  if (by > 1) {
-    allocated_ = sketch_.bind(fewer.x, fewer.y, {Image::colour, Image::depths_mm, Image::colour}) &&
-                 allocated_;
-  }
+  if (by > 1) bind(sketch_, fewer.x, fewer.y);
   for (const PixelRect& rays : fresh_.left()) {
     if (by == 1) {
       shown_.canvas.bind();
@@ -147,20 +146,18 @@ void VolumePictures::sketchCuts(double budget_ms, const Cast& cast) {
   fresh_.setNone(size.x, size.y);
 }
 
-// The first ray waits until OpenGL has made the shader: some 70 ms in software. Alone, and nowhere to
-// be seen, so that the first picture does not take that long too.
+// The first ray waits until OpenGL has made the shader: some 70 ms in software. Alone, and nowhere
+// to be seen, so that the first picture does not take that long too.
 void VolumePictures::warmUp(const Cast& cast) {
-  using Image = Canvas::Image;
-  allocated_ = sketch_.bind(2, 2, {Image::colour, Image::depths_mm, Image::colour}) && allocated_;
+  bind(sketch_, 2, 2);
   cast(sketch_, {glm::dvec2(width_, height_), {}}, {0, 0, 1, 1}, 1.0);
   warm_ = true;
 }
 
 // Software OpenGL takes some 70 ms to get ready for the first: here no cut waits for them.
 void VolumePictures::readySketches() {
-  using Image = Canvas::Image;
   if (std::exchange(sketches_ready_, true)) return;
-  allocated_ = sketch_.bind(2, 2, {Image::colour, Image::depths_mm, Image::colour}) && allocated_;
+  bind(sketch_, 2, 2);
   sketch_.take(shown_.canvas, {0, 0, 1, 1}, {0, 0, 2, 2});
 }
 

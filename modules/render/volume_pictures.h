@@ -61,6 +61,7 @@ class VolumePictures {
   };
   using Clock = std::chrono::steady_clock;
 
+  void bind(Canvas& canvas, int columns, int rows);  // with what a picture holds
   void start(Picture& picture, double step, double ray_step);
   void castSome(Picture& picture, double budget_ms, const Cast& cast);
   void addCut(const PixelRect& part);  // to the shown one

@@ -130,7 +130,8 @@ system_error thread tuple type_traits typeindex typeinfo unordered_map unordered
 valarray variant vector version
 assert.h ctype.h errno.h float.h inttypes.h limits.h locale.h math.h signal.h stdarg.h stdatomic.h
 stdbool.h stddef.h stdint.h stdio.h stdlib.h string.h time.h
-dirent.h elf.h fcntl.h malloc.h poll.h pwd.h sched.h unistd.h sys/file.h sys/ioctl.h sys/mman.h sys/prctl.h
+dirent.h elf.h fcntl.h malloc.h poll.h pwd.h sched.h unistd.h
+sys/file.h sys/ioctl.h sys/mman.h sys/prctl.h
 sys/resource.h sys/socket.h sys/stat.h sys/statvfs.h sys/syscall.h sys/time.h sys/types.h sys/un.h sys/utsname.h
 termios.h
 sys/wait.h

@@ -4,13 +4,14 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <QAbstractEventDispatcher>
 #include <QMetaEnum>
 #include <QThread>
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
 #include <utility>
+
+#include "ui/common/event_loop.h"
 
 namespace trephine {
 
@@ -35,10 +36,7 @@ QString described(const QEvent::Type type, const char* of, const QString& name) 
 
 TimedApplication::TimedApplication(int& argc, char** argv)
     : QApplication(argc, argv), processors_file_(::open("/proc/stat", O_RDONLY | O_CLOEXEC)) {
-  // Whether it may wait or not, the loop says one of the two each time it comes round.
-  const QAbstractEventDispatcher* dispatcher = QAbstractEventDispatcher::instance();
-  connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, &TimedApplication::comeRound);
-  connect(dispatcher, &QAbstractEventDispatcher::awake, this, &TimedApplication::comeRound);
+  onEachTurn(this, &TimedApplication::comeRound);
 }
 
 TimedApplication::~TimedApplication() {

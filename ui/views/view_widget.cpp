@@ -1,6 +1,5 @@
 #include "ui/views/view_widget.h"
 
-#include <QAbstractEventDispatcher>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui/common/event_loop.h"
 #include "ui/views/view_tools.h"
 
 namespace trephine {
@@ -29,7 +29,7 @@ constexpr int kKeyTurn_pixels = 12;
 constexpr double kToolMoved_mm = 0.02;
 const Vec3 kLightColour(1.0, 0.95, 0.5);
 constexpr double kReach_pixels = 11.0;  // of a handle
-constexpr double kWheelNotch = 120.0;  // Qt: eighths of a degree
+constexpr double kWheelNotch = 120.0;   // Qt: eighths of a degree
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
   return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&
@@ -75,11 +75,7 @@ ViewWidget::ViewWidget(QWidget* parent)
   refine_.setObjectName("refine");
   refine_.setSingleShot(true);
   connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
-  // Each time it comes round the loop says one of the two.
-  const QAbstractEventDispatcher* loop = QAbstractEventDispatcher::instance();
-  const auto came_round = [this] { worked_ = false; };
-  connect(loop, &QAbstractEventDispatcher::aboutToBlock, this, came_round);
-  connect(loop, &QAbstractEventDispatcher::awake, this, came_round);
+  onEachTurn(this, [this] { worked_ = false; });
 }
 
 ViewWidget::~ViewWidget() {
@@ -288,9 +284,8 @@ void ViewWidget::showNews() {
     if (!clip_.cutsAnything()) resetTools();  // the one that was shown before had them
   }
   const bool flat = renderer_.hasVolume() && std::ranges::min(shown_.size) < 2;
-  hint_->setText(
-      flat ? tr("One slice has no depth.\nF6 shows it in the slices.")
-           : tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
+  hint_->setText(flat ? tr("One slice has no depth.\nF6 shows it in the slices.")
+                      : tr("Open a folder of CT, drop one here,\nor choose a built-in case."));
   hint_->setVisible(flat || !renderer_.hasVolume());
   strip_->setEnabled(renderer_.hasVolume());
   strip_->place();

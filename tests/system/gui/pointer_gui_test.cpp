@@ -188,6 +188,7 @@ class PointerGuiTest : public test::WindowTest {
         finish(exercise, rate_hz, removed_mm3[rate_hz]);
         if (QTest::currentTestFailed()) return;
       }
+      if (round == 1) continue;  // two have no median
       double least_mm3 = 1e9, most_mm3 = 0.0;
       for (auto& [rate_hz, of_mm3] : removed_mm3) {
         std::ranges::sort(of_mm3);
@@ -198,7 +199,7 @@ class PointerGuiTest : public test::WindowTest {
       std::printf("%-16s medians of %d within %.1f %%\n", exercise.name.c_str(), round + 1,
                   100.0 * (most_mm3 / least_mm3 - 1.0));
       std::fflush(stdout);
-      if (round != 1 && most_mm3 < 1.05 * least_mm3) return;
+      if (most_mm3 < 1.05 * least_mm3) return;
     }
     QFAIL("not the same at any rate");
   }
