@@ -27,6 +27,7 @@
 #include <vtkVolumeTexture.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -97,10 +98,10 @@ struct CarveVolume::Parts {
   BrickRanges bricks;
   LeapMap leap_map;
   double lookup_step_HU = 0.0;
-  double smallest_edge_mm = 1.0;  // of a voxel
+  double smallest_edge_mm = 1.0;                            // of a voxel
   double sample_distance = SceneRenderer::kSampleDistance;  // at full quality, in that edge
-  bool sent = false;           // VTK's texture holds the copy, but for `boxes`
-  bool drawn = false;          // VTK sends all once more when it draws for the first time
+  bool sent = false;   // VTK's texture holds the copy, but for `boxes`
+  bool drawn = false;  // VTK sends all once more when it draws for the first time
   std::optional<CutMarks> marks_of_all;
   bool leap_map_stale = true;  // to be made anew
   bool leaps_stale = true;     // to be sent
@@ -314,22 +315,17 @@ void CarveVolume::show(Volume& copy, std::shared_ptr<const LabelMap> labels,
   p.sent = p.drawn = false;
   p.bricks = BrickRanges(copy);
 
-  vtkNew<vtkShortArray> voxels;
-  voxels->SetArray(copy.hu.data(), vtkIdType(copy.hu.size()), 1 /* not VTK's to free */);
   // VTK spreads its lookup tables over the range of HU that it finds when it sends everything. A
   // range that carving can change would make a box's picture differ from the whole volume's, so
-  // two voxels lend their place to fixed limits while VTK looks; it remembers the range.
+  // VTK is shown fixed limits instead; it remembers them, and does not read every voxel.
   const BrickRanges::Range whole = p.bricks.whole();
   const std::int16_t low = std::min<std::int16_t>(whole.low, -1024);
   const std::int16_t high = std::max<std::int16_t>(whole.high, 3071);
-  std::int16_t& first = copy.hu.front();
-  std::int16_t& last = copy.hu.back();
-  const std::pair kept(first, last);
-  last = high;
-  first = low;
+  vtkNew<vtkShortArray> voxels;
+  std::array<std::int16_t, 2> limits{low, high};
+  voxels->SetArray(limits.data(), 2, 1 /* not VTK's to free */);
   voxels->GetFiniteRange(0);
-  last = kept.second;
-  first = kept.first;
+  voxels->SetArray(copy.hu.data(), vtkIdType(copy.hu.size()), 1);
   p.shading.low_HU = low;
   p.shading.high_HU = high;
   p.updateLooks();

@@ -103,11 +103,11 @@ QString toolWord(const SceneTool& tool) {
 QString controllerWord(ControllerKind kind) {
   switch (kind) {
     case ControllerKind::off:
-      return tr("Off");
+      return tr("Nothing");
     case ControllerKind::seed:
-      return tr("Seed (passivity)");
+      return tr("Energy alone");
     case ControllerKind::bounded:
-      return tr("Bounded");
+      return tr("Force limits");
   }
   return {};
 }
@@ -118,7 +118,8 @@ QString controllerMeaning(ControllerKind kind) {
       return tr(
           "What the tissue demands goes to the arm as it is. On firm tissue the arm may shake.");
     case ControllerKind::seed:
-      return tr("The passivity controller of the seed paper, for comparison.");
+      return tr(
+          "Damps the arm when energy comes out of the tissue (passivity control), for comparison.");
     case ControllerKind::bounded:
       return tr("Keeps the arm calm on any tissue, and changes nothing where nothing is wrong.");
   }

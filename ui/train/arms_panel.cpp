@@ -241,8 +241,8 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     if (gives_out) {
       wrong << (state.controller == ControllerKind::bounded
                     ? tr("The arm gives out energy: it shakes or pushes by itself.")
-                    : tr("The arm gives out energy: it shakes or pushes by itself. Choose the "
-                         "controller '%1'.")
+                    : tr("The arm gives out energy: it shakes or pushes by itself. Let it be "
+                         "kept steady by '%1'.")
                           .arg(controllerWord(ControllerKind::bounded)));
     }
     if (arm.controller_parts & kPartArmNotAsStated) {

@@ -12,59 +12,17 @@
 #include <QToolBar>
 #include <QtTest>
 
-#include "gui_support.h"
 #include "tissue/tissue_edits.h"
+#include "train_support.h"
 #include "ui/common/words.h"
 #include "ui/train/trace_view.h"
 
 using namespace trephine;
 
-namespace {
-constexpr int kLong_ms = 120000;
-}  // namespace
-
-class TrainGuiTest : public test::WindowTest {
+class TrainGuiTest : public test::TrainTest {
   Q_OBJECT
 
- private:
   std::filesystem::path scene_;
-
-  ViewWidget& view() { return window_->view(); }
-  void open(const Policy& policy = {}) {
-    QFile::remove(windowSettings().fileName());
-    window_ = std::make_unique<MainWindow>(toPath(temporary_.filePath("storage/sessions")), policy);
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
-    QApplication::setActiveWindow(window_.get());
-  }
-  void openScene(const std::filesystem::path& file) {
-    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    window_->open(file);
-    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
-    QTRY_VERIFY(view().isVisible());
-  }
-  // To whatever has the focus.
-  void key(int which, Qt::KeyboardModifiers modifiers = Qt::NoModifier, int times = 1) {
-    for (int i = 0; i < times; ++i) {
-      QWidget* to = QApplication::focusWidget();
-      QTest::keyClick(to ? to : window_.get(), Qt::Key(which), modifiers);
-      QTest::qWait(15);
-    }
-  }
-  void stop() {
-    workstation().stop();
-    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
-  }
-
-  void startTraining() {
-    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
-    window_->startExercise();
-    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
-  }
-  const ArmRecord& arm(std::size_t which) {
-    return workstation().session()->state().record.arms[which];
-  }
 
  private slots:
   void initTestCase() {

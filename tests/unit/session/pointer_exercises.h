@@ -19,9 +19,9 @@ struct Exercise {
 };
 
 // A push goes in; then a touch of it holds the depth while the pointer goes round; a tool comes out
-// before it goes aside, or it cuts as much of that as it was late. The sides of the windows lie
-// well within a row of voxels: a blade is thinner than those, and along a border between two a
-// tenth of a mm decides which are cut.
+// before it goes aside, or it cuts as much of that as it was late. A blade cuts what lies within
+// some 0.65 mm of it, and rows of voxels are 0.8 mm apart: the sides of the windows lie midway
+// between two rows, which are then both cut, and no other by a hand that is a little aside.
 inline const Exercise kBurrHole{"burr-hole",
                                 {{{0, 20, 20, 0},
                                   {0.5, 0, 0, 0},
@@ -30,21 +30,21 @@ inline const Exercise kBurrHole{"burr-hole",
                                   {6.5, 0, 0, 0},
                                   {7.0, 20, 0, 0}}}};
 inline const Exercise kWindowOneArm{"cranium-one-arm",
-                                    {{{0, -30, -8.8, 0},
-                                      {0.5, -8.4, -8.8, 0},
-                                      {1.0, -8.4, -8.8, 2.0},
-                                      {3.0, -8.4, -8.8, 0.1},
-                                      {5.0, 8.4, -8.8, 0.1},
-                                      {7.0, 8.4, 8.8, 0.1},
-                                      {9.0, -8.4, 8.8, 0.1},
-                                      {11.0, -8.4, -8.8, 0.1},
-                                      {12.5, -8.4, -8.8, 0},
-                                      {13.5, -8.4, -8.8, 0},
-                                      {14.5, -30, -8.8, 0}}}};
+                                    {{{0, -30, -8.55, 0},
+                                      {0.5, -8.05, -8.55, 0},
+                                      {1.0, -8.05, -8.55, 2.0},
+                                      {3.0, -8.05, -8.55, 0.1},
+                                      {5.0, 7.95, -8.55, 0.1},
+                                      {7.0, 7.95, 8.25, 0.1},
+                                      {9.0, -8.05, 8.25, 0.1},
+                                      {11.0, -8.05, -8.55, 0.1},
+                                      {12.5, -8.05, -8.55, 0},
+                                      {13.5, -8.05, -8.55, 0},
+                                      {14.5, -30, -8.55, 0}}}};
 inline const std::vector<Pointed> kLeftHalf{
-    {0, -30, -9.6, 0},       {0.5, 1, -9.6, 0},      {1.0, 1, -9.6, 2.0}, {3.0, 1, -9.6, 0.1},
-    {5.0, -14.8, -9.6, 0.1}, {7.5, -14.8, 9.6, 0.1}, {9.5, 1, 9.6, 0.1},  {10.5, 1, 9.6, 0},
-    {11.5, 1, 9.6, 0},       {12.5, -30, 9.6, 0}};
+    {0, -30, -9.35, 0},        {0.5, 1, -9.35, 0},       {1.0, 1, -9.35, 2.0}, {3.0, 1, -9.35, 0.1},
+    {5.0, -14.45, -9.35, 0.1}, {7.5, -14.45, 9.85, 0.1}, {9.5, 1, 9.85, 0.1},  {10.5, 1, 9.85, 0},
+    {11.5, 1, 9.85, 0},        {12.5, -30, 9.85, 0}};
 inline std::vector<Pointed> otherSide(std::vector<Pointed> path) {
   for (Pointed& at : path) at.x_mm = -at.x_mm;
   return path;

@@ -1,0 +1,162 @@
+// The controls of Train that no other test of the window uses: each by what it does to exercise,
+// tissue or hand.
+#include <QComboBox>
+#include <QLabel>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QToolButton>
+#include <QtTest>
+
+#include "base/file.h"
+#include "file_size_limit.h"
+#include "train_support.h"
+
+using namespace trephine;
+
+class TrainControlsGuiTest : public test::TrainTest {
+  Q_OBJECT
+
+  std::filesystem::path scene_;
+
+  void answer(const char* question, const char* button) {
+    QTRY_VERIFY_WITH_TIMEOUT(window_->findChild<QMessageBox*>(question), kLong_ms);
+    auto* asked = window_->findChild<QMessageBox*>(question);
+    for (QPushButton* each : asked->findChildren<QPushButton*>()) {
+      if (each->objectName() != button && each->text().remove('&') != button) continue;
+      QTest::mouseClick(each, Qt::LeftButton);
+      QTRY_VERIFY(!asked->isVisible());
+      return;
+    }
+    QFAIL(qPrintable(QString("%1 has no %2").arg(question, button)));
+  }
+  double tilt(const Quat& from) {
+    return 2.0 * std::acos(std::min(1.0, std::abs(glm::dot(from, arm(1).proxy_orientation))));
+  }
+
+ private slots:
+  void initTestCase() {
+    scene_ = test::sceneOn(test::coarseCranium(2), toPath(temporary_.path()), "coarse");
+  }
+  void init() { open(); }
+  void cleanup() { window_.reset(); }
+
+  void withoutACaseTheCardLeadsToTheCases() {
+    window_->show(Place::train);
+    QTRY_VERIFY(find<QPushButton>("startCardChoose")->isVisible());
+    QTest::mouseClick(find<QPushButton>("startCardChoose"), Qt::LeftButton);
+    QVERIFY(window_->place() == Place::cases);
+  }
+
+  void theCardStartsTheExercise() {
+    openScene(scene_);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QPushButton>("startCardStart")->isEnabled(), kLong_ms);
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    QTest::mouseClick(find<QPushButton>("startCardStart"), Qt::LeftButton);
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    QTRY_VERIFY(workstation().session()->state().ticks > 100);
+    find<QAction>("stop")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+  }
+
+  void shiftAndHomeStraightenTheTool() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    QTest::qWait(500);
+    const Quat before = arm(1).proxy_orientation;
+    view().setFocus();
+    key(Qt::Key_Left, Qt::ShiftModifier, 5);
+    key(Qt::Key_Up, Qt::ShiftModifier, 3);
+    QTRY_VERIFY_WITH_TIMEOUT(tilt(before) > 0.1, 10000);
+    key(Qt::Key_Home, Qt::ShiftModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(tilt(before) < 0.02, 10000);
+    stop();
+  }
+
+  void resetPutsAllTissueBackOnceItIsAgreed() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    QVERIFY(removedVoxels(*workstation().session()) > 0);
+    find<QAction>("reset")->trigger();
+    QTest::qWait(200);
+    QVERIFY2(removedVoxels(*workstation().session()) > 0, "not before it is agreed");
+    answer("resetQuestion", "goOnAnyway");
+    QTRY_COMPARE_WITH_TIMEOUT(removedVoxels(*workstation().session()), 0u, 10000);
+    stop();
+  }
+
+  void backTakesTheLastSecondsAway() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    QVERIFY(removedVoxels(*workstation().session()) > 0);
+    for (int n = 0; n < 5 && removedVoxels(*workstation().session()) > 0; ++n) {
+      QTRY_VERIFY_WITH_TIMEOUT(find<QToolButton>("backButton")->isEnabled(), 10000);
+      QTest::mouseClick(find<QToolButton>("backButton"), Qt::LeftButton);
+      QTest::qWait(1500);
+    }
+    QCOMPARE(removedVoxels(*workstation().session()), 0u);
+    stop();
+  }
+
+  void tryAgainStartsOnWholeTissue() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    stop();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+    QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    QTest::mouseClick(find<QPushButton>("resultAgain"), Qt::LeftButton);
+    answer("cutsQuestion", "goOnAnyway");
+    QVERIFY(started.count() == 1 || started.wait(kLong_ms));
+    QVERIFY(!find<QWidget>("resultPage")->isVisible());
+    QCOMPARE(removedVoxels(*workstation().session()), 0u);
+    QVERIFY(view().shownVolume().hu == workstation().currentCase()->volume->hu);
+    stop();
+  }
+
+  void anExerciseForAnotherPartOfTheBodyIsChangedByItsQuestion() {
+    // A head that came from a file: nobody said which exercise is for it.
+    const auto head = toPath(temporary_.filePath("head.mha"));
+    QVERIFY(writeVolume(test::coarseCranium(3), head));
+    Json scene =
+        *readJsonFile(test::sceneOn(test::coarseCranium(3), toPath(temporary_.path()), "third"));
+    scene["anatomy"] = "abdomen";
+    const auto file = toPath(temporary_.filePath("abdomen.json"));
+    QVERIFY(writeTextFile(file, scene.dump()));
+    openScene(file);
+    QVERIFY(workstation().scene()->anatomy == "abdomen");
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    find<QAction>("start")->trigger();
+    answer("misfitQuestion", "changeExercise");
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().scene()->anatomy == "cranium", kLong_ms);
+    QVERIFY(workstation().phase() != Workstation::Phase::running);
+  }
+
+  void aDiskThatIsFullAsksOnceAndTheExerciseGoesOnOrStops() {
+    for (const char* button : {"Go on unrecorded", "Stop"}) {
+      openScene(scene_);
+      startTraining();
+      Session& session = *workstation().session();
+      {
+        const test::FileSizeLimit full(64);
+        answer("recordingFailed", button);
+      }
+      if (QString(button) == "Stop") {
+        QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+      } else {
+        const auto ticks = session.state().ticks;
+        QTRY_VERIFY_WITH_TIMEOUT(session.state().ticks > ticks + 500, 10000);
+        stop();
+      }
+      QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+    }
+  }
+};
+
+int main(int argc, char** argv) {
+  return test::runInWindow<TrainControlsGuiTest>(argc, argv);
+}
+
+#include "train_controls_gui_test.moc"
