@@ -43,10 +43,10 @@ struct SceneRenderer::Parts {
   std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
   std::shared_ptr<LabelMap> reduced_labels;
   Index3 reduction{1, 1, 1};
-  bool labels_held = false;  // the last picture stays until other labels are there as a whole
+  bool labels_held = false;    // the last picture stays until other labels are there as a whole
   bool may_need_more = false;  // of what is fitted: it has labels now
-  bool fitted = false;   // what is shown has been sent, or refused
-  bool refused = false;  // and nothing is drawn of it
+  bool fitted = false;         // what is shown has been sent, or refused
+  bool refused = false;        // and nothing is drawn of it
   Status refusal;
   int most_edge = 0;  // for tests: as if textures had no longer edges; negative: all are refused
 
@@ -62,6 +62,10 @@ struct SceneRenderer::Parts {
   Canvas tool_layer;  // the outline alone, then tools alone: colour and depth
   Canvas frame;       // pictures that are read back
   bool scene_stale = true;
+  // What has been drawn once in this context, so that OpenGL has its shaders.
+  struct Warm {
+    bool background = false, volume = false, outline = false, tools = false;
+  } warm;
   bool moving = false;
   int width = 1;
   int height = 1;
@@ -112,6 +116,10 @@ struct SceneRenderer::Parts {
   static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);
   // The surface in the middle of the picture; the camera's focus where nothing is seen there.
   Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
+  // Draws one thing that is shown for the first time, nowhere to be seen. False: nothing is left.
+  bool warmUp();
+  bool cold() const { return nextCold() != nullptr; }
+  bool Warm::*nextCold() const;
   // What is shown now.
   Picture read();
   void release();

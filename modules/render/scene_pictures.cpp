@@ -180,17 +180,59 @@ PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
   return around(corners, 8, 1);
 }
 
+// In the order in which they are needed. What is sent has to be fitted first.
+bool SceneRenderer::Parts::Warm::*SceneRenderer::Parts::nextCold() const {
+  if (!warm.background) return &Warm::background;
+  if (!mirror->empty() && !fitted) return nullptr;
+  if (drawsVolume() && (!warm.volume || pictures.cold())) return &Warm::volume;
+  if (outline.box() && !warm.outline) return &Warm::outline;
+  if (!tools.boxes().empty() && !warm.tools) return &Warm::tools;
+  return nullptr;
+}
+
+bool SceneRenderer::Parts::warmUp() {
+  bool Warm::*const next = nextCold();
+  if (!next) return false;
+  const Canvas* shown = drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
+  const Span span = shown ? pictures.span() : Span{};
+  scene_stale = true;  // it is drawn into
+  if (next == &Warm::volume && pictures.cold()) {
+    pictures.warmUp(caster());
+    return true;
+  }
+  scene.bind(width, height, {Canvas::Image::colour});
+  if (next == &Warm::background) {
+    composer.drawVolume(nullptr, {}, width, height);
+    composer.drawLines({{{0.0, 0.0}, {1.0, 1.0}, Vec3(0.0), 1.0}}, width, height);
+  } else if (next == &Warm::volume) {
+    composer.drawVolume(shown ? shown : &pictures.warmUpCanvas(), span, width, height);
+  } else if (next == &Warm::outline) {
+    drawOutline(shown, span);
+  } else {
+    drawTools(scene.framebuffer(), shown, span);
+  }
+  glFinish();
+  warm.*next = true;
+  return true;
+}
+
 void SceneRenderer::Parts::compose(unsigned int framebuffer) {
   const Canvas* shown = drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
   const Span span = shown ? pictures.span() : Span{};
+  if (!warm.background) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    constexpr float kDark[4] = {0.14F, 0.145F, 0.155F, 1.0F};
+    glClearBufferfv(GL_COLOR, 0, kDark);
+    return;
+  }
   if (scene_stale || scene.width() != width || scene.height() != height) {
     scene.bind(width, height, {Canvas::Image::colour});
     composer.drawVolume(shown, span, width, height);
-    drawOutline(shown, span);
+    if (warm.outline) drawOutline(shown, span);
     scene_stale = false;
   }
   scene.copyTo(framebuffer);
-  drawTools(framebuffer, shown, span);
+  if (warm.tools) drawTools(framebuffer, shown, span);
   ScreenLines all;
   if (shown) {
     addOrientationCue(camera, width, height, all);
@@ -219,6 +261,8 @@ Vec3 SceneRenderer::Parts::inTheMiddle(const Canvas& shown, const Span& span) co
 
 Picture SceneRenderer::Parts::read() {
   Picture picture;
+  while (warmUp()) {
+  }
   if (!frame.bind(width, height, {Canvas::Image::colour})) return picture;
   compose(frame.framebuffer());
   frame.bind();
@@ -248,6 +292,7 @@ void SceneRenderer::Parts::release() {
   tool_layer.release();
   frame.release();
   scene_stale = true;
+  warm = {};
   fitted = refused = false;
   volume.releaseGraphics(*renderer);
   window->Finalize();

@@ -215,6 +215,10 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   takeChanges();
   p.window->MakeCurrent();
   p.work(budget_ms);
+  // Who has no frames to wait for waits here.
+  const bool limited = budget_ms < std::numeric_limits<double>::infinity();
+  while ((!p.hosted || !limited) && p.warmUp()) {
+  }
   if (p.hosted) {
     p.compose(framebuffer);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
@@ -230,6 +234,17 @@ bool SceneRenderer::refine(double budget_ms) {
   if (!p.window) return false;
   p.window->MakeCurrent();
   return p.work(budget_ms);
+}
+
+bool SceneRenderer::cold() const {
+  return parts_->window && parts_->cold();
+}
+
+bool SceneRenderer::warmUp() {
+  Parts& p = *parts_;
+  if (!p.window) return false;
+  p.window->MakeCurrent();
+  return p.warmUp();
 }
 
 bool SceneRenderer::complete() const {

@@ -111,6 +111,11 @@ class SceneRenderer {
   // still picture that would take longer comes coarse at first; finer ones follow whole. False
   // while there is work for refine().
   bool paint(unsigned int framebuffer, double budget_ms = std::numeric_limits<double>::infinity());
+  // The first time that something is drawn OpenGL makes its shader, which takes as long as several
+  // frames: in a window, paint() with a budget leaves out what is cold until warmUp() has drawn it
+  // where nobody sees it, one thing a call. False: nothing was left.
+  bool cold() const;
+  bool warmUp();
   // Works for about so long on a finer picture. True when there is another to paint.
   bool refine(double budget_ms);
   bool complete() const;

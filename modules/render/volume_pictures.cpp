@@ -146,8 +146,6 @@ void VolumePictures::sketchCuts(double budget_ms, const Cast& cast) {
   fresh_.setNone(size.x, size.y);
 }
 
-// The first ray waits until OpenGL has made the shader: some 70 ms in software. Alone, and nowhere
-// to be seen, so that the first picture does not take that long too.
 void VolumePictures::warmUp(const Cast& cast) {
   bind(sketch_, 2, 2);
   cast(sketch_, {glm::dvec2(width_, height_), {}}, {0, 0, 1, 1}, 1.0);
@@ -179,10 +177,7 @@ bool VolumePictures::work(double budget_ms, bool moving, const Cast& cast) {
   const Clock::time_point begun = Clock::now();
   bool changed = false;
   const bool unknown = pixels_per_ms_ == 0.0 && budget_ms < kNoLimit;
-  if (unknown && stale_ && !warm_) {
-    warmUp(cast);
-    return false;
-  }
+  if (budget_ms < kNoLimit && cold()) return false;
   if (std::exchange(stale_, false)) {
     next_.step = 0.0;
     const bool resized = std::exchange(resized_, false) && budget_ms < kNoLimit;

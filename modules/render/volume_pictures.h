@@ -33,6 +33,12 @@ class VolumePictures {
   // Works for about so long on what is to be done: the shown picture first, which comes whole where
   // it is stale; then a finer one, unless things move. True when there is another picture to show.
   bool work(double budget_ms, bool moving, const Cast& cast);
+  // The first ray waits until OpenGL has made the caster's shader, which in software takes as long
+  // as several frames: until warmUp() has cast that one, a limited work() does nothing.
+  bool cold() const { return stale_ && pixels_per_ms_ == 0.0 && !warm_; }
+  void warmUp(const Cast& cast);
+  // What it cast, which nobody sees.
+  const Canvas& warmUpCanvas() const { return sketch_; }
   // A whole picture with so many pixels between two rays, for measurements; the next work() starts
   // anew.
   void castAt(double step, double ray_step, const Cast& cast);
@@ -66,7 +72,6 @@ class VolumePictures {
   void castSome(Picture& picture, double budget_ms, const Cast& cast);
   void addCut(const PixelRect& part);  // to the shown one
   void sketchCuts(double budget_ms, const Cast& cast);
-  void warmUp(const Cast& cast);
   void readySketches();
   void finishNext();
   double expected_ms(const CastPlan& plan) const;  // of the shown one

@@ -172,13 +172,13 @@ void Session::startThreads(double seconds) {
   haptic_thread_ = std::thread([engine = engine_, last_tick] {
     rt::nameThread("haptic");
     rt::sharpenTimers();
-    if (!rt::requestRealTime(kHapticPriority)) {
-      spdlog::info("The haptic thread runs without real-time priority");
-    }
     rt::touchStack();
-    engine->locked.emplace();
+    engine->locked.emplace();  // some 70 ms, in which others are to have their turn
     if (!engine->locked->whole()) {
       spdlog::warn("{}", memoryNotLocked(engine->locked->reason()).sentence());
+    }
+    if (!rt::requestRealTime(kHapticPriority)) {
+      spdlog::info("The haptic thread runs without real-time priority");
     }
     engine->memory_known.store(true, std::memory_order_release);
     HostClock clock;

@@ -1,7 +1,8 @@
-// When the event loop of this thread comes round, which is when it looks for input.
+// Turns of this thread's event loop: when it comes round it looks for input.
 #pragma once
 
 #include <QAbstractEventDispatcher>
+#include <QWidget>
 
 namespace trephine {
 
@@ -13,6 +14,16 @@ void onEachTurn(Owner* owner, Function then) {
   const QAbstractEventDispatcher* loop = QAbstractEventDispatcher::instance();
   QObject::connect(loop, &QAbstractEventDispatcher::aboutToBlock, owner, then);
   QObject::connect(loop, &QAbstractEventDispatcher::awake, owner, then);
+}
+
+// What changes in the window in this turn is painted in the next one, all of it at once.
+inline void paintNextTurn(QWidget& window) {
+  window.setUpdatesEnabled(false);
+  auto* once = new QObject(&window);
+  onEachTurn(once, [&window, once] {
+    window.setUpdatesEnabled(true);
+    once->deleteLater();
+  });
 }
 
 }  // namespace trephine

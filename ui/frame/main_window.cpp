@@ -5,10 +5,12 @@
 #include <QMimeData>
 #include <QStatusBar>
 #include <QTimer>
+#include <QWindow>
 #include <algorithm>
 #include <utility>
 
 #include "base/system.h"
+#include "ui/common/event_loop.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -154,11 +156,26 @@ void MainWindow::keep() {
 void MainWindow::showEvent(QShowEvent* event) {
   QMainWindow::showEvent(event);
   if (entered_) return;
+  // Or it would be painted with each step of its layout.
+  setUpdatesEnabled(false);
+  windowHandle()->installEventFilter(this);
   show(place_);
-  // A timer of no time comes when all that waits to be painted is.
-  const auto once_idle = [this] { QTimer::singleShot(0, this, &MainWindow::usable); };
-  if (place_ != Place::cases) return once_idle();
-  connect(cases_, &CasesWorkspace::listed, this, once_idle, Qt::SingleShotConnection);
+  if (place_ != Place::cases) return oneLess();
+  connect(cases_, &CasesWorkspace::listed, this, &MainWindow::oneLess, Qt::SingleShotConnection);
+}
+
+void MainWindow::oneLess() {
+  if (--until_usable_ == 0) emit usable();
+}
+
+bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::Expose && watched == windowHandle()) {
+    watched->removeEventFilter(this);
+    paintNextTurn(*this);
+    constexpr int kPainted_ms = 3;  // after the turn in which all of it is painted
+    QTimer::singleShot(kPainted_ms, this, &MainWindow::oneLess);
+  }
+  return QMainWindow::eventFilter(watched, event);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

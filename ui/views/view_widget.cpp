@@ -75,6 +75,9 @@ ViewWidget::ViewWidget(QWidget* parent)
   refine_.setObjectName("refine");
   refine_.setSingleShot(true);
   connect(&refine_, &QTimer::timeout, this, &ViewWidget::refine);
+  warm_.setObjectName("warm");
+  warm_.setSingleShot(true);
+  connect(&warm_, &QTimer::timeout, this, &ViewWidget::warmUp);
   onEachTurn(this, [this] { worked_ = false; });
 }
 
@@ -213,7 +216,11 @@ void ViewWidget::paintGL() {
   renderer_.paint(defaultFramebufferObject(), kCut_ms);
   if (!moving_ && !renderer_.complete()) refine_.start(0);
   const bool stale = renderer_.stale();  // its volume was sent, and no more
-  if (stale) QTimer::singleShot(0, this, qOverload<>(&ViewWidget::update));
+  if (renderer_.cold()) {
+    warm_.start(0);
+  } else if (stale) {
+    QTimer::singleShot(0, this, qOverload<>(&ViewWidget::update));
+  }
   emit framePainted(double(timer.nsecsElapsed()) * 1e-6, renderer_.hasVolume() && !stale);
   showLevel();
   if (const Status refused = renderer_.refusal(); !refused && !refusal_said_) {
@@ -237,6 +244,16 @@ void ViewWidget::refine() {
   } else if (!renderer_.complete()) {
     refine_.start(timer.elapsed() > 0 ? 0 : kNothingToRefine_ms);
   }
+}
+
+// Each in a turn of the event loop without a picture.
+void ViewWidget::warmUp() {
+  if (!context()) return;
+  if (std::exchange(worked_, true)) return warm_.start(0);
+  makeCurrent();
+  const bool warmed = renderer_.warmUp();
+  doneCurrent();
+  warmed ? warm_.start(0) : update();
 }
 
 // How coarse the picture is, while it is, and the volume behind it.

@@ -113,6 +113,7 @@ class ViewWidget : public QOpenGLWidget {
   void releaseGraphics();
   void redraw();  // the volume too: coarse now, refined when still
   void refine();
+  void warmUp();
   void showLevel();
   void turn(double right_pixels, double down_pixels);
   void fitHint();
@@ -141,7 +142,7 @@ class ViewWidget : public QOpenGLWidget {
   QLabel* hint_;
   QLabel* level_;
   ViewTools* strip_;
-  QTimer still_, refine_;
+  QTimer still_, refine_, warm_;
   ClipTools clip_;
   std::optional<ClipTools::Handle> dragged_;
   bool along_tool_ = false;  // how the plane through the tool lies next

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
+#include "ui/common/event_loop.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -125,6 +126,7 @@ void Bench::setCuts(bool carved, bool unsaved) {
 void Bench::showCase() {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of) return;
+  paintNextTurn(window_);  // and what it takes to show the case is enough for one
   view().setTools({});
   views_->setTools({});
   if (Volume mirror = workstation_.takeMirror(); !mirror.hu.empty()) {

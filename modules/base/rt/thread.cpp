@@ -5,10 +5,13 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 
 namespace trephine::rt {
 
@@ -18,7 +21,9 @@ bool requestRealTime(int priority) {
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
 
-void sharpenTimers() { prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0); }
+void sharpenTimers() {
+  prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0);
+}
 
 void touchStack() {
   constexpr std::size_t kStack = 256 * 1024, kPage = 4096;
@@ -27,12 +32,33 @@ void touchStack() {
 }
 
 namespace {
+
 std::atomic<bool> was_held{false};
+
+// All memory of the process in slices. While the system goes through one, every thread that asks it
+// for more has to wait: for all of a case at once some 70 ms, in which the window stood still. What
+// is gone meanwhile, or refused, is no failure of it: the call for all that follows says so.
+void forEachSlice(int (*use)(const void* at, std::size_t bytes)) {
+  constexpr std::size_t kSlice = 8 << 20;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    std::size_t from = 0, to = 0;
+    char may_read = '-';
+    if (std::sscanf(line.c_str(), "%zx-%zx %c", &from, &to, &may_read) != 3) continue;
+    if (may_read != 'r') continue;  // a guard page
+    for (; from < to; from += std::min(kSlice, to - from)) {
+      (void)use(reinterpret_cast<const void*>(from), std::min(kSlice, to - from));
+    }
+  }
 }
 
+}  // namespace
+
 LockedMemory::LockedMemory() {
+  forEachSlice(::mlock);
   if (::mlockall(MCL_CURRENT) != 0) {
     error_ = errno;
+    ::munlockall();
   } else {
     was_held = true;
   }
@@ -43,7 +69,9 @@ bool LockedMemory::wasHeld() {
 }
 
 void LockedMemory::release() {
-  if (whole()) ::munlockall();
+  if (!whole()) return;
+  forEachSlice(::munlock);
+  ::munlockall();
 }
 
 std::string LockedMemory::reason() const {
@@ -54,6 +82,8 @@ std::string LockedMemory::reason() const {
   return "this account may hold " + std::to_string(limit.rlim_cur / 1024) + " KiB";
 }
 
-void nameThread(const char* name) { pthread_setname_np(pthread_self(), name); }
+void nameThread(const char* name) {
+  pthread_setname_np(pthread_self(), name);
+}
 
 }  // namespace trephine::rt

@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
 
 namespace trephine::rt {
 namespace {
@@ -19,6 +22,29 @@ TEST(LockedMemory, SaysTheLimitThatKeptItFromHolding) {
     std::_Exit(!memory.whole() && said ? 0 : 1);
   };
   EXPECT_EXIT(tryIt(), testing::ExitedWithCode(0), "");
+}
+
+// Of /proc/self/status, kB.
+long heldKb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != "VmLck:") continue;
+    long kb = 0;
+    status >> kb;
+    return kb;
+  }
+  return -1;
+}
+
+TEST(LockedMemory, HoldsAllUntilItIsReleased) {
+  const std::vector<char> much(std::size_t(64) << 20, 1);
+  ASSERT_EQ(heldKb(), 0);
+  LockedMemory memory;
+  if (!memory.whole()) GTEST_SKIP() << "This account may hold no memory: " << memory.reason();
+  EXPECT_GT(heldKb(), 64 * 1024);
+  memory.release();
+  EXPECT_EQ(heldKb(), 0);
+  EXPECT_EQ(much.back(), 1);
 }
 
 }  // namespace

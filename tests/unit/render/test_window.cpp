@@ -89,6 +89,8 @@ constexpr double kTiny_ms = 1e-3;  // less than any picture takes
 // How often it had to be asked until the picture was complete.
 int finish(SceneRenderer& renderer, unsigned int screen) {
   int asked = 1;
+  while (renderer.warmUp()) {
+  }
   while (!renderer.paint(screen, kTiny_ms)) ++asked;
   return asked;
 }
@@ -139,6 +141,11 @@ TEST_F(Window, AToolMovesOverThePictureOfTheVolumeWithoutANewOne) {
   hosted_.paint(screen_->id());
   const Picture without = screen_->read();
   hosted_.setTools({needle(Vec3(0, -40, 0))});
+  EXPECT_TRUE(hosted_.paint(screen_->id(), kTiny_ms)) << "no ray is cast";
+  EXPECT_EQ(screen_->read(), without) << "its shader is not made amid a frame";
+  EXPECT_TRUE(hosted_.cold());
+  EXPECT_TRUE(hosted_.warmUp());
+  EXPECT_FALSE(hosted_.warmUp());
   EXPECT_TRUE(hosted_.paint(screen_->id(), kTiny_ms)) << "no ray is cast";
   const Picture with = screen_->read();
   const Difference seen = difference(without, with);
