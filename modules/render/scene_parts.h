@@ -125,6 +125,9 @@ struct SceneRenderer::Parts {
   void release();
 
   // ---- Tools over the picture: scene_tools.cpp.
+  // Of the window; none where they lie beside it.
+  std::vector<PixelRect> partsOfTools() const;
+  PixelRect partOfOutline() const;
   void drawOutline(const Canvas* shown, const Span& span);  // into `scene`
   void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
   // What a renderer shows in these parts of the window, where tissue leaves it visible.

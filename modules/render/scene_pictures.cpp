@@ -104,7 +104,7 @@ bool SceneRenderer::Parts::work(double budget_ms) {
     const bool limited = budget_ms < std::numeric_limits<double>::infinity();
     if (others && drawsVolume() && limited) return false;
   }
-  if (!drawsVolume()) return std::exchange(scene_stale, false);
+  if (!drawsVolume()) return scene_stale;
   if (!volume.labelsSent()) {
     const auto begun = std::chrono::steady_clock::now();
     sendLabels(budget_ms);
@@ -185,8 +185,8 @@ bool SceneRenderer::Parts::Warm::*SceneRenderer::Parts::nextCold() const {
   if (!warm.background) return &Warm::background;
   if (!mirror->empty() && !fitted) return nullptr;
   if (drawsVolume() && (!warm.volume || pictures.cold())) return &Warm::volume;
-  if (outline.box() && !warm.outline) return &Warm::outline;
-  if (!tools.boxes().empty() && !warm.tools) return &Warm::tools;
+  if (!warm.outline && !partOfOutline().empty()) return &Warm::outline;
+  if (!warm.tools && !partsOfTools().empty()) return &Warm::tools;
   return nullptr;
 }
 
@@ -208,8 +208,12 @@ bool SceneRenderer::Parts::warmUp() {
     composer.drawVolume(shown ? shown : &pictures.warmUpCanvas(), span, width, height);
   } else if (next == &Warm::outline) {
     drawOutline(shown, span);
-  } else {
+  } else {  // with the marks of contact
+    std::vector<ToolView> touching = tool_views;
+    for (ToolView& tool : touching) tool.contact = true;
+    tools.show(touching, *tool_renderer);
     drawTools(scene.framebuffer(), shown, span);
+    tools.show(tool_views, *tool_renderer);
   }
   glFinish();
   warm.*next = true;

@@ -116,7 +116,8 @@ class SceneRenderer {
   // where nobody sees it, one thing a call. False: nothing was left.
   bool cold() const;
   bool warmUp();
-  // Works for about so long on a finer picture. True when there is another to paint.
+  // Works for about so long on a finer picture, where nothing of it is cold. True when there is
+  // another to paint.
   bool refine(double budget_ms);
   bool complete() const;
   // The volume has no picture as it is to be seen now: the next paint makes one.

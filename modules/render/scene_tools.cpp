@@ -25,22 +25,30 @@ constexpr double kOutlineOpacity = 0.65;
 
 }  // namespace
 
-void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* shown,
-                                     const Span& span) {
+std::vector<PixelRect> SceneRenderer::Parts::partsOfTools() const {
   std::vector<PixelRect> parts;
   for (const auto& box : tools.boxes()) {
     const PixelRect part = around(box.data(), box.size(), 2);
     if (!part.empty()) parts.push_back(part);
   }
-  drawSolids(*tool_renderer, 1.0, parts, framebuffer, shown, span);
+  return parts;
+}
+
+PixelRect SceneRenderer::Parts::partOfOutline() const {
+  const auto box = outline.box();
+  return box ? around(box->data(), box->size(), 2) : PixelRect{};
+}
+
+void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* shown,
+                                     const Span& span) {
+  drawSolids(*tool_renderer, 1.0, partsOfTools(), framebuffer, shown, span);
 }
 
 void SceneRenderer::Parts::drawOutline(const Canvas* shown, const Span& span) {
-  const auto box = outline.box();
-  if (!box) return;
+  if (!outline.box()) return;
   outline.lift(camera);
-  drawSolids(*outline_renderer, kOutlineOpacity, {around(box->data(), box->size(), 2)},
-             scene.framebuffer(), shown, span);
+  drawSolids(*outline_renderer, kOutlineOpacity, {partOfOutline()}, scene.framebuffer(), shown,
+             span);
 }
 
 void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,

@@ -236,9 +236,8 @@ void VolumePictures::release() {
   }
   sketch_.release();
   sketches_ready_ = false;
-  warm_ = false;
-  stale_ = true;
   allocated_ = true;
+  startAnew();
 }
 
 }  // namespace trephine

@@ -103,11 +103,11 @@ QString toolWord(const SceneTool& tool) {
 QString controllerWord(ControllerKind kind) {
   switch (kind) {
     case ControllerKind::off:
-      return tr("Nothing");
+      return tr("Nothing (off)");
     case ControllerKind::seed:
-      return tr("Energy alone");
+      return tr("Energy (seed)");
     case ControllerKind::bounded:
-      return tr("Force limits");
+      return tr("Limits (bounded)");
   }
   return {};
 }

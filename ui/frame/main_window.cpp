@@ -155,7 +155,7 @@ void MainWindow::keep() {
 
 void MainWindow::showEvent(QShowEvent* event) {
   QMainWindow::showEvent(event);
-  if (entered_) return;
+  if (entered_) return setUpdatesEnabled(true);
   // Or it would be painted with each step of its layout.
   setUpdatesEnabled(false);
   windowHandle()->installEventFilter(this);
@@ -164,16 +164,19 @@ void MainWindow::showEvent(QShowEvent* event) {
   connect(cases_, &CasesWorkspace::listed, this, &MainWindow::oneLess, Qt::SingleShotConnection);
 }
 
+// Once what it changed is painted: in the turn after this one.
 void MainWindow::oneLess() {
-  if (--until_usable_ == 0) emit usable();
+  constexpr int kPainted_ms = 3;
+  QTimer::singleShot(kPainted_ms, this, [this] {
+    if (--until_usable_ == 0) emit usable();
+  });
 }
 
 bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
-  if (event->type() == QEvent::Expose && watched == windowHandle()) {
+  if (event->type() == QEvent::Expose && watched == windowHandle() && windowHandle()->isExposed()) {
     watched->removeEventFilter(this);
     paintNextTurn(*this);
-    constexpr int kPainted_ms = 3;  // after the turn in which all of it is painted
-    QTimer::singleShot(kPainted_ms, this, &MainWindow::oneLess);
+    oneLess();
   }
   return QMainWindow::eventFilter(watched, event);
 }

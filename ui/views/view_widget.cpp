@@ -232,6 +232,7 @@ void ViewWidget::paintGL() {
 
 void ViewWidget::refine() {
   if (!isVisible() || !context() || moving_) return;
+  if (warm_.isActive()) return refine_.start(0);  // what is missing goes before what is coarse
   // Input is looked for after each picture and each step towards a finer one.
   if (std::exchange(worked_, true)) return refine_.start(0);
   QElapsedTimer timer;

@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -52,13 +53,21 @@ void forEachSlice(int (*use)(const void* at, std::size_t bytes)) {
   }
 }
 
+// Whether this account may hold so much that slices are worth it; the system decides.
+bool mayHold() {
+  rlimit limit{};
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return ::geteuid() == 0 || (::getrlimit(RLIMIT_MEMLOCK, &limit) == 0 &&
+                              pages * std::size_t(::sysconf(_SC_PAGESIZE)) <= limit.rlim_cur);
+}
+
 }  // namespace
 
 LockedMemory::LockedMemory() {
-  forEachSlice(::mlock);
+  if (mayHold()) forEachSlice(::mlock);
   if (::mlockall(MCL_CURRENT) != 0) {
     error_ = errno;
-    ::munlockall();
   } else {
     was_held = true;
   }

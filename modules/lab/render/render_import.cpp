@@ -29,7 +29,9 @@ Status measureFirstPicture(const RenderOptions& options, const std::filesystem::
   mirror->show(copyOf(*of->volume), nullptr, of->volume);
   renderer.setMirror(std::move(mirror));
   renderer.setMoving(true);  // as the window draws what is new
-  renderer.paint(0, 50.0);
+  do {  // the first sends the volume, and no more
+    renderer.paint(0, 50.0);
+  } while (renderer.stale());
   result.first_picture_ms = msSince(start);
   return {};
 }

@@ -127,7 +127,6 @@ class TrainControlsGuiTest : public test::TrainTest {
     QVERIFY(writeTextFile(file, scene.dump()));
     openScene(file);
     QVERIFY(workstation().scene()->anatomy == "abdomen");
-    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     find<QAction>("start")->trigger();
     answer("misfitQuestion", "changeExercise");
     QTRY_VERIFY_WITH_TIMEOUT(workstation().scene()->anatomy == "cranium", kLong_ms);
