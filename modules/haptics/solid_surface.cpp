@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace trephine {
 
@@ -35,7 +36,9 @@ int cellOf(const Vec3& d, int n) {
   if (std::abs(d.z) > std::abs(d[axis])) axis = 2;
   const double size = std::abs(d[axis]);
   if (!(size > 0.0)) return 0;
-  const auto at = [&](double value) { return std::min(n - 1, int((value / size + 1.0) * 0.5 * n)); };
+  const auto at = [&](double value) {
+    return std::min(n - 1, int((value / size + 1.0) * 0.5 * n));
+  };
   const int face = 2 * axis + (d[axis] < 0.0 ? 1 : 0);
   return (face * n + at(d[(axis + 1) % 3])) * n + at(d[(axis + 2) % 3]);
 }
@@ -116,31 +119,39 @@ SolidSurface::SolidSurface(const Tool& tool, const GridGeometry& geometry)
   margin_mm_ = std::max(kMargin * voxel_mm_, kLeastMargin_mm);
   reach_mm_ = 0.0;
   int cells = 0;
-  std::size_t stretches = 0;
+  std::size_t stretches = 0, most = 0;  // found at once
   for (const BodyPart& part : tool.body) {
     parts_mm_.push_back(
         {1000.0 * part.from_m, 1000.0 * part.to_m, 1000.0 * part.radius_m, part.cuts});
     const BodyPart& mm = parts_mm_.back();
-    reach_mm_ = std::max({reach_mm_, glm::length(mm.from_m) + mm.radius_m,
-                          glm::length(mm.to_m) + mm.radius_m});
+    reach_mm_ = std::max(
+        {reach_mm_, glm::length(mm.from_m) + mm.radius_m, glm::length(mm.to_m) + mm.radius_m});
     const double length = glm::length(mm.to_m - mm.from_m);
     Cells of;
-    // A face of a cube around the part is a quarter of its turn wide: cells of half a row's distance.
+    // A face of a cube around the part is a quarter of its turn wide: cells of half a row's
+    // distance.
     of.apart = rowsApart(mm.radius_m);
     const double cell_mm = 0.5 * std::min({s.x, of.apart[1] * s.y, of.apart[2] * s.z});
-    of.directions =
-        std::clamp(int(std::ceil(1.6 * mm.radius_m / cell_mm)), 2, kMostDirections);
+    of.directions = std::clamp(int(std::ceil(1.6 * mm.radius_m / cell_mm)), 2, kMostDirections);
     of.along = std::clamp(int(std::ceil(length / std::max(cell_mm, kLeastCell_mm))), 1, kMostAlong);
     of.first = cells;
-    cells += of.along * 6 * of.directions * of.directions;
+    const int all = of.along * 6 * of.directions * of.directions;
+    cells += all;
     cells_.push_back(of);
-    stretches += std::size_t(length / kStretch_mm) + 1;
+    const std::size_t count = std::size_t(length / kStretch_mm) + 1;
+    stretches += count;
+    // No more than voxels within reach of its stretches: a long thin part has many times the cells.
+    const double around_mm = mm.radius_m + margin_mm_ + 2.0 * half_diagonal_mm_;
+    const double around_mm3 = std::numbers::pi * around_mm * around_mm *
+                              (std::min(length, kStretch_mm) + 4.0 / 3.0 * around_mm);
+    const double voxels = double(count) * std::ceil(around_mm3 / (s.x * s.y * s.z));
+    most += std::size_t(std::min(double(all), voxels));
   }
   near_reach_mm_ = reach_mm_;
-  pieces_.reserve(std::size_t(cells));
-  next_.reserve(std::size_t(cells));
+  pieces_.reserve(most);
+  next_.reserve(most);
   stretches_.reserve(stretches);
-  found_.reserve(std::size_t(cells));
+  found_.reserve(most);
   cell_.assign(std::size_t(cells), 0);
   stamp_.assign(std::size_t(cells), 0);
 }
@@ -348,8 +359,7 @@ Index3 SolidSurface::rowsApart(double radius_mm) const {
 // Keeps the voxel if it is the nearest of its cell, which is one at the surface.
 void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   const Vec3 centre = Vec3(voxel[0], voxel[1], voxel[2]) * spacing_mm_;
-  const double on_axis =
-      nearestOn(stretch.axis.from, stretch.along, stretch.per_length2, centre);
+  const double on_axis = nearestOn(stretch.axis.from, stretch.along, stretch.per_length2, centre);
   const Vec3 away = centre - (stretch.axis.from + on_axis * stretch.along);
   const double distance2 = glm::dot(away, away);
   const double farthest = stretch.axis.radius + margin_mm_ + half_diagonal_mm_;
@@ -357,9 +367,9 @@ void SolidSurface::find(const Index3& voxel, const Stretch& stretch) {
   const Cells& cells = cells_[stretch.part];
   const double on_part = stretch.from + on_axis * stretch.share;
   const int along = std::min(cells.along - 1, int(on_part * cells.along));
-  const std::size_t cell = std::size_t(
-      cells.first + along * 6 * cells.directions * cells.directions +
-      cellOf(away, cells.directions));
+  const std::size_t cell =
+      std::size_t(cells.first + along * 6 * cells.directions * cells.directions +
+                  cellOf(away, cells.directions));
   if (stamp_[cell] != turn_) {
     stamp_[cell] = turn_;
     cell_[cell] = std::int32_t(found_.size());

@@ -63,7 +63,7 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
 }
 
 void ResultPage::showResult(const ExerciseResult& result) {
-  title_->setText(tr("Done: %1").arg(result.exercise));
+  title_->setText(tr("Result: %1").arg(result.exercise));
   time_->setText(tr("Time %1").arg(timeWords(std::uint32_t(result.seconds))));
   QString html = title(tr("Removed"));
   double all = 0.0;
@@ -84,7 +84,8 @@ void ResultPage::showResult(const ExerciseResult& result) {
     html += row(way.hand,
                 tr("%1 cm, at most %2 N").arg(way.mm / 10.0, 0, 'f', 1).arg(way.most_N, 0, 'f', 1));
   }
-  if (result.late > 0) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
+  if (result.late == 1) html += row(tr("Force came late"), tr("once"));
+  if (result.late > 1) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
   replay_->setEnabled(result.recorded);
   show();

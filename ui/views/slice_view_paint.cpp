@@ -246,12 +246,14 @@ void SliceView::paintText(QPainter& painter) const {
   paintWords(painter, box, Qt::AlignLeft | Qt::AlignTop, place, colourOf(axis_));
   const HuWindow& window = colours_.window();
   // The letters at the edges do not say from which side a slice is seen.
-  const QString shades = tr("from %1, W %2 L %3")
-                             .arg(QLatin1Char(patientLetter(-stack_.direction[2])))
-                             .arg(window.width_hu)
-                             .arg(window.centre_hu);
-  paintWords(painter, box.adjusted(0, line, 0, 0), Qt::AlignLeft | Qt::AlignTop, shades,
-             colours::kText);
+  const QString side = tr("from %1").arg(QLatin1Char(patientLetter(-stack_.direction[2])));
+  const QString shades = tr("W %1 L %2").arg(window.width_hu).arg(window.centre_hu);
+  QStringList lines{tr("%1, %2").arg(side, shades)};
+  if (painter.fontMetrics().horizontalAdvance(lines[0]) > box.width()) lines = {side, shades};
+  for (qsizetype n = 0; n < lines.size(); ++n) {
+    paintWords(painter, box.adjusted(0, line * double(n + 1), 0, 0), Qt::AlignLeft | Qt::AlignTop,
+               lines[n], colours::kText);
+  }
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
   const QString words =
       painter.fontMetrics().elidedText(readout(), Qt::ElideRight, int(box.width()));

@@ -217,7 +217,7 @@ void ViewWidget::paintGL() {
   if (!moving_ && !renderer_.complete()) refine_.start(0);
   const bool stale = renderer_.stale();  // its volume was sent, and no more
   if (renderer_.cold()) {
-    warm_.start(0);
+    if (!warm_.isActive()) warm_.start(0);
   } else if (stale) {
     QTimer::singleShot(0, this, qOverload<>(&ViewWidget::update));
   }
@@ -247,10 +247,11 @@ void ViewWidget::refine() {
   }
 }
 
-// Each in a turn of the event loop without a picture.
+// Each in a turn of the event loop without a picture, unless every turn has one.
 void ViewWidget::warmUp() {
   if (!context()) return;
-  if (std::exchange(worked_, true)) return warm_.start(0);
+  if (std::exchange(worked_, true) && !std::exchange(put_off_, true)) return warm_.start(0);
+  put_off_ = false;
   makeCurrent();
   const bool warmed = renderer_.warmUp();
   doneCurrent();

@@ -158,6 +158,7 @@ class ViewWidget : public QOpenGLWidget {
   bool training_ = false;
   bool resizing_ = false;
   bool worked_ = false;  // since the event loop came round
+  bool put_off_ = false;  // what is to be warmed
   bool moving_ = false;
   bool refusal_said_ = false;
 };

@@ -47,7 +47,7 @@ class CopiesGuiTest : public test::WindowTest {
   }
   void settle() {
     bool whole = false;
-    for (int i = 0; i < 10 && !(whole && i > 1); ++i) {
+    for (int i = 0; i < 40 && !(whole && i > 1); ++i) {
       QSignalSpy painted(&window_->view(), &ViewWidget::framePainted);
       window_->view().update();
       QVERIFY(painted.wait(kLong_ms));
@@ -123,7 +123,7 @@ class CopiesGuiTest : public test::WindowTest {
     const double copies = (opened_mb + running_mb - beside_mb) / copy_mb;
     std::printf("practised on: %.2f copies, and %.0f MB beside them\n", copies, beside_mb);
     QCOMPARE(workstation().session()->grid().geometry().voxelCount(), count);
-    QVERIFY(std::abs(copies - 3.0) < 0.4);
+    QVERIFY(std::abs(copies - 3.0) < 0.3);
     stop();
     QCOMPARE(std::size_t(test::hashed_bytes), 2 * 2 * count);
     const double ended_mb = test::privateDirtyMb() - baseline_mb;

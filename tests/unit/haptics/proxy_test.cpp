@@ -1,8 +1,10 @@
 // Where a tool can be: never in uncut solid tissue, whatever its arm does.
 #include "haptics/proxy.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/rt/alloc_guard.h"
 #include "haptics/hand_work.h"
 #include "haptics_support.h"
 
@@ -74,6 +76,29 @@ Quat turnAbout(const Vec3& axis, double angle) {
 }
 
 const Tool kTools[] = {makeNeedle(0.06), makeBlade(0.016, 16), makeBurr(0.003, 32, 8, 0.03)};
+
+// Amid bone wherever it lies, turned in every way: as much to find as there can be.
+TEST(SolidSurface, FindsAllThatThereIsAroundAToolWithoutAllocating) {
+  Volume block = cube();
+  std::ranges::fill(block.hu, test::kBoneHu);
+  Surroundings bone(std::move(block));
+  for (const Tool& tool : kTools) {
+    SolidSurface surface(tool, bone.grid.geometry());
+    std::size_t most = 0;
+    for (int n = 0; n < 24; ++n) {
+      const Pose pose_mm{Vec3(0.13, -0.2, -8.0), turnAbout(Vec3(1, n % 5, n % 3), 0.26 * n)};
+      const std::uint64_t before = rt::guardedAllocations();
+      {
+        rt::NoAllocation guard;
+        surface.begin(bone.tissue(), surface.place(pose_mm), Cutting::nothing);
+        ASSERT_TRUE(surface.goOn(bone.tissue(), SolidSurface::kAll));
+      }
+      ASSERT_EQ(rt::guardedAllocations(), before) << int(tool.made_from.kind) << " " << n;
+      most = std::max(most, surface.pieces().size());
+    }
+    EXPECT_GT(most, 20u);
+  }
+}
 
 TEST(Proxy, HeldBackByAPauseOnItsWayThroughAirIsPulledByNothing) {
   Surroundings bone(cube());
