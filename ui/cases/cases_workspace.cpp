@@ -124,10 +124,10 @@ void CasesWorkspace::connectParts() {
   connect(&bench_, &Bench::said, import_, &ImportPage::say);
 
   connect(&workstation_, &Workstation::caseOpened, this, [this] {
+    open_deleted_ = false;
     page_->sayInStrip({});
     showCase();
     if (import_to_save_) saveCase();
-    bench_.go(std::exchange(then_, Place::prepare));
     const std::string& id = workstation_.currentCase()->stored;
     if (id.empty()) return;
     QStringList recent = read(settings::kRecentCases);
@@ -135,7 +135,6 @@ void CasesWorkspace::connectParts() {
     recent.prepend(toQt(id));
     write(settings::kRecentCases, recent.mid(0, kMostRecent));
   });
-  connect(&workstation_, &Workstation::failed, this, [this] { then_ = Place::prepare; });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &CasesWorkspace::showPhase);
 }
@@ -168,7 +167,7 @@ void CasesWorkspace::askForScene() {
 
 void CasesWorkspace::open(const std::filesystem::path& path) {
   const auto go_on = [this, path] {
-    then_ = Workstation::isScene(path) ? Place::train : Place::prepare;
+    bench_.goOnceOpen(Workstation::isScene(path) ? Place::train : Place::prepare);
     workstation_.openPath(path);
   };
   if (!Workstation::isScene(path)) return go_on();
@@ -197,7 +196,7 @@ void CasesWorkspace::openEntry(const CaseEntry& entry, Place then) {
   if (open && !entry.built_in && open->stored == entry.id) return bench_.go(then);
   const auto begin = [this, then](auto go_on) {
     return [this, then, go_on] {
-      then_ = then;
+      bench_.goOnceOpen(then);
       import_to_save_.reset();
       go_on();
     };
@@ -272,6 +271,7 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                       const std::optional<Case>& open = workstation_.currentCase();
                       if (open && open->stored == renamed->id) {
                         workstation_.setStored(renamed->id, renamed->name);
+                        page_->sayInStrip({});
                         showCase();
                       }
                       list();
@@ -296,8 +296,13 @@ void CasesWorkspace::askToDelete(const CaseEntry& entry) {
                           [this, entry](Status removed) {
                             if (!removed) bench_.report(removed.error());
                             const std::optional<Case>& open = workstation_.currentCase();
-                            if (removed && open && open->stored == entry.id)
+                            if (removed && open && open->stored == entry.id) {
                               workstation_.setStored({});
+                              open_deleted_ = true;
+                              page_->sayInStrip(tr("\"%1\" is deleted. It stays in the views "
+                                                   "until another case is opened.")
+                                                    .arg(toQt(entry.record.name)));
+                            }
                             list();
                             showCase();
                           });
@@ -335,7 +340,7 @@ void CasesWorkspace::caseRead(const Case& read, const std::filesystem::path& lab
   to_save.source = workstation_.import().identity();
   bench_.unlessLost({Bench::Loss::structures, Bench::Loss::cuts}, [this, read, labels, to_save] {
     bench_.setCaseSource(workstation_.import().source());
-    then_ = Place::prepare;
+    bench_.goOnceOpen(Place::prepare);
     import_to_save_ = to_save;
     workstation_.openImported(read, labels);
   });
@@ -352,7 +357,7 @@ void CasesWorkspace::showCase() {
   if (!of) return;
   const bool phantom = of->built_in;
   const std::string id = phantom ? workstation_.scene()->anatomy : of->stored;
-  page_->showOpen(id, caseWords(*of), phantom || !of->stored.empty());
+  page_->showOpen(id, caseWords(*of), phantom || open_deleted_ || !of->stored.empty());
 }
 
 void CasesWorkspace::showPhase() {

@@ -57,7 +57,7 @@ class CasesWorkspace : public Workspace {
   CasesPage* page_;
   ImportPage* import_;
   std::optional<NewCase> import_to_save_;  // of what is being opened: what the importer knows of it
-  Place then_ = Place::prepare;            // once the case that opens is there
+  bool open_deleted_ = false;  // the open case was; it is not offered to be saved
   bool list_again_ = false;
   BackgroundTask listing_, changing_;  // last: joined before what they use goes
 };

@@ -24,6 +24,9 @@ inline QColor kBad(0xe0, 0x62, 0x5a);
 inline QColor kLeftArm(0x55, 0xb9, 0xd6);
 inline QColor kRightArm(0xee, 0xa2, 0x4b);
 
+// Of words over a picture, which is dark in either theme.
+inline const QColor kOnPicture(0xe4, 0xe6, 0xea);
+
 enum class Theme { dark, light };
 
 // Fusion style, palette and a few style rules; text so many per cent of its usual size. Before the

@@ -211,6 +211,16 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 
 // --- Saying ---
 
+// What is practised, and on which case: what its series was called may name somebody.
+void MainWindow::showTitle() {
+  const std::optional<Case>& of = workstation().currentCase();
+  QStringList words;
+  if (workstation().scene()) words << toQt(workstation().scene()->name);
+  if (of && !of->stored.empty()) words << toQt(of->name);
+  words << tr("Trephine");
+  setWindowTitle(words.join(QStringLiteral(" \u2013 ")));
+}
+
 void MainWindow::showHint() {
   hint_->setText(!help_words_.isEmpty()    ? help_words_
                  : room(place_).parts.page ? QString()
@@ -231,7 +241,13 @@ void MainWindow::showAbout() {
 }
 
 void MainWindow::showShortcuts() {
-  (new ShortcutsPage(*this, views().helpOfViews(), this))->show();
+  QList<QPair<QString, QString>> views = this->views().helpOfViews();
+  views.prepend({tr("While an exercise runs, over the 3-D view"),
+                 tr("Mouse, arrow keys: where the tool goes. Wheel up, Page Down: press more. "
+                    "Wheel down, Page Up: press less. Shift+arrow keys: tilt the tool. Shift+Home: "
+                    "the tool upright again. Tab: the other hand. Space: pause. Right drag, "
+                    "Ctrl+arrow keys: turn the view. Ctrl+wheel: zoom.")});
+  (new ShortcutsPage(*this, views, this))->show();
 }
 
 void MainWindow::showSettings() {

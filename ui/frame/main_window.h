@@ -77,6 +77,7 @@ class MainWindow : public QMainWindow {
   void connectParts();
   const Room& room(Place place) const { return rooms_[std::size_t(place)]; }
   void oneLess();  // of what there is to be done until it is usable
+  void showTitle();
   void showPanels();
   void showHint();
   void keepColumns();

@@ -238,11 +238,9 @@ void MainWindow::connectParts() {
   };
   connect(&workstation, &Workstation::phaseChanged, this, showPhase);
   showPhase();
-  connect(&workstation, &Workstation::sceneChanged, this, [this] {
-    if (const auto& scene = this->workstation().scene()) {
-      setWindowTitle(tr("%1 \u2013 Trephine").arg(toQt(scene->name)));
-    }
-  });
+  for (auto changed : {&Workstation::sceneChanged, &Workstation::caseNamed}) {
+    connect(&workstation, changed, this, &MainWindow::showTitle);
+  }
   connect(&workstation, &Workstation::openingProgressed, this,
           [this](double fraction, const QString& step) {
             if (this->workstation().isPlacing()) return;  // a moment, of what is on the screen

@@ -81,16 +81,21 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   later_->setWordWrap(true);
 
   auto* form = new QFormLayout;
-  form->addRow(tr("&Storage folder"), storage_row);
-  form->labelForField(storage_row);
+  // A field that is more than one widget is not found by its label.
+  const auto add = [&](const QString& words, QLayout* field, QWidget* buddy) {
+    auto* label = new QLabel(words, this);
+    label->setBuddy(buddy);
+    form->addRow(label, field);
+  };
+  add(tr("&Storage folder"), storage_row, storage_);
   form->addRow(tr("&Language"), language_);
   form->addRow(tr("&Theme"), theme_);
-  form->addRow(tr("Size of te&xt"), text_->withReason());
-  form->addRow(tr("An arm &gives at most"), arm_limit_->withReason());
+  add(tr("Size of te&xt"), text_->withReason(), text_);
+  add(tr("An arm &gives at most"), arm_limit_->withReason(), arm_limit_);
   form->addRow(QString(), swapped_);
   form->addRow(tr("The mouse &begins with the"), hand_);
-  form->addRow(tr("One notch of the &wheel pushes by"), push_->withReason());
-  form->addRow(tr("An &arrow key moves by"), step_->withReason());
+  add(tr("One notch of the &wheel pushes by"), push_->withReason(), push_);
+  add(tr("An &arrow key moves by"), step_->withReason(), step_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Cancel);
   connect(buttons, &QDialogButtonBox::accepted, this, &SettingsDialog::save);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);

@@ -75,7 +75,8 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   keys_ = wrapped("exerciseKeys");
   keys_->setProperty("quiet", true);
   keys_->setText(
-      tr("Mouse: where the tool goes. Wheel: how hard it presses. Shift and arrows: tilt. Tab: the "
+      tr("Mouse: where the tool goes. Wheel up or down: presses more or less. Shift and arrows: "
+         "tilt. Tab: the "
          "other hand. Space: pause. Right drag: turn the view."));
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(12, 10, 12, 10);

@@ -27,14 +27,26 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
     if (session_) session_->straightenHand(active_);
   });
   connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
+    // What is not felt while it is set would come as a stab.
+    if (session_ && session_->state().paused && notches > 0.0) return;
     setPush(push_N() + notches * readWithin(settings::kPushStep_N, 0.05, 1.0));
   });
   connect(&view_, &ViewWidget::otherHandWanted, this, &PointerHands::takeOther);
+  connect(&view_, &ViewWidget::resized, this, &PointerHands::letGo);
+}
+
+// Another place of the tissue is under the pointer, though no hand has moved: until it does, the
+// tool is drawn out where it is.
+void PointerHands::letGo() {
+  if (!session_ || !place_) return;
+  lets_go_ = true;
+  setPush(0.0);
 }
 
 void PointerHands::begin(Session* session) {
   session_ = session;
   place_.reset();
+  lets_go_ = false;
   active_ = 0;
   if (session_) {
     const std::string main = read(settings::kMainHand).toStdString();
@@ -73,6 +85,7 @@ void PointerHands::point(const QPointF& place) {
   if (!session_) return;
   const bool first = !place_;
   place_ = place;
+  lets_go_ = false;
   send();
   if (first) emit changed();
 }
@@ -95,7 +108,7 @@ void PointerHands::tilt(int right, int up) {
 }
 
 void PointerHands::follow() {
-  if (place_) send();
+  if (place_ && !lets_go_) send();
 }
 
 void PointerHands::send() {

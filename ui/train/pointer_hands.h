@@ -36,6 +36,7 @@ class PointerHands : public QObject {
   void changed();  // active(), push_N(), taken()
 
  private:
+  void letGo();
   void point(const QPointF& place);
   void send();
   void step(int right, int up);
@@ -45,6 +46,7 @@ class PointerHands : public QObject {
   Session* session_ = nullptr;
   std::size_t active_ = 0;
   std::optional<QPointF> place_;  // of the view
+  bool lets_go_ = false;          // until the pointer moves
 };
 
 }  // namespace trephine

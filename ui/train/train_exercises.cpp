@@ -32,8 +32,14 @@ void TrainWorkspace::chooseScene(int index) {
   const std::optional<Case>& of = workstation_.currentCase();
   std::vector<Bench::Loss> losses{Bench::Loss::cuts, Bench::Loss::tissues};
   if (of && of->built_in) losses.insert(losses.begin(), Bench::Loss::structures);
-  bench_.unlessLost(losses, [this, file] { workstation_.useScene(file); });
+  bench_.unlessLost(losses, [this, file] { useScene(file); });
   view_->setFocus();
+}
+
+// One stays where one is: the list is over Prepare too.
+void TrainWorkspace::useScene(const std::filesystem::path& file) {
+  bench_.goOnceOpen(here_ ? Place::train : Place::prepare);
+  workstation_.useScene(file);
 }
 
 // In the list of exercises; without a scene, the one that an imported case would get.
@@ -148,7 +154,7 @@ void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
         other, &QPushButton::clicked, this,
         [this, file] {
           bench_.unlessLost({Bench::Loss::cuts, Bench::Loss::tissues},
-                            [this, file] { workstation_.useScene(file); });
+                            [this, file] { useScene(file); });
         },
         Qt::QueuedConnection);
   } else if (lacks) {

@@ -141,6 +141,7 @@ void TrainWorkspace::connectParts() {
 
   connect(&bench_, &Bench::caseShown, this, [this] {
     warned_ = result_shown_ = false;
+    exercise_->showIdle();  // of the exercise before
     sayWhatIsOpen();
     showOutline();
     showCard();
@@ -208,7 +209,7 @@ void TrainWorkspace::showPhase() {
       return bench_.hint(tr("Ending the recording\u2026"));
     case Phase::running:
       return bench_.hint(
-          tr("Space: pause. Mouse: the tool. Wheel: press. Tab: other hand. Right drag: turn."));
+          tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
       bench_.hint(opening ? tr("Opening a case\u2026")
                   : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")

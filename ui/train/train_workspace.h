@@ -59,6 +59,7 @@ class TrainWorkspace : public Workspace {
   void connectParts();
   void fillScenes();
   void chooseScene(int index);
+  void useScene(const std::filesystem::path& file);
   void showScene();
   void showOpening(const Scene& scene, const std::filesystem::path& file);
   void sayWhatIsOpen();

@@ -130,7 +130,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), Qt::black);
   if (!hasSlice()) {
-    painter.setPen(colours::kQuiet);
+    painter.setPen(colours::kOnPicture);
     painter.drawText(rect().adjusted(24, 24, -24, -24), Qt::AlignCenter | Qt::TextWordWrap,
                      message_);
     return;
@@ -149,7 +149,7 @@ void SlicePane::paintLetters(QPainter& painter) const {
   const QRectF inside = QRectF(rect()).adjusted(6, 4, -6, -4);
   const auto letter = [&](int alignment, const Vec3& towards) {
     paintWords(painter, inside, alignment, QString(QLatin1Char(patientLetter(towards))),
-               colours::kText);
+               colours::kOnPicture);
   };
   letter(Qt::AlignRight | Qt::AlignVCenter, right);
   letter(Qt::AlignLeft | Qt::AlignVCenter, -right);
@@ -172,9 +172,9 @@ void SlicePane::paintScaleBar(QPainter& painter) const {
     for (double x : {left, right}) painter.drawLine(QPointF(x, y - 3.0), QPointF(x, y + 3.0));
   };
   bar(QColor(0, 0, 0, 200), 3.0);
-  bar(colours::kText, 1.0);
+  bar(colours::kOnPicture, 1.0);
   paintWords(painter, QRectF(left - 60.0, y - 24.0, right - left + 60.0, 20.0),
-             Qt::AlignRight | Qt::AlignBottom, tr("%1 mm").arg(mm), colours::kText);
+             Qt::AlignRight | Qt::AlignBottom, tr("%1 mm").arg(mm), colours::kOnPicture);
 }
 
 }  // namespace trephine

@@ -147,7 +147,7 @@ void SliceView::paintBrush(QPainter& painter) const {
   if (!pointer_ || !isBrush(tool_)) return;
   const double pixels = std::max(1.5, brush_mm_ * pixelsPerMm());
   painter.setBrush(Qt::NoBrush);
-  const QColor colour = tool_ == SliceTool::eraser ? colours::kCaution : colours::kText;
+  const QColor colour = tool_ == SliceTool::eraser ? colours::kCaution : colours::kOnPicture;
   for (const auto& [with, thick] : {std::pair(QColor(0, 0, 0, 180), 3.0), {colour, 1.2}}) {
     painter.setPen(QPen(with, thick));
     painter.drawEllipse(*pointer_, pixels, pixels);
@@ -159,7 +159,7 @@ void SliceView::paintBox(QPainter& painter) const {
   const auto draw = [&](const QRectF& sides, Qt::PenStyle style) {
     painter.setBrush(Qt::NoBrush);
     for (const auto& [with, thick] :
-         {std::pair(QColor(0, 0, 0, 180), 3.0), std::pair(QColor(colours::kText), 1.2)}) {
+         {std::pair(QColor(0, 0, 0, 180), 3.0), std::pair(QColor(colours::kOnPicture), 1.2)}) {
       painter.setPen(QPen(with, thick, style));
       painter.drawRect(sides);
     }
@@ -252,7 +252,7 @@ void SliceView::paintText(QPainter& painter) const {
   if (painter.fontMetrics().horizontalAdvance(lines[0]) > box.width()) lines = {side, shades};
   for (qsizetype n = 0; n < lines.size(); ++n) {
     paintWords(painter, box.adjusted(0, line * double(n + 1), 0, 0), Qt::AlignLeft | Qt::AlignTop,
-               lines[n], colours::kText);
+               lines[n], colours::kOnPicture);
   }
   box.setRight(box.right() - (narrow ? 0.0 : 0.25 * width() + 12.0));  // the scale bar's
   const QString words =
@@ -260,7 +260,7 @@ void SliceView::paintText(QPainter& painter) const {
   // Above the letter in the middle, where they would reach it.
   const bool long_words = painter.fontMetrics().horizontalAdvance(words) > 0.5 * width() - 20.0;
   if (narrow || long_words) box.setBottom(box.bottom() - line);
-  paintWords(painter, box, Qt::AlignLeft | Qt::AlignBottom, words, colours::kText);
+  paintWords(painter, box, Qt::AlignLeft | Qt::AlignBottom, words, colours::kOnPicture);
 }
 
 }  // namespace trephine

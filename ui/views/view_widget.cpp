@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
 #include "ui/views/view_tools.h"
 
@@ -57,10 +58,10 @@ ViewWidget::ViewWidget(QWidget* parent)
   hint_->setAlignment(Qt::AlignCenter);
   hint_->setWordWrap(true);
   hint_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  hint_->setProperty("quiet", true);
+  colours::setText(*hint_, colours::kOnPicture);
   level_->setObjectName("viewLevel");
   level_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  level_->setProperty("quiet", true);
+  colours::setText(*level_, colours::kOnPicture);
   level_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   level_->setWordWrap(true);
   strip_->hide();
@@ -124,6 +125,7 @@ void ViewWidget::resizeGL(int, int) {
   fitRenderer();
   fitHint();
   if (renderer_.hasVolume()) redraw();  // sizes follow each other like turns of the camera
+  emit resized();
 }
 
 void ViewWidget::connectTools() {

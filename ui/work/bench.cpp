@@ -47,7 +47,10 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
     if (carved_) showWholeCase();
   });
   connect(&workstation_, &Workstation::saved, this, &Bench::say);
-  connect(&workstation_, &Workstation::failed, this, &Bench::report);
+  connect(&workstation_, &Workstation::failed, this, [this](const Error& error) {
+    once_open_ = Place::prepare;
+    report(error);
+  });
   connect(&views_->threeD(), &ViewWidget::failed, this, &Bench::report);
 }
 
@@ -137,6 +140,7 @@ void Bench::showCase() {
   setCuts(false, false);
   emit caseShown();
   lookAtCase();
+  go(std::exchange(once_open_, Place::prepare));
 }
 
 // The view has the case already, unless an earlier exercise left its cuts there.

@@ -46,6 +46,8 @@ class Bench : public QObject {
   void hint(const QString& text) { emit hinted(text); }
   void report(const Error& error);
   void go(Place place) { emit placeWanted(place); }
+  // Where one goes once the case that is being opened is there; Prepare, where nobody says.
+  void goOnceOpen(Place place) { once_open_ = place; }
 
   // A dialog over the window that goes away by itself and leaves no names on disk.
   QFileDialog* fileDialog(const char* name, const QString& title, const QString& filter = {});
@@ -100,6 +102,7 @@ class Bench : public QObject {
   FourUp* views_;
   Workstation workstation_;
   std::array<Guard, 3> guards_;
+  Place once_open_ = Place::prepare;
   Guard before_start_;
   QAction *undo_, *redo_;
   std::filesystem::path case_source_;

@@ -143,6 +143,8 @@ class Workstation : public QObject {
   void sceneOpening(const trephine::Scene& scene, const std::filesystem::path& file);
   void sceneChanged();
   void caseOpened();
+  // The library has it under another name.
+  void caseNamed();
   // The case that is open has other structures, from a file or made here; sceneChanged() came
   // before.
   void structuresChanged();

@@ -215,6 +215,7 @@ void Workstation::setStored(const std::string& id, const std::string& name) {
   if (!case_) return;
   case_->stored = id;
   if (!name.empty()) case_->name = name;  // what its series was called may name somebody
+  emit caseNamed();
 }
 
 // What a person is asked of a file that could be used as it is; the file is then not used yet.

@@ -178,6 +178,7 @@ class CasesGuiTest : public test::WindowTest {
     choose(idOfMine());
     rename("Teaching head");
     QTRY_COMPARE_WITH_TIMEOUT(find<QLabel>("caseName")->text(), QString("Teaching head"), kLong_ms);
+    QVERIFY2(window_->windowTitle().contains("Teaching head"), qPrintable(window_->windowTitle()));
   }
 
   void itIsPractisedOnAndTheExerciseIsOfTheCase() {
@@ -391,6 +392,10 @@ class CasesGuiTest : public test::WindowTest {
                       Qt::LeftButton);
     QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 2, kLong_ms);
     QVERIFY(!QDir(storage() + "/cases/" + id).exists());
+    // It was open, and is not offered to be saved again: what its names may not tell went with it.
+    QVERIFY(find<QLabel>("nextStepTitle")->text().contains("is deleted"));
+    QVERIFY(!find<QPushButton>("saveCase")->isVisible());
+    QVERIFY(!window_->windowTitle().contains("Teaching head"));
   }
 
   void cleanupTestCase() {

@@ -73,6 +73,33 @@ class TrainControlsGuiTest : public test::TrainTest {
     stop();
   }
 
+  void anotherSizeOfTheViewLiftsTheToolWhereItIs() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    pushHand(6);
+    QTRY_VERIFY_WITH_TIMEOUT(removedVoxels(*workstation().session()) > 10, 20000);
+    const QSize before = view().size();
+    const Vec3 tip_mm = arm(1).proxy_position_mm;
+    find<QAction>("leftPanel")->trigger();
+    find<QAction>("rightPanel")->trigger();
+    QTRY_VERIFY(view().width() > before.width() + 100);
+    QTRY_COMPARE(workstation().session()->handPush_N(1), 0.0);
+    double aside_mm = 0.0;
+    const Vec3 deep = view().camera().forward();
+    for (int n = 0; n < 100; ++n) {
+      QTest::qWait(20);
+      const Vec3 moved = arm(1).proxy_position_mm - tip_mm;
+      if (arm(1).tissue_class < 0) continue;
+      aside_mm = std::max(aside_mm, glm::length(moved - glm::dot(moved, deep) * deep));
+    }
+    QVERIFY2(aside_mm < 1.0, qPrintable(QString::number(aside_mm)));
+    QVERIFY(arm(1).tissue_class < 0);
+    pointAt(view().rect().center() + QPoint(60, 0));
+    QTRY_VERIFY_WITH_TIMEOUT(glm::distance(arm(1).proxy_position_mm, tip_mm) > 3.0, 10000);
+    stop();
+  }
+
   void resetPutsAllTissueBackOnceItIsAgreed() {
     openScene(scene_);
     startTraining();
@@ -98,6 +125,41 @@ class TrainControlsGuiTest : public test::TrainTest {
     }
     QCOMPARE(removedVoxels(*workstation().session()), 0u);
     stop();
+  }
+
+  void inAPauseNoPushIsSetThatWouldComeAsAStab() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    pushHand(4);
+    const double push_N = workstation().session()->handPush_N(1);
+    QVERIFY(push_N > 0.5);
+    find<QAction>("pause")->trigger();
+    QTRY_VERIFY(workstation().session()->state().paused);
+    pushHand(6);
+    QCOMPARE(workstation().session()->handPush_N(1), push_N);
+    pushHand(-2);
+    QVERIFY(workstation().session()->handPush_N(1) < push_N);
+    stop();
+  }
+
+  void anotherExerciseStaysInTrainAndBeginsWithNothing() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    stop();
+    QVERIFY(!find<QLabel>("exerciseRemoved")->text().contains("nothing"));
+    auto* scenes = find<QComboBox>("scenes");
+    const int other = scenes->findText("Burr hole in the vault");
+    QVERIFY(other >= 0);
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    scenes->setCurrentIndex(other);
+    emit scenes->activated(other);
+    answer("cutsQuestion", "goOnAnyway");
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QVERIFY(window_->place() == Place::train);
+    QVERIFY(find<QLabel>("exerciseRemoved")->text().contains("nothing"));
+    QCOMPARE(find<QLabel>("exerciseTime")->text(), "0:00");
   }
 
   void tryAgainStartsOnWholeTissue() {

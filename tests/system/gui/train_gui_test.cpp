@@ -452,6 +452,9 @@ class TrainGuiTest : public test::TrainTest {
       const QString key = action->shortcut().toString(QKeySequence::NativeText);
       QVERIFY2(keys.join('\n').contains(key), qPrintable(action->objectName() + ' ' + key));
     }
+    for (const char* key : {"Tab", "Page Down", "Shift+Home"}) {
+      QVERIFY2(keys.contains(key) || keys.join('\n').contains(key), key);
+    }
     QTest::keyClicks(find<QLineEdit>("findKey"), "pause");
     int shown = 0;
     for (int i = 0; i < list->topLevelItemCount(); ++i) shown += !list->topLevelItem(i)->isHidden();
@@ -464,6 +467,9 @@ class TrainGuiTest : public test::TrainTest {
     auto* hand = find<QComboBox>("mainHand");
     hand->setCurrentIndex(hand->findData("left"));
     find<QDoubleSpinBox>("pushStep")->setValue(0.5);
+    for (const QLabel* label : find<QDialog>("settingsDialog")->findChildren<QLabel*>()) {
+      QVERIFY2(!label->text().contains('&') || label->buddy(), qPrintable(label->text()));
+    }
     for (QPushButton* button : find<QDialog>("settingsDialog")->findChildren<QPushButton*>()) {
       if (button->text().contains("Save")) QTest::mouseClick(button, Qt::LeftButton);
     }
