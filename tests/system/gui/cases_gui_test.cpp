@@ -381,6 +381,11 @@ class CasesGuiTest : public test::WindowTest {
     QTRY_COMPARE_WITH_TIMEOUT(ids().size(), 3, kLong_ms);
     const QString id = idOfMine();
     choose(id);
+    QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(window_->place() == Place::prepare, kLong_ms);
+    QVERIFY(workstation().currentCase()->stored == id.toStdString());
+    window_->show(Place::cases);
+    choose(id);
     QTest::keyClick(cards(), Qt::Key_Delete);
     QTRY_VERIFY(window_->findChild<QMessageBox*>("deleteQuestion"));
     QTest::keyClick(find<QMessageBox>("deleteQuestion"), Qt::Key_Escape);
