@@ -5,12 +5,10 @@
 #include <QMimeData>
 #include <QStatusBar>
 #include <QTimer>
-#include <QWindow>
 #include <algorithm>
 #include <utility>
 
 #include "base/system.h"
-#include "ui/common/event_loop.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -155,30 +153,12 @@ void MainWindow::keep() {
 
 void MainWindow::showEvent(QShowEvent* event) {
   QMainWindow::showEvent(event);
-  if (entered_) return setUpdatesEnabled(true);
-  // Or it would be painted with each step of its layout.
-  setUpdatesEnabled(false);
-  windowHandle()->installEventFilter(this);
+  if (entered_) return;
   show(place_);
-  if (place_ != Place::cases) return oneLess();
-  connect(cases_, &CasesWorkspace::listed, this, &MainWindow::oneLess, Qt::SingleShotConnection);
-}
-
-// Once what it changed is painted: in the turn after this one.
-void MainWindow::oneLess() {
-  constexpr int kPainted_ms = 3;
-  QTimer::singleShot(kPainted_ms, this, [this] {
-    if (--until_usable_ == 0) emit usable();
-  });
-}
-
-bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
-  if (event->type() == QEvent::Expose && watched == windowHandle() && windowHandle()->isExposed()) {
-    watched->removeEventFilter(this);
-    paintNextTurn(*this);
-    oneLess();
-  }
-  return QMainWindow::eventFilter(watched, event);
+  // A timer of no time comes when all that waits to be painted is.
+  const auto once_idle = [this] { QTimer::singleShot(0, this, &MainWindow::usable); };
+  if (place_ != Place::cases) return once_idle();
+  connect(cases_, &CasesWorkspace::listed, this, once_idle, Qt::SingleShotConnection);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

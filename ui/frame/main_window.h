@@ -59,7 +59,6 @@ class MainWindow : public QMainWindow {
   void keyPressEvent(QKeyEvent* event) override;
   void closeEvent(QCloseEvent* event) override;
   void showEvent(QShowEvent* event) override;
-  bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
   struct Room {
@@ -76,7 +75,6 @@ class MainWindow : public QMainWindow {
   void buildMenus();
   void connectParts();
   const Room& room(Place place) const { return rooms_[std::size_t(place)]; }
-  void oneLess();  // of what there is to be done until it is usable
   void showTitle();
   void showPanels();
   void showHint();
@@ -112,7 +110,6 @@ class MainWindow : public QMainWindow {
   QString hint_words_, help_words_;
   bool close_when_saved_ = false;
   bool may_close_ = false;  // nothing unsaved is left to ask about
-  int until_usable_ = 2;    // it is painted; the cards are listed
   bool entered_ = false;    // a workspace
 };
 
