@@ -55,6 +55,7 @@ void SceneRenderer::Parts::place(vtkRenderer& in, double upwards) {
 }
 
 void SceneRenderer::Parts::handToVtk() {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);  // rows of a volume lie as close as they can
   window->SetSize(width, height);
   window->GetState()->Reset();
   window->GetState()->vtkglEnable(GL_DEPTH_TEST);
