@@ -115,6 +115,24 @@ TEST_F(Window, AWindowsContextShowsWhatTheHiddenWindowShows) {
   EXPECT_EQ(hosted_.picture(), of_hidden_window_);
 }
 
+// Qt leaves rows padded to four bytes; a volume's are not.
+TEST_F(Window, AnOddRowOfVoxelsIsSentAsItLies) {
+  const Volume even = ball();
+  Volume odd;
+  odd.geometry = even.geometry;
+  --odd.geometry.size[0];
+  for (std::size_t n = 0; n < even.hu.size(); ++n) {
+    if (n % 64 != 63) odd.hu.push_back(even.hu[n]);  // air at the ball's side
+  }
+  hosted_.setVolume(Grid(odd));
+  hosted_.lookAt(Vec3(0), hosted_.viewForward(), hosted_.viewUp(), 150.0);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  const Picture of_odd = hosted_.picture();
+  hosted_.setVolume(grid_);
+  hosted_.lookAt(Vec3(0), hosted_.viewForward(), hosted_.viewUp(), 150.0);
+  EXPECT_GE(psnr_dB(of_odd, hosted_.picture()), 40.0);
+}
+
 TEST_F(Window, StripsAddUpToTheWholePictureAndStartAnewAfterAChange) {
   hosted_.setSampleDistance(0.03);  // so that a picture takes longer than a moving one may
   EXPECT_EQ(hosted_.shareOfRays(), 0.0);
