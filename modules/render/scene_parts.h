@@ -111,6 +111,10 @@ struct SceneRenderer::Parts {
   void cut(const VoxelBox& box);
   PixelRect partOf(const VoxelBox& box) const;
   void sendLabels(double budget_ms);
+  // Of the volume; null before there is one.
+  const Canvas* shownCanvas() const {
+    return drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
+  }
   void compose(unsigned int framebuffer);
   // The ray of that picture at a pixel of the window, which may lie beyond it.
   static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);

@@ -194,7 +194,7 @@ bool SceneRenderer::Parts::Warm::*SceneRenderer::Parts::nextCold() const {
 bool SceneRenderer::Parts::warmUp() {
   bool Warm::*const next = nextCold();
   if (!next) return false;
-  const Canvas* shown = drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
+  const Canvas* shown = shownCanvas();
   const Span span = shown ? pictures.span() : Span{};
   scene_stale = true;  // it is drawn into
   if (next == &Warm::volume && pictures.cold()) {
@@ -222,7 +222,7 @@ bool SceneRenderer::Parts::warmUp() {
 }
 
 void SceneRenderer::Parts::compose(unsigned int framebuffer) {
-  const Canvas* shown = drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
+  const Canvas* shown = shownCanvas();
   const Span span = shown ? pictures.span() : Span{};
   if (!warm.background) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);

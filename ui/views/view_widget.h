@@ -84,6 +84,7 @@ class ViewWidget : public QOpenGLWidget {
   void toolTilted(int right, int up);
   void toolStraightened();
   void otherHandWanted();
+  // Something else is under each place now.
   void resized();
   // As SliceView has them; `across` is the axis of the grid along which one looks most.
   void structureClicked(trephine::SliceTool tool, const trephine::Vec3& patient_mm);
