@@ -134,11 +134,19 @@ int replayCommand(const std::string& file, const std::string& case_source,
   return result->identical ? 0 : 3;
 }
 
-int explainCommand(const std::string& scene_file, bool json, const Progress& progress) {
+int explainCommand(const std::string& scene_file, const Policy& policy, bool json,
+                   const Progress& progress) {
   Result<Scene> scene = readScene(scene_file);
   if (!scene) return printError("explain", scene.error(), json);
   Result<Json> answer = explainScene(*scene, progress);
   if (!answer) return printError("explain", answer.error(), json);
+  const Locks locked = locksOf(policy, *scene);
+  Json& locks = (*answer)["locks"] = Json::array();
+  for (const auto& [name, lock] : kLockNames) {
+    if (locked.contains(lock)) locks.push_back(std::string(name));
+  }
+  const Status may = checkScene(policy, *scene, scene_file);
+  (*answer)["refused"] = may ? Json() : Json(may.error().sentence());
   if (json) {
     printAnswer("explain", *answer);
   } else {

@@ -84,7 +84,7 @@ int runCommand(const RunArguments& arguments, const Policy& policy, bool json, c
 int pinCommand(bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
-int explainCommand(const std::string& scene, bool json, const Progress&);
+int explainCommand(const std::string& scene, const Policy& policy, bool json, const Progress&);
 int measureUploadCommand(bool json, const Progress&);
 int measureStabilityCommand(const StabilityArguments& arguments, bool json, const Progress&);
 int measureExtremesCommand(const std::string& case_source, const std::string& out, bool json,

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 Error locked(const std::string& what, const char* option) {
   return {"LOCKED", "The workstation or the exercise locks " + what, option,
-          "Leave the option away, or ask an educator"};
+          "Leave the option away"};
 }
 
 // Puts the command line's choices into the scene.

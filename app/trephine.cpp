@@ -57,6 +57,7 @@ int run(int argc, char** argv) {
   }
 
   setUpLog(!scene.empty());
+  if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
   prepareMemory();
   const Status display = prepareDisplay();
   const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
@@ -98,6 +99,7 @@ int run(int argc, char** argv) {
     spdlog::info("The window is usable, {:.0f} ms after the start of the program",
                  msSinceProcessStart());
   });
+  QObject::connect(&window, &MainWindow::usable, &window, &MainWindow::sayProblem);
   if (!path.empty()) window.openOnceShown(path);
   window.show();
   return QApplication::exec();

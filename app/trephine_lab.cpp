@@ -248,6 +248,7 @@ int run(int argc, char** argv) {
     return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
   }
   setUpLog(json);
+  if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
   if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, policy, json, progress);
@@ -257,7 +258,7 @@ int run(int argc, char** argv) {
   if (*import_structures_command) return importStructuresCommand(structures, json, progress);
   if (*export_structures_command) return exportStructuresCommand(exported, json, progress);
   if (*compare_command) return compareCommand(file, other, json, progress);
-  if (*explain_command) return explainCommand(file, json, progress);
+  if (*explain_command) return explainCommand(file, policy, json, progress);
   if (*upload_command) return measureUploadCommand(json, progress);
   if (*stability_command) return measureStabilityCommand(stability, json, progress);
   if (*extremes_command) return measureExtremesCommand(case_source, out, json, progress);

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -57,15 +59,21 @@ void discard(const Folders& folders, const fs::path& part) {
 }  // namespace
 
 Result<FileLock> FileLock::waitFor(const fs::path& file) {
+  using namespace std::chrono_literals;
   const int fd = openLockFile(file);
   if (fd < 0) return writeError(file, errno);
-  while (::flock(fd, LOCK_EX) != 0) {
+  FileLock lock(fd);
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
-    const int error = errno;
-    ::close(fd);
-    return writeError(file, error);
+    if (errno != EWOULDBLOCK) return writeError(file, errno);
+    if (std::chrono::steady_clock::now() > until) {
+      return Error{"BUSY", "Another program does not let go of the storage folder's lock",
+                   file.string(), "End that program, then try again"};
+    }
+    std::this_thread::sleep_for(2ms);
   }
-  return FileLock(fd);
+  return lock;
 }
 
 std::optional<FileLock> FileLock::tryFor(const fs::path& file) {
@@ -93,7 +101,8 @@ Status Folders::make() const {
 void Folders::sweep() const {
   std::error_code ec;
   if (!fs::is_directory(parts(), ec)) return;
-  const Result<FileLock> list = lock();
+  // Who holds it is at work there; the next start sweeps.
+  const std::optional<FileLock> list = FileLock::tryFor(lockFile());
   if (!list) return;
   std::vector<fs::path> dead;
   for (fs::directory_iterator it(parts(), ec), end; !ec && it != end; it.increment(ec)) {

@@ -7,6 +7,7 @@
 //   .lock              held while the list of cases changes
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -31,7 +32,9 @@ constexpr const char* kPictureFile = "picture.png";
 // A file that is locked as long as this lives, against other processes and other threads.
 class FileLock {
  public:
-  // Waits for whoever holds it. Error: CANNOT_WRITE, also where the file system knows no locks.
+  // Waits for whoever holds it, which is never for long: BUSY after kPatience. Error: CANNOT_WRITE,
+  // also where the file system knows no locks.
+  static constexpr std::chrono::seconds kPatience{3};
   static Result<FileLock> waitFor(const std::filesystem::path& file);
   // Nothing where somebody holds it, or it cannot be told.
   static std::optional<FileLock> tryFor(const std::filesystem::path& file);
@@ -62,7 +65,8 @@ class Folders {
   // Makes the folders where they are missing. CANNOT_WRITE.
   Status make() const;
   // To be held while the list of cases is looked at to be changed.
-  Result<FileLock> lock() const { return FileLock::waitFor(storage_ / ".lock"); }
+  Result<FileLock> lock() const { return FileLock::waitFor(lockFile()); }
+  std::filesystem::path lockFile() const { return storage_ / ".lock"; }
   // Removes parts that no living process holds. What cannot be removed stays. Never throws.
   void sweep() const;
   // CANNOT_WRITE where less than that is free; what cannot be told is not in the way.

@@ -182,7 +182,7 @@ Result<CaseRecord> CaseLibrary::record(const std::string& id) const {
     return Error{"MISSING_FILE", "The case's folder cannot be read: " + ec.message(), id,
                  "Let its owner allow it, or delete the case"};
   }
-  if (!fs::exists(file)) {
+  if (!fs::is_regular_file(file)) {  // a pipe would be waited for
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);
     return Error{"CASE_PART_MISSING", "The folder has no case.json, so it is no whole case", where,
                  "Put the file back, or delete the case"};
@@ -362,7 +362,7 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   loaded.record = *std::move(read);
   const fs::path& folder = loaded.record.folder;
   std::error_code ec;
-  const auto has = [&](const char* file) { return fs::exists(folder / file, ec); };
+  const auto has = [&](const char* file) { return fs::is_regular_file(folder / file, ec); };
   // Whatever went wrong, with the folder gone that is why; `where` is the case's own.
   const auto failed = [&](Error error, const char* file) {
     if (!fs::is_directory(folder, ec)) return noSuchCase(id);
@@ -381,13 +381,18 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
   if (has(kStructuresFile)) {
     auto segmentation = readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
-    if (!segmentation) return failed(segmentation.error(), kStructuresFile);
-    LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
-    if (!sameGrid(map.geometry, volume->geometry)) {
-      return caseChanged(id, kStructuresFile, "structures");
+    if (!segmentation && segmentation.error().code == "CANCELLED") return segmentation.error();
+    if (segmentation) {
+      LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
+      if (sameGrid(map.geometry, volume->geometry)) {
+        map.geometry = volume->geometry;
+        loaded.structures = std::make_shared<const LabelMap>(std::move(map));
+      } else {
+        loaded.structures_problem = caseChanged(id, kStructuresFile, "structures");
+      }
+    } else {
+      loaded.structures_problem = failed(segmentation.error(), kStructuresFile);
     }
-    map.geometry = volume->geometry;
-    loaded.structures = std::make_shared<const LabelMap>(std::move(map));
   }
   for (const char* file : {kProvenanceFile, kTissuesFile}) {
     if (!has(file)) continue;
@@ -406,7 +411,9 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   const std::vector<CaseStructure> listed =
       std::exchange(loaded.record.structures, loaded.structures ? structuresOf(*loaded.structures)
                                                                 : std::vector<CaseStructure>());
-  if (!alike(listed, loaded.record.structures)) mendRows(loaded.record);
+  if (!loaded.structures_problem && !alike(listed, loaded.record.structures)) {
+    mendRows(loaded.record);
+  }
   progress.at(1.0, "The case is open");
   return loaded;
 } catch (const std::bad_alloc&) {

@@ -56,7 +56,8 @@ struct LoadedCase {
   std::shared_ptr<const LabelMap> structures;  // null: none
   std::optional<Provenance> provenance;
   Json tissues = Json::object();           // {}: none
-  std::optional<Error> tissues_problem{};  // there are some, and they cannot be read
+  // There are some, and they cannot be read.
+  std::optional<Error> tissues_problem{}, structures_problem{};
 };
 
 class CaseLibrary {
@@ -76,9 +77,9 @@ class CaseLibrary {
   // OUT_OF_MEMORY.
   Result<SavedCase> save(const NewCase& of, const Progress& progress = Progress());
 
-  // Voxels and grid are compared with what was saved. A case whose tissues cannot be read opens
-  // without them. Errors: NO_SUCH_CASE, CASE_PART_MISSING,
-  // CASE_CHANGED, those of list(), of readVolume and of readSegmentation, CANCELLED.
+  // Voxels and grid are compared with what was saved. A case whose tissues or
+  // structures cannot be read opens without them. Errors: NO_SUCH_CASE, CASE_PART_MISSING,
+  // CASE_CHANGED, those of list() and of readVolume, CANCELLED.
   Result<LoadedCase> load(const std::string& id, const Progress& progress = Progress());
 
   // Its folder keeps its name. The new one may be that which a case gets by itself. Errors:

@@ -9,7 +9,6 @@ namespace trephine {
 
 namespace {
 
-const Vec3 kContact(1.0, 0.55, 0.15);
 const Vec3 kAhead(1.0, 1.0, 1.0);
 constexpr double kNear_mm = 0.5;  // is there already, as exactly as the picture knows
 
@@ -81,7 +80,7 @@ void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCa
         const double angle = 2.0 * std::numbers::pi * k / kSides;
         return *tip + radius * glm::dvec2(std::cos(angle), std::sin(angle));
       };
-      to.push_back({corner(i), corner(i + 1), kContact, line});
+      to.push_back({corner(i), corner(i + 1), tool.colour, line});
     }
     return;
   }

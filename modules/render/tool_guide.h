@@ -32,8 +32,8 @@ constexpr double kGuideReach_mm = 60.0;
 std::optional<double> surfaceAhead_mm(const ToolView& tool, const DepthPatch& depth,
                                       const ViewCamera& camera, int width, int height);
 
-// In contact: a ring at the tip. Else a line to the surface with its length in mm at its right, or
-// at its left, so that two tools' stay apart.
+// In contact: a ring at the tip, in the arm's colour. Else a line to the surface with its length in
+// mm at its right, or at its left, so that two tools' stay apart.
 void addGuide(const ToolView& tool, std::optional<double> ahead_mm, const ViewCamera& camera,
               int width, int height, bool at_left, ScreenLines& to);
 

@@ -176,6 +176,27 @@ Policy policyAtStart(const fs::path& file) {
   return policy;
 }
 
+std::vector<fs::path> scenesOfWorkstation(const Policy& policy) {
+  std::vector<fs::path> all;
+  const auto add = [&](auto entries) {
+    const auto first = std::ptrdiff_t(all.size());
+    std::error_code ec;
+    for (; entries != decltype(entries)(); entries.increment(ec)) {
+      if (entries->path().extension() == ".json") all.push_back(entries->path());
+    }
+    std::sort(all.begin() + first, all.end());
+  };
+  std::error_code ec;
+  add(fs::directory_iterator(resourceFolder() / "scenes", ec));
+  const auto own = std::ptrdiff_t(all.size());
+  add(fs::recursive_directory_iterator(policy.folder,
+                                       fs::directory_options::skip_permission_denied, ec));
+  all.erase(std::remove_if(all.begin() + own, all.end(),
+                           [&](const fs::path& file) { return !isOfTheWorkstation(policy, file); }),
+            all.end());
+  return all;
+}
+
 Locks locksOf(const Policy& policy, const Scene& scene) {
   Locks locks = policy.locks;
   locks.insert(scene.locks.begin(), scene.locks.end());
@@ -186,8 +207,9 @@ Status checkScene(const Policy& policy, const Scene& scene, const fs::path& scen
   const auto locked = [&](const std::string& what) {
     return Error{"LOCKED", what, scene_file.string(),
                  policy.problem ? policy.problem->what + ": " + policy.problem->next
-                                : "Choose an exercise of the workstation, or ask an educator to "
-                                  "unlock it"};
+                 : policy.pin ? "Choose an exercise of the workstation, or ask an educator to "
+                                "unlock it"
+                              : "Choose an exercise of the workstation"};
   };
   const auto name = [](ControllerKind kind) { return std::string(controllerName(kind)); };
   if (policy.controller && scene.controller != *policy.controller) {

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "base/pin.h"
 #include "base/result.h"
@@ -42,6 +43,10 @@ Policy policyAtStart(const std::filesystem::path& file = kPolicyFile);
 
 // What is locked while this scene is practised.
 Locks locksOf(const Policy& policy, const Scene& scene);
+
+// The exercises of this workstation: the product's scenes, then those below the policy's folder that
+// this user could not have written, each in the order of their names. Of what is no scene: none.
+std::vector<std::filesystem::path> scenesOfWorkstation(const Policy& policy);
 
 // LOCKED where the scene would bring what the workstation locks: a controller or a rate other than
 // the one that is prescribed, or, from a file that is neither the product's (resourceFolder()) nor

@@ -11,7 +11,6 @@ constexpr double kOut_mm_s = 60.0, kOut_N = 2.0;
 constexpr double kHover_mm_s = 100.0, kHover_s = 0.1;
 constexpr double kAside_mm_s = 60.0;  // across the ray per N that is left, where it touches
 constexpr double kLeastAside_N = 0.5;
-constexpr double kSpare_mm = 5.0;      // how far a tool that is put down stays off what it touched
 constexpr double kElsewhere_mm = 3.0;  // so far aside a pointer wants the tool out first
 constexpr double kRelax_s = 0.05, kGiveIn_s = 0.02;
 // From the tool to the rest point at most: short of what lets a hooked tool go.
@@ -117,7 +116,7 @@ Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const Wor
   } else if (waits || (touches && !to.put_down)) {
     comeOut(way, way.rest_mm - kHover_mm, T);
   } else if (to.put_down) {
-    comeOut(way, way.touched_mm ? *way.touched_mm - kSpare_mm : way.rest_mm, T);
+    way.rest_mm += (way.arm_mm - way.rest_mm) * std::min(1.0, T / kRelax_s);
   } else {
     hover(way, T);
   }

@@ -5,6 +5,7 @@
 // along the tool and across it:
 //   along, push P > 0:  dr/dt = 15 mm/s per N of (P - F), at most 20 mm/s forwards
 //   along, push 0:      to 4 mm before what is seen; out of whatever it touches
+//   put down:           to where the arm is, within 50 ms: F is 0 and the tool stays, in tissue too
 //   across:             to where the pointer is, slower as F comes to what P leaves of the arm's
 // So a push is a force and not a depth: it builds up where the tool is stopped, goes on while it
 // overcomes the tissue, and nothing springs on where a resistance ends.

@@ -110,7 +110,8 @@ class Session {
   bool setPush(std::size_t arm, double push_N, std::int64_t time_ns = kNow);
   double handPush_N(std::size_t arm) const { return push_N_[arm]; }
   double mostPush_N(std::size_t arm) const;
-  // Puts the tool down: out of what it touches, then it rests there without force.
+  // Puts the tool down: it rests where it is, in tissue too, without force. It comes out only where
+  // its arm waits for that.
   bool releaseHand(std::size_t arm, std::int64_t time_ns = kNow);
   // Turns the tool about its tip, by a patient axis, within a tenth of a second; at most
   // kMostTurn_rad from how the scene holds it.

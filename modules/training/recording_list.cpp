@@ -1,12 +1,27 @@
 #include "training/recording_list.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "training/session_reader.h"
 
 namespace trephine {
 
 namespace {
+
+// How long it was in a pause that a person asked for.
+std::uint64_t pausedTicks(const std::vector<Event>& events, std::uint64_t end) {
+  std::uint64_t paused = 0;
+  std::optional<std::uint64_t> since;
+  for (const Event& event : events) {
+    if (event.kind != EventKind::command) continue;
+    if (event.command.kind == CommandKind::pause && !since) since = event.tick;
+    if (event.command.kind == CommandKind::resume && since) {
+      paused += event.tick - *std::exchange(since, std::nullopt);
+    }
+  }
+  return since && end > *since ? paused + end - *since : paused;
+}
 
 ListedRecording listed(const std::filesystem::path& file) {
   ListedRecording row;
@@ -24,7 +39,10 @@ ListedRecording listed(const std::filesystem::path& file) {
   row.case_source = scene.value("case", "");
   row.volume_sha256 = header.volume_sha256;
   const double rate_hz = scene.value("rate_hz", 1000.0);
-  row.seconds = rate_hz > 0.0 ? double((*reader)->tickCount()) / rate_hz : 0.0;
+  const std::uint64_t ticks = (*reader)->tickCount();
+  const Result<std::vector<Event>> events = (*reader)->events();
+  const std::uint64_t paused = events ? std::min(ticks, pausedTicks(*events, ticks)) : 0;
+  row.seconds = rate_hz > 0.0 ? double(ticks - paused) / rate_hz : 0.0;
   row.cut_short = !(*reader)->end();
   if (!row.cut_short && (*reader)->end()->dropped > 0) {
     row.problem = Error{"NOT_REPLAYABLE", "A part of the recording is missing", file.string(),

@@ -17,9 +17,11 @@ struct ListedRecording {
   std::string exercise;       // the scene's name
   std::string case_source;    // of a built-in case; else empty
   std::string volume_sha256;  // of the case
-  double seconds = 0.0;
+  double seconds = 0.0;  // without its pauses
   bool cut_short = false;
   std::optional<Error> problem;  // why it cannot be replayed; of the rest only `file` holds
+  // Which case it was done on.
+  const std::string& caseKey() const { return case_source.empty() ? volume_sha256 : case_source; }
 };
 
 // The newest first; a folder that is not there has none. Reads the head of each, which takes some

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <hdf5.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -142,6 +143,15 @@ struct SessionRecorder::File {
     if (known && used > 0) (void)!::ftruncate(descriptor, off_t(used));
   }
 
+  // What is written into a file without a name is lost when it is closed.
+  bool isGone() {
+    struct stat of {};
+    if (failure || ::fstat(descriptor, &of) != 0 || of.st_nlink > 0) return false;
+    failure = Error{"RECORDING_GONE", "The recording was deleted while it was written",
+                    path.filename().string(), "Start the exercise anew to have it recorded"};
+    return true;
+  }
+
   Status fail() {
     if (!failure) {
       failure = Error{"CANNOT_WRITE",
@@ -174,6 +184,8 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
                                                                  const RecordingHeader& header,
                                                                  std::size_t arm_count) {
   quietHdf5();
+  std::error_code ec;
+  const bool there = std::filesystem::exists(std::filesystem::symlink_status(path, ec));
   std::unique_ptr<SessionRecorder> recorder(new SessionRecorder);
   File& f = *recorder->file_;
   f.path = path;
@@ -188,7 +200,11 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
                      (errno ? std::strerror(errno) : "unknown reason"),
                  path.string(), afterFailedWrite(errno)};
   };
-  if (f.file < 0) return cannot();
+  if (f.file < 0) {
+    const Error error = cannot();
+    if (!there) std::filesystem::remove(path, ec);  // a full disk leaves an empty one
+    return error;
+  }
 
   writeVersion(f.file);
   writeText(f.file, "format", "trephine.session");
@@ -216,7 +232,6 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   if (!ok || f.descriptor < 0 || !f.reserve() || H5Fflush(f.file, H5F_SCOPE_GLOBAL) < 0 || H5Fstart_swmr_write(f.file) < 0) {
     const Error error = cannot();
     f.close();
-    std::error_code ec;
     std::filesystem::remove(path, ec);
     return error;
   }
@@ -245,7 +260,7 @@ void SessionRecorder::abandon(const Error& why) {
 
 Status SessionRecorder::flush() {
   File& f = *file_;
-  if (f.failure) return *f.failure;
+  if (f.failure || f.isGone()) return *f.failure;
   errno = 0;
   // Ticks last: a reader that finds a tick finds all that belongs to it.
   bool ok = f.reserve() && f.events.append(f.new_events.data(), f.new_events.size()) &&

@@ -116,6 +116,23 @@ class Locked(TraineeTest):
         answer = self.run_as_trainee(own, environment={"TREPHINE_RESOURCES": str(resources)})
         self.assert_locked(answer, "tissues")
 
+    def test_explain_says_what_is_locked_and_kept_out(self):
+        def explained(scene):
+            done = subprocess.run(self.as_trainee(LAB, "explain", scene, "--json"),
+                                  capture_output=True, text=True, timeout=240)
+            return json.loads(done.stdout), done.stderr
+
+        answer, said = explained(PRODUCT)
+        self.assertEqual((answer["locks"], answer["refused"], said), ([], None, ""))
+        self.settings({"controller": "off", "tissues": True})
+        answer, _ = explained(PRODUCT)
+        self.assertEqual(answer["locks"], ["controller", "tissues"])
+        self.assertIn("'off' alone", answer["refused"])
+        self.settings({}, 0, 0o666)
+        answer, said = explained(PRODUCT)
+        self.assertEqual(answer["locks"], ["controller", "tissues", "rate"])
+        self.assertIn("Everything is locked", said)
+
     def test_settings_that_a_trainee_could_have_written_lock_everything(self):
         for owner, mode in ((TRAINEE, 0o644), (0, 0o666)):
             with self.subTest(owner=owner, mode=mode):

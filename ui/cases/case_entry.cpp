@@ -38,8 +38,7 @@ CaseEntry builtIn(const std::string& name) {
   CaseEntry entry;
   entry.id = name;
   entry.built_in = true;
-  entry.record.name =
-      (name == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in")).toStdString();
+  entry.record.name = builtInName(name).toStdString();
   entry.record.region = name == "cranium" ? BodyRegion::head : BodyRegion::abdomen;
   if (const auto geometry = phantomGeometry(name)) entry.record.grid = *geometry;
   (void)entry.picture.load(toQt(resourceFolder() / "cases" / (name + ".png")));
@@ -104,7 +103,9 @@ Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
     entry.id = listed.id;
     entry.record = listed.record;
     entry.problem = listed.problem;
-    (void)entry.picture.load(toQt(listed.record.folder / "picture.png"));
+    const std::filesystem::path picture = listed.record.folder / "picture.png";
+    std::error_code ec;  // a pipe would be waited for
+    if (std::filesystem::is_regular_file(picture, ec)) (void)entry.picture.load(toQt(picture));
     entries.push_back(std::move(entry));
   }
   for (const char* name : {"cranium", "abdomen"}) entries.push_back(builtIn(name));

@@ -182,23 +182,25 @@ QWidget* CasesPage::buildDetails() {
   connect(prepare_, &QPushButton::clicked, this, withChosen(&CasesPage::prepareWanted));
   connect(report_, &QPushButton::clicked, this, withChosen(&CasesPage::reportWanted));
   connect(delete_, &QPushButton::clicked, this, withChosen(&CasesPage::deleteWanted));
-  connect(exercises_, &QPushButton::clicked, this, &CasesPage::exercisesWanted);
+  connect(exercises_, &QPushButton::clicked, this, withChosen(&CasesPage::exercisesWanted));
   connect(rename_, &QPushButton::clicked, this, [this] {
-    const CaseEntry* entry = chosen();
-    if (!entry) return;
-    auto* dialog = new QInputDialog(this);
-    dialog->setObjectName("renameDialog");
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setWindowTitle(tr("Rename the case"));
-    dialog->setLabelText(tr("A name that does not say who the patient is:"));
-    dialog->setTextValue(toQt(entry->record.name));
-    connect(dialog, &QInputDialog::textValueSelected, this,
-            [this, entry = *entry](const QString& name) { emit renameWanted(entry, name); });
-    dialog->open();
+    if (const CaseEntry* entry = chosen()) askForName(*entry, toQt(entry->record.name));
   });
   QScrollArea* area = scrolled(page, "caseDetails");
   area->setFixedWidth(kDetailsWidth);
   return area;
+}
+
+void CasesPage::askForName(const CaseEntry& entry, const QString& name) {
+  auto* dialog = new QInputDialog(this);
+  dialog->setObjectName("renameDialog");
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("Rename the case"));
+  dialog->setLabelText(tr("A name that does not say who the patient is:"));
+  dialog->setTextValue(name);
+  connect(dialog, &QInputDialog::textValueSelected, this,
+          [this, entry](const QString& wanted) { emit renameWanted(entry, wanted); });
+  dialog->open();
 }
 
 bool CasesPage::eventFilter(QObject* watched, QEvent* event) {

@@ -31,6 +31,8 @@ class CasesPage : public QWidget {
   void sayInStrip(const QString& words);
   // A folder is at hand, so that another series of it can be used.
   void setSeriesAtHand(bool at_hand);
+  // In a dialog, which begins with this one: renameWanted().
+  void askForName(const CaseEntry& entry, const QString& name);
   // While an exercise runs, or a case is being opened, no other can be.
   void setOpeningAllowed(bool allowed);
 
@@ -44,7 +46,7 @@ class CasesPage : public QWidget {
   void renameWanted(const trephine::CaseEntry& entry, const QString& name);
   void reportWanted(const trephine::CaseEntry& entry);
   void deleteWanted(const trephine::CaseEntry& entry);
-  void exercisesWanted();
+  void exercisesWanted(const trephine::CaseEntry& entry);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

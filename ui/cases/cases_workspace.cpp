@@ -33,7 +33,14 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
   of.provenance = loaded->provenance;
   of.name = loaded->record.name;
   of.stored = id;
-  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}};
+  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}, {}};
+  if (const std::optional<Error>& why = loaded->structures_problem) {
+    stored.no_structures =
+        Error{"NO_STRUCTURES",
+              "The file with the case's structures cannot be used, so it has none (" + why->what + ")",
+              why->where,
+              "Put the file back and open the case again; or make them anew and save them in the case"};
+  }
   const std::string file = id + "/tissues.json";
   std::optional<Error> problem = loaded->tissues_problem;
   if (!problem && loaded->tissues.empty())
@@ -93,7 +100,9 @@ void CasesWorkspace::connectParts() {
           [this](const CaseEntry& entry) { openEntry(entry, Place::prepare); });
   connect(page_, &CasesPage::goOnWanted, this,
           [this](bool train) { bench_.go(train ? Place::train : Place::prepare); });
-  connect(page_, &CasesPage::exercisesWanted, this, [this] { bench_.go(Place::review); });
+  connect(page_, &CasesPage::exercisesWanted, this, [this](const CaseEntry& entry) {
+    bench_.review(entry.built_in ? phantomSource(entry.id) : entry.record.volume_sha256);
+  });
   connect(page_, &CasesPage::saveWanted, this, &CasesWorkspace::saveCase);
   connect(page_, &CasesPage::renameWanted, this, &CasesWorkspace::rename);
   connect(page_, &CasesPage::deleteWanted, this, &CasesWorkspace::askToDelete);
@@ -266,8 +275,11 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
   const bool begun =
       changing_.run([library = bench_.library(), id = entry.id,
                      to = name.toStdString()](const Progress&) { return library->rename(id, to); },
-                    [this](Result<CaseRecord> renamed) {
-                      if (!renamed) return bench_.report(renamed.error());
+                    [this, entry, name](Result<CaseRecord> renamed) {
+                      if (!renamed) {
+                        page_->askForName(entry, name);
+                        return bench_.report(renamed.error());
+                      }
                       const std::optional<Case>& open = workstation_.currentCase();
                       if (open && open->stored == renamed->id) {
                         workstation_.setStored(renamed->id, renamed->name);

@@ -1,5 +1,6 @@
 #include "ui/common/background_task.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/time_left.h"
@@ -25,6 +26,7 @@ void BackgroundTask::cancel() {
 void BackgroundTask::prepare() {
   // Several threads of the work may report at once, so the time of the last report is atomic.
   auto last = std::make_shared<std::atomic<std::chrono::steady_clock::rep>>(0);
+  farthest_ = 0.0;
   progress_ = std::make_shared<Progress>(withTimeLeft([this, last](double fraction,
                                                                    const std::string& step) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -34,7 +36,9 @@ void BackgroundTask::prepare() {
     QMetaObject::invokeMethod(
         this,
         [this, fraction, text = QString::fromStdString(step)] {
-          if (busy()) emit progressed(fraction, text);
+          if (!busy()) return;
+          farthest_ = std::max(farthest_, fraction);  // a step that counts anew goes on from here
+          emit progressed(farthest_, text);
         },
         Qt::QueuedConnection);
   }));

@@ -50,7 +50,7 @@ class BackgroundTask : public QObject {
 
  signals:
   void began();  // busy() from here to ended()
-  void progressed(double fraction, const QString& step);
+  void progressed(double fraction, const QString& step);  // never back
   void ended();
 
  private:
@@ -70,6 +70,7 @@ class BackgroundTask : public QObject {
 
   std::shared_ptr<Progress> progress_;
   std::thread thread_;
+  double farthest_ = 0.0;  // of this work, as it was said
 };
 
 }  // namespace trephine

@@ -80,6 +80,13 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           "QToolButton[segment=\"true\"]:hover { border-color: %5; }"
           "QToolButton[segment=\"true\"]:focus { border-color: %7; }"
           "QToolButton[segment=\"true\"]:checked { background: %6; color: white; }"
+          // Fusion's own box cannot be seen on a dark window.
+          "QCheckBox::indicator { width: 14px; height: 14px; border-radius: 2px;"
+          " border: 1px solid %5; background: %4; }"
+          "QCheckBox::indicator:checked { border-color: %6; background: %6; image:"
+          " url(:/qt-project.org/styles/commonstyle/images/standardbutton-apply-32.png); }"
+          "QCheckBox::indicator:focus { border-color: %7; }"
+          "QCheckBox::indicator:disabled { border-color: %3; }"
           "QRadioButton::indicator { width: 14px; height: 14px; border-radius: 8px;"
           " border: 1px solid %5; background: %4; }"
           "QRadioButton::indicator:checked { border-color: %6; background:"

@@ -2,6 +2,7 @@
 
 #include <QEvent>
 #include <QLayout>
+#include <QShortcut>
 #include <algorithm>
 
 namespace trephine {
@@ -29,6 +30,17 @@ void FloatingCard::place() {
                                     : (over->height() - height) / 2;
   setGeometry((over->width() - width) / 2, y, width, height);
   raise();
+}
+
+void FloatingCard::takeTabFrom(QWidget& before, QPushButton& closes) {
+  QWidget* last = &before;
+  for (QPushButton* button : findChildren<QPushButton*>()) {
+    setTabOrder(last, button);
+    last = button;
+  }
+  auto* escape = new QShortcut(Qt::Key_Escape, this, nullptr, nullptr,
+                               Qt::WidgetWithChildrenShortcut);
+  connect(escape, &QShortcut::activated, &closes, &QPushButton::click);
 }
 
 bool FloatingCard::eventFilter(QObject* watched, QEvent* event) {

@@ -74,6 +74,10 @@ QString purposeText() {
   return tr("For training, not for diagnosis or treatment planning");
 }
 
+QString builtInName(const std::string& phantom) {
+  return phantom == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in");
+}
+
 QString verdictWord(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
@@ -175,6 +179,12 @@ QString findingWords(const SeriesReport& series) {
     lines << toQt(sentencesOf(finding));
   }
   return lines.join('\n');
+}
+
+QString unlockWords(const Policy& policy) {
+  if (policy.problem) return toQt(policy.problem->sentence());
+  return policy.pin ? tr("An educator can unlock it with a PIN (menu File).")
+                    : tr("Nothing at this workstation unlocks it.");
 }
 
 QString timeWords(std::uint32_t seconds) {

@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "haptics/haptic_types.h"
 #include "imaging/importer.h"
+#include "scene/policy.h"
 #include "scene/scene_tool.h"
 
 namespace trephine {
@@ -19,6 +20,9 @@ QString toQt(const std::filesystem::path& path);
 
 // "For training, not for diagnosis or treatment planning".
 QString purposeText();
+
+// Of a case that comes with the program: "Cranium, built in".
+QString builtInName(const std::string& phantom);
 
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
@@ -35,6 +39,8 @@ QString forceChangeMeanings();
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.
 QString findingWords(const SeriesReport& series);
+// Who takes off what the workstation locks, or why nobody does.
+QString unlockWords(const Policy& policy);
 // "1:05" of 65 seconds.
 QString timeWords(std::uint32_t seconds);
 // "512 x 512 x 140 voxels", and on a second line "0.49 x 0.49 x 1.00 mm".

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/system.h"
+#include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -124,8 +125,10 @@ void MainWindow::restoreColumns() {
   const QByteArray kept = read(Setting<QByteArray>{key.c_str(), {}});
   const int all = centralWidget()->width() - rail_->width();  // it may not be laid out yet
   const QWidget *left = room(place_).parts.left, *right = room(place_).parts.right;
-  // The views are what one looks at: a column of words has a fifth at most.
-  const int left_width = left ? std::min(left->sizeHint().width(), all / 5) : 0;
+  // The views are what one looks at: a column of words has a fifth at most, and more where its
+  // letters are larger.
+  const int most = all * readWithin(settings::kTextScale, 80, 200) / 500;
+  const int left_width = left ? std::min(left->sizeHint().width(), most) : 0;
   const int right_width = right ? right->sizeHint().width() : 0;
   if (kept.isEmpty() || !columns_->restoreState(kept)) {
     columns_->setSizes({left_width, all - left_width - right_width, right_width});
@@ -221,6 +224,10 @@ void MainWindow::showAbout() {
 }
 
 void MainWindow::showShortcuts() {
+  if (auto* page = findChild<ShortcutsPage*>()) {
+    page->raise();
+    return page->activateWindow();
+  }
   QList<QPair<QString, QString>> views = this->views().helpOfViews();
   views.prepend({tr("While an exercise runs, over the 3-D view"),
                  tr("Mouse, arrow keys: where the tool goes. Wheel up, Page Down: press more. "
@@ -236,21 +243,30 @@ void MainWindow::showSettings() {
 }
 
 void MainWindow::showLocks() {
-  const bool locked = workstation().anyLocked();
+  const bool locked = workstation().anyLocked(), unlocked = workstation().isUnlocked();
   const Policy& policy = workstation().policy();
-  unlock_->setEnabled(locked && policy.pin.has_value());
-  locked_->setVisible(locked);
-  locked_->setToolTip(policy.problem ? toQt(policy.problem->sentence())
-                      : policy.pin   ? tr("An educator's PIN unlocks it (menu File)")
-                                     : tr("Nothing on this workstation unlocks it"));
+  unlock_->setEnabled(unlocked || (locked && policy.pin.has_value()));
+  unlock_->setText(unlocked ? tr("&Lock again") : tr("Unlock for &teaching\u2026"));
+  locked_->setVisible(locked || unlocked);
+  locked_->setText(unlocked ? tr("Unlocked") : tr("Locked"));
+  locked_->setToolTip(unlocked ? tr("Until it is locked again (menu File), or Trephine is closed")
+                               : unlockWords(policy));
+}
+
+void MainWindow::sayProblem() {
+  if (workstation().policy().problem) showError(this, *workstation().policy().problem);
 }
 
 void MainWindow::askForPin() {
+  if (workstation().isUnlocked()) {
+    workstation().setUnlocked(false);
+    return bench_.say(tr("Locked again."));
+  }
   if (!workstation().policy().pin) return;
   auto* dialog = new UnlockDialog(*workstation().policy().pin, this);
   connect(dialog, &UnlockDialog::unlocked, this, [this] {
-    workstation().unlock();
-    bench_.say(tr("Unlocked for teaching until Trephine is closed."));
+    workstation().setUnlocked(true);
+    bench_.say(tr("Unlocked for teaching, until you lock it again (menu File)."));
   });
   dialog->open();
 }

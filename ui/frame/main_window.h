@@ -40,6 +40,8 @@ class MainWindow : public QMainWindow {
   // knows where that is.
   void openOnceShown(const std::filesystem::path& path);
   void open(const std::filesystem::path& path) { cases_->open(path); }
+  // Why everything is locked, where the workstation's settings are wrong.
+  void sayProblem();
   void startExercise(std::optional<OperatorScript> script = {},
                      double seconds = TrainWorkspace::kNoEnd_s);
   void savePicture(const QString& file) { bench_.savePicture(file); }
@@ -104,7 +106,7 @@ class MainWindow : public QMainWindow {
   QToolBar* bar_;
   QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
       *unlock_;
-  QLabel *hint_, *rates_, *locked_;
+  QLabel *hint_, *rates_, *locked_, *opening_words_;
   QWidget* opening_box_;
   QProgressBar* opening_;
   QString hint_words_, help_words_;

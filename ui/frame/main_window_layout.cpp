@@ -100,7 +100,7 @@ void MainWindow::buildActions() {
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
   unlock_ = makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"),
-                       {}, tr("With an educator's PIN, until Trephine is closed"));
+                       {}, tr("With an educator's PIN, until it is locked again or Trephine is closed"));
 }
 
 void MainWindow::buildBars() {
@@ -141,8 +141,11 @@ void MainWindow::buildBars() {
     workstation().cancelSaving();
   });
   opening_box_ = new QWidget;
+  opening_words_ = new ElidedLabel;
+  opening_words_->setObjectName("openWords");
   auto* opening_row = new QHBoxLayout(opening_box_);
   opening_row->setContentsMargins(0, 0, 0, 0);
+  opening_row->addWidget(opening_words_);
   opening_row->addWidget(opening_);
   opening_row->addWidget(cancel);
   opening_box_->hide();
@@ -245,7 +248,7 @@ void MainWindow::connectParts() {
           [this](double fraction, const QString& step) {
             if (this->workstation().isPlacing()) return;  // a moment, of what is on the screen
             opening_box_->show();
-            opening_->setToolTip(step);
+            opening_words_->setText(step);
             opening_->setValue(int(fraction * kProgressSteps));
           });
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);
@@ -253,7 +256,7 @@ void MainWindow::connectParts() {
           [this](double fraction, const QString& step) {
             bench_.say(tr("%1\u2026 %2 %").arg(step).arg(int(100.0 * fraction)));
             opening_box_->show();
-            opening_->setToolTip(step);
+            opening_words_->clear();  // in the line beside it
             opening_->setValue(int(fraction * kProgressSteps));
           });
   connect(&workstation, &Workstation::savingEnded, opening_box_, &QWidget::hide);

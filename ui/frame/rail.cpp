@@ -1,11 +1,13 @@
 #include "ui/frame/rail.h"
 
+#include <algorithm>
+
 #include "ui/common/actions.h"
 
 namespace trephine {
 
 namespace {
-constexpr int kIcon = 24, kWidth = 66;
+constexpr int kIcon = 24, kWidth = 66, kMargin = 4;
 }  // namespace
 
 Rail::Rail(QWidget& window) : QWidget(&window), window_(window) {
@@ -14,7 +16,7 @@ Rail::Rail(QWidget& window) : QWidget(&window), window_(window) {
   setFixedWidth(kWidth);
   group_ = new QActionGroup(this);
   layout_ = new QVBoxLayout(this);
-  layout_->setContentsMargins(4, 6, 4, 6);
+  layout_->setContentsMargins(kMargin, 6, kMargin, 6);
   layout_->setSpacing(4);
   layout_->addStretch(1);
 }
@@ -36,6 +38,8 @@ void Rail::add(Place place, const Workspace& workspace) {
   button->setIconSize({kIcon, kIcon});
   button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   layout_->insertWidget(number - 1, button);
+  button->ensurePolished();  // with large text it is wider
+  setFixedWidth(std::max(width(), button->sizeHint().width() + 2 * kMargin));
   connect(action, &QAction::triggered, this, [this, place] { emit chosen(place); });
 }
 

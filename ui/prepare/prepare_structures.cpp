@@ -330,8 +330,9 @@ void PrepareWorkspace::showUndo() {
   undo_action->setToolTip(undo ? tr("Undo: %1").arg(*undo)
                           : bench_.cutsUnsaved()
                               ? tr("The exercise has ended: its cuts stay until Reset")
-                              : tr("Nothing to undo"));
-  redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo) : tr("Nothing to redo"));
+                              : tr("Takes back the last change; there is none"));
+  redo_action->setToolTip(redo ? tr("Redo: %1").arg(*redo)
+                               : tr("Brings back what was taken back; there is nothing"));
 }
 
 void PrepareWorkspace::askAboutStructures(const Error& error, const std::filesystem::path& file,

@@ -26,7 +26,7 @@ void PrepareWorkspace::connectTissues() {
   });
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
     tissues_->setLocked(workstation_.isLocked(Lock::tissues)
-                            ? tr("Locked: an educator can unlock the tissues (menu File).")
+                            ? tr("The tissues are locked. %1").arg(unlockWords(workstation_.policy()))
                             : QString());
   });
   // They may be about to go.

@@ -13,7 +13,8 @@ namespace trephine {
 namespace {
 
 constexpr int kProgressSteps = 1000;
-constexpr int kTimeColumn = 0, kExerciseColumn = 1, kLengthColumn = 2, kStateColumn = 3;
+constexpr int kTimeColumn = 0, kExerciseColumn = 1, kCaseColumn = 2, kLengthColumn = 3,
+              kStateColumn = 4;
 
 QDateTime timeOf(const ListedRecording& row) {
   const auto time = std::chrono::file_clock::to_sys(row.written);
@@ -30,14 +31,15 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   list_->setObjectName("recordings");
   list_->setRootIsDecorated(false);
   list_->setAllColumnsShowFocus(true);
-  list_->setHeaderLabels({tr("When"), tr("Exercise"), tr("Length"), tr("State")});
+  list_->setHeaderLabels({tr("When"), tr("Exercise"), tr("Case"), tr("Length"), tr("State")});
   list_->header()->setSectionResizeMode(kExerciseColumn, QHeaderView::Stretch);
   list_->header()->setStretchLastSection(false);
-  for (int column : {kTimeColumn, kLengthColumn, kStateColumn}) {
+  for (int column : {kTimeColumn, kCaseColumn, kLengthColumn, kStateColumn}) {
     list_->header()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
   }
   empty_ = new QLabel(tr("No exercise has been recorded yet. Each one that is done in Train is."));
   empty_->setProperty("quiet", true);
+  empty_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   outcome_ = new QLabel;
   outcome_->setObjectName("replayOutcome");
   outcome_->setWordWrap(true);
@@ -69,7 +71,7 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(16, 12, 16, 12);
   layout->setSpacing(10);
   layout->addWidget(title);
-  layout->addWidget(empty_);
+  layout->addWidget(empty_, 1);
   layout->addWidget(list_, 1);
   layout->addLayout(buttons);
   layout->addWidget(outcome_);
@@ -78,7 +80,7 @@ ReviewPage::ReviewPage(QWidget* parent) : QWidget(parent) {
     if (const ListedRecording* of = chosen()) emit replayWanted(*of);
   });
   connect(cancel_, &QPushButton::clicked, this, &ReviewPage::cancelWanted);
-  showRecordings({}, {});
+  showRecordings({}, {}, {});
 }
 
 const ListedRecording* ReviewPage::chosen() const {
@@ -87,7 +89,8 @@ const ListedRecording* ReviewPage::chosen() const {
 }
 
 void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows,
-                                const std::string& in_use) {
+                                const std::string& in_use,
+                                const std::map<std::string, QString>& cases) {
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();
   in_use_ = in_use;
@@ -97,6 +100,10 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows,
     auto* item = new QTreeWidgetItem(list_);
     item->setText(kTimeColumn, QLocale().toString(timeOf(row), QLocale::ShortFormat));
     item->setText(kExerciseColumn, toQt(row.exercise));
+    const auto name = cases.find(row.caseKey());
+    if (!row.caseKey().empty()) {
+      item->setText(kCaseColumn, name != cases.end() ? name->second : tr("not here"));
+    }
     item->setText(kLengthColumn, timeWords(std::uint32_t(row.seconds)));
     item->setTextAlignment(kLengthColumn, Qt::AlignRight | Qt::AlignVCenter);
     item->setText(kStateColumn, row.problem     ? toQt(row.problem->what)
@@ -108,6 +115,12 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows,
   empty_->setVisible(rows_.empty());
   list_->setVisible(!rows_.empty());
   showChosen();
+}
+
+void ReviewPage::selectNewestOf(const std::string& case_key) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].caseKey() == case_key) return list_->setCurrentItem(list_->topLevelItem(int(i)));
+  }
 }
 
 void ReviewPage::showChosen() {

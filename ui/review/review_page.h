@@ -1,4 +1,4 @@
-// The recordings: when, which exercise, how long; and whether one replays bit for bit.
+// The recordings: when, which exercise, on which case, how long; and whether one replays bit for bit.
 #pragma once
 
 #include <QLabel>
@@ -6,6 +6,8 @@
 #include <QPushButton>
 #include <QTreeWidget>
 #include <QWidget>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "training/recording_list.h"
@@ -17,9 +19,13 @@ class ReviewPage : public QWidget {
  public:
   explicit ReviewPage(QWidget* parent = nullptr);
 
-  // `in_use` is the sha256 of the open case's voxels, or empty.
-  void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use);
+  // `in_use` is the sha256 of the open case's voxels, or empty; `cases`: names by
+  // ListedRecording::caseKey().
+  void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
+                      const std::map<std::string, QString>& cases);
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
+  // The newest of a case.
+  void selectNewestOf(const std::string& case_key);
   void showProgress(double fraction, const QString& step);
   void endProgress();
   void showOutcome(const QString& words);

@@ -2,6 +2,7 @@
 
 #include "training/replay.h"
 #include "ui/common/words.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -20,17 +21,36 @@ Workspace::Parts ReviewWorkspace::parts() {
 }
 
 void ReviewWorkspace::list() {
-  listing_.run([folder = bench_.recordings()](
-                   const Progress& progress) { return listRecordings(folder, progress); },
-               [this](Result<std::vector<ListedRecording>> rows) {
-                 if (!rows) return;
-                 const std::optional<Case>& of = bench_.workstation().currentCase();
-                 page_->showRecordings(*rows, of ? of->sha256 : "");
-                 if (std::exchange(replay_newest_, false) && !rows->empty()) {
-                   page_->selectNewest();
-                   replay(rows->front());
-                 }
-               });
+  struct Listed {
+    std::vector<ListedRecording> rows;
+    std::map<std::string, QString> cases;  // names
+  };
+  listing_.run(
+      [folder = bench_.recordings(),
+       library = bench_.library()](const Progress& progress) -> Result<Listed> {
+        Result<std::vector<ListedRecording>> rows = listRecordings(folder, progress);
+        if (!rows) return rows.error();
+        Listed listed{*std::move(rows), {}};
+        for (const char* name : {"cranium", "abdomen"}) {
+          listed.cases[phantomSource(name)] = builtInName(name);
+        }
+        for (const ListedCase& one : library->list()) {
+          if (!one.problem) listed.cases[one.record.volume_sha256] = toQt(one.record.name);
+        }
+        return listed;
+      },
+      [this](Result<Listed> listed) {
+        if (!listed) return;
+        const std::optional<Case>& of = bench_.workstation().currentCase();
+        page_->showRecordings(listed->rows, of ? of->sha256 : "", listed->cases);
+        if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) {
+          page_->selectNewestOf(wanted);
+        }
+        if (std::exchange(replay_newest_, false) && !listed->rows.empty()) {
+          page_->selectNewest();
+          replay(listed->rows.front());
+        }
+      });
 }
 
 void ReviewWorkspace::replay(const ListedRecording& of) {

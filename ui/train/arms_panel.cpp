@@ -52,8 +52,9 @@ QString toolWaitsWords() {
 
 QString forceScaleWords(const SceneArm& arm) {
   const double force = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
-  if (force == 1.0) return ArmsPanel::tr("Felt = as the tissue is modelled");
-  return ArmsPanel::tr("Felt = %1 x modelled").arg(force, 0, 'g', 3);
+  // In general: what is changed just now stands at "Force is".
+  if (force == 1.0) return ArmsPanel::tr("Felt = modelled, up to what the arm can show");
+  return ArmsPanel::tr("Felt = %1 x modelled, up to what the arm can show").arg(force, 0, 'g', 3);
 }
 
 ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
@@ -77,6 +78,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   controller_->setCurrentIndex(-1);  // until a scene says which
   missed_ = value(inside, "missedDeadlines");
   dropped_ = value(inside, "dropped");
+  for (QLabel* label : {missed_, dropped_}) label->setWordWrap(true);
   journal_ =
       new QLabel(tr("The way back can no longer be kept on the disk: nothing more is removed. Undo "
                     "and rewind still work. Free some space, then start the exercise anew."),
@@ -98,6 +100,12 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(area);
 
+  // Of the widest row, with its frames and the scroll bar: what does not fit would be cut off.
+  constexpr int kAround = 52;
+  ensurePolished();
+  setMinimumWidth(kAround + fontMetrics().horizontalAdvance(
+                                tr("%1 of %2").arg(newtons(0.0), newtons(0.0)) +
+                                tr("demanded %1").arg(newtons(10.0))));
   connect(controller_, &QComboBox::activated, this,
           [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
   showIdle();
@@ -229,6 +237,9 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     card.energy->setText(tr("%1 mJ").arg(0.1 * tenths, 0, 'f', 1));
     colours::setText(*card.energy, gives_out ? colours::kBad : colours::kText);
     card.parts->setText(forceChangeWords(arm, state.paused));
+    // As high as it ever was, or all below would jump.
+    const int high = card.parts->heightForWidth(card.parts->width());
+    if (high > card.parts->minimumHeight()) card.parts->setMinimumHeight(high);
     showTool(card, state.tools[i], state.wanted_tools[i]);
     card.tool->setEnabled(card.tool->count() > 1);
     const bool touching =

@@ -75,13 +75,18 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   keys_ = wrapped("exerciseKeys");
   keys_->setProperty("quiet", true);
   keys_->setText(
-      tr("Mouse: where the tool goes. Wheel up or down: presses more or less. Shift and arrows: "
-         "tilt. Tab: the "
-         "other hand. Space: pause. Right drag: turn the view."));
+      tr("Mouse or arrows: where the tool goes. Wheel up or down, Page Down or Up: presses more or "
+         "less. Shift and arrows: tilt. Tab: the other hand. Space: pause. Right drag: turn the "
+         "view."));
+  card_ = new QPushButton;
+  card_->setObjectName("showCard");
+  card_->hide();
+  connect(card_, &QPushButton::clicked, this, &ExercisePanel::cardWanted);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(12, 10, 12, 10);
   layout->setSpacing(8);
   layout->addWidget(title_);
+  layout->addWidget(card_);
   layout->addWidget(time_);
   layout->addWidget(heading(tr("Removed")));
   layout->addWidget(removed_);
@@ -121,6 +126,11 @@ void ExercisePanel::showRemoved(const std::vector<RemovedOf>& tissues,
   const QString html = rows(tr("Tissue"), tissues) + rows(tr("Structure"), structures);
   removed_->setText(html.isEmpty() ? tr("nothing yet")
                                    : QStringLiteral("<table>%1</table>").arg(html));
+}
+
+void ExercisePanel::offerCard(const QString& words) {
+  card_->setText(words);
+  card_->setVisible(!words.isEmpty());
 }
 
 void ExercisePanel::showIdle() {

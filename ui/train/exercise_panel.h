@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QLabel>
+#include <QPushButton>
 #include <QWidget>
 #include <array>
 #include <vector>
@@ -32,8 +33,14 @@ class ExercisePanel : public QWidget {
   // Rows of nothing removed are left out.
   void showRemoved(const std::vector<RemovedOf>& tissues, const std::vector<RemovedOf>& structures);
   void showIdle();
+  // A button with these words brings back the card or the result that was put aside; empty: none.
+  void offerCard(const QString& words);
+
+ signals:
+  void cardWanted();
 
  private:
+  QPushButton* card_;
   QLabel *title_, *goal_, *steps_, *tools_, *hands_, *time_, *removed_, *keys_;
 };
 

@@ -1,6 +1,9 @@
 #include "ui/train/hand_bar.h"
 
+#include <algorithm>
+
 #include "ui/common/colours.h"
+#include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
 
 namespace trephine {
@@ -17,6 +20,8 @@ HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
   hand_->setProperty("large", true);
   tool_ = new QLabel;
   tool_->setObjectName("handTool");
+  touches_ = new QLabel;
+  touches_->setObjectName("handTouches");
   waits_ = new QLabel(toolWaitsWords());
   waits_->setObjectName("handToolWaits");
   waits_->setWordWrap(true);
@@ -36,6 +41,7 @@ HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
   }
   held->addWidget(hand_);
   held->addWidget(tool_, 1);
+  held->addWidget(touches_);
   pushed->addWidget(bar_, 1);
   pushed->addWidget(push_);
   lines_->addLayout(held);
@@ -46,12 +52,23 @@ HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
   layout->addWidget(waits_);
 }
 
+void HandBar::setTissues(const TissueSet& tissues) {
+  int widest = 0;  // or the bar beside it would jump with every tissue
+  for (const Tissue& tissue : tissues.tissues) {
+    const QString words = tr("in: %1").arg(toQt(tissue.name));
+    widest = std::max(widest, touches_->fontMetrics().horizontalAdvance(words));
+  }
+  touches_->setMinimumWidth(widest);
+}
+
 void HandBar::showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
-                       double push_N, double most_N) {
+                       double push_N, double most_N, const QString& touches) {
   hand_->setText(hand);
   colours::setText(*hand_, colour);
   tool_->setText(tool);
   waits_->setVisible(waits);
+  touches_->setText(touches.isEmpty() ? tr("touches nothing") : tr("in: %1").arg(touches));
+  colours::setText(*touches_, touches.isEmpty() ? colours::kQuiet : colours::kText);
   bar_->setForce(push_N, 0.0, most_N);
   push_->setText(push_N > 0.0 ? tr("presses %1 N").arg(push_N, 0, 'f', 1) : tr("hovers"));
   push_->setMinimumWidth(push_->fontMetrics().horizontalAdvance(tr("presses %1 N").arg("0.0")));

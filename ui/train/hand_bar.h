@@ -1,10 +1,11 @@
-// Over the lower edge of the view while the mouse is a hand: which hand it has with which tool, and
-// how hard that presses. Legible from two metres.
+// Over the lower edge of the view while the mouse is a hand: which hand it has with which tool, what
+// that touches and how hard it presses. Legible from two metres.
 #pragma once
 
 #include <QBoxLayout>
 #include <QLabel>
 
+#include "tissue/tissue_set.h"
 #include "ui/common/floating_card.h"
 #include "ui/train/force_bar.h"
 
@@ -14,15 +15,18 @@ class HandBar : public FloatingCard {
   Q_OBJECT
  public:
   explicit HandBar(QWidget& over);
-  // `waits`: another tool is wanted, and comes once this one is out of tissue.
+
+  void setTissues(const TissueSet& tissues);
+  // `waits`: another tool is wanted, and comes once this one is out of tissue. `touches`: a tissue's
+  // name; empty: nothing.
   void showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
-                double push_N, double most_N);
+                double push_N, double most_N, const QString& touches);
 
  private:
   void fit(int width, int most_height) override;
 
   QBoxLayout* lines_;  // hand and tool beside the push, or above it where that is too wide
-  QLabel *hand_, *tool_, *push_, *waits_;
+  QLabel *hand_, *tool_, *touches_, *push_, *waits_;
   ForceBar* bar_;
 };
 

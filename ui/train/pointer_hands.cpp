@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "ui/common/settings.h"
 
@@ -12,6 +13,7 @@ namespace {
 // Steps up and as many down do not come back to 0 exactly, and the tool would stay where it is.
 constexpr double kLeastPush_N = 0.01;
 constexpr double kTilt_rad = 0.087;  // 5 degrees a key
+constexpr double kElsewhere_mm = 3.0;
 
 std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
@@ -38,15 +40,16 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
 // Another place of the tissue is under the pointer, though no hand has moved: until it does, the
 // tool is drawn out where it is.
 void PointerHands::letGo() {
-  if (!session_ || !place_) return;
-  lets_go_ = true;
+  if (!session_ || !place()) return;
+  stays_ = true;
   setPush(0.0);
 }
 
 void PointerHands::begin(Session* session) {
   session_ = session;
-  place_.reset();
-  lets_go_ = false;
+  places_.assign(session_ ? session_->scene().arms.size() : 1, std::nullopt);
+  last_.reset();
+  stays_ = false;
   active_ = 0;
   if (session_) {
     const std::string main = read(settings::kMainHand).toStdString();
@@ -67,7 +70,7 @@ double PointerHands::mostPush_N() const {
 
 void PointerHands::setPush(double push_N) {
   if (!session_) return;
-  if (!place_) step(0, 0);  // keys alone: from the middle of the view
+  if (!place()) step(0, 0);  // keys alone: from the middle of the view
   const double wanted_N = push_N < kLeastPush_N ? 0.0 : std::min(push_N, mostPush_N());
   (void)session_->setPush(active_, wanted_N);
   emit changed();
@@ -77,15 +80,20 @@ void PointerHands::takeOther() {
   if (!session_ || session_->scene().arms.size() < 2) return;
   (void)session_->releaseHand(active_);
   active_ = (active_ + 1) % session_->scene().arms.size();
-  send();
+  stays_ = true;
   emit changed();
 }
 
-void PointerHands::point(const QPointF& place) {
+void PointerHands::point(const QPointF& to) {
   if (!session_) return;
-  const bool first = !place_;
-  place_ = place;
-  lets_go_ = false;
+  const bool first = !taken();
+  if (stays_ && place() && push_N() > 0.0) {
+    const QPointF by = to - *place();
+    const double apart_mm = std::hypot(by.x(), by.y()) * view_.mmPerUnitAt(to);
+    if (apart_mm > kElsewhere_mm) setPush(0.0);  // or it would cut its way there
+  }
+  place() = last_ = to;
+  stays_ = false;
   send();
   if (first) emit changed();
 }
@@ -94,7 +102,7 @@ void PointerHands::point(const QPointF& place) {
 void PointerHands::step(int right, int up) {
   if (!session_) return;
   const QRectF all = view_.rect();
-  const QPointF from = place_.value_or(all.center());
+  const QPointF from = place().value_or(last_.value_or(all.center()));
   const double pixels = readWithin(settings::kKeyStep_mm, 0.1, 5.0) / view_.mmPerUnitAt(from);
   const QPointF to = from + QPointF(right * pixels, -up * pixels);
   point({std::clamp(to.x(), all.left(), all.right()), std::clamp(to.y(), all.top(), all.bottom())});
@@ -108,15 +116,15 @@ void PointerHands::tilt(int right, int up) {
 }
 
 void PointerHands::follow() {
-  if (place_ && !lets_go_) send();
+  if (!stays_) send();
 }
 
 void PointerHands::send() {
-  if (!session_ || !place_) return;
-  const std::optional<ViewCamera::Ray> ray = view_.rayAt(*place_);
+  if (!session_ || !place()) return;
+  const std::optional<ViewCamera::Ray> ray = view_.rayAt(*place());
   if (!ray) return;
   PointerSample sample{now_ns(), ray->from_mm, ray->direction, {}};
-  if (const std::optional<Picked> picked = view_.pickAt(*place_)) {
+  if (const std::optional<Picked> picked = view_.pickAt(*place())) {
     sample.depth_mm = glm::dot(picked->at_mm - ray->from_mm, glm::normalize(ray->direction));
   }
   (void)session_->point(active_, sample);

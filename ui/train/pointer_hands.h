@@ -1,11 +1,12 @@
 // The mouse and the keys as a hand: the tool goes where the pointer is, the wheel sets how hard it
-// presses, Shift and arrow keys tilt it, Tab takes the other hand. Of simulated arms; what it sends
-// is recorded by the session.
+// presses, Shift and arrow keys tilt it, Tab takes the other hand: both stay where they are until
+// the pointer moves. Of simulated arms; what it sends is recorded by the session.
 #pragma once
 
 #include <QObject>
 #include <QPointF>
 #include <optional>
+#include <vector>
 
 #include "session/session.h"
 #include "ui/views/view_widget.h"
@@ -28,7 +29,7 @@ class PointerHands : public QObject {
   double push_N() const;
   double mostPush_N() const;
   // Somebody has pointed since the exercise began.
-  bool taken() const { return place_.has_value(); }
+  bool taken() const { return last_.has_value(); }
   void takeOther();
   void setPush(double push_N);
 
@@ -37,7 +38,8 @@ class PointerHands : public QObject {
 
  private:
   void letGo();
-  void point(const QPointF& place);
+  void point(const QPointF& to);
+  std::optional<QPointF>& place() { return places_[active_]; }
   void send();
   void step(int right, int up);
   void tilt(int right, int up);
@@ -45,8 +47,9 @@ class PointerHands : public QObject {
   ViewWidget& view_;
   Session* session_ = nullptr;
   std::size_t active_ = 0;
-  std::optional<QPointF> place_;  // of the view
-  bool lets_go_ = false;          // until the pointer moves
+  std::vector<std::optional<QPointF>> places_{std::nullopt};  // of each hand, in the view
+  std::optional<QPointF> last_;                               // of any hand
+  bool stays_ = false;  // where it is, until the pointer moves
 };
 
 }  // namespace trephine

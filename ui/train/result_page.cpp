@@ -37,14 +37,16 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
   rows_->setWordWrap(true);
   auto* purpose = new QLabel(purposeText());
   purpose->setProperty("quiet", true);
-  again_ = new QPushButton(tr("Try &again (F5)"));
+  again_ = new QPushButton(tr("Try &again"));
   again_->setObjectName("resultAgain");
   again_->setProperty("primary", true);
+  again_->setToolTip(tr("On whole tissue; the recording of this one stays"));
   replay_ = new QPushButton(tr("&Replay"));
   replay_->setObjectName("resultReplay");
-  look_ = new QPushButton(tr("&Look at it"));
+  look_ = new QPushButton(tr("&Look at it (Esc)"));
   look_->setObjectName("resultLook");
-  look_->setToolTip(tr("Closes this page: the tissue stays as it was left until the next start"));
+  look_->setToolTip(tr("Puts this page aside: the tissue stays as it was left until the next start, and the panel "
+         "at the left brings the page back"));
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);
   for (QPushButton* each : {again_, replay_, look_}) buttons->addWidget(each);
@@ -62,7 +64,7 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
   connect(look_, &QPushButton::clicked, this, &ResultPage::lookWanted);
 }
 
-void ResultPage::showResult(const ExerciseResult& result) {
+void ResultPage::setResult(const ExerciseResult& result) {
   title_->setText(tr("Result: %1").arg(result.exercise));
   time_->setText(tr("Time %1").arg(timeWords(std::uint32_t(result.seconds))));
   QString html = title(tr("Removed"));
@@ -88,7 +90,6 @@ void ResultPage::showResult(const ExerciseResult& result) {
   if (result.late > 1) html += row(tr("Force came late"), tr("%1 times").arg(result.late));
   rows_->setText(QStringLiteral("<table width='100%'>%1</table>").arg(html));
   replay_->setEnabled(result.recorded);
-  show();
   place();
 }
 

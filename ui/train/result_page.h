@@ -31,7 +31,8 @@ class ResultPage : public FloatingCard {
  public:
   explicit ResultPage(QWidget& over);
 
-  void showResult(const ExerciseResult& result);
+  void setResult(const ExerciseResult& result);
+  QPushButton& lookButton() { return *look_; }
 
  signals:
   void againWanted();

@@ -25,8 +25,9 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
   hands_ = new QLabel;
   hands_->setObjectName("startCardHands");
   keys_ =
-      new QLabel(tr("Without arms: the mouse is the hand. Move it over the tissue, press with "
-                    "the wheel, change hands with Tab."));
+      new QLabel(tr("Without arms the mouse is the hand: move it over the tissue, turn the wheel up "
+                    "to press, change hands with Tab. By keys alone: arrows, Page Down to press, Page "
+                    "Up to ease, Shift and arrows to tilt."));
   keys_->setProperty("quiet", true);
   for (QLabel* label : {title_, goal_, steps_, hands_, keys_}) label->setWordWrap(true);
   start_ = new QPushButton(tr("&Start (F5)"));
@@ -37,10 +38,15 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
   choose_->setObjectName("startCardChoose");
   choose_->setProperty("primary", true);
   choose_->setProperty("big", true);
+  aside_ = new QPushButton(tr("Put &aside (Esc)"));
+  aside_->setObjectName("startCardAside");
+  aside_->setProperty("big", true);
+  aside_->setToolTip(tr("Shows what lies behind; the panel at the left brings it back"));
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);
   buttons->addWidget(start_);
   buttons->addWidget(choose_);
+  buttons->addWidget(aside_);
   buttons->addStretch(1);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(20, 16, 20, 16);
@@ -53,13 +59,15 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
   layout->addLayout(buttons);
   connect(start_, &QPushButton::clicked, this, &StartCard::startWanted);
   connect(choose_, &QPushButton::clicked, this, &StartCard::caseWanted);
+  connect(aside_, &QPushButton::clicked, this, &StartCard::asideWanted);
 }
 
 void StartCard::showNoCase() {
   title_->setText(tr("There is no case to practise on yet"));
   goal_->setText(tr("Choose one of your own or a built-in one."));
   for (QWidget* part : {static_cast<QWidget*>(steps_), static_cast<QWidget*>(hands_),
-                        static_cast<QWidget*>(keys_), static_cast<QWidget*>(start_)}) {
+                        static_cast<QWidget*>(keys_), static_cast<QWidget*>(start_),
+                        static_cast<QWidget*>(aside_)}) {
     part->hide();
   }
   choose_->show();
@@ -75,6 +83,7 @@ void StartCard::showExercise(const Scene& scene, const QString& language, bool m
   hands_->setText(card && !card->hands.empty() ? toQt(card->hands) : toolWords(scene));
   start_->show();
   start_->setEnabled(may_start);
+  aside_->show();
   choose_->hide();
   show();
   place();

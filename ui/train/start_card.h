@@ -17,17 +17,19 @@ class StartCard : public FloatingCard {
 
   void showNoCase();
   void showExercise(const Scene& scene, const QString& language, bool may_start);
+  QPushButton& asideButton() { return *aside_; }
 
  signals:
   void startWanted();
   void caseWanted();
+  void asideWanted();
 
  protected:
   void fit(int width, int most_height) override;
 
  private:
   QLabel *title_, *goal_, *steps_, *hands_, *keys_;
-  QPushButton *start_, *choose_;
+  QPushButton *start_, *choose_, *aside_;
 };
 
 }  // namespace trephine

@@ -48,9 +48,12 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
     if (arm.faults != 0) of_arm << faultWords(arm.faults);
     if (!state.paused && (arm.tool_state & kToolWaits)) {
       of_arm << StateNotice::tr(
-          "The tool is in tissue that it did not come into. Draw it out to feel and to cut: turn "
-          "the "
-          "wheel towards you or press Page Up (with Shift for the left hand).");
+          "The tool is in tissue that it did not come into. Draw it out to feel and to cut; the "
+          "mouse and the keys do so by themselves.");
+    }
+    if (!state.paused && (arm.tool_state & kToolClutched)) {
+      of_arm << StateNotice::tr(
+          "Clutched: the arm moves freely and its tool stays, until Ctrl+K is pressed again.");
     }
     if (arm.tool_state & kToolLetGo) {
       of_arm << StateNotice::tr("The tool was hooked behind bone: it is let go.");

@@ -93,9 +93,11 @@ void TraceView::paintEvent(QPaintEvent*) {
   painter.setClipping(false);
   painter.setPen(colours::kQuiet);
   const QRectF words(0, 0, width(), line);
-  painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter, title_);
-  painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter,
-                   tr("%1 to %2 %3").arg(low, 0, 'g', 3).arg(high, 0, 'g', 3).arg(unit_));
+  const QString range = tr("%1 to %2 %3").arg(low, 0, 'g', 3).arg(high, 0, 'g', 3).arg(unit_);
+  const int left = width() - fontMetrics().horizontalAdvance(range + QStringLiteral("  "));
+  painter.drawText(words, Qt::AlignLeft | Qt::AlignVCenter,
+                   fontMetrics().elidedText(title_, Qt::ElideRight, left));
+  painter.drawText(words, Qt::AlignRight | Qt::AlignVCenter, range);
 }
 
 }  // namespace trephine

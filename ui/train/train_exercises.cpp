@@ -1,9 +1,9 @@
 // Which exercise it is, and whether the case is what it is for.
 #include <QMessageBox>
 #include <QPushButton>
+#include <QStandardItemModel>
 #include <algorithm>
 
-#include "base/system.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -12,16 +12,13 @@
 namespace trephine {
 
 void TrainWorkspace::fillScenes() {
-  std::vector<std::filesystem::path> files;
-  std::error_code ec;
-  for (std::filesystem::directory_iterator it(resourceFolder() / "scenes", ec), end;
-       !ec && it != end; it.increment(ec)) {
-    if (it->path().extension() == ".json") files.push_back(it->path());
+  for (const std::filesystem::path& file : scenesOfWorkstation(workstation_.policy())) {
+    Result<Scene> scene = readScene(file);
+    if (!scene) continue;
+    scenes_->addItem(toQt(scene->name), toQt(file));
+    listed_.emplace_back(file, *std::move(scene));
   }
-  std::sort(files.begin(), files.end());
-  for (const std::filesystem::path& file : files) {
-    if (Result<Scene> scene = readScene(file)) scenes_->addItem(toQt(scene->name), toQt(file));
-  }
+  showAllowed();
   showInUse();
 }
 
@@ -75,14 +72,27 @@ void TrainWorkspace::showCard() {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
   const bool idle = phase == Phase::ready || phase == Phase::empty;
+  exercise_->offerCard({});
   if (!idle || !here_) {
     card_->hide();
     if (!here_ || phase == Phase::running) result_->hide();
     return;
   }
   if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
-  if (result_shown_ || bench_.carved()) return card_->hide();
+  const bool card = !result_shown_ && !bench_.carved();
+  result_->setVisible(result_shown_ && !aside_);
+  exercise_->offerCard(!aside_         ? QString()
+                       : result_shown_ ? tr("Show the result")
+                       : card          ? tr("Show what to do")
+                                       : QString());
+  if (!card || aside_) return card_->hide();
   card_->showExercise(*workstation_.scene(), read(settings::kLanguage), start_->isEnabled());
+}
+
+void TrainWorkspace::putAside(bool aside) {
+  aside_ = aside;
+  showCard();
+  view_->setFocus();
 }
 
 void TrainWorkspace::showOutline() {
@@ -95,12 +105,26 @@ void TrainWorkspace::showOutline() {
 
 void TrainWorkspace::showLocks() {
   arms_->setLocked(workstation_.isLocked(Lock::controller)
-                       ? tr("Locked: an educator can unlock it (menu File)")
+                       ? tr("Locked. %1").arg(unlockWords(workstation_.policy()))
                        : QString());
+  showAllowed();
+}
+
+// What would be refused cannot be chosen.
+void TrainWorkspace::showAllowed() {
+  auto* rows = qobject_cast<QStandardItemModel*>(scenes_->model());
+  for (const auto& [file, scene] : listed_) {
+    QStandardItem* row = rows ? rows->item(scenes_->findData(toQt(file))) : nullptr;
+    if (!row) continue;
+    const Status may = workstation_.mayPractise(scene, file);
+    row->setEnabled(may.ok());
+    row->setToolTip(may ? QString() : toQt(may.error().sentence()));
+  }
 }
 
 // Until it is open, or cannot be had.
 void TrainWorkspace::showOpening(const Scene& scene, const std::filesystem::path& file) {
+  aside_ = false;
   scenes_->setPlaceholderText(toQt(scene.name));  // where the list has it not yet
   const int index = scenes_->findData(toQt(file));
   scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(toQt(scene.name)));

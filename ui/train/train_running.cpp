@@ -121,9 +121,12 @@ void TrainWorkspace::showHand() {
   const SceneArm& arm = session->scene().arms[active];
   const LoopState& state = session->state();
   const SceneTool& tool = *session->scene().toolOf(active, std::size_t(state.tools[active]));
+  const std::vector<Tissue>& tissues = session->scene().tissues.tissues;
+  const auto touched = std::size_t(state.record.arms[active].tissue_class);
   hand_bar_->showHand(handName(arm), armColour(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),
-                      hands_->mostPush_N());
+                      hands_->mostPush_N(),
+                      touched < tissues.size() ? toQt(tissues[touched].name) : QString());
 }
 
 // Of the hand that the mouse and the keys have.
@@ -188,8 +191,11 @@ void TrainWorkspace::showResult(Session& session, const RunReport& report) {
   }
   result.recorded = session.recordingStatus() && report.events_dropped == 0;
   result.late = report.missed_deadlines;
+  recorded_ = result.recorded;
   result_shown_ = true;
-  if (here_) result_->showResult(result);
+  aside_ = false;
+  result_->setResult(result);
+  showCard();
 }
 
 void TrainWorkspace::showRates() {

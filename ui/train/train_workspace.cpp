@@ -35,7 +35,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   notice_ = new StateNotice(views_);
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
-  arms_->setMinimumWidth(kRightWidth);
+  arms_->setMinimumWidth(std::max(kRightWidth, arms_->minimumWidth()));
   exercise_ = new ExercisePanel;
   exercise_page_ = scrolled(exercise_, "exercisePage");
   exercise_page_->setMinimumWidth(kLeftWidth);
@@ -129,12 +129,13 @@ void TrainWorkspace::connectParts() {
   connect(recentre_, &QAction::triggered, this, &TrainWorkspace::recentre);
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
   connect(card_, &StartCard::caseWanted, this, [this] { bench_.go(Place::cases); });
-  connect(result_, &ResultPage::againWanted, start_, &QAction::trigger);
+  connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
+  connect(exercise_, &ExercisePanel::cardWanted, this, [this] { putAside(false); });
+  card_->takeTabFrom(*view_, card_->asideButton());
+  result_->takeTabFrom(*view_, result_->lookButton());
+  connect(result_, &ResultPage::againWanted, this, &TrainWorkspace::tryAgain);
   connect(result_, &ResultPage::replayWanted, this, &TrainWorkspace::replayWanted);
-  connect(result_, &ResultPage::lookWanted, this, [this] {
-    result_->hide();
-    view_->setFocus();
-  });
+  connect(result_, &ResultPage::lookWanted, this, [this] { putAside(true); });
   connect(&workstation_, &Workstation::locksChanged, this, &TrainWorkspace::showLocks);
   connect(&workstation_, &Workstation::structuresChanged, this, &TrainWorkspace::showOutline);
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
@@ -170,9 +171,17 @@ void TrainWorkspace::startExercise(std::optional<OperatorScript> script, double 
 }
 
 void TrainWorkspace::start() {
-  bench_.beforeStart([this] {
-    unlessItDoesNotFit(
-        [this] { bench_.unlessLost({Bench::Loss::cuts}, [this] { startExercise(); }); });
+  startUnlessLost({Bench::Loss::cuts});
+}
+
+// What was cut can be seen again by its recording, so nothing is asked.
+void TrainWorkspace::tryAgain() {
+  recorded_ ? startUnlessLost({}) : start();
+}
+
+void TrainWorkspace::startUnlessLost(const std::vector<Bench::Loss>& losses) {
+  bench_.beforeStart([this, losses] {
+    unlessItDoesNotFit([this, losses] { bench_.unlessLost(losses, [this] { startExercise(); }); });
   });
 }
 
@@ -229,7 +238,11 @@ void TrainWorkspace::reset() {
           rewind_->noteReset();
         });
   } else if (workstation_.phase() == Workstation::Phase::ready) {
-    bench_.unlessLost({Bench::Loss::cuts}, [this] { bench_.showWholeCase(); });
+    bench_.unlessLost({Bench::Loss::cuts}, [this] {
+      bench_.showWholeCase();
+      result_shown_ = aside_ = false;
+      showCard();
+    });
   }
 }
 
@@ -242,9 +255,10 @@ void TrainWorkspace::sessionStarted() {
   ticks_shown_ = 0;
   rate_clock_.restart();
   bench_.exerciseBegan();
-  touched_ = result_shown_ = false;
+  touched_ = result_shown_ = aside_ = false;
   removed_clock_.restart();
   exercise_->showIdle();
+  hand_bar_->setTissues(session.scene().tissues);
   hands_->begin(&session);
   frame_timer_.start();
   view_->setFocus();

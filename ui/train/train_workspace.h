@@ -66,6 +66,8 @@ class TrainWorkspace : public Workspace {
   void showPhase();
   void showReset();
   void start();
+  void tryAgain();
+  void startUnlessLost(const std::vector<Bench::Loss>& losses);
   void reset();
   // Goes on with the exercise; where the case is not what it is for it asks first.
   void unlessItDoesNotFit(Bench::Next go_on);
@@ -80,10 +82,12 @@ class TrainWorkspace : public Workspace {
   void showRewind(const LoopState& state);
   void askToGoOn(const Error& error);
   void showCard();
+  void putAside(bool aside);
   void showHand();
   void showRemoved(Session& session, const LoopState& state);
   void showOutline();
   void showLocks();
+  void showAllowed();
   void showResult(Session& session, const RunReport& report);
   void showChangeTool();
   void giveTool(std::size_t arm, std::size_t tool);
@@ -108,7 +112,9 @@ class TrainWorkspace : public Workspace {
   PointerHands* hands_;
   bool here_ = false;          // this workspace is the one that is shown
   bool touched_ = false;       // something has been, in this exercise
-  bool result_shown_ = false;  // instead of the card, until it is closed
+  bool result_shown_ = false;  // instead of the card
+  bool recorded_ = false;      // whole, the exercise of the result
+  bool aside_ = false;         // card or result, by the person
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_;
   std::vector<double> limits_N_;  // of the running session's arms
@@ -116,6 +122,7 @@ class TrainWorkspace : public Workspace {
     std::uint32_t second;
     std::uint64_t asked_tick;
   };
+  std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
   std::optional<GoingBack> going_back_;  // until it is said that one is there
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;

@@ -53,7 +53,8 @@ ViewTools::ViewTools(QWidget* view) : QFrame(view), grid_(new QGridLayout(this))
                 tr("Show everything again, with the light back in its place"));
   connect(reset_, &QAction::triggered, this, &ViewTools::resetWanted);
   for (const double way : {1.0, -1.0}) {
-    auto* step = new QAction(this);
+    auto* step = new QAction(way > 0 ? tr("Clip plane nearer") : tr("Clip plane farther"), this);
+    step->setToolTip(tr("By %1 mm").arg(kPlaneStep_mm));
     step->setObjectName(way > 0 ? "planeNearer" : "planeFarther");
     step->setShortcut(way > 0 ? Qt::Key_Comma : Qt::Key_Period);
     step->setShortcutContext(Qt::WidgetShortcut);

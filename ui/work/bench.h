@@ -46,6 +46,12 @@ class Bench : public QObject {
   void hint(const QString& text) { emit hinted(text); }
   void report(const Error& error);
   void go(Place place) { emit placeWanted(place); }
+  // To the recordings of a case (ListedRecording::caseKey()).
+  void review(const std::string& of) {
+    review_of_ = of;
+    go(Place::review);
+  }
+  std::string takeReviewed() { return std::exchange(review_of_, {}); }
   // Where one goes once the case that is being opened is there; Prepare, where nobody says.
   void goOnceOpen(Place place) { once_open_ = place; }
 
@@ -103,6 +109,7 @@ class Bench : public QObject {
   Workstation workstation_;
   std::array<Guard, 3> guards_;
   Place once_open_ = Place::prepare;
+  std::string review_of_;
   Guard before_start_;
   QAction *undo_, *redo_;
   std::filesystem::path case_source_;

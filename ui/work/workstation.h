@@ -44,7 +44,7 @@ class Workstation : public QObject {
   struct Stored {
     Case of;
     std::optional<TissueSet> tissues;
-    std::optional<Error> no_tissues{};  // why there are none: said once it is open
+    std::optional<Error> no_tissues{}, no_structures{};  // why none: said once it is open
   };
   void openStored(std::function<Result<Stored>(const Progress&)> load);
   // The library has the open case now, as that id and under that name, or no longer.
@@ -70,12 +70,17 @@ class Workstation : public QObject {
   ImportTask& import() { return import_; }
 
   // What may not be changed now: by the workstation or by the exercise, until an educator's PIN
-  // takes the locks off for this session of the program. What is locked and tried all the same is
-  // refused here: LOCKED.
+  // takes the locks off, for this session of the program or until they are put on again. What is
+  // locked and tried all the same is refused here: LOCKED.
   const Policy& policy() const { return policy_; }
   bool isLocked(Lock lock) const;
   bool anyLocked() const;
-  void unlock();
+  bool isUnlocked() const { return unlocked_; }
+  void setUnlocked(bool unlocked);
+  // Whether this scene of this file may be opened now: checkScene().
+  Status mayPractise(const Scene& scene, const std::filesystem::path& file) const {
+    return unlocked_ ? Status() : checkScene(policy_, scene, file);
+  }
 
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }

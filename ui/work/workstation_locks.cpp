@@ -1,4 +1,5 @@
 // What a trainee may not change, and the changes that ask first.
+#include "ui/common/words.h"
 #include "ui/work/workstation.h"
 
 namespace trephine {
@@ -12,15 +13,15 @@ bool Workstation::anyLocked() const {
   return isLocked(Lock::controller) || isLocked(Lock::tissues) || isLocked(Lock::rate);
 }
 
-void Workstation::unlock() {
-  unlocked_ = true;
+void Workstation::setUnlocked(bool unlocked) {
+  unlocked_ = unlocked;
   emit locksChanged();
 }
 
 bool Workstation::refuseLocked(Lock lock, const char* what) {
   if (!isLocked(lock)) return false;
   fail({"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
-        "Ask an educator, who can unlock it with a PIN (menu File)"});
+        unlockWords(policy_).toStdString()});
   return true;
 }
 

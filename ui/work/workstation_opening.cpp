@@ -30,7 +30,7 @@ struct Workstation::Opened {
   // The case comes from there, and its own tissues with it.
   std::function<Result<Stored>(const Progress&)> load{};
   std::optional<TissueSet> tissues{};
-  std::optional<Error> no_tissues{};
+  std::optional<Error> no_tissues{}, no_structures{};
   Volume mirror{};
 };
 
@@ -258,6 +258,7 @@ void Workstation::openInBackground(Opened opening) {
           opening.of = std::move(stored->of);
           opening.tissues = std::move(stored->tissues);
           opening.no_tissues = std::move(stored->no_tissues);
+          opening.no_structures = std::move(stored->no_structures);
         }
         const Progress progress(all, opening.load ? kLoaded : 0.0, 1.0);
         opening.load = nullptr;
@@ -381,6 +382,7 @@ void Workstation::opened(Result<Opened> outcome) {
   emit caseOpened();
   setPhase(Phase::ready);
   if (outcome->no_labels) fail(*outcome->no_labels);
+  if (outcome->no_structures) fail(*outcome->no_structures);
   if (outcome->no_tissues && may_edit) fail(*outcome->no_tissues);
   if (case_->misfit) fail(*case_->misfit);
 }

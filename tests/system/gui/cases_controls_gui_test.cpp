@@ -276,6 +276,8 @@ class CasesControlsGuiTest : public test::WindowTest {
     click("caseRecordings");
     QVERIFY(window_->place() == Place::review);
     QTRY_COMPARE_WITH_TIMEOUT(find<QTreeWidget>("recordings")->topLevelItemCount(), 1, kLong_ms);
+    QCOMPARE(find<QTreeWidget>("recordings")->topLevelItem(0)->text(2),
+             toQt(workstation().currentCase()->name));
     click("replay");
     QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
                              kLong_ms);

@@ -170,6 +170,12 @@ class CasesGuiTest : public test::WindowTest {
       const QString said = errorSaid();
       QVERIFY2(!said.isEmpty(), name);
       QVERIFY2(!said.contains("DOE", Qt::CaseInsensitive), qPrintable(said));
+      // What was typed is there to be changed.
+      auto* again = window_->findChild<QInputDialog*>("renameDialog");
+      QVERIFY(again);
+      QCOMPARE(again->textValue(), QString(name));
+      again->reject();
+      QTRY_VERIFY(!window_->findChild<QInputDialog*>("renameDialog"));
       QCOMPARE(find<QLabel>("caseName")->text(), before);
     }
   }

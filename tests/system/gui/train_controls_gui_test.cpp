@@ -170,13 +170,62 @@ class TrainControlsGuiTest : public test::TrainTest {
     stop();
     QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
+    // The button says so itself: of what is recorded nothing is asked.
     QTest::mouseClick(find<QPushButton>("resultAgain"), Qt::LeftButton);
-    answer("cutsQuestion", "goOnAnyway");
     QVERIFY(started.count() == 1 || started.wait(kLong_ms));
     QVERIFY(!find<QWidget>("resultPage")->isVisible());
     QCOMPARE(removedVoxels(*workstation().session()), 0u);
     QVERIFY(view().shownVolume().hu == workstation().currentCase()->volume->hu);
     stop();
+  }
+
+  void theCardIsPutAsideAndBroughtBack() {
+    openScene(scene_);
+    window_->show(Place::train);
+    auto* card = find<QWidget>("startCard");
+    QTRY_VERIFY(card->isVisible());
+    QVERIFY(!find<QPushButton>("showCard")->isVisible());
+    view().setFocus();
+    QTest::keyClick(&view(), Qt::Key_Tab);
+    QCOMPARE(window_->focusWidget(), find<QWidget>("startCardStart"));
+    QTest::keyClick(window_->focusWidget(), Qt::Key_Escape);
+    QTRY_VERIFY(!card->isVisible());
+    window_->show(Place::prepare);
+    window_->show(Place::train);
+    QVERIFY2(!card->isVisible(), "aside it stays");
+    QTest::mouseClick(find<QPushButton>("showCard"), Qt::LeftButton);
+    QVERIFY(card->isVisible());
+    QVERIFY(!find<QPushButton>("showCard")->isVisible());
+    QTest::mouseClick(find<QPushButton>("startCardAside"), Qt::LeftButton);
+    QVERIFY(!card->isVisible());
+    startTraining();
+    stop();
+  }
+
+  void theResultIsPutAsideAndBroughtBackAndIsThereAfterAWayElsewhere() {
+    openScene(scene_);
+    startTraining();
+    cut({30, 0});
+    stop();
+    auto* result = find<QWidget>("resultPage");
+    QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
+    view().setFocus();
+    QTest::keyClick(&view(), Qt::Key_Tab);
+    QCOMPARE(window_->focusWidget(), find<QWidget>("resultAgain"));
+    QTest::keyClick(window_->focusWidget(), Qt::Key_Escape);
+    QTRY_VERIFY(!result->isVisible());
+    QCOMPARE(find<QPushButton>("showCard")->text(), "Show the result");
+    QTest::mouseClick(find<QPushButton>("showCard"), Qt::LeftButton);
+    QVERIFY(result->isVisible());
+    window_->show(Place::cases);
+    QVERIFY(!result->isVisible());
+    window_->show(Place::train);
+    QVERIFY(result->isVisible());
+    // With all tissue back the card says again what to do.
+    find<QAction>("reset")->trigger();
+    answer("cutsQuestion", "goOnAnyway");
+    QTRY_VERIFY(find<QWidget>("startCard")->isVisible());
+    QVERIFY(!result->isVisible());
   }
 
   void anExerciseForAnotherPartOfTheBodyIsChangedByItsQuestion() {

@@ -3,12 +3,14 @@
 #include <QAbstractItemView>
 #include <QComboBox>
 #include <QFileDialog>
+#include <QFontDatabase>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSignalSpy>
+#include <QStandardItemModel>
 #include <QToolBar>
 #include <QtTest>
 
@@ -48,6 +50,9 @@ class TrainGuiTest : public test::TrainTest {
     window_->show(Place::train);
     QCOMPARE(find<QLabel>("startCardGoal")->text(),
              toQt(cardFor(*workstation().scene(), "zh_TW")->goal));
+    QVERIFY2(!QFontDatabase::families(QFontDatabase::TraditionalChinese).isEmpty(),
+             "its characters would be boxes: fonts-droid-fallback");
+    QVERIFY(window_->grab().save(TREPHINE_ARTEFACTS "/train-card-zh.png"));
   }
 
   void theWholePathGoesByKeysAlone() {
@@ -216,18 +221,35 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(!change->isEnabled());
   }
 
-  void tabGivesTheMouseTheOtherHandAndTheFirstRests() {
+  void tabGivesTheMouseTheOtherHandAndTheFirstStaysInTheTissueWithoutForce() {
     openScene(scene_);
     startTraining();
+    const auto force_N = [&](std::size_t hand) { return glm::length(arm(hand).sent_N); };
     takeHand(Hand::right);
     pushHand(5);
-    QVERIFY(workstation().session()->handPush_N(1) > 0.5);
+    QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class >= 0 && force_N(1) > 0.3, 10000);
+    QTest::qWait(1000);
+    QTRY_VERIFY(find<QLabel>("handTouches")->text().startsWith("in: "));
+    const Vec3 other_mm = arm(0).proxy_position_mm;
     find<QAction>("otherHand")->trigger();
     QTRY_COMPARE(find<QLabel>("activeHand")->text(), "Left hand");
-    QTRY_COMPARE_WITH_TIMEOUT(workstation().session()->handPush_N(1), 0.0, 10000);
-    const Vec3 before = arm(0).patient_position_mm;
+    QTRY_VERIFY_WITH_TIMEOUT(force_N(1) < 0.05, 10000);
+    const Vec3 stays_mm = arm(1).proxy_position_mm;
+    QTest::qWait(500);
+    // The one that is taken stays, too, until the pointer moves.
+    QVERIFY(glm::distance(arm(0).proxy_position_mm, other_mm) < 0.5);
     pointAt(view().rect().center() + QPoint(40, 0));
-    QTRY_VERIFY_WITH_TIMEOUT(glm::distance(arm(0).patient_position_mm, before) > 2.0, 10000);
+    QTRY_VERIFY_WITH_TIMEOUT(glm::distance(arm(0).proxy_position_mm, other_mm) > 2.0, 10000);
+    QTRY_COMPARE(find<QLabel>("handTouches")->text(), "touches nothing");
+    QVERIFY(glm::distance(arm(1).proxy_position_mm, stays_mm) < 0.5);
+    // Taken again it presses on where it is; led elsewhere it comes out first.
+    find<QAction>("otherHand")->trigger();
+    pushHand(3);
+    QTRY_VERIFY_WITH_TIMEOUT(force_N(1) > 0.2, 10000);
+    QVERIFY(glm::distance(arm(1).proxy_position_mm, stays_mm) < 3.0);
+    pointAt(view().rect().center() + QPoint(90, 0));
+    QCOMPARE(workstation().session()->handPush_N(1), 0.0);
+    QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class < 0, 10000);
     stop();
   }
 
@@ -261,6 +283,8 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(clutch->isChecked());
     QTRY_VERIFY(arm(0).tool_state & kToolClutched);
     QTRY_VERIFY(arm(1).tool_state & kToolClutched);
+    QTRY_VERIFY(find<QLabel>("forceNoticeWhy")->isVisible());
+    QVERIFY(find<QLabel>("forceNoticeWhy")->text().contains("Clutched"));
     key(Qt::Key_K, Qt::ControlModifier);
     QVERIFY(!clutch->isChecked());
     const ViewCamera& camera = view().camera();
@@ -426,10 +450,64 @@ class TrainGuiTest : public test::TrainTest {
       }
     }
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().anyLocked(), 20000);
-    QVERIFY(!find<QLabel>("locked")->isVisible());
+    QCOMPARE(find<QLabel>("locked")->text(), "Unlocked");
+    QVERIFY(find<QLabel>("locked")->isVisible());
     QVERIFY(find<QComboBox>("controller")->isEnabled());
     workstation().setController(ControllerKind::off);
     QVERIFY(workstation().scene()->controller == ControllerKind::off);
+    // And back.
+    find<QAction>("unlockTeaching")->trigger();
+    QVERIFY(workstation().anyLocked());
+    QCOMPARE(find<QLabel>("locked")->text(), "Locked");
+    QVERIFY(!find<QComboBox>("controller")->isEnabled());
+    workstation().setController(ControllerKind::bounded);
+    QVERIFY(workstation().scene()->controller == ControllerKind::off);
+    for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) {
+      QVERIFY2(box->informativeText().contains("PIN"), qPrintable(box->informativeText()));
+      box->close();
+    }
+  }
+
+  void anExerciseThatTheWorkstationKeepsOutCannotBeChosen() {
+    window_.reset();
+    Policy policy;
+    policy.locks = {Lock::controller};
+    policy.controller = ControllerKind::bounded;
+    open(policy);
+    auto* exercises = find<QComboBox>("scenes");
+    const auto* rows = qobject_cast<QStandardItemModel*>(exercises->model());
+    QVERIFY(rows);
+    int kept_out = 0;
+    for (int i = 0; i < exercises->count(); ++i) {
+      const Result<Scene> scene = readScene(toPath(exercises->itemData(i).toString()));
+      QVERIFY(scene.ok());
+      QCOMPARE(rows->item(i)->isEnabled(), scene->controller == ControllerKind::bounded);
+      if (rows->item(i)->isEnabled()) continue;
+      ++kept_out;
+      QVERIFY(rows->item(i)->toolTip().contains("'bounded' alone"));
+    }
+    QVERIFY(kept_out > 0 && kept_out < exercises->count());
+    workstation().setUnlocked(true);
+    for (int i = 0; i < exercises->count(); ++i) QVERIFY(rows->item(i)->isEnabled());
+  }
+
+  void wrongSettingsOfTheWorkstationAreSaid() {
+    window_.reset();
+    Policy policy;
+    policy.locks = {Lock::controller, Lock::tissues, Lock::rate};
+    policy.problem = Error{"BAD_JSON", "Everything is locked: it is no JSON", "settings.json",
+                           "An administrator must correct it"};
+    open(policy);
+    window_->sayProblem();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("errorDialog"));
+    auto* said = find<QMessageBox>("errorDialog");
+    QVERIFY((said->text() + said->informativeText()).contains("Everything is locked"));
+    said->close();
+    QVERIFY(!find<QAction>("unlockTeaching")->isEnabled());
+    // Nobody is sent to an educator who has no PIN.
+    QVERIFY(find<QLabel>("locked")->toolTip().contains("administrator"));
+    openScene(resourceFolder() / "scenes" / "cranium.json");
+    QVERIFY(find<QComboBox>("controller")->toolTip().contains("administrator"));
   }
 
   void allKeysAreShownAndFound() {
@@ -451,6 +529,14 @@ class TrainGuiTest : public test::TrainTest {
     for (const char* key : {"Tab", "Page Down", "Shift+Home"}) {
       QVERIFY2(keys.join('\n').contains(key), key);
     }
+    for (int i = 0; i < list->topLevelItemCount(); ++i) {
+      for (int k = 0; k < list->topLevelItem(i)->childCount(); ++k) {
+        const QTreeWidgetItem* row = list->topLevelItem(i)->child(k);
+        QVERIFY2(!(row->text(0) + row->text(2)).isEmpty(), qPrintable(row->text(1)));
+      }
+    }
+    find<QAction>("keys")->trigger();
+    QCOMPARE(window_->findChildren<QDialog*>("shortcutsPage").size(), 1);
     QTest::keyClicks(find<QLineEdit>("findKey"), "pause");
     int shown = 0;
     for (int i = 0; i < list->topLevelItemCount(); ++i) shown += !list->topLevelItem(i)->isHidden();

@@ -1,12 +1,15 @@
 #include "library/case_library.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <csignal>
 #include <thread>
 
@@ -151,10 +154,17 @@ TEST_F(CaseLibraryTest, ListsADamagedFolderWithItsProblemBesideTheOthers) {
   spoil("BAD_FIELD", [&](const fs::path& f) { edit(f, "colour", "red"); });
   spoil("BAD_FIELD", [&](const fs::path& f) { edit(f, "direction", Json::array({1, 2})); });
   spoil("BAD_FIELD", [&](const fs::path& f) { edit(f, "volume_sha256", "../../x"); });
-  spoil("MISSING_FILE", [](const fs::path& f) {
+  spoil("CASE_PART_MISSING", [](const fs::path& f) {
     fs::remove(f / "case.json");
     fs::create_directory(f / "case.json");
   });
+  // Pipes, for which nobody would be waited.
+  for (const char* file : {"case.json", "volume.mha"}) {
+    spoil("CASE_PART_MISSING", [file](const fs::path& f) {
+      fs::remove(f / file);
+      ASSERT_EQ(::mkfifo((f / file).c_str(), 0600), 0);
+    });
+  }
   fs::create_directory(folderOf("empty"));
   expected["empty"] = "CASE_PART_MISSING";
   std::ofstream(storage() / "cases" / "a file") << "not a case";
@@ -206,16 +216,37 @@ TEST_F(CaseLibraryTest, SaysWhichPartOfACaseIsNotAsItWasSaved) {
   EXPECT_EQ(whereOf(), "CASE_CHANGED " + record.id + "/volume.mha") << "its place";
   std::ofstream(record.folder / "volume.mha", std::ios::binary) << volume;
   EXPECT_EQ(whereOf(), "none");
+  const std::vector<CaseStructure> structures = record.structures;
   std::ofstream(record.folder / "structures.seg.nrrd", std::ios::binary) << "NRRD0004\n";
-  EXPECT_EQ(whereOf(), "UNREADABLE " + record.id + "/structures.seg.nrrd");
-  fs::remove(record.folder / "structures.seg.nrrd");
   std::ofstream(record.folder / "tissues.json") << "[";
   const auto loaded = library_.load(record.id);
-  ASSERT_TRUE(loaded) << "the case is worth more than its tissues";
+  ASSERT_TRUE(loaded) << "the case is worth more than its tissues and structures";
+  EXPECT_FALSE(loaded->structures);
+  ASSERT_TRUE(loaded->structures_problem);
+  EXPECT_EQ(loaded->structures_problem->code + " " + loaded->structures_problem->where,
+            "UNREADABLE " + record.id + "/structures.seg.nrrd");
+  EXPECT_EQ(library_.list()[0].record.structures.size(), structures.size())
+      << "what it had is not forgotten for that";
   EXPECT_TRUE(loaded->tissues.empty());
   ASSERT_TRUE(loaded->tissues_problem);
   EXPECT_EQ(loaded->tissues_problem->code + " " + loaded->tissues_problem->where,
             "BAD_JSON " + record.id + "/tissues.json");
+}
+
+TEST_F(CaseLibraryTest, WaitsForNobodyWhoKeepsTheLockOfTheList) {
+  const CaseRecord record = saved();
+  const int held = ::open((storage() / ".lock").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(held, LOCK_EX), 0);
+  const auto begin = std::chrono::steady_clock::now();
+  CaseLibrary library(storage());
+  EXPECT_EQ(library.list().size(), 1u);
+  EXPECT_TRUE(library.load(record.id));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  const Status removed = library.remove(record.id);
+  ASSERT_FALSE(removed);
+  EXPECT_EQ(removed.error().code, "BUSY");
+  ::close(held);
+  EXPECT_TRUE(library.remove(record.id));
 }
 
 TEST_F(CaseLibraryTest, KnowsAFolderThatWasRenamedUnderneathByItsNewName) {

@@ -238,6 +238,17 @@ TEST(Light, ItFollowsTheHandAndNeverGoesBehind) {
   EXPECT_EQ(draggedLight(Vec3(0.0), {1, 1}, kHigh), Vec3(0, 0, 1));
 }
 
+TEST(ToolGuide, TheRingOfContactHasTheColourOfItsArm) {
+  ToolView tool;
+  tool.length_mm = 20.0;
+  tool.contact = true;
+  tool.colour = Vec3(0.1, 0.6, 0.9);
+  ScreenLines lines;
+  addGuide(tool, 30.0, fromTheFront(), kWide, kHigh, false, lines);
+  ASSERT_FALSE(lines.empty());
+  for (const ScreenLine& line : lines) EXPECT_EQ(line.colour, tool.colour);
+}
+
 TEST(ToolGuide, TheWayToASurfaceIsMeasuredAlongTheTool) {
   const ViewCamera camera = fromTheFront();
   // A wall facing the eye, 230 mm from it.

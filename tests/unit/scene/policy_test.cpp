@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "base/system.h"
@@ -71,6 +72,29 @@ TEST_F(PolicyFile, IsReadWhereNobodyElseCouldHaveWrittenIt) {
   EXPECT_EQ(policy.rate_hz, 1000.0);
   EXPECT_EQ(policy.storage, "/srv/trephine");
   EXPECT_TRUE(pinMatches(*policy.pin, "4711"));
+}
+
+TEST_F(PolicyFile, ItsFolderHasExercisesOfTheWorkstationToo) {
+  fs::create_directory(folder_ / "ours");
+  fs::copy_file(shippedFile(), folder_ / "ours" / "b.json");
+  fs::copy_file(shippedFile(), folder_ / "ours" / "a.json");
+  fs::copy_file(shippedFile(), folder_ / "ours" / "anybodys.json");
+  for (const char* name : {"a.json", "b.json"}) {
+    ::chmod((folder_ / "ours" / name).c_str(), 0644);
+  }
+  ::chmod((folder_ / "ours" / "anybodys.json").c_str(), 0666);
+  Policy policy;
+  policy.folder = file_.parent_path();
+  const std::vector<fs::path> all = scenesOfWorkstation(policy);
+  const Policy nobody_s;
+  std::vector<fs::path> expected = scenesOfWorkstation(nobody_s);
+  EXPECT_GE(expected.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(expected.begin(), expected.end()));
+  if (root_) {
+    expected.push_back(folder_ / "ours" / "a.json");
+    expected.push_back(folder_ / "ours" / "b.json");
+  }
+  EXPECT_EQ(all, expected);
 }
 
 TEST_F(PolicyFile, ThatCannotBeReadLocksEverything) {

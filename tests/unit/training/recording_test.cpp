@@ -409,6 +409,32 @@ TEST(Recording, IsNeverWrittenOverAnotherFile) {
   EXPECT_EQ(text, "precious");
 }
 
+TEST(Recording, ThatCannotBeStartedLeavesNoFile) {
+  const test::TemporaryFolder folder;
+  for (const rlim_t room : {0, 500, 20'000}) {
+    const test::FileSizeLimit full(room);
+    const auto recorder =
+        SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
+    ASSERT_FALSE(recorder.ok());
+    EXPECT_EQ(recorder.error().code, "CANNOT_WRITE");
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.h5")) << room;
+  }
+}
+
+TEST(Recording, ThatIsDeletedWhileItIsWrittenIsSaid) {
+  const test::TemporaryFolder folder;
+  auto recorder = SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
+  ASSERT_TRUE(recorder.ok());
+  EXPECT_TRUE((*recorder)->flush());
+  std::filesystem::remove(folder / "a.h5");
+  (*recorder)->add(TickRecord{});
+  const Status status = (*recorder)->flush();
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, "RECORDING_GONE");
+  EXPECT_FALSE((*recorder)->finish({}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.h5"));
+}
+
 TEST(Recording, AFullDiskEndsTheRecordingAndKeepsWhatWasWritten) {
   test::TemporaryFolder folder;
   const Scene scene = sceneWithOneArm();

@@ -111,6 +111,29 @@ TEST_F(BackgroundTaskTest, ReportsProgressOnThisThreadAndNotTooOften) {
   EXPECT_LT(reports, 1000);
 }
 
+TEST_F(BackgroundTaskTest, AStepThatCountsAnewDoesNotTakeTheBarBack) {
+  BackgroundTask task;
+  for (int run = 0; run < 2; ++run) {  // the next one begins at nothing again
+    std::vector<double> said;
+    bool done = false;
+    const auto listening =
+        QObject::connect(&task, &BackgroundTask::progressed, &task,
+                         [&](double fraction, const QString&) { said.push_back(fraction); });
+    ASSERT_TRUE(task.run(
+        [](const Progress& progress) -> Status {
+          for (const double at : {0.1, 0.8, 0.0, 0.5}) {
+            progress.at(at, "Step");
+            QThread::msleep(60);
+          }
+          return {};
+        },
+        [&](Status) { done = true; }));
+    ASSERT_TRUE(waitFor([&] { return done; }));
+    QObject::disconnect(listening);
+    EXPECT_EQ(said, (std::vector<double>{0.1, 0.8, 0.8, 0.8}));
+  }
+}
+
 TEST_F(BackgroundTaskTest, GoingAwayCancelsWaitsAndDeliversNothing) {
   bool delivered = false;
   std::atomic<bool> ended{false};

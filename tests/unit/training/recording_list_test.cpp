@@ -1,0 +1,73 @@
+// The recordings of a folder, as a person chooses among them.
+#include "training/recording_list.h"
+
+#include <fstream>
+
+#include "recording_support.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+namespace fs = std::filesystem;
+
+// 200 ticks at 1 kHz, in a pause from the first of these ticks to the second of each pair.
+void record(const fs::path& file, const std::vector<std::uint64_t>& pauses_and_resumes,
+            const std::string& case_source = "") {
+  Scene scene = test::sceneWithOneArm();
+  scene.case_source = case_source;
+  auto recorder = SessionRecorder::create(
+      file, {toJson(scene), "sha of the voxels", test::slab().geometry, "test"}, 1);
+  ASSERT_TRUE(recorder.ok()) << recorder.error().sentence();
+  std::size_t next = 0;
+  for (std::uint64_t t = 0; t < 200; ++t) {
+    if (next < pauses_and_resumes.size() && pauses_and_resumes[next] == t) {
+      Event event;
+      event.tick = t;
+      event.command.kind = next % 2 == 0 ? CommandKind::pause : CommandKind::resume;
+      (*recorder)->add(event);
+      ++next;
+    }
+    TickRecord tick;
+    tick.tick = t;
+    (*recorder)->add(tick);
+  }
+  ASSERT_TRUE((*recorder)->finish({200, 0, 0, ""}));
+}
+
+TEST(RecordingList, SaysHowLongAnExerciseWasWithoutItsPauses) {
+  const test::TemporaryFolder folder;
+  record(folder / "a.h5", {});
+  record(folder / "b.h5", {20, 60});
+  record(folder / "c.h5", {20, 60, 150});  // it ended in a pause
+  const auto rows = listRecordings(folder.path());
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 3u);
+  for (const ListedRecording& row : *rows) {
+    EXPECT_FALSE(row.problem) << row.problem->sentence();
+    const std::string name = row.file.filename().string();
+    EXPECT_NEAR(row.seconds, name == "a.h5" ? 0.2 : name == "b.h5" ? 0.16 : 0.11, 1e-9) << name;
+  }
+}
+
+TEST(RecordingList, NamesACaseByItsSourceWhereItIsBuiltInElseByItsVoxels) {
+  const test::TemporaryFolder folder;
+  record(folder / "a.h5", {}, "phantom:cranium");
+  EXPECT_EQ((*listRecordings(folder.path()))[0].caseKey(), "phantom:cranium");
+  fs::remove(folder / "a.h5");
+  record(folder / "b.h5", {});
+  EXPECT_EQ((*listRecordings(folder.path()))[0].caseKey(), "sha of the voxels");
+}
+
+TEST(RecordingList, NamesWhatIsNoRecording) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "empty.h5");
+  const auto rows = listRecordings(folder.path());
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 1u);
+  EXPECT_TRUE((*rows)[0].problem);
+  EXPECT_TRUE(listRecordings(folder / "none")->empty());
+}
+
+}  // namespace
+}  // namespace trephine
