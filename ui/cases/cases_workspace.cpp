@@ -144,6 +144,10 @@ void CasesWorkspace::connectParts() {
     recent.prepend(toQt(id));
     write(settings::kRecentCases, recent.mid(0, kMostRecent));
   });
+  // Another program, or a person at the folders, has changed what is there.
+  connect(&bench_, &Bench::failed, this, [this](const Error& error) {
+    if (error.code == "NO_SUCH_CASE") list();
+  });
   connect(&workstation_, &Workstation::structuresChanged, this, &CasesWorkspace::showCase);
   connect(&workstation_, &Workstation::phaseChanged, this, &CasesWorkspace::showPhase);
 }

@@ -253,8 +253,6 @@ class CasesGuiTest : public test::WindowTest {
     QVERIFY(QDir(storage() + "/cases").rename(id, id + "-moved"));
     QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
     QVERIFY(!errorSaid().isEmpty());
-    window_->show(Place::prepare);
-    window_->show(Place::cases);
     QTRY_COMPARE_WITH_TIMEOUT(idOfMine(), id + "-moved", kLong_ms);
     QVERIFY(QDir(storage() + "/cases").rename(id + "-moved", id));
     window_->show(Place::prepare);
