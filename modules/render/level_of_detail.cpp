@@ -16,9 +16,8 @@ double level(double step) {
   return std::clamp(std::ceil(step * 4.0) / 4.0, 1.0, LevelOfDetail::kCoarsest);
 }
 
-// From here on blocks disturb more than frames that take this long. With putting it together and
-// showing it the window is kept for less than 100 ms.
-constexpr double kCoarse = 4.0, kCoarse_ms = 60.0;
+// From here on blocks disturb more than frames that take this long.
+constexpr double kCoarse = 4.0, kCoarse_ms = 50.0;
 double unlessTooCoarse(double step, double ms, double at) {
   return step > kCoarse ? std::max(kCoarse, level(at * std::sqrt(ms / kCoarse_ms))) : step;
 }

@@ -77,12 +77,15 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
 }
 
 void HandBar::fit(int width, int) {
+  touches_->show();
   lines_->setDirection(QBoxLayout::LeftToRight);
   lines_->setSpacing(10);
   layout()->invalidate();  // or it knows the width of the other direction
   if (layout()->totalMinimumSize().width() <= width) return;
   lines_->setDirection(QBoxLayout::TopToBottom);
   lines_->setSpacing(4);
+  layout()->invalidate();
+  touches_->setVisible(layout()->totalMinimumSize().width() <= width);  // its arm's card has it
 }
 
 }  // namespace trephine

@@ -91,9 +91,9 @@ TEST(LevelOfDetail, BlocksOfOverFourPixelsComeOnlyWhereAFrameWouldKeepTheWindowF
     level.stillFrameTook(full_ms);
     for (int frame = 0; frame < 40; ++frame) level.movingFrameTook(frame_ms(full_ms, level));
     const double ms = frame_ms(full_ms, level);
-    EXPECT_LE(ms, 65.0) << full_ms;
+    EXPECT_LE(ms, 55.0) << full_ms;
     if (level.pixelStep() > 4.0) {
-      EXPECT_GT(3.0 + full_ms / 32.0, 60.0) << full_ms;
+      EXPECT_GT(3.0 + full_ms / 32.0, 50.0) << full_ms;
     }
     const double settled = level.pixelStep();
     for (int frame = 0; frame < 10; ++frame) level.movingFrameTook(frame_ms(full_ms, level));
