@@ -1,5 +1,6 @@
 #include "ui/frame/main_window.h"
 
+#include <QCoreApplication>
 #include <QDragEnterEvent>
 #include <QMessageBox>
 #include <QMimeData>
@@ -38,20 +39,24 @@ void MainWindow::show(Place place) {
   entered_ = true;
   place_ = place;
   const Room& now = room(place);
-  if (now.parts.page) {
-    // Nobody sees what the arms do.
-    if (Session* session = workstation().session()) (void)session->send(CommandKind::pause);
-    pages_->setCurrentWidget(now.parts.page);
-  } else {
-    pages_->setCurrentWidget(views_page_);
-    views().useLayoutOf(now.name, now.layout);
+  {
+    const FourUp::Still until_all_has_its_place(views());
+    if (now.parts.page) {
+      // Nobody sees what the arms do.
+      if (Session* session = workstation().session()) (void)session->send(CommandKind::pause);
+      pages_->setCurrentWidget(now.parts.page);
+    } else {
+      pages_->setCurrentWidget(views_page_);
+      views().useLayoutOf(now.name, now.layout);
+    }
+    bar_->setVisible(!now.parts.page);
+    rail_->show(place);
+    showPanels();
+    restoreColumns();
+    now.workspace->enter();
+    showHint();
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
   }
-  bar_->setVisible(!now.parts.page);
-  rail_->show(place);
-  showPanels();
-  restoreColumns();
-  now.workspace->enter();
-  showHint();
   if (!now.parts.page) view().setFocus();
 }
 

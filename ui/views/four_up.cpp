@@ -316,6 +316,7 @@ void FourUp::focusLarge() {
 }
 
 void FourUp::arrange() {
+  if (still_ > 0) return;
   using Kind = ViewLayout::Kind;
   four_->setChecked(layout_.kind == Kind::four);
   one_large_->setChecked(layout_.kind == Kind::one_large);

@@ -72,6 +72,21 @@ class FourUp : public QWidget {
   void setLayout(const ViewLayout& layout);
   const ViewLayout& viewLayout() const { return layout_; }
 
+  // While one of these lives the views keep their places: what happens around them changes their
+  // room several times, and each time the 3-D view would be drawn anew.
+  class Still {
+   public:
+    explicit Still(FourUp& views) : views_(views) { ++views_.still_; }
+    ~Still() {
+      if (--views_.still_ == 0) views_.arrange();
+    }
+    Still(const Still&) = delete;
+    Still& operator=(const Still&) = delete;
+
+   private:
+    FourUp& views_;
+  };
+
   // What mouse and keys do in the views, for the page of keys: a title and sentences each.
   static QList<QPair<QString, QString>> helpOfViews();
 
@@ -115,6 +130,7 @@ class FourUp : public QWidget {
   void changed();
   void setWindow(const HuWindow& window);
 
+  int still_ = 0;
   std::shared_ptr<VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
   SliceColours colours_;
   std::string anatomy_;

@@ -58,6 +58,23 @@ class TrainControlsGuiTest : public test::TrainTest {
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
 
+  // The 3-D view is drawn anew for each size that it is given.
+  void aWorkspaceGivesTheViewsTheirPlacesOnce() {
+    openScene(scene_);
+    window_->show(Place::prepare);
+    QTest::qWait(300);
+    int sizes = 0;
+    connect(&view(), &ViewWidget::resized, &view(), [&] { ++sizes; });
+    for (const Place place : {Place::train, Place::prepare, Place::train}) {
+      const QSize before = view().size();
+      sizes = 0;
+      window_->show(place);
+      QTest::qWait(300);
+      QVERIFY(view().size() != before);
+      QCOMPARE(sizes, 1);
+    }
+  }
+
   void shiftAndHomeStraightenTheTool() {
     openScene(scene_);
     startTraining();
