@@ -131,9 +131,10 @@ std::filesystem::path repeated(const std::filesystem::path& file, double seconds
   }
   for (Json& arm : script["arms"]) {
     const Json one = arm["waypoints"];
+    constexpr double kBetween_s = 0.001;  // the end of one and the start of the next
     for (int n = 1; n * once_s < seconds; ++n) {
       for (Json at : one) {
-        at["t"] = at["t"].get<double>() + n * once_s + 0.001;
+        at["t"] = at["t"].get<double>() + n * (once_s + kBetween_s);
         at["at_mm"][1] = at["at_mm"][1].get<double>() + kAside_mm * (n % 5);
         arm["waypoints"].push_back(at);
       }
