@@ -189,8 +189,8 @@ std::vector<fs::path> scenesOfWorkstation(const Policy& policy) {
   std::error_code ec;
   add(fs::directory_iterator(resourceFolder() / "scenes", ec));
   const auto own = std::ptrdiff_t(all.size());
-  add(fs::recursive_directory_iterator(policy.folder,
-                                       fs::directory_options::skip_permission_denied, ec));
+  add(fs::recursive_directory_iterator(policy.folder, fs::directory_options::skip_permission_denied,
+                                       ec));
   all.erase(std::remove_if(all.begin() + own, all.end(),
                            [&](const fs::path& file) { return !isOfTheWorkstation(policy, file); }),
             all.end());
@@ -207,9 +207,9 @@ Status checkScene(const Policy& policy, const Scene& scene, const fs::path& scen
   const auto locked = [&](const std::string& what) {
     return Error{"LOCKED", what, scene_file.string(),
                  policy.problem ? policy.problem->what + ": " + policy.problem->next
-                 : policy.pin ? "Choose an exercise of the workstation, or ask an educator to "
-                                "unlock it"
-                              : "Choose an exercise of the workstation"};
+                 : policy.pin   ? "Choose an exercise of the workstation, or ask an educator to "
+                                  "unlock it"
+                                : "Choose an exercise of the workstation"};
   };
   const auto name = [](ControllerKind kind) { return std::string(controllerName(kind)); };
   if (policy.controller && scene.controller != *policy.controller) {

@@ -44,8 +44,9 @@ Policy policyAtStart(const std::filesystem::path& file = kPolicyFile);
 // What is locked while this scene is practised.
 Locks locksOf(const Policy& policy, const Scene& scene);
 
-// The exercises of this workstation: the product's scenes, then those below the policy's folder that
-// this user could not have written, each in the order of their names. Of what is no scene: none.
+// The exercises of this workstation: the product's scenes, then those below the policy's folder
+// that this user could not have written, each in the order of their names. Of what is no scene:
+// none.
 std::vector<std::filesystem::path> scenesOfWorkstation(const Policy& policy);
 
 // LOCKED where the scene would bring what the workstation locks: a controller or a rate other than

@@ -17,7 +17,7 @@ struct ListedRecording {
   std::string exercise;       // the scene's name
   std::string case_source;    // of a built-in case; else empty
   std::string volume_sha256;  // of the case
-  double seconds = 0.0;  // without its pauses
+  double seconds = 0.0;       // without its pauses
   bool cut_short = false;
   std::optional<Error> problem;  // why it cannot be replayed; of the rest only `file` holds
   // Which case it was done on.

@@ -185,8 +185,8 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
                                                                  std::size_t arm_count) {
   quietHdf5();
   std::error_code ec;
-  const bool there = std::filesystem::symlink_status(path, ec).type() !=
-                     std::filesystem::file_type::not_found;
+  const bool there =
+      std::filesystem::symlink_status(path, ec).type() != std::filesystem::file_type::not_found;
   std::unique_ptr<SessionRecorder> recorder(new SessionRecorder);
   File& f = *recorder->file_;
   f.path = path;

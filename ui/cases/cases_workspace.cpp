@@ -35,11 +35,11 @@ Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& 
   of.stored = id;
   Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}, {}};
   if (const std::optional<Error>& why = loaded->structures_problem) {
-    stored.no_structures =
-        Error{"NO_STRUCTURES",
-              "The file with the case's structures cannot be used, so it has none (" + why->what + ")",
-              why->where,
-              "Put the file back and open the case again; or make them anew and save them in the case"};
+    stored.no_structures = Error{
+        "NO_STRUCTURES",
+        "The file with the case's structures cannot be used, so it has none (" + why->what + ")",
+        why->where,
+        "Put the file back and open the case again; or make them anew and save them in the case"};
   }
   const std::string file = id + "/tissues.json";
   std::optional<Error> problem = loaded->tissues_problem;

@@ -38,8 +38,8 @@ void FloatingCard::takeTabFrom(QWidget& before, QPushButton& closes) {
     setTabOrder(last, button);
     last = button;
   }
-  auto* escape = new QShortcut(Qt::Key_Escape, this, nullptr, nullptr,
-                               Qt::WidgetWithChildrenShortcut);
+  auto* escape =
+      new QShortcut(Qt::Key_Escape, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut);
   connect(escape, &QShortcut::activated, &closes, &QPushButton::click);
 }
 

@@ -99,8 +99,9 @@ void MainWindow::buildActions() {
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
-  unlock_ = makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"),
-                       {}, tr("With an educator's PIN, until it is locked again or Trephine is closed"));
+  unlock_ =
+      makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
+                 tr("With an educator's PIN, until it is locked again or Trephine is closed"));
 }
 
 void MainWindow::buildBars() {

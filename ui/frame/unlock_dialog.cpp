@@ -16,8 +16,9 @@ UnlockDialog::UnlockDialog(const Pin& pin, QWidget* parent) : QDialog(parent), p
   text_->setEchoMode(QLineEdit::Password);
   text_->setMaxLength(int(kMostOfPin));
   text_->setAccessibleName(tr("PIN"));
-  said_ = new QLabel(
-      tr("An educator's PIN unlocks controller, tissues and rate until you lock them again, or Trephine is closed."));
+  said_ =
+      new QLabel(tr("An educator's PIN unlocks controller, tissues and rate until you lock them "
+                    "again, or Trephine is closed."));
   said_->setObjectName("pinSaid");
   said_->setWordWrap(true);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);

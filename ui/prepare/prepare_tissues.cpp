@@ -25,9 +25,10 @@ void PrepareWorkspace::connectTissues() {
     if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
   });
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
-    tissues_->setLocked(workstation_.isLocked(Lock::tissues)
-                            ? tr("The tissues are locked. %1").arg(unlockWords(workstation_.policy()))
-                            : QString());
+    tissues_->setLocked(
+        workstation_.isLocked(Lock::tissues)
+            ? tr("The tissues are locked. %1").arg(unlockWords(workstation_.policy()))
+            : QString());
   });
   // They may be about to go.
   connect(&workstation_, &Workstation::openingProgressed, this, [this] {

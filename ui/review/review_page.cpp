@@ -88,8 +88,7 @@ const ListedRecording* ReviewPage::chosen() const {
   return row >= 0 && std::size_t(row) < rows_.size() ? &rows_[std::size_t(row)] : nullptr;
 }
 
-void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows,
-                                const std::string& in_use,
+void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
                                 const std::map<std::string, QString>& cases) {
   const ListedRecording* before = chosen();
   const std::filesystem::path file = before ? before->file : std::filesystem::path();

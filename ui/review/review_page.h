@@ -1,4 +1,5 @@
-// The recordings: when, which exercise, on which case, how long; and whether one replays bit for bit.
+// The recordings: when, which exercise, on which case, how long; and whether one replays bit for
+// bit.
 #pragma once
 
 #include <QLabel>

@@ -103,9 +103,9 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   // Of the widest row, with its frames and the scroll bar: what does not fit would be cut off.
   constexpr int kAround = 52;
   ensurePolished();
-  setMinimumWidth(kAround + fontMetrics().horizontalAdvance(
-                                tr("%1 of %2").arg(newtons(0.0), newtons(0.0)) +
-                                tr("demanded %1").arg(newtons(10.0))));
+  setMinimumWidth(kAround +
+                  fontMetrics().horizontalAdvance(tr("%1 of %2").arg(newtons(0.0), newtons(0.0)) +
+                                                  tr("demanded %1").arg(newtons(10.0))));
   connect(controller_, &QComboBox::activated, this,
           [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
   showIdle();

@@ -1,5 +1,5 @@
-// Over the lower edge of the view while the mouse is a hand: which hand it has with which tool, what
-// that touches and how hard it presses. Legible from two metres.
+// Over the lower edge of the view while the mouse is a hand: which hand it has with which tool,
+// what that touches and how hard it presses. Legible from two metres.
 #pragma once
 
 #include <QBoxLayout>
@@ -17,8 +17,8 @@ class HandBar : public FloatingCard {
   explicit HandBar(QWidget& over);
 
   void setTissues(const TissueSet& tissues);
-  // `waits`: another tool is wanted, and comes once this one is out of tissue. `touches`: a tissue's
-  // name; empty: nothing.
+  // `waits`: another tool is wanted, and comes once this one is out of tissue. `touches`: a
+  // tissue's name; empty: nothing.
   void showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
                 double push_N, double most_N, const QString& touches);
 

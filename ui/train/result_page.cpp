@@ -45,8 +45,9 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
   replay_->setObjectName("resultReplay");
   look_ = new QPushButton(tr("&Look at it (Esc)"));
   look_->setObjectName("resultLook");
-  look_->setToolTip(tr("Puts this page aside: the tissue stays as it was left until the next start, and the panel "
-         "at the left brings the page back"));
+  look_->setToolTip(tr(
+      "Puts this page aside: the tissue stays as it was left until the next start, and the panel "
+      "at the left brings the page back"));
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);
   for (QPushButton* each : {again_, replay_, look_}) buttons->addWidget(each);

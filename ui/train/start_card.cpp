@@ -24,10 +24,10 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
   steps_->setObjectName("startCardSteps");
   hands_ = new QLabel;
   hands_->setObjectName("startCardHands");
-  keys_ =
-      new QLabel(tr("Without arms the mouse is the hand: move it over the tissue, turn the wheel up "
-                    "to press, change hands with Tab. By keys alone: arrows, Page Down to press, Page "
-                    "Up to ease, Shift and arrows to tilt."));
+  keys_ = new QLabel(
+      tr("Without arms the mouse is the hand: move it over the tissue, turn the wheel up "
+         "to press, change hands with Tab. By keys alone: arrows, Page Down to press, Page "
+         "Up to ease, Shift and arrows to tilt."));
   keys_->setProperty("quiet", true);
   for (QLabel* label : {title_, goal_, steps_, hands_, keys_}) label->setWordWrap(true);
   start_ = new QPushButton(tr("&Start (F5)"));
@@ -65,9 +65,9 @@ StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
 void StartCard::showNoCase() {
   title_->setText(tr("There is no case to practise on yet"));
   goal_->setText(tr("Choose one of your own or a built-in one."));
-  for (QWidget* part : {static_cast<QWidget*>(steps_), static_cast<QWidget*>(hands_),
-                        static_cast<QWidget*>(keys_), static_cast<QWidget*>(start_),
-                        static_cast<QWidget*>(aside_)}) {
+  for (QWidget* part :
+       {static_cast<QWidget*>(steps_), static_cast<QWidget*>(hands_), static_cast<QWidget*>(keys_),
+        static_cast<QWidget*>(start_), static_cast<QWidget*>(aside_)}) {
     part->hide();
   }
   choose_->show();

@@ -413,8 +413,7 @@ TEST(Recording, ThatCannotBeStartedLeavesNoFile) {
   const test::TemporaryFolder folder;
   for (const rlim_t room : {0, 500, 20'000}) {
     const test::FileSizeLimit full(room);
-    const auto recorder =
-        SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
+    const auto recorder = SessionRecorder::create(folder / "a.h5", {Json::object(), "", {}, ""}, 1);
     ASSERT_FALSE(recorder.ok());
     EXPECT_EQ(recorder.error().code, "CANNOT_WRITE");
     EXPECT_FALSE(std::filesystem::exists(folder / "a.h5")) << room;
