@@ -101,6 +101,16 @@ bool sameGrid(const GridGeometry& a, const GridGeometry& b) {
   return true;
 }
 
+Result<LabelMap> structuresOn(const GridGeometry& grid, const std::string& id, const fs::path& file,
+                              const Progress& progress) {
+  const Result<Segmentation> segmentation = readSegmentation(file, progress);
+  if (!segmentation) return segmentation.error();
+  LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
+  if (!sameGrid(map.geometry, grid)) return caseChanged(id, kStructuresFile, "structures");
+  map.geometry = grid;
+  return map;
+}
+
 std::optional<Verdict> verdictOf(const ImportReport& report) {
   for (const SeriesReport& series : report.series) {
     if (report.chosen == series.uid) return series.verdict;
@@ -380,18 +390,13 @@ Result<LoadedCase> CaseLibrary::load(const std::string& id, const Progress& prog
   }
   if (progress.cancelled()) return Error{"CANCELLED", "Opening the case was cancelled", "", ""};
   if (has(kStructuresFile)) {
-    auto segmentation = readSegmentation(folder / kStructuresFile, Progress(progress, 0.8, 0.95));
-    if (!segmentation && segmentation.error().code == "CANCELLED") return segmentation.error();
-    if (segmentation) {
-      LabelMap map = merged(*segmentation, smallerFirst(*segmentation));
-      if (sameGrid(map.geometry, volume->geometry)) {
-        map.geometry = volume->geometry;
-        loaded.structures = std::make_shared<const LabelMap>(std::move(map));
-      } else {
-        loaded.structures_problem = caseChanged(id, kStructuresFile, "structures");
-      }
+    Result<LabelMap> map =
+        structuresOn(volume->geometry, id, folder / kStructuresFile, Progress(progress, 0.8, 0.95));
+    if (!map && map.error().code == "CANCELLED") return map.error();
+    if (map) {
+      loaded.structures = std::make_shared<const LabelMap>(*std::move(map));
     } else {
-      loaded.structures_problem = failed(segmentation.error(), kStructuresFile);
+      loaded.structures_problem = failed(map.error(), kStructuresFile);
     }
   }
   for (const char* file : {kProvenanceFile, kTissuesFile}) {

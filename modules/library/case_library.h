@@ -55,7 +55,7 @@ struct LoadedCase {
   std::shared_ptr<const Volume> volume;
   std::shared_ptr<const LabelMap> structures;  // null: none
   std::optional<Provenance> provenance;
-  Json tissues = Json::object();           // {}: none
+  Json tissues = Json::object();  // {}: none
   // There are some, and they cannot be read.
   std::optional<Error> tissues_problem{}, structures_problem{};
 };

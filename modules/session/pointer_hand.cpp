@@ -111,19 +111,20 @@ Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const Wor
   way.touched_mm = depthOf(touched_mm_);
   way.touches = touches;
 
+  const double relaxes = std::min(1.0, T / kRelax_s);  // the hand, to where its arm is
   if (presses) {
     press(way, to.push_N, T);
   } else if (waits || (touches && !to.put_down)) {
     comeOut(way, way.rest_mm - kHover_mm, T);
   } else if (to.put_down) {
-    way.rest_mm += (way.arm_mm - way.rest_mm) * std::min(1.0, T / kRelax_s);
+    way.rest_mm += (way.arm_mm - way.rest_mm) * relaxes;
   } else {
     hover(way, T);
   }
   if (presses || (!to.put_down && !touches)) {
     goAside(way, presses ? to.push_N : 0.0, kMostShare * reach.max_force_N, T);
   } else {
-    way.aside_mm += (way.arm_aside_mm - way.aside_mm) * std::min(1.0, T / kRelax_s);
+    way.aside_mm += (way.arm_aside_mm - way.aside_mm) * relaxes;
   }
 
   Vec3 now_mm = origin_mm + way.rest_mm * along + way.aside_mm;

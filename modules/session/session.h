@@ -24,6 +24,7 @@
 #include "session/live_operator.h"
 #include "session/operator_script.h"
 #include "session/run_statistics.h"
+#include "training/paused_ticks.h"
 #include "training/session_recorder.h"
 #include "volume/grid.h"
 #include "volume/journal_file.h"
@@ -212,8 +213,7 @@ class Session {
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;
   std::vector<Stroke> strokes_;
-  std::uint64_t paused_ticks_ = 0;                  // the recorder's, to the last resume
-  std::optional<std::uint64_t> paused_since_tick_;  // and since then
+  PausedTicks paused_;                // the recorder's
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
   mutable std::mutex strokes_mutex_;  // so too
   std::optional<Error> failure_;

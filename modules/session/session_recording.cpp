@@ -73,17 +73,12 @@ void Session::note(const Event& event) {
     const std::string name(controllerName(ControllerKind(command.value)));
     if (name != controllers_.back()) controllers_.push_back(name);
   }
-  if (event.kind == EventKind::command && command.kind == CommandKind::pause) {
-    if (!paused_since_tick_) paused_since_tick_ = event.tick;
-  } else if (event.kind == EventKind::command && command.kind == CommandKind::resume) {
-    if (paused_since_tick_) paused_ticks_ += event.tick - *paused_since_tick_;
-    paused_since_tick_.reset();
-  }
+  paused_.add(event);
   if (event.arm < 0) return;
   if (event.kind == EventKind::stroke_began) {
     std::lock_guard lock(strokes_mutex_);
     if (strokes_.size() < kMostStrokes) {
-      strokes_.push_back({double(event.tick - paused_ticks_) / scene_.rate_hz, event.arm});
+      strokes_.push_back({double(event.tick - paused_.ended()) / scene_.rate_hz, event.arm});
     }
     return;
   }

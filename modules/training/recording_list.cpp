@@ -1,27 +1,13 @@
 #include "training/recording_list.h"
 
 #include <algorithm>
-#include <utility>
 
+#include "training/paused_ticks.h"
 #include "training/session_reader.h"
 
 namespace trephine {
 
 namespace {
-
-// How long it was in a pause that a person asked for.
-std::uint64_t pausedTicks(const std::vector<Event>& events, std::uint64_t end) {
-  std::uint64_t paused = 0;
-  std::optional<std::uint64_t> since;
-  for (const Event& event : events) {
-    if (event.kind != EventKind::command) continue;
-    if (event.command.kind == CommandKind::pause && !since) since = event.tick;
-    if (event.command.kind == CommandKind::resume && since) {
-      paused += event.tick - *std::exchange(since, std::nullopt);
-    }
-  }
-  return since && end > *since ? paused + end - *since : paused;
-}
 
 ListedRecording listed(const std::filesystem::path& file) {
   ListedRecording row;
@@ -40,9 +26,12 @@ ListedRecording listed(const std::filesystem::path& file) {
   row.volume_sha256 = header.volume_sha256;
   const double rate_hz = scene.value("rate_hz", 1000.0);
   const std::uint64_t ticks = (*reader)->tickCount();
-  const Result<std::vector<Event>> events = (*reader)->events();
-  const std::uint64_t paused = events ? std::min(ticks, pausedTicks(*events, ticks)) : 0;
-  row.seconds = rate_hz > 0.0 ? double(ticks - paused) / rate_hz : 0.0;
+  PausedTicks paused;
+  if (const Result<std::vector<Event>> events = (*reader)->events()) {
+    for (const Event& event : *events) paused.add(event);
+  }
+  const std::uint64_t done = ticks - std::min(ticks, paused.until(ticks));
+  row.seconds = rate_hz > 0.0 ? double(done) / rate_hz : 0.0;
   row.cut_short = !(*reader)->end();
   if (!row.cut_short && (*reader)->end()->dropped > 0) {
     row.problem = Error{"NOT_REPLAYABLE", "A part of the recording is missing", file.string(),

@@ -150,6 +150,12 @@ std::optional<std::string> phantomNamed(const std::string& case_source) {
   return case_source.substr(kPrefix.size());
 }
 
+std::vector<std::string> phantomNames() {
+  std::vector<std::string> names;
+  for (const BuiltIn& phantom : kPhantoms) names.emplace_back(phantom.name);
+  return names;
+}
+
 std::string phantomSource(const std::string& name) {
   return std::string(kPrefix) + name;
 }

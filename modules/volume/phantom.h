@@ -61,6 +61,8 @@ constexpr double kPhantomSpread_voxels = 0.4;
 // of what is none.
 std::optional<std::string> phantomNamed(const std::string& case_source);
 std::string phantomSource(const std::string& name);
+// "cranium", "abdomen".
+std::vector<std::string> phantomNames();
 
 // The label of a tissue in a phantom's label map; 0: none. README.md lists them.
 std::uint8_t phantomLabel(PhantomTissue tissue);

@@ -7,7 +7,6 @@
 #include "base/system.h"
 #include "ui/cases/import_words.h"
 #include "ui/common/words.h"
-#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -108,15 +107,13 @@ Result<std::vector<CaseEntry>> listCases(const CaseLibrary& library,
     if (std::filesystem::is_regular_file(picture, ec)) (void)entry.picture.load(toQt(picture));
     entries.push_back(std::move(entry));
   }
-  for (const char* name : {"cranium", "abdomen"}) entries.push_back(builtIn(name));
+  for (const std::string& name : phantomNames()) entries.push_back(builtIn(name));
   Result<std::vector<ListedRecording>> recorded = listRecordings(recordings, progress);
   if (!recorded) return recorded.error();
   for (CaseEntry& entry : entries) {
     for (const ListedRecording& one : *recorded) {
-      const bool of_it = entry.built_in ? one.case_source == phantomSource(entry.id)
-                                        : !entry.record.volume_sha256.empty() &&
-                                              one.volume_sha256 == entry.record.volume_sha256;
-      if (of_it) entry.exercises.push_back(one);
+      const std::string key = entry.caseKey();
+      if (!key.empty() && one.caseKey() == key) entry.exercises.push_back(one);
     }
   }
   return entries;

@@ -10,6 +10,7 @@
 #include "library/case_library.h"
 #include "session/case.h"
 #include "training/recording_list.h"
+#include "volume/phantom.h"
 
 namespace trephine {
 
@@ -20,6 +21,8 @@ struct CaseEntry {
   std::optional<Error> problem;  // why it cannot be opened
   QImage picture;                // null: there is none
   std::vector<ListedRecording> exercises;  // done on it, the newest first
+  // ListedRecording::caseKey() of those; empty where nothing is known of it.
+  std::string caseKey() const { return built_in ? phantomSource(id) : record.volume_sha256; }
 };
 
 // The picture and what stands below it: name, size, verdict, structures.

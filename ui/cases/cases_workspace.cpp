@@ -100,9 +100,8 @@ void CasesWorkspace::connectParts() {
           [this](const CaseEntry& entry) { openEntry(entry, Place::prepare); });
   connect(page_, &CasesPage::goOnWanted, this,
           [this](bool train) { bench_.go(train ? Place::train : Place::prepare); });
-  connect(page_, &CasesPage::exercisesWanted, this, [this](const CaseEntry& entry) {
-    bench_.review(entry.built_in ? phantomSource(entry.id) : entry.record.volume_sha256);
-  });
+  connect(page_, &CasesPage::exercisesWanted, this,
+          [this](const CaseEntry& entry) { bench_.review(entry.caseKey()); });
   connect(page_, &CasesPage::saveWanted, this, &CasesWorkspace::saveCase);
   connect(page_, &CasesPage::renameWanted, this, &CasesWorkspace::rename);
   connect(page_, &CasesPage::deleteWanted, this, &CasesWorkspace::askToDelete);

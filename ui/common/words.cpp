@@ -78,6 +78,11 @@ QString builtInName(const std::string& phantom) {
   return phantom == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in");
 }
 
+QString touchedName(const ArmRecord& arm, const TissueSet& tissues) {
+  const auto which = std::size_t(arm.tissue_class);  // -1, nothing, is beyond all
+  return which < tissues.tissues.size() ? toQt(tissues.tissues[which].name) : QString();
+}
+
 QString verdictWord(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass:
@@ -182,9 +187,11 @@ QString findingWords(const SeriesReport& series) {
 }
 
 QString unlockWords(const Policy& policy) {
-  if (policy.problem) return toQt(policy.problem->sentence());
-  return policy.pin ? tr("An educator can unlock it with a PIN (menu File).")
-                    : tr("Nothing at this workstation unlocks it.");
+  if (const std::optional<Error>& why = policy.problem) {
+    return toQt(why->what + " (" + why->where + "): " + why->next);
+  }
+  return policy.pin ? tr("An educator can unlock it with a PIN (menu File)")
+                    : tr("Nothing at this workstation unlocks it");
 }
 
 QString timeWords(std::uint32_t seconds) {

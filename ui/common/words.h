@@ -24,6 +24,8 @@ QString purposeText();
 // Of a case that comes with the program: "Cranium, built in".
 QString builtInName(const std::string& phantom);
 
+// Of the tissue that a tool touches; empty: none.
+QString touchedName(const ArmRecord& arm, const TissueSet& tissues);
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
 // "burr, 6 mm": of a burr how thick it is, else how long.
@@ -39,7 +41,7 @@ QString forceChangeMeanings();
 QString faultWords(std::uint32_t faults);
 // Findings of a series, what was noticed and what was done, one a line.
 QString findingWords(const SeriesReport& series);
-// Who takes off what the workstation locks, or why nobody does.
+// Who takes off what the workstation locks, or why nobody does; without a stop, as Error::next.
 QString unlockWords(const Policy& policy);
 // "1:05" of 65 seconds.
 QString timeWords(std::uint32_t seconds);

@@ -27,7 +27,7 @@ void PrepareWorkspace::connectTissues() {
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
     tissues_->setLocked(
         workstation_.isLocked(Lock::tissues)
-            ? tr("The tissues are locked. %1").arg(unlockWords(workstation_.policy()))
+            ? tr("The tissues are locked. %1.").arg(unlockWords(workstation_.policy()))
             : QString());
   });
   // They may be about to go.

@@ -31,7 +31,7 @@ void ReviewWorkspace::list() {
         Result<std::vector<ListedRecording>> rows = listRecordings(folder, progress);
         if (!rows) return rows.error();
         Listed listed{*std::move(rows), {}};
-        for (const char* name : {"cranium", "abdomen"}) {
+        for (const std::string& name : phantomNames()) {
           listed.cases[phantomSource(name)] = builtInName(name);
         }
         for (const ListedCase& one : library->list()) {

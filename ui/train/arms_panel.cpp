@@ -101,11 +101,11 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   layout->addWidget(area);
 
   // Of the widest row, with its frames and the scroll bar: what does not fit would be cut off.
-  constexpr int kAround = 52;
+  constexpr int kLeast = 262, kAround = 52;
   ensurePolished();
-  setMinimumWidth(kAround +
-                  fontMetrics().horizontalAdvance(tr("%1 of %2").arg(newtons(0.0), newtons(0.0)) +
-                                                  tr("demanded %1").arg(newtons(10.0))));
+  const QString row =
+      tr("%1 of %2").arg(newtons(0.0), newtons(0.0)) + tr("demanded %1").arg(newtons(10.0));
+  setMinimumWidth(std::max(kLeast, kAround + fontMetrics().horizontalAdvance(row)));
   connect(controller_, &QComboBox::activated, this,
           [this] { emit controllerWanted(ControllerKind(controller_->currentData().toInt())); });
   showIdle();
@@ -242,11 +242,9 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
     if (high > card.parts->minimumHeight()) card.parts->setMinimumHeight(high);
     showTool(card, state.tools[i], state.wanted_tools[i]);
     card.tool->setEnabled(card.tool->count() > 1);
-    const bool touching =
-        arm.tissue_class >= 0 && std::size_t(arm.tissue_class) < tissues.tissues.size();
-    card.contact->setText(touching ? toQt(tissues.tissues[std::size_t(arm.tissue_class)].name)
-                                   : tr("nothing"));
-    colours::setText(*card.contact, touching ? colours::kText : colours::kQuiet);
+    const QString touched = touchedName(arm, tissues);
+    card.contact->setText(touched.isEmpty() ? tr("nothing") : touched);
+    colours::setText(*card.contact, touched.isEmpty() ? colours::kQuiet : colours::kText);
     QStringList wrong;
     if (arm.faults != 0) wrong << faultWords(arm.faults);
     if (gives_out) {

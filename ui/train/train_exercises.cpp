@@ -72,19 +72,19 @@ void TrainWorkspace::showCard() {
   using Phase = Workstation::Phase;
   const Phase phase = workstation_.phase();
   const bool idle = phase == Phase::ready || phase == Phase::empty;
-  exercise_->offerCard({});
+  const bool result = result_shown_ && phase == Phase::ready;
+  const bool card = !result_shown_ && phase == Phase::ready && !bench_.carved();
+  exercise_->offerCard(!here_ || !aside_ ? QString()
+                       : result          ? tr("Show the result")
+                       : card            ? tr("Show what to do")
+                                         : QString());
   if (!idle || !here_) {
     card_->hide();
     if (!here_ || phase == Phase::running) result_->hide();
     return;
   }
   if (phase == Phase::empty) return workstation_.isOpening() ? card_->hide() : card_->showNoCase();
-  const bool card = !result_shown_ && !bench_.carved();
-  result_->setVisible(result_shown_ && !aside_);
-  exercise_->offerCard(!aside_         ? QString()
-                       : result_shown_ ? tr("Show the result")
-                       : card          ? tr("Show what to do")
-                                       : QString());
+  result_->setVisible(result && !aside_);
   if (!card || aside_) return card_->hide();
   card_->showExercise(*workstation_.scene(), read(settings::kLanguage), start_->isEnabled());
 }
@@ -105,7 +105,7 @@ void TrainWorkspace::showOutline() {
 
 void TrainWorkspace::showLocks() {
   arms_->setLocked(workstation_.isLocked(Lock::controller)
-                       ? tr("Locked. %1").arg(unlockWords(workstation_.policy()))
+                       ? tr("Locked. %1.").arg(unlockWords(workstation_.policy()))
                        : QString());
   showAllowed();
 }

@@ -121,12 +121,10 @@ void TrainWorkspace::showHand() {
   const SceneArm& arm = session->scene().arms[active];
   const LoopState& state = session->state();
   const SceneTool& tool = *session->scene().toolOf(active, std::size_t(state.tools[active]));
-  const std::vector<Tissue>& tissues = session->scene().tissues.tissues;
-  const auto touched = std::size_t(state.record.arms[active].tissue_class);
   hand_bar_->showHand(handName(arm), armColour(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),
                       hands_->mostPush_N(),
-                      touched < tissues.size() ? toQt(tissues[touched].name) : QString());
+                      touchedName(state.record.arms[active], session->scene().tissues));
 }
 
 // Of the hand that the mouse and the keys have.

@@ -16,7 +16,7 @@ namespace trephine {
 namespace {
 
 constexpr int kFrame_ms = 16;
-constexpr int kLeftWidth = 165, kRightWidth = 262;
+constexpr int kLeftWidth = 165;
 
 }  // namespace
 
@@ -35,7 +35,6 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   notice_ = new StateNotice(views_);
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
-  arms_->setMinimumWidth(std::max(kRightWidth, arms_->minimumWidth()));
   exercise_ = new ExercisePanel;
   exercise_page_ = scrolled(exercise_, "exercisePage");
   exercise_page_->setMinimumWidth(kLeftWidth);

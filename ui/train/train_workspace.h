@@ -115,6 +115,7 @@ class TrainWorkspace : public Workspace {
   bool result_shown_ = false;  // instead of the card
   bool recorded_ = false;      // whole, the exercise of the result
   bool aside_ = false;         // card or result, by the person
+  std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
   QTimer frame_timer_;
   QElapsedTimer panel_clock_, rate_clock_, removed_clock_;
   std::vector<double> limits_N_;  // of the running session's arms
@@ -122,7 +123,6 @@ class TrainWorkspace : public Workspace {
     std::uint32_t second;
     std::uint64_t asked_tick;
   };
-  std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
   std::optional<GoingBack> going_back_;  // until it is said that one is there
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;

@@ -381,10 +381,10 @@ std::string explanationText(const Json& explained) {
         number(b, "stiffness_N_per_m"), number(b, "damping_felt_Ns_per_m"),
         number(b, "stiffness_felt_N_per_m"));
   }
-  if (explained.contains("locks") && !explained.at("locks").empty()) {
+  if (!explained.at("locks").empty()) {
     text += "  locked at this workstation or by the exercise: " + list("locks") + "\n";
   }
-  if (explained.contains("refused") && explained.at("refused").is_string()) {
+  if (explained.at("refused").is_string()) {
     text += "  not practised at this workstation: " + word(explained, "refused") + "\n";
   }
   for (const Json& warning : explained.at("warnings")) text += "  " + word(warning, "text") + "\n";

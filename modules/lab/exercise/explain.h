@@ -24,8 +24,8 @@ namespace trephine {
 // those of the devices, the script and the case, CANCELLED.
 Result<Json> explainScene(Scene scene, const Progress& progress = Progress());
 
-// The same for a person, some lines; with `locks` [names] and `refused` (sentence or null) also
-// those.
+// The same for a person, some lines, together with what the command adds of the workstation:
+// `locks` [names], `refused` (a sentence or null).
 std::string explanationText(const Json& explained);
 
 // The knobs of `measure trades` that a scene sets or is drawn with, each once: knob and setting.

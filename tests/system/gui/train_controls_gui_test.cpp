@@ -181,11 +181,7 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void tryAgainStartsOnWholeTissue() {
-    openScene(scene_);
-    startTraining();
-    cut({30, 0});
-    stop();
-    QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+    showResultOf(scene_);
     QSignalSpy started(&workstation(), &Workstation::sessionStarted);
     // The button says so itself: of what is recorded nothing is asked.
     QTest::mouseClick(find<QPushButton>("resultAgain"), Qt::LeftButton);
@@ -220,12 +216,8 @@ class TrainControlsGuiTest : public test::TrainTest {
   }
 
   void theResultIsPutAsideAndBroughtBackAndIsThereAfterAWayElsewhere() {
-    openScene(scene_);
-    startTraining();
-    cut({30, 0});
-    stop();
+    showResultOf(scene_);
     auto* result = find<QWidget>("resultPage");
-    QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
     view().setFocus();
     QTest::keyClick(&view(), Qt::Key_Tab);
     QCOMPARE(window_->focusWidget(), find<QWidget>("resultAgain"));

@@ -353,12 +353,8 @@ class TrainGuiTest : public test::TrainTest {
   }
 
   void fromTheResultOneLooksAtItTriesAgainOrSeesItReplayed() {
-    openScene(scene_);
-    startTraining();
-    cut({30, 0});
-    stop();
+    showResultOf(scene_);
     auto* result = find<QWidget>("resultPage");
-    QTRY_VERIFY_WITH_TIMEOUT(result->isVisible(), kLong_ms);
     QTest::mouseClick(find<QPushButton>("resultLook"), Qt::LeftButton);
     QVERIFY(!result->isVisible());
     QVERIFY2(workstation().carved(), "the tissue stays as it was left");

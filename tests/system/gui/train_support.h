@@ -43,6 +43,14 @@ class TrainTest : public WindowTest {
     workstation().stop();
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
+  // An exercise in which something was cut has ended, and its result is shown.
+  void showResultOf(const std::filesystem::path& scene) {
+    openScene(scene);
+    startTraining();
+    cut({30, 0});
+    stop();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QWidget>("resultPage")->isVisible(), kLong_ms);
+  }
   const ArmRecord& arm(std::size_t which) {
     return workstation().session()->state().record.arms[which];
   }
