@@ -127,6 +127,8 @@ class Session {
   // tool that this turns in tissue waits until it is out. False when 64 commands are waiting.
   bool clutch(std::size_t arm, bool on, const Quat& rotation);
   bool clutch(std::size_t arm, bool on);  // keeps the rotation
+  // The arm's hand is one that is told where to go; a real one is where it is.
+  bool isSimulated(std::size_t arm) const { return simulated_[arm]; }
   // Puts the tool where the scene starts it, with the arm where it is now, and turns the map back.
   // Out of tissue: where it comes into some, it waits.
   bool recentre(std::size_t arm);

@@ -327,8 +327,11 @@ void CasesPage::showStrip() {
     title = said_;
     words = open_about_;
   } else if (any_open_) {
-    title = open_saved_ ? tr("A case is open: practise on it, or prepare it")
-                        : tr("The open case is not saved yet");
+    const CaseEntry* open = find(open_);
+    title = !open_saved_ ? tr("The open case is not saved yet")
+            : open
+                ? tr("\"%1\" is open: practise on it, or prepare it").arg(toQt(open->record.name))
+                : tr("A case is open: practise on it, or prepare it");
     words = open_about_;
   } else if (recent && !recent->problem) {
     title = tr("Go on with \"%1\"").arg(toQt(recent->record.name));

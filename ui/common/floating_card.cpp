@@ -2,7 +2,7 @@
 
 #include <QEvent>
 #include <QLayout>
-#include <QShortcut>
+#include <QPushButton>
 #include <algorithm>
 
 namespace trephine {
@@ -32,15 +32,12 @@ void FloatingCard::place() {
   raise();
 }
 
-void FloatingCard::takeTabFrom(QWidget& before, QPushButton& closes) {
+void FloatingCard::takeTabFrom(QWidget& before) {
   QWidget* last = &before;
   for (QPushButton* button : findChildren<QPushButton*>()) {
     setTabOrder(last, button);
     last = button;
   }
-  auto* escape =
-      new QShortcut(Qt::Key_Escape, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut);
-  connect(escape, &QShortcut::activated, &closes, &QPushButton::click);
 }
 
 bool FloatingCard::eventFilter(QObject* watched, QEvent* event) {

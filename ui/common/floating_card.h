@@ -3,7 +3,6 @@
 #pragma once
 
 #include <QFrame>
-#include <QPushButton>
 
 namespace trephine {
 
@@ -15,8 +14,8 @@ class FloatingCard : public QFrame {
   FloatingCard(QWidget& over, At at, int widest);
   // After what it says has changed.
   void place();
-  // Its buttons come next when Tab leaves this one, and Esc presses `closes` from among them.
-  void takeTabFrom(QWidget& before, QPushButton& closes);
+  // Its buttons come next when Tab leaves this one.
+  void takeTabFrom(QWidget& before);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

@@ -50,6 +50,8 @@ void MainWindow::show(Place place) {
       views().useLayoutOf(now.name, now.layout);
     }
     bar_->setVisible(!now.parts.page);
+    // Its buttons stay where they are.
+    rail_->setContentsMargins(0, now.parts.page ? bar_->sizeHint().height() : 0, 0, 0);
     rail_->show(place);
     showPanels();
     restoreColumns();
@@ -104,10 +106,12 @@ void MainWindow::dropEvent(QDropEvent* event) {
   cases_->open(toPath(urls.front().toLocalFile()));
 }
 
-// Return and Esc, where nobody else wants them, give the keys back to the hands.
+// Where nobody else wants them: Esc puts aside what lies over the views, then leaves the full
+// screen; it and Return give the keys back to the hands.
 void MainWindow::keyPressEvent(QKeyEvent* event) {
   const int key = event->key();
   const bool back = key == Qt::Key_Return || key == Qt::Key_Enter || key == Qt::Key_Escape;
+  if (key == Qt::Key_Escape && room(place_).workspace->escape()) return;
   if (key == Qt::Key_Escape && isFullScreen()) return full_screen_->trigger();
   if (back && !room(place_).parts.page) {
     view().setFocus();

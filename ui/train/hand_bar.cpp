@@ -70,8 +70,12 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
   touches_->setText(touches.isEmpty() ? tr("touches nothing") : tr("in: %1").arg(touches));
   colours::setText(*touches_, touches.isEmpty() ? colours::kQuiet : colours::kText);
   bar_->setForce(push_N, 0.0, most_N);
-  push_->setText(push_N > 0.0 ? tr("presses %1 N").arg(push_N, 0, 'f', 1) : tr("hovers"));
-  push_->setMinimumWidth(push_->fontMetrics().horizontalAdvance(tr("presses %1 N").arg("0.0")));
+  // The hand's, where tissue answers it: what its arm sends is beside the arm's own bar.
+  push_->setText(push_N > 0.0        ? tr("presses up to %1 N").arg(push_N, 0, 'f', 1)
+                 : touches.isEmpty() ? tr("hovers")
+                                     : tr("rests"));
+  push_->setMinimumWidth(
+      push_->fontMetrics().horizontalAdvance(tr("presses up to %1 N").arg("0.0")));
   show();
   place();
 }

@@ -2,8 +2,12 @@
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "ui/common/words.h"
+#include "volume/label_map.h"
 
 namespace trephine {
 
@@ -20,6 +24,22 @@ QString title(const QString& text) {
   return QStringLiteral("<tr><td colspan='2'><b>%1</b></td></tr>").arg(text.toHtmlEscaped());
 }
 
+// "12 mm3 of 1.2 L": of the structure, where it is one.
+QString cutWords(double mm3, const CutStructure* of) {
+  if (!of) return volumeWords(mm3);
+  return ResultPage::tr("%1 of %2").arg(volumeWords(mm3), volumeWords(1000.0 * of->ml));
+}
+
+// The structure that a tissue is named after. What was cut of it is the tissue's own row, as long
+// as both count the same voxels.
+const CutStructure* structureOf(const RemovedOf& tissue, const ExerciseResult& result) {
+  for (const CutStructure& one : result.structures) {
+    const bool same = std::abs(1000.0 * one.cut_ml - tissue.mm3) < 0.5;
+    if (same && sameName(one.name, tissue.name.toStdString())) return &one;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
@@ -28,6 +48,9 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
   title_->setObjectName("resultTitle");
   title_->setProperty("heading", true);
   title_->setWordWrap(true);
+  goal_ = new QLabel;
+  goal_->setObjectName("resultGoal");
+  goal_->setWordWrap(true);
   time_ = new QLabel;
   time_->setObjectName("resultTime");
   time_->setProperty("large", true);
@@ -56,6 +79,7 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
   layout->setContentsMargins(20, 16, 20, 16);
   layout->setSpacing(10);
   layout->addWidget(title_);
+  layout->addWidget(goal_);
   layout->addWidget(time_);
   layout->addWidget(rows_);
   layout->addLayout(buttons);
@@ -67,20 +91,24 @@ ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) 
 
 void ResultPage::setResult(const ExerciseResult& result) {
   title_->setText(tr("Result: %1").arg(result.exercise));
+  goal_->setText(tr("What was asked: %1").arg(result.goal));
+  goal_->setVisible(!result.goal.isEmpty());
   time_->setText(tr("Time %1").arg(timeWords(std::uint32_t(result.seconds))));
   QString html = title(tr("Removed"));
   double all = 0.0;
   for (const RemovedOf& one : result.tissues) {
     all += one.mm3;
-    if (one.mm3 > 0.0) html += row(one.name, volumeWords(one.mm3));
+    if (one.mm3 > 0.0) html += row(one.name, cutWords(one.mm3, structureOf(one, result)));
   }
   if (!(all > 0.0)) html += row(tr("nothing"), {});
   bool any = false;
   for (const CutStructure& one : result.structures) {
-    if (!(one.cut_ml > 0.0)) continue;
+    const auto names_it = [&](const RemovedOf& tissue) {
+      return structureOf(tissue, result) == &one;
+    };
+    if (!(one.cut_ml > 0.0) || std::ranges::any_of(result.tissues, names_it)) continue;
     if (!std::exchange(any, true)) html += title(tr("Of the structures"));
-    html += row(toQt(one.name),
-                tr("%1 of %2").arg(volumeWords(1000.0 * one.cut_ml), volumeWords(1000.0 * one.ml)));
+    html += row(toQt(one.name), cutWords(1000.0 * one.cut_ml, &one));
   }
   html += title(tr("Path of the tools"));
   for (const ExerciseResult::Way& way : result.ways) {

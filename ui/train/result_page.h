@@ -12,7 +12,7 @@
 namespace trephine {
 
 struct ExerciseResult {
-  QString exercise;
+  QString exercise, goal;
   double seconds = 0.0;
   std::vector<RemovedOf> tissues;
   std::vector<CutStructure> structures;
@@ -32,7 +32,6 @@ class ResultPage : public FloatingCard {
   explicit ResultPage(QWidget& over);
 
   void setResult(const ExerciseResult& result);
-  QPushButton& lookButton() { return *look_; }
 
  signals:
   void againWanted();
@@ -40,7 +39,7 @@ class ResultPage : public FloatingCard {
   void lookWanted();  // at the tissue as it was left
 
  private:
-  QLabel *title_, *time_, *rows_;
+  QLabel *title_, *goal_, *time_, *rows_;
   QPushButton *again_, *replay_, *look_;
 };
 

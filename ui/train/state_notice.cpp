@@ -8,6 +8,7 @@
 
 #include "ui/common/words.h"
 #include "ui/train/arms_panel.h"
+#include "ui/train/exercise_panel.h"
 
 namespace trephine {
 
@@ -96,6 +97,30 @@ QString backWords(std::uint32_t second, const LoopState& state, const Scene& sce
   if (waiting.empty()) return back;
   return StateNotice::tr("%1 %2: draw the tool out of the tissue to feel again.")
       .arg(back, whoWords(waiting, scene));
+}
+
+QString undoneWords(const LoopState& before, const LoopState& after, const Scene& scene,
+                    double voxel_mm3) {
+  QStringList undone, redone;
+  for (std::size_t arm = 0; arm < scene.arms.size(); ++arm) {
+    const std::vector<Tissue>& tissues = scene.tissues.tissues;
+    QStringList back, again;
+    for (std::size_t t = 0; t < tissues.size(); ++t) {
+      const double voxels = double(before.removed[arm][t]) - double(after.removed[arm][t]);
+      if (voxels == 0.0) continue;
+      const QString words =
+          StateNotice::tr("%1 of %2")
+              .arg(volumeWords(std::abs(voxels) * voxel_mm3), toQt(tissues[t].name));
+      (voxels > 0.0 ? back : again) << words;
+    }
+    const QString who = armName(scene.arms[arm]);
+    if (!back.isEmpty()) undone << StateNotice::tr("%1, %2").arg(who, back.join(", "));
+    if (!again.isEmpty()) redone << StateNotice::tr("%1, %2").arg(who, again.join(", "));
+  }
+  QStringList all;
+  if (!undone.isEmpty()) all << StateNotice::tr("Brought back: %1.").arg(undone.join("; "));
+  if (!redone.isEmpty()) all << StateNotice::tr("Cut again: %1.").arg(redone.join("; "));
+  return all.join(' ');
 }
 
 StateNotice::StateNotice(QWidget* view) : QWidget(view) {

@@ -25,6 +25,9 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
 
 // What is said once a rewind has come to its second: the state is the one after it.
 QString backWords(std::uint32_t second, const LoopState& state, const Scene& scene);
+// What an undo brought back, or a redo took again, of which arm; empty: nothing.
+QString undoneWords(const LoopState& before, const LoopState& after, const Scene& scene,
+                    double voxel_mm3);
 
 class StateNotice : public QWidget {
   Q_OBJECT

@@ -1,6 +1,7 @@
 // What Train shows while an exercise runs, and what is done with one.
 #include "render/tool_view.h"
 #include "ui/common/colours.h"
+#include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 #include "volume/cut_structures.h"
@@ -157,11 +158,13 @@ void TrainWorkspace::clutch() {
   Session* session = workstation_.session();
   if (!session) return;
   const ViewCamera& camera = view_->camera();
-  // A device's x is to the right, its y up, its z towards the hand.
+  // A device's x is to the right, its y up, its z towards the hand. Mouse and keys follow the view
+  // as it is: the tool that they hold is not turned.
   const Quat rotation = glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward()));
   for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
-    const bool sent =
-        clutch_->isChecked() ? session->clutch(i, true) : session->clutch(i, false, rotation);
+    const bool on = clutch_->isChecked();
+    const bool sent = on || session->isSimulated(i) ? session->clutch(i, on)
+                                                    : session->clutch(i, false, rotation);
     if (!sent) bench_.say(tr("Busy: try again in a moment."));
   }
 }
@@ -177,6 +180,9 @@ void TrainWorkspace::recentre() {
 void TrainWorkspace::showResult(Session& session, const RunReport& report) {
   ExerciseResult result;
   result.exercise = toQt(session.scene().name);
+  if (const CardText* card = cardFor(session.scene(), read(settings::kLanguage).toStdString())) {
+    result.goal = toQt(card->goal);
+  }
   result.seconds = session.state().seconds;
   for (const auto& [id, mm3] : report.removed_mm3) {
     const Tissue* tissue = session.scene().tissues.find(id);
@@ -203,9 +209,9 @@ void TrainWorkspace::showRates() {
   const LoopState& state = session->state();
   const double haptic_hz = double(state.ticks - ticks_shown_) / seconds;
   ticks_shown_ = state.ticks;
-  QString rates = tr("Force %1 times a second").arg(haptic_hz, 0, 'f', 0);
+  QString rates = tr("%1 forces a second").arg(haptic_hz, 0, 'f', 0);
   if (frames_ > 0) {  // a picture in which nothing moves is not drawn again
-    rates = tr("Picture %1 \u00b7 force %2 times a second")
+    rates = tr("%1 pictures and %2 forces a second")
                 .arg(double(frames_) / seconds, 0, 'f', 0)
                 .arg(haptic_hz, 0, 'f', 0);
   }
@@ -222,6 +228,14 @@ void TrainWorkspace::command(CommandKind kind) {
   if (!session->send(kind)) return bench_.say(tr("Busy: try again in a moment."));
 }
 
+// Or a redo.
+void TrainWorkspace::undo(CommandKind which) {
+  Session* session = workstation_.session();
+  if (!session) return;
+  undoing_ = session->state();
+  command(which);
+}
+
 void TrainWorkspace::rewind(std::uint32_t second) {
   Session* session = workstation_.session();
   if (!session) return;
@@ -234,6 +248,15 @@ void TrainWorkspace::showRewind(const LoopState& state) {
   if (going_back_ && !state.busy && state.ticks > going_back_->asked_tick + Session::kAnswerTicks) {
     bench_.say(backWords(going_back_->second, state, *workstation_.scene()));
     going_back_.reset();
+  }
+  const auto answered = [&](std::uint64_t asked_tick) {
+    return !state.busy && state.ticks > asked_tick + Session::kAnswerTicks;
+  };
+  if (undoing_ && answered(undoing_->ticks)) {
+    Session* session = workstation_.session();
+    const double voxel_mm3 = session ? session->grid().geometry().voxelVolume_mm3() : 0.0;
+    bench_.say(undoneWords(*undoing_, state, *workstation_.scene(), voxel_mm3));
+    undoing_.reset();
   }
   if (const Session* session = workstation_.session()) {
     std::vector<RewindBar::Stroke> strokes;

@@ -71,6 +71,12 @@ void TrainWorkspace::leave() {
   showHand();
 }
 
+bool TrainWorkspace::escape() {
+  if (!card_->asideButton().isVisible() && !result_->isVisible()) return false;
+  putAside(true);
+  return true;
+}
+
 void TrainWorkspace::buildActions() {
   QWidget& window = *bench_.window();
   start_ = makeAction(window, Symbol::start, "start", tr("Start"), QKeySequence(Qt::Key_F5),
@@ -107,8 +113,8 @@ void TrainWorkspace::connectParts() {
           [this](bool on) { command(on ? CommandKind::pause : CommandKind::resume); });
   connect(notice_, &StateNotice::goOnWanted, this, [this] { command(CommandKind::resume); });
   connect(notice_, &StateNotice::forceWanted, this, [this] { command(CommandKind::clear_faults); });
-  connect(bench_.undoAction(), &QAction::triggered, this, [this] { command(CommandKind::undo); });
-  connect(bench_.redoAction(), &QAction::triggered, this, [this] { command(CommandKind::redo); });
+  connect(bench_.undoAction(), &QAction::triggered, this, [this] { undo(CommandKind::undo); });
+  connect(bench_.redoAction(), &QAction::triggered, this, [this] { undo(CommandKind::redo); });
   connect(reset_, &QAction::triggered, this, &TrainWorkspace::reset);
   connect(rewind_, &RewindBar::rewindAsked, this, &TrainWorkspace::rewind);
   // Space belongs to buttons and lists where they have the focus.
@@ -130,8 +136,8 @@ void TrainWorkspace::connectParts() {
   connect(card_, &StartCard::caseWanted, this, [this] { bench_.go(Place::cases); });
   connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
   connect(exercise_, &ExercisePanel::cardWanted, this, [this] { putAside(false); });
-  card_->takeTabFrom(*view_, card_->asideButton());
-  result_->takeTabFrom(*view_, result_->lookButton());
+  card_->takeTabFrom(*view_);
+  result_->takeTabFrom(*view_);
   connect(result_, &ResultPage::againWanted, this, &TrainWorkspace::tryAgain);
   connect(result_, &ResultPage::replayWanted, this, &TrainWorkspace::replayWanted);
   connect(result_, &ResultPage::lookWanted, this, [this] { putAside(true); });
@@ -251,6 +257,7 @@ void TrainWorkspace::sessionStarted() {
   limits_N_.clear();
   for (const SceneArm& arm : session.scene().arms) limits_N_.push_back(arm.max_force_N);
   going_back_.reset();
+  undoing_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
   bench_.exerciseBegan();

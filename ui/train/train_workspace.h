@@ -32,6 +32,7 @@ class TrainWorkspace : public Workspace {
   Parts parts() override;
   void enter() override;
   void leave() override;
+  bool escape() override;
 
   // The exercises to choose from, for the bar; what one does with a running one.
   QComboBox* exercises() const { return scenes_; }
@@ -78,6 +79,7 @@ class TrainWorkspace : public Workspace {
   void showState(Session& session, const LoopState& state);
   void showRates();
   void command(CommandKind kind);
+  void undo(CommandKind which);
   void rewind(std::uint32_t second);
   void showRewind(const LoopState& state);
   void askToGoOn(const Error& error);
@@ -124,6 +126,7 @@ class TrainWorkspace : public Workspace {
     std::uint64_t asked_tick;
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
+  std::optional<LoopState> undoing_;     // what was there when it was asked for
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   QString exercise_said_;  // the last one that was open

@@ -265,7 +265,8 @@ void ViewWidget::showLevel() {
   const double share = renderer_.shareOfRays();
   QStringList words;
   if (share > 0.0 && share < 1.0) {
-    words << tr("1/%1 of the rays").arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0);
+    words << tr("Coarse for the moment: 1/%1 of the rays")
+                 .arg(1.0 / share, 0, 'f', share > 0.4 ? 1 : 0);
   }
   const auto [i, j, k] = renderer_.reduction();
   if (renderer_.hasVolume() && i * j * k > 1) {

@@ -31,6 +31,8 @@ class Workspace : public QObject {
   // Another one comes, this one comes. The widgets are there already.
   virtual void leave() {}
   virtual void enter() {}
+  // Esc, where nothing else in the window had a use for it. False: neither has this workspace.
+  virtual bool escape() { return false; }
 };
 
 }  // namespace trephine

@@ -201,8 +201,17 @@ class TrainControlsGuiTest : public test::TrainTest {
     view().setFocus();
     QTest::keyClick(&view(), Qt::Key_Tab);
     QCOMPARE(window_->focusWidget(), find<QWidget>("startCardStart"));
-    QTest::keyClick(window_->focusWidget(), Qt::Key_Escape);
-    QTRY_VERIFY(!card->isVisible());
+    // Esc, wherever the keys are.
+    const QList<QWidget*> places{window_->focusWidget(), &view(), find<QWidget>("controller"),
+                                 find<QWidget>("axial")};
+    for (QWidget* place : places) {
+      place->setFocus();
+      QTRY_VERIFY(place->hasFocus());
+      QVERIFY(card->isVisible());
+      QTest::keyClick(place, Qt::Key_Escape);
+      QVERIFY2(!card->isVisible(), qPrintable(place->objectName()));
+      if (place != places.last()) find<QPushButton>("showCard")->click();
+    }
     window_->show(Place::prepare);
     window_->show(Place::train);
     QVERIFY2(!card->isVisible(), "aside it stays");
@@ -221,8 +230,14 @@ class TrainControlsGuiTest : public test::TrainTest {
     view().setFocus();
     QTest::keyClick(&view(), Qt::Key_Tab);
     QCOMPARE(window_->focusWidget(), find<QWidget>("resultAgain"));
-    QTest::keyClick(window_->focusWidget(), Qt::Key_Escape);
-    QTRY_VERIFY(!result->isVisible());
+    view().setFocus();
+    find<QAction>("fullScreen")->trigger();
+    QTRY_VERIFY(window_->isFullScreen());
+    QTest::keyClick(&view(), Qt::Key_Escape);
+    QVERIFY(!result->isVisible());
+    QVERIFY2(window_->isFullScreen(), "first what lies over the view");
+    QTest::keyClick(&view(), Qt::Key_Escape);
+    QTRY_VERIFY(!window_->isFullScreen());
     QCOMPARE(find<QPushButton>("showCard")->text(), "Show the result");
     QTest::mouseClick(find<QPushButton>("showCard"), Qt::LeftButton);
     QVERIFY(result->isVisible());

@@ -16,6 +16,8 @@
 #include "ui/common/words.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/train/arms_panel.h"
+#include "ui/train/hand_bar.h"
+#include "ui/train/result_page.h"
 
 namespace trephine {
 namespace {
@@ -405,6 +407,40 @@ TEST_F(PanelTest, EnergyIsShownAsItIsAndColouredAsWrongWhereTheArmShakes) {
   for (int i = 0; i < 80; ++i) shown(0.489);
   EXPECT_EQ(shown(0.489), std::pair(QString("489.0 mJ"), colours::kText)) << "it has stopped";
   EXPECT_TRUE(energy.toolTip().contains("encoder"));
+}
+
+TEST_F(PanelTest, AResultSaysWhatWasAskedAndAnOrganThatIsATissueOnce) {
+  QWidget over;
+  over.resize(800, 600);
+  ResultPage page(over);
+  ExerciseResult result;
+  result.exercise = "Slice";
+  result.goal = "Cut a slice.";
+  result.tissues = {{"Liver", Qt::red, 120.0}, {"Bone", Qt::white, 7.0}};
+  result.structures = {{"liver", 1500.0, 0.12}, {"bone", 900.0, 0.004}};
+  page.setResult(result);
+  EXPECT_TRUE(find<QLabel>(page, "resultGoal").text().endsWith("Cut a slice."));
+  const QString rows = find<QLabel>(page, "resultRows").text();
+  EXPECT_EQ(rows.count("liver", Qt::CaseInsensitive), 1) << rows.toStdString();
+  EXPECT_TRUE(rows.contains("120 mm\u00b3 of 1500.00 mL")) << rows.toStdString();
+  // Bone outside of the structure counts to the tissue alone.
+  EXPECT_EQ(rows.count("bone", Qt::CaseInsensitive), 2) << rows.toStdString();
+  result.goal.clear();
+  page.setResult(result);
+  EXPECT_TRUE(find<QLabel>(page, "resultGoal").isHidden());
+}
+
+TEST_F(PanelTest, TheBarOfTheHandSaysThatAPushIsTheMostAndThatAToolInTissueRests) {
+  QWidget over;
+  over.resize(800, 600);
+  HandBar bar(over);
+  const auto words = [&](double push_N, const char* touches) {
+    bar.showHand("Left hand", Qt::white, "needle", false, push_N, 3.0, touches);
+    return find<QLabel>(bar, "pushWords").text().toStdString();
+  };
+  EXPECT_EQ(words(2.0, "Liver"), "presses up to 2.0 N");
+  EXPECT_EQ(words(0.0, "Liver"), "rests");
+  EXPECT_EQ(words(0.0, ""), "hovers");
 }
 
 TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {

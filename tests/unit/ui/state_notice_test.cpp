@@ -174,6 +174,21 @@ TEST_F(StateNoticeTest, AfterARewindItIsSaidToDrawOutOnlyWhatIsInTissueThatCameB
   EXPECT_NE(words.find("Left arm: draw the tool out"), std::string::npos) << words;
 }
 
+TEST_F(StateNoticeTest, AnUndoSaysWhoseCutCameBackAndARedoWhichWasMadeAgain) {
+  scene_.tissues.tissues.resize(1);
+  scene_.tissues.tissues[0].name = "Bone";
+  LoopState cut = state_;
+  cut.removed[1][0] = 300;
+  cut.removed[0][0] = 40;  // of a stroke that stands
+  LoopState undone = cut;
+  undone.removed[1][0] = 0;
+  EXPECT_EQ(undoneWords(cut, undone, scene_, 0.5).toStdString(),
+            "Brought back: Right arm, 150 mm\u00b3 of Bone.");
+  EXPECT_EQ(undoneWords(undone, cut, scene_, 0.5).toStdString(),
+            "Cut again: Right arm, 150 mm\u00b3 of Bone.");
+  EXPECT_TRUE(undoneWords(cut, cut, scene_, 0.5).isEmpty());
+}
+
 TEST_F(StateNoticeTest, WhateverCameBeforeEachCardIsAsHighAsItsWords) {
   ArmRecord& arm = state_.record.arms[1];
   const auto expectFits = [&](const char* when) {
