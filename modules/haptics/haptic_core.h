@@ -101,6 +101,7 @@ class HapticCore {
     // A new map that this command asks for, made with the arm's next sample.
     CommandKind remap = CommandKind::none;
     std::optional<Quat> turn_to;  // of the map
+    bool as_scene = false;        // the map, wherever the arm is
     WorkspaceMap scene_map;
     HandWork work;
     Vec3 last_model_N{0.0};     // demanded in the tick before, patient axes

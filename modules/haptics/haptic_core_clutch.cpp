@@ -23,6 +23,7 @@ void HapticCore::releaseArm(const Command& command) {
     if (command.kind == CommandKind::clutch_off && !arm.clutched) return;
     arm.remap = command.kind;
     arm.turn_to.reset();
+    arm.as_scene = command.kind == CommandKind::recentre && command.value == 1;
     if (command.value == 1 && isRotation(command.rotation)) arm.turn_to = command.rotation;
     return;
   }
@@ -64,7 +65,9 @@ void HapticCore::recentreArm(ArmTick& now, const Pose& device_m) {
   arm.remap = CommandKind::none;
   arm.clutched = false;
   map = arm.scene_map;
-  map.centre_mm += arm.scene_map.centre_mm - map.toPatient_mm(device_m).position;
+  if (!arm.as_scene) {
+    map.centre_mm += arm.scene_map.centre_mm - map.toPatient_mm(device_m).position;
+  }
   arm.limiter.engage();
   forgetForce(arm, true);
   arm.last_model_N = arm.last_elastic_Nm = Vec3(0.0);

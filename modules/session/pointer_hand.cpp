@@ -11,6 +11,7 @@ constexpr double kOut_mm_s = 60.0, kOut_N = 2.0;
 constexpr double kHover_mm_s = 100.0, kHover_s = 0.1;
 constexpr double kAside_mm_s = 60.0;  // across the ray per N that is left, where it touches
 constexpr double kLeastAside_N = 0.5;
+constexpr double kBelow_mm = 2.0;      // of where it hovers: aside of it there may be tissue
 constexpr double kElsewhere_mm = 3.0;  // so far aside a pointer wants the tool out first
 constexpr double kRelax_s = 0.05, kGiveIn_s = 0.02;
 // From the tool to the rest point at most: short of what lets a hooked tool go.
@@ -36,10 +37,13 @@ void PointerHand::comeOut(Way& way, double target_mm, double T) const {
   way.rest_mm -= std::clamp(way.rest_mm - target_mm, 0.0, speed * T);
 }
 
+double PointerHand::hoverAt_mm(const Way& way) {
+  return std::min(way.seen_mm.value_or(way.rest_mm), 0.0) - kHover_mm;
+}
+
 void PointerHand::hover(Way& way, double T) const {
   if (!way.seen_mm) return;
-  const double target_mm = std::min(*way.seen_mm, 0.0) - kHover_mm;
-  const double step_mm = (target_mm - way.rest_mm) * std::min(1.0, T / kHover_s);
+  const double step_mm = (hoverAt_mm(way) - way.rest_mm) * std::min(1.0, T / kHover_s);
   if (step_mm < 0.0) return comeOut(way, way.rest_mm + step_mm, T);
   if (!plane_mm_) way.rest_mm += std::min(kHover_mm_s * T, step_mm);  // else it has come out here
 }
@@ -121,7 +125,8 @@ Vec3 PointerHand::rest_m(const PointerInput& to, const ArmRecord& arm, const Wor
   } else {
     hover(way, T);
   }
-  if (presses || (!to.put_down && !touches)) {
+  const bool below = way.seen_mm && way.arm_mm > hoverAt_mm(way) + kBelow_mm;
+  if (presses || (!to.put_down && !touches && !below)) {
     goAside(way, presses ? to.push_N : 0.0, kMostShare * reach.max_force_N, T);
   } else {
     way.aside_mm += (way.arm_aside_mm - way.aside_mm) * relaxes;

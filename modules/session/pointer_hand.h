@@ -4,9 +4,10 @@
 // and k the spring, the hand pulls by F = k (r - x) / s, s the motion scale, and all is said of F,
 // along the tool and across it:
 //   along, push P > 0:  dr/dt = 15 mm/s per N of (P - F), at most 20 mm/s forwards
-//   along, push 0:      to 4 mm before what is seen; out of whatever it touches
-//   put down:           to where the arm is, within 50 ms: F is 0 and the tool stays, in tissue too
-//   across:             to where the pointer is, slower as F comes to what P leaves of the arm's
+//   along, push 0:      to 4 mm before what is seen, and only then aside; out of whatever it
+//   touches put down:           to where the arm is, within 50 ms: F is 0 and the tool stays, in
+//   tissue too across:             to where the pointer is, slower as F comes to what P leaves of
+//   the arm's
 // So a push is a force and not a depth: it builds up where the tool is stopped, goes on while it
 // overcomes the tissue, and nothing springs on where a resistance ends.
 //
@@ -60,6 +61,7 @@ class PointerHand {
                bool touches);
   void press(Way& way, double push_N, double period_s) const;
   void comeOut(Way& way, double target_mm, double period_s) const;
+  static double hoverAt_mm(const Way& way);
   void hover(Way& way, double period_s) const;
   void goAside(Way& way, double push_N, double most_N, double period_s) const;
 

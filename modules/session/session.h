@@ -129,8 +129,9 @@ class Session {
   bool clutch(std::size_t arm, bool on);  // keeps the rotation
   // The arm's hand is one that is told where to go; a real one is where it is.
   bool isSimulated(std::size_t arm) const { return simulated_[arm]; }
-  // Puts the tool where the scene starts it, with the arm where it is now, and turns the map back.
-  // Out of tissue: where it comes into some, it waits.
+  // Puts the tool where the scene starts it, and turns the map back: with a real arm where it is
+  // now; a simulated arm's hand goes back to where it began, upright. Where the tool comes into
+  // tissue it waits.
   bool recentre(std::size_t arm);
 
   // Gives an arm another of its tools (Scene::toolOf), once neither that nor the one in hand

@@ -79,7 +79,20 @@ bool Session::clutch(std::size_t arm, bool on) {
 }
 
 bool Session::recentre(std::size_t arm) {
-  return loop_->commands().push({CommandKind::recentre, 0, {}, std::int32_t(arm)});
+  const bool goes_back = begin_m_[arm].has_value();
+  if (!loop_->commands().push({CommandKind::recentre, goes_back, {}, std::int32_t(arm)})) {
+    return false;
+  }
+  if (goes_back) {
+    push_N_[arm] = 0.0;
+    LiveHands::Hand& hand = hands_.hands[arm];
+    hand.live = true;
+    hand.pointed = false;
+    hand.position_m = *begin_m_[arm];
+    hand.turned = Quat(1, 0, 0, 0);
+    engine_->live_hands.write(hands_);
+  }
+  return true;
 }
 
 bool Session::changeTool(std::size_t arm, std::size_t tool) {

@@ -136,6 +136,7 @@ struct SessionRecorder::File {
 
   // Gives back the room that was reserved and not used.
   void trim() {
+    quietHdf5();
     const hid_t closed = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     haddr_t used = 0;
     const bool known = closed >= 0 && H5Fget_eoa(closed, &used) >= 0;

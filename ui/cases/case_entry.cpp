@@ -27,7 +27,7 @@ QString regionWords(BodyRegion region) {
 template <class Structures>
 QString structureNames(const Structures& structures, int most) {
   QStringList names;
-  for (const auto& s : structures) names << toQt(s.name);
+  for (const auto& s : structures) names << shownName(s.name);
   const int more = int(names.size()) - most;
   const QString first = QStringList(names.mid(0, most)).join(", ");
   return more > 0 ? tr("%1 and %2 more").arg(first).arg(more) : first;
@@ -47,7 +47,7 @@ CaseEntry builtIn(const std::string& name) {
 }  // namespace
 
 QString cardWords(const CaseEntry& entry) {
-  QStringList lines{toQt(entry.record.name.empty() ? entry.id : entry.record.name)};
+  QStringList lines{shownName(entry.record.name.empty() ? entry.id : entry.record.name)};
   if (entry.problem) {
     lines << tr("Cannot be opened");
   } else {

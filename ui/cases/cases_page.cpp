@@ -226,7 +226,7 @@ const CaseEntry* CasesPage::find(const std::string& id) const {
 
 const CaseEntry* CasesPage::chosen() const {
   const QListWidgetItem* item = cards_->currentItem();
-  return item ? find(item->data(kIdRole).toString().toStdString()) : nullptr;
+  return item ? find(item->data(kIdRole).toByteArray().toStdString()) : nullptr;
 }
 
 void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
@@ -237,7 +237,7 @@ void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
   cards_->clear();
   for (const CaseEntry& entry : entries_) {
     auto* item = new QListWidgetItem(cardIcon(entry), cardWords(entry), cards_);
-    item->setData(kIdRole, toQt(entry.id));
+    item->setData(kIdRole, QByteArray::fromStdString(entry.id));  // it need not be UTF-8
     item->setToolTip(detailWords(entry));
     item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
     item->setSizeHint(kCard);
@@ -250,7 +250,7 @@ void CasesPage::showCases(const std::vector<CaseEntry>& entries) {
 
 void CasesPage::select(const std::string& id) {
   for (int i = 0; i < cards_->count(); ++i) {
-    if (cards_->item(i)->data(kIdRole).toString() == toQt(id)) cards_->setCurrentRow(i);
+    if (cards_->item(i)->data(kIdRole).toByteArray().toStdString() == id) cards_->setCurrentRow(i);
   }
 }
 
@@ -288,7 +288,7 @@ void CasesPage::showChosen() {
   details_->setVisible(entry);
   if (!entry) return;
   picture_->setPixmap(cardPicture(*entry));
-  name_->setText(toQt(entry->record.name.empty() ? entry->id : entry->record.name));
+  name_->setText(shownName(entry->record.name.empty() ? entry->id : entry->record.name));
   about_->setText(detailWords(*entry));
   QStringList done;
   constexpr std::size_t kMost = 3;
@@ -328,13 +328,14 @@ void CasesPage::showStrip() {
     words = open_about_;
   } else if (any_open_) {
     const CaseEntry* open = find(open_);
-    title = !open_saved_ ? tr("The open case is not saved yet")
-            : open
-                ? tr("\"%1\" is open: practise on it, or prepare it").arg(toQt(open->record.name))
-                : tr("A case is open: practise on it, or prepare it");
+    title =
+        !open_saved_ ? tr("The open case is not saved yet")
+        : open
+            ? tr("\"%1\" is open: practise on it, or prepare it").arg(shownName(open->record.name))
+            : tr("A case is open: practise on it, or prepare it");
     words = open_about_;
   } else if (recent && !recent->problem) {
-    title = tr("Go on with \"%1\"").arg(toQt(recent->record.name));
+    title = tr("Go on with \"%1\"").arg(shownName(recent->record.name));
     words = tr("Or choose another case below, or open a folder of CT.");
   } else {
     title = tr("Choose a case to practise on");

@@ -8,6 +8,7 @@
 #include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
+#include "ui/common/error_dialog.h"
 #include "ui/common/placing.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
@@ -280,8 +281,10 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
                      to = name.toStdString()](const Progress&) { return library->rename(id, to); },
                     [this, entry, name](Result<CaseRecord> renamed) {
                       if (!renamed) {
-                        page_->askForName(entry, name);
-                        return bench_.report(renamed.error());
+                        QMessageBox* why = showError(bench_.window(), renamed.error());
+                        connect(why, &QMessageBox::finished, page_,
+                                [this, entry, name] { page_->askForName(entry, name); });
+                        return;
                       }
                       const std::optional<Case>& open = workstation_.currentCase();
                       if (open && open->stored == renamed->id) {

@@ -25,7 +25,7 @@ class FloatingCard : public QFrame {
 
  private:
   static constexpr int kMargin = 12;
-  static constexpr int kCorner = 110, kAboveCorners = 56;  // where a view has its scale
+  static constexpr int kCorner = 110, kAboveCorners = 112;  // where a view has its scale and axes
   At at_;
   int widest_;
 };

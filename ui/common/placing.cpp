@@ -26,6 +26,7 @@ void centreOver(QWidget& dialog, const QWidget& window) {
 
 QScrollArea* scrolled(QWidget* page, const char* name) {
   auto* area = new QScrollArea;
+  area->setFocusPolicy(Qt::TabFocus);  // a click beside its controls takes the keys from nobody
   area->setObjectName(name);
   area->setWidget(page);
   area->setWidgetResizable(true);

@@ -8,6 +8,7 @@
 #include <QStandardPaths>
 #include <QString>
 #include <QStringList>
+#include <type_traits>
 
 namespace trephine {
 
@@ -28,6 +29,10 @@ template <class Value>
 Value read(const Setting<Value>& setting) {
   const QVariant found = windowSettings().value(setting.key);
   if (!found.isValid() || !found.canConvert<Value>()) return setting.fallback;
+  if constexpr (std::is_same_v<Value, bool>) {  // to Qt any other word is yes
+    const QString word = found.toString();
+    if (word != "true" && word != "false") return setting.fallback;
+  }
   return found.value<Value>();
 }
 

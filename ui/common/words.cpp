@@ -78,6 +78,25 @@ QString builtInName(const std::string& phantom) {
   return phantom == "cranium" ? tr("Cranium, built in") : tr("Abdomen, built in");
 }
 
+QString shownName(const std::string& utf8) {
+  constexpr int kRun = 16;
+  constexpr QChar kMayBreak(0x200b);
+  QString shown;
+  int run = 0;
+  for (const QChar letter : toQt(utf8)) {
+    if (letter.category() == QChar::Other_Format || letter.category() == QChar::Other_Control)
+      continue;
+    run = letter.isSpace() ? 0 : run + 1;
+    const bool splits = letter.isLowSurrogate() || letter.isMark();
+    if (run > kRun && !splits) {
+      shown += kMayBreak;
+      run = 1;
+    }
+    shown += letter;
+  }
+  return shown;
+}
+
 QString touchedName(const ArmRecord& arm, const TissueSet& tissues) {
   const auto which = std::size_t(arm.tissue_class);  // -1, nothing, is beyond all
   return which < tissues.tissues.size() ? toQt(tissues.tissues[which].name) : QString();

@@ -14,6 +14,9 @@
 namespace trephine {
 
 QString toQt(const std::string& utf8);
+// A name that came from a file, to be shown: without marks that turn or hide what stands beside it,
+// and with places to break a line at.
+QString shownName(const std::string& utf8);
 // Paths keep the bytes that the file system gave, whatever their encoding.
 std::filesystem::path toPath(const QString& text);
 QString toQt(const std::filesystem::path& path);

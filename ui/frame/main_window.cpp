@@ -268,8 +268,12 @@ void MainWindow::sayProblem() {
 
 void MainWindow::askForPin() {
   if (workstation().isUnlocked()) {
-    workstation().setUnlocked(false);
-    return bench_.say(tr("Locked again."));
+    const auto lock = [this] {
+      workstation().setUnlocked(false);
+      bench_.say(tr("Locked again."));
+    };
+    return workstation().tissuesWouldGo() ? bench_.unlessLost({Bench::Loss::tissues}, lock)
+                                          : lock();
   }
   if (!workstation().policy().pin) return;
   auto* dialog = new UnlockDialog(*workstation().policy().pin, this);

@@ -229,7 +229,7 @@ void MainWindow::connectParts() {
     connect(panel, &QAction::toggled, this, &MainWindow::showPanels);
   }
   connect(full_screen_, &QAction::toggled, this,
-          [this](bool full) { full ? showFullScreen() : showNormal(); });
+          [this](bool full) { setWindowState(windowState().setFlag(Qt::WindowFullScreen, full)); });
   connect(settings_, &QAction::triggered, this, &MainWindow::showSettings);
   connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
   connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
@@ -252,6 +252,9 @@ void MainWindow::connectParts() {
             opening_words_->setText(step);
             opening_->setValue(int(fraction * kProgressSteps));
           });
+  // What is said needs the room.
+  connect(statusBar(), &QStatusBar::messageChanged, rates_,
+          [this](const QString& said) { rates_->setVisible(said.isEmpty()); });
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);
   connect(&workstation, &Workstation::savingProgressed, this,
           [this](double fraction, const QString& step) {

@@ -59,6 +59,8 @@ ShortcutsPage::ShortcutsPage(const QMainWindow& window, const QList<QPair<QStrin
   list->setRootIsDecorated(false);
   list->setSelectionMode(QAbstractItemView::NoSelection);
   list->setWordWrap(true);
+  // A row is as high as its words are in the width that they have then.
+  connect(list->header(), &QHeaderView::sectionResized, list, [list] { list->doItemsLayout(); });
   const auto addGroup = [list](const QString& title) {
     auto* group = new QTreeWidgetItem(list, {title});
     QFont bold = list->font();

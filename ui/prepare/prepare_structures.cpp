@@ -11,6 +11,7 @@
 #include "imaging/structure_importer.h"
 #include "scene/entry_point.h"
 #include "scene/scene_structures.h"
+#include "tissue/tissue_edits.h"
 #include "ui/common/question.h"
 #include "ui/common/words.h"
 #include "ui/prepare/prepare_workspace.h"
@@ -141,6 +142,7 @@ void PrepareWorkspace::showStructures() {
   if (of.structures != own_structures_) {
     structure_looks_.clear();
     editor_.setCase(of.volume, of.structures);
+    in_case_.reset();
     own_structures_ = of.structures;
     QStringList words;
     for (const Warning& warning : of.structure_warnings) words << toQt(warning.text);
@@ -189,6 +191,8 @@ void PrepareWorkspace::openStructures() {
     views_->setTool(SliceTool::window);  // what was in hand was for another case
     structures_->suitVoxels(of.volume->geometry.spacing_mm);
     editor_.setCase(of.volume, of.structures);
+    in_case_ = editor_.changes();
+    tissues_touched_ = false;
   }
   own_structures_ = of.structures;
   structures_->setWanted(workstation_.scene()->structures);
@@ -467,7 +471,7 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
     return bench_.say(tr("This case is not one of the library's: save to a file instead."));
   }
   std::shared_ptr<const LabelMap> map;  // null: as it was
-  if (editor_.edited()) {
+  if (in_case_ != editor_.changes()) {
     map = editor_.finished();
     if (!map) {  // none is left
       LabelMap none;
@@ -477,7 +481,12 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
   }
   const std::uint64_t changes = editor_.changes();
   std::optional<TissueSet> tissues;
-  if (workstation_.tissuesEdited()) tissues = workstation_.scene()->tissues;
+  if (tissues_touched_ || workstation_.tissuesEdited()) tissues = workstation_.scene()->tissues;
+  if (!map && !tissues) {
+    bench_.say(tr("Nothing of it has changed since it was saved."));
+    if (then) then();
+    return;
+  }
   workstation_.save(
       tr("Structures and tissues are saved in the case."),
       [library = bench_.library(), id = workstation_.currentCase()->stored, map,
@@ -490,7 +499,11 @@ void PrepareWorkspace::saveInCase(Bench::Next then) {
       },
       [this, changes, tissues, then = std::move(then)] {
         editor_.markSaved(changes);
-        if (tissues) workstation_.tissuesSaved(*tissues);
+        in_case_ = changes;
+        if (tissues) {
+          workstation_.tissuesSaved(*tissues);
+          tissues_touched_ = !sameSet(*tissues, workstation_.scene()->tissues);
+        }
         if (then) then();
       });
 }

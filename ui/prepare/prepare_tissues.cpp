@@ -123,6 +123,7 @@ void PrepareWorkspace::tissuesEdited(const TissueSet& set) {
     }
   }
   workstation_.setTissues(set);
+  tissues_touched_ = true;
   editor_.setTissues(set);
   views_->setTissues(set, workstation_.looks());
   showSeen();

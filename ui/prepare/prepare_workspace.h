@@ -94,6 +94,10 @@ class PrepareWorkspace : public Workspace {
   TissuePanel* tissues_;
   StructurePanel* structures_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
+  // What the library's case has, whatever was saved to files: the editor's changes() then, nothing
+  // for structures of another file; and whether tissues have been edited since.
+  std::optional<std::uint64_t> in_case_ = 0;
+  bool tissues_touched_ = false;
   QTimer settled_;
   Bench::Next start_when_placed_;    // an exercise waits for its structures
   bool entry_asked_ = false;         // and the case is being placed with it

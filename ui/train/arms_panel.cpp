@@ -63,6 +63,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
   cards_layout_->setContentsMargins(6, 8, 6, 8);
   cards_layout_->setSpacing(10);
   auto* area = new QScrollArea(this);
+  area->setFocusPolicy(Qt::TabFocus);
   area->setWidget(inside);
   area->setWidgetResizable(true);
   area->setFrameShape(QFrame::NoFrame);
@@ -70,6 +71,7 @@ ArmsPanel::ArmsPanel(QWidget* parent) : QWidget(parent) {
 
   controller_ = new QComboBox(inside);
   controller_->setObjectName("controller");
+  controller_->setFocusPolicy(Qt::TabFocus);  // a click leaves the keys with the hands
   controller_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (const auto& [name, kind] : kControllerNames) {
     controller_->addItem(controllerWord(kind), int(kind));
@@ -162,6 +164,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   colours::setText(*card.faults, colours::kBad);
 
   card.tool->setObjectName(prefix + "Tool");
+  card.tool->setFocusPolicy(Qt::TabFocus);
   card.tool->setAccessibleName(tr("Tool"));
   card.tool->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   for (std::size_t n = 0; n <= arm.other_tools.size(); ++n) {
@@ -270,6 +273,11 @@ void ArmsPanel::showState(const LoopState& state, const TissueSet& tissues,
   colours::setText(*dropped_, state.dropped > 0 ? colours::kBad : colours::kText);
   journal_->setVisible(state.journal_full);
   if (state.ticks > 0) showController(state.controller);  // before, it is not known
+}
+
+void ArmsPanel::showUnrecorded() {
+  dropped_->setText(tr("stopped: what follows is not recorded"));
+  colours::setText(*dropped_, colours::kBad);
 }
 
 void ArmsPanel::follow(const LoopState& state) {

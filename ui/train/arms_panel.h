@@ -29,6 +29,8 @@ class ArmsPanel : public QWidget {
                  const std::vector<double>& limits_N);
   // With every picture, for the traces.
   void follow(const LoopState& state);
+  // The recording can no longer be written; until setScene() or showIdle().
+  void showUnrecorded();
   void showIdle();
   // Why the controller may not be changed; empty: it may.
   void setLocked(const QString& why);

@@ -77,7 +77,8 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   keys_->setText(
       tr("Mouse or arrows: where the tool goes. Wheel up or down, Page Down or Up: presses more or "
          "less. Shift and arrows: tilt. Tab: the other hand. Space: pause. Right drag: turn the "
-         "view."));
+         "view. The tool follows the mouse wherever it goes: pause before you take it to a "
+         "button."));
   card_ = new QPushButton;
   card_->setObjectName("showCard");
   card_->hide();

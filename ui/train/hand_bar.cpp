@@ -55,7 +55,7 @@ HandBar::HandBar(QWidget& over) : FloatingCard(over, At::bottom, kWidest) {
 void HandBar::setTissues(const TissueSet& tissues) {
   int widest = 0;  // or the bar beside it would jump with every tissue
   for (const Tissue& tissue : tissues.tissues) {
-    const QString words = tr("in: %1").arg(toQt(tissue.name));
+    const QString words = tr("touches %1").arg(toQt(tissue.name));
     widest = std::max(widest, touches_->fontMetrics().horizontalAdvance(words));
   }
   touches_->setMinimumWidth(widest);
@@ -67,7 +67,7 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
   colours::setText(*hand_, colour);
   tool_->setText(tool);
   waits_->setVisible(waits);
-  touches_->setText(touches.isEmpty() ? tr("touches nothing") : tr("in: %1").arg(touches));
+  touches_->setText(touches.isEmpty() ? tr("touches nothing") : tr("touches %1").arg(touches));
   colours::setText(*touches_, touches.isEmpty() ? colours::kQuiet : colours::kText);
   bar_->setForce(push_N, 0.0, most_N);
   // The hand's, where tissue answers it: what its arm sends is beside the arm's own bar.

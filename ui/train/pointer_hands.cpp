@@ -29,12 +29,18 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
     if (session_) session_->straightenHand(active_);
   });
   connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
-    // What is not felt while it is set would come as a stab.
-    if (session_ && session_->state().paused && notches > 0.0) return;
+    if (session_ && holds() && notches > 0.0) return;
     setPush(push_N() + notches * readWithin(settings::kPushStep_N, 0.05, 1.0));
   });
   connect(&view_, &ViewWidget::otherHandWanted, this, &PointerHands::takeOther);
   connect(&view_, &ViewWidget::resized, this, &PointerHands::letGo);
+}
+
+// In a pause, and clutched: what is not felt while it is set would come as a stab, and the tool, in
+// tissue, would cut its way to where the pointer has been led meanwhile.
+bool PointerHands::holds() {
+  const LoopState& state = session_->state();
+  return state.paused || (state.record.arms[active_].tool_state & kToolClutched);
 }
 
 // Another place of the tissue is under the pointer, though no hand has moved: until it does, the
@@ -84,8 +90,20 @@ void PointerHands::takeOther() {
   emit changed();
 }
 
+void PointerHands::goneBack() {
+  if (!session_) return;
+  places_.assign(places_.size(), std::nullopt);
+  if (last_) last_ = QRectF(view_.rect()).center();  // from where the keys go on
+  stays_ = true;
+  emit changed();
+}
+
 void PointerHands::point(const QPointF& to) {
   if (!session_) return;
+  if (place() && holds()) {
+    stays_ = true;
+    return;
+  }
   const bool first = !taken();
   if (stays_ && place() && push_N() > 0.0) {
     const QPointF by = to - *place();

@@ -31,6 +31,8 @@ class PointerHands : public QObject {
   // Somebody has pointed since the exercise began.
   bool taken() const { return last_.has_value(); }
   void takeOther();
+  // All hands have gone back to where they began, and stay there until the pointer moves.
+  void goneBack();
   void setPush(double push_N);
 
  signals:
@@ -38,6 +40,7 @@ class PointerHands : public QObject {
 
  private:
   void letGo();
+  bool holds();
   void point(const QPointF& to);
   std::optional<QPointF>& place() { return places_[active_]; }
   void send();

@@ -101,6 +101,14 @@ void ResultPage::setResult(const ExerciseResult& result) {
     if (one.mm3 > 0.0) html += row(one.name, cutWords(one.mm3, structureOf(one, result)));
   }
   if (!(all > 0.0)) html += row(tr("nothing"), {});
+  const auto removed = [](const RemovedOf& one) { return one.mm3 > 0.0; };
+  if (std::ranges::count_if(result.tissues, removed) > 1) {
+    html +=
+        QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
+            .arg(tr("Tissues are told by how dense they are: at the edge of bone a little counts "
+                    "as something softer.")
+                     .toHtmlEscaped());
+  }
   bool any = false;
   for (const CutStructure& one : result.structures) {
     const auto names_it = [&](const RemovedOf& tissue) {

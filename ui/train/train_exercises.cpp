@@ -75,8 +75,8 @@ void TrainWorkspace::showCard() {
   const bool result = result_shown_ && phase == Phase::ready;
   const bool card = !result_shown_ && phase == Phase::ready && !bench_.carved();
   exercise_->offerCard(!here_ || !aside_ ? QString()
-                       : result          ? tr("Show the result")
-                       : card            ? tr("Show what to do")
+                       : result          ? tr("Show the &result")
+                       : card            ? tr("Show &what to do")
                                          : QString());
   if (!idle || !here_) {
     card_->hide();
@@ -124,7 +124,7 @@ void TrainWorkspace::showAllowed() {
 
 // Until it is open, or cannot be had.
 void TrainWorkspace::showOpening(const Scene& scene, const std::filesystem::path& file) {
-  aside_ = false;
+  if (!result_shown_) aside_ = false;
   scenes_->setPlaceholderText(toQt(scene.name));  // where the list has it not yet
   const int index = scenes_->findData(toQt(file));
   scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(toQt(scene.name)));

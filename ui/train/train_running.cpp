@@ -1,10 +1,13 @@
 // What Train shows while an exercise runs, and what is done with one.
+#include <algorithm>
+
 #include "render/tool_view.h"
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/train/train_workspace.h"
 #include "volume/cut_structures.h"
+#include "volume/label_map.h"
 
 namespace trephine {
 
@@ -69,6 +72,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     }
   }
   arms_->showState(shown, session.scene().tissues, limits_N_);
+  if (!session.recordingStatus()) arms_->showUnrecorded();
   if (state.ticks > 0 && workstation_.session()) workstation_.noteController(state.controller);
   if (workstation_.session()) {
     pause_->setChecked(state.paused);
@@ -104,9 +108,15 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
   const std::optional<Case>& of = workstation_.currentCase();
   const VolumeMirror& mirror = views_->mirror();
   if (of && of->structures && !(mirror.touched() == VoxelBox{})) {
+    // That of a tissue that is this structure is said already.
+    const auto is_tissue = [&](const Structure& s) {
+      return std::ranges::any_of(tissues, [&](const Tissue& t) {
+        return !t.structure.empty() && sameName(t.structure, s.name);
+      });
+    };
     for (const auto& [label, mm3] :
          cutWithin(*of->structures, *of->volume, mirror.volume(), mirror.touched())) {
-      if (const Structure* s = of->structures->find(label)) {
+      if (const Structure* s = of->structures->find(label); s && !is_tissue(*s)) {
         of_structures.push_back({toQt(s->name), colours::of(s->colour), mm3});
       }
     }
@@ -175,6 +185,7 @@ void TrainWorkspace::recentre() {
   for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
     if (!session->recentre(i)) bench_.say(tr("Busy: try again in a moment."));
   }
+  hands_->goneBack();
 }
 
 void TrainWorkspace::showResult(Session& session, const RunReport& report) {

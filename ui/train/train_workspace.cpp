@@ -146,7 +146,7 @@ void TrainWorkspace::connectParts() {
   connect(view_, &ViewWidget::framePainted, this, [this] { ++frames_; });
 
   connect(&bench_, &Bench::caseShown, this, [this] {
-    warned_ = result_shown_ = false;
+    warned_ = result_shown_ = aside_ = false;
     exercise_->showIdle();  // of the exercise before
     sayWhatIsOpen();
     showOutline();
@@ -280,7 +280,11 @@ void TrainWorkspace::sessionEnded(Session& session) {
   emit ratesChanged({});
   const RunReport report = session.report();
   bench_.exerciseEnded(report.removed_voxels > 0);
-  if (!session.recordingStatus()) bench_.say(tr("The exercise is recorded in part only."));
+  std::error_code ec;
+  const bool any = std::filesystem::exists(report.recording, ec);
+  bench_.say(session.recordingStatus() ? QString()
+             : any                     ? tr("The exercise is recorded in part only.")
+                                       : tr("The exercise is not recorded."));
   showResult(session, report);
 }
 

@@ -21,8 +21,9 @@ namespace {
 std::filesystem::path storageFolder(const Policy& policy) {
   if (!policy.storage.empty()) return policy.storage;
   const QString chosen = read(settings::kStorage);
-  return toPath(chosen.isEmpty() ? QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)
-                                 : chosen);
+  return toPath(QDir::isAbsolutePath(chosen)
+                    ? chosen
+                    : QStandardPaths::writableLocation(QStandardPaths::AppDataLocation));
 }
 
 }  // namespace

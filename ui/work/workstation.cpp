@@ -49,6 +49,8 @@ Scene withArmsOfThisPlace(Scene scene) {
 void Workstation::start(const std::filesystem::path& recordings,
                         std::optional<OperatorScript> script, double seconds) {
   if (phase_ != Phase::ready || isOpening()) return;
+  // It may have come in while it was unlocked.
+  if (Status may = mayPractise(*scene_, scene_file_); !may) return fail(may.error());
   setPhase(Phase::starting);
   // The name is the time: nothing of the patient, nothing of the folder.
   const std::string stem =

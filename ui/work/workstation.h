@@ -76,7 +76,10 @@ class Workstation : public QObject {
   bool isLocked(Lock lock) const;
   bool anyLocked() const;
   bool isUnlocked() const { return unlocked_; }
+  // Locked again, what is locked is as it is prescribed, or as the exercise brings it.
   void setUnlocked(bool unlocked);
+  // Edited, and taken back when it is locked again.
+  bool tissuesWouldGo() const;
   // Whether this scene of this file may be opened now: checkScene().
   Status mayPractise(const Scene& scene, const std::filesystem::path& file) const {
     return unlocked_ ? Status() : checkScene(policy_, scene, file);
@@ -204,6 +207,9 @@ class Workstation : public QObject {
   void setPhase(Phase phase);
   void fail(const Error& error);
 
+  void takeBack();
+  void applyTissues(const TissueSet& tissues);
+  void applyController(ControllerKind kind);
   bool refuseLocked(Lock lock, const char* what);
 
   Policy policy_;

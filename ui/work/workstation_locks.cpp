@@ -9,13 +9,33 @@ bool Workstation::isLocked(Lock lock) const {
   return scene_ ? locksOf(policy_, *scene_).contains(lock) : policy_.isLocked(lock);
 }
 
+bool Workstation::tissuesWouldGo() const {
+  return unlocked_ && scene_ && tissuesEdited() &&
+         locksOf(policy_, *scene_).contains(Lock::tissues);
+}
+
 bool Workstation::anyLocked() const {
   return isLocked(Lock::controller) || isLocked(Lock::tissues) || isLocked(Lock::rate);
 }
 
 void Workstation::setUnlocked(bool unlocked) {
   unlocked_ = unlocked;
+  if (!unlocked && scene_) takeBack();
   emit locksChanged();
+}
+
+// What was changed while it was unlocked: controller and tissues are what they are prescribed to
+// be, or what the exercise brings. A rate of another scene is seen to when that is started.
+void Workstation::takeBack() {
+  if (isLocked(Lock::tissues) && tissuesEdited()) {
+    const TissueSet own = declared_tissues_;
+    applyTissues(own);
+    emit sceneChanged();
+  }
+  if (!isLocked(Lock::controller)) return;
+  const Result<Scene> own = readScene(scene_file_);
+  applyController(policy_.controller.value_or(own ? own->controller : scene_->controller));
+  emit controllerChanged();
 }
 
 bool Workstation::refuseLocked(Lock lock, const char* what) {
@@ -28,6 +48,10 @@ bool Workstation::refuseLocked(Lock lock, const char* what) {
 void Workstation::setTissues(const TissueSet& tissues) {
   if (!scene_) return;
   if (refuseLocked(Lock::tissues, "The tissues are")) return emit sceneChanged();  // as they were
+  applyTissues(tissues);
+}
+
+void Workstation::applyTissues(const TissueSet& tissues) {
   scene_->tissues = tissues;
   if (!session()) return;
   if (Status set = session_->setTissues(tissues); !set) fail(set.error());
@@ -42,6 +66,10 @@ void Workstation::setController(ControllerKind kind) {
   if (kind != scene_->controller && refuseLocked(Lock::controller, "The controller is")) {
     return emit controllerChanged();
   }
+  applyController(kind);
+}
+
+void Workstation::applyController(ControllerKind kind) {
   scene_->controller = kind;
   if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {

@@ -170,7 +170,8 @@ class CasesGuiTest : public test::WindowTest {
       const QString said = errorSaid();
       QVERIFY2(!said.isEmpty(), name);
       QVERIFY2(!said.contains("DOE", Qt::CaseInsensitive), qPrintable(said));
-      // What was typed is there to be changed.
+      // What was typed is there to be changed, once that is closed.
+      QTRY_VERIFY(window_->findChild<QInputDialog*>("renameDialog"));
       auto* again = window_->findChild<QInputDialog*>("renameDialog");
       QVERIFY(again);
       QCOMPARE(again->textValue(), QString(name));
@@ -289,8 +290,21 @@ class CasesGuiTest : public test::WindowTest {
     saved.clear();
     workstation().saveTissues(toPath(exports() + "/tissues.json"), [] {});
     QVERIFY(saved.count() > 0 || saved.wait(kLong_ms));
+    // What is in a file is not in the case yet.
+    const auto inCase = [&] {
+      for (const ListedCase& one : CaseLibrary(toPath(storage())).list()) {
+        if (one.id == workstation().currentCase()->stored) return one.record.structures.size();
+      }
+      return std::size_t(0);
+    };
+    QCOMPARE(inCase(), std::size_t(0));
     find<QAction>("saveInCase")->trigger();
     QVERIFY(saved.wait(kLong_ms));
+    QVERIFY(inCase() > 0);
+    saved.clear();
+    find<QAction>("saveInCase")->trigger();
+    QVERIFY(window_->statusBar()->currentMessage().startsWith("Nothing of it has changed"));
+    QCOMPARE(saved.count(), 0);
   }
 
   void everyExportSaysOnceWhatItIsFor() {

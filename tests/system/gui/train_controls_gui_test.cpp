@@ -1,5 +1,6 @@
 // The controls of Train that no other test of the window uses: each by what it does to exercise,
 // tissue or hand.
+#include <QAbstractItemView>
 #include <QComboBox>
 #include <QLabel>
 #include <QMessageBox>
@@ -161,6 +162,73 @@ class TrainControlsGuiTest : public test::TrainTest {
     stop();
   }
 
+  void afterAPauseTheToolGoesOnWhereItIsAndComesOutBeforeItFollowsThePointer() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    pushHand(5);
+    QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class >= 0, 10000);
+    QTest::qWait(500);
+    find<QAction>("pause")->trigger();
+    QTRY_VERIFY(workstation().session()->state().paused);
+    const Vec3 tool_mm = arm(1).proxy_position_mm;
+    const QPoint elsewhere = view().rect().center() + QPoint(120, 0);
+    pointAt(elsewhere);  // to the button, say
+    find<QAction>("pause")->trigger();
+    QTRY_VERIFY(!workstation().session()->state().paused);
+    QTest::qWait(800);
+    const Vec3 by_mm = arm(1).proxy_position_mm - tool_mm;
+    const Vec3 ahead = view().camera().forward();
+    const double aside_mm = glm::length(by_mm - glm::dot(by_mm, ahead) * ahead);
+    QVERIFY2(aside_mm < 2.0, qPrintable(QString::number(aside_mm)));
+    QVERIFY(workstation().session()->handPush_N(1) > 0.5);
+    pointAt(elsewhere);
+    QCOMPARE(workstation().session()->handPush_N(1), 0.0);
+    QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class < 0, 10000);
+    stop();
+  }
+
+  // Its arm's workspace has an end: Ctrl+L from there, and all of it is there again.
+  void reCentredAHandReachesWhereItBegan() {
+    openScene(scene_);
+    startTraining();
+    takeHand(Hand::right);
+    key(Qt::Key_Right, Qt::NoModifier, 120);
+    QTest::qWait(500);
+    key(Qt::Key_L, Qt::ControlModifier);
+    QTest::qWait(500);
+    QCOMPARE(workstation().session()->handPush_N(1), 0.0);
+    takeHand(Hand::right);
+    pushHand(5);
+    QTRY_VERIFY_WITH_TIMEOUT(glm::length(arm(1).sent_N) > 0.3, 10000);
+    stop();
+  }
+
+  void aListThatIsOpenedByMouseLeavesTheKeysWithTheHands() {
+    openScene(scene_);
+    startTraining();
+    view().setFocus();
+    for (const char* name : {"rightTool", "controller"}) {
+      auto* list = find<QComboBox>(name);
+      QTRY_VERIFY(list->isEnabled());
+      QTest::mousePress(list, Qt::LeftButton);
+      QTRY_VERIFY(list->view()->isVisible());
+      QTest::keyClick(list->view(), Qt::Key_Escape);
+      QTRY_VERIFY(!list->view()->isVisible());
+      QVERIFY2(window_->focusWidget() == &view(), name);
+    }
+    stop();
+  }
+
+  void fullScreenComesBackToAMaximisedWindow() {
+    window_->setWindowState(Qt::WindowMaximized);
+    find<QAction>("fullScreen")->trigger();
+    QTRY_VERIFY(window_->isFullScreen());
+    find<QAction>("fullScreen")->trigger();
+    QTRY_VERIFY(!window_->isFullScreen());
+    QVERIFY(window_->isMaximized());
+  }
+
   void anotherExerciseStaysInTrainAndBeginsWithNothing() {
     openScene(scene_);
     startTraining();
@@ -238,7 +306,7 @@ class TrainControlsGuiTest : public test::TrainTest {
     QVERIFY2(window_->isFullScreen(), "first what lies over the view");
     QTest::keyClick(&view(), Qt::Key_Escape);
     QTRY_VERIFY(!window_->isFullScreen());
-    QCOMPARE(find<QPushButton>("showCard")->text(), "Show the result");
+    QCOMPARE(find<QPushButton>("showCard")->text(), "Show the &result");
     QTest::mouseClick(find<QPushButton>("showCard"), Qt::LeftButton);
     QVERIFY(result->isVisible());
     window_->show(Place::cases);
@@ -281,6 +349,7 @@ class TrainControlsGuiTest : public test::TrainTest {
       if (QString(button) == "Stop") {
         QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
       } else {
+        QTRY_VERIFY(find<QLabel>("dropped")->text().contains("not recorded"));
         const auto ticks = session.state().ticks;
         QTRY_VERIFY_WITH_TIMEOUT(session.state().ticks > ticks + 500, 10000);
         stop();

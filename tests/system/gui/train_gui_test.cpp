@@ -236,7 +236,7 @@ class TrainGuiTest : public test::TrainTest {
     pushHand(5);
     QTRY_VERIFY_WITH_TIMEOUT(arm(1).tissue_class >= 0 && force_N(1) > 0.3, 10000);
     QTest::qWait(1000);
-    QTRY_VERIFY(find<QLabel>("handTouches")->text().startsWith("in: "));
+    QTRY_VERIFY(find<QLabel>("handTouches")->text().startsWith("touches "));
     const Vec3 other_mm = arm(0).proxy_position_mm;
     find<QAction>("otherHand")->trigger();
     QTRY_COMPARE(find<QLabel>("activeHand")->text(), "Left hand");
@@ -481,17 +481,42 @@ class TrainGuiTest : public test::TrainTest {
     QVERIFY(find<QComboBox>("controller")->isEnabled());
     workstation().setController(ControllerKind::off);
     QVERIFY(workstation().scene()->controller == ControllerKind::off);
-    // And back.
+    workstation().setTissues(others);
+    QVERIFY(workstation().tissuesEdited());
+    // And back, with what was changed: nothing is lost without a question.
     find<QAction>("unlockTeaching")->trigger();
-    QVERIFY(workstation().anyLocked());
+    QVERIFY(!workstation().anyLocked());
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
+    find<QMessageBox>("unsavedTissues")->button(QMessageBox::Discard)->click();
+    QTRY_VERIFY(workstation().anyLocked());
+    QVERIFY(sameSet(workstation().scene()->tissues, tissues));
+    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
     QCOMPARE(find<QLabel>("locked")->text(), "Locked");
     QVERIFY(!find<QComboBox>("controller")->isEnabled());
-    workstation().setController(ControllerKind::bounded);
-    QVERIFY(workstation().scene()->controller == ControllerKind::off);
+    workstation().setController(ControllerKind::off);
+    QVERIFY(workstation().scene()->controller == ControllerKind::bounded);
     for (QMessageBox* box : window_->findChildren<QMessageBox*>("errorDialog")) {
       QVERIFY2(box->informativeText().contains("PIN"), qPrintable(box->informativeText()));
       box->close();
     }
+  }
+
+  void aSceneThatCameInWhileItWasUnlockedIsNotStartedOnceItIsLockedAgain() {
+    window_.reset();
+    Policy policy;
+    policy.locks = {Lock::rate};
+    policy.rate_hz = 2000.0;
+    open(policy);
+    workstation().setUnlocked(true);
+    openScene(scene_);
+    workstation().setUnlocked(false);
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    window_->startExercise();
+    QTRY_COMPARE(failed.count(), 1);
+    QCOMPARE(failed[0][0].value<Error>().code, std::string("LOCKED"));
+    QVERIFY(workstation().phase() == Workstation::Phase::ready);
+    for (auto* box : window_->findChildren<QMessageBox*>("errorDialog")) box->close();
+    QTest::qWait(50);
   }
 
   void anExerciseThatTheWorkstationKeepsOutCannotBeChosen() {

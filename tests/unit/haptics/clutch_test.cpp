@@ -192,6 +192,21 @@ TEST(Recentre, PutsTheToolWhereTheSceneStartsItWithTheArmWhereItIs) {
   EXPECT_FALSE(arm.now().tool_state & kToolWaits) << "it is in air there";
 }
 
+TEST(Recentre, OfAHandThatGoesBackByItselfTheMapIsTheScenesAgain) {
+  HapticParameters p = burrOnBone();
+  p.arms[0].map.centre_mm = Vec3(0, 0, 6);
+  Held arm(p);
+  arm.go({8, -6, 4}, 500);
+  arm.tick({clutch(true)});
+  arm.go({2, 3, 9}, 500);
+  arm.tick({clutchOff(glm::angleAxis(0.5, Vec3(0, 1, 0)))});
+  ASSERT_NE(arm.bench.core.parameters().arms[0].map.centre_mm, Vec3(0, 0, 6));
+  arm.tick({{CommandKind::recentre, 1, {}, 0}});
+  EXPECT_EQ(arm.bench.core.parameters().arms[0].map.centre_mm, Vec3(0, 0, 6));
+  EXPECT_EQ(arm.bench.core.parameters().arms[0].map.rotation, Quat(1, 0, 0, 0));
+  EXPECT_EQ(arm.now().proxy_position_mm, arm.now().patient_position_mm);
+}
+
 TEST(Recentre, AToolThatComesIntoTissueWaitsThere) {
   HapticParameters p = burrOnBone();
   p.arms[0].map.centre_mm = Vec3(0, 0, -4);

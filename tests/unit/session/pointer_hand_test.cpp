@@ -218,6 +218,41 @@ TEST(PointerHand, AtNoPushComesOutAndGoesWhereThePointerIsWithoutAJolt) {
   }
 }
 
+// From beside the head, where it was pushed down in air, onto the head.
+TEST(PointerHand, LedOntoTissueThatIsHigherItRisesFirstAndTouchesNothing) {
+  const Played out = run({{0, 0, 0, 0},
+                          {0.5, 0, 70, 0},
+                          {1.5, 0, 70, 3.0},
+                          {4.0, 0, 70, 3.0},
+                          {4.1, 0, 70, 0},
+                          {4.2, 0, 20, 0},
+                          {7.0, 0, 20, 0}},
+                         true);
+  ASSERT_EQ(out.ticks[3990].tissue_class, -1);
+  for (std::size_t n = 4000; n < 7000; ++n) ASSERT_EQ(out.ticks[n].tissue_class, -1) << n;
+  EXPECT_TRUE(out.carves.empty());
+  EXPECT_NEAR(out.tool_mm(6990).y, 20.0, 0.5);
+}
+
+TEST(PointerHand, SentBackFromTheEdgeOfItsReachItReachesWhereItBegan) {
+  // To the side until the arm's workspace ends; then back to where it began, and on from there.
+  const Played back = run({{0, 0, 0, 0},
+                           {0.5, 0, 0, 0},
+                           {2.0, 300, 0, 0},
+                           {3.0, 300, 0, 0},
+                           {3.1, 4, 0, 0},
+                           {4.0, 4, 0, 1.0},
+                           {6.0, 4, 0, 1.0}},
+                          false, [](Session& session, double now_s) {
+                            if (now_s > 2.4 && now_s < 2.6) {
+                              EXPECT_TRUE(session.recentre(kArm));
+                            }
+                          });
+  EXPECT_GT(back.tool_mm(2300).x, 40.0);
+  EXPECT_NEAR(back.tool_mm(5990).x, 4.0, 0.5);
+  EXPECT_NEAR(back.sent_N(5990), 1.0, 0.15);
+}
+
 TEST(PointerHand, InAirGoesNoFartherThanItsReach) {
   // Beside the head.
   const Played air =
