@@ -82,6 +82,11 @@ int importCommand(const ImportArguments& arguments, bool json, const Progress&);
 // `policy`: what the workstation locks is not changed by an argument, nor by a scene.
 int runCommand(const RunArguments& arguments, const Policy& policy, bool json, const Progress&);
 int pinCommand(bool json, const Progress&);
+int exportExerciseCommand(const std::string& scene, const std::string& case_source,
+                          const std::string& out, bool json, const Progress&);
+// `storage`: empty: the workstation's, or the user's own.
+int importExerciseCommand(const std::string& folder, const std::string& storage,
+                          const Policy& policy, bool json, const Progress&);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
 int explainCommand(const std::string& scene, const Policy& policy, bool json, const Progress&);

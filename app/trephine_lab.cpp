@@ -91,6 +91,20 @@ int run(int argc, char** argv) {
   auto* pin_command = with_json(app.add_subcommand(
       "pin", "Ask for a PIN, and print it as the workstation's settings keep it"));
 
+  auto* exercise_command = app.add_subcommand("exercise", "Exercises for other workstations");
+  exercise_command->require_subcommand(1);
+  std::string storage;
+  auto* export_exercise_command = with_json(exercise_command->add_subcommand(
+      "export", "Write an exercise and all that it names into a folder"));
+  export_exercise_command->add_option("scene", file, "A scene file")->required();
+  export_exercise_command->add_option("--case", case_source, "Instead of the scene's own case");
+  export_exercise_command->add_option("--out", out, "A folder that is not there yet")->required();
+  auto* import_exercise_command = with_json(exercise_command->add_subcommand(
+      "import", "Take in an exercise that was exported, if it is whole"));
+  import_exercise_command->add_option("folder", file, "The folder")->required();
+  import_exercise_command->add_option("--storage", storage,
+                                      "Where it is kept, instead of the workstation's storage");
+
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);
   GrowArguments growing;
@@ -232,6 +246,7 @@ int run(int argc, char** argv) {
     // Of a word that is no command the parser says only that a command is missing.
     const CLI::App& of = *measure_command      ? *measure_command
                          : *structures_command ? *structures_command
+                         : *exercise_command   ? *exercise_command
                                                : app;
     const bool missing = of.get_subcommands().empty();
     const std::vector<std::string> words = app.remaining(true);
@@ -253,6 +268,12 @@ int run(int argc, char** argv) {
   if (*import_command) return importCommand(wanted, json, progress);
   if (*run_command) return runCommand(arguments, policy, json, progress);
   if (*pin_command) return pinCommand(json, progress);
+  if (*export_exercise_command) {
+    return exportExerciseCommand(file, case_source, out, json, progress);
+  }
+  if (*import_exercise_command) {
+    return importExerciseCommand(file, storage, policy, json, progress);
+  }
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);
   if (*import_structures_command) return importStructuresCommand(structures, json, progress);

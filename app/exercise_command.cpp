@@ -1,0 +1,73 @@
+// `exercise export` and `exercise import`: an exercise as a folder that goes to other workstations.
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/answer.h"
+#include "app/lab_commands.h"
+#include "exercise/exercise_folder.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where the window keeps its cases: as the workstation says, else the user's own data.
+Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
+  if (!given.empty()) return fs::path(given);
+  if (!policy.storage.empty()) return policy.storage;
+  const char* data = std::getenv("XDG_DATA_HOME");
+  if (data && fs::path(data).is_absolute()) return fs::path(data) / "trephine";
+  const char* home = std::getenv("HOME");
+  if (home && *home) return fs::path(home) / ".local/share/trephine";
+  return Error{"NO_STORAGE", "It is not known where exercises are kept", "--storage",
+               "Give a folder"};
+}
+
+std::string listed(const char* title, const std::vector<std::string>& files) {
+  std::string text;
+  for (const std::string& file : files) text += "  " + std::string(title) + ": " + file + "\n";
+  return text;
+}
+
+}  // namespace
+
+int exportExerciseCommand(const std::string& scene, const std::string& case_source,
+                          const std::string& out, bool json, const Progress& progress) {
+  const auto exported = exportExercise(scene, case_source, out, progress);
+  if (!exported) return printError("exercise-export", exported.error(), json);
+  Json parts = Json::array();
+  for (const ExercisePart& part : exported->parts) {
+    parts.push_back({{"file", part.file}, {"sha256", part.sha256}, {"bytes", part.bytes}});
+  }
+  if (json) {
+    printAnswer("exercise-export", {{"folder", exported->folder.string()}, {"parts", parts}});
+  } else {
+    std::printf("%s: %zu files\n", exported->folder.c_str(), exported->parts.size());
+  }
+  return 0;
+}
+
+int importExerciseCommand(const std::string& folder, const std::string& storage,
+                          const Policy& policy, bool json, const Progress& progress) {
+  const auto to = storageOf(storage, policy);
+  if (!to) return printError("exercise-import", to.error(), json);
+  const auto imported = importExercise(folder, *to, progress);
+  if (!imported) return printError("exercise-import", imported.error(), json);
+  const ExerciseCheck& check = imported->check;
+  if (json) {
+    printAnswer("exercise-import", {{"scene", imported->scene.string()},
+                                    {"verified", check.verified()},
+                                    {"missing", check.missing},
+                                    {"changed", check.changed}});
+  } else if (check.verified()) {
+    std::printf("%s\n", imported->scene.c_str());
+  } else {
+    std::fprintf(stderr, "It is not the exercise that was exported; nothing was written.\n%s%s",
+                 listed("missing", check.missing).c_str(),
+                 listed("changed", check.changed).c_str());
+  }
+  return check.verified() ? 0 : 1;
+}
+
+}  // namespace trephine

@@ -1,0 +1,181 @@
+// An exercise becomes a folder.
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/file.h"
+#include "exercise/exercise_folder.h"
+#include "exercise/exercise_parts.h"
+#include "exercise/named_files.h"
+#include "scene/scene.h"
+#include "session/case.h"
+#include "volume/phantom.h"
+#include "volume/segmentation.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kCaseShare = 0.8;  // of the work
+
+// Of a folder of the library, else what was given.
+struct CaseFiles {
+  std::string volume, structures;
+};
+CaseFiles caseFiles(const std::string& source) {
+  std::error_code ec;
+  const fs::path folder = source;
+  if (!fs::is_regular_file(folder / "case.json", ec)) return {source, {}};
+  const fs::path structures = folder / "structures.seg.nrrd";
+  return {(folder / "volume.mha").string(),
+          fs::is_regular_file(structures, ec) ? structures.string() : std::string()};
+}
+
+class Exporter {
+ public:
+  Exporter(const fs::path& scene_file, PartFolder& to) : from_(scene_file.parent_path()), to_(to) {}
+
+  Status copyCase(Json& json, Scene scene, const std::string& case_source,
+                  const Progress& progress) {
+    const CaseFiles given = caseFiles(case_source);
+    if (!given.volume.empty() && given.volume != scene.case_source) {
+      // What the scene says of its own case does not hold of another (useCase).
+      const bool had_elsewhere = scene.tissues_elsewhere.has_value();
+      useCase(scene, given.volume);
+      if (scene.labels_file.empty()) json.erase("labels");
+      if (!scene.outline) json.erase("outline");
+      if (had_elsewhere && !scene.tissues_elsewhere) json["tissues"] = toJson(scene.tissues);
+    }
+    const std::string labels = given.structures.empty() ? scene.labels_file : given.structures;
+    json.erase("labels");
+    if (scene.case_source.empty()) return {};
+    const bool built_in = phantomNamed(scene.case_source).has_value();
+    json["case"] = scene.case_source;
+    if (built_in && labels.empty()) return {};
+    Result<Case> of = readCase(scene.case_source, Progress(progress, 0.0, 0.6));
+    if (of && !labels.empty()) of = withLabels(*of, labels, Progress(progress, 0.6, 0.7));
+    if (!of) return of.error();
+    if (!built_in) {
+      json["case"] = "case/volume.mha";
+      const auto write = [&](const fs::path& file) {
+        return writeVolume(slabsOf(*of->volume), file, Progress(progress, 0.7, 0.9));
+      };
+      if (Status written = to_.write("case/volume.mha", write); !written) return written;
+    }
+    if (labels.empty()) return {};
+    json["labels"] = "case/structures.seg.nrrd";
+    return to_.write("case/structures.seg.nrrd", [&](const fs::path& file) {
+      return writeSegmentation(*of->structures, file, false, Progress(progress, 0.9, 1.0));
+    });
+  }
+
+  Status copyNamed(NamedFile kind, const std::string& id, Json& name) {
+    const fs::path file = (from_ / name.get<std::string>()).lexically_normal();
+    switch (kind) {
+      case NamedFile::caseVolume:
+      case NamedFile::labels:
+        return {};  // written already
+      case NamedFile::tissues:
+        return copyJson(file, "tissues.json", name, [this](Json& tissues, const fs::path& folder) {
+          Json* elsewhere = elsewhereOf(tissues);
+          if (!elsewhere) return Status();
+          const fs::path other = (folder / elsewhere->get<std::string>()).lexically_normal();
+          // It holds everywhere: what it names itself is never looked at.
+          return copyJson(other, "tissues-elsewhere.json", *elsewhere,
+                          [](Json& set, const fs::path&) {
+                            set.erase("elsewhere");
+                            return Status();
+                          });
+        });
+      case NamedFile::tool: {
+        const std::string as = own("tools/", id, ".json");
+        return copyJson(file, as, name, [&](Json& tool, const fs::path& folder) {
+          Json* mesh = meshOf(tool);
+          if (!mesh) return Status();
+          const fs::path of = folder / mesh->get<std::string>();
+          const std::string mesh_as = fs::path(as).replace_extension(of.extension()).string();
+          *mesh = fs::path(mesh_as).filename().string();  // beside the tool
+          return to_.copy(of, mesh_as);
+        });
+      }
+      case NamedFile::mesh:
+        name = own("tools/", id, file.extension().string());
+        return to_.copy(file, name.get<std::string>());
+      case NamedFile::device: {
+        const auto [known, is_new] = devices_.try_emplace(file, "");
+        if (is_new) known->second = own("devices/", "device", file.extension().string());
+        name = known->second;
+        return is_new ? to_.copy(file, known->second) : Status();
+      }
+      case NamedFile::operatorScript:
+        name = "operator.json";
+        return to_.copy(file, "operator.json");
+    }
+    return {};
+  }
+
+ private:
+  using Mend = std::function<Status(Json&, const fs::path& folder)>;
+
+  // `name` becomes `as`, a path from the folder of what names it.
+  Status copyJson(const fs::path& file, const std::string& as, Json& name, const Mend& mend) {
+    Result<Json> json = readJsonFile(file);
+    if (!json) return json.error();
+    if (Status mended = mend(*json, file.parent_path()); !mended) return mended;
+    name = as;
+    return to_.writeText(as, json->dump(1) + '\n');
+  }
+
+  // A name of its own: what a person called a tool, as far as it is letters and digits.
+  std::string own(const std::string& folder, const std::string& id, const std::string& extension) {
+    std::string stem = plainName(id, "part");
+    for (int n = 2; !taken_.insert(folder + stem).second; ++n) {
+      stem = plainName(id, "part") + "-" + std::to_string(n);
+    }
+    return folder + stem + extension;
+  }
+
+  fs::path from_;
+  PartFolder& to_;
+  std::map<fs::path, std::string> devices_;
+  std::set<std::string> taken_;
+};
+
+}  // namespace
+
+Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::string& case_source,
+                                        const fs::path& folder, const Progress& progress) {
+  Result<Scene> scene = readScene(scene_file);
+  if (!scene) return scene.error();
+  Result<Json> json = readJsonFile(scene_file);
+  if (!json) return json.error();
+  if (Status free = checkFreeFolder(folder); !free) return free.error();
+  Result<PartFolder> part = PartFolder::make(folder);
+  if (!part) return part.error();
+  Exporter exporter(scene_file, *part);
+  progress.at(0.0, "Reading the case");
+  if (Status copied =
+          exporter.copyCase(*json, *scene, case_source, Progress(progress, 0.0, kCaseShare));
+      !copied) {
+    return copied.error();
+  }
+  const Status named = eachNamedFile(*json, [&](NamedFile kind, const std::string& id, Json& name) {
+    return exporter.copyNamed(kind, id, name);
+  });
+  if (!named) return named.error();
+  if (Status written = part->writeText(kSceneFile, json->dump(1) + '\n'); !written) {
+    return written.error();
+  }
+  Result<std::vector<ExercisePart>> parts =
+      part->writeList(kSceneFile, Progress(progress, kCaseShare, 1.0));
+  if (!parts) return parts.error();
+  // What came out can be read as it went in.
+  if (Result<Scene> again = readScene(part->path() / kSceneFile); !again) return again.error();
+  if (Status done = part->become(folder); !done) return done.error();
+  return ExportedExercise{folder, *std::move(parts)};
+}
+
+}  // namespace trephine

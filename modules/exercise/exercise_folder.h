@@ -1,0 +1,61 @@
+// An exercise as a folder that goes to other workstations: the scene, every file that it names, and
+// the sha256 of each, under names that say nothing of where they came from.
+// resources/schemas/exercise.md.
+//
+// Any thread; nothing throws.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct ExercisePart {
+  std::string file;  // "tools/blade.json": its path in the folder
+  std::string sha256;
+  std::uint64_t bytes = 0;
+};
+
+struct ExportedExercise {
+  std::filesystem::path folder;
+  std::vector<ExercisePart> parts;  // the scene first
+};
+
+// Writes the folder, whole or not at all. The case is read as `run` reads it and written as a
+// volume and a label map; `case_source`, also a folder of the library, instead of the scene's own
+// where it is not empty. Errors: those of readScene, readCase and of writing; CANNOT_WRITE where
+// `folder` is there and not empty; CANCELLED.
+Result<ExportedExercise> exportExercise(const std::filesystem::path& scene,
+                                        const std::string& case_source,
+                                        const std::filesystem::path& folder,
+                                        const Progress& progress = Progress());
+
+// What of a folder is not there or not what was exported, by its path in the folder.
+struct ExerciseCheck {
+  std::vector<ExercisePart> parts;  // as the folder lists them
+  std::string scene;                // its path in the folder
+  std::vector<std::string> missing, changed;
+  bool verified() const { return missing.empty() && changed.empty(); }
+};
+// Errors: MISSING_FILE (no exercise.json), BAD_JSON, BAD_FIELD (a newer version; a part outside of
+// the folder), CANCELLED.
+Result<ExerciseCheck> checkExercise(const std::filesystem::path& folder,
+                                    const Progress& progress = Progress());
+
+struct ImportedExercise {
+  std::filesystem::path scene;  // in the storage, for `run`; empty where it was not verified
+  ExerciseCheck check;
+};
+// Copies a verified folder to `storage`/exercises, whole or not at all; what is there already in
+// the same words is taken as it is. Nothing is written of one that is not verified. Errors: those
+// of checkExercise and readScene; BAD_FIELD where a file of it names one outside of the folder;
+// CANNOT_WRITE; CANCELLED.
+Result<ImportedExercise> importExercise(const std::filesystem::path& folder,
+                                        const std::filesystem::path& storage,
+                                        const Progress& progress = Progress());
+
+}  // namespace trephine

@@ -1,0 +1,145 @@
+// A folder becomes an exercise of this workstation.
+#include <set>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "exercise/exercise_folder.h"
+#include "exercise/exercise_parts.h"
+#include "exercise/named_files.h"
+#include "scene/scene.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Range kBytes{0, 1e15, "bytes"};
+constexpr std::size_t kMostParts = 4096;
+
+// Within the folder, wherever that lies: no way up, none from the root, none by another name.
+bool staysWithin(const fs::path& file) {
+  if (file.empty() || file.is_absolute() || file.lexically_normal() != file) return false;
+  return *file.begin() != ".." && *file.begin() != ".";
+}
+
+Error namesOutside(const std::string& file, const std::string& name) {
+  return {"BAD_FIELD", "It names '" + name + "', which is no part of the exercise", file,
+          "Export the exercise anew"};
+}
+
+// Everything that the scene and its files name is among the parts.
+Status namesPartsAlone(const fs::path& folder, const ExerciseCheck& check) {
+  std::set<fs::path> parts;
+  for (const ExercisePart& part : check.parts) parts.insert(part.file);
+  const auto isPart = [&](const std::string& by, const std::string& name) {
+    const fs::path file = (fs::path(by).parent_path() / name).lexically_normal();
+    return parts.contains(file) ? Status() : Status(namesOutside(by, name));
+  };
+  Result<Json> scene = readJsonFile(folder / check.scene);
+  if (!scene) return scene.error();
+  return eachNamedFile(*scene, [&](NamedFile kind, const std::string&, Json& name) -> Status {
+    const std::string file = name.get<std::string>();
+    if (Status is = isPart(check.scene, file); !is) return is;
+    if (kind != NamedFile::tissues && kind != NamedFile::tool) return {};
+    const fs::path path = (fs::path(check.scene).parent_path() / file).lexically_normal();
+    Result<Json> json = readJsonFile(folder / path);
+    if (!json) return json.error();
+    const Json* inner = kind == NamedFile::tool ? meshOf(*json) : elsewhereOf(*json);
+    return inner ? isPart(path.string(), inner->get<std::string>()) : Status();
+  });
+}
+
+// The same exercise, in the same words, from an earlier import.
+bool isThere(const fs::path& target, const fs::path& folder, const Progress& progress) {
+  const Result<Json> here = readJsonFile(target / kListFile),
+                     there = readJsonFile(folder / kListFile);
+  if (!here || !there || *here != *there) return false;
+  const Result<ExerciseCheck> check = checkExercise(target, progress);
+  return check && check->verified();
+}
+
+}  // namespace
+
+Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
+  Result<Json> json = readJsonFile(folder / kListFile);
+  if (!json) {
+    Error error = json.error();
+    if (error.code == "MISSING_FILE") error.next = "Give a folder that 'exercise export' wrote";
+    return error;
+  }
+  ExerciseCheck check;
+  JsonReader reader(*json, (folder / kListFile).string());
+  reader.format("trephine.exercise", 1);
+  check.scene = reader.text("scene");
+  bool scene_listed = false;
+  for (JsonReader& item : reader.objects("parts", kMostParts)) {
+    ExercisePart part;
+    part.file = item.text("file");
+    part.sha256 = item.text("sha256");
+    part.bytes = std::uint64_t(item.integer("bytes", kBytes));
+    if (item.ok() && !staysWithin(part.file)) {
+      item.fail("file", "'" + part.file + "' lies outside of the folder");
+    }
+    scene_listed = scene_listed || part.file == check.scene;
+    check.parts.push_back(std::move(part));
+  }
+  if (reader.ok() && !scene_listed) reader.fail("scene", "It is not among the parts");
+  if (Status read = reader.finish(); !read) return read.error();
+  std::uint64_t bytes = 0, done = 0;
+  for (const ExercisePart& part : check.parts) bytes += part.bytes;
+  for (const ExercisePart& part : check.parts) {
+    progress.at(double(done) / double(std::max<std::uint64_t>(1, bytes)), "Checking the exercise");
+    const Result<ExercisePart> found = partOf(folder, part.file, progress);
+    done += part.bytes;
+    if (!found && found.error().code == "CANCELLED") return found.error();
+    if (!found && found.error().code == "MISSING_FILE") {
+      check.missing.push_back(part.file);
+    } else if (!found || found->sha256 != part.sha256) {
+      check.changed.push_back(part.file);
+    }
+  }
+  return check;
+}
+
+Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& storage,
+                                        const Progress& progress) {
+  Result<ExerciseCheck> check = checkExercise(folder, Progress(progress, 0.0, 0.4));
+  if (!check) return check.error();
+  ImportedExercise imported{{}, *std::move(check)};
+  if (!imported.check.verified()) return imported;
+  if (Status names = namesPartsAlone(folder, imported.check); !names) return names.error();
+  const Result<Scene> scene = readScene(folder / imported.check.scene);
+  if (!scene) return scene.error();
+
+  const std::string stem = plainName(scene->name, "exercise");
+  for (int n = 1;; ++n) {
+    const fs::path target =
+        storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
+    std::error_code ec;
+    if (fs::symlink_status(target, ec).type() != fs::file_type::not_found) {
+      if (!isThere(target, folder, Progress(progress, 0.4, 0.5))) continue;
+      imported.scene = target / imported.check.scene;
+      return imported;
+    }
+    Result<PartFolder> part = PartFolder::make(target);
+    if (!part) return part.error();
+    progress.at(0.5, "Copying the exercise");
+    for (const ExercisePart& one : imported.check.parts) {
+      if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+      if (Status copied = part->copy(folder / one.file, one.file); !copied) return copied.error();
+    }
+    if (Status copied = part->copy(folder / kListFile, kListFile); !copied) return copied.error();
+    // The stick may have gone bad, or changed, on the way.
+    Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.8, 1.0));
+    if (!copy) return copy.error();
+    if (!copy->verified()) return ImportedExercise{{}, *std::move(copy)};
+    Status done = part->become(target);
+    if (!done && fs::exists(target, ec)) continue;  // another import was faster
+    if (!done) return done.error();
+    imported.scene = target / imported.check.scene;
+    return imported;
+  }
+}
+
+}  // namespace trephine

@@ -1,0 +1,53 @@
+// The folder of an exercise while it is written, and its list. For this room's .cpp files.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/progress.h"
+#include "base/result.h"
+#include "exercise/exercise_folder.h"
+
+namespace trephine {
+
+inline constexpr const char* kListFile = "exercise.json";
+inline constexpr const char* kSceneFile = "scene.json";
+
+// Letters, digits and "-" of a text, at most 40; `otherwise` where nothing is left.
+std::string plainName(const std::string& text, const std::string& otherwise);
+
+// CANNOT_WRITE where something is there that is not an empty folder.
+Status checkFreeFolder(const std::filesystem::path& folder);
+
+// Of a regular file; a link is none. Errors: MISSING_FILE, UNREADABLE, CANCELLED.
+Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::string& file,
+                            const Progress& progress);
+
+// Beside the folder that it is to be; gone with this unless it became that.
+class PartFolder {
+ public:
+  static Result<PartFolder> make(const std::filesystem::path& target);
+  PartFolder(PartFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  ~PartFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+  // `file` is a path in the folder.
+  Status write(const std::string& file,
+               const std::function<Status(const std::filesystem::path&)>& write);
+  Status writeText(const std::string& file, std::string_view text);
+  Status copy(const std::filesystem::path& from, const std::string& file);
+  // The list of all that lies here, the scene first.
+  Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
+  // One rename. CANNOT_WRITE.
+  Status become(const std::filesystem::path& target);
+
+ private:
+  explicit PartFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  std::filesystem::path path_;  // empty: no longer a part
+};
+
+}  // namespace trephine

@@ -1,0 +1,238 @@
+// An exercise that goes to another workstation and comes out there as it was.
+#include "exercise/exercise_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/sha256.h"
+#include "scene/scene.h"
+#include "session/case.h"
+#include "support.h"
+#include "volume/phantom.h"
+#include "volume/segmentation.h"
+#include "volume/volume_files.h"
+
+namespace trephine {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytesOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> filesBelow(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  }
+  return files;
+}
+
+class ExerciseFolder : public ::testing::Test {
+ protected:
+  static fs::path shipped(const std::string& name) {
+    return fs::path(TREPHINE_TEST_SCENES) / (name + ".json");
+  }
+  // As a scene is that was made from a patient's case, in a folder that tells who that is.
+  fs::path ofAPatient() {
+    const fs::path home = folder_ / "DOE^JANE";
+    fs::create_directories(home);
+    GridGeometry grid = *phantomGeometry("abdomen");
+    for (int axis = 0; axis < 3; ++axis) {
+      grid.size[std::size_t(axis)] /= 4;
+      grid.spacing_mm[axis] *= 4.0;
+    }
+    const auto truth = phantomTruth("abdomen");
+    EXPECT_TRUE(writeVolume(makePhantomOn(*truth, grid, kPhantomNoiseHu), home / "doe.mha"));
+    LabelMap map;
+    map.geometry = grid;
+    map.labels.assign(grid.voxelCount(), 0);
+    for (std::size_t i = 0; i < 500; ++i) map.labels[i + grid.voxelCount() / 2] = 1;
+    map.structures = {{1, "liver", Vec3(1.0, 0.0, 0.0)}};
+    EXPECT_TRUE(writeSegmentation(map, home / "doe.seg.nrrd"));
+    Json scene = *readJsonFile(shipped("liver"));
+    scene["case"] = "doe.mha";
+    scene["labels"] = "doe.seg.nrrd";
+    const auto whole = [&](Json& name) {
+      name = (fs::path(TREPHINE_TEST_SCENES) / name.get<std::string>()).lexically_normal().string();
+    };
+    whole(scene["tissues"]);
+    whole(scene["operator"]);
+    whole(scene["tools"][1]["file"]);
+    for (Json& arm : scene["arms"]) whole(arm["device"]["config"]);
+    const fs::path file = home / "doe.json";
+    EXPECT_TRUE(writeTextFile(file, scene.dump()));
+    return file;
+  }
+  ExportedExercise exported(const fs::path& scene, const std::string& of = "") {
+    auto done = exportExercise(scene, of, folder_ / "stick");
+    EXPECT_TRUE(done.ok()) << done.error().sentence();
+    return done ? *done : ExportedExercise{};
+  }
+  ImportedExercise imported() {
+    auto done = importExercise(folder_ / "stick", folder_ / "there");
+    EXPECT_TRUE(done.ok()) << done.error().sentence();
+    return done ? *done : ImportedExercise{};
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ExerciseFolder, EachShippedExerciseComesOutAsItWas) {
+  for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm"}) {
+    SCOPED_TRACE(name);
+    fs::remove_all(folder_ / "stick");
+    exported(shipped(name));
+    const ImportedExercise there = imported();
+    ASSERT_TRUE(there.check.verified());
+    const Result<Scene> before = readScene(shipped(name)), after = readScene(there.scene);
+    ASSERT_TRUE(before && after) << after.error().sentence();
+    EXPECT_EQ(toJson(*after), toJson(*before));
+    EXPECT_EQ(after->tissues_elsewhere.has_value(), before->tissues_elsewhere.has_value());
+    ASSERT_EQ(after->tools.size(), before->tools.size());
+    for (std::size_t i = 0; i < after->tools.size(); ++i) {
+      EXPECT_EQ(after->tools[i].look.mesh.empty(), before->tools[i].look.mesh.empty());
+    }
+    EXPECT_EQ(bytesOf(after->operator_file), bytesOf(before->operator_file));
+    EXPECT_EQ(bytesOf(after->arms[0].device_config), bytesOf(before->arms[0].device_config));
+  }
+}
+
+TEST_F(ExerciseFolder, TheCaseGoesWithItVoxelByVoxelAndWithItsStructures) {
+  const fs::path scene_file = ofAPatient();
+  exported(scene_file);
+  const ImportedExercise there = imported();
+  ASSERT_TRUE(there.check.verified());
+  Scene before = *readScene(scene_file), after = *readScene(there.scene);
+  const Result<Case> of = openCase(before), again = openCase(after);
+  ASSERT_TRUE(of && again);
+  EXPECT_EQ(again->sha256, of->sha256);
+  EXPECT_EQ(again->labels->labels, of->labels->labels);
+  ASSERT_EQ(again->landmarks.size(), of->landmarks.size());
+  EXPECT_EQ(again->landmarks[0].frame.position_mm, of->landmarks[0].frame.position_mm);
+}
+
+TEST_F(ExerciseFolder, NothingOfItTellsWhereItCameFrom) {
+  exported(ofAPatient());
+  imported();
+  int files = 0;
+  for (const char* place : {"stick", "there"}) {
+    for (const fs::path& file : filesBelow(folder_ / place)) {
+      std::string all = bytesOf(file) + fs::relative(file, folder_.path()).string();
+      std::ranges::transform(all, all.begin(), [](char c) { return char(std::tolower(c)); });
+      EXPECT_EQ(all.find("doe"), std::string::npos) << file;
+      ++files;
+    }
+  }
+  EXPECT_GT(files, 16);
+}
+
+TEST_F(ExerciseFolder, WhatIsMissingOrChangedIsNamedAndNothingIsWritten) {
+  exported(shipped("liver"));
+  fs::remove(folder_ / "stick/operator.json");
+  std::string tissues = bytesOf(folder_ / "stick/tissues.json");
+  tissues[tissues.find("350")] = '9';
+  ASSERT_TRUE(writeTextFile(folder_ / "stick/tissues.json", tissues));
+  const ImportedExercise there = imported();
+  EXPECT_FALSE(there.check.verified());
+  EXPECT_EQ(there.check.missing, std::vector<std::string>{"operator.json"});
+  EXPECT_EQ(there.check.changed, std::vector<std::string>{"tissues.json"});
+  EXPECT_TRUE(there.scene.empty());
+  EXPECT_FALSE(fs::exists(folder_ / "there"));
+}
+
+TEST_F(ExerciseFolder, ALinkOrAFolderInThePlaceOfAPartIsMissing) {
+  exported(shipped("liver"));
+  fs::rename(folder_ / "stick/operator.json", folder_ / "elsewhere.json");
+  fs::create_symlink(folder_ / "elsewhere.json", folder_ / "stick/operator.json");
+  EXPECT_EQ(imported().check.missing, std::vector<std::string>{"operator.json"});
+}
+
+TEST_F(ExerciseFolder, TheSameAgainIsTakenAsItIsAndAnotherOfTheNameGetsItsOwnFolder) {
+  exported(shipped("liver"));
+  const fs::path first = imported().scene;
+  EXPECT_EQ(imported().scene, first);
+  fs::remove_all(folder_ / "stick");
+  Json scene = *readJsonFile(shipped("liver"));
+  scene["rate_hz"] = 2000;
+  scene["tissues"] =
+      (fs::path(TREPHINE_TEST_SCENES) / scene["tissues"].get<std::string>()).string();
+  scene["operator"] =
+      (fs::path(TREPHINE_TEST_SCENES) / scene["operator"].get<std::string>()).string();
+  scene["tools"][1].erase("radius_mm");
+  scene["tools"][1]["file"] =
+      (fs::path(TREPHINE_TEST_SCENES) / scene["tools"][1]["file"].get<std::string>()).string();
+  for (Json& arm : scene["arms"]) arm["device"].erase("config");
+  ASSERT_TRUE(writeTextFile(folder_ / "fast.json", scene.dump()));
+  exported(folder_ / "fast.json");
+  const fs::path second = imported().scene;
+  EXPECT_NE(second, first);
+  EXPECT_EQ(readScene(second)->rate_hz, 2000.0);
+  EXPECT_EQ(readScene(first)->rate_hz, 1000.0);
+}
+
+TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
+  exported(shipped("liver"));
+  const fs::path list = folder_ / "stick/exercise.json";
+  const Json good = *readJsonFile(list);
+  for (const char* name : {"../secret", "/etc/passwd", "tools/../../secret", "./scene.json", ""}) {
+    SCOPED_TRACE(name);
+    Json bad = good;
+    bad["parts"][1]["file"] = name;
+    ASSERT_TRUE(writeTextFile(list, bad.dump()));
+    const auto refused = importExercise(folder_ / "stick", folder_ / "there");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, "BAD_FIELD");
+  }
+  // A scene that names what is no part, with a list that is right.
+  ASSERT_TRUE(writeTextFile(list, good.dump()));
+  ASSERT_TRUE(writeTextFile(folder_ / "secret.json", bytesOf(folder_ / "stick/operator.json")));
+  Json scene = *readJsonFile(folder_ / "stick/scene.json");
+  scene["operator"] = "../secret.json";
+  ASSERT_TRUE(writeTextFile(folder_ / "stick/scene.json", scene.dump()));
+  const std::string bytes = bytesOf(folder_ / "stick/scene.json");
+  Json matching = good;
+  ASSERT_EQ(matching["parts"][0]["file"], "scene.json");
+  matching["parts"][0]["sha256"] = sha256Hex(bytes.data(), bytes.size());
+  ASSERT_TRUE(writeTextFile(list, matching.dump()));
+  const auto refused = importExercise(folder_ / "stick", folder_ / "there");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "BAD_FIELD");
+  EXPECT_FALSE(fs::exists(folder_ / "there"));
+}
+
+TEST_F(ExerciseFolder, IsNotWrittenOverWhatIsThereAndLeavesNothingWhereItFails) {
+  ASSERT_TRUE(makeFolder(folder_ / "stick"));
+  ASSERT_TRUE(writeTextFile(folder_ / "stick/mine.txt", "mine"));
+  const auto taken = exportExercise(shipped("liver"), "", folder_ / "stick");
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, "CANNOT_WRITE");
+  EXPECT_EQ(bytesOf(folder_ / "stick/mine.txt"), "mine");
+  const auto no_case =
+      exportExercise(shipped("liver"), (folder_ / "nothing.mha").string(), folder_ / "other");
+  ASSERT_FALSE(no_case);
+  EXPECT_EQ(no_case.error().code, "MISSING_FILE");
+  int there = 0;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) there += entry.exists();
+  EXPECT_EQ(there, 1) << "the folder with mine.txt alone";
+}
+
+TEST_F(ExerciseFolder, OnAnotherCaseWhatHoldsOfItsOwnAloneIsLeftOut) {
+  const fs::path scene_file = ofAPatient();
+  Json scene = *readJsonFile(scene_file);
+  exported(scene_file, "phantom:abdomen");
+  const Json out = *readJsonFile(folder_ / "stick/scene.json");
+  EXPECT_EQ(out["case"], "phantom:abdomen");
+  EXPECT_FALSE(out.contains("labels"));
+  EXPECT_FALSE(fs::exists(folder_ / "stick/case"));
+}
+
+}  // namespace
+}  // namespace trephine
