@@ -13,6 +13,7 @@
 #include "tissue/tissue_edits.h"
 #include "ui/cases/cases_page.h"
 #include "ui/common/colours.h"
+#include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/train/arms_panel.h"
@@ -429,6 +430,27 @@ TEST_F(PanelTest, AResultSaysWhatWasAskedAndAnOrganThatIsATissueOnce) {
   result.goal.clear();
   page.setResult(result);
   EXPECT_TRUE(find<QLabel>(page, "resultGoal").isHidden());
+}
+
+TEST_F(PanelTest, ANameThatIsShownHasNoMarksOfDirectionAndCanBeBroken) {
+  EXPECT_EQ(shownName("Head 2026-11-25 1").toStdString(), "Head 2026-11-25 1");
+  EXPECT_EQ(shownName("a\u202eb\u200bc\td").toStdString(), "abcd");
+  const QString wide = shownName(std::string(78, 'W'));
+  EXPECT_EQ(wide.count('W'), 78);
+  EXPECT_EQ(wide.count(QChar(0x200b)), 4);
+}
+
+TEST_F(PanelTest, ASettingThatIsNeitherYesNorNoIsAsWithoutIt) {
+  QSettings settings = windowSettings();
+  for (const char* word : {"banana", "2", ""}) {
+    settings.setValue(settings::kArmsSwapped.key, QString(word));
+    settings.sync();
+    EXPECT_FALSE(read(settings::kArmsSwapped)) << word;
+  }
+  settings.setValue(settings::kArmsSwapped.key, true);
+  settings.sync();
+  EXPECT_TRUE(read(settings::kArmsSwapped));
+  settings.remove(settings::kArmsSwapped.key);
 }
 
 TEST_F(PanelTest, TheBarOfTheHandSaysThatAPushIsTheMostAndThatAToolInTissueRests) {
