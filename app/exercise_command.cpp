@@ -37,9 +37,7 @@ int exportExerciseCommand(const std::string& scene, const std::string& case_sour
   const auto exported = exportExercise(scene, case_source, out, progress);
   if (!exported) return printError("exercise-export", exported.error(), json);
   Json parts = Json::array();
-  for (const ExercisePart& part : exported->parts) {
-    parts.push_back({{"file", part.file}, {"sha256", part.sha256}, {"bytes", part.bytes}});
-  }
+  for (const ExercisePart& part : exported->parts) parts.push_back(toJson(part));
   if (json) {
     printAnswer("exercise-export", {{"folder", exported->folder.string()}, {"parts", parts}});
   } else {

@@ -148,10 +148,10 @@ class Exporter {
 
 Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::string& case_source,
                                         const fs::path& folder, const Progress& progress) {
-  Result<Scene> scene = readScene(scene_file);
-  if (!scene) return scene.error();
   Result<Json> json = readJsonFile(scene_file);
   if (!json) return json.error();
+  const Result<Scene> scene = parseScene(*json, scene_file);
+  if (!scene) return scene.error();
   if (Status free = checkFreeFolder(folder); !free) return free.error();
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
@@ -174,7 +174,7 @@ Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::s
   if (!parts) return parts.error();
   // What came out can be read as it went in.
   if (Result<Scene> again = readScene(part->path() / kSceneFile); !again) return again.error();
-  if (Status done = part->become(folder); !done) return done.error();
+  if (Status done = part->become(); !done) return done.error();
   return ExportedExercise{folder, *std::move(parts)};
 }
 

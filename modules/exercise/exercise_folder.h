@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
 
@@ -19,6 +20,8 @@ struct ExercisePart {
   std::string sha256;
   std::uint64_t bytes = 0;
 };
+
+Json toJson(const ExercisePart& part);
 
 struct ExportedExercise {
   std::filesystem::path folder;

@@ -134,7 +134,7 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
     Result<ExerciseCheck> copy = checkExercise(part->path(), Progress(progress, 0.8, 1.0));
     if (!copy) return copy.error();
     if (!copy->verified()) return ImportedExercise{{}, *std::move(copy)};
-    Status done = part->become(target);
+    Status done = part->become();
     if (!done && fs::exists(target, ec)) continue;  // another import was faster
     if (!done) return done.error();
     imported.scene = target / imported.check.scene;

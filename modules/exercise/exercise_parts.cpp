@@ -1,6 +1,5 @@
 #include "exercise/exercise_parts.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,23 +10,11 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
+#include "base/sync_folder.h"
 
 namespace trephine {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-// On the disk, and not only promised to be.
-Status sync(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  return synced ? Status() : Status(writeError(path, error));
-}
-
-}  // namespace
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
   constexpr std::size_t kMost = 40;
@@ -54,6 +41,10 @@ Status checkFreeFolder(const fs::path& folder) {
                "Give a folder that is not there yet, or an empty one"};
 }
 
+Json toJson(const ExercisePart& part) {
+  return {{"file", part.file}, {"sha256", part.sha256}, {"bytes", part.bytes}};
+}
+
 Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
                             const Progress& progress) {
   const fs::path path = folder / file;
@@ -78,16 +69,14 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
 
 Result<PartFolder> PartFolder::make(const fs::path& target) {
   std::error_code ec;
-  const fs::path whole = fs::absolute(target, ec).lexically_normal();
-  const fs::path name = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
-  const fs::path parent =
-      whole.has_filename() ? whole.parent_path() : whole.parent_path().parent_path();
-  if (Status made = makeFolder(parent); !made) return made.error();
-  std::string path = (parent / ("." + name.string() + ".part-XXXXXX")).string();
+  fs::path to = fs::absolute(target, ec).lexically_normal();
+  if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
+  if (Status made = makeFolder(to.parent_path()); !made) return made.error();
+  std::string path = (to.parent_path() / ("." + to.filename().string() + ".part-XXXXXX")).string();
   if (!::mkdtemp(path.data())) return writeError(target, errno);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);
-  return PartFolder(path);
+  return PartFolder(path, to);
 }
 
 PartFolder::~PartFolder() {
@@ -99,8 +88,7 @@ Status PartFolder::write(const std::string& file,
                          const std::function<Status(const fs::path&)>& write) {
   const fs::path path = path_ / file;
   if (Status made = makeFolder(path.parent_path()); !made) return made;
-  if (Status written = write(path); !written) return written;
-  return sync(path);
+  return write(path);
 }
 
 Status PartFolder::writeText(const std::string& file, std::string_view text) {
@@ -114,9 +102,11 @@ Status PartFolder::copy(const fs::path& from, const std::string& file) {
                  "Check the name"};
   }
   return write(file, [&](const fs::path& path) {
-    std::error_code failed;
-    fs::copy_file(from, path, failed);
-    return failed ? Status(writeError(path, failed.value())) : Status();
+    return replaceFile(path, [&](const fs::path& temporary) {
+      std::error_code failed;
+      fs::copy_file(from, temporary, failed);
+      return failed ? Status(writeError(path, failed.value())) : Status();
+    });
   });
 }
 
@@ -136,7 +126,7 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
     progress.at(double(parts.size()) / double(files.size()), "Checking what was written");
     Result<ExercisePart> part = partOf(path_, file, progress);
     if (!part) return part.error();
-    list.push_back({{"file", file}, {"sha256", part->sha256}, {"bytes", part->bytes}});
+    list.push_back(toJson(*part));
     parts.push_back(*std::move(part));
   }
   const Json json = {
@@ -145,14 +135,11 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
   return parts;
 }
 
-Status PartFolder::become(const fs::path& target) {
-  std::error_code ec;
-  const fs::path whole = fs::absolute(target, ec).lexically_normal();
-  const fs::path to = whole.has_filename() ? whole : whole.parent_path();
-  if (Status synced = sync(path_); !synced) return synced;
-  if (::rename(path_.c_str(), to.c_str()) != 0) return writeError(target, errno);
+Status PartFolder::become() {
+  if (Status synced = syncFolder(path_); !synced) return synced;
+  if (::rename(path_.c_str(), target_.c_str()) != 0) return writeError(target_, errno);
   path_.clear();
-  return sync(to.parent_path());
+  return syncFolder(target_.parent_path());
 }
 
 }  // namespace trephine

@@ -31,23 +31,27 @@ Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::stri
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::filesystem::path& target);
-  PartFolder(PartFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  PartFolder(PartFolder&& other) noexcept
+      : path_(std::exchange(other.path_, {})), target_(std::move(other.target_)) {}
   ~PartFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  // `file` is a path in the folder.
+  // `file` is a path in the folder; `write` leaves it whole and on the disk (replaceFile).
   Status write(const std::string& file,
                const std::function<Status(const std::filesystem::path&)>& write);
   Status writeText(const std::string& file, std::string_view text);
   Status copy(const std::filesystem::path& from, const std::string& file);
   // The list of all that lies here, the scene first.
   Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
-  // One rename. CANNOT_WRITE.
-  Status become(const std::filesystem::path& target);
+  // The folder that it was made for, by one rename. CANNOT_WRITE.
+  Status become();
 
  private:
-  explicit PartFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  PartFolder(std::filesystem::path path, std::filesystem::path target)
+      : path_(std::move(path)), target_(std::move(target)) {}
+
   std::filesystem::path path_;  // empty: no longer a part
+  std::filesystem::path target_;
 };
 
 }  // namespace trephine

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "base/result.h"
+#include "base/sync_folder.h"
 
 namespace trephine::case_folders {
 
@@ -113,8 +114,5 @@ class Part {
 // The case goes to the parts, with one rename, and is then deleted, its private file too where its
 // case.json still names it. The lock of the list is held. CANNOT_WRITE, NO_SUCH_CASE.
 Status removeCase(const Folders& folders, const std::string& id);
-
-// A folder's own entries are on the disk. CANNOT_WRITE.
-Status syncFolder(const std::filesystem::path& folder);
 
 }  // namespace trephine::case_folders

@@ -95,14 +95,14 @@ void ResultPage::setResult(const ExerciseResult& result) {
   goal_->setVisible(!result.goal.isEmpty());
   time_->setText(tr("Time %1").arg(timeWords(std::uint32_t(result.seconds))));
   QString html = title(tr("Removed"));
-  double all = 0.0;
+  int removed = 0;
   for (const RemovedOf& one : result.tissues) {
-    all += one.mm3;
-    if (one.mm3 > 0.0) html += row(one.name, cutWords(one.mm3, structureOf(one, result)));
+    if (!(one.mm3 > 0.0)) continue;
+    ++removed;
+    html += row(one.name, cutWords(one.mm3, structureOf(one, result)));
   }
-  if (!(all > 0.0)) html += row(tr("nothing"), {});
-  const auto removed = [](const RemovedOf& one) { return one.mm3 > 0.0; };
-  if (std::ranges::count_if(result.tissues, removed) > 1) {
+  if (removed == 0) html += row(tr("nothing"), {});
+  if (removed > 1) {
     html +=
         QStringLiteral("<tr><td colspan='2'><i>%1</i></td></tr>")
             .arg(tr("Tissues are told by how dense they are: at the edge of bone a little counts "

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
+#include "packed_words.h"
 #include "scene/scene.h"
 #include "session/case.h"
 #include "support.h"
@@ -21,11 +20,6 @@ namespace trephine {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytesOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::vector<fs::path> filesBelow(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -100,8 +94,9 @@ TEST_F(ExerciseFolder, EachShippedExerciseComesOutAsItWas) {
     for (std::size_t i = 0; i < after->tools.size(); ++i) {
       EXPECT_EQ(after->tools[i].look.mesh.empty(), before->tools[i].look.mesh.empty());
     }
-    EXPECT_EQ(bytesOf(after->operator_file), bytesOf(before->operator_file));
-    EXPECT_EQ(bytesOf(after->arms[0].device_config), bytesOf(before->arms[0].device_config));
+    EXPECT_EQ(test::bytesOfFile(after->operator_file), test::bytesOfFile(before->operator_file));
+    EXPECT_EQ(test::bytesOfFile(after->arms[0].device_config),
+              test::bytesOfFile(before->arms[0].device_config));
   }
 }
 
@@ -125,7 +120,7 @@ TEST_F(ExerciseFolder, NothingOfItTellsWhereItCameFrom) {
   int files = 0;
   for (const char* place : {"stick", "there"}) {
     for (const fs::path& file : filesBelow(folder_ / place)) {
-      std::string all = bytesOf(file) + fs::relative(file, folder_.path()).string();
+      std::string all = test::bytesOfFile(file) + fs::relative(file, folder_.path()).string();
       std::ranges::transform(all, all.begin(), [](char c) { return char(std::tolower(c)); });
       EXPECT_EQ(all.find("doe"), std::string::npos) << file;
       ++files;
@@ -137,7 +132,7 @@ TEST_F(ExerciseFolder, NothingOfItTellsWhereItCameFrom) {
 TEST_F(ExerciseFolder, WhatIsMissingOrChangedIsNamedAndNothingIsWritten) {
   exported(shipped("liver"));
   fs::remove(folder_ / "stick/operator.json");
-  std::string tissues = bytesOf(folder_ / "stick/tissues.json");
+  std::string tissues = test::bytesOfFile(folder_ / "stick/tissues.json");
   tissues[tissues.find("350")] = '9';
   ASSERT_TRUE(writeTextFile(folder_ / "stick/tissues.json", tissues));
   const ImportedExercise there = imported();
@@ -193,11 +188,12 @@ TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
   }
   // A scene that names what is no part, with a list that is right.
   ASSERT_TRUE(writeTextFile(list, good.dump()));
-  ASSERT_TRUE(writeTextFile(folder_ / "secret.json", bytesOf(folder_ / "stick/operator.json")));
+  ASSERT_TRUE(
+      writeTextFile(folder_ / "secret.json", test::bytesOfFile(folder_ / "stick/operator.json")));
   Json scene = *readJsonFile(folder_ / "stick/scene.json");
   scene["operator"] = "../secret.json";
   ASSERT_TRUE(writeTextFile(folder_ / "stick/scene.json", scene.dump()));
-  const std::string bytes = bytesOf(folder_ / "stick/scene.json");
+  const std::string bytes = test::bytesOfFile(folder_ / "stick/scene.json");
   Json matching = good;
   ASSERT_EQ(matching["parts"][0]["file"], "scene.json");
   matching["parts"][0]["sha256"] = sha256Hex(bytes.data(), bytes.size());
@@ -214,7 +210,7 @@ TEST_F(ExerciseFolder, IsNotWrittenOverWhatIsThereAndLeavesNothingWhereItFails) 
   const auto taken = exportExercise(shipped("liver"), "", folder_ / "stick");
   ASSERT_FALSE(taken);
   EXPECT_EQ(taken.error().code, "CANNOT_WRITE");
-  EXPECT_EQ(bytesOf(folder_ / "stick/mine.txt"), "mine");
+  EXPECT_EQ(test::bytesOfFile(folder_ / "stick/mine.txt"), "mine");
   const auto no_case =
       exportExercise(shipped("liver"), (folder_ / "nothing.mha").string(), folder_ / "other");
   ASSERT_FALSE(no_case);
