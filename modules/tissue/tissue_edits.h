@@ -1,11 +1,15 @@
-// What an edit has made of a set.
+// What an edit has made of a set, and edits that keep it possible. Pure.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tissue/tissue_set.h"
 
 namespace trephine {
+
+// The source of a number that a person set here.
+inline constexpr const char* kOwnSource = "tuned here, uncited";
 
 // Sources included.
 bool sameSet(const TissueSet& a, const TissueSet& b);
@@ -18,5 +22,34 @@ struct HuRange {
 };
 // Of `span`, in rising order, the HU that no tissue without a label holds: free space there.
 std::vector<HuRange> freeHu(const TissueSet& set, HuRange span);
+
+// Whether the two are known in the same voxels, so that their HU must differ.
+bool inSamePlace(const Tissue& a, const Tissue& b);
+
+// A range of HU that another tissue of the same place holds already.
+struct HuOverlap {
+  std::size_t other = 0;  // of the set
+  HuRange range;
+  bool operator==(const HuOverlap&) const = default;
+};
+// What the tissue would share if it were `wanted`, in rising order.
+std::vector<HuOverlap> overlapsOf(const TissueSet& set, std::size_t tissue, const Tissue& wanted);
+
+enum class RangeEnd { low, high };
+// The tissue with one end of its range at `hu`, or as near as leaves it one HU and takes none of
+// another tissue of its place. `with_neighbour`: where the range of another one touches this end,
+// that goes along, as far as leaves that one HU too. A valid set stays one. Ranges that change are
+// "tuned here", those that are as in `declared` cite its source.
+TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, int hu,
+                        bool with_neighbour, const TissueSet& declared);
+
+// One more, of any voxel, in the widest free range within kCtHu, first of the list. Error: NO_ROOM.
+constexpr HuRange kCtHu{-1024, 3071};
+Result<TissueSet> withNewTissue(const TissueSet& set);
+// Error: LAST_TISSUE.
+Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue);
+
+// What a set of one's own begins with: soft tissue, and bone from the common threshold on.
+TissueSet startingSet(const std::string& name);
 
 }  // namespace trephine

@@ -50,5 +50,92 @@ TEST(SameSet, SeesNumbersSourcesLabelsAndColours) {
   }
 }
 
+// Three that touch or leave a gap, and one known by a label of its own.
+TissueSet neighbours() {
+  TissueSet set{"", {tissue("soft", 0, 99), tissue("dura", 100, 225), tissue("bone", 300, 3071),
+                     tissue("liver", 50, 400, 5)}};
+  for (Tissue& t : set.tissues) t.hu_source = "a book";
+  return set;
+}
+HuRange rangeOf(const TissueSet& set, std::size_t i) {
+  return {set.tissues[i].hu_min, set.tissues[i].hu_max};
+}
+
+TEST(WithThreshold, TakesWithItTheNeighbourThatTouchesAndLeavesItOneHu) {
+  const TissueSet set = neighbours();
+  const TissueSet moved = withThreshold(set, 1, RangeEnd::low, 60, true, set);
+  EXPECT_EQ(rangeOf(moved, 1), (HuRange{60, 225}));
+  EXPECT_EQ(rangeOf(moved, 0), (HuRange{0, 59}));
+  const TissueSet far = withThreshold(set, 1, RangeEnd::low, -5000, true, set);
+  EXPECT_EQ(rangeOf(far, 1), (HuRange{1, 225}));
+  EXPECT_EQ(rangeOf(far, 0), (HuRange{0, 0}));
+  const TissueSet up = withThreshold(set, 0, RangeEnd::high, 500, true, set);
+  EXPECT_EQ(rangeOf(up, 0), (HuRange{0, 224}));
+  EXPECT_EQ(rangeOf(up, 1), (HuRange{225, 225}));
+}
+
+TEST(WithThreshold, AloneItStopsAtTheNeighbourAndLeavesAGapBehind) {
+  const TissueSet set = neighbours();
+  EXPECT_EQ(rangeOf(withThreshold(set, 1, RangeEnd::low, 60, false, set), 1), (HuRange{100, 225}));
+  const TissueSet gap = withThreshold(set, 1, RangeEnd::low, 150, false, set);
+  EXPECT_EQ(rangeOf(gap, 1), (HuRange{150, 225}));
+  EXPECT_EQ(rangeOf(gap, 0), (HuRange{0, 99}));
+  // Across a gap nobody is taken along.
+  EXPECT_EQ(rangeOf(withThreshold(set, 2, RangeEnd::low, 10, true, set), 2),
+            (HuRange{226, 3071}));
+}
+
+TEST(WithThreshold, ItsOwnRangeKeepsOneHuAndOtherPlacesDoNotCount) {
+  const TissueSet set = neighbours();
+  EXPECT_EQ(rangeOf(withThreshold(set, 2, RangeEnd::low, 9000, true, set), 2),
+            (HuRange{3071, 3071}));
+  EXPECT_EQ(rangeOf(withThreshold(set, 3, RangeEnd::high, 99999, true, set), 3),
+            (HuRange{50, 32767}));
+}
+
+TEST(WithThreshold, WhatMovesIsTunedHereAndCitesItsSourceAgainWhereItIsAsDeclared) {
+  const TissueSet set = neighbours();
+  const TissueSet moved = withThreshold(set, 1, RangeEnd::low, 60, true, set);
+  EXPECT_EQ(moved.tissues[0].hu_source, kOwnSource);
+  EXPECT_EQ(moved.tissues[1].hu_source, kOwnSource);
+  EXPECT_EQ(moved.tissues[2].hu_source, "a book");
+  const TissueSet back = withThreshold(moved, 1, RangeEnd::low, 100, true, set);
+  EXPECT_TRUE(sameSet(back, set));
+}
+
+TEST(OverlapsOf, AreTheSharedHuOfTheSamePlace) {
+  const TissueSet set = neighbours();
+  Tissue wanted = set.tissues[2];
+  wanted.hu_min = 90;
+  EXPECT_EQ(overlapsOf(set, 2, wanted),
+            (std::vector<HuOverlap>{{0, {90, 99}}, {1, {100, 225}}}));
+  wanted.label = 5;
+  EXPECT_EQ(overlapsOf(set, 2, wanted), (std::vector<HuOverlap>{{3, {90, 400}}}));
+  EXPECT_TRUE(overlapsOf(set, 2, set.tissues[2]).empty());
+}
+
+TEST(NewTissue, TakesTheWidestFreeRangeUnderANameOfItsOwnAndTheSetStaysPossible) {
+  const TissueSet set = startingSet("Mine");
+  ASSERT_TRUE(validate(set, "").ok());
+  const Result<TissueSet> more = withNewTissue(set);
+  ASSERT_TRUE(more.ok());
+  EXPECT_EQ(more->tissues[0].id, "tissue-1");
+  EXPECT_EQ(rangeOf(*more, 0), (HuRange{-1024, -201}));
+  EXPECT_TRUE(validate(*more, "").ok());
+  const Result<TissueSet> full = withNewTissue(*more);
+  ASSERT_FALSE(full.ok());
+  EXPECT_EQ(full.error().code, "NO_ROOM");
+  EXPECT_NE(full.error().next, "");
+}
+
+TEST(NewTissue, OneIsTakenAwayButNotTheLast) {
+  TissueSet set = startingSet("Mine");
+  const Result<TissueSet> one = withoutTissue(set, 0);
+  ASSERT_TRUE(one.ok());
+  ASSERT_EQ(one->tissues.size(), 1u);
+  EXPECT_EQ(one->tissues[0].id, "soft");
+  EXPECT_EQ(withoutTissue(*one, 0).error().code, "LAST_TISSUE");
+}
+
 }  // namespace
 }  // namespace trephine

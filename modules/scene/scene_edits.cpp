@@ -1,0 +1,91 @@
+#include "scene/scene_edits.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "scene/scene_structures.h"
+
+namespace trephine {
+
+void SceneHistory::begin(Scene scene) {
+  undo_.clear();
+  redo_.clear();
+  open_.clear();
+  now_ = std::move(scene);
+}
+
+void SceneHistory::note(Scene scene, const std::string& what) {
+  if (sameScene(scene, now_)) {
+    now_ = std::move(scene);
+    return;
+  }
+  redo_.clear();
+  if (open_.empty() || open_ != what || undo_.empty()) {
+    undo_.push_back({std::move(now_), what});
+    if (undo_.size() > kMostSteps) undo_.erase(undo_.begin());
+  }
+  open_ = what;
+  now_ = std::move(scene);
+}
+
+const Scene& SceneHistory::undo() {
+  open_.clear();
+  Step step = std::move(undo_.back());
+  undo_.pop_back();
+  redo_.push_back({std::exchange(now_, std::move(step.scene)), std::move(step.what)});
+  return now_;
+}
+
+const Scene& SceneHistory::redo() {
+  open_.clear();
+  Step step = std::move(redo_.back());
+  redo_.pop_back();
+  undo_.push_back({std::exchange(now_, std::move(step.scene)), std::move(step.what)});
+  return now_;
+}
+
+bool sameScene(const Scene& a, const Scene& b) {
+  const auto all = [](const Scene& scene) {
+    Scene plain = scene;
+    plain.tissues = unplaced(std::move(plain.tissues));
+    Json json = toJson(plain);
+    if (scene.tissues_elsewhere) json["elsewhere"] = toJson(*scene.tissues_elsewhere);
+    json["files"] = {scene.case_source, scene.labels_file, scene.operator_file};
+    for (const SceneTool& tool : scene.tools) {
+      const ToolLook& look = tool.look;
+      json["looks"].push_back({tool.id, look.mesh.string(), look.tip_mm.x, look.tip_mm.y,
+                               look.tip_mm.z, look.axis.x, look.axis.y, look.axis.z});
+    }
+    for (const SceneArm& arm : scene.arms) json["files"].push_back(arm.device_config);
+    return json;
+  };
+  return all(a) == all(b);
+}
+
+NewTissues withTissues(Scene scene, const TissueSet& set) {
+  NewTissues out{std::move(scene), {}};
+  Scene& to = out.scene;
+  const TissueSet before = std::exchange(to.tissues, set);
+  const auto solid = std::ranges::find_if(set.tissues, &Tissue::isSolid);
+  const Tissue& instead = solid == set.tissues.end() ? set.tissues.front() : *solid;
+  for (Landmark& landmark : to.landmarks) {
+    if (set.find(landmark.tissue)) continue;
+    const Tissue* was = before.find(landmark.tissue);
+    out.notes.push_back("The landmark '" + landmark.id + "' was on " +
+                        (was ? was->name : landmark.tissue) + " and is on " + instead.name +
+                        " now");
+    landmark.tissue = instead.id;
+  }
+  std::erase_if(to.view.looks, [&](const auto& look) { return !set.find(look.first); });
+  if (to.tissues_elsewhere) {
+    for (const Landmark& landmark : to.landmarks) {
+      if (to.tissues_elsewhere->find(landmark.tissue)) continue;
+      to.tissues_elsewhere.reset();
+      out.notes.push_back("The exercise has these tissues on every case now");
+      break;
+    }
+  }
+  return out;
+}
+
+}  // namespace trephine

@@ -1,0 +1,129 @@
+#include "scene/scene_edits.h"
+
+#include <gtest/gtest.h>
+
+#include "base/system.h"
+#include "scene/tissue_shares.h"
+#include "tissue/tissue_edits.h"
+
+namespace trephine {
+namespace {
+
+Scene cranium() {
+  Result<Scene> scene = readScene(resourceFolder() / "scenes" / "cranium.json");
+  EXPECT_TRUE(scene.ok());
+  return *std::move(scene);
+}
+
+TEST(SceneHistory, TakesBackAndDoesAgainStepByStep) {
+  const Scene first = cranium();
+  SceneHistory history;
+  history.begin(first);
+  EXPECT_FALSE(history.canUndo());
+  Scene second = first;
+  second.tissues.tissues[0].hu_min -= 1;
+  history.note(second, "a");
+  Scene third = second;
+  third.rate_hz = 2000;
+  history.note(third, "b");
+  EXPECT_EQ(history.undoWhat(), "b");
+  EXPECT_TRUE(sameScene(history.undo(), second));
+  EXPECT_TRUE(sameScene(history.undo(), first));
+  EXPECT_FALSE(history.canUndo());
+  EXPECT_EQ(history.redoWhat(), "a");
+  EXPECT_TRUE(sameScene(history.redo(), second));
+  EXPECT_TRUE(sameScene(history.redo(), third));
+  EXPECT_FALSE(history.canRedo());
+}
+
+TEST(SceneHistory, ADragIsOneStepUntilItIsClosedAndNothingIsNone) {
+  const Scene first = cranium();
+  SceneHistory history;
+  history.begin(first);
+  Scene scene = first;
+  history.note(scene, "threshold");
+  EXPECT_FALSE(history.canUndo());
+  for (int n = 0; n < 5; ++n) {
+    scene.tissues.tissues[0].hu_min -= 1;
+    history.note(scene, "threshold");
+  }
+  history.close();
+  const Scene dragged = scene;
+  scene.tissues.tissues[0].hu_min -= 1;
+  history.note(scene, "threshold");
+  EXPECT_TRUE(sameScene(history.undo(), dragged));
+  EXPECT_TRUE(sameScene(history.undo(), first));
+}
+
+TEST(SceneHistory, AfterAStepBackAnotherEditForgetsWhatCouldBeDoneAgain) {
+  Scene scene = cranium();
+  SceneHistory history;
+  history.begin(scene);
+  scene.rate_hz = 2000;
+  history.note(scene, "rate");
+  scene = history.undo();
+  scene.rate_hz = 4000;
+  history.note(scene, "rate");
+  EXPECT_FALSE(history.canRedo());
+}
+
+TEST(SameScene, SeesFilesMeshesAndTissuesElsewhereAndNoPlacedLabel) {
+  const Scene scene = cranium();
+  ASSERT_FALSE(scene.tools.empty());
+  for (const auto& change : std::vector<void (*)(Scene&)>{
+           [](Scene& s) { s.operator_file += "x"; },
+           [](Scene& s) { s.tools[0].look.mesh = "other.stl"; },
+           [](Scene& s) { s.arms[0].map.offset_mm.z += 1.0; },
+           [](Scene& s) { s.tissues_elsewhere = s.tissues; }, [](Scene& s) { s.card.reset(); },
+           [](Scene& s) { s.locks.insert(Lock::tissues); }}) {
+    Scene other = scene;
+    change(other);
+    EXPECT_FALSE(sameScene(scene, other));
+  }
+  Scene named = scene;
+  named.tissues.tissues[0].structure = "liver";
+  Scene placed = named;
+  placed.tissues.tissues[0].label = 7;
+  EXPECT_TRUE(sameScene(named, placed));
+}
+
+TEST(WithTissues, ALandmarkWhoseTissueIsGoneTakesASolidOneAndThatIsSaid) {
+  const Scene scene = cranium();
+  ASSERT_FALSE(scene.landmarks.empty());
+  TissueSet set = startingSet("Mine");
+  set.tissues[0].id = "hard";
+  set.tissues[0].name = "Hard";
+  const NewTissues changed = withTissues(scene, set);
+  for (const Landmark& landmark : changed.scene.landmarks) EXPECT_EQ(landmark.tissue, "hard");
+  ASSERT_EQ(changed.notes.size(), scene.landmarks.size());
+  EXPECT_NE(changed.notes[0].find("Hard"), std::string::npos);
+  for (const auto& [id, look] : changed.scene.view.looks) EXPECT_TRUE(set.find(id));
+  // What one reads is a scene again.
+  EXPECT_TRUE(parseScene(toJson(changed.scene), resourceFolder() / "scenes" / "x.json").ok());
+  EXPECT_TRUE(withTissues(scene, scene.tissues).notes.empty());
+}
+
+TEST(TissueShares, EachVoxelIsOfOneTissueAndALabelGoesBeforeAnyVoxel) {
+  HuHistogram histogram;
+  histogram.low_hu = 0;
+  histogram.high_hu = 3;
+  histogram.voxel_mm3 = 500.0;
+  histogram.voxels = 100;
+  histogram.rows = {{0, {40, 30, 0, 10}}, {5, {0, 20, 0, 0}}};
+  Tissue any, labelled;
+  any.id = "any";
+  any.hu_min = 1;
+  any.hu_max = 3;
+  labelled.id = "labelled";
+  labelled.hu_min = 0;
+  labelled.hu_max = 3;
+  labelled.label = 5;
+  const TissueShares shares = sharesOf({"", {any, labelled}}, histogram);
+  EXPECT_EQ(shares.voxels, (std::vector<std::uint64_t>{40, 20}));
+  EXPECT_EQ(shares.none, 40u);
+  EXPECT_DOUBLE_EQ(shares.percent(0), 40.0);
+  EXPECT_DOUBLE_EQ(shares.millilitres(1), 10.0);
+}
+
+}  // namespace
+}  // namespace trephine
