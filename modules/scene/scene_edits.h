@@ -27,6 +27,9 @@ class SceneHistory {
   bool canRedo() const { return !redo_.empty(); }
   std::string undoWhat() const { return canUndo() ? undo_.back().what : std::string(); }
   std::string redoWhat() const { return canRedo() ? redo_.back().what : std::string(); }
+  // The scene that it would be; null where there is none.
+  const Scene* before() const { return canUndo() ? &undo_.back().scene : nullptr; }
+  const Scene* after() const { return canRedo() ? &redo_.back().scene : nullptr; }
   // The scene that it is then; only where it can.
   const Scene& undo();
   const Scene& redo();

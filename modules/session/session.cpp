@@ -42,6 +42,11 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
   }
 }
 
+TissueSet uncuttable(TissueSet tissues) {
+  for (Tissue& tissue : tissues.tissues) tissue.cuttable = false;
+  return tissues;
+}
+
 }  // namespace
 
 std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& stem,
@@ -79,6 +84,10 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   }
   landmarks_ = of.landmarks;
   scene_ = withFixedMaps(scene, landmarks_);
+  if (options.poke) {
+    scene_.tissues = uncuttable(std::move(scene_.tissues));
+    poke_curves_.emplace(scene_.arms.size(), scene_.rate_hz);
+  }
   controllers_.emplace_back(controllerName(scene.controller));
 
   std::vector<LoopDevice> devices;
@@ -353,7 +362,8 @@ bool Session::setController(ControllerKind kind) {
   return loop_->commands().push({CommandKind::controller, std::int32_t(kind), {}});
 }
 
-Status Session::setTissues(const TissueSet& tissues) {
+Status Session::setTissues(const TissueSet& wanted) {
+  const TissueSet tissues = isPoke() ? uncuttable(wanted) : wanted;
   if (Status valid = validate(tissues, "tissues"); !valid) return valid;
   if (Status known = checkLabels(tissues, grid_->labels().get()); !known) return known;
   // Voxels are counted by a tissue's place in the set, so the places stay.

@@ -23,6 +23,7 @@
 #include "session/case.h"
 #include "session/live_operator.h"
 #include "session/operator_script.h"
+#include "session/poke_curves.h"
 #include "session/run_statistics.h"
 #include "training/paused_ticks.h"
 #include "training/session_recorder.h"
@@ -37,6 +38,8 @@ struct SessionOptions {
   // Without a script: the hands of simulated arms begin outside of tissue (hand_start.h), and a
   // reset takes them back there.
   bool hands_outside = false;
+  // Nothing is cut, whatever the tissues say, and pokes() tells what was felt.
+  bool poke = false;
 };
 
 class Session {
@@ -149,6 +152,9 @@ class Session {
     std::int32_t arm = 0;
   };
   std::vector<Stroke> strokes() const;
+  // Of a session for poking: its last pokes, as far as they are known: within 50 ms.
+  std::vector<PokeCurve> pokes() const;
+  bool isPoke() const { return poke_curves_.has_value(); }
   // What became of the recording so far.
   Status recordingStatus() const;
   // How much of the session is not on disk yet; 0 where nothing is recorded any more. Owner thread.
@@ -216,9 +222,10 @@ class Session {
   std::thread haptic_thread_, watchdog_thread_, recorder_thread_;
   std::optional<Error> left_behind_;
   std::vector<Stroke> strokes_;
+  std::optional<PokeCurves> poke_curves_;  // of a session for poking
   PausedTicks paused_;                // the recorder's
   mutable std::mutex failure_mutex_;  // recorder and owner only, never the tick
-  mutable std::mutex strokes_mutex_;  // so too
+  mutable std::mutex strokes_mutex_;  // so too, and of the pokes
   std::optional<Error> failure_;
 };
 

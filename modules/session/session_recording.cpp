@@ -44,6 +44,10 @@ void Session::drain() {
       while (unflushed_ticks_ < slice && (more = loop_->records().pop(record))) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].add(record.arms[i]);
         if (recorder_) recorder_->add(record);
+        if (poke_curves_) {
+          const std::lock_guard lock(strokes_mutex_);
+          poke_curves_->add(record);
+        }
         ++unflushed_ticks_;
       }
       CarveRecord carve;
@@ -121,6 +125,11 @@ void Session::noteFailure(const Error& error) {
 std::vector<Session::Stroke> Session::strokes() const {
   std::lock_guard lock(strokes_mutex_);
   return strokes_;
+}
+
+std::vector<PokeCurve> Session::pokes() const {
+  std::lock_guard lock(strokes_mutex_);
+  return poke_curves_ ? poke_curves_->curves() : std::vector<PokeCurve>();
 }
 
 Status Session::recordingStatus() const {

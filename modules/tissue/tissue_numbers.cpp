@@ -12,6 +12,10 @@ void TissueNumber::set(SetNumbers& tissue, const SourcedNumber& number) const {
   std::visit([&](auto member) { tissue.*member = number; }, in_set);
 }
 
+void TissueNumber::clear(SetNumbers& tissue) const {
+  if (in_set.index() == 1) (tissue.*std::get<1>(in_set)).reset();
+}
+
 std::string tissueNumbersPage() {
   std::string page = schemaHead();
   for (const TissueNumber& number : kTissueNumbers) {

@@ -45,9 +45,13 @@ struct TissueNumber {
   const char* meaning;  // which law it is of
   std::variant<SourcedNumber SetNumbers::*, std::optional<SourcedNumber> SetNumbers::*> in_set;
   double TickNumbers::*in_tick;
-  // In the panel: its name, null where it is not set there, the most that can be typed, and a step.
-  const char* label = nullptr;
-  double most = 0.0, step = 0.0;
+  // In the panel: its name, the most that can be typed, a step and its decimals, in a unit of which
+  // `shown_per` make one of the file's.
+  const char* label;
+  double most, step;
+  int decimals = 2;
+  const char* shown_unit = nullptr;  // null: the file's
+  double shown_per = 1.0;
 
   constexpr NumberRow row() const {
     return {key,
@@ -62,6 +66,7 @@ struct TissueNumber {
     return number ? number->value : 0.0;
   }
   void set(SetNumbers& tissue, const SourcedNumber& number) const;
+  void clear(SetNumbers& tissue) const;  // not given, where it may be so; else it stays
 };
 
 inline constexpr TissueNumber kTissueNumbers[] = {
@@ -72,9 +77,10 @@ inline constexpr TissueNumber kTissueNumbers[] = {
     {"friction_N", "N", "coulomb law: what a tool that slides in it feels", &SetNumbers::friction_N,
      &TickNumbers::friction_N, "Friction", 100.0, 0.05},
     {"rupture_N", "N", "rupture law: the force at which a capsule gives way; at 0, none",
-     &SetNumbers::rupture_N, &TickNumbers::rupture_N},
+     &SetNumbers::rupture_N, &TickNumbers::rupture_N, "Rupture", 100.0, 0.05},
     {"cutting_J_per_mm3", "J/mm\u00b3", "work that removes it: its specific cutting energy",
-     &SetNumbers::cutting_J_per_mm3, &TickNumbers::cutting_J_per_mm3},
+     &SetNumbers::cutting_J_per_mm3, &TickNumbers::cutting_J_per_mm3, "Cutting", 10'000.0, 0.001, 4,
+     "mJ/mm\u00b3", 1000.0},
 };
 static_assert(sizeof(TickNumbers) == sizeof(double) * std::size(kTissueNumbers),
               "each number has one row");

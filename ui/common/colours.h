@@ -24,6 +24,10 @@ inline QColor kBad(0xe0, 0x62, 0x5a);
 inline QColor kLeftArm(0x55, 0xb9, 0xd6);
 inline QColor kRightArm(0xee, 0xa2, 0x4b);
 
+// Voxels that a threshold takes and leaves while it is moved, in either theme.
+inline const QColor kGained(0xff, 0xd9, 0x40);
+inline const QColor kLost(0x59, 0xa6, 0xff);
+
 // Of words over a picture, which is dark in either theme.
 inline const QColor kOnPicture(0xe4, 0xe6, 0xea);
 

@@ -183,6 +183,8 @@ void MainWindow::buildMenus() {
                         train_->backAction(), train_->resetAction()});
   exercise->addSeparator();
   exercise->addActions(train_->handActions());
+  exercise->addSeparator();
+  exercise->addAction(prepare_->pokeAction());
   QMenu* view = menuBar()->addMenu(tr("&View"));
   view->addActions(rail_->actions());
   view->addSeparator();

@@ -87,9 +87,11 @@ void PrepareWorkspace::connectStructures() {
                   [this](Bench::Next go_on) { unlessStructuresAreLost(std::move(go_on)); });
   bench_.setBeforeStart([this](Bench::Next go_on) { beforeStart(std::move(go_on)); });
   connect(bench_.undoAction(), &QAction::triggered, this, [this] {
+    if (editsServe()) return workstation_.undoEdit();
     if (!workstation_.session()) editor_.undo();
   });
   connect(bench_.redoAction(), &QAction::triggered, this, [this] {
+    if (editsServe()) return workstation_.redoEdit();
     if (!workstation_.session()) editor_.redo();
   });
   connect(&bench_, &Bench::cutsChanged, this, &PrepareWorkspace::showUndo);
@@ -118,7 +120,10 @@ void PrepareWorkspace::connectStructures() {
           &PrepareWorkspace::askAboutStructures);
   connect(&workstation_, &Workstation::overlapAsked, this, &PrepareWorkspace::askAboutOverlap);
   connect(&workstation_, &Workstation::thresholdAsked, this, &PrepareWorkspace::askForThreshold);
-  connect(tabs_, &QTabWidget::currentChanged, this, [this] { showStructureTab(); });
+  connect(tabs_, &QTabWidget::currentChanged, this, [this] {
+    showTab();
+    showStructureTab();
+  });
   views_->setBrushRadius(structures_->brushRadius_mm());
 }
 
@@ -324,6 +329,7 @@ void PrepareWorkspace::structureKey(int key) {
 // Without an exercise they are the structures', while those are in front. Cuts that an exercise
 // left in the view are no step of theirs: there the panel's own buttons serve.
 void PrepareWorkspace::showUndo() {
+  if (editsServe()) return showHistory();
   if (workstation_.phase() == Workstation::Phase::running) return;
   const bool serve = structuresShown() && !bench_.cutsUnsaved();
   const auto undo = serve ? editor_.undoText() : std::nullopt;

@@ -4,6 +4,7 @@
 #include <QMessageBox>
 #include <algorithm>
 
+#include "scene/arm_limits.h"
 #include "tissue/tissue_edits.h"
 #include "ui/common/words.h"
 #include "ui/prepare/prepare_workspace.h"
@@ -12,7 +13,7 @@ namespace trephine {
 
 void PrepareWorkspace::connectTissues() {
   connect(tissues_, &TissuePanel::tissuesChanged, this,
-          [this](const TissueSet& set) { tissuesEdited(set); });
+          &PrepareWorkspace::tissuesEdited);
   connect(tissues_, &TissuePanel::looksChanged, this, [this](const TissueLooks& looks) {
     workstation_.setLooks(looks);
     views_->setTissues(tissues_->tissues(), looks);
@@ -30,6 +31,7 @@ void PrepareWorkspace::connectTissues() {
             ? tr("The tissues are locked. %1.").arg(unlockWords(workstation_.policy()))
             : QString());
   });
+  connect(tissues_, &TissuePanel::editEnded, this, [this] { workstation_.closeEdit(); });
   // They may be about to go.
   connect(&workstation_, &Workstation::openingProgressed, this, [this] {
     if (!workstation_.isPlacing()) tissues_->setEnabled(false);
@@ -48,21 +50,20 @@ void PrepareWorkspace::showScene() {
   views_->setTissues(scene->tissues, workstation_.looks());
   showSeen();
   views_->setAnatomy(scene->anatomy);
+  showHistogram();
+  showHistory();
+}
+
+// What lies below the views is the tissues'.
+void PrepareWorkspace::showTab() {
+  histogram_->setVisible(tabs_->currentIndex() == kTissueTab);
+  showPoke();
 }
 
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
-  // The weaker of the arms: the panel speaks of both.
-  std::optional<Renderable> most;
-  for (const SceneArm& arm : scene.arms) {
-    if (!arm.dynamics) continue;
-    const Renderable on_arm = renderableOn(arm, scene.rate_hz);
-    most =
-        most ? Renderable{std::min(most->b_max, on_arm.b_max), std::min(most->k_max, on_arm.k_max)}
-             : on_arm;
-  }
   tissues_->setRenderable(
-      most, [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
+      armsLimit(scene), [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
 }
 
 // The views show what the panel of structures lists while it is in front, else what the exercise
@@ -97,6 +98,7 @@ void PrepareWorkspace::showSeen() {
     });
   }
   TissueLooks looks = workstation_.looks();
+  if (moving_) return showMoving(rows, looks);
   handToTissues(structure_looks_, looks, set, rows);
   if (looks != workstation_.looks()) {
     workstation_.setLooks(looks);
@@ -111,21 +113,34 @@ void PrepareWorkspace::showSeen() {
 }
 
 // An opacity or colour that was set for a tissue goes before one that was set for its structure.
-void PrepareWorkspace::tissuesEdited(const TissueSet& set) {
+void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) {
   const std::shared_ptr<const LabelMap> map = editor_.map();
   for (auto& [label, look] : structure_looks_) {
     const Structure* of = map ? map->find(label) : nullptr;
     if (!of) continue;
     for (const std::string& id : tissuesOf(set, *of)) {
       const Tissue* before = workstation_.scene()->tissues.find(id);
-      if (before && before->opacity != set.find(id)->opacity) look.opacity.reset();
-      if (before && before->colour != set.find(id)->colour) look.colour.reset();
+      if (!before) continue;
+      if (before->opacity != set.find(id)->opacity) look.opacity.reset();
+      if (before->colour != set.find(id)->colour) look.colour.reset();
     }
   }
-  workstation_.setTissues(set);
+  // With the labels of the case, where it names structures.
+  NewTissues wanted = withTissues(*workstation_.scene(), set);
+  if (!workstation_.edit(wanted.scene, what.toStdString())) return;
+  if (!wanted.notes.empty()) bench_.say(toQt(wanted.notes.front()) + '.');
   tissues_touched_ = true;
-  editor_.setTissues(set);
-  views_->setTissues(set, workstation_.looks());
+  const TissueSet& placed = workstation_.scene()->tissues;
+  editor_.setTissues(placed);
+  views_->setTissues(placed, workstation_.looks());
+  if (moving_) {
+    const auto& all = placed.tissues;
+    const auto at = std::ranges::find(all, moving_->tissue, &Tissue::id);
+    if (at != all.end()) markMoving(int(at - all.begin()));
+  }
+  showHistogram();
+  // A moved threshold is seen in slices and histogram first: the 3-D picture takes its time.
+  if (moving_) return seen_later_.start();
   showSeen();
 }
 

@@ -1,5 +1,7 @@
 #include "ui/prepare/prepare_workspace.h"
 
+#include <QHBoxLayout>
+
 #include "ui/common/actions.h"
 #include "ui/common/placing.h"
 
@@ -23,7 +25,18 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   tabs_->insertTab(kTissueTab, scrolled(tissues_, "tissuePage"), tr("Tissues"));
   tabs_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
   tabs_->setMinimumWidth(275);
+  below_ = new QWidget;
+  below_->setObjectName("prepareBelow");
+  histogram_ = new HistogramView(below_);
+  auto* beside = new QHBoxLayout(below_);
+  beside->setContentsMargins(0, 0, 0, 0);
+  beside->addWidget(histogram_, 1);
+  poke_plot_ = new PokePlot(below_);
+  beside->addWidget(poke_plot_, 1);
   connectTissues();
+  connectThresholds();
+  connectSets();
+  connectPoke();
   connectStructures();
   connectExports();
   showUndo();
@@ -32,17 +45,20 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
 Workspace::Parts PrepareWorkspace::parts() {
   Parts parts;
   parts.left = tabs_;
+  parts.below = below_;
   return parts;
 }
 
 void PrepareWorkspace::enter() {
   here_ = true;
+  showTab();
   showStructureTab();
   (void)offerMissing();
 }
 
 void PrepareWorkspace::leave() {
   here_ = false;
+  if (workstation_.isPoke()) workstation_.stop();
   showStructureTab();
 }
 

@@ -1,7 +1,7 @@
 // Prepare: what tissue is felt and cut, and where it is: tissues, structures, the entry point, and
 // the ways out for other programs. Between its panels, the editor of structures, the views and the
-// workstation. (prepare_tissues.cpp, prepare_structures.cpp and prepare_exports.cpp are what it
-// does with those.)
+// workstation. (prepare_tissues.cpp, prepare_thresholds.cpp, prepare_sets.cpp,
+// prepare_structures.cpp and prepare_exports.cpp are what it does with those.)
 #pragma once
 
 #include <QTabWidget>
@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "ui/structures/structure_panel.h"
+#include "ui/tissue/histogram_view.h"
+#include "ui/tissue/poke_plot.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/work/bench.h"
 
@@ -31,6 +33,7 @@ class PrepareWorkspace : public Workspace {
   void makeMissing();
   bool structuresEdited() const { return editor_.edited(); }
   QAction* saveInCaseAction() const { return save_in_case_; }
+  QAction* pokeAction() const { return poke_; }
 
  private:
   void connectTissues();
@@ -39,13 +42,44 @@ class PrepareWorkspace : public Workspace {
 
   // Tissues (prepare_tissues.cpp).
   void showScene();
+  void showTab();
   void showRenderable(ControllerKind in_force);
   void showLabelsInUse();
   void showSeen();
-  void tissuesEdited(const TissueSet& set);
+  void tissuesEdited(const TissueSet& set, const QString& what);
   void structureLookWanted(int label, TissueLook look);
   // Goes on with what takes the place of the tissues; where they have been edited it asks first.
   void unlessTissuesStay(Bench::Next go_on);
+
+  // Thresholds over the histogram (prepare_thresholds.cpp).
+  void connectThresholds();
+  void countVoxels();
+  void showHistogram();
+  void thresholdBegan();
+  void thresholdMoved(std::size_t tissue, RangeEnd end, int hu, bool alone);
+  void thresholdEnded();
+  void markMoving(int tissue);
+  // In 3-D: that tissue alone, the others as ghosts.
+  void showMoving(const std::vector<Structure>& rows, const TissueLooks& looks);
+
+  // Sets of tissues, and the history of edits (prepare_sets.cpp).
+  void connectSets();
+  void showHistory();
+  void takeSet(const TissueSet& set, const char* what);
+  void newSet();
+  void duplicateSet();
+  void askForSet();
+  void useSet(const std::filesystem::path& file);
+  void askToExportSet();
+  void revertSet();
+  std::filesystem::path ownSets() const;
+  bool editsServe() const;
+
+  // Poking: what was set is felt, and nothing is cut (prepare_poke.cpp).
+  void connectPoke();
+  void showPoke();
+  void togglePoke();
+  void showPokesOf(Session& session);
 
   // Structures (prepare_structures.cpp).
   bool structuresShown() const;
@@ -92,6 +126,22 @@ class PrepareWorkspace : public Workspace {
   QAction* save_in_case_;
   QTabWidget* tabs_;
   TissuePanel* tissues_;
+  QWidget* below_;
+  HistogramView* histogram_;
+  QAction* poke_;
+  PokePlot* poke_plot_;
+  QTimer poke_timer_;
+  std::optional<ViewLayout> layout_before_;  // the poke
+  BackgroundTask counting_;
+  const void* counted_voxels_ = nullptr;  // of which the histogram is, or is being counted
+  const void* counted_labels_ = nullptr;
+  // A threshold is being moved, of this tissue, since the set was this one.
+  struct Moving {
+    TissueTable before;
+    std::string tissue;
+  };
+  std::optional<Moving> moving_;
+  QTimer seen_later_;
   StructurePanel* structures_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   // What the library's case has, whatever was saved to files: the editor's changes() then, nothing

@@ -14,8 +14,19 @@ class LookBox : public QComboBox {
   explicit LookBox(QWidget* parent = nullptr);
   // Its object is called "look:" and the id.
   void show(const Tissue& tissue, TissueLook look);
+  // Closed it is an eye, without the word.
+  void setIconAlone();
   // A person has chosen.
   std::function<void(TissueLook)> chosen;
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  bool icon_alone_ = false;
 };
 
 }  // namespace trephine

@@ -2,14 +2,17 @@
 
 #include <QColorDialog>
 #include <QFormLayout>
-#include <QPainter>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QMenu>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "tissue/tissue_edits.h"
+#include "base/utf8.h"
 #include "ui/common/colours.h"
+#include "ui/common/icons.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 
@@ -18,48 +21,7 @@ namespace trephine {
 namespace {
 
 constexpr int kOpacitySteps = 1000;
-const char* const kOwnSource = "tuned here, uncited";
-
-QIcon swatch(const QColor& colour, bool hidden) {
-  QPixmap pixmap(32, 32);
-  pixmap.fill(Qt::transparent);
-  QPainter painter(&pixmap);
-  painter.setRenderHint(QPainter::Antialiasing);
-  painter.setPen(QPen(colour, 3));
-  painter.setBrush(hidden ? QBrush(Qt::NoBrush) : QBrush(colour));
-  painter.drawRoundedRect(QRectF(4, 4, 24, 24), 6, 6);
-  QIcon icon(pixmap);
-  icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
-  return icon;
-}
-
-QString presetWords(ViewPreset preset) {
-  switch (preset) {
-    case ViewPreset::bone:
-      return TissuePanel::tr("Bone");
-    case ViewPreset::skin:
-      return TissuePanel::tr("Skin");
-    case ViewPreset::soft_tissue:
-      return TissuePanel::tr("Soft tissue");
-    case ViewPreset::liver:
-      return TissuePanel::tr("Liver");
-  }
-  return {};
-}
-
-const char* presetName(ViewPreset preset) {
-  switch (preset) {
-    case ViewPreset::bone:
-      return "presetBone";
-    case ViewPreset::skin:
-      return "presetSkin";
-    case ViewPreset::soft_tissue:
-      return "presetSoftTissue";
-    case ViewPreset::liver:
-      return "presetLiver";
-  }
-  return "";
-}
+constexpr int kMostLetters = 60;
 
 // Stands beside what it speaks of, where there is something to say.
 QLabel* notice(const char* name, QWidget* parent) {
@@ -69,6 +31,17 @@ QLabel* notice(const char* name, QWidget* parent) {
   colours::setText(*label, colours::kCaution);
   label->hide();
   return label;
+}
+
+QToolButton* smallButton(const char* name, Symbol symbol, const QString& tip, QWidget* parent) {
+  auto* button = new QToolButton(parent);
+  button->setObjectName(name);
+  button->setIcon(symbolIcon(symbol));
+  button->setToolTip(tip);
+  button->setAccessibleName(tip);
+  button->setFocusPolicy(Qt::TabFocus);
+  button->setAutoRaise(true);
+  return button;
 }
 
 }  // namespace
@@ -86,21 +59,107 @@ TissuePanel::TissuePanel(QWidget* parent) : QWidget(parent) {
 }
 
 void TissuePanel::build() {
-  list_ = new QListWidget(this);
-  list_->setObjectName("tissueList");
-  list_->setIconSize({16, 16});
-  list_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
-  list_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
-  list_->setSpacing(2);
+  list_ = new TissueList(this);
+  locked_words_ = notice("tissuesLocked", this);
+  felt_ = notice("tissueFelt", this);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(10, 10, 10, 10);
+  layout->setSpacing(10);
+  layout->addLayout(buildSetRow());
+  poke_ = new QPushButton(tr("&Poke it"), this);
+  poke_->setObjectName("pokeButton");
+  poke_->setCheckable(true);
+  poke_->setToolTip(tr("Feel the tissue with mouse or arm; nothing is cut (Ctrl+E)"));
+  connect(poke_, &QPushButton::clicked, this, &TissuePanel::pokeWanted);
+  layout->addWidget(poke_);
+  layout->addWidget(list_);
+  layout->addWidget(locked_words_);
+  layout->addWidget(buildEditor());
+  layout->addWidget(felt_);
+  layout->addStretch(1);
 
+  connect(list_, &TissueList::chosen, this, [this] {
+    showSelected();
+    emit chosenChanged();
+  });
+  connect(list_, &TissueList::looksChosen, this, [this](const TissueLooks& looks) {
+    looks_ = looks;
+    emit looksChanged(looks_);
+  });
+  connect(list_, &TissueList::addWanted, this, &TissuePanel::add);
+  connect(list_, &TissueList::removeWanted, this, &TissuePanel::remove);
+  connect(colour_, &QToolButton::clicked, this, &TissuePanel::chooseColour);
+  connect(opacity_, &QSlider::valueChanged, this, [this](int step) {
+    if (!current()) return;
+    Tissue wanted = *current();
+    wanted.opacity = opacityAtSlider(double(step) / kOpacitySteps);
+    (void)apply(wanted, "opacity:" + toQt(wanted.id));
+  });
+  connect(opacity_, &QSlider::sliderReleased, this, &TissuePanel::editEnded);
+}
+
+// The set's name, and beside it what is done with sets.
+QLayout* TissuePanel::buildSetRow() {
+  set_name_ = new QLineEdit(this);
+  set_name_->setObjectName("setName");
+  set_name_->setAccessibleName(tr("Name of the tissue set"));
+  set_name_->setToolTip(tr("What this set of tissues is called"));
+  set_name_->setMaxLength(kMostLetters);
+  connect(set_name_, &QLineEdit::editingFinished, this, [this] {
+    const std::string typed = cleanUtf8(set_name_->text().toStdString());
+    set_name_->setModified(false);
+    if (typed.empty() || typed == tissues_.name) return set_name_->setText(toQt(tissues_.name));
+    TissueSet set = tissues_;
+    set.name = typed;
+    (void)applySet(set, "set name");
+  });
+  set_menu_ = new QToolButton(this);
+  set_menu_->setObjectName("setMenu");
+  set_menu_->setText(tr("&Set"));
+  set_menu_->setToolTip(tr("New, duplicate, import, export, revert; the sets of this workstation"));
+  set_menu_->setPopupMode(QToolButton::InstantPopup);
+  set_menu_->setFocusPolicy(Qt::TabFocus);
+  auto* menu = new QMenu(set_menu_);
+  const auto add = [&](const char* name, const QString& text, void (TissuePanel::*wanted)()) {
+    QAction* action = menu->addAction(text, this, wanted);
+    action->setObjectName(name);
+  };
+  add("newSet", tr("&New"), &TissuePanel::newSetWanted);
+  add("duplicateSet", tr("&Duplicate"), &TissuePanel::duplicateWanted);
+  sets_ = menu->addMenu(tr("&Take another"));
+  sets_->setObjectName("setsMenu");
+  add("importSet", tr("&Import\u2026"), &TissuePanel::importWanted);
+  add("exportSet", tr("&Export\u2026"), &TissuePanel::exportWanted);
+  add("revertSet", tr("&Revert"), &TissuePanel::revertWanted);
+  set_menu_->setMenu(menu);
+  connect(menu, &QMenu::aboutToShow, this, &TissuePanel::setsWanted);
+  undo_ = smallButton("undoEdit", Symbol::undo, tr("Takes back the last edit"), this);
+  redo_ = smallButton("redoEdit", Symbol::redo, tr("Does it again"), this);
+  connect(undo_, &QToolButton::clicked, this, &TissuePanel::undoWanted);
+  connect(redo_, &QToolButton::clicked, this, &TissuePanel::redoWanted);
+  auto* row = new QHBoxLayout;
+  row->setSpacing(4);
+  row->addWidget(set_name_, 1);
+  row->addWidget(set_menu_);
+  row->addWidget(undo_);
+  row->addWidget(redo_);
+  return row;
+}
+
+QWidget* TissuePanel::buildEditor() {
   editor_ = new QWidget(this);
-  title_ = new QLabel(editor_);
-  title_->setProperty("title", true);
+  name_ = new QLineEdit(editor_);
+  name_->setObjectName("tissueName");
+  name_->setAccessibleName(tr("Name of the tissue"));
+  name_->setMaxLength(kMostLetters);
+  connect(name_, &QLineEdit::editingFinished, this, &TissuePanel::nameEntered);
   colour_ = new QToolButton(editor_);
   colour_->setObjectName("colour");
   colour_->setIconSize({20, 20});
   colour_->setText(tr("Colour\u2026"));
-  colour_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  colour_->setToolTip(tr("Colour of the tissue, in all views"));
+  colour_->setAccessibleName(colour_->text());
+  colour_->setFocusPolicy(Qt::TabFocus);
   opacity_ = new QSlider(Qt::Horizontal, editor_);
   opacity_->setObjectName("opacity");
   opacity_->setRange(0, kOpacitySteps);
@@ -115,130 +174,103 @@ void TissuePanel::build() {
     box->setSingleStep(5);
     box->setSuffix(tr(" HU"));
   }
+  place_ = new QComboBox(editor_);
+  place_->setObjectName("tissueStructure");
+  place_->setAccessibleName(tr("Where the tissue is"));
+  place_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  place_->setMinimumContentsLength(3);
+  connect(place_, &QComboBox::activated, this, &TissuePanel::placeChosen);
   label_ = new WholeNumberField("label", editor_);
   label_->setLimits(0, int(kLabelRange.high));
   label_->setWord(0, tr("any"));
+  label_->setPrefix(tr("label "));
   for (WholeNumberField* box : {low_, high_, label_}) box->entered = [this] { rangeEntered(); };
   problem_ = notice("tissueProblem", editor_);
   gaps_ = notice("tissueGaps", editor_);
   auto* high_row = high_->withReason();
   high_row->addWidget(problem_);
   high_row->addWidget(gaps_);
+  mechanics_ = new TissueMechanics(editor_);
+  mechanics_->wanted = [this](const Tissue& wanted, const char* what) {
+    const Status applied = apply(wanted, QString(what) + ':' + toQt(wanted.id));
+    if (applied) emit editEnded();
+    return applied;
+  };
 
   auto* head = new QHBoxLayout;
-  head->addWidget(title_, 1);
+  head->addWidget(name_, 1);
   head->addWidget(colour_);
   auto* opacity_row = new QHBoxLayout;
   opacity_row->addWidget(opacity_, 1);
   opacity_row->addWidget(opacity_text_);
-
   auto* form = new QFormLayout;
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
   form->addRow(tr("From"), low_->withReason());
   form->addRow(tr("To"), high_row);
-  form->addRow(tr("Label"), label_->withReason());
+  auto* where = new QGridLayout;
+  where->setSpacing(4);
+  where->addWidget(place_, 0, 0, Qt::AlignTop);
+  where->addLayout(label_->withReason(), 0, 1);
+  where->setColumnStretch(0, 1);
+  form->addRow(tr("Where"), where);
   form->addRow(tr("Opacity"), opacity_row);
-  for (const TissueNumber& row : kTissueNumbers) {
-    if (row.label) form->addRow(tr(row.label), addNumber(row));
-  }
 
   auto* editor_layout = new QVBoxLayout(editor_);
   editor_layout->setContentsMargins(0, 0, 0, 0);
   editor_layout->addLayout(head);
   editor_layout->addLayout(form);
-
-  felt_ = notice("tissueFelt", this);
-
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(10, 10, 10, 10);
-  layout->setSpacing(10);
-  layout->addLayout(buildPresets());
-  layout->addWidget(list_);
-  locked_words_ = notice("tissuesLocked", this);
-  layout->addWidget(locked_words_);
-  layout->addWidget(editor_);
-  layout->addWidget(felt_);
-  layout->addStretch(1);
-
-  connect(list_, &QListWidget::currentRowChanged, this, &TissuePanel::showSelected);
-  connect(colour_, &QToolButton::clicked, this, &TissuePanel::chooseColour);
-  connect(opacity_, &QSlider::valueChanged, this, [this](int step) {
-    if (!current()) return;
-    Tissue wanted = *current();
-    wanted.opacity = opacityAtSlider(double(step) / kOpacitySteps);
-    (void)apply(wanted);
-  });
-}
-
-QLayout* TissuePanel::buildPresets() {
-  auto* grid = new QGridLayout;  // two beside each other: the column is narrow
-  grid->setSpacing(4);
-  presets_title_ = new QLabel(tr("View"), this);
-  grid->addWidget(presets_title_, 0, 0);
-  for (const ViewPreset preset : kViewPresets) {
-    auto* button = new QToolButton(this);
-    button->setObjectName(presetName(preset));
-    button->setText(presetWords(preset));
-    button->setAccessibleName(tr("View preset: %1").arg(button->text()));
-    button->setToolTip(tr("A start for the choices below; what is felt and cut stays as it is"));
-    button->setFocusPolicy(Qt::StrongFocus);
-    button->hide();
-    connect(button, &QToolButton::clicked, this, [this, preset] {
-      if (const auto looks = presetLooks(tissues_, preset)) lookChosen(*looks);
-    });
-    const int place = int(presets_.size());
-    grid->addWidget(button, place / 2, 1 + place % 2);
-    presets_.emplace_back(preset, button);
-  }
-  grid->setColumnStretch(3, 1);
-  return grid;
-}
-
-QLayout* TissuePanel::addNumber(const TissueNumber& row) {
-  auto* box = new DecimalField(QString(row.label).toLower(), editor_);
-  box->setDecimals(2);
-  box->setLimits(row.row().range.low, row.most);
-  box->setSingleStep(row.step);
-  box->setSuffix(' ' + QString::fromUtf8(row.unit));
-  const Number number{box, &row};
-  box->entered = [this, number] { numberEntered(number); };
-  numbers_.push_back(number);
-  return box->withReason();
+  editor_layout->addWidget(mechanics_);
+  return editor_;
 }
 
 void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared) {
   tissues_ = tissues;
   declared_ = declared;
-  showList();
+  set_name_->setText(toQt(tissues_.name));
+  list_->show(tissues_, looks_);
   showSelected();
 }
 
 void TissuePanel::setLooks(const TissueLooks& looks) {
   looks_ = looks;
-  showList();
+  list_->show(tissues_, looks_);
 }
 
-void TissuePanel::lookChosen(const TissueLooks& looks) {
-  if (looks == looks_) return;
-  setLooks(looks);
-  emit looksChanged(looks_);
-}
-
-void TissuePanel::setRenderable(const std::optional<Renderable>& most,
+void TissuePanel::setRenderable(const std::optional<ArmsLimit>& most,
                                 std::function<Impedance(const Tissue&)> demanded,
                                 ControllerKind in_force) {
-  renderable_ = most;
+  arms_ = most;
   demanded_ = std::move(demanded);
   in_force_ = in_force;
+  mechanics_->setLimits(arms_, demanded_, in_force_);
   showFelt();
+}
+
+void TissuePanel::setSets(const std::vector<std::pair<QString, std::filesystem::path>>& sets) {
+  sets_->clear();
+  for (const auto& [name, file] : sets) {
+    sets_->addAction(name, this, [this, file = file] { emit setWanted(file); });
+  }
+  sets_->setEnabled(!sets.empty());
+}
+
+void TissuePanel::showHistory(const QString& undo, const QString& redo) {
+  undo_->setEnabled(!undo.isEmpty());
+  redo_->setEnabled(!redo.isEmpty());
+}
+
+void TissuePanel::showPoke(bool possible, bool poking) {
+  poke_->setEnabled(possible);
+  poke_->setChecked(poking);
+  poke_->setText(poking ? tr("Stop &poking") : tr("&Poke it"));
 }
 
 void TissuePanel::showFelt() {
   const Tissue* tissue = current();
   const bool bounded = in_force_ == ControllerKind::bounded;
   QStringList lines;
-  if (tissue && renderable_) {
+  if (tissue && arms_) {
     const auto line = [&](const QString& what, const QString& unit, double demanded, double most) {
       if (demanded <= most) return;
       const QString words =
@@ -249,8 +281,8 @@ void TissuePanel::showFelt() {
       lines << words.arg(what).arg(demanded, 0, 'f', 0).arg(most, 0, 'f', 0).arg(unit);
     };
     const Impedance demanded = demanded_(*tissue);
-    line(tr("Damping"), tr("N\u00b7s/m"), demanded.damping, renderable_->b_max);
-    line(tr("Stiffness"), tr("N/m"), demanded.stiffness, renderable_->k_max);
+    line(tr("Damping"), tr("N\u00b7s/m"), demanded.damping, arms_->most.b_max);
+    line(tr("Stiffness"), tr("N/m"), demanded.stiffness, arms_->most.k_max);
   }
   colours::setText(*felt_, bounded ? colours::kQuiet : colours::kCaution);
   felt_->setText(lines.join('\n'));
@@ -280,7 +312,7 @@ void TissuePanel::showGaps() {
 
 void TissuePanel::select(const std::string& id) {
   for (std::size_t i = 0; i < tissues_.tissues.size(); ++i) {
-    if (tissues_.tissues[i].id == id) list_->setCurrentRow(int(i));
+    if (tissues_.tissues[i].id == id) list_->select(int(i));
   }
 }
 
@@ -289,6 +321,9 @@ void TissuePanel::setLocked(const QString& why) {
   locked_words_->setText(why);
   locked_words_->setVisible(!why.isEmpty());
   editor_->setEnabled(current() && why.isEmpty());
+  list_->setLocked(!why.isEmpty());
+  set_name_->setEnabled(why.isEmpty());
+  set_menu_->setEnabled(why.isEmpty());
 }
 
 void TissuePanel::setLabelsOpen(bool open) {
@@ -296,60 +331,13 @@ void TissuePanel::setLabelsOpen(bool open) {
   showSelected();
 }
 
-// A row of the list with its choice of looks.
-void TissuePanel::addItem() {
-  list_->addItem(QString());
-  auto* beside = new QWidget;
-  auto* layout = new QHBoxLayout(beside);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addStretch(1);
-  auto* box = new LookBox(beside);
-  layout->addWidget(box);
-  const int row = list_->count() - 1;
-  box->chosen = [this, row](TissueLook look) {
-    TissueLooks looks = looks_;
-    looks[tissues_.tissues[std::size_t(row)].id] = look;
-    lookChosen(looks);
-  };
-  list_->item(row)->setSizeHint({0, beside->sizeHint().height()});
-  list_->setItemWidget(list_->item(row), beside);
-  setTabOrder(look_boxes_.empty() ? static_cast<QWidget*>(list_) : look_boxes_.back(), box);
-  look_boxes_.push_back(box);
-}
-
-void TissuePanel::showList() {
-  const int row = std::max(0, list_->currentRow());
-  listing_ = true;
-  while (list_->count() > int(tissues_.tissues.size())) {
-    delete list_->takeItem(list_->count() - 1);
-    look_boxes_.pop_back();
-  }
-  while (list_->count() < int(tissues_.tissues.size())) addItem();
-  bool any = false;
-  for (const auto& [preset, button] : presets_) {
-    button->setVisible(presetLooks(tissues_, preset).has_value());
-    any = any || !button->isHidden();
-  }
-  presets_title_->setVisible(any);
-  for (int i = 0; i < list_->count(); ++i) {
-    const Tissue& tissue = tissues_.tissues[std::size_t(i)];
-    QListWidgetItem& item = *list_->item(i);
-    item.setText(toQt(tissue.name));
-    const TissueLook look = lookOf(tissue, looks_);
-    look_boxes_[std::size_t(i)]->show(tissue, look);
-    item.setIcon(swatch(colours::of(tissue.colour), look == TissueLook::hidden));
-    item.setToolTip(tr("%1 to %2 HU%3%4")
-                        .arg(tissue.hu_min)
-                        .arg(tissue.hu_max)
-                        .arg(tissue.label ? tr(", label %1").arg(*tissue.label) : QString())
-                        .arg(look == TissueLook::hidden ? tr(", not drawn") : QString()));
-  }
-  list_->setCurrentRow(std::min(row, list_->count() - 1));
-  listing_ = false;
+void TissuePanel::setStructures(const std::vector<std::string>& names) {
+  structures_ = names;
+  showPlaces();
 }
 
 const Tissue* TissuePanel::current() const {
-  const int row = list_->currentRow();
+  const int row = list_->current();
   if (row < 0 || std::size_t(row) >= tissues_.tissues.size()) return nullptr;
   return &tissues_.tissues[std::size_t(row)];
 }
@@ -360,38 +348,59 @@ const Tissue& TissuePanel::declared(const Tissue& tissue) const {
 }
 
 void TissuePanel::showSelected() {
-  if (listing_) return;
   const Tissue* tissue = current();
   editor_->setEnabled(tissue && locked_.isEmpty());
   if (!tissue) return;
-  title_->setText(toQt(tissue->name));
   low_->show(tissue->hu_min);
   high_->show(tissue->hu_max);
-  label_->show(tissue->label.value_or(0));
-  problem_->hide();
-  {
-    const QSignalBlocker quiet(opacity_);
-    opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
-  }
-  for (const Number& number : numbers_) number.box->show(number.row->valueOf(*tissue));
+  label_->show(tissue->structure.empty() ? tissue->label.value_or(0) : 0);
+  showProblem(nullptr, {});
+  mechanics_->show(*tissue, declared(*tissue));
   showOutcome();
+}
+
+// Anywhere, or in one of the case's structures; one that the case lacks stays to be seen.
+void TissuePanel::showPlaces() {
+  const Tissue* tissue = current();
+  place_->clear();
+  place_->addItem(tr("Anywhere"), QString());
+  int now = 0;
+  for (const std::string& name : structures_) {
+    place_->addItem(tr("In %1").arg(shownName(name)), toQt(name));
+    if (tissue && tissue->structure == name) now = place_->count() - 1;
+  }
+  if (tissue && !tissue->structure.empty() && now == 0) {
+    place_->addItem(tr("In %1 (not in this case)").arg(shownName(tissue->structure)),
+                    toQt(tissue->structure));
+    now = place_->count() - 1;
+  }
+  place_->setCurrentIndex(now);
+  place_->setEnabled(place_->count() > 1);
+  place_->setToolTip(place_->count() > 1
+                         ? tr("Only voxels of this structure are this tissue")
+                         : tr("The case has no structure; they are made on the Structures tab"));
 }
 
 void TissuePanel::showOutcome() {
   const Tissue* tissue = current();
   if (!tissue) return;
-  colour_->setIcon(swatch(colours::of(tissue->colour), false));
+  if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(tissue->name));
+  colour_->setIcon(tissueSwatch(colours::of(tissue->colour), false));
+  {
+    const QSignalBlocker quiet(opacity_);
+    opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
+  }
   for (QSpinBox* box : {low_, high_}) {
     box->setToolTip(tr("Source: %1").arg(toQt(tissue->hu_source)));
   }
-  label_->setEnabled(labels_open_ || tissue->label);
-  label_->setToolTip(labels_open_ ? tr("Only where the label map has this label")
-                                  : tr("Open the case's label map first, on the Case tab"));
+  showPlaces();
+  const bool by_label = tissue->structure.empty() && tissue->label;
+  label_->setEnabled((labels_open_ || by_label) && tissue->structure.empty());
+  label_->setToolTip(!tissue->structure.empty() ? tr("It is known by a structure's name")
+                     : labels_open_ ? tr("Only where the label map has this label")
+                                    : tr("Open the case's label map first, on the Structures tab"));
   opacity_text_->setText(tr("%1 /mm").arg(tissue->opacity, 0, 'f', 3));
-  for (const Number& number : numbers_) {
-    const SourcedNumber* given = number.row->of(*tissue);
-    number.box->setToolTip(given ? tr("Source: %1").arg(toQt(given->source)) : QString());
-  }
+  mechanics_->update(*tissue, declared(*tissue));
   showGaps();
   showFelt();
 }
@@ -407,9 +416,19 @@ void TissuePanel::chooseColour() {
     if (!current()) return;
     Tissue wanted = *current();
     wanted.colour = colours::rgbOf(colour);
-    (void)apply(wanted);
+    (void)apply(wanted, "colour");
+    emit editEnded();
   });
   dialog->open();
+}
+
+void TissuePanel::showProblem(const Error* why, const std::vector<HuOverlap>& overlaps) {
+  if (why) {
+    problem_->setText(tr("Not applied. %1. %2.").arg(toQt(why->what), toQt(why->next)));
+    giveRoom(*problem_, high_->width());
+  }
+  problem_->setVisible(why);
+  emit overlapsShown(overlaps);
 }
 
 // HU and label together decide whether two tissues claim the same voxels.
@@ -424,40 +443,110 @@ void TissuePanel::rangeEntered() {
   } else if (wanted.hu_min != current()->hu_min || wanted.hu_max != current()->hu_max) {
     wanted.hu_source = kOwnSource;
   }
-  wanted.label.reset();
-  if (label_->wanted() > 0) wanted.label = label_->wanted();
-  const Status valid = apply(wanted);
-  if (!valid) {
-    problem_->setText(
-        tr("Not applied. %1. %2.").arg(toQt(valid.error().what), toQt(valid.error().next)));
-    giveRoom(*problem_, high_->width());
-    return problem_->show();
+  if (wanted.structure.empty()) {
+    wanted.label.reset();
+    if (label_->wanted() > 0) wanted.label = label_->wanted();
   }
-  problem_->hide();
+  const Status valid = apply(wanted, "hu:" + toQt(wanted.id));
+  if (!valid) {
+    const Error why = valid.error();
+    return showProblem(&why, overlapsOf(tissues_, chosen(), wanted));
+  }
+  showProblem(nullptr, {});
+  emit editEnded();
   for (WholeNumberField* box : {low_, high_, label_}) box->take();
 }
 
-void TissuePanel::numberEntered(const Number& number) {
+void TissuePanel::placeChosen(int index) {
   if (!current()) return;
   Tissue wanted = *current();
-  const auto shown = [&](double other) { return std::abs(number.box->wanted() - other) < 0.005; };
-  if (!shown(number.row->valueOf(wanted))) {
-    const SourcedNumber* cited = number.row->of(declared(*current()));
-    const SourcedNumber own{number.box->wanted(), kOwnSource};
-    number.row->set(wanted, cited && shown(cited->value) ? *cited : own);
-  }
-  if (apply(wanted)) number.box->take();
+  wanted.structure = place_->itemData(index).toString().toStdString();
+  wanted.label.reset();
+  if (wanted.structure.empty()) wanted.shell.reset();
+  const Tissue& cited = declared(wanted);
+  if (cited.structure == wanted.structure) wanted.shell = cited.shell;
+  const Status valid = apply(wanted, "where");
+  emit editEnded();
+  if (valid) return showSelected();
+  const Error why = valid.error();
+  showPlaces();
+  showProblem(&why, overlapsOf(tissues_, chosen(), wanted));
 }
 
-Status TissuePanel::apply(const Tissue& wanted) {
+void TissuePanel::nameEntered() {
+  if (!current()) return;
+  Tissue wanted = *current();
+  const std::string typed = cleanUtf8(name_->text().toStdString());
+  name_->setModified(false);
+  if (typed.empty() || typed == wanted.name) return name_->setText(toQt(wanted.name));
+  wanted.name = typed;
+  (void)apply(wanted, "name");
+  emit editEnded();
+}
+
+void TissuePanel::add() {
+  const Result<TissueSet> more = withNewTissue(tissues_);
+  if (!more) {
+    const Error why = more.error();
+    return showProblem(&why, {});
+  }
+  (void)applySet(*more, "add tissue");
+  emit editEnded();
+  list_->select(0);
+  showSelected();
+  emit chosenChanged();
+  name_->setFocus();
+  name_->selectAll();
+}
+
+void TissuePanel::remove() {
+  if (!current()) return;
+  const Result<TissueSet> less = withoutTissue(tissues_, chosen());
+  if (!less) {
+    const Error why = less.error();
+    return showProblem(&why, {});
+  }
+  (void)applySet(*less, "remove tissue");
+  emit editEnded();
+  showSelected();
+  emit chosenChanged();
+}
+
+void TissuePanel::moveThreshold(std::size_t tissue, RangeEnd end, int hu, bool alone) {
+  if (!locked_.isEmpty() || tissue >= tissues_.tissues.size() ||
+      before_.tissues.size() != tissues_.tissues.size()) {
+    return;
+  }
+  TissueSet moved = withThreshold(before_, tissue, end, hu, !alone, declared_);
+  // What was changed meanwhile of the rest stays.
+  for (std::size_t i = 0; i < moved.tissues.size(); ++i) {
+    Tissue now = tissues_.tissues[i];
+    now.hu_min = moved.tissues[i].hu_min;
+    now.hu_max = moved.tissues[i].hu_max;
+    now.hu_source = moved.tissues[i].hu_source;
+    moved.tissues[i] = std::move(now);
+  }
+  const Status applied = applySet(moved, "threshold");
+  if (!applied || !current()) return;
+  showProblem(nullptr, {});
+  low_->show(current()->hu_min);
+  high_->show(current()->hu_max);
+}
+
+Status TissuePanel::apply(const Tissue& wanted, const QString& what) {
   TissueSet set = tissues_;
-  set.tissues[std::size_t(list_->currentRow())] = wanted;
+  set.tissues[std::size_t(list_->current())] = wanted;
+  return applySet(set, what);
+}
+
+Status TissuePanel::applySet(const TissueSet& set, const QString& what) {
   if (sameSet(set, tissues_)) return {};
   if (Status valid = validate(set, ""); !valid) return valid;
-  tissues_ = std::move(set);
-  showList();
+  tissues_ = set;
+  set_name_->setText(toQt(tissues_.name));
+  list_->show(tissues_, looks_);
   showOutcome();
-  emit tissuesChanged(tissues_);
+  emit tissuesChanged(tissues_, what);
   return {};
 }
 

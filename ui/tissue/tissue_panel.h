@@ -1,21 +1,28 @@
-// The scene's tissues: a list with colour and look, presets of looks, and the numbers of the one
-// that is selected. What is not a possible number or set is refused in words beside the field and
-// not applied; HU that have lost their tissue are mentioned.
+// The scene's tissues: the set and what is done with it, its list, and the numbers of the one that
+// is chosen. What is not a possible number or set is refused in words beside the field and not
+// applied; HU that have lost their tissue are mentioned. It keeps no set: who shows one does.
 #pragma once
 
+#include <QComboBox>
 #include <QLabel>
-#include <QListWidget>
+#include <QLineEdit>
+#include <QMenu>
+#include <QPushButton>
 #include <QSlider>
 #include <QToolButton>
 #include <QWidget>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
 #include "haptics/controllers.h"
+#include "scene/arm_limits.h"
+#include "tissue/tissue_edits.h"
 #include "tissue/tissue_look.h"
 #include "tissue/tissue_set.h"
 #include "ui/common/number_field.h"
-#include "ui/tissue/look_box.h"
+#include "ui/tissue/tissue_list.h"
+#include "ui/tissue/tissue_mechanics.h"
 
 namespace trephine {
 
@@ -31,66 +38,98 @@ class TissuePanel : public QWidget {
   // How the view shows them; a preset that the set has nothing for is not offered.
   void setLooks(const TissueLooks& looks);
   void select(const std::string& id);
+  void select(std::size_t tissue) { list_->select(int(tissue)); }
+  std::size_t chosen() const { return std::size_t(std::max(0, list_->current())); }
+  // How much of the case each has.
+  void setShares(const TissueShares& shares) { list_->setShares(shares); }
   // Why numbers, colours and opacities may not be changed; empty: they may.
   void setLocked(const QString& why);
+  bool isLocked() const { return !locked_.isEmpty(); }
   // Without a label map a tissue can be freed from a label, but not restricted to one.
   void setLabelsOpen(bool open);
-  // The firmest tissue that the arms show, and what the scene's laws together demand of one: what
-  // lies above the first is said to be felt as that under `bounded`, and to be bounded by nothing
-  // under the others. `in_force` is the controller now.
-  void setRenderable(const std::optional<Renderable>& most,
+  // Of the case: a tissue can be restricted to one.
+  void setStructures(const std::vector<std::string>& names);
+  // What the arms show, and what the scene's laws together demand of a tissue: what lies above is
+  // said to be felt as that under `bounded`, and to be bounded by nothing under the others.
+  // `in_force` is the controller now.
+  void setRenderable(const std::optional<ArmsLimit>& most,
                      std::function<Impedance(const Tissue&)> demanded, ControllerKind in_force);
+  // Sets of this workstation, to be taken: a name and a file.
+  void setSets(const std::vector<std::pair<QString, std::filesystem::path>>& sets);
+  // What the last edit was; empty: there is none.
+  void showHistory(const QString& undo, const QString& redo);
+  void showPoke(bool possible, bool poking);
+
+  // --- The thresholds over the histogram ---
+  void thresholdBegan() { before_ = tissues_; }
+  void moveThreshold(std::size_t tissue, RangeEnd end, int hu, bool alone);
 
  signals:
-  // A possible set, changed by a person.
-  void tissuesChanged(const trephine::TissueSet& tissues);
+  // A possible set, changed by a person; `what`: edits of the same that follow one another are one,
+  // until editEnded().
+  void tissuesChanged(const trephine::TissueSet& tissues, const QString& what);
+  void editEnded();
   // Looks chosen by a person: no change of a tissue.
   void looksChanged(const trephine::TissueLooks& looks);
+  void chosenChanged();
+  // Of a range that was refused; empty: none is.
+  void overlapsShown(const std::vector<trephine::HuOverlap>& overlaps);
+  void newSetWanted();
+  void duplicateWanted();
+  void importWanted();
+  void exportWanted();
+  void revertWanted();
+  void setWanted(const std::filesystem::path& file);
+  void setsWanted();  // the menu opens: setSets()
+  void pokeWanted();
+  void undoWanted();
+  void redoWanted();
 
  private:
-  struct Number {
-    DecimalField* box;
-    const TissueNumber* row;
-  };
   void build();
-  QLayout* buildPresets();
-  QLayout* addNumber(const TissueNumber& row);
-  void addItem();
-  void lookChosen(const TissueLooks& looks);
-  void showList();
+  QLayout* buildSetRow();
+  QWidget* buildEditor();
   // Every field as the selected tissue is; what was typed and refused goes.
   void showSelected();
   // What follows from the numbers: texts beside fields, sources, HU without a tissue, what is felt.
   void showOutcome();
   void showGaps();
   void showFelt();
+  void showPlaces();
+  void showProblem(const Error* why, const std::vector<HuOverlap>& overlaps);
   void chooseColour();
   void rangeEntered();
-  void numberEntered(const Number& number);
+  void placeChosen(int index);
+  void nameEntered();
+  void add();
+  void remove();
   // Puts it in the place of the selected one, where that makes a possible set.
-  Status apply(const Tissue& wanted);
+  Status apply(const Tissue& wanted, const QString& what);
+  Status applySet(const TissueSet& set, const QString& what);
   const Tissue* current() const;
   const Tissue& declared(const Tissue& tissue) const;
 
-  TissueSet tissues_, declared_;
+  TissueSet tissues_, declared_, before_;
   TissueLooks looks_;
-  std::optional<Renderable> renderable_;
+  std::optional<ArmsLimit> arms_;
   std::function<Impedance(const Tissue&)> demanded_;
   ControllerKind in_force_ = ControllerKind::bounded;
-  bool listing_ = false;
   bool labels_open_ = false;
+  std::vector<std::string> structures_;
   QString locked_;
+  QLineEdit *set_name_, *name_;
+  QToolButton *set_menu_, *undo_, *redo_;
+  QMenu* sets_;
   QLabel* locked_words_;
-  QListWidget* list_;
-  std::vector<LookBox*> look_boxes_;  // by row of the list
-  QLabel* presets_title_;
-  std::vector<std::pair<ViewPreset, QToolButton*>> presets_;
+  QPushButton* poke_;
+  TissueList* list_;
   QWidget* editor_;
-  QLabel *title_, *opacity_text_, *gaps_, *felt_, *problem_;
+  QLabel *opacity_text_, *gaps_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
+  QComboBox* place_;
   WholeNumberField *low_, *high_, *label_;
-  std::vector<Number> numbers_;
+  TissueMechanics* mechanics_;
 };
 
 // The slider is finer where tissues are nearly clear: position 0..1 against opacity per mm.

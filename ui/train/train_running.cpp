@@ -85,9 +85,11 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     exercise_->showTools(session.scene(), state.tools);
     if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
     showHand();
-    bench_.undoAction()->setEnabled(state.can_undo);
-    bench_.redoAction()->setEnabled(state.can_redo);
-    showRewind(state);
+    if (!session.isPoke()) {
+      bench_.undoAction()->setEnabled(state.can_undo);
+      bench_.redoAction()->setEnabled(state.can_redo);
+      showRewind(state);
+    }
   }
 }
 
@@ -127,7 +129,8 @@ void TrainWorkspace::showRemoved(Session& session, const LoopState& state) {
 void TrainWorkspace::showHand() {
   showChangeTool();
   Session* session = workstation_.session();
-  if (!session || !here_ || !hands_->taken()) return hand_bar_->hide();
+  const bool shown = session && (here_ || session->isPoke()) && hands_->taken();
+  if (!shown) return hand_bar_->hide();
   const std::size_t active = hands_->active();
   const SceneArm& arm = session->scene().arms[active];
   const LoopState& state = session->state();
@@ -242,7 +245,7 @@ void TrainWorkspace::command(CommandKind kind) {
 // Or a redo.
 void TrainWorkspace::undo(CommandKind which) {
   Session* session = workstation_.session();
-  if (!session) return;
+  if (!session || session->isPoke()) return;
   undoing_ = session->state();
   command(which);
 }

@@ -222,6 +222,10 @@ void TrainWorkspace::showPhase() {
     case Phase::ending:
       return bench_.hint(tr("Ending the recording\u2026"));
     case Phase::running:
+      if (workstation_.isPoke()) {
+        return bench_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
+                              "hand. Right drag: turn."));
+      }
       return bench_.hint(
           tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
@@ -260,7 +264,7 @@ void TrainWorkspace::sessionStarted() {
   undoing_.reset();
   ticks_shown_ = 0;
   rate_clock_.restart();
-  bench_.exerciseBegan();
+  if (!session.isPoke()) bench_.exerciseBegan();
   touched_ = result_shown_ = aside_ = false;
   removed_clock_.restart();
   exercise_->showIdle();
@@ -278,6 +282,7 @@ void TrainWorkspace::sessionEnded(Session& session) {
   arms_->showController(workstation_.scene()->controller);
   showTools({});
   emit ratesChanged({});
+  if (session.isPoke()) return;
   const RunReport report = session.report();
   bench_.exerciseEnded(report.removed_voxels > 0);
   std::error_code ec;

@@ -199,6 +199,11 @@ void FourUp::setTissues(const TissueSet& tissues, const TissueLooks& looks) {
   for (const Slices& of : slices_) of.view->coloursChanged();
 }
 
+void FourUp::setMark(const std::optional<SliceColours::Mark>& mark) {
+  colours_.setMark(mark);
+  for (const Slices& of : slices_) of.view->coloursChanged();
+}
+
 void FourUp::setAnatomy(const std::string& anatomy) {
   if (std::exchange(anatomy_, anatomy) != anatomy) setWindow(usualWindow(anatomy));
 }

@@ -43,6 +43,8 @@ class FourUp : public QWidget {
 
   // Of the slices; the 3-D view has its own.
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
+  // While a threshold is moved: which voxels the tissue has, gains and loses, over the slices.
+  void setMark(const std::optional<SliceColours::Mark>& mark);
   // Another anatomy than before is looked at with its usual HU window.
   void setAnatomy(const std::string& anatomy);
   void setTools(const std::vector<ToolView>& tools);

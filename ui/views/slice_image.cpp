@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/common/colours.h"
+
 namespace trephine {
 
 namespace {
@@ -143,7 +145,10 @@ void SliceColours::setOverlay(Overlay overlay, double opacity) {
 
 SliceColours::Tint SliceColours::tintOf(const Vec3& colour, TissueLook look) const {
   if (look == TissueLook::hidden) return {};
-  const double opacity = look == TissueLook::ghosted ? kGhostShare * opacity_ : opacity_;
+  return tint(colour, look == TissueLook::ghosted ? kGhostShare * opacity_ : opacity_);
+}
+
+SliceColours::Tint SliceColours::tint(const Vec3& colour, double opacity) {
   const auto part = [&](double c) {
     return unsigned(std::lround(std::clamp(c, 0.0, 1.0) * 255.0 * 256.0 * opacity));
   };
@@ -178,6 +183,18 @@ void SliceColours::mix() {
   }
 }
 
+void SliceColours::setMark(const std::optional<Mark>& mark) {
+  constexpr double kMarked = 0.55, kMoved = 0.85;  // opacity: what changes before what stays
+  const bool same_table = mark && mark_ && mark->before == mark_->before;
+  mark_ = mark;
+  if (!mark_) return;
+  if (!same_table) before_.set(mark_->before);
+  const auto tissue = std::size_t(mark_->tissue);
+  const Vec3 own = tissue < tissues_.tissues.size() ? tissues_.tissues[tissue].colour : Vec3(1.0);
+  of_mark_ = {Tint{}, tint(own, kMarked), tint(colours::rgbOf(colours::kGained), kMoved),
+              tint(colours::rgbOf(colours::kLost), kMoved)};
+}
+
 void SliceColours::setStructures(const LabelMap* labels) {
   std::vector<Structure> structures;
   if (labels) structures = labels->structures;
@@ -198,7 +215,7 @@ void drawSlice(const Volume& volume, const LabelMap* labels, const GridGeometry&
   const Vec3 corner = toVoxel(g, stack.toPatient_mm(Vec3(part.left(), part.top(), k))) + 0.5;
   const FixedVoxel step(across);
   const std::int16_t* hu = volume.hu.data();
-  const bool coloured = labels && colours.overlay() != Overlay::none;
+  const bool coloured = labels && (colours.overlay() != Overlay::none || colours.marks());
   const std::uint8_t* label = coloured ? labels->labels.data() : nullptr;
   const bool between = !hasVoxelsForPixels(stack, g);
   const Between voxels(volume);

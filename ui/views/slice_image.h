@@ -4,6 +4,7 @@
 
 #include <QImage>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "haptics/tissue_lookup.h"
@@ -57,6 +58,15 @@ class SliceColours {
   void setWindow(const HuWindow& window);
   void setTissues(const TissueSet& tissues, const TissueLooks& looks = {});
   void setOverlay(Overlay overlay, double opacity);  // opacity in [0, 1]
+  // While a threshold is moved: the voxels of one tissue alone are coloured, those that it has
+  // gained and lost since it was of the table `before` apart. None: as the overlay says.
+  struct Mark {
+    TissueTable before;
+    int tissue = 0;  // of the set
+    int was = 0;     // of the table
+  };
+  void setMark(const std::optional<Mark>& mark);
+  bool marks() const { return mark_.has_value(); }
   // Whose colours its structures have; null: none.
   void setStructures(const LabelMap* labels);
 
@@ -72,8 +82,9 @@ class SliceColours {
   // With the grey of another HU than the voxel's own: one that was interpolated.
   QRgb of(std::int16_t shown_hu, std::int16_t hu, std::uint8_t label) const {
     const unsigned grey = greyOf(shown_hu);
-    if (overlay_ == Overlay::none) return 0xff000000u | grey * 0x010101u;
-    const Tint& tint = overlay_ == Overlay::tissues
+    if (overlay_ == Overlay::none && !mark_) return 0xff000000u | grey * 0x010101u;
+    const Tint& tint = mark_ ? tintOfMark(hu, label)
+                       : overlay_ == Overlay::tissues
                            ? of_class_[std::size_t(lookup_.classOf(hu, label) + 1)]
                            : of_label_[hu == kRemovedHu ? 0 : label];
     const auto mixed = [&](unsigned add) { return (grey * tint.keep + add) >> 8; };
@@ -85,6 +96,12 @@ class SliceColours {
     unsigned keep = 256, red = 0, green = 0, blue = 0;
   };
   Tint tintOf(const Vec3& colour, TissueLook look) const;
+  static Tint tint(const Vec3& colour, double opacity);
+  const Tint& tintOfMark(std::int16_t hu, std::uint8_t label) const {
+    const bool is = lookup_.classOf(hu, label) == mark_->tissue;
+    const bool was = before_.classOf(hu, label) == mark_->was;
+    return of_mark_[std::size_t(is ? (was ? 1 : 2) : (was ? 3 : 0))];
+  }
   void mix();
 
   HuWindow window_ = kWindowPresets[kFirstPreset].window;
@@ -94,6 +111,9 @@ class SliceColours {
   TissueLooks looks_;
   std::vector<Structure> structures_;
   TissueLookup lookup_;
+  std::optional<Mark> mark_;
+  TissueLookup before_;
+  std::array<Tint, 4> of_mark_{};  // of none, kept, gained, lost
   std::vector<std::uint8_t> grey_;
   std::array<Tint, kMaxTissues + 1> of_class_{};  // the first: of no tissue
   std::array<Tint, 256> of_label_{};

@@ -16,6 +16,9 @@ Workstation::Workstation(const Policy& policy, QObject* parent) : QObject(parent
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
   connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::phaseChanged);
+  connect(&opening_, &BackgroundTask::ended, this, [this] {
+    if (std::exchange(place_again_, false) && case_ && phase_ == Phase::ready) placeEdited();
+  });
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
   connect(&saving_, &BackgroundTask::progressed, this, &Workstation::savingProgressed);
   connect(&saving_, &BackgroundTask::ended, this, &Workstation::savingEnded);
@@ -48,6 +51,16 @@ Scene withArmsOfThisPlace(Scene scene) {
 
 void Workstation::start(const std::filesystem::path& recordings,
                         std::optional<OperatorScript> script, double seconds) {
+  begin(recordings, std::move(script), seconds, false);
+}
+
+void Workstation::poke() {
+  constexpr double kNoEnd_s = 1e9;
+  begin({}, {}, kNoEnd_s, true);
+}
+
+void Workstation::begin(const std::filesystem::path& recordings,
+                        std::optional<OperatorScript> script, double seconds, bool poke) {
   if (phase_ != Phase::ready || isOpening()) return;
   // It may have come in while it was unlocked.
   if (Status may = mayPractise(*scene_, scene_file_); !may) return fail(may.error());
@@ -60,13 +73,14 @@ void Workstation::start(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem,
+      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem, poke,
        script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
-        if (Status made = makeFolder(recordings); !made) return made.error();
+        if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
         if (!placed) return placed.error();
-        return Session::create(scene, *placed, {freshFile(recordings, stem, ".h5"), script, true});
+        const auto file = poke ? std::filesystem::path() : freshFile(recordings, stem, ".h5");
+        return Session::create(scene, *placed, {file, script, true, poke});
       },
       [this, seconds, tissues](Result<std::unique_ptr<Session>> created) {
         if (!created) return notStarted(created.error());
@@ -119,10 +133,11 @@ void Workstation::stop() {
   setPhase(Phase::ending);  // from here to the outcome the session is the background thread's
   running_.run([session = session_.get()](const Progress&) { return session->stop(); },
                [this](Status stopped) {
-                 carved_ = session_->carved();
+                 const bool poke = session_->isPoke();
+                 if (!poke) carved_ = session_->carved();
                  tellGivenBack();
                  emit sessionEnded(*session_);
-                 emit exerciseReported(session_->report());
+                 if (!poke) emit exerciseReported(session_->report());
                  const std::optional<Error> stuck = session_->leftBehind();
                  session_.reset();
                  noteController(scene_->controller);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "scene/policy.h"
+#include "scene/scene_edits.h"
 #include "session/session.h"
 #include "ui/common/background_task.h"
 #include "ui/work/import_task.h"
@@ -59,9 +60,10 @@ class Workstation : public QObject {
   // False: not now (something is being opened or runs).
   bool useStructures(const std::shared_ptr<const LabelMap>& structures);
   // Where the exercise enters: at a place that was clicked, from the direction `outward`, or, for
-  // nothing, where the scene's file says. Holds for this case in this exercise. False: not now.
+  // nothing, where the scene's file says. An edit, for this case in this exercise. False: not now.
   bool placeEntry(const std::optional<Landmark>& entry);
-  const std::optional<Landmark>& entry() const { return entry_; }
+  // Null: where the file says.
+  const Landmark* entry() const;
   // While that is being done: the case itself stays as it is.
   bool isPlacing() const { return placing_; }
   void cancelOpening() { opening_.cancel(); }
@@ -100,15 +102,32 @@ class Workstation : public QObject {
   // `seconds` the session is finished() and waits for stop().
   void start(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
              double seconds);
+  // Without a recording, and nothing is cut: to feel what was set. Else a session as any.
+  void poke();
+  bool isPoke() const { return session_ && session_->isPoke(); }
   void stop();
   // Emits recordingFailed() when the running exercise can no longer be recorded. The window asks
   // with every picture.
   void checkRecording();
   // Only while the phase is running.
   Session* session() const { return phase_ == Phase::running ? session_.get() : nullptr; }
-  // Felt at once, in an exercise that is being started too, and kept for the next one. The tissues
-  // are kept as long as the scene is, whatever the case.
-  void setTissues(const TissueSet& tissues);
+  // --- Edits of the exercise by a person (workstation_edits.cpp) ---
+
+  // The scene is as `wanted` from now on, for the next exercise and, of tissues and controller, for
+  // the one that runs or is being started; what else differs waits for its end. It stays as long as
+  // the scene does, whatever the case. `what`: edits of the same that follow one another are one
+  // step of edits() until closeEdit(). False, and said: nothing has changed, and sceneChanged()
+  // shows that.
+  bool edit(const Scene& wanted, const std::string& what);
+  void closeEdit() { history_.close(); }
+  // The same for the tissues alone; another set than the landmarks know is withTissues().
+  void setTissues(const TissueSet& tissues, const std::string& what = "tissues");
+  const SceneHistory& edits() const { return history_; }
+  void undoEdit();
+  void redoEdit();
+  // Whether anything but tissues and controller is another than the exercise was opened with, or
+  // saved as.
+  bool sceneEdited() const;
   // How tissues look: the scene's until a person chooses. Of the view alone, so neither the scene
   // nor a recording changes with it.
   void setLooks(const TissueLooks& looks) { looks_ = looks; }
@@ -176,9 +195,10 @@ class Workstation : public QObject {
   void sessionEnded(trephine::Session& session);
   // What the view shows of an exercise before is gone; failed() says why none runs.
   void startFailed();
-  // After sessionEnded(), what it came to.
+  // After sessionEnded(), what it came to; not of a poke.
   void exerciseReported(const trephine::RunReport& report);
   void controllerChanged();  // controllerInForce()
+  void editsChanged();       // edits()
   void savingProgressed(double fraction, const QString& step);
   void savingEnded();
   void saved(const QString& what);
@@ -195,17 +215,26 @@ class Workstation : public QObject {
   std::optional<Scene> readSceneOrFail(const std::filesystem::path& file);
   void openSource(Scene scene, const std::filesystem::path& scene_file, const std::string& source,
                   bool same_scene = false);
-  void enterAt(Scene& scene) const;
   Status placeAgain(const std::shared_ptr<const LabelMap>& structures);
   void openInBackground(Opened opening);
+  Scene asEdited(Scene from_file, bool another_case = false) const;
   void keepEdits(Opened& opened);
   void opened(Result<Opened> outcome);
+  void begin(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
+             double seconds, bool poke);
   void started(std::unique_ptr<Session> session, double seconds);
   void notStarted(const Error& error);
   void tellGivenBack();
   void saveOnceStill(const std::filesystem::path& file, std::function<void()> then);
   void setPhase(Phase phase);
   void fail(const Error& error);
+
+  bool mayEdit(const Scene& wanted);
+  void take(Scene wanted);
+  bool mayGoTo(const Scene* step);
+  void goTo(Scene scene);
+  void placeEdited();
+  bool isEntry(const Landmark& landmark) const;
 
   void takeBack();
   void applyTissues(const TissueSet& tissues);
@@ -218,13 +247,14 @@ class Workstation : public QObject {
   std::optional<Scene> scene_;
   std::filesystem::path scene_file_;
   ControllerKind in_force_ = ControllerKind::bounded;
+  Scene opened_scene_;  // as it was opened, or saved
+  SceneHistory history_;
+  bool one_set_ = false;  // an edit took away the scene's tissues for elsewhere
   TissueSet declared_tissues_;
   std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;
   std::optional<Case> case_;
-  std::optional<Landmark> entry_;         // instead of the scene's landmark of that id
-  std::optional<Landmark> entry_before_;  // in the case as it is placed
-  TissueTable placed_with_{};             // its landmarks were found in
+  TissueTable placed_with_{};  // its landmarks were found in
   Volume mirror_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<const Grid> carved_;
@@ -232,6 +262,8 @@ class Workstation : public QObject {
   bool save_waits_ = false;                 // until the haptic thread stands still
   bool scene_chosen_ = false;               // by a person
   bool placing_ = false;                    // structures alone are being opened
+  bool place_again_ = false;                // an edit waits for that
+  bool placing_edit_ = false;               // and goes back where that fails
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
   BackgroundTask opening_, running_, saving_;

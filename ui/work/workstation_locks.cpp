@@ -30,7 +30,9 @@ void Workstation::takeBack() {
   if (isLocked(Lock::tissues) && tissuesEdited()) {
     const TissueSet own = declared_tissues_;
     applyTissues(own);
+    history_.begin(*scene_);
     emit sceneChanged();
+    emit editsChanged();
   }
   if (!isLocked(Lock::controller)) return;
   const Result<Scene> own = readScene(scene_file_);
@@ -43,12 +45,6 @@ bool Workstation::refuseLocked(Lock lock, const char* what) {
   fail({"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
         unlockWords(policy_).toStdString()});
   return true;
-}
-
-void Workstation::setTissues(const TissueSet& tissues) {
-  if (!scene_) return;
-  if (refuseLocked(Lock::tissues, "The tissues are")) return emit sceneChanged();  // as they were
-  applyTissues(tissues);
 }
 
 void Workstation::applyTissues(const TissueSet& tissues) {
@@ -70,7 +66,8 @@ void Workstation::setController(ControllerKind kind) {
 }
 
 void Workstation::applyController(ControllerKind kind) {
-  scene_->controller = kind;
+  scene_->controller = opened_scene_.controller = kind;
+  history_.settle(*scene_);
   if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {
     fail({"BUSY", "Too many changes are waiting", "the haptic loop", "Try again"});

@@ -99,6 +99,7 @@ void Workstation::openPhantom(const std::string& name) {
   const std::filesystem::path file = fits ? scene_file_ : defaultScene(name);
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
+  if (fits) scene = asEdited(*std::move(scene), true);
   useCase(*scene, phantomSource(name));
   openSource(*std::move(scene), file, phantomSource(name), fits);
 }
@@ -127,8 +128,8 @@ void Workstation::useLabels(const std::filesystem::path& file, const Answers& an
   // As its file has it: with structures it may have other tissues.
   std::optional<Scene> scene = readSceneOrFail(scene_file_);
   if (!scene) return;
+  scene = asEdited(*std::move(scene));
   useCase(*scene, scene_->case_source);
-  enterAt(*scene);
   Opened opening{*std::move(scene), scene_file_, case_, true, file.string(), answers};
   opening.structures_alone = true;
   openInBackground(std::move(opening));
@@ -138,28 +139,12 @@ bool Workstation::useStructures(const std::shared_ptr<const LabelMap>& structure
   return case_ && phase_ == Phase::ready && !isOpening() && placeAgain(structures).ok();
 }
 
-bool Workstation::placeEntry(const std::optional<Landmark>& entry) {
-  if (!case_ || phase_ != Phase::ready || isOpening()) return false;
-  entry_ = entry;
-  const Status begun = placeAgain(case_->structures);
-  if (begun) return true;
-  entry_ = entry_before_;
-  fail(begun.error());
-  return false;
-}
-
-void Workstation::enterAt(Scene& scene) const {
-  for (Landmark& landmark : scene.landmarks) {
-    if (entry_ && landmark.id == entry_->id) landmark = *entry_;
-  }
-}
-
 // The open case in its scene, as that is on disk.
 Status Workstation::placeAgain(const std::shared_ptr<const LabelMap>& structures) {
   Result<Scene> scene = allowedScene(scene_file_, unlocked_ ? nullptr : &policy_);
   if (!scene) return scene.error();
+  scene = asEdited(*std::move(scene));
   useCase(*scene, scene_->case_source);
-  enterAt(*scene);
   const bool same = structures == case_->structures;
   Opened opening{*std::move(scene), scene_file_, same ? *case_ : withStructures(*case_, structures),
                  true};
@@ -180,8 +165,12 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     in_force_ = scene_->controller;
     declared_tissues_ = scene_->tissues;
     looks_ = scene_->view.looks;
+    opened_scene_ = *scene_;
+    history_.begin(*scene_);
+    one_set_ = false;
     emit sceneChanged();
     emit locksChanged();
+    emit editsChanged();
     return;
   }
   useCase(scene, source);
@@ -193,6 +182,7 @@ void Workstation::openImported(const Case& read, const std::filesystem::path& la
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
+  if (scene_) scene = asEdited(*std::move(scene), true);
   useCase(*scene, "");
   Opened opening{*std::move(scene), file, read, scene_.has_value(), labels.string()};
   opening.any_scene = !scene_chosen_;
@@ -204,6 +194,7 @@ void Workstation::openStored(std::function<Result<Stored>(const Progress&)> load
   const std::filesystem::path file = scene_ ? scene_file_ : defaultScene("cranium");
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
+  if (scene_) scene = asEdited(*std::move(scene), true);
   useCase(*scene, "");
   Opened opening{*std::move(scene), file, {}, scene_.has_value()};
   opening.any_scene = true;
@@ -324,10 +315,14 @@ void Workstation::openInBackground(Opened opening) {
 // a case on which these hold again.
 void Workstation::keepEdits(Opened& opened) {
   const LabelMap* labels = opened.of->labels.get();
-  const bool same_set = opened.same_scene && scene_->tissues_elsewhere.has_value() ==
-                                                 opened.scene.tissues_elsewhere.has_value();
+  const bool same_set =
+      opened.same_scene && (one_set_ || scene_->tissues_elsewhere.has_value() ==
+                                            opened.scene.tissues_elsewhere.has_value());
+  if (!same_set) history_.begin(opened.scene);
   if (same_set) {
-    opened.scene.tissues = scene_->tissues;  // edited while the case was read, perhaps
+    // Edited while the case was read, perhaps.
+    if (opened.structures_alone) opened.scene = asEdited(std::move(opened.scene));
+    opened.scene.tissues = scene_->tissues;
     for (TissueSet* set : {&opened.scene.tissues, &declared_tissues_}) placeTissues(*set, labels);
     return;
   }
@@ -335,6 +330,7 @@ void Workstation::keepEdits(Opened& opened) {
   if (opened.same_scene && tissuesEdited()) edited = scene_->tissues;
   declared_tissues_ = opened.scene.tissues;
   if (!opened.same_scene) {
+    one_set_ = false;
     looks_ = opened.scene.view.looks;
     edited_other_.reset();
     return;
@@ -347,12 +343,13 @@ void Workstation::keepEdits(Opened& opened) {
 }
 
 void Workstation::opened(Result<Opened> outcome) {
+  const bool of_edit = std::exchange(placing_edit_, false);
   if (!outcome) {
-    entry_ = entry_before_;
+    if (of_edit && history_.canUndo()) goTo(history_.undo());
+    placing_edit_ = false;
     if (case_) emit placingFailed();
     return fail(outcome.error());
   }
-  entry_before_ = entry_;
   const bool structures_alone = outcome->structures_alone;
   const bool may_edit = !isLocked(Lock::tissues);
   placed_with_ = tissueTable(outcome->scene.tissues);
@@ -363,21 +360,24 @@ void Workstation::opened(Result<Opened> outcome) {
     placeTissues(outcome->scene.tissues, outcome->of->labels.get());
     declared_tissues_ = outcome->scene.tissues;
   }
+  const bool as_opened = !outcome->same_scene || !sceneEdited();
   scene_ = std::move(outcome->scene);
+  if (as_opened) opened_scene_ = *scene_;
+  history_.settle(*scene_);
   scene_file_ = std::move(outcome->scene_file);
   in_force_ = scene_->controller;
   case_ = std::move(outcome->of);
   if (structures_alone) {
     emit sceneChanged();
+    emit editsChanged();
     emit structuresChanged();
     return;
   }
   mirror_ = std::move(outcome->mirror);
-  entry_.reset();
-  entry_before_.reset();
   carved_.reset();
   tellGivenBack();
   emit sceneChanged();
+  emit editsChanged();
   emit locksChanged();
   emit caseOpened();
   setPhase(Phase::ready);

@@ -255,6 +255,89 @@ TEST(Session, AToolThatIsChangedOnTheWayReplaysIdenticallyAndItsCutsAreUndone) {
   EXPECT_TRUE(result->identical) << result->first_difference->field;
 }
 
+TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
+  SessionOptions options = scripted();
+  options.poke = true;
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()), options);
+  EXPECT_TRUE(session->isPoke());
+  TissueSet softer = session->scene().tissues;
+  for (Tissue& tissue : softer.tissues) {
+    tissue.cuttable = true;
+    tissue.cutting_J_per_mm3.value = 1e-9;
+  }
+  ASSERT_TRUE(session->setTissues(softer).ok());
+  ASSERT_TRUE(session->freewheel(10.0).ok());
+  const RunReport report = session->report();
+  EXPECT_EQ(report.removed_voxels, 0u);
+  EXPECT_EQ(report.volume_sha256, report.volume_sha256_before);
+  EXPECT_TRUE(report.recording.empty());
+  const std::vector<PokeCurve> pokes = session->pokes();
+  ASSERT_FALSE(pokes.empty());
+  double most_N = 0.0;
+  for (const PokeCurve& poke : pokes) {
+    for (const PokePoint& p : poke.points) most_N = std::max(most_N, p.sent_N);
+  }
+  EXPECT_GT(most_N, 0.5);
+  EXPECT_LE(most_N, 3.3);
+}
+
+// A tool that rests in bone, or in soft tissue, while the numbers of that change a hundredfold: the
+// arm has them two ticks later, and its force goes there no faster than 0.05 N/ms.
+TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {
+  test::TemporaryFolder folder;
+  auto session = *Session::create(cranium(), test::placed(cranium(), smallHead()),
+                                  scripted(folder / "s.h5"));
+  const TissueSet own = session->scene().tissues;
+  TissueSet soft = own, hard = own;
+  for (Tissue& tissue : soft.tissues) {
+    for (const TissueNumber& number : kTissueNumbers) {
+      if (number.of(tissue)) number.set(tissue, {0.1 * number.valueOf(tissue), "asked"});
+    }
+  }
+  for (Tissue& tissue : hard.tissues) {
+    for (const TissueNumber& number : kTissueNumbers) {
+      if (number.of(tissue)) number.set(tissue, {10.0 * number.valueOf(tissue), "asked"});
+    }
+  }
+  int talks = 0;
+  std::vector<std::uint64_t> asked;
+  freewheelTalking(*session, 8.0, [&] {
+    asked.push_back(session->state().ticks);
+    ASSERT_TRUE(session->setTissues(++talks % 2 == 0 ? soft : hard).ok());
+  });
+  auto reader = SessionReader::open(folder / "s.h5");
+  ASSERT_TRUE(reader.ok());
+  std::vector<std::uint64_t> felt;
+  const auto events = (*reader)->events();
+  ASSERT_TRUE(events.ok());
+  for (const Event& event : *events) {
+    if (event.kind == EventKind::command && event.command.kind == CommandKind::tissues) {
+      felt.push_back(event.tick);
+    }
+  }
+  if (asked.size() > felt.size()) asked.pop_back();  // after the last tick
+  ASSERT_EQ(felt.size(), asked.size());
+  std::uint64_t longest = 0;
+  for (std::size_t i = 0; i < felt.size(); ++i) longest = std::max(longest, felt[i] - asked[i]);
+  EXPECT_LE(longest, 2u);
+  const auto ticks = (*reader)->ticks(0, 8000);
+  ASSERT_TRUE(ticks.ok());
+  double fastest_N = 0.0, most_N = 0.0;
+  for (std::size_t t = 1; t < ticks->size(); ++t) {
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+      const double before_N = glm::length((*ticks)[t - 1].arms[arm].sent_N);
+      const double now_N = glm::length((*ticks)[t].arms[arm].sent_N);
+      fastest_N = std::max(fastest_N, now_N - before_N);
+      most_N = std::max(most_N, now_N);
+    }
+  }
+  std::printf("%zu edits: in the hand after at most %d ticks, the force rises by at most %.4f N a "
+              "ms, to %.2f N\n",
+              felt.size(), int(longest), fastest_N, most_N);
+  EXPECT_GT(most_N, 0.5);
+  EXPECT_LE(fastest_N, 0.05 + 1e-9);
+}
+
 // Every event of a recording of a kind, as the tick had it.
 std::size_t commandsIn(const std::filesystem::path& recording) {
   const auto events = (*SessionReader::open(recording))->events();

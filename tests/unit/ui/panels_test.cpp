@@ -107,7 +107,7 @@ TEST_F(TissuePanelTest, AnOverlapIsSaidAndNotApplied) {
 
 TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedAlways) {
   QSpinBox& label = find<QSpinBox>(panel_, "label");
-  EXPECT_EQ(label.text(), "any");
+  EXPECT_EQ(label.text(), "label any");
   EXPECT_FALSE(label.isEnabled());
   EXPECT_TRUE(label.toolTip().contains("label map"));
   panel_.setLabelsOpen(true);
@@ -125,7 +125,7 @@ TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedA
   ASSERT_TRUE(label.isEnabled());
   find<QSpinBox>(panel_, "huLow").setValue(201);
   label.setValue(0);
-  EXPECT_EQ(label.text(), "any");
+  EXPECT_EQ(label.text(), "label any");
   EXPECT_FALSE(changed_.tissues[1].label);
   panel_.select("soft");
   EXPECT_FALSE(label.isEnabled());
@@ -146,7 +146,7 @@ TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
   QLabel& felt = find<QLabel>(panel_, "tissueFelt");
   find<QDoubleSpinBox>(panel_, "stiffness").setValue(600.0);
   panel_.setRenderable(
-      Renderable{10.0, 1000.0},
+      ArmsLimit{{10.0, 1000.0}, 3.3},
       [](const Tissue& tissue) {
         return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
       },
@@ -164,7 +164,7 @@ TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMost
   find<QDoubleSpinBox>(panel_, "stiffness").setValue(1200.0);
   for (ControllerKind kind : {ControllerKind::off, ControllerKind::seed}) {
     panel_.setRenderable(
-        Renderable{10.0, 1000.0},
+        ArmsLimit{{10.0, 1000.0}, 3.3},
         [](const Tissue& tissue) {
           return Impedance{0.0, tissue.stiffness_N_per_m.value};
         },

@@ -1,0 +1,155 @@
+// Sets of tissues: new, another, out and in; and the history of edits.
+#include <QFileDialog>
+#include <algorithm>
+
+#include "base/file.h"
+#include "base/purpose.h"
+#include "base/system.h"
+#include "scene/scene_structures.h"
+#include "tissue/tissue_edits.h"
+#include "ui/common/words.h"
+#include "ui/prepare/prepare_workspace.h"
+
+namespace trephine {
+
+namespace {
+
+// What an edit is called where it can be taken back.
+QString editWords(const std::string& what) {
+  const std::string of = what.substr(0, what.find(':'));
+  if (of == "threshold" || of == "hu") return PrepareWorkspace::tr("HU of a tissue");
+  if (of == "opacity") return PrepareWorkspace::tr("opacity");
+  if (of == "colour") return PrepareWorkspace::tr("colour");
+  if (of == "name" || of == "set name") return PrepareWorkspace::tr("a name");
+  if (of == "where") return PrepareWorkspace::tr("where a tissue is");
+  if (of == "add tissue") return PrepareWorkspace::tr("a new tissue");
+  if (of == "remove tissue") return PrepareWorkspace::tr("a tissue removed");
+  if (of == "set") return PrepareWorkspace::tr("another set of tissues");
+  if (of == "revert") return PrepareWorkspace::tr("the set reverted");
+  if (of == "entry") return PrepareWorkspace::tr("the entry point");
+  return PrepareWorkspace::tr("a number of a tissue");
+}
+
+// A file name that nobody has to escape.
+QString fileNameOf(const std::string& set) {
+  QString name;
+  for (const QChar c : toQt(set)) name += c.isLetterOrNumber() ? c.toLower() : QChar('-');
+  return (name.isEmpty() ? QStringLiteral("tissues") : name) + ".json";
+}
+
+}  // namespace
+
+void PrepareWorkspace::connectSets() {
+  connect(tissues_, &TissuePanel::newSetWanted, this, &PrepareWorkspace::newSet);
+  connect(tissues_, &TissuePanel::duplicateWanted, this, &PrepareWorkspace::duplicateSet);
+  connect(tissues_, &TissuePanel::importWanted, this, &PrepareWorkspace::askForSet);
+  connect(tissues_, &TissuePanel::exportWanted, this, &PrepareWorkspace::askToExportSet);
+  connect(tissues_, &TissuePanel::revertWanted, this, &PrepareWorkspace::revertSet);
+  connect(tissues_, &TissuePanel::setWanted, this, &PrepareWorkspace::useSet);
+  connect(tissues_, &TissuePanel::undoWanted, &workstation_, &Workstation::undoEdit);
+  connect(tissues_, &TissuePanel::redoWanted, &workstation_, &Workstation::redoEdit);
+  connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showHistory);
+  connect(tissues_, &TissuePanel::setsWanted, this, [this] {
+    std::vector<std::pair<QString, std::filesystem::path>> sets;
+    for (const auto& folder : {resourceFolder() / "tissues", ownSets()}) {
+      const std::size_t first = sets.size();
+      std::error_code ec;
+      for (std::filesystem::directory_iterator at(folder, ec), end; !ec && at != end;
+           at.increment(ec)) {
+        if (at->path().extension() != ".json") continue;
+        const Result<TissueSet> set = readTissueSet(at->path());
+        if (set) sets.emplace_back(shownName(set->name), at->path());
+      }
+      std::sort(sets.begin() + std::ptrdiff_t(first), sets.end());
+    }
+    tissues_->setSets(sets);
+  });
+}
+
+std::filesystem::path PrepareWorkspace::ownSets() const {
+  return bench_.storage() / "tissues";
+}
+
+// While Prepare is shown without an exercise of Train, and not the structures.
+bool PrepareWorkspace::editsServe() const {
+  const bool exercise = workstation_.session() && !workstation_.isPoke();
+  return here_ && !exercise && !structuresShown();
+}
+
+void PrepareWorkspace::showHistory() {
+  const SceneHistory& edits = workstation_.edits();
+  const QString undo = edits.canUndo() ? editWords(edits.undoWhat()) : QString();
+  const QString redo = edits.canRedo() ? editWords(edits.redoWhat()) : QString();
+  tissues_->showHistory(undo, redo);
+  if (!editsServe()) return;
+  QAction *undo_action = bench_.undoAction(), *redo_action = bench_.redoAction();
+  undo_action->setEnabled(!undo.isEmpty());
+  redo_action->setEnabled(!redo.isEmpty());
+  undo_action->setToolTip(undo.isEmpty() ? tr("Takes back the last change; there is none")
+                                         : tr("Undo: %1").arg(undo));
+  redo_action->setToolTip(redo.isEmpty()
+                              ? tr("Brings back what was taken back; there is nothing")
+                              : tr("Redo: %1").arg(redo));
+}
+
+// In the place of the scene's: what landmarks lose by it is said.
+void PrepareWorkspace::takeSet(const TissueSet& set, const char* what) {
+  if (!workstation_.scene()) return;
+  TissueSet own = set;
+  own.elsewhere_file.clear();
+  NewTissues wanted = withTissues(*workstation_.scene(), own);
+  workstation_.closeEdit();
+  if (!workstation_.edit(wanted.scene, what)) return;
+  workstation_.closeEdit();
+  tissues_touched_ = true;
+  showScene();
+  QStringList said{tr("The exercise has the tissues \"%1\" now.").arg(shownName(set.name))};
+  for (const std::string& note : wanted.notes) said << toQt(note) + '.';
+  bench_.say(said.join(' '));
+}
+
+void PrepareWorkspace::newSet() {
+  takeSet(startingSet(tr("My tissues").toStdString()), "set");
+}
+
+void PrepareWorkspace::duplicateSet() {
+  if (!workstation_.scene()) return;
+  TissueSet set = workstation_.scene()->tissues;
+  set.name = tr("Copy of %1").arg(toQt(set.name)).left(60).toStdString();
+  takeSet(set, "set");
+}
+
+void PrepareWorkspace::askForSet() {
+  QFileDialog* dialog =
+      bench_.fileDialog("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { useSet(toPath(file)); });
+  dialog->open();
+}
+
+void PrepareWorkspace::useSet(const std::filesystem::path& file) {
+  const Result<TissueSet> set = readTissueSet(file);
+  if (!set) return bench_.report(set.error());
+  takeSet(*set, "set");
+}
+
+// Among the sets of this workstation, unless another place is chosen.
+void PrepareWorkspace::askToExportSet() {
+  if (!workstation_.scene()) return;
+  (void)makeFolder(ownSets());
+  QFileDialog* dialog =
+      bench_.saveDialog(tr("Export tissues"), fileNameOf(workstation_.scene()->tissues.name),
+                        tr("Tissues (*.json)"));
+  dialog->setDirectory(toQt(ownSets()));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [this](const QString& file) { workstation_.saveTissues(toPath(file), [] {}); });
+  dialog->open();
+}
+
+void PrepareWorkspace::revertSet() {
+  if (!workstation_.scene()) return;
+  if (!workstation_.tissuesEdited()) return bench_.say(tr("The set is as its file has it."));
+  takeSet(workstation_.declaredTissues(), "revert");
+}
+
+}  // namespace trephine

@@ -1,0 +1,164 @@
+#include "ui/tissue/tissue_mechanics.h"
+
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+#include <cmath>
+
+#include "tissue/tissue_edits.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+QString unitOf(const TissueNumber& row) {
+  return QString::fromUtf8(row.shown_unit ? row.shown_unit : row.unit);
+}
+
+}  // namespace
+
+TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
+  auto* form = new QFormLayout(this);
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  form->setVerticalSpacing(6);
+  for (const TissueNumber& row : kTissueNumbers) addNumber(row);
+  cuttable_ = new QCheckBox(tr("Can be cut"), this);
+  cuttable_->setObjectName("cuttable");
+  cuttable_->setToolTip(tr("Whether a tool may remove it, by the work that is put in"));
+  solid_ = new QCheckBox(tr("Stops a tool until it is cut"), this);
+  solid_->setObjectName("solid");
+  solid_->setToolTip(tr("A tool stays outside of it, as of bone; by itself from %1 N/m on")
+                         .arg(kSolidFrom_N_per_m));
+  form->addRow(cuttable_);
+  form->addRow(solid_);
+  connect(cuttable_, &QCheckBox::toggled, this, [this](bool on) {
+    Tissue other = tissue_;
+    other.cuttable = on;
+    if (wanted) (void)wanted(other, "cuttable");
+  });
+  connect(solid_, &QCheckBox::toggled, this, [this](bool on) {
+    Tissue other = tissue_;
+    other.solid.reset();
+    if (declared_.solid || other.isSolid() != on) other.solid = on;
+    if (wanted) (void)wanted(other, "solid");
+  });
+}
+
+void TissueMechanics::addNumber(const TissueNumber& row) {
+  Number number{new DecimalField(QString(row.label).toLower(), this), new LimitBar(this),
+                new QLineEdit(this), &row};
+  number.box->setDecimals(row.decimals);
+  number.box->setLimits(row.row().range.low, row.most);
+  number.box->setSingleStep(row.step);
+  number.box->setSuffix(' ' + unitOf(row));
+  number.box->setAccessibleName(tr(row.label));
+  number.bar->setObjectName(QString(row.label).toLower() + "Limit");
+  number.bar->setRange(row.most, row.step, row.decimals);
+  number.source->setObjectName(QString(row.label).toLower() + "Source");
+  number.source->setAccessibleName(tr("Source of %1").arg(tr(row.label)));
+  number.source->setPlaceholderText(tr("where the number comes from"));
+  number.source->setFrame(false);
+  number.source->setMaxLength(300);
+  QFont small = number.source->font();
+  small.setPointSizeF(small.pointSizeF() * 0.88);
+  small.setItalic(true);
+  number.source->setFont(small);
+  number.source->setMinimumWidth(40);
+  number.bar->setFont(small);
+  number.box->entered = [this, number] { entered(number); };
+  connect(number.source, &QLineEdit::editingFinished, this,
+          [this, number] { sourceEntered(number); });
+  numbers_.push_back(number);
+
+  auto* below = new QHBoxLayout;
+  below->setSpacing(6);
+  below->addWidget(number.source, 1);
+  below->addWidget(number.bar, 1);
+  auto* rows = new QVBoxLayout;
+  rows->setSpacing(0);
+  rows->addLayout(number.box->withReason());
+  rows->addLayout(below);
+  static_cast<QFormLayout*>(layout())->addRow(tr(row.label), rows);
+}
+
+void TissueMechanics::show(const Tissue& tissue, const Tissue& declared) {
+  tissue_ = tissue;
+  declared_ = declared;
+  for (const Number& n : numbers_) n.box->show(n.row->valueOf(tissue) * n.row->shown_per);
+  showOutcome();
+}
+
+void TissueMechanics::update(const Tissue& tissue, const Tissue& declared) {
+  tissue_ = tissue;
+  declared_ = declared;
+  showOutcome();
+}
+
+void TissueMechanics::setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
+                                ControllerKind in_force) {
+  arms_ = arms;
+  demanded_ = std::move(demanded);
+  in_force_ = in_force;
+  showOutcome();
+}
+
+void TissueMechanics::showOutcome() {
+  for (const Number& n : numbers_) {
+    const SourcedNumber* given = n.row->of(tissue_);
+    const QString source = given ? toQt(given->source) : QString();
+    n.source->setEnabled(given);
+    if (!n.source->hasFocus() || !n.source->isModified()) n.source->setText(source);
+    n.source->setCursorPosition(0);
+    n.source->setToolTip(source);
+    n.box->setToolTip(tr("%1. From %2 to %3 %4.")
+                          .arg(tr(n.row->meaning))
+                          .arg(n.row->row().range.low)
+                          .arg(n.row->most, 0, 'g', 6)
+                          .arg(unitOf(*n.row)) +
+                      (given ? '\n' + tr("Source: %1").arg(source) : QString()));
+    n.bar->setValue(n.row->valueOf(tissue_) * n.row->shown_per);
+    std::optional<double> most;
+    if (arms_ && demanded_) most = mostShown(*n.row, tissue_, *arms_, demanded_);
+    if (most) *most *= n.row->shown_per;
+    n.bar->setLimit(most, in_force_ == ControllerKind::bounded);
+  }
+  const QSignalBlocker quiet_cut(cuttable_), quiet_solid(solid_);
+  cuttable_->setChecked(tissue_.cuttable);
+  solid_->setChecked(tissue_.isSolid());
+}
+
+void TissueMechanics::entered(const Number& n) {
+  const TissueNumber& row = *n.row;
+  Tissue other = tissue_;
+  // Half a digit: what is shown rounded is not another number.
+  const double half = 0.5 * std::pow(10.0, -row.decimals);
+  const auto shown = [&](double value) {
+    return std::abs(n.box->wanted() - value * row.shown_per) < half;
+  };
+  if (!shown(row.valueOf(tissue_))) {
+    const SourcedNumber* cited = row.of(declared_);
+    if (cited && shown(cited->value)) {
+      row.set(other, *cited);
+    } else if (!cited && n.box->wanted() == 0.0) {
+      row.clear(other);
+    } else {
+      row.set(other, {n.box->wanted() / row.shown_per, kOwnSource});
+    }
+  }
+  if (wanted && wanted(other, row.key)) n.box->take();
+}
+
+void TissueMechanics::sourceEntered(const Number& n) {
+  const SourcedNumber* given = n.row->of(tissue_);
+  const QString typed = n.source->text().simplified();
+  n.source->setModified(false);
+  if (!given || typed.isEmpty() || typed == toQt(given->source)) return showOutcome();
+  Tissue other = tissue_;
+  n.row->set(other, {given->value, typed.toStdString()});
+  if (wanted) (void)wanted(other, n.row->key);
+}
+
+}  // namespace trephine

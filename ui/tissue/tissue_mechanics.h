@@ -1,0 +1,54 @@
+// What a tissue does to a hand: each number with its unit, its range, its source and what the arms
+// can show of it, and whether it can be cut and stops a tool.
+#pragma once
+
+#include <QCheckBox>
+#include <QLineEdit>
+#include <QWidget>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "haptics/controllers.h"
+#include "scene/arm_limits.h"
+#include "ui/common/number_field.h"
+#include "ui/tissue/limit_bar.h"
+
+namespace trephine {
+
+class TissueMechanics : public QWidget {
+  Q_OBJECT
+ public:
+  explicit TissueMechanics(QWidget* parent = nullptr);
+
+  // Every field as the tissue is; what was typed and refused goes. `declared`: as its file has it.
+  void show(const Tissue& tissue, const Tissue& declared);
+  // The same, but for what is typed: after another field was taken.
+  void update(const Tissue& tissue, const Tissue& declared);
+  void setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
+                 ControllerKind in_force);
+
+  // A person wants this; `what` is the number's key. The tissue is as it was where it is refused.
+  std::function<Status(const Tissue& wanted, const char* what)> wanted;
+
+ private:
+  struct Number {
+    DecimalField* box;
+    LimitBar* bar;
+    QLineEdit* source;
+    const TissueNumber* row;
+  };
+  void addNumber(const TissueNumber& row);
+  void entered(const Number& number);
+  void sourceEntered(const Number& number);
+  void showOutcome();
+
+  std::vector<Number> numbers_;
+  QCheckBox *cuttable_, *solid_;
+  Tissue tissue_, declared_;
+  std::optional<ArmsLimit> arms_;
+  DemandedOf demanded_;
+  ControllerKind in_force_ = ControllerKind::bounded;
+};
+
+}  // namespace trephine
