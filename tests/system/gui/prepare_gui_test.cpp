@@ -132,6 +132,8 @@ class PrepareGuiTest : public test::WindowTest {
   void aDraggedThresholdIsSeenInSlicesAndIn3DAtOnceAndIsOneStepBack() {
     const TissueSet before = tissues();
     const QString share = listText("bone");
+    QTRY_VERIFY_WITH_TIMEOUT(window_->view().isComplete(), kLong_ms);
+    QTest::qWait(500);
     const QImage head = window_->view().grab().toImage();
     panel().select("bone");
     QTest::qWait(300);
