@@ -275,6 +275,8 @@ Vec3 JsonReader::vec3(const char* key, const Range& range, Vec3 fallback) {
 Vec3 JsonReader::direction(const char* key) {
   const Vec3 along = vec3(key, {-kDirectionLength.high, kDirectionLength.high});
   const double length = glm::length(along);
+  constexpr double kUnit = 1e-12;  // what was written as a unit vector is read as it was, to the bit
+  if (std::abs(length - 1.0) < kUnit) return along;
   if (kDirectionLength.holds(length)) return along / length;
   fail(key, "The direction has a length of " + plainNumber(length) + ", which must lie " +
                 kDirectionLength.words());

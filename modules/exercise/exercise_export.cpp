@@ -146,6 +146,43 @@ class Exporter {
 
 }  // namespace
 
+namespace {
+
+// From a folder to a file: within one storage folder it stays true when that is moved.
+std::string pathFrom(const fs::path& folder, const fs::path& file, const fs::path& storage) {
+  std::error_code ec;
+  const fs::path of = fs::absolute(file, ec).lexically_normal();
+  const fs::path root = fs::absolute(storage, ec).lexically_normal();
+  const auto parts = std::mismatch(root.begin(), root.end(), of.begin(), of.end());
+  if (parts.first != root.end()) return of.string();
+  return of.lexically_relative(fs::absolute(folder, ec).lexically_normal()).string();
+}
+
+}  // namespace
+
+Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const fs::path& storage,
+                              const Progress& progress) {
+  Json json = sceneFile(scene);
+  if (Result<Scene> valid = parseScene(json, folder / kSceneFile); !valid) return valid.error();
+  Result<PartFolder> part = PartFolder::make(folder);
+  if (!part) return part.error();
+  Exporter exporter(folder / kSceneFile, *part);
+  const Status named = eachNamedFile(json, [&](NamedFile kind, const std::string& id, Json& name) {
+    if (kind != NamedFile::caseVolume && kind != NamedFile::labels) {
+      return exporter.copyNamed(kind, id, name);
+    }
+    name = pathFrom(folder, name.get<std::string>(), storage);
+    return Status();
+  });
+  if (!named) return named.error();
+  if (Status written = part->writeText(kSceneFile, json.dump(1) + '\n'); !written) {
+    return written.error();
+  }
+  if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+  if (Status done = part->becomeInstead(); !done) return done.error();
+  return folder / kSceneFile;
+}
+
 Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::string& case_source,
                                         const fs::path& folder, const Progress& progress) {
   Result<Json> json = readJsonFile(scene_file);

@@ -23,6 +23,22 @@ struct ExercisePart {
 
 Json toJson(const ExercisePart& part);
 
+struct Scene;
+
+// An exercise that is made on this workstation: the scene and the files that it names, in a folder
+// of its own, in the place of what is there. Its case and label map stay where they are and are
+// named from there, within `storage` relatively. The same scene, read and saved again, gives the
+// same bytes. The scene's file. Errors: those of readScene (what it names is not there, a number
+// out of range), CANNOT_WRITE, CANCELLED.
+Result<std::filesystem::path> saveExercise(const Scene& scene, const std::filesystem::path& folder,
+                                           const std::filesystem::path& storage,
+                                           const Progress& progress = Progress());
+
+// The exercises below `storage`/exercises: their scene files, in the order of their folders' names.
+std::vector<std::filesystem::path> exercisesIn(const std::filesystem::path& storage);
+// A folder there that is free, called after the exercise.
+std::filesystem::path freshExercise(const std::filesystem::path& storage, const std::string& name);
+
 struct ExportedExercise {
   std::filesystem::path folder;
   std::vector<ExercisePart> parts;  // the scene first

@@ -1,4 +1,5 @@
 // A folder becomes an exercise of this workstation.
+#include <algorithm>
 #include <set>
 
 #include "base/file.h"
@@ -139,6 +140,30 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
     if (!done) return done.error();
     imported.scene = target / imported.check.scene;
     return imported;
+  }
+}
+
+std::vector<fs::path> exercisesIn(const fs::path& storage) {
+  std::vector<fs::path> scenes;
+  std::error_code ec;
+  for (auto at = fs::directory_iterator(storage / "exercises", ec); !ec && at != fs::end(at);
+       at.increment(ec)) {
+    const std::string name = at->path().filename().string();
+    std::error_code none;
+    const fs::path scene = at->path() / kSceneFile;
+    if (!name.starts_with('.') && fs::is_regular_file(scene, none)) scenes.push_back(scene);
+  }
+  std::ranges::sort(scenes);
+  return scenes;
+}
+
+fs::path freshExercise(const fs::path& storage, const std::string& name) {
+  const std::string stem = plainName(name, "exercise");
+  for (int n = 1;; ++n) {
+    const fs::path folder =
+        storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
+    std::error_code ec;
+    if (fs::symlink_status(folder, ec).type() == fs::file_type::not_found) return folder;
   }
 }
 

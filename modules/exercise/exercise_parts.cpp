@@ -1,9 +1,11 @@
 #include "exercise/exercise_parts.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -133,6 +135,26 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
       {"format", "trephine.exercise"}, {"version", 1}, {"scene", scene}, {"parts", list}};
   if (Status written = writeText(kListFile, json.dump(1) + '\n'); !written) return written.error();
   return parts;
+}
+
+Status PartFolder::becomeInstead() {
+  std::error_code ec;
+  if (fs::symlink_status(target_, ec).type() == fs::file_type::not_found) return become();
+  if (Status synced = syncFolder(path_); !synced) return synced;
+  if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+    // A file system without exchange: the one that was there stays beside it until it is done.
+    if (errno != EINVAL && errno != ENOSYS) return writeError(target_, errno);
+    const fs::path aside = path_.string() + ".old";
+    if (::rename(target_.c_str(), aside.c_str()) != 0) return writeError(target_, errno);
+    if (::rename(path_.c_str(), target_.c_str()) != 0) {
+      const int why = errno;
+      (void)::rename(aside.c_str(), target_.c_str());
+      return writeError(target_, why);
+    }
+    path_ = aside;
+  }
+  // What was there lies in this part's place now, and goes with it.
+  return syncFolder(target_.parent_path());
 }
 
 Status PartFolder::become() {

@@ -45,6 +45,8 @@ class PartFolder {
   Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
   // The folder that it was made for, by one rename. CANNOT_WRITE.
   Status become();
+  // The same in the place of one that is there, which goes: either is whole at any time.
+  Status becomeInstead();
 
  private:
   PartFolder(std::filesystem::path path, std::filesystem::path target)

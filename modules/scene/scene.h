@@ -99,6 +99,15 @@ Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 // map, and a case only where it is a phantom (a path could name a patient). What a recording keeps.
 Json toJson(const Scene& scene);
 
+// As a file that readScene() reads: everything, tissues inline and those for elsewhere beside them,
+// files named from the root. Neither the labels of a case nor what devices say of their arms is a
+// scene's.
+Json sceneFile(const Scene& scene);
+
+// What would be wrong with that file: an edited scene is held to the rules of one that is read. The
+// Error names the field. Asks the disk whether the files are there.
+Status checkEdited(const Scene& scene);
+
 // A landmark's place in a case, found once and used for maps, scripts and the camera.
 struct PlacedLandmark {
   std::string id;

@@ -3,6 +3,7 @@
 
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
+#include "scene/scene_structures.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -203,6 +204,11 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
     Result<TissueSet> elsewhere = readTissueSet(scene.tissues.elsewhere_file);
     if (!elsewhere) return elsewhere.error();
     scene.tissues_elsewhere = *std::move(elsewhere);
+  } else if (reader.has("tissues_elsewhere")) {
+    Result<TissueSet> elsewhere = parseTissueSet(reader.raw("tissues_elsewhere"),
+                                                 file.string() + ": tissues_elsewhere");
+    if (reader.ok() && !elsewhere) return elsewhere.error();
+    if (elsewhere) scene.tissues_elsewhere = *std::move(elsewhere);
   }
   for (JsonReader& item : reader.objects("landmarks", kMostInAList))
     scene.landmarks.push_back(readLandmark(item));
@@ -262,6 +268,43 @@ Result<Scene> readScene(const fs::path& file) {
   Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   return parseScene(*json, file);
+}
+
+Json sceneFile(const Scene& scene) {
+  Scene plain = scene;
+  plain.tissues = unplaced(std::move(plain.tissues));
+  for (SceneArm& arm : plain.arms) arm.dynamics.reset();
+  Json json = toJson(plain);
+  const auto name = [](Json& in, const char* key, const std::string& file) {
+    if (!file.empty()) in[key] = file;
+  };
+  name(json, "case", scene.case_source);
+  name(json, "labels", scene.labels_file);
+  name(json, "operator", scene.operator_file);
+  if (scene.tissues_elsewhere) {
+    TissueSet elsewhere = unplaced(*scene.tissues_elsewhere);
+    json["tissues_elsewhere"] = toJson(elsewhere);
+  }
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    const ToolLook& look = scene.tools[i].look;
+    if (look.mesh.empty()) continue;
+    Json& tool = json["tools"][i];
+    tool["mesh"] = look.mesh.string();
+    writeNumbers(tool, kLookNumbers, look);
+    tool["axis"] = {look.axis.x, look.axis.y, look.axis.z};
+  }
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    name(json["arms"][i]["device"], "config", scene.arms[i].device_config);
+  }
+  if (scene.view.distance_mm != SceneView{}.distance_mm || !scene.view.landmark.empty()) {
+    writeNumbers(json["view"], kViewNumbers, scene.view);
+  }
+  return json;
+}
+
+Status checkEdited(const Scene& scene) {
+  const Result<Scene> read = parseScene(sceneFile(scene), "the exercise");
+  return read ? Status() : Status(read.error());
 }
 
 Json toJson(const Scene& scene) {

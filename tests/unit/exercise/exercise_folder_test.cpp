@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "base/file.h"
 #include "base/json.h"
@@ -228,6 +229,85 @@ TEST_F(ExerciseFolder, OnAnotherCaseWhatHoldsOfItsOwnAloneIsLeftOut) {
   EXPECT_EQ(out["case"], "phantom:abdomen");
   EXPECT_FALSE(out.contains("labels"));
   EXPECT_FALSE(fs::exists(folder_ / "stick/case"));
+}
+
+// ---- Exercises that are made here.
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(ExerciseFolder, EveryShippedSceneIsSavedReadAndSavedAgainInTheSameBytes) {
+  int scenes = 0;
+  for (const auto& entry : fs::directory_iterator(TREPHINE_TEST_SCENES)) {
+    const Result<Scene> shipped = readScene(entry.path());
+    ASSERT_TRUE(shipped.ok());
+    const fs::path storage = folder_ / "storage";
+    const fs::path folder = freshExercise(storage, shipped->name);
+    const Result<fs::path> saved = saveExercise(*shipped, folder, storage);
+    ASSERT_TRUE(saved.ok()) << saved.error().sentence();
+    const Result<Scene> read = readScene(*saved);
+    ASSERT_TRUE(read.ok()) << read.error().sentence();
+    // All but where its files lie.
+    const auto settings = [](const Scene& scene) {
+      Json json = toJson(scene);
+      if (scene.tissues_elsewhere) json["elsewhere"] = toJson(*scene.tissues_elsewhere);
+      json["operator"] = !scene.operator_file.empty();
+      for (const SceneTool& tool : scene.tools) json["meshes"].push_back(!tool.look.mesh.empty());
+      return json;
+    };
+    EXPECT_EQ(settings(*read), settings(*shipped)) << entry.path();
+    const std::string first = textOf(*saved);
+    ASSERT_TRUE(saveExercise(*read, folder, storage).ok());
+    EXPECT_EQ(textOf(*saved), first) << "in its own place";
+    const fs::path other = freshExercise(storage, shipped->name);
+    EXPECT_NE(other, folder);
+    const Result<fs::path> copy = saveExercise(*read, other, storage);
+    ASSERT_TRUE(copy.ok());
+    EXPECT_EQ(textOf(*copy), first) << "and in another";
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 7);
+  EXPECT_EQ(exercisesIn(folder_ / "storage").size(), std::size_t(2 * scenes));
+  for (const fs::path& file : filesBelow(folder_.path())) {
+    EXPECT_EQ(file.string().find(".part-"), std::string::npos) << file;
+  }
+}
+
+TEST_F(ExerciseFolder, ASavedOneNamesItsCaseFromWhereItLiesAndMovesWithTheStorage) {
+  const Result<Scene> scene = readScene(ofAPatient());
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  const fs::path storage = folder_ / "DOE^JANE";  // the case lies in it
+  const Result<fs::path> saved = saveExercise(*scene, storage / "exercises" / "mine", storage);
+  ASSERT_TRUE(saved.ok()) << saved.error().sentence();
+  const Json json = *readJsonFile(*saved);
+  EXPECT_EQ(json.at("case"), "../../doe.mha");
+  EXPECT_EQ(json.at("labels"), "../../doe.seg.nrrd");
+  fs::rename(storage, folder_ / "moved");
+  const Result<Scene> moved = readScene(folder_ / "moved" / "exercises" / "mine" / "scene.json");
+  ASSERT_TRUE(moved.ok()) << moved.error().sentence();
+  EXPECT_TRUE(readCase(moved->case_source).ok());
+}
+
+TEST_F(ExerciseFolder, WhatCannotBeSavedLeavesTheOneThatWasThereAsItWas) {
+  const fs::path storage = folder_ / "storage", folder = storage / "exercises" / "mine";
+  const Scene scene = *readScene(shipped("liver"));
+  ASSERT_TRUE(saveExercise(scene, folder, storage).ok());
+  const std::string before = textOf(folder / "scene.json");
+  Scene wrong = scene;
+  wrong.arms[0].map.motion_scale = 1e9;
+  EXPECT_EQ(saveExercise(wrong, folder, storage).error().code, "BAD_FIELD");
+  wrong = scene;
+  wrong.operator_file = "/nowhere/operator.json";
+  EXPECT_FALSE(saveExercise(wrong, folder, storage).ok());
+  Progress cancelled;
+  cancelled.cancel();
+  wrong = scene;
+  wrong.rate_hz = 2000;
+  EXPECT_EQ(saveExercise(wrong, folder, storage, cancelled).error().code, "CANCELLED");
+  EXPECT_EQ(textOf(folder / "scene.json"), before);
+  EXPECT_EQ(exercisesIn(storage).size(), 1u);
 }
 
 }  // namespace

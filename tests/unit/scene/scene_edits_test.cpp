@@ -87,6 +87,41 @@ TEST(SameScene, SeesFilesMeshesAndTissuesElsewhereAndNoPlacedLabel) {
   EXPECT_TRUE(sameScene(named, placed));
 }
 
+TEST(SceneFile, IsReadAsWhatWasWrittenAndWrittenAgainInTheSameBytes) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
+    const Result<Scene> scene = readScene(entry.path());
+    ASSERT_TRUE(scene.ok()) << entry.path();
+    const std::string written = sceneFile(*scene).dump(1);
+    const Result<Scene> again = parseScene(Json::parse(written), "/nowhere/scene.json");
+    ASSERT_TRUE(again.ok()) << again.error().sentence();
+    Scene expected = *scene;  // the file of the set for elsewhere is in it now
+    EXPECT_TRUE(sameScene(*again, expected)) << entry.path();
+    EXPECT_EQ(sceneFile(*again).dump(1), written) << entry.path();
+    EXPECT_TRUE(checkEdited(*scene).ok());
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 7);
+}
+
+TEST(SceneFile, AnEditIsHeldToTheRulesOfAFile) {
+  const Scene scene = cranium();
+  const auto wrong = [&](void (*edit)(Scene&)) {
+    Scene edited = scene;
+    edit(edited);
+    const Status status = checkEdited(edited);
+    EXPECT_FALSE(status.ok());
+    return status ? std::string() : status.error().where + ": " + status.error().what;
+  };
+  EXPECT_NE(wrong([](Scene& s) { s.arms[0].map.motion_scale = 1e4; }).find("motion_scale"),
+            std::string::npos);
+  EXPECT_NE(wrong([](Scene& s) { s.arms[0].tool = "spoon"; }).find("spoon"), std::string::npos);
+  EXPECT_NE(wrong([](Scene& s) { s.tools[0].look.mesh = "/nowhere.stl"; }).find("nowhere"),
+            std::string::npos);
+  EXPECT_NE(wrong([](Scene& s) { s.view.landmark = "moon"; }).find("moon"), std::string::npos);
+  EXPECT_NE(wrong([](Scene& s) { s.card->en.goal = ""; }).find("goal"), std::string::npos);
+}
+
 TEST(WithTissues, ALandmarkWhoseTissueIsGoneTakesASolidOneAndThatIsSaid) {
   const Scene scene = cranium();
   ASSERT_FALSE(scene.landmarks.empty());
