@@ -72,6 +72,17 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
   return {};
 }
 
+Result<std::vector<Vec3>> readWorkspaces(Scene scene) {
+  std::vector<LoopDevice> devices;
+  std::vector<TrephineCapabilities> capabilities;
+  if (Status opened = openDevices(scene, devices, capabilities); !opened) return opened.error();
+  std::vector<Vec3> sizes;
+  for (const TrephineCapabilities& of : capabilities) {
+    sizes.push_back(1000.0 * Vec3(of.workspace_m[0], of.workspace_m[1], of.workspace_m[2]));
+  }
+  return sizes;
+}
+
 Status readArmDynamics(Scene& scene) {
   std::vector<LoopDevice> devices;
   std::vector<TrephineCapabilities> capabilities;

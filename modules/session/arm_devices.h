@@ -20,4 +20,7 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
 // arms' dynamics and their force limits. Errors: as above.
 Status readArmDynamics(Scene& scene);
 
+// How far each arm reaches: the full extents of its workspace, device axes, mm. Errors: as above.
+Result<std::vector<Vec3>> readWorkspaces(Scene scene);
+
 }  // namespace trephine

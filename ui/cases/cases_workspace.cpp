@@ -13,6 +13,7 @@
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "ui/work/stored_case.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -23,43 +24,6 @@ constexpr int kMostRecent = 10;
 
 Error stillChanging() {
   return {"BUSY", "The change before is still being written", "", "Try again in a moment"};
-}
-
-// As the window works on it.
-Result<Workstation::Stored> storedCase(CaseLibrary& library, const std::string& id,
-                                       const Progress& progress) {
-  Result<LoadedCase> loaded = library.load(id, progress);
-  if (!loaded) return loaded.error();
-  Case of = caseOf(loaded->volume, loaded->record.volume_sha256);
-  of.provenance = loaded->provenance;
-  of.name = loaded->record.name;
-  of.stored = id;
-  Workstation::Stored stored{withStructures(std::move(of), loaded->structures), {}, {}, {}};
-  if (const std::optional<Error>& why = loaded->structures_problem) {
-    stored.no_structures = Error{
-        "NO_STRUCTURES",
-        "The file with the case's structures cannot be used, so it has none (" + why->what + ")",
-        why->where,
-        "Put the file back and open the case again; or make them anew and save them in the case"};
-  }
-  const std::string file = id + "/tissues.json";
-  std::optional<Error> problem = loaded->tissues_problem;
-  if (!problem && loaded->tissues.empty())
-    problem = Error{"MISSING_FILE", "There are none", file, ""};
-  if (!problem) {
-    Result<TissueSet> set = parseTissueSet(loaded->tissues, file);
-    set ? void(stored.tissues = *std::move(set)) : void(problem = set.error());
-  }
-  // No reason not to open the case.
-  if (problem) {
-    stored.no_tissues = Error{
-        "NO_TISSUES",
-        "The file with the case's own tissues cannot be used, so it has those of the exercise (" +
-            problem->what + ")",
-        problem->where,
-        "Put the file back and open the case again; or set the tissues and save them in the case"};
-  }
-  return stored;
 }
 
 }  // namespace

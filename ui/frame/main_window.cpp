@@ -183,7 +183,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   }
   const bool running = phase != Phase::empty && phase != Phase::ready;
   const bool unsaved = bench_.cutsUnsaved() || workstation().tissuesEdited() ||
-                       workstation().tissuesWait() || prepare_->structuresEdited();
+                       workstation().tissuesWait() || workstation().sceneEdited() ||
+                       prepare_->structuresEdited();
   if (may_close_ || !(running || unsaved)) {
     keep();
     return QMainWindow::closeEvent(event);

@@ -99,7 +99,9 @@ void PrepareWorkspace::takeSet(const TissueSet& set, const char* what) {
   own.elsewhere_file.clear();
   NewTissues wanted = withTissues(*workstation_.scene(), own);
   workstation_.closeEdit();
-  if (!workstation_.edit(wanted.scene, what)) return;
+  if (Status done = workstation_.edit(wanted.scene, what); !done) {
+    return bench_.report(done.error());
+  }
   workstation_.closeEdit();
   tissues_touched_ = true;
   showScene();

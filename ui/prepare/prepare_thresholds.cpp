@@ -37,6 +37,7 @@ void PrepareWorkspace::countVoxels() {
     for (const Structure& s : of->labels->structures) names.push_back(s.name);
   }
   tissues_->setStructures(names);
+  form_->setStructures(names);
   counting_.run(
       [volume = of->volume, labels = of->labels](const Progress& progress) {
         return histogramOf(*volume, labels.get(), progress);

@@ -52,12 +52,15 @@ void PrepareWorkspace::showScene() {
   views_->setAnatomy(scene->anatomy);
   showHistogram();
   showHistory();
+  showExercise();
 }
 
 // What lies below the views is the tissues'.
 void PrepareWorkspace::showTab() {
   histogram_->setVisible(tabs_->currentIndex() == kTissueTab);
   showPoke();
+  if (tabs_->currentIndex() != kExerciseTab) draw(false);
+  showArms();
 }
 
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
@@ -127,7 +130,10 @@ void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) 
   }
   // With the labels of the case, where it names structures.
   NewTissues wanted = withTissues(*workstation_.scene(), set);
-  if (!workstation_.edit(wanted.scene, what.toStdString())) return;
+  if (Status done = workstation_.edit(wanted.scene, what.toStdString()); !done) {
+    tissues_->setTissues(workstation_.scene()->tissues, workstation_.declaredTissues());
+    return bench_.report(done.error());
+  }
   if (!wanted.notes.empty()) bench_.say(toQt(wanted.notes.front()) + '.');
   tissues_touched_ = true;
   const TissueSet& placed = workstation_.scene()->tissues;
@@ -150,19 +156,24 @@ void PrepareWorkspace::structureLookWanted(int label, TissueLook look) {
 }
 
 void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
-  if (!workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
-  auto* box = new QMessageBox(
-      QMessageBox::Question, tr("Trephine"), tr("The tissues have been changed and not saved."),
-      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, bench_.window());
+  const bool scene = workstation_.sceneEdited();
+  if (!scene && !workstation_.tissuesEdited() && !workstation_.tissuesWait()) return go_on();
+  auto* box = new QMessageBox(QMessageBox::Question, tr("Trephine"),
+                              scene ? tr("The exercise has been changed and not saved.")
+                                    : tr("The tissues have been changed and not saved."),
+                              QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                              bench_.window());
   box->setObjectName("unsavedTissues");
   box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(isStored()
+  box->setInformativeText(scene ? tr("Save it? Discarded changes cannot be had back.")
+                          : isStored()
                               ? tr("Save them in the case? Discarded changes cannot be had back.")
                               : tr("Save them to a file? Discarded changes cannot be had back."));
   box->setDefaultButton(QMessageBox::Save);
-  connect(box, &QMessageBox::finished, this, [this, go_on = std::move(go_on)](int answer) {
+  connect(box, &QMessageBox::finished, this, [this, scene, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
+    if (scene) return saveExercise(false, go_on);
     if (isStored()) return saveInCase(go_on);
     QFileDialog* dialog =
         bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));

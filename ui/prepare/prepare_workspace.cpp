@@ -1,6 +1,7 @@
 #include "ui/prepare/prepare_workspace.h"
 
 #include <QHBoxLayout>
+#include <QTabBar>
 
 #include "ui/common/actions.h"
 #include "ui/common/placing.h"
@@ -24,7 +25,13 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   tabs_->setDocumentMode(true);
   tabs_->insertTab(kTissueTab, scrolled(tissues_, "tissuePage"), tr("Tissues"));
   tabs_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
+  tools_ = new ToolsPanel;
+  form_ = new ExerciseForm;
+  tabs_->insertTab(kToolTab, scrolled(tools_, "toolPage"), tr("Tools"));
+  tabs_->insertTab(kExerciseTab, scrolled(form_, "exercisePage"), tr("Exercise"));
   tabs_->setMinimumWidth(275);
+  // Four names beside each other in a narrow column.
+  tabs_->tabBar()->setStyleSheet("QTabBar::tab { padding: 5px 4px; min-width: 0; }");
   below_ = new QWidget;
   below_->setObjectName("prepareBelow");
   histogram_ = new HistogramView(below_);
@@ -37,6 +44,8 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   connectThresholds();
   connectSets();
   connectPoke();
+  connectArms();
+  connectExercise();
   connectStructures();
   connectExports();
   showUndo();
@@ -51,6 +60,7 @@ Workspace::Parts PrepareWorkspace::parts() {
 
 void PrepareWorkspace::enter() {
   here_ = true;
+  bench_.setTrying(false);
   showTab();
   showStructureTab();
   (void)offerMissing();
@@ -59,6 +69,8 @@ void PrepareWorkspace::enter() {
 void PrepareWorkspace::leave() {
   here_ = false;
   if (workstation_.isPoke()) workstation_.stop();
+  draw(false);
+  showArms();
   showStructureTab();
 }
 

@@ -8,6 +8,8 @@
 #include <QTimer>
 #include <optional>
 
+#include "ui/prepare/exercise_form.h"
+#include "ui/prepare/tools_panel.h"
 #include "ui/structures/structure_panel.h"
 #include "ui/tissue/histogram_view.h"
 #include "ui/tissue/poke_plot.h"
@@ -19,7 +21,7 @@ namespace trephine {
 class PrepareWorkspace : public Workspace {
   Q_OBJECT
  public:
-  static constexpr int kTissueTab = 0, kStructureTab = 1;
+  static constexpr int kTissueTab = 0, kStructureTab = 1, kToolTab = 2, kExerciseTab = 3;
 
   explicit PrepareWorkspace(Bench& bench);
 
@@ -80,6 +82,26 @@ class PrepareWorkspace : public Workspace {
   void showPoke();
   void togglePoke();
   void showPokesOf(Session& session);
+
+  // Tools and arms (prepare_arms.cpp).
+  void connectArms();
+  void showArms();
+  void workspaceMoved(const Vec3& centre_mm, bool done);
+  Status sceneWanted(const Scene& wanted, const std::string& what);
+
+  // The exercise (prepare_exercise.cpp).
+  void connectExercise();
+  void showExercise();
+  bool mayEditExercise() const;
+  void draw(bool on);
+  void outlineClicked(const Vec3& at_mm);
+  // Saves it in the storage folder, in its own place or as another one.
+  void saveExercise(bool copy, Bench::Next then);
+  std::optional<Scene> sceneToSave();
+  bool isOwnExercise() const;
+  void tryExercise();
+  void exportExercise();
+  void importExercise();
 
   // Structures (prepare_structures.cpp).
   bool structuresShown() const;
@@ -143,6 +165,11 @@ class PrepareWorkspace : public Workspace {
   std::optional<Moving> moving_;
   QTimer seen_later_;
   StructurePanel* structures_;
+  ToolsPanel* tools_;
+  ExerciseForm* form_;
+  std::vector<Vec3> workspaces_mm_;                 // of the arms, device axes
+  std::string workspaces_of_;                       // the devices that they were asked of
+  std::optional<Vec3> outline_first_;               // the first point of a new outline
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   // What the library's case has, whatever was saved to files: the editor's changes() then, nothing
   // for structures of another file; and whether tissues have been edited since.

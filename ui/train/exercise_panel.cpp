@@ -83,10 +83,16 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
   card_->setObjectName("showCard");
   card_->hide();
   connect(card_, &QPushButton::clicked, this, &ExercisePanel::cardWanted);
+  back_ = new QPushButton(tr("&Back to Prepare"));
+  back_->setObjectName("backToPrepare");
+  back_->setToolTip(tr("Ends the try and goes on preparing the exercise"));
+  back_->hide();
+  connect(back_, &QPushButton::clicked, this, &ExercisePanel::backWanted);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(12, 10, 12, 10);
   layout->setSpacing(8);
   layout->addWidget(title_);
+  layout->addWidget(back_);
   layout->addWidget(card_);
   layout->addWidget(time_);
   layout->addWidget(heading(tr("Removed")));

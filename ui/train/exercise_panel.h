@@ -35,12 +35,15 @@ class ExercisePanel : public QWidget {
   void showIdle();
   // A button with these words brings back the card or the result that was put aside; empty: none.
   void offerCard(const QString& words);
+  // The way back to Prepare, of an exercise that is tried.
+  void offerBack(bool offered) { back_->setVisible(offered); }
 
  signals:
   void cardWanted();
+  void backWanted();
 
  private:
-  QPushButton* card_;
+  QPushButton *card_, *back_;
   QLabel *title_, *goal_, *steps_, *tools_, *hands_, *time_, *removed_, *keys_;
 };
 

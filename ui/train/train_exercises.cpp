@@ -4,6 +4,7 @@
 #include <QStandardItemModel>
 #include <algorithm>
 
+#include "exercise/exercise_folder.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -11,8 +12,14 @@
 
 namespace trephine {
 
+// Those of the workstation, then those that were made or imported here.
 void TrainWorkspace::fillScenes() {
-  for (const std::filesystem::path& file : scenesOfWorkstation(workstation_.policy())) {
+  const QSignalBlocker quiet(scenes_);
+  scenes_->clear();
+  listed_.clear();
+  std::vector<std::filesystem::path> files = scenesOfWorkstation(workstation_.policy());
+  for (const auto& file : exercisesIn(bench_.storage())) files.push_back(file);
+  for (const std::filesystem::path& file : files) {
     Result<Scene> scene = readScene(file);
     if (!scene) continue;
     scenes_->addItem(toQt(scene->name), toQt(file));
@@ -35,8 +42,7 @@ void TrainWorkspace::chooseScene(int index) {
 
 // One stays where one is: the list is over Prepare too.
 void TrainWorkspace::useScene(const std::filesystem::path& file) {
-  bench_.goOnceOpen(here_ ? Place::train : Place::prepare);
-  workstation_.useScene(file);
+  bench_.openExercise(file, here_ ? Place::train : Place::prepare);
 }
 
 // In the list of exercises; without a scene, the one that an imported case would get.

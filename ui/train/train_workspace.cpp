@@ -135,6 +135,13 @@ void TrainWorkspace::connectParts() {
   connect(card_, &StartCard::startWanted, start_, &QAction::trigger);
   connect(card_, &StartCard::caseWanted, this, [this] { bench_.go(Place::cases); });
   connect(card_, &StartCard::asideWanted, this, [this] { putAside(true); });
+  connect(&bench_, &Bench::exercisesChanged, this, &TrainWorkspace::fillScenes);
+  connect(&bench_, &Bench::tryingChanged, this, [this] { exercise_->offerBack(bench_.trying()); });
+  connect(exercise_, &ExercisePanel::backWanted, this, [this] {
+    workstation_.stop();
+    bench_.setTrying(false);
+    bench_.go(Place::prepare);
+  });
   connect(exercise_, &ExercisePanel::cardWanted, this, [this] { putAside(false); });
   card_->takeTabFrom(*view_);
   result_->takeTabFrom(*view_);

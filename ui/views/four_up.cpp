@@ -117,6 +117,7 @@ FourUp::Slices FourUp::makeSlices(SliceAxis axis) {
   connect(made.view, &SliceView::boxDrawn, this, &FourUp::boxDrawn);
   connect(made.view, &SliceView::entryChosen, this, &FourUp::entryChosen);
   connect(made.view, &SliceView::entryLeft, this, &FourUp::entryLeft);
+  connect(made.view, &SliceView::workspaceMoved, this, &FourUp::workspaceMoved);
   connect(made.view, &SliceView::strokeBegan, this, &FourUp::strokeBegan);
   connect(made.view, &SliceView::strokeMoved, this, &FourUp::strokeMoved);
   connect(made.view, &SliceView::strokeEnded, this, &FourUp::strokeEnded);
@@ -244,6 +245,11 @@ void FourUp::setBrushRadius(double mm) {
 
 void FourUp::setBox(const std::optional<VoxelBox>& box) {
   for (const Slices& of : slices_) of.view->setBox(box);
+}
+
+void FourUp::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
+  for (const Slices& of : slices_) of.view->setWorkspaces(boxes);
+  three_d_->setWorkspaces(boxes);
 }
 
 void FourUp::setEntry(const std::optional<SliceView::Entry>& entry) {
@@ -388,7 +394,7 @@ bool FourUp::eventFilter(QObject* watched, QEvent* event) {
   }
   if (watched == three_d_ && event->type() == QEvent::FocusIn) emit helpChanged({});
   if (watched == three_d_ && event->type() == QEvent::MouseButtonDblClick && !training_ &&
-      !isForStructures(tool_) && tool_ != SliceTool::entry &&
+      !isForStructures(tool_) && tool_ != SliceTool::entry && tool_ != SliceTool::outline &&
       static_cast<QMouseEvent*>(event)->button() == Qt::LeftButton) {
     enlarge(0);
     return true;

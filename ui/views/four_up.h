@@ -62,6 +62,8 @@ class FourUp : public QWidget {
   // Of the slices, as SliceView has them.
   void setBox(const std::optional<VoxelBox>& box);
   void setEntry(const std::optional<SliceView::Entry>& entry);
+  // Where arms reach, in all four; the chosen one is dragged in the slices.
+  void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   void setOverlay(Overlay overlay, double opacity);
   // Other labels of the same voxels; labelsChanged() of each box that is changed in them.
   void showLabels(const std::shared_ptr<const LabelMap>& labels);
@@ -101,6 +103,7 @@ class FourUp : public QWidget {
   void boxDrawn(const trephine::Vec3& from_mm, const trephine::Vec3& to_mm, int across);
   void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
   void entryLeft();
+  void workspaceMoved(const trephine::Vec3& centre_mm, bool done);
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
   void strokeMoved(const trephine::Vec3& patient_mm);
   void strokeEnded();

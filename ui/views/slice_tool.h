@@ -1,10 +1,22 @@
-// What the left button does in the slices; the entry point and those for structures work in the 3-D
-// view too.
+// What the left button does in the slices; the entry point, the outline and those for structures
+// work in the 3-D view too.
 #pragma once
 
 namespace trephine {
 
-enum class SliceTool { window, point, ruler, angle, entry, grow, brush, eraser, piece, wall };
+enum class SliceTool {
+  window,
+  point,
+  ruler,
+  angle,
+  entry,
+  outline,
+  grow,
+  brush,
+  eraser,
+  piece,
+  wall
+};
 // Of those by which structures are made.
 constexpr bool isForStructures(SliceTool tool) {
   return tool >= SliceTool::grow;

@@ -190,7 +190,31 @@ void SliceView::dragLines(const QPointF& moved) {
   emit pointChosen(stack_.toPatient_mm(at));
 }
 
+void SliceView::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
+  if (boxes == workspaces_) return;
+  workspaces_ = boxes;
+  update();
+}
+
+// The chosen one, near its middle.
+const WorkspaceBox* SliceView::workspaceAt(const QPointF& in_widget) const {
+  constexpr double kReach_pixels = 11.0;
+  for (const WorkspaceBox& box : workspaces_) {
+    const QPointF away = fromPatient(box.centre_mm) - in_widget;
+    if (box.chosen && std::hypot(away.x(), away.y()) <= kReach_pixels) return &box;
+  }
+  return nullptr;
+}
+
+// Along the slice, as far as the pointer went.
+Vec3 SliceView::draggedWorkspace(const QPointF& to) const {
+  return workspace_before_mm_ + toPatient_mm(to) - toPatient_mm(pressed_);
+}
+
 void SliceView::showCursor(const QPointF& in_widget) {
+  if (drag_ == Drag::workspace || (drag_ == Drag::none && workspaceAt(in_widget))) {
+    return setCursor(Qt::SizeAllCursor);
+  }
   const Lines lines = drag_ == Drag::lines ? held_ : linesAt(in_widget);
   if (!lines) {
     setCursor(tool_ == SliceTool::window ? Qt::ArrowCursor : Qt::CrossCursor);
@@ -224,6 +248,9 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
   if ((event->modifiers() & Qt::ShiftModifier) || tool_ == SliceTool::point) {
     drag_ = Drag::point;
     placePoint(event->position());
+  } else if (const WorkspaceBox* box = workspaceAt(event->position())) {
+    drag_ = Drag::workspace;
+    workspace_before_mm_ = box->centre_mm;
   } else if (const Lines lines = linesAt(event->position())) {
     drag_ = Drag::lines;
     held_ = lines;
@@ -238,7 +265,7 @@ void SliceView::mousePressEvent(QMouseEvent* event) {
     if (target().contains(event->position())) {
       drag_ = tool_ == SliceTool::grow ? Drag::box : Drag::entry;
     }
-  } else if (isForStructures(tool_)) {
+  } else if (isForStructures(tool_) || tool_ == SliceTool::outline) {
     if (target().contains(event->position())) {
       emit structureClicked(tool_, toPatient_mm(event->position()));
     }
@@ -261,6 +288,8 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
   if (drawing_) drawing_->points_mm.back() = toPatient_mm(event->position());
   if (drag_ == Drag::point) {
     placePoint(event->position());
+  } else if (drag_ == Drag::workspace) {
+    emit workspaceMoved(draggedWorkspace(event->position()), false);
   } else if (drag_ == Drag::lines) {
     if (!moved.isNull()) dragLines(moved);
   } else if (drag_ == Drag::stroke) {
@@ -290,6 +319,7 @@ void SliceView::mouseReleaseEvent(QMouseEvent* event) {
     click ? emit structureClicked(tool_, from) : emit boxDrawn(from, to, gridAxis());
   }
   if (drag_ == Drag::entry) emit entryChosen(from, to);
+  if (drag_ == Drag::workspace) emit workspaceMoved(draggedWorkspace(event->position()), true);
   if (drag_ == Drag::ruler && drawing_) {
     if (!isClick(event->position())) {
       addMeasurePoint(event->position());

@@ -18,6 +18,7 @@
 #include "ui/views/slice_measure.h"
 #include "ui/views/slice_pane.h"
 #include "ui/views/slice_tool.h"
+#include "ui/views/workspace_box.h"
 
 namespace trephine {
 
@@ -47,6 +48,8 @@ class SliceView : public SlicePane {
     friend bool operator==(const Entry&, const Entry&) = default;
   };
   void setEntry(const std::optional<Entry>& entry);
+  // Where arms reach: the chosen one is dragged by its middle.
+  void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
   void setSlice(int k);                               // asks for the point that lies in it
 
   SliceAxis axis() const { return axis_; }
@@ -74,6 +77,8 @@ class SliceView : public SlicePane {
   // Of the exercise; `from_mm` is where the drag ended, the same place after a click.
   void entryChosen(const trephine::Vec3& at_mm, const trephine::Vec3& from_mm);
   void entryLeft();  // back to where the scene says
+  // The chosen workspace's middle, dragged in the slice; `done` when it is let go of.
+  void workspaceMoved(const trephine::Vec3& centre_mm, bool done);
   // `across`: the axis of the grid that this view's slices lie across.
   void strokeBegan(const trephine::Vec3& patient_mm, int across);
   void strokeMoved(const trephine::Vec3& patient_mm);
@@ -104,6 +109,9 @@ class SliceView : public SlicePane {
   void paintBrush(QPainter& painter) const;
   void paintBox(QPainter& painter) const;
   void paintEntry(QPainter& painter) const;
+  void paintWorkspaces(QPainter& painter) const;
+  const WorkspaceBox* workspaceAt(const QPointF& in_widget) const;
+  Vec3 draggedWorkspace(const QPointF& to) const;
   bool isClick(const QPointF& released) const;
   void placePoint(const QPointF& in_widget);
   struct Lines {  // of the other views
@@ -146,10 +154,22 @@ class SliceView : public SlicePane {
   std::optional<Measure> drawing_;  // its last point follows the pointer
   std::optional<QPointF> pointer_;
   QPointF pressed_;
-  enum class Drag { none, window, point, lines, ruler, stroke, box, entry } drag_ = Drag::none;
+  enum class Drag {
+    none,
+    window,
+    point,
+    lines,
+    ruler,
+    stroke,
+    box,
+    entry,
+    workspace
+  } drag_ = Drag::none;
   double brush_mm_ = 5.0;
   std::optional<VoxelBox> box_;
   std::optional<Entry> entry_;
+  std::vector<WorkspaceBox> workspaces_;
+  Vec3 workspace_before_mm_{0.0};  // where it was taken hold of
   HuWindow window_before_;
   Lines held_;
   Vec3 point_before_mm_{0.0};

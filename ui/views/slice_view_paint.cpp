@@ -68,6 +68,7 @@ void SliceView::paintOver(QPainter& painter) {
   paintMeasures(painter);
   paintBrush(painter);
   if (tool_ == SliceTool::grow) paintBox(painter);
+  paintWorkspaces(painter);
   if (tool_ == SliceTool::entry) paintEntry(painter);
   paintText(painter);
   if (hasFocus()) {
@@ -203,6 +204,30 @@ void SliceView::paintEntry(QPainter& painter) const {
   const double off_mm = std::abs(toVoxel(stack_, entry_->at_mm).z - slice_) * stack_.spacing_mm.z;
   draw(fromPatient(entry_->at_mm), fromPatient(entry_->at_mm + kArrow_mm * entry_->outward),
        off_mm <= std::max(1.0, 0.5 * stack_.spacing_mm.z));
+}
+
+// Their edges as they lie over the slice, and what they are dragged by.
+void SliceView::paintWorkspaces(QPainter& painter) const {
+  if (!hasSlice()) return;
+  for (const WorkspaceBox& box : workspaces_) {
+    const std::array<Vec3, 8> corners = box.corners();
+    QColor colour = box.colour;
+    if (!box.chosen) colour.setAlphaF(0.5f);
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(colour, box.chosen ? 1.6 : 1.0));
+    for (const auto& [a, b] : WorkspaceBox::kEdges) {
+      painter.drawLine(fromPatient(corners[std::size_t(a)]), fromPatient(corners[std::size_t(b)]));
+    }
+    const QPointF middle = fromPatient(box.centre_mm);
+    painter.setPen(QPen(QColor(0, 0, 0, 180), 4.0));
+    painter.drawEllipse(middle, 7.0, 7.0);
+    painter.setPen(QPen(colour, 2.0));
+    painter.drawEllipse(middle, 7.0, 7.0);
+    if (box.chosen) {
+      painter.drawLine(middle - QPointF(11, 0), middle + QPointF(11, 0));
+      painter.drawLine(middle - QPointF(0, 11), middle + QPointF(0, 11));
+    }
+  }
 }
 
 void SliceView::paintMeasures(QPainter& painter) const {

@@ -198,6 +198,24 @@ void ViewWidget::fitHint() {
   level_->setGeometry(10, 8, std::max(0, strip_->x() - 20), 6 * fontMetrics().height());
 }
 
+void ViewWidget::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
+  if (boxes == workspaces_) return;
+  workspaces_ = boxes;
+  update();
+}
+
+void ViewWidget::addWorkspaces(int wide, int high, ScreenLines& to) const {
+  for (const WorkspaceBox& box : workspaces_) {
+    const std::array<Vec3, 8> corners = box.corners();
+    const Vec3 colour = colours::rgbOf(box.colour) * (box.chosen ? 1.0 : 0.6);
+    for (const auto& [a, b] : WorkspaceBox::kEdges) {
+      const auto from = renderer_.camera().pixelOf(corners[std::size_t(a)], wide, high);
+      const auto end = renderer_.camera().pixelOf(corners[std::size_t(b)], wide, high);
+      if (from && end) to.push_back({*from, *end, colour, box.chosen ? 1.5 : 1.0});
+    }
+  }
+}
+
 void ViewWidget::paintGL() {
   if (resizing_) return;
   worked_ = true;
@@ -208,6 +226,7 @@ void ViewWidget::paintGL() {
   const int wide = int(std::lround(width() * devicePixelRatioF()));
   const int high = int(std::lround(height() * devicePixelRatioF()));
   clip_.addLines(renderer_.camera(), wide, high, lines);
+  addWorkspaces(wide, high, lines);
   if (moving_light_) {  // on a half sphere that is seen from the eye
     const glm::dvec2 middle(0.5 * wide, 0.5 * high);
     const glm::dvec2 at = middle + glm::dvec2(light_) * (0.25 * high);

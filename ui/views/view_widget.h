@@ -23,6 +23,7 @@
 #include "render/scene_renderer.h"
 #include "scene/landmark.h"
 #include "ui/views/slice_tool.h"
+#include "ui/views/workspace_box.h"
 
 namespace trephine {
 
@@ -48,8 +49,11 @@ class ViewWidget : public QOpenGLWidget {
   // A line on the tissue; no points: none.
   void setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm);
 
-  // One for structures or the entry point; others leave the left button to the camera. `mm`: of the
-  // brush.
+  // Where arms reach, as boxes of lines.
+  void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
+
+  // One for structures, the outline or the entry point; others leave the left button to the camera.
+  // `mm`: of the brush.
   void setTool(SliceTool tool);
   void setBrushRadius(double mm) {
     brush_mm_ = mm;
@@ -131,6 +135,7 @@ class ViewWidget : public QOpenGLWidget {
   void endStroke();
   bool toolKey(int key);
   glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
+  void addWorkspaces(int wide, int high, ScreenLines& to) const;
   void fitRenderer();
 
   SceneRenderer renderer_;
@@ -152,6 +157,7 @@ class ViewWidget : public QOpenGLWidget {
   Vec3 light_ = SceneRenderer::kLight;
   QPointF last_;
   std::vector<ToolView> tools_;  // of the exercise
+  std::vector<WorkspaceBox> workspaces_;
   SliceTool tool_ = SliceTool::window;
   double brush_mm_ = 5.0;
   int ring_ = 0;                                   // pixels of the radius that the pointer shows

@@ -44,7 +44,8 @@ void ViewWidget::setTool(SliceTool tool) {
 }
 
 bool ViewWidget::hasTool() const {
-  return (isForStructures(tool_) || tool_ == SliceTool::entry) && !training_ && !moving_light_;
+  const bool places = tool_ == SliceTool::entry || tool_ == SliceTool::outline;
+  return (isForStructures(tool_) || places) && !training_ && !moving_light_;
 }
 
 // A brush is a ring as wide as it paints on what is under the pointer.

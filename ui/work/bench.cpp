@@ -13,6 +13,7 @@
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/views/saved_picture.h"
+#include "ui/work/stored_case.h"
 
 namespace trephine {
 
@@ -53,6 +54,35 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
     report(error);
   });
   connect(&views_->threeD(), &ViewWidget::failed, this, &Bench::report);
+}
+
+void Bench::openExercise(const std::filesystem::path& file, Place then) {
+  goOnceOpen(then);
+  const Result<Scene> scene = readScene(file);
+  const std::filesystem::path cases = storage_ / "cases";
+  const std::filesystem::path of = scene ? std::filesystem::path(scene->case_source) : "";
+  if (of.empty() || of.parent_path().parent_path() != cases.lexically_normal()) {
+    return workstation_.useScene(file);  // which says what is wrong with it
+  }
+  const std::string id = of.parent_path().filename().string();
+  setCaseSource(of.parent_path());
+  workstation_.openExercise(file, [library = library_, id](const Progress& progress) {
+    Result<Workstation::Stored> stored = storedCase(*library, id, progress);
+    if (!stored && stored.error().code == "NO_SUCH_CASE") {
+      return Result<Workstation::Stored>(
+          Error{"NO_SUCH_CASE", "The case of this exercise is not on this workstation", "",
+                "Import the exercise with its case, or choose another case for it"});
+    }
+    if (stored) {  // the exercise's own are felt
+      stored->tissues.reset();
+      stored->no_tissues.reset();
+    }
+    return stored;
+  });
+}
+
+void Bench::setTrying(bool trying) {
+  if (std::exchange(trying_, trying) != trying) emit tryingChanged();
 }
 
 void Bench::report(const Error& error) {

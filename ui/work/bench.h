@@ -36,6 +36,13 @@ class Bench : public QObject {
   const std::filesystem::path& storage() const { return storage_; }
   // For work in the background.
   const std::shared_ptr<CaseLibrary>& library() const { return library_; }
+  // An exercise of a file; one that was made on a case of the library opens that as well.
+  void openExercise(const std::filesystem::path& scene, Place then);
+  // Of the storage folder: there is another one, or one is called otherwise.
+  void tellExercises() { emit exercisesChanged(); }
+  // An exercise is tried from Prepare, and one comes back there.
+  void setTrying(bool trying);
+  bool trying() const { return trying_; }
 
   // Of the exercise while one runs, else of what is prepared: who serves them enables them.
   QAction* undoAction() const { return undo_; }
@@ -96,6 +103,8 @@ class Bench : public QObject {
   void placeWanted(trephine::Place place);
   void caseShown();    // another one, or another exercise on it, in the views
   void cutsChanged();  // carved(), cutsUnsaved()
+  void exercisesChanged();
+  void tryingChanged();
 
  private:
   void showCase();
@@ -114,6 +123,7 @@ class Bench : public QObject {
   QAction *undo_, *redo_;
   std::filesystem::path case_source_;
   bool carved_ = false, cuts_unsaved_ = false;
+  bool trying_ = false;
 };
 
 }  // namespace trephine

@@ -48,6 +48,9 @@ class Workstation : public QObject {
     std::optional<Error> no_tissues{}, no_structures{};  // why none: said once it is open
   };
   void openStored(std::function<Result<Stored>(const Progress&)> load);
+  // An exercise with the case of the library that it was made on.
+  void openExercise(const std::filesystem::path& scene,
+                    std::function<Result<Stored>(const Progress&)> load);
   // The library has the open case now, as that id and under that name, or no longer.
   void setStored(const std::string& id, const std::string& name = {});
   // Another exercise: a case of the user's own stays open, a built-in one changes with the scene.
@@ -116,11 +119,12 @@ class Workstation : public QObject {
   // The scene is as `wanted` from now on, for the next exercise and, of tissues and controller, for
   // the one that runs or is being started; what else differs waits for its end. It stays as long as
   // the scene does, whatever the case. `what`: edits of the same that follow one another are one
-  // step of edits() until closeEdit(). False, and said: nothing has changed, and sceneChanged()
-  // shows that.
-  bool edit(const Scene& wanted, const std::string& what);
+  // step of edits() until closeEdit(). Errors, and nothing has changed: LOCKED, BUSY (what waits
+  // for the end of an exercise), those of checkEdited().
+  Status edit(const Scene& wanted, const std::string& what);
   void closeEdit() { history_.close(); }
-  // The same for the tissues alone; another set than the landmarks know is withTissues().
+  // The same for the tissues alone, and what is refused is said; another set than the landmarks
+  // know is withTissues().
   void setTissues(const TissueSet& tissues, const std::string& what = "tissues");
   const SceneHistory& edits() const { return history_; }
   void undoEdit();
@@ -144,6 +148,8 @@ class Workstation : public QObject {
   bool tissuesWait() const { return edited_other_.has_value(); }
   // They are these on disk now.
   void tissuesSaved(const TissueSet& as) { declared_tissues_ = as; }
+  // The exercise is on disk now as this scene: that is what it is opened with from here on.
+  void exerciseSaved(const std::filesystem::path& scene);
   // As a file that scenes can name; `then` follows once it is written.
   void saveTissues(const std::filesystem::path& file, std::function<void()> then);
 
@@ -229,7 +235,7 @@ class Workstation : public QObject {
   void setPhase(Phase phase);
   void fail(const Error& error);
 
-  bool mayEdit(const Scene& wanted);
+  Status mayEdit(const Scene& wanted) const;
   void take(Scene wanted);
   bool mayGoTo(const Scene* step);
   void goTo(Scene scene);
@@ -240,6 +246,7 @@ class Workstation : public QObject {
   void applyTissues(const TissueSet& tissues);
   void applyController(ControllerKind kind);
   bool refuseLocked(Lock lock, const char* what);
+  Status notLocked(Lock lock, const char* what) const;
 
   Policy policy_;
   bool unlocked_ = false;

@@ -56,60 +56,56 @@ bool sameDevices(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-bool Workstation::mayEdit(const Scene& wanted) {
-  if (!sameSet(wanted.tissues, scene_->tissues) &&
-      refuseLocked(Lock::tissues, "The tissues are")) {
-    return false;
+Status Workstation::mayEdit(const Scene& wanted) const {
+  if (!sameSet(wanted.tissues, scene_->tissues)) {
+    if (Status may = notLocked(Lock::tissues, "The tissues are"); !may) return may;
   }
   const auto id = &Tissue::id;
   if (session_ && !std::ranges::equal(wanted.tissues.tissues, scene_->tissues.tissues, {}, id, id)) {
-    fail({"BUSY", "A running exercise keeps its list of tissues", "",
-          "Stop it before tissues are added or removed"});
-    return false;
+    return Error{"BUSY", "A running exercise keeps its list of tissues", "",
+                 "Stop it before tissues are added or removed"};
   }
-  if (wanted.controller != scene_->controller &&
-      refuseLocked(Lock::controller, "The controller is")) {
-    return false;
+  if (wanted.controller != scene_->controller) {
+    if (Status may = notLocked(Lock::controller, "The controller is"); !may) return may;
   }
-  if (wanted.rate_hz != scene_->rate_hz && refuseLocked(Lock::rate, "The rate is")) return false;
+  if (wanted.rate_hz != scene_->rate_hz) {
+    if (Status may = notLocked(Lock::rate, "The rate is"); !may) return may;
+  }
   // Where an exercise enters a patient is of preparing a case.
   Scene rest = withLiveOf(wanted, *scene_);
   rest.landmarks = scene_->landmarks;
   const bool places_alone = sameScene(rest, *scene_);
-  if (places_alone && sameScene(withLiveOf(wanted, *scene_), *scene_)) return true;
+  if (places_alone && sameScene(withLiveOf(wanted, *scene_), *scene_)) return {};
   if (anyLocked() && !places_alone) {
-    fail({"LOCKED", "Exercises are not changed while anything is locked", "",
-          unlockWords(policy_).toStdString()});
-    return false;
+    return Error{"LOCKED", "Exercises are not changed while anything is locked", "",
+                 unlockWords(policy_).toStdString()};
   }
   if (phase_ != Phase::ready && phase_ != Phase::empty) {
-    fail({"BUSY", "This cannot be changed while an exercise runs", "", "Stop it first"});
-    return false;
+    return Error{"BUSY", "This cannot be changed while an exercise runs", "", "Stop it first"};
   }
   if (isOpening() && !placing_) {
-    fail({"BUSY", "A case is being opened", "", "Try again in a moment"});
-    return false;
+    return Error{"BUSY", "A case is being opened", "", "Try again in a moment"};
   }
-  return true;
+  return checkEdited(wanted);
 }
 
-bool Workstation::edit(const Scene& wanted, const std::string& what) {
-  if (!scene_) return false;
-  if (!mayEdit(wanted)) {
-    emit sceneChanged();  // as it was
-    return false;
-  }
+Status Workstation::edit(const Scene& wanted, const std::string& what) {
+  if (!scene_) return Error{"NO_CASE", "There is no exercise yet", "", "Open a case first"};
+  if (Status may = mayEdit(wanted); !may) return may;
   history_.note(wanted, what);
   take(wanted);
   emit editsChanged();
-  return true;
+  return {};
 }
 
 void Workstation::setTissues(const TissueSet& tissues, const std::string& what) {
   if (!scene_) return;
   Scene wanted = *scene_;
   wanted.tissues = tissues;
-  (void)edit(wanted, what);
+  if (Status done = edit(wanted, what); !done) {
+    fail(done.error());
+    emit sceneChanged();  // as it was
+  }
 }
 
 void Workstation::take(Scene wanted) {
@@ -168,7 +164,10 @@ bool Workstation::placeEntry(const std::optional<Landmark>& entry) {
     if (!entry && isEntry(landmark)) landmark = *opened_scene_.findLandmarkById(landmark.id);
   }
   history_.close();
-  if (!edit(wanted, "entry")) return false;
+  if (Status done = edit(wanted, "entry"); !done) {
+    fail(done.error());
+    return false;
+  }
   if (!isOpening()) placeEdited();  // the same place once more
   return isOpening();
 }
@@ -185,7 +184,9 @@ bool Workstation::mayGoTo(const Scene* step) {
   if (!scene_ || !step) return false;
   Scene wanted = *step;
   keepCase(wanted, *scene_);
-  return mayEdit(wanted);
+  const Status may = mayEdit(wanted);
+  if (!may) fail(may.error());
+  return may.ok();
 }
 
 void Workstation::goTo(Scene scene) {
@@ -199,7 +200,31 @@ bool Workstation::sceneEdited() const {
   if (!scene_) return false;
   Scene opened = withLiveOf(opened_scene_, *scene_);
   keepCase(opened, *scene_);
+  for (Landmark& landmark : opened.landmarks) {  // of preparing a case
+    const Landmark* now = scene_->findLandmarkById(landmark.id);
+    if (now && isEntry(*now)) landmark = *now;
+  }
   return !sameScene(opened, *scene_);
+}
+
+void Workstation::exerciseSaved(const std::filesystem::path& file) {
+  const Result<Scene> saved = readScene(file);
+  if (!scene_ || !saved) return;
+  scene_file_ = file;
+  // Its files lie elsewhere now; numbers and the labels of this case stay.
+  keepCase(*scene_, *saved);
+  scene_->operator_file = saved->operator_file;
+  for (std::size_t i = 0; i < scene_->tools.size() && i < saved->tools.size(); ++i) {
+    scene_->tools[i].look.mesh = saved->tools[i].look.mesh;
+  }
+  for (std::size_t i = 0; i < scene_->arms.size() && i < saved->arms.size(); ++i) {
+    scene_->arms[i].device_config = saved->arms[i].device_config;
+  }
+  opened_scene_ = *scene_;
+  declared_tissues_ = scene_->tissues;
+  history_.settle(*scene_);
+  emit sceneChanged();
+  emit editsChanged();
 }
 
 // What the file has, with what a person has changed of it since. Its case and its label map stay

@@ -40,11 +40,16 @@ void Workstation::takeBack() {
   emit controllerChanged();
 }
 
+Status Workstation::notLocked(Lock lock, const char* what) const {
+  if (!isLocked(lock)) return {};
+  return Error{"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
+               unlockWords(policy_).toStdString()};
+}
+
 bool Workstation::refuseLocked(Lock lock, const char* what) {
-  if (!isLocked(lock)) return false;
-  fail({"LOCKED", std::string(what) + " locked on this workstation or by this exercise", "",
-        unlockWords(policy_).toStdString()});
-  return true;
+  const Status may = notLocked(lock, what);
+  if (!may) fail(may.error());
+  return !may.ok();
 }
 
 void Workstation::applyTissues(const TissueSet& tissues) {

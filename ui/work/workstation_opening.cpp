@@ -109,7 +109,9 @@ void Workstation::useScene(const std::filesystem::path& file) {
   std::optional<Scene> scene = readSceneOrFail(file);
   if (!scene) return;
   scene_chosen_ = true;
-  if (case_ && (!case_->built_in || scene->case_source.empty())) {
+  // One that was made on a case of its own is for that.
+  const bool any_case = scene->case_source.empty() || phantomNamed(scene->case_source);
+  if (case_ && any_case && (!case_->built_in || scene->case_source.empty())) {
     useCase(*scene, scene_->case_source);
     openInBackground({*std::move(scene), file, case_});
   } else {
@@ -198,6 +200,17 @@ void Workstation::openStored(std::function<Result<Stored>(const Progress&)> load
   useCase(*scene, "");
   Opened opening{*std::move(scene), file, {}, scene_.has_value()};
   opening.any_scene = true;
+  opening.load = std::move(load);
+  openInBackground(std::move(opening));
+}
+
+void Workstation::openExercise(const std::filesystem::path& file,
+                               std::function<Result<Stored>(const Progress&)> load) {
+  if (!mayOpen()) return;
+  std::optional<Scene> scene = readSceneOrFail(file);
+  if (!scene) return;
+  scene_chosen_ = true;
+  Opened opening{*std::move(scene), file, {}};
   opening.load = std::move(load);
   openInBackground(std::move(opening));
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <random>
 
 #include "base/file.h"
 #include "base/system.h"
@@ -454,6 +455,144 @@ TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
   ASSERT_TRUE(said);
   EXPECT_EQ(said->code, "LOCKED");
   EXPECT_EQ(locked.scene()->controller, ControllerKind::bounded);
+}
+
+// ---- Edits of the exercise
+
+class EditsTest : public WorkstationTest {
+ protected:
+  EditsTest() {
+    workstation_.openPhantom("cranium");
+    EXPECT_TRUE(waitFor([this] { return workstation_.phase() == Workstation::Phase::ready; }));
+  }
+  const Scene& scene() { return *workstation_.scene(); }
+};
+
+// Tissues, tools and arms, at random but possible.
+Scene randomlyEdited(Scene scene, std::mt19937& random) {
+  const auto pick = [&](std::size_t count) { return std::size_t(random()) % count; };
+  const auto share = [&] { return double(random() % 1000) / 1000.0; };
+  Tissue& tissue = scene.tissues.tissues[pick(scene.tissues.tissues.size())];
+  SceneTool& tool = scene.tools[pick(scene.tools.size())];
+  SceneArm& arm = scene.arms[pick(scene.arms.size())];
+  switch (random() % 12) {
+    case 0:
+      tissue.damping_Ns_per_m = {20.0 * share(), "asked"};
+      break;
+    case 1:
+      tissue.rupture_N = SourcedNumber{share(), "asked"};
+      break;
+    case 2:
+      tissue.colour = Vec3(share(), share(), share());
+      break;
+    case 3:
+      scene.tissues = withThreshold(scene.tissues, pick(scene.tissues.tissues.size()),
+                                    random() % 2 ? RangeEnd::low : RangeEnd::high,
+                                    int(random() % 4000) - 1000, random() % 2, scene.tissues);
+      break;
+    case 4:
+      if (const auto more = withNewTissue(scene.tissues)) scene = withTissues(scene, *more).scene;
+      break;
+    case 5:
+      if (const auto less = withoutTissue(scene.tissues, pick(scene.tissues.tissues.size()))) {
+        scene = withTissues(scene, *less).scene;
+      }
+      break;
+    case 6:
+      tool.tool.made_from.points = 1 + int(random() % 64);
+      break;
+    case 7:
+      tool.tool.made_from.length_mm = 10.0 + 30.0 * share();
+      break;
+    case 8:
+      arm.map.offset_mm = Vec3(20.0 * share(), 20.0 * share(), 20.0 * share());
+      break;
+    case 9:
+      arm.map.motion_scale = 0.5 + share();
+      break;
+    case 10:
+      arm.max_force_N = 0.5 + 2.0 * share();
+      break;
+    case 11:
+      arm.tool = scene.tools[pick(scene.tools.size())].id;
+      arm.other_tools.clear();
+      break;
+  }
+  return scene;
+}
+
+TEST_F(EditsTest, TwoHundredAtRandomAreTakenBackAndDoneAgain) {
+  const Scene before = scene();
+  std::mt19937 random(20);
+  int done = 0;
+  for (int n = 0; n < 200; ++n) {
+    const Status edited = workstation_.edit(randomlyEdited(scene(), random), "edit");
+    workstation_.closeEdit();
+    done += edited.ok();
+  }
+  EXPECT_GT(done, 150);
+  EXPECT_FALSE(failed_) << failed_->sentence();
+  const Scene after = scene();
+  EXPECT_FALSE(sameScene(before, after));
+  int back = 0;
+  for (; workstation_.edits().canUndo(); ++back) workstation_.undoEdit();
+  EXPECT_TRUE(sameScene(scene(), before));
+  EXPECT_GT(back, 140);
+  for (; workstation_.edits().canRedo(); --back) workstation_.redoEdit();
+  EXPECT_EQ(back, 0);
+  EXPECT_TRUE(sameScene(scene(), after));
+  EXPECT_TRUE(waitFor([this] { return !workstation_.isOpening(); }));
+  EXPECT_TRUE(sameScene(scene(), after)) << "placed in the case";
+}
+
+TEST_F(EditsTest, WhatIsNotPossibleIsRefusedInWordsAndChangesNothing) {
+  const Scene before = scene();
+  Scene wrong = before;
+  wrong.arms[0].map.force_scale = 1000.0;
+  const Status refused = workstation_.edit(wrong, "arm");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().where.find("force_scale"), std::string::npos)
+      << refused.error().sentence();
+  EXPECT_TRUE(sameScene(scene(), before));
+  EXPECT_FALSE(workstation_.edits().canUndo());
+}
+
+TEST_F(EditsTest, StayOnAnotherCaseAndOnOtherStructuresAndAreToldFromWhatWasOpened) {
+  EXPECT_FALSE(workstation_.sceneEdited());
+  Scene edited = scene();
+  edited.arms[0].map.motion_scale = 0.75;
+  ASSERT_TRUE(workstation_.edit(edited, "arm").ok());
+  EXPECT_TRUE(workstation_.sceneEdited());
+  ASSERT_TRUE(workstation_.useStructures(nullptr));
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(scene().arms[0].map.motion_scale, 0.75);
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(scene().arms[0].map.motion_scale, 0.75);
+  EXPECT_TRUE(workstation_.sceneEdited());
+  workstation_.undoEdit();
+  EXPECT_NE(scene().arms[0].map.motion_scale, 0.75);
+  EXPECT_FALSE(workstation_.sceneEdited());
+}
+
+TEST_F(EditsTest, AnEntryPointIsOneStepAndGoesWithAnotherCase) {
+  const Landmark* own = &scene().landmarks[0];
+  Landmark place = *own;
+  place.is_place = true;
+  place.at_mm = workstation_.currentCase()->landmarks[0].frame.position_mm + Vec3(0.0, 5.0, 0.0);
+  ASSERT_TRUE(workstation_.placeEntry(place));
+  ASSERT_TRUE(wait());
+  ASSERT_TRUE(workstation_.entry());
+  EXPECT_EQ(workstation_.edits().undoWhat(), "entry");
+  workstation_.undoEdit();
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(workstation_.entry());
+  workstation_.redoEdit();
+  ASSERT_TRUE(wait());
+  EXPECT_TRUE(workstation_.entry());
+  workstation_.openImported(caseOf(std::make_shared<const Volume>(ball())));
+  ASSERT_TRUE(wait());
+  EXPECT_FALSE(workstation_.entry());
 }
 
 }  // namespace

@@ -1,0 +1,516 @@
+// An exercise is made in Prepare: tools, arms, what is felt, its card, its outline; it is saved,
+// tried, exported and imported elsewhere. By the effect on scene, disk and picture.
+#include <QFileDialog>
+#include <QMenu>
+#include <QMessageBox>
+#include <QPlainTextEdit>
+
+#include "exercise/exercise_folder.h"
+#include "gui_support.h"
+#include "library/case_library.h"
+#include "session/case.h"
+#include "tissue/tissue_edits.h"
+
+namespace trephine {
+
+namespace {
+constexpr int kLong_ms = 30000;
+}
+
+class ExerciseGuiTest : public test::WindowTest {
+  Q_OBJECT
+
+ private:
+  const Scene& scene() { return *workstation().scene(); }
+  void key(QWidget* widget, Qt::Key of, Qt::KeyboardModifiers with = {}) {
+    QTest::keyClick(widget, of, with);
+  }
+  void showTab(int tab) {
+    window_->show(Place::prepare);
+    QApplication::setActiveWindow(window_.get());  // without a window manager it may not be
+    find<QTabWidget>("prepareTabs")->setCurrentIndex(tab);
+    QTest::qWait(50);
+  }
+  void enter(const char* name, const QString& text) {
+    auto* box = find<QAbstractSpinBox>(name);
+    box->setFocus();
+    box->selectAll();
+    QTest::keyClicks(box, text);
+    key(box, Qt::Key_Return);
+    QTest::qWait(5);
+  }
+  void type(const char* name, const QString& text) {
+    auto* line = find<QLineEdit>(name);
+    line->setFocus();
+    line->selectAll();
+    QTest::keyClicks(line, text);
+    key(line, Qt::Key_Return);
+    QTest::qWait(5);
+  }
+  void write(const char* name, const QString& text) {
+    auto* edit = find<QPlainTextEdit>(name);
+    edit->setFocus();
+    edit->selectAll();
+    for (const QString& line : text.split('\n')) {
+      QTest::keyClicks(edit, line);
+      if (line != text.split('\n').back()) key(edit, Qt::Key_Return);
+    }
+    find<QLineEdit>("cardGoal")->setFocus();
+  }
+  // As a click in the opened list does.
+  void choose(const char* name, const QVariant& data) {
+    auto* box = find<QComboBox>(name);
+    const int index = data.typeId() == QMetaType::QString && box->findData(data) < 0
+                          ? box->findText(data.toString())
+                          : box->findData(data);
+    QVERIFY2(index >= 0, name);
+    box->setCurrentIndex(index);
+    QTest::qWait(5);
+    QMetaObject::invokeMethod(box, "activated", Q_ARG(int, index));
+  }
+  void tick(const char* list, const QString& text, bool on) {
+    auto* items = find<QListWidget>(list);
+    for (int i = 0; i < items->count(); ++i) {
+      if (items->item(i)->text() != text) continue;
+      return items->item(i)->setCheckState(on ? Qt::Checked : Qt::Unchecked);
+    }
+    QFAIL(list);
+  }
+  void undoAll() {
+    for (int n = 0; n < 300 && workstation().edits().canUndo(); ++n) {
+      workstation().undoEdit();
+      QTest::qWait(1);
+    }
+    untilPlaced();
+  }
+  void untilPlaced() {
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);
+    QTest::qWait(20);
+  }
+  void untilSaved() {
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().isSaving(), kLong_ms);
+    QTest::qWait(20);
+  }
+  void closeDialogs() {
+    for (QMessageBox* box : window_->findChildren<QMessageBox*>()) box->close();
+  }
+  // What a file dialog would have given.
+  void give(const char* dialog, const QString& file) {
+    auto* open = find<QFileDialog>(dialog);
+    emit open->fileSelected(file);
+    open->close();
+  }
+  SliceView& slice(SliceAxis axis) { return window_->views().slice(axis); }
+  std::filesystem::path storage() { return toPath(temporary_.path()); }
+  void keepGrab(const char* name) {
+    QVERIFY(window_->grab().save(QString(TREPHINE_ARTEFACTS "/") + name));
+  }
+
+ private slots:
+  void initTestCase() {
+    openWindow("trephine-exercise-test");
+    QApplication::setActiveWindow(window_.get());
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    // A case of the library.
+    CaseLibrary library(storage());
+    NewCase made;
+    made.volume = std::make_shared<const Volume>(test::coarseCranium(4));
+    made.region = BodyRegion::head;
+    QVERIFY(library.save(made).ok());
+    window_->show(Place::prepare);
+    window_->show(Place::cases);
+    auto* cards = find<QListWidget>("cases");
+    QTRY_VERIFY_WITH_TIMEOUT(cards->count() >= 3, kLong_ms);
+    for (int i = 0; i < cards->count(); ++i) {
+      const QString id = cards->item(i)->data(Qt::UserRole).toString();
+      if (id != "cranium" && id != "abdomen") cards->setCurrentRow(i);
+    }
+    QTest::mouseClick(find<QPushButton>("prepareCase"), Qt::LeftButton);
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QVERIFY(!workstation().currentCase()->stored.empty());
+    window_->views().setLayout({ViewLayout::Kind::four, 0});
+  }
+  void cleanupTestCase() { closeWindow(); }
+  void cleanup() {
+    closeDialogs();
+    if (workstation().phase() == Workstation::Phase::running) {
+      workstation().stop();
+      QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    }
+    undoAll();
+  }
+
+  void aToolIsAddedDescribedAndTakenAway() {
+    showTab(PrepareWorkspace::kToolTab);
+    auto* menu = find<QToolButton>("addTool")->menu();
+    emit menu->aboutToShow();
+    for (QAction* action : menu->actions()) {
+      if (action->text() == "needle") action->trigger();
+    }
+    const SceneTool* needle = scene().findTool("needle");
+    QVERIFY(needle);
+    QCOMPARE(needle->tool.made_from.kind, ToolKind::needle);
+    type("toolName", "probe");
+    QVERIFY(scene().findTool("probe"));
+    const auto made = [&] { return scene().findTool("probe")->tool.made_from; };
+    enter("tool:length_mm", "33");
+    QCOMPARE(made().length_mm, 33.0);
+    enter("tool:points", "5");
+    QCOMPARE(made().points, 5);
+    QCOMPARE(scene().findTool("probe")->tool.points_m.size(), std::size_t(5));
+    enter("tool:radius_mm", "0.8");
+    QCOMPARE(made().radius_mm, 0.8);
+    enter("tool:motor_W", "2");
+    QCOMPARE(made().motor_W, 2.0);
+    choose("toolKind", int(ToolKind::burr));
+    QCOMPARE(made().kind, ToolKind::burr);
+    enter("tool:shaft_points", "3");
+    QCOMPARE(made().shaft_points, 3);
+    choose("toolShape", int(BurrShape::cylinder));
+    QCOMPARE(made().shape, BurrShape::cylinder);
+    enter("tool:head_mm", "6");
+    QCOMPARE(made().head_mm, 6.0);
+    // A burr is at least its head: beside the field, and it stays as it was.
+    enter("tool:length_mm", "2");
+    QVERIFY(find<QLabel>("toolProblem")->isVisible());
+    QCOMPARE(made().length_mm, 33.0);
+    find<QToolButton>("chooseMesh")->click();
+    const std::filesystem::path mesh = resourceFolder() / "tools" / "burr4.stl";
+    give("meshDialog", toQt(mesh));
+    QVERIFY(scene().findTool("probe")->look.mesh == mesh);
+    enter("tool:tip_mmX", "-2");
+    QCOMPARE(scene().findTool("probe")->look.tip_mm.x, -2.0);
+    find<QToolButton>("noMesh")->click();
+    QVERIFY(scene().findTool("probe")->look.mesh.empty());
+    find<QToolButton>("removeTool")->click();
+    QVERIFY(!scene().findTool("probe"));
+    // One that an arm holds stays, and it is said.
+    find<QListWidget>("toolList")->setCurrentRow(0);
+    const std::size_t count = scene().tools.size();
+    find<QToolButton>("removeTool")->click();
+    QCOMPARE(scene().tools.size(), count);
+    QVERIFY(find<QLabel>("toolProblem")->text().contains("unknown tool"));
+  }
+
+  void anArmsToolsScalesAndForceReachTheScene() {
+    showTab(PrepareWorkspace::kToolTab);
+    choose("armTool", QString("burr"));
+    QCOMPARE(scene().arms[0].tool, std::string("burr"));
+    tick("otherTools", "craniotome", false);
+    QVERIFY(std::ranges::find(scene().arms[0].other_tools, "craniotome") ==
+            scene().arms[0].other_tools.end());
+    tick("otherTools", "blade", true);
+    QVERIFY(std::ranges::find(scene().arms[0].other_tools, "blade") !=
+            scene().arms[0].other_tools.end());
+    enter("arm:motion_scale", "0.5");
+    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    enter("arm:force_scale", "2");
+    QCOMPARE(scene().arms[0].map.force_scale, 2.0);
+    enter("arm:offset_mmZ", "30");
+    QCOMPARE(scene().arms[0].map.offset_mm.z, 30.0);
+    enter("arm:max_force_N", "1.5");
+    QCOMPARE(scene().arms[0].max_force_N, 1.5);
+    // What the arms show of the tissues follows.
+    QCOMPARE(*find<LimitBar>("frictionLimit")->limit(), 0.75);
+    choose("armChoice", QString("right"));
+    enter("arm:motion_scale", "0.8");
+    QCOMPARE(scene().arms[1].map.motion_scale, 0.8);
+    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    choose("armLandmark", QString("vault"));
+    QCOMPARE(scene().arms[1].map.landmark, std::string("vault"));
+    enter("arm:force_scale", "500");
+    QCOMPARE(scene().arms[1].map.force_scale, 1.0);
+    QVERIFY(find<QLabel>("arm:force_scaleRefused")->isVisible());
+  }
+
+  void theBoxOfAnArmIsDraggedInASliceAndIsOneStepBack() {
+    showTab(PrepareWorkspace::kToolTab);
+    choose("armChoice", QString("left"));
+    const Vec3 before = scene().arms[0].map.offset_mm;
+    const auto centre = [&] {
+      return withFixedMaps(scene(), workstation().currentCase()->landmarks).arms[0].map.fixed->centre_mm;
+    };
+    SliceView& coronal = slice(SliceAxis::coronal);
+    const Vec3 from_mm = centre();
+    const QPointF from = coronal.fromPatient(from_mm);
+    const QPoint by(25, 0);
+    QTest::mousePress(&coronal, Qt::LeftButton, {}, from.toPoint());
+    for (int n = 1; n <= 5; ++n) {
+      QTest::mouseMove(&coronal, from.toPoint() + by * n / 5);
+      QTest::qWait(10);
+    }
+    QTest::mouseRelease(&coronal, Qt::LeftButton, {}, from.toPoint() + by);
+    const Vec3 moved = centre() - from_mm;
+    const Vec3 expected = coronal.toPatient_mm(from + by) - coronal.toPatient_mm(from);
+    QVERIFY2(glm::length(moved - expected) < 1.0, qPrintable(QString::number(moved.x)));
+    QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 5.0);
+    keepGrab("prepare-arms.png");
+    workstation().undoEdit();
+    QVERIFY(scene().arms[0].map.offset_mm == before);
+  }
+
+  void whatIsFeltIsChosenLawByLaw() {
+    showTab(PrepareWorkspace::kToolTab);
+    auto* rupture = find<QCheckBox>("law:rupture");
+    QVERIFY(!rupture->isChecked());
+    rupture->click();
+    QVERIFY(names(scene().laws, LawKind::rupture));
+    for (const char* law : {"viscous", "coulomb", "elastic"}) {
+      find<QCheckBox>(QString("law:") + law)->click();
+    }
+    QCOMPARE(scene().laws, std::vector<LawKind>{LawKind::rupture});
+    choose("sceneController", int(ControllerKind::off));
+    QCOMPARE(scene().controller, ControllerKind::off);
+    QCOMPARE(workstation().controllerInForce(), ControllerKind::off);
+    choose("forceAt", int(ForceAt::tip));
+    QCOMPARE(scene().force_at, ForceAt::tip);
+    choose("removal", int(RemovalKind::instant));
+    QCOMPARE(scene().removal, RemovalKind::instant);
+    enter("scene:rate_hz", "2000");
+    QCOMPARE(scene().rate_hz, 2000.0);
+  }
+
+  void whatItIsWhereItEntersAndWhatStaysReachTheScene() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    type("exerciseName", "A window of mine");
+    QCOMPARE(scene().name, std::string("A window of mine"));
+    choose("anatomy", QString("abdomen"));
+    QCOMPARE(scene().anatomy, std::string("abdomen"));
+    choose("landmarkTissue", QString("scalp"));
+    QCOMPARE(scene().landmarks[0].tissue, std::string("scalp"));
+    untilPlaced();
+    enter("landmark:run_mm", "2");
+    QCOMPARE(scene().landmarks[0].run_mm, 2.0);
+    untilPlaced();
+    enter("landmark:fromX", "0.6");
+    QCOMPARE(scene().landmarks[0].from.x, 0.6);
+    untilPlaced();
+    choose("viewLandmark", QString(""));
+    QVERIFY(scene().view.landmark.empty());
+    enter("view:distance_mm", "200");
+    QCOMPARE(scene().view.distance_mm, 200.0);
+    workstation().setLooks({{"bone", TissueLook::ghosted}});
+    find<QToolButton>("keepLooks")->click();
+    QCOMPARE(scene().view.looks.at("bone"), TissueLook::ghosted);
+    find<QToolButton>("noOperator")->click();
+    QVERIFY(scene().operator_file.empty());
+    find<QToolButton>("chooseOperator")->click();
+    const auto script = resourceFolder() / "operators" / "burr-hole.json";
+    give("operatorDialog", toQt(script));
+    QCOMPARE(scene().operator_file, script.string());
+    find<QToolButton>("placeEntry")->click();
+    QCOMPARE(window_->views().tool(), SliceTool::entry);
+    window_->views().setTool(SliceTool::window);
+    undoAll();
+    // Locks hold at once, so the last.
+    for (const char* lock : {"controller", "rate"}) {
+      QVERIFY(!find<QCheckBox>(QString("lock:") + lock)->isChecked());
+    }
+  }
+
+  void theCardIsWrittenInBothLanguagesAndKeepsItsLimits() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    type("cardGoal", "Cut it out");
+    QCOMPARE(scene().card->en.goal, std::string("Cut it out"));
+    write("cardSteps", "Do this\nThen that");
+    QCOMPARE(scene().card->en.steps, (std::vector<std::string>{"Do this", "Then that"}));
+    type("cardHands", "Both");
+    QCOMPARE(scene().card->en.hands, std::string("Both"));
+    auto* chinese = find<QLineEdit>("cardGoalChinese");
+    chinese->setFocus();
+    chinese->setText(QString::fromUtf8("切開"));
+    key(chinese, Qt::Key_Return);
+    QCOMPARE(scene().card->zh_TW->goal, std::string("切開"));
+    auto* goal = find<QLineEdit>("cardGoal");
+    goal->setFocus();
+    goal->setText(QString(500, 'x'));
+    key(goal, Qt::Key_Return);
+    QVERIFY(find<QLabel>("cardProblem")->text().contains("500"));
+    QCOMPARE(scene().card->en.goal, std::string("Cut it out"));
+    find<QCheckBox>("cardChineseOn")->click();
+    QVERIFY(!scene().card->zh_TW);
+    find<QCheckBox>("cardOn")->click();
+    QVERIFY(!scene().card);
+  }
+
+  void anOutlineIsDrawnByClicksOnTheSurface() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QToolButton>("clearOutline")->click();
+    QVERIFY(!scene().outline);
+    ViewWidget& view = window_->view();
+    QTRY_VERIFY_WITH_TIMEOUT(view.isComplete(), kLong_ms);
+    const QImage before = view.grab().toImage();
+    find<QToolButton>("drawOutline")->click();
+    QCOMPARE(window_->views().tool(), SliceTool::outline);
+    const QPoint middle = view.rect().center();
+    for (const QPoint& by : {QPoint(-30, -20), QPoint(30, -20), QPoint(30, 20), QPoint(-30, 20)}) {
+      QTest::mouseClick(&view, Qt::LeftButton, {}, middle + by);
+      QTest::qWait(50);
+    }
+    QVERIFY(scene().outline);
+    QCOMPARE(scene().outline->points_mm.size(), std::size_t(4));
+    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
+    const auto seen = view.pickAt(middle + QPoint(30, 20));
+    QVERIFY(seen && glm::length(seen->at_mm - scene().outline->points_mm[2]) < 3.0);
+    find<QCheckBox>("outlineClosed")->click();
+    QVERIFY(scene().outline->closed);
+    enter("outline:width_mm", "2.5");
+    QCOMPARE(scene().outline->width_mm, 2.5);
+    QTest::qWait(300);
+    keepGrab("prepare-outline.png");
+    find<QToolButton>("outlineBack")->click();
+    QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
+    key(&slice(SliceAxis::axial), Qt::Key_Escape);
+    QCOMPARE(window_->views().tool(), SliceTool::window);
+    QVERIFY(!find<QToolButton>("drawOutline")->isChecked());
+  }
+
+  // Saved, tried, started again, exported, imported into another storage folder.
+  void anExerciseIsSavedTriedExportedAndImportedElsewhere() {
+    showTissues();
+    window_->findChild<TissuePanel*>()->select("bone");
+    enter("stiffness", "555");
+    showTab(PrepareWorkspace::kToolTab);
+    enter("arm:motion_scale", "0.5");
+    showTab(PrepareWorkspace::kExerciseTab);
+    type("exerciseName", "Mine");
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    const std::filesystem::path file = storage() / "exercises" / "mine" / "scene.json";
+    QVERIFY(workstation().sceneFile() == file);
+    QVERIFY(!workstation().sceneEdited() && !workstation().tissuesEdited());
+    QVERIFY(find<QLabel>("exerciseSaved")->text().contains("Saved"));
+    QVERIFY(find<QComboBox>("scenes")->findText("Mine") >= 0);
+    const Scene saved = *readScene(file);
+    QCOMPARE(saved.tissues.find("bone")->stiffness_N_per_m.value, 555.0);
+    QCOMPARE(saved.arms[0].map.motion_scale, 0.5);
+    QVERIFY(saved.case_source.find(workstation().currentCase()->stored) != std::string::npos);
+    // Changed, it is said, and asked before it is lost.
+    enter("view:distance_mm", "222");
+    QVERIFY(find<QLabel>("exerciseSaved")->text().contains("Changed"));
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    QCOMPARE(readScene(file)->view.distance_mm, 222.0);
+    QCOMPARE(exercisesIn(storage()).size(), std::size_t(1));
+    // Tried, and back.
+    find<QPushButton>("tryExercise")->click();
+    QCOMPARE(window_->place(), Place::train);
+    find<QAction>("start")->trigger();
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::running, kLong_ms);
+    QCOMPARE(workstation().session()->scene().arms[0].map.motion_scale, 0.5);
+    QTest::mouseClick(find<QPushButton>("backToPrepare"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    QCOMPARE(window_->place(), Place::prepare);
+    // Out, and in again elsewhere.
+    find<QPushButton>("exportExercise")->click();
+    const QString folder = temporary_.filePath("stick/mine");
+    give("exportExerciseDialog", folder);
+    untilSaved();
+    QVERIFY(QFile::exists(folder + "/exercise.json"));
+    const auto check = checkExercise(toPath(folder));
+    QVERIFY(check.ok() && check->verified());
+    test::WindowTest elsewhere;
+    QTemporaryDir other;
+    MainWindow another(toPath(other.path()) / "recordings");
+    another.resize(1280, 800);
+    another.QMainWindow::show();
+    another.show(Place::prepare);
+    another.findChild<QTabWidget*>("prepareTabs")->setCurrentIndex(PrepareWorkspace::kExerciseTab);
+    QSignalSpy opened(&another.workstation(), &Workstation::caseOpened);
+    another.findChild<QPushButton*>("importExercise")->click();
+    auto* dialog = another.findChild<QFileDialog*>("importExerciseDialog");
+    QVERIFY(dialog);
+    emit dialog->fileSelected(folder);
+    dialog->close();
+    QVERIFY(opened.wait(kLong_ms));
+    QVERIFY(another.workstation().scene()->name == "Mine");
+    QCOMPARE(another.workstation().currentCase()->sha256, workstation().currentCase()->sha256);
+    Scene here = scene(), there = *another.workstation().scene();
+    QCOMPARE(QString::fromStdString(toJson(there).dump()), QString::fromStdString(toJson(here).dump()));
+  }
+
+  void anExerciseThatWasChangedOnItsWayIsNamedPartByPart() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    type("exerciseName", "Changed");
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    find<QPushButton>("exportExercise")->click();
+    const QString folder = temporary_.filePath("stick/changed");
+    give("exportExerciseDialog", folder);
+    untilSaved();
+    QVERIFY(QFile::remove(folder + "/operator.json"));
+    QFile script(folder + "/scene.json");
+    QVERIFY(script.open(QIODevice::Append));
+    script.write(" ");
+    script.close();
+    const std::size_t before = exercisesIn(storage()).size();
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    find<QPushButton>("importExercise")->click();
+    give("importExerciseDialog", folder);
+    QTRY_COMPARE_WITH_TIMEOUT(failed.count(), 1, kLong_ms);
+    const Error error = failed[0][0].value<Error>();
+    QVERIFY2(error.what.find("missing: operator.json") != std::string::npos, error.what.c_str());
+    QVERIFY2(error.what.find("changed: scene.json") != std::string::npos, error.what.c_str());
+    QCOMPARE(exercisesIn(storage()).size(), before);
+  }
+
+  void aCaseThatIsGoneIsSaidAndWhatIsOpenStays() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    const std::filesystem::path file = workstation().sceneFile();
+    const std::string id = workstation().currentCase()->stored;
+    const std::filesystem::path folder = storage() / "cases" / id;
+    std::filesystem::rename(folder, storage() / "away");
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    window_->findChild<Bench*>()->openExercise(file, Place::prepare);
+    QTRY_COMPARE_WITH_TIMEOUT(failed.count(), 1, kLong_ms);
+    const Error error = failed[0][0].value<Error>();
+    QVERIFY2(error.what.find("not on this workstation") != std::string::npos, error.what.c_str());
+    QCOMPARE(workstation().currentCase()->stored, id);
+    std::filesystem::rename(storage() / "away", folder);
+  }
+
+  void aDiskThatCannotBeWrittenLosesNothing() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    enter("view:distance_mm", "333");
+    const std::filesystem::path folder = storage() / "exercises";
+    const std::filesystem::path file = workstation().sceneFile();
+    std::filesystem::rename(folder, storage() / "kept");
+    QVERIFY(writeTextFile(folder, "no folder").ok());
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    find<QPushButton>("saveExercise")->click();
+    QTRY_COMPARE_WITH_TIMEOUT(failed.count(), 1, kLong_ms);
+    QVERIFY(workstation().sceneEdited());
+    QCOMPARE(scene().view.distance_mm, 333.0);
+    std::filesystem::remove(folder);
+    std::filesystem::rename(storage() / "kept", folder);
+    closeDialogs();
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    QCOMPARE(readScene(file)->view.distance_mm, 333.0);
+  }
+
+  void whatIsLockedIsNotEdited() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QCheckBox>("lock:rate")->click();
+    QVERIFY(scene().locks.contains(Lock::rate));
+    QVERIFY(workstation().isLocked(Lock::rate));
+    QVERIFY(find<QLabel>("formLocked")->isVisible());
+    QVERIFY(!find<QLineEdit>("exerciseName")->isEnabled());
+    Scene other = scene();
+    other.name = "x";
+    QCOMPARE(workstation().edit(other, "name").error().code, std::string("LOCKED"));
+    workstation().setUnlocked(true);
+    QVERIFY(find<QLineEdit>("exerciseName")->isEnabled());
+    find<QCheckBox>("lock:rate")->click();
+    QVERIFY(!scene().locks.contains(Lock::rate));
+    workstation().setUnlocked(false);
+  }
+};
+
+}  // namespace trephine
+
+int main(int argc, char** argv) {
+  return trephine::test::runInWindow<trephine::ExerciseGuiTest>(argc, argv);
+}
+
+#include "exercise_gui_test.moc"

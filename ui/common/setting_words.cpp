@@ -1,0 +1,57 @@
+#include "ui/common/setting_words.h"
+
+#include <QCoreApplication>
+#include <QStringList>
+#include <string_view>
+
+#include "ui/common/colours.h"
+
+namespace trephine {
+
+QString nameOfSetting(const char* key) {
+  QStringList parts = QString(key).split('_');
+  static const QStringList kUnits{"mm", "N", "Hz", "hz", "W", "s", "m"};
+  if (parts.size() > 1 && kUnits.contains(parts.back())) parts.removeLast();
+  QString name = parts.join(' ');
+  name[0] = name[0].toUpper();
+  return QCoreApplication::translate("Setting", qPrintable(name));
+}
+
+QString shortMeaningOf(const NumberRow& row) {
+  std::string words = row.meaning;
+  words = words.substr(0, words.find_first_of(";:("));
+  while (!words.empty() && words.back() == ' ') words.pop_back();
+  return meaningOf({row.key, row.range, row.given, words.c_str()});
+}
+
+QString meaningOf(const NumberRow& row) {
+  QString meaning = QCoreApplication::translate("Setting", row.meaning);
+  meaning.remove('`');
+  meaning[0] = meaning[0].toUpper();
+  return QCoreApplication::translate("Setting", "%1. %2 to %3%4.")
+      .arg(meaning)
+      .arg(row.range.low, 0, 'g', 6)
+      .arg(row.range.high, 0, 'g', 6)
+      .arg(*row.range.unit ? ' ' + QString(row.range.unit) : QString());
+}
+
+double stepOfUnit(const char* unit) {
+  const std::string_view of = unit;
+  if (of == "mm" || of == "W") return 1.0;
+  if (of == "N") return 0.1;
+  if (of == "Hz") return 100.0;
+  return 0.05;
+}
+
+QLabel* settingHint(const QString& words, QWidget* parent) {
+  auto* label = new QLabel(words, parent);
+  label->setWordWrap(true);
+  QFont small = label->font();
+  small.setPointSizeF(small.pointSizeF() * 0.88);
+  label->setFont(small);
+  colours::setText(*label, colours::kQuiet);
+  label->setProperty("hint", true);
+  return label;
+}
+
+}  // namespace trephine

@@ -1,0 +1,581 @@
+#include "ui/prepare/exercise_form.h"
+
+#include <QHBoxLayout>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "base/utf8.h"
+#include "ui/common/colours.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kMostLetters = 80;
+
+QLabel* problemLabel(const char* name, QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  colours::setText(*label, colours::kCaution);
+  label->hide();
+  return label;
+}
+
+QComboBox* combo(const char* name, const QString& accessible, QWidget* parent) {
+  auto* box = new QComboBox(parent);
+  box->setObjectName(name);
+  box->setAccessibleName(accessible);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  box->setMinimumContentsLength(3);
+  return box;
+}
+
+QToolButton* button(const char* name, const QString& text, const QString& tip, QWidget* parent) {
+  auto* made = new QToolButton(parent);
+  made->setObjectName(name);
+  made->setText(text);
+  made->setToolTip(tip);
+  made->setFocusPolicy(Qt::TabFocus);
+  return made;
+}
+
+QPushButton* way(const char* name, const QString& text, const QString& tip, QWidget* parent) {
+  auto* made = new QPushButton(text, parent);
+  made->setObjectName(name);
+  made->setToolTip(tip);
+  return made;
+}
+
+QFormLayout* form(QWidget* of) {
+  auto* layout = new QFormLayout(of);
+  layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(6);
+  return layout;
+}
+
+QWidget* hinted(QWidget* field, const QString& words, QWidget* parent) {
+  auto* both = new QWidget(parent);
+  auto* column = new QVBoxLayout(both);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(1);
+  column->addWidget(field);
+  column->addWidget(settingHint(words, both));
+  return both;
+}
+
+QLabel* heading(const QString& words, QWidget* parent) {
+  auto* label = new QLabel(words, parent);
+  label->setProperty("title", true);
+  return label;
+}
+
+QWidget* group(const QString& title, QLabel* problem, QWidget* fields, QWidget* parent) {
+  auto* box = new QWidget(parent);
+  auto* layout = new QVBoxLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(heading(title, box));
+  layout->addWidget(problem);
+  layout->addWidget(fields);
+  return box;
+}
+
+QString lockWords(Lock lock) {
+  switch (lock) {
+    case Lock::controller:
+      return ExerciseForm::tr("Keep the controller");
+    case Lock::tissues:
+      return ExerciseForm::tr("Keep the tissues");
+    case Lock::rate:
+      return ExerciseForm::tr("Keep the rate");
+  }
+  return {};
+}
+
+}  // namespace
+
+ExerciseForm::ExerciseForm(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(10, 10, 10, 10);
+  layout->setSpacing(12);
+  layout->addWidget(buildWays());
+  locked_ = problemLabel("formLocked", this);
+  layout->addWidget(locked_);
+  body_ = new QWidget(this);
+  auto* groups = new QVBoxLayout(body_);
+  groups->setContentsMargins(0, 0, 0, 0);
+  groups->setSpacing(12);
+  groups->addWidget(buildWhat());
+  groups->addWidget(buildPlaces());
+  groups->addWidget(buildCard());
+  groups->addWidget(buildOutline());
+  groups->addWidget(buildLocks());
+  layout->addWidget(body_);
+  layout->addStretch(1);
+  body_->setEnabled(false);
+}
+
+// Saving it, trying it, taking it elsewhere.
+QWidget* ExerciseForm::buildWays() {
+  auto* box = new QWidget(this);
+  auto* grid = new QGridLayout(box);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setSpacing(4);
+  save_ = way("saveExercise", tr("&Save it"), tr("As an exercise of this workstation"), box);
+  copy_ = way("saveExerciseCopy", tr("Save a &copy"), tr("As another one, beside it"), box);
+  try_ = way("tryExercise", tr("&Try it"), tr("Go to Train with it; Back comes here again"), box);
+  export_ = way("exportExercise", tr("&Export\u2026"),
+                tr("One folder with all that it needs, for other workstations"), box);
+  import_ = way("importExercise", tr("&Import\u2026"), tr("A folder of another workstation"), box);
+  connect(save_, &QPushButton::clicked, this, &ExerciseForm::saveWanted);
+  connect(copy_, &QPushButton::clicked, this, &ExerciseForm::saveCopyWanted);
+  connect(try_, &QPushButton::clicked, this, &ExerciseForm::tryWanted);
+  connect(export_, &QPushButton::clicked, this, &ExerciseForm::exportWanted);
+  connect(import_, &QPushButton::clicked, this, &ExerciseForm::importWanted);
+  grid->addWidget(try_, 0, 0, 1, 2);
+  grid->addWidget(save_, 1, 0);
+  grid->addWidget(copy_, 1, 1);
+  grid->addWidget(export_, 2, 0);
+  grid->addWidget(import_, 2, 1);
+  saved_ = new QLabel(box);
+  saved_->setObjectName("exerciseSaved");
+  saved_->setWordWrap(true);
+  saved_->setProperty("quiet", true);
+  grid->addWidget(saved_, 3, 0, 1, 2);
+  return box;
+}
+
+void ExerciseForm::edit(QLabel* problem, const std::string& what,
+                        const std::function<void(Scene&)>& change) {
+  if (showing_) return;
+  Scene scene = scene_;
+  change(scene);
+  const Status done = wanted ? wanted(scene, what) : Status();
+  problem->setVisible(!done.ok());
+  if (done) return;
+  problem->setText(
+      tr("Not applied. %1. %2.").arg(toQt(done.error().what), toQt(done.error().next)));
+}
+
+// --- What it is ---
+
+QWidget* ExerciseForm::buildWhat() {
+  auto* fields = new QWidget(body_);
+  QFormLayout* rows = what_form_ = form(fields);
+  what_problem_ = problemLabel("whatProblem", body_);
+  name_ = new QLineEdit(fields);
+  name_->setObjectName("exerciseName");
+  name_->setMaxLength(kMostLetters);
+  connect(name_, &QLineEdit::editingFinished, this, [this] {
+    const std::string typed = cleanUtf8(name_->text().toStdString());
+    name_->setModified(false);
+    if (typed.empty()) return name_->setText(toQt(scene_.name));
+    if (typed == scene_.name) return;
+    edit(what_problem_, "exercise name", [&](Scene& scene) { scene.name = typed; });
+  });
+  rows->addRow(tr("Name"), hinted(name_, tr("As it stands in the list of exercises."), fields));
+  anatomy_ = combo("anatomy", tr("Part of the body"), fields);
+  anatomy_->addItem(tr("Head"), QStringLiteral("cranium"));
+  anatomy_->addItem(tr("Abdomen"), QStringLiteral("abdomen"));
+  connect(anatomy_, &QComboBox::activated, this, [this](int) {
+    const std::string of = anatomy_->currentData().toString().toStdString();
+    edit(what_problem_, "anatomy", [&](Scene& scene) { scene.anatomy = of; });
+  });
+  rows->addRow(tr("For"), hinted(anatomy_, tr("Cases of another part of the body are asked about."),
+                                 fields));
+  structures_ = new QListWidget(fields);
+  structures_->setObjectName("neededStructures");
+  structures_->setAccessibleName(tr("Structures that it needs"));
+  structures_->setMaximumHeight(4 * fontMetrics().height() + 12);
+  connect(structures_, &QListWidget::itemChanged, this, [this] {
+    std::vector<std::string> names;
+    for (int i = 0; i < structures_->count(); ++i) {
+      const QListWidgetItem& item = *structures_->item(i);
+      if (item.checkState() == Qt::Checked) names.push_back(item.text().toStdString());
+    }
+    edit(what_problem_, "structures", [&](Scene& scene) { scene.structures = names; });
+  });
+  rows->addRow(tr("Needs"), hinted(structures_, tr("A case that lacks one is helped to it first."),
+                                   fields));
+  auto* script = new QWidget(fields);
+  auto* script_row = new QGridLayout(script);
+  script_row->setContentsMargins(0, 0, 0, 0);
+  script_row->setSpacing(4);
+  operator_ = new QLabel(script);
+  operator_->setObjectName("operatorFile");
+  auto* choose = button("chooseOperator", tr("Choose\u2026"), tr("An operator script"), script);
+  auto* none = button("noOperator", tr("None"), tr("Nothing moves by itself"), script);
+  connect(choose, &QToolButton::clicked, this, &ExerciseForm::operatorWanted);
+  connect(none, &QToolButton::clicked, this, [this] { setOperator({}); });
+  script_row->addWidget(operator_, 0, 0, 1, 3);
+  script_row->addWidget(choose, 1, 0);
+  script_row->addWidget(none, 1, 1);
+  script_row->setColumnStretch(2, 1);
+  rows->addRow(tr("Script"), hinted(script, tr("Moves the hands where nobody does, as in a check."),
+                                    fields));
+  return group(tr("What it is"), what_problem_, fields, body_);
+}
+
+void ExerciseForm::setOperator(const std::string& file) {
+  edit(what_problem_, "operator", [&](Scene& scene) { scene.operator_file = file; });
+}
+
+void ExerciseForm::setStructures(const std::vector<std::string>& names) {
+  of_case_ = names;
+  const Scene same = scene_;
+  setScene(same);
+}
+
+// --- Where ---
+
+QWidget* ExerciseForm::buildPlaces() {
+  auto* fields = new QWidget(body_);
+  place_form_ = form(fields);
+  place_problem_ = problemLabel("placeProblem", body_);
+  landmark_ = combo("landmark", tr("Landmark"), fields);
+  connect(landmark_, &QComboBox::activated, this, [this] { showLandmark(); });
+  place_form_->addRow(tr("Landmark"),
+                      hinted(landmark_, tr("A place on any patient, found in the case."), fields));
+  landmark_tissue_ = combo("landmarkTissue", tr("Tissue of the landmark"), fields);
+  connect(landmark_tissue_, &QComboBox::activated, this, [this](int) {
+    const std::string id = landmark_tissue_->currentData().toString().toStdString();
+    editLandmark("tissue", [&](Landmark& of) { of.tissue = id; });
+  });
+  place_form_->addRow(tr("On"), hinted(landmark_tissue_, tr("The tissue that its ray meets first."),
+                                       fields));
+  auto* entry = button("placeEntry", tr("Click it in a view"),
+                       tr("A click on skin, bone or a slice is where it enters (I)"), fields);
+  connect(entry, &QToolButton::clicked, this, &ExerciseForm::entryWanted);
+  landmark_kind_ = settingHint({}, fields);
+  landmark_kind_->setObjectName("landmarkKind");
+  auto* entry_row = new QWidget(fields);
+  auto* entry_layout = new QVBoxLayout(entry_row);
+  entry_layout->setContentsMargins(0, 0, 0, 0);
+  entry_layout->addWidget(entry, 0, Qt::AlignLeft);
+  entry_layout->addWidget(landmark_kind_);
+  place_form_->addRow(tr("Entry"), entry_row);
+  const auto numbers = [&](std::span<const NumberOf<Landmark>> of) {
+    auto made = std::make_unique<NumberRows<Landmark>>(of, *place_form_, fields, "landmark:");
+    made->entered = [this](const Landmark& other, const char* key) {
+      editLandmark(key, [&](Landmark& landmark) { landmark = other; });
+    };
+    return made;
+  };
+  ray_ = numbers(kRayNumbers);
+  bulk_ = numbers(kBulkNumbers);
+  place_ = numbers(kPlaceNumbers);
+  run_ = numbers(kLandmarkNumbers);
+  view_landmark_ = combo("viewLandmark", tr("Looked at"), fields);
+  connect(view_landmark_, &QComboBox::activated, this, [this](int) {
+    const std::string id = view_landmark_->currentData().toString().toStdString();
+    edit(place_problem_, "view landmark", [&](Scene& scene) { scene.view.landmark = id; });
+  });
+  place_form_->addRow(tr("Look at"), hinted(view_landmark_, tr("Where the camera begins."), fields));
+  view_numbers_ = std::make_unique<NumberRows<SceneView>>(
+      std::span<const NumberOf<SceneView>>(kViewNumbers), *place_form_, fields, "view:");
+  view_numbers_->entered = [this](const SceneView& view, const char* key) {
+    edit(place_problem_, key, [&](Scene& scene) { scene.view = view; });
+  };
+  auto* looks = button("keepLooks", tr("Keep the looks as they are"),
+                       tr("Shown, ghosted, hidden: as the tissues look now"), fields);
+  connect(looks, &QToolButton::clicked, this, &ExerciseForm::looksWanted);
+  place_form_->addRow(tr("Looks"), hinted(looks, tr("What is shown, ghosted or hidden at the start."),
+                                          fields));
+  return group(tr("Where"), place_problem_, fields, body_);
+}
+
+void ExerciseForm::editLandmark(const std::string& what,
+                                const std::function<void(Landmark&)>& change) {
+  const int row = landmark_->currentIndex();
+  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  edit(place_problem_, "landmark:" + what,
+       [&](Scene& scene) { change(scene.landmarks[std::size_t(row)]); });
+}
+
+void ExerciseForm::showLandmark() {
+  const int row = landmark_->currentIndex();
+  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  const Landmark& of = scene_.landmarks[std::size_t(row)];
+  landmark_tissue_->setCurrentIndex(landmark_tissue_->findData(toQt(of.tissue)));
+  const bool bulk = !of.is_place && of.bulk_radius_mm > 0.0;
+  landmark_kind_->setText(of.is_place ? tr("Now: a place of this patient. Del in a slice: its own.")
+                          : bulk      ? tr("Now: towards the most of its tissue, on any patient.")
+                                      : tr("Now: a ray through the box of its tissue, on any "
+                                           "patient."));
+  ray_->setVisible(!of.is_place && !bulk);
+  bulk_->setVisible(bulk);
+  place_->setVisible(of.is_place);
+  for (auto* rows : {&ray_, &bulk_, &place_, &run_}) (*rows)->show(of);
+}
+
+// --- The card ---
+
+ExerciseForm::CardFields ExerciseForm::buildLanguage(QWidget* page, const QString& suffix) {
+  auto* rows = form(page);
+  CardFields fields{new QLineEdit(page), new QPlainTextEdit(page), new QLineEdit(page)};
+  fields.goal->setObjectName("cardGoal" + suffix);
+  fields.goal->setAccessibleName(tr("Goal"));
+  fields.steps->setObjectName("cardSteps" + suffix);
+  fields.steps->setAccessibleName(tr("Steps, a line each"));
+  fields.steps->setTabChangesFocus(true);
+  fields.steps->setFixedHeight(6 * fontMetrics().height());
+  fields.hands->setObjectName("cardHands" + suffix);
+  fields.hands->setAccessibleName(tr("Hands"));
+  rows->addRow(tr("Goal"), hinted(fields.goal, tr("What is to be reached."), page));
+  rows->addRow(tr("Steps"), hinted(fields.steps, tr("One a line, in their order."), page));
+  rows->addRow(tr("Hands"),
+               hinted(fields.hands, tr("Which tool in which hand, and how to move it."), page));
+  connect(fields.goal, &QLineEdit::editingFinished, this, &ExerciseForm::cardEntered);
+  connect(fields.hands, &QLineEdit::editingFinished, this, &ExerciseForm::cardEntered);
+  fields.steps->installEventFilter(this);
+  return fields;
+}
+
+QWidget* ExerciseForm::buildCard() {
+  auto* fields = new QWidget(body_);
+  auto* column = new QVBoxLayout(fields);
+  column->setContentsMargins(0, 0, 0, 0);
+  card_problem_ = problemLabel("cardProblem", body_);
+  card_on_ = new QCheckBox(tr("Say what to do before it starts"), fields);
+  card_on_->setObjectName("cardOn");
+  en_page_ = new QWidget(fields);
+  en_ = buildLanguage(en_page_, "");
+  chinese_on_ = new QCheckBox(tr("Also in Traditional Chinese"), fields);
+  chinese_on_->setObjectName("cardChineseOn");
+  zh_page_ = new QWidget(fields);
+  zh_ = buildLanguage(zh_page_, "Chinese");
+  column->addWidget(card_on_);
+  column->addWidget(en_page_);
+  column->addWidget(chinese_on_);
+  column->addWidget(zh_page_);
+  connect(card_on_, &QCheckBox::toggled, this, [this](bool on) {
+    edit(card_problem_, "card on", [&](Scene& scene) {
+      scene.card.reset();
+      if (on) {
+        scene.card = SceneCard{{scene.name, {tr("Say the first step").toStdString()},
+                                tr("Say what each hand does").toStdString()},
+                               {}};
+      }
+    });
+  });
+  connect(chinese_on_, &QCheckBox::toggled, this, [this](bool on) {
+    edit(card_problem_, "card on", [&](Scene& scene) {
+      if (!scene.card) return;
+      scene.card->zh_TW.reset();
+      if (on) scene.card->zh_TW = scene.card->en;
+    });
+  });
+  return group(tr("Card"), card_problem_, fields, body_);
+}
+
+CardText ExerciseForm::textOf(const CardFields& fields) {
+  CardText text{cleanUtf8(fields.goal->text().toStdString()), {},
+                cleanUtf8(fields.hands->text().toStdString())};
+  for (const QString& line : fields.steps->toPlainText().split('\n')) {
+    const std::string step = cleanUtf8(line.toStdString());
+    if (!step.empty()) text.steps.push_back(step);
+  }
+  return text;
+}
+
+void ExerciseForm::cardEntered() {
+  if (showing_ || !scene_.card) return;
+  edit(card_problem_, "card", [this](Scene& scene) {
+    scene.card->en = textOf(en_);
+    if (scene.card->zh_TW) scene.card->zh_TW = textOf(zh_);
+  });
+}
+
+bool ExerciseForm::eventFilter(QObject* watched, QEvent* event) {
+  const bool steps = watched == en_.steps || watched == zh_.steps;
+  if (steps && event->type() == QEvent::FocusOut) cardEntered();
+  return QWidget::eventFilter(watched, event);
+}
+
+void ExerciseForm::showText(CardFields& fields, const CardText* text) {
+  const CardText none;
+  const CardText& of = text ? *text : none;
+  // What is being typed stays.
+  for (const auto& [field, words] : {std::pair(fields.goal, &of.goal), {fields.hands, &of.hands}}) {
+    if (field->hasFocus()) continue;
+    field->setText(toQt(*words));
+    field->setCursorPosition(0);
+    field->setToolTip(toQt(*words));
+  }
+  QStringList steps;
+  for (const std::string& step : of.steps) steps << toQt(step);
+  if (!fields.steps->hasFocus() && fields.steps->toPlainText() != steps.join('\n')) {
+    fields.steps->setPlainText(steps.join('\n'));
+  }
+}
+
+void ExerciseForm::showCard() {
+  card_on_->setChecked(scene_.card.has_value());
+  en_page_->setVisible(scene_.card.has_value());
+  chinese_on_->setVisible(scene_.card.has_value());
+  const bool chinese = scene_.card && scene_.card->zh_TW;
+  chinese_on_->setChecked(chinese);
+  zh_page_->setVisible(chinese);
+  showText(en_, scene_.card ? &scene_.card->en : nullptr);
+  showText(zh_, chinese ? &*scene_.card->zh_TW : nullptr);
+}
+
+// --- The outline ---
+
+QWidget* ExerciseForm::buildOutline() {
+  auto* fields = new QWidget(body_);
+  outline_form_ = form(fields);
+  outline_problem_ = problemLabel("outlineProblem", body_);
+  auto* row = new QWidget(fields);
+  auto* buttons = new QHBoxLayout(row);
+  buttons->setContentsMargins(0, 0, 0, 0);
+  draw_ = button("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"), row);
+  draw_->setCheckable(true);
+  back_ = button("outlineBack", tr("Last off"), tr("Takes the last point away"), row);
+  clear_ = button("clearOutline", tr("Clear"), tr("No outline"), row);
+  connect(draw_, &QToolButton::toggled, this, [this](bool on) {
+    if (!showing_) emit drawingWanted(on);
+  });
+  connect(clear_, &QToolButton::clicked, this, [this] {
+    edit(outline_problem_, "outline off", [](Scene& scene) { scene.outline.reset(); });
+  });
+  connect(back_, &QToolButton::clicked, this, [this] {
+    edit(outline_problem_, "outline", [](Scene& scene) {
+      if (!scene.outline) return;
+      scene.outline->points_mm.pop_back();
+      if (scene.outline->points_mm.size() < 2) scene.outline.reset();
+    });
+  });
+  buttons->addWidget(draw_);
+  buttons->addWidget(back_);
+  buttons->addWidget(clear_);
+  buttons->addStretch(1);
+  points_ = settingHint({}, fields);
+  points_->setObjectName("outlinePoints");
+  outline_form_->addRow(hinted(row, tr("A line on the tissue that shows where to work; it is neither "
+                                       "felt nor scored."), fields));
+  outline_form_->addRow(points_);
+  closed_ = new QCheckBox(tr("Closed"), fields);
+  closed_->setObjectName("outlineClosed");
+  connect(closed_, &QCheckBox::toggled, this, [this](bool on) {
+    edit(outline_problem_, "outline closed", [&](Scene& scene) {
+      if (scene.outline) scene.outline->closed = on;
+    });
+  });
+  outline_form_->addRow(hinted(closed_, tr("The last point is joined to the first."), fields));
+  width_ = std::make_unique<NumberRows<SceneOutline>>(
+      std::span<const NumberOf<SceneOutline>>(kOutlineNumbers), *outline_form_, fields, "outline:");
+  width_->entered = [this](const SceneOutline& outline, const char* key) {
+    edit(outline_problem_, key, [&](Scene& scene) {
+      if (scene.outline) scene.outline->width_mm = outline.width_mm;
+    });
+  };
+  return group(tr("Outline"), outline_problem_, fields, body_);
+}
+
+void ExerciseForm::showOutline() {
+  const bool any = scene_.outline.has_value();
+  const std::size_t count = any ? scene_.outline->points_mm.size() : 0;
+  points_->setText(any ? tr("%1 points").arg(count) : tr("No outline yet."));
+  closed_->setEnabled(any);
+  closed_->setChecked(any && scene_.outline->closed);
+  back_->setEnabled(any);
+  clear_->setEnabled(any);
+  width_->setVisible(any);
+  if (any) width_->show(*scene_.outline);
+}
+
+void ExerciseForm::showDrawing(bool drawing) {
+  const QSignalBlocker quiet(draw_);
+  draw_->setChecked(drawing);
+}
+
+// --- Locks ---
+
+QWidget* ExerciseForm::buildLocks() {
+  auto* fields = new QWidget(body_);
+  auto* column = new QVBoxLayout(fields);
+  column->setContentsMargins(0, 0, 0, 0);
+  lock_problem_ = problemLabel("lockProblem", body_);
+  for (std::size_t i = 0; i < kLockNames.size(); ++i) {
+    const Lock lock = kLockNames[i].second;
+    auto* check = new QCheckBox(lockWords(lock), fields);
+    check->setObjectName("lock:" + QString::fromUtf8(kLockNames[i].first.data(),
+                                                     qsizetype(kLockNames[i].first.size())));
+    connect(check, &QCheckBox::toggled, this, [this, lock](bool on) {
+      edit(lock_problem_, "locks", [&](Scene& scene) {
+        on ? void(scene.locks.insert(lock)) : void(scene.locks.erase(lock));
+      });
+    });
+    column->addWidget(check);
+    locks_[i] = check;
+  }
+  column->addWidget(settingHint(tr("What a trainee may not change while the exercise is practised."),
+                                fields));
+  return group(tr("What stays"), lock_problem_, fields, body_);
+}
+
+void ExerciseForm::setScene(const Scene& scene) {
+  scene_ = scene;
+  showing_ = true;
+  body_->setEnabled(locked_->text().isEmpty() && !scene_.arms.empty());
+  if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(scene_.name));
+  const QString anatomy = toQt(scene_.anatomy);
+  if (anatomy_->findData(anatomy) < 0) anatomy_->addItem(anatomy, anatomy);
+  anatomy_->setCurrentIndex(anatomy_->findData(anatomy));
+  structures_->clear();
+  std::vector<std::string> names = scene_.structures;
+  for (const std::string& name : of_case_) {
+    const auto same = [&](const std::string& other) { return sameName(name, other); };
+    if (std::ranges::none_of(names, same)) names.push_back(name);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    auto* item = new QListWidgetItem(toQt(names[i]), structures_);
+    item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
+    item->setCheckState(i < scene_.structures.size() ? Qt::Checked : Qt::Unchecked);
+  }
+  what_form_->setRowVisible(structures_->parentWidget(), !names.empty());
+  operator_->setText(scene_.operator_file.empty()
+                         ? tr("none")
+                         : toQt(std::filesystem::path(scene_.operator_file).filename()));
+  const int row = std::max(0, landmark_->currentIndex());
+  landmark_->clear();
+  view_landmark_->clear();
+  view_landmark_->addItem(tr("The whole case"), QString());
+  for (const Landmark& of : scene_.landmarks) {
+    landmark_->addItem(toQt(of.id));
+    view_landmark_->addItem(toQt(of.id), toQt(of.id));
+  }
+  landmark_->setCurrentIndex(std::min(row, landmark_->count() - 1));
+  view_landmark_->setCurrentIndex(view_landmark_->findData(toQt(scene_.view.landmark)));
+  landmark_tissue_->clear();
+  for (const Tissue& of : scene_.tissues.tissues) {
+    landmark_tissue_->addItem(shownName(of.name), toQt(of.id));
+  }
+  view_numbers_->show(scene_.view);
+  showLandmark();
+  showCard();
+  showOutline();
+  for (std::size_t i = 0; i < locks_.size(); ++i) {
+    locks_[i]->setChecked(scene_.locks.contains(kLockNames[i].second));
+  }
+  showing_ = false;
+}
+
+void ExerciseForm::setLocked(const QString& why) {
+  locked_->setText(why);
+  locked_->setVisible(!why.isEmpty());
+  body_->setEnabled(why.isEmpty() && !scene_.arms.empty());
+  for (QPushButton* of : {save_, copy_, import_}) of->setEnabled(why.isEmpty());
+}
+
+void ExerciseForm::showSaved(const QString& words) {
+  saved_->setText(words);
+  saved_->setVisible(!words.isEmpty());
+}
+
+}  // namespace trephine

@@ -1,0 +1,108 @@
+// The exercise itself: its name, what it is for, where it enters, what its card says in both
+// languages, the outline that shows where to work, what a trainee may not change; and saving it,
+// trying it and taking it elsewhere. It shows a scene and tells what a person wants of it; what is
+// refused is said below the group and the scene stays.
+#pragma once
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QToolButton>
+#include <QWidget>
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "scene/scene.h"
+#include "scene/scene_numbers.h"
+#include "ui/common/number_rows.h"
+
+namespace trephine {
+
+class ExerciseForm : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ExerciseForm(QWidget* parent = nullptr);
+
+  void setScene(const Scene& scene);
+  // Names of the case's structures, to be asked for.
+  void setStructures(const std::vector<std::string>& names);
+  void setLocked(const QString& why);
+  // What it is called where it is saved, and whether it is as it was saved.
+  void showSaved(const QString& words);
+  // Clicks on the surface add points.
+  void showDrawing(bool drawing);
+  bool isDrawing() const { return draw_->isChecked(); }
+
+  std::function<Status(const Scene& wanted, const std::string& what)> wanted;
+
+ signals:
+  void drawingWanted(bool on);
+  void entryWanted();  // the tool that places it
+  void looksWanted();  // as they are now
+  void operatorWanted();
+  void saveWanted();
+  void saveCopyWanted();
+  void tryWanted();
+  void exportWanted();
+  void importWanted();
+
+ public slots:
+  void setOperator(const std::string& file);
+
+ private:
+  struct CardFields {
+    QLineEdit* goal;
+    QPlainTextEdit* steps;
+    QLineEdit* hands;
+  };
+  QWidget* buildWays();
+  QWidget* buildWhat();
+  QWidget* buildPlaces();
+  QWidget* buildCard();
+  QWidget* buildOutline();
+  QWidget* buildLocks();
+  CardFields buildLanguage(QWidget* page, const QString& suffix);
+  void showLandmark();
+  void showCard();
+  void showOutline();
+  void edit(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& change);
+  void editLandmark(const std::string& what, const std::function<void(Landmark&)>& change);
+  void cardEntered();
+  bool eventFilter(QObject* watched, QEvent* event) override;
+  static void showText(CardFields& fields, const CardText* text);
+  static CardText textOf(const CardFields& fields);
+
+  Scene scene_;
+  bool showing_ = false;
+  QWidget* body_;
+  QLabel *locked_, *saved_;
+  QPushButton *save_, *copy_, *try_, *export_, *import_;
+  QFormLayout* what_form_;
+  QLineEdit* name_;
+  QComboBox* anatomy_;
+  QListWidget* structures_;
+  std::vector<std::string> of_case_;
+  QLabel *what_problem_, *place_problem_, *card_problem_, *outline_problem_, *lock_problem_;
+  QComboBox *landmark_, *landmark_tissue_, *view_landmark_;
+  QFormLayout* place_form_;
+  QLabel* landmark_kind_;
+  std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, run_;
+  std::unique_ptr<NumberRows<SceneView>> view_numbers_;
+  QLabel* operator_;
+  QCheckBox *card_on_, *chinese_on_;
+  CardFields en_, zh_;
+  QWidget *en_page_, *zh_page_;
+  QToolButton *draw_, *clear_, *back_;
+  QCheckBox* closed_;
+  QLabel* points_;
+  QFormLayout* outline_form_;
+  std::unique_ptr<NumberRows<SceneOutline>> width_;
+  std::array<QCheckBox*, kLockNames.size()> locks_{};
+};
+
+}  // namespace trephine

@@ -1,0 +1,599 @@
+#include "ui/prepare/tools_panel.h"
+
+#include <QGroupBox>
+#include <QHBoxLayout>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <algorithm>
+
+#include "base/json.h"
+#include "base/system.h"
+#include "base/utf8.h"
+#include "haptics/law_input.h"
+#include "ui/common/colours.h"
+#include "ui/common/words.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kMostLetters = 40;
+
+QLabel* problemLabel(const char* name, QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  colours::setText(*label, colours::kCaution);
+  label->hide();
+  return label;
+}
+
+QComboBox* combo(const char* name, const QString& accessible, QWidget* parent) {
+  auto* box = new QComboBox(parent);
+  box->setObjectName(name);
+  box->setAccessibleName(accessible);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  box->setMinimumContentsLength(3);
+  return box;
+}
+
+QToolButton* button(const char* name, const QString& text, const QString& tip, QWidget* parent) {
+  auto* made = new QToolButton(parent);
+  made->setObjectName(name);
+  made->setText(text);
+  made->setToolTip(tip);
+  made->setFocusPolicy(Qt::TabFocus);
+  return made;
+}
+
+QFormLayout* form(QWidget* of) {
+  auto* layout = new QFormLayout(of);
+  layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(6);
+  return layout;
+}
+
+// A field and below it what it does.
+QWidget* hinted(QWidget* field, const QString& words, QWidget* parent) {
+  auto* both = new QWidget(parent);
+  auto* column = new QVBoxLayout(both);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(1);
+  column->addWidget(field);
+  column->addWidget(settingHint(words, both));
+  return both;
+}
+
+QString lawName(LawKind law) {
+  switch (law) {
+    case LawKind::viscous:
+      return ToolsPanel::tr("Viscous");
+    case LawKind::coulomb:
+      return ToolsPanel::tr("Coulomb");
+    case LawKind::elastic:
+      return ToolsPanel::tr("Elastic");
+    case LawKind::rupture:
+      return ToolsPanel::tr("Rupture");
+  }
+  return {};
+}
+
+QString lawMeaning(LawKind law) {
+  switch (law) {
+    case LawKind::viscous:
+      return ToolsPanel::tr("Tissue resists speed: f = -b v, the seed paper's puncture and cutting.");
+    case LawKind::coulomb:
+      return ToolsPanel::tr("Dry friction: a tool that rests is held, one that slides is braked.");
+    case LawKind::elastic:
+      return ToolsPanel::tr("Tissue pushes back with its stiffness, and solid tissue stops a tool.");
+    case LawKind::rupture:
+      return ToolsPanel::tr("A capsule gives way at its rupture force, and the force drops.");
+  }
+  return {};
+}
+
+template <class Kind, std::size_t N>
+void fill(QComboBox& box, const Names<Kind, N>& names) {
+  for (const auto& [name, kind] : names) {
+    QString words = QString::fromUtf8(name.data(), qsizetype(name.size()));
+    words[0] = words[0].toUpper();
+    box.addItem(words, int(kind));
+  }
+}
+
+void chooseData(QComboBox& box, int data) {
+  box.setCurrentIndex(box.findData(data));
+}
+
+constexpr Names<ToolKind, 3> kKinds{
+    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
+constexpr Names<BurrShape, 2> kShapes{
+    {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
+
+}  // namespace
+
+ToolsPanel::ToolsPanel(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(10, 10, 10, 10);
+  layout->setSpacing(10);
+  locked_ = problemLabel("exerciseLocked", this);
+  layout->addWidget(locked_);
+  body_ = new QWidget(this);
+  auto* groups = new QVBoxLayout(body_);
+  groups->setContentsMargins(0, 0, 0, 0);
+  groups->setSpacing(12);
+  groups->addWidget(buildTools());
+  groups->addWidget(buildArms());
+  groups->addWidget(buildLaws());
+  layout->addWidget(body_);
+  layout->addStretch(1);
+  body_->setEnabled(false);
+}
+
+// --- Tools ---
+
+QWidget* ToolsPanel::buildTools() {
+  auto* box = new QWidget(body_);
+  auto* layout = new QVBoxLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* title = new QLabel(tr("Tools"), box);
+  title->setProperty("title", true);
+  tools_ = new QListWidget(box);
+  tools_->setObjectName("toolList");
+  tools_->setAccessibleName(tr("Tools of the exercise"));
+  tools_->setMaximumHeight(5 * fontMetrics().height() + 12);
+  add_ = button("addTool", tr("Add a tool"), tr("One of the shipped ones, or of a tool file"), box);
+  add_->setPopupMode(QToolButton::InstantPopup);
+  add_menu_ = new QMenu(add_);
+  add_->setMenu(add_menu_);
+  connect(add_menu_, &QMenu::aboutToShow, this, [this] {
+    add_menu_->clear();
+    std::vector<std::filesystem::path> files;
+    std::error_code ec;
+    for (std::filesystem::directory_iterator at(resourceFolder() / "tools", ec), end;
+         !ec && at != end; at.increment(ec)) {
+      if (at->path().extension() == ".json") files.push_back(at->path());
+    }
+    std::ranges::sort(files);
+    for (const auto& file : files) {
+      add_menu_->addAction(toQt(file.stem()), this, [this, file] { addTool(file); });
+    }
+    add_menu_->addSeparator();
+    QAction* own = add_menu_->addAction(tr("From a &file\u2026"), this, &ToolsPanel::toolFileWanted);
+    own->setObjectName("toolFromFile");
+  });
+  remove_ = button("removeTool", tr("Remove it"), tr("Where no arm has it"), box);
+  connect(remove_, &QToolButton::clicked, this, &ToolsPanel::removeTool);
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(add_);
+  buttons->addWidget(remove_);
+  buttons->addStretch(1);
+
+  tool_editor_ = new QWidget(box);
+  tool_form_ = form(tool_editor_);
+  id_ = new QLineEdit(tool_editor_);
+  id_->setObjectName("toolName");
+  id_->setMaxLength(kMostLetters);
+  connect(id_, &QLineEdit::editingFinished, this, &ToolsPanel::nameTool);
+  tool_form_->addRow(tr("Name"), hinted(id_, tr("By it the arms name the tool."), tool_editor_));
+  kind_ = combo("toolKind", tr("Kind of tool"), tool_editor_);
+  fill(*kind_, kKinds);
+  connect(kind_, &QComboBox::activated, this, [this](int) {
+    editTool("kind", [this](SceneTool& of) {
+      ToolDescription& d = of.tool.made_from;
+      d.kind = ToolKind(kind_->currentData().toInt());
+      // A burr is at least as long as its head.
+      if (d.kind == ToolKind::burr) d.length_mm = std::max(d.length_mm, 2.0 * d.radius_mm + 1.0);
+      if (d.kind != ToolKind::burr) d.shape = BurrShape::sphere;
+    });
+  });
+  tool_form_->addRow(tr("Kind"), hinted(kind_, tr("A needle punctures, a blade slices, a burr "
+                                                  "grinds."), tool_editor_));
+  shape_ = combo("toolShape", tr("Shape of the burr"), tool_editor_);
+  fill(*shape_, kShapes);
+  connect(shape_, &QComboBox::activated, this, [this](int) {
+    editTool("shape", [this](SceneTool& of) {
+      ToolDescription& d = of.tool.made_from;
+      d.shape = BurrShape(shape_->currentData().toInt());
+      if (d.shape == BurrShape::cylinder) d.head_mm = std::max(d.head_mm, 2.0 * d.radius_mm);
+      d.length_mm = std::max(d.length_mm, d.head_mm + 1.0);
+    });
+  });
+  tool_form_->addRow(tr("Shape"), hinted(shape_, tr("A ball, or a rod with round ends."),
+                                         tool_editor_));
+  const auto numbers = [this](auto rows) {
+    auto made = std::make_unique<NumberRows<ToolDescription>>(rows, *tool_form_, tool_editor_,
+                                                              "tool:");
+    made->entered = [this](const ToolDescription& d, const char* key) {
+      editTool(key, [&](SceneTool& of) { of.tool.made_from = d; });
+    };
+    return made;
+  };
+  tool_numbers_ = numbers(std::span<const NumberOf<ToolDescription>>(kToolNumbers));
+  shaft_ = numbers(std::span<const NumberOf<ToolDescription>>(kBurrNumbers).subspan(1));
+  head_ = numbers(std::span<const NumberOf<ToolDescription>>(kCylinderNumbers));
+  auto* mesh_row = new QWidget(tool_editor_);
+  auto* mesh_layout = new QGridLayout(mesh_row);
+  mesh_layout->setContentsMargins(0, 0, 0, 0);
+  mesh_layout->setSpacing(4);
+  mesh_ = new QLabel(mesh_row);
+  mesh_->setObjectName("toolMesh");
+  choose_mesh_ = button("chooseMesh", tr("Choose\u2026"), tr("An STL file, in mm"), mesh_row);
+  no_mesh_ = button("noMesh", tr("None"), tr("A plain shape is drawn"), mesh_row);
+  connect(choose_mesh_, &QToolButton::clicked, this, &ToolsPanel::meshWanted);
+  connect(no_mesh_, &QToolButton::clicked, this, [this] { setMesh({}); });
+  mesh_layout->addWidget(mesh_, 0, 0, 1, 3);
+  mesh_layout->addWidget(choose_mesh_, 1, 0);
+  mesh_layout->addWidget(no_mesh_, 1, 1);
+  mesh_layout->setColumnStretch(2, 1);
+  tool_form_->addRow(tr("Mesh"), hinted(mesh_row, tr("How it is drawn; what it cuts is as above."),
+                                        tool_editor_));
+  look_numbers_ = std::make_unique<NumberRows<ToolLook>>(
+      std::span<const NumberOf<ToolLook>>(kLookNumbers), *tool_form_, tool_editor_, "tool:");
+  look_numbers_->entered = [this](const ToolLook& look, const char* key) {
+    editTool(key, [&](SceneTool& of) { of.look = look; });
+  };
+  tool_problem_ = problemLabel("toolProblem", box);
+  connect(tools_, &QListWidget::currentRowChanged, this, [this] {
+    if (!showing_) showTool();
+  });
+  layout->addWidget(title);
+  layout->addWidget(tools_);
+  layout->addLayout(buttons);
+  layout->addWidget(tool_problem_);
+  layout->addWidget(tool_editor_);
+  return box;
+}
+
+SceneTool* ToolsPanel::tool(Scene& scene) const {
+  const int row = tools_->currentRow();
+  return row >= 0 && std::size_t(row) < scene.tools.size() ? &scene.tools[std::size_t(row)]
+                                                           : nullptr;
+}
+
+void ToolsPanel::editScene(QLabel* problem, const std::string& what,
+                           const std::function<void(Scene&)>& edit) {
+  Scene scene = scene_;
+  edit(scene);
+  const Status done = wanted ? wanted(scene, what) : Status();
+  problem->setVisible(!done.ok());
+  if (done) return;
+  problem->setText(
+      tr("Not applied. %1. %2.").arg(toQt(done.error().what), toQt(done.error().next)));
+  const Scene as_it_is = scene_;
+  setScene(as_it_is);
+}
+
+// The tool is made anew of what it is described by.
+void ToolsPanel::editTool(const std::string& what, const std::function<void(SceneTool&)>& edit) {
+  Scene scene = scene_;
+  SceneTool* of = tool(scene);
+  if (!of) return;
+  edit(*of);
+  const Result<Tool> made = makeTool(of->tool.made_from);
+  if (!made) {
+    tool_problem_->setText(
+        tr("Not applied. %1. %2.").arg(toQt(made.error().what), toQt(made.error().next)));
+    tool_problem_->show();
+    return showTool();
+  }
+  of->tool = *made;
+  editScene(tool_problem_, "tool:" + of->id + ":" + what, [&](Scene& all) { all = scene; });
+}
+
+void ToolsPanel::nameTool() {
+  SceneTool* of = tool(scene_);
+  const std::string typed = cleanUtf8(id_->text().toStdString());
+  id_->setModified(false);
+  if (!of || typed == of->id) return;
+  if (typed.empty()) return id_->setText(toQt(of->id));
+  const std::string before = of->id;
+  editScene(tool_problem_, "tool name", [&](Scene& scene) {
+    tool(scene)->id = typed;
+    for (SceneArm& arm : scene.arms) {
+      if (arm.tool == before) arm.tool = typed;
+      std::ranges::replace(arm.other_tools, before, typed);
+    }
+  });
+}
+
+void ToolsPanel::addTool(const std::filesystem::path& file) {
+  const std::string stem = cleanUtf8(file.stem().string());
+  std::string id = stem;
+  for (int n = 2; scene_.findTool(id); ++n) id = stem + "-" + std::to_string(n);
+  const Json json{{"id", id}, {"file", file.string()}};
+  JsonReader reader(json, file.string());
+  const SceneTool tool = readSceneTool(reader, file.parent_path());
+  if (Status read = reader.finish(); !read) {
+    tool_problem_->setText(
+        tr("Not added. %1. %2.").arg(toQt(read.error().what), toQt(read.error().next)));
+    return tool_problem_->show();
+  }
+  editScene(tool_problem_, "add tool", [&](Scene& scene) { scene.tools.push_back(tool); });
+  tools_->setCurrentRow(tools_->count() - 1);
+}
+
+void ToolsPanel::removeTool() {
+  if (!tool(scene_)) return;
+  const int row = tools_->currentRow();
+  editScene(tool_problem_, "remove tool",
+            [&](Scene& scene) { scene.tools.erase(scene.tools.begin() + row); });
+}
+
+void ToolsPanel::setMesh(const std::filesystem::path& file) {
+  editTool("mesh", [&](SceneTool& of) {
+    of.look = ToolLook{};
+    of.look.mesh = file;
+  });
+}
+
+void ToolsPanel::showTool() {
+  Scene& scene = scene_;
+  const SceneTool* of = tool(scene);
+  tool_editor_->setVisible(of);
+  remove_->setEnabled(of);
+  if (!of) return;
+  const ToolDescription& d = of->tool.made_from;
+  if (!id_->hasFocus() || !id_->isModified()) id_->setText(toQt(of->id));
+  chooseData(*kind_, int(d.kind));
+  chooseData(*shape_, int(d.shape));
+  const bool burr = d.kind == ToolKind::burr;
+  tool_form_->setRowVisible(shape_->parentWidget(), burr);
+  tool_numbers_->show(d);
+  shaft_->show(d);
+  shaft_->setVisible(burr);
+  head_->show(d);
+  head_->setVisible(burr && d.shape == BurrShape::cylinder);
+  const bool mesh = !of->look.mesh.empty();
+  mesh_->setText(mesh ? toQt(of->look.mesh.filename()) : tr("plain shape"));
+  no_mesh_->setEnabled(mesh);
+  look_numbers_->show(of->look);
+  look_numbers_->setVisible(mesh);
+}
+
+// --- Arms ---
+
+QWidget* ToolsPanel::buildArms() {
+  auto* box = new QWidget(body_);
+  auto* layout = new QVBoxLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* title = new QLabel(tr("Arms"), box);
+  title->setProperty("title", true);
+  auto* fields = new QWidget(box);
+  arm_form_ = form(fields);
+  arm_ = combo("armChoice", tr("Arm"), fields);
+  connect(arm_, &QComboBox::activated, this, [this] {
+    showArm();
+    emit armChosen();
+  });
+  arm_form_->addRow(tr("Arm"), hinted(arm_, tr("Drag its box in the slices: there it reaches in "
+                                               "the patient."), fields));
+  arm_tool_ = combo("armTool", tr("Tool of the arm"), fields);
+  connect(arm_tool_, &QComboBox::activated, this, [this](int) {
+    const std::string id = arm_tool_->currentData().toString().toStdString();
+    editArm("tool", [&](SceneArm& arm) {
+      arm.tool = id;
+      std::erase(arm.other_tools, id);
+    });
+  });
+  arm_form_->addRow(tr("In hand"), hinted(arm_tool_, tr("What it holds at first."), fields));
+  other_tools_ = new QListWidget(fields);
+  other_tools_->setObjectName("otherTools");
+  other_tools_->setAccessibleName(tr("Other tools of the arm"));
+  other_tools_->setMaximumHeight(4 * fontMetrics().height() + 12);
+  connect(other_tools_, &QListWidget::itemChanged, this, [this] {
+    if (showing_) return;
+    std::vector<std::string> ids;
+    for (int i = 0; i < other_tools_->count(); ++i) {
+      const QListWidgetItem& item = *other_tools_->item(i);
+      if (item.checkState() == Qt::Checked) {
+        ids.push_back(item.data(Qt::UserRole).toString().toStdString());
+      }
+    }
+    editArm("other tools", [&](SceneArm& arm) { arm.other_tools = ids; });
+  });
+  arm_form_->addRow(tr("Others"), hinted(other_tools_, tr("What may be taken meanwhile (Ctrl+T)."),
+                                         fields));
+  arm_landmark_ = combo("armLandmark", tr("Landmark of the arm"), fields);
+  connect(arm_landmark_, &QComboBox::activated, this, [this](int) {
+    const std::string id = arm_landmark_->currentText().toStdString();
+    editArm("landmark", [&](SceneArm& arm) { arm.map.landmark = id; });
+  });
+  arm_form_->addRow(tr("Landmark"),
+                    hinted(arm_landmark_, tr("The place in the case that it is put at."), fields));
+  map_numbers_ = std::make_unique<NumberRows<SceneMap>>(
+      std::span<const NumberOf<SceneMap>>(kSceneMapNumbers), *arm_form_, fields, "arm:");
+  map_numbers_->entered = [this](const SceneMap& map, const char* key) {
+    editArm(key, [&](SceneArm& arm) { arm.map = map; });
+  };
+  arm_numbers_ = std::make_unique<NumberRows<SceneArm>>(
+      std::span<const NumberOf<SceneArm>>(kArmNumbers), *arm_form_, fields, "arm:");
+  arm_numbers_->entered = [this](const SceneArm& wanted, const char* key) {
+    editArm(key, [&](SceneArm& arm) { arm = wanted; });
+  };
+  arm_problem_ = problemLabel("armProblem", box);
+  layout->addWidget(title);
+  layout->addWidget(arm_problem_);
+  layout->addWidget(fields);
+  return box;
+}
+
+void ToolsPanel::editArm(const std::string& what, const std::function<void(SceneArm&)>& edit) {
+  const std::size_t index = chosenArm();
+  if (index >= scene_.arms.size()) return;
+  editScene(arm_problem_, "arm:" + scene_.arms[index].name + ":" + what,
+            [&](Scene& scene) { edit(scene.arms[index]); });
+}
+
+void ToolsPanel::showArm() {
+  const std::size_t index = chosenArm();
+  if (index >= scene_.arms.size()) return;
+  const SceneArm& arm = scene_.arms[index];
+  const bool before = std::exchange(showing_, true);
+  arm_tool_->clear();
+  other_tools_->clear();
+  for (const SceneTool& of : scene_.tools) {
+    arm_tool_->addItem(toQt(of.id), toQt(of.id));
+    if (of.id == arm.tool) continue;
+    auto* item = new QListWidgetItem(toQt(of.id), other_tools_);
+    item->setData(Qt::UserRole, toQt(of.id));
+    item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
+    const bool has = std::ranges::find(arm.other_tools, of.id) != arm.other_tools.end();
+    item->setCheckState(has ? Qt::Checked : Qt::Unchecked);
+  }
+  arm_tool_->setCurrentIndex(arm_tool_->findData(toQt(arm.tool)));
+  arm_landmark_->clear();
+  for (const Landmark& landmark : scene_.landmarks) arm_landmark_->addItem(toQt(landmark.id));
+  arm_landmark_->setCurrentIndex(arm_landmark_->findText(toQt(arm.map.landmark)));
+  // A map that is fixed in its own patient has no landmark.
+  arm_form_->setRowVisible(arm_landmark_->parentWidget(), !arm.map.fixed);
+  map_numbers_->setVisible(!arm.map.fixed);
+  map_numbers_->show(arm.map);
+  arm_numbers_->show(arm);
+  showing_ = before;
+}
+
+// --- Laws and control ---
+
+QWidget* ToolsPanel::buildLaws() {
+  auto* box = new QWidget(body_);
+  auto* layout = new QVBoxLayout(box);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* title = new QLabel(tr("What is felt"), box);
+  title->setProperty("title", true);
+  layout->addWidget(title);
+  law_problem_ = problemLabel("lawProblem", box);
+  layout->addWidget(law_problem_);
+  for (const auto& [name, law] : kLawNames) {
+    auto* check = new QCheckBox(lawName(law), box);
+    check->setObjectName("law:" + QString::fromUtf8(name.data(), qsizetype(name.size())));
+    connect(check, &QCheckBox::toggled, this, [this, law = law](bool on) {
+      if (showing_) return;
+      editScene(law_problem_, "laws", [&](Scene& scene) {
+        std::erase(scene.laws, law);
+        if (on) scene.laws.push_back(law);
+        std::ranges::sort(scene.laws);
+      });
+    });
+    auto* cost = new QLabel(box);
+    cost->setObjectName(check->objectName() + ":cost");
+    cost->setProperty("quiet", true);
+    auto* beside = new QHBoxLayout;
+    beside->addWidget(check, 1);
+    beside->addWidget(cost);
+    layout->addLayout(beside);
+    layout->addWidget(settingHint(lawMeaning(law), box));
+    laws_.emplace_back(law, check);
+    law_costs_.emplace_back(law, cost);
+  }
+  auto* fields = new QWidget(box);
+  auto* rows = form(fields);
+  controller_ = combo("sceneController", tr("Controller"), fields);
+  for (const auto& [name, kind] : kControllerNames) {
+    controller_->addItem(controllerWord(kind), int(kind));
+  }
+  connect(controller_, &QComboBox::activated, this, [this](int) {
+    editScene(law_problem_, "controller", [this](Scene& scene) {
+      scene.controller = ControllerKind(controller_->currentData().toInt());
+    });
+  });
+  controller_hint_ = settingHint({}, fields);
+  controller_cost_ = new QLabel(fields);
+  controller_cost_->setObjectName("controllerCost");
+  controller_cost_->setProperty("quiet", true);
+  auto* control = new QWidget(fields);
+  auto* control_layout = new QVBoxLayout(control);
+  control_layout->setContentsMargins(0, 0, 0, 0);
+  control_layout->setSpacing(1);
+  control_layout->addWidget(controller_);
+  control_layout->addWidget(controller_cost_);
+  control_layout->addWidget(controller_hint_);
+  rows->addRow(tr("Control"), control);
+  force_at_ = combo("forceAt", tr("Where the force acts"), fields);
+  fill(*force_at_, kForceAtNames);
+  connect(force_at_, &QComboBox::activated, this, [this](int) {
+    editScene(law_problem_, "force at", [this](Scene& scene) {
+      scene.force_at = ForceAt(force_at_->currentData().toInt());
+    });
+  });
+  rows->addRow(tr("Force at"),
+               hinted(force_at_, tr("The tip in the firmest tissue, or along the tool, each point "
+                                    "in its own."), fields));
+  removal_ = combo("removal", tr("How tissue is removed"), fields);
+  fill(*removal_, kRemovalNames);
+  connect(removal_, &QComboBox::activated, this, [this](int) {
+    editScene(law_problem_, "removal", [this](Scene& scene) {
+      scene.removal = RemovalKind(removal_->currentData().toInt());
+    });
+  });
+  rows->addRow(tr("Removal"), hinted(removal_, tr("As much as the work of hand and motor pays for, "
+                                                  "or all that is met."), fields));
+  rate_ = std::make_unique<NumberRows<Scene>>(std::span<const NumberOf<Scene>>(kSceneNumbers), *rows,
+                                              fields, "scene:");
+  rate_->entered = [this](const Scene& other, const char* key) {
+    editScene(law_problem_, key, [&](Scene& scene) { scene.rate_hz = other.rate_hz; });
+  };
+  layout->addWidget(fields);
+  measure_ = button("measureCosts", tr("Measure what each costs"),
+                    tr("A second of ticks on this machine, in the exercise's firmest tissue"), box);
+  connect(measure_, &QToolButton::clicked, this, &ToolsPanel::costsWanted);
+  layout->addWidget(measure_, 0, Qt::AlignLeft);
+  return box;
+}
+
+void ToolsPanel::showLaws() {
+  for (const auto& [law, check] : laws_) check->setChecked(names(scene_.laws, law));
+  for (const auto& [law, label] : law_costs_) {
+    label->clear();
+    for (const auto& [of, words] : costs_.laws) {
+      if (of == law) label->setText(words);
+    }
+  }
+  chooseData(*controller_, int(scene_.controller));
+  controller_hint_->setText(controllerMeaning(scene_.controller));
+  controller_cost_->clear();
+  for (const auto& [of, words] : costs_.controllers) {
+    if (of == scene_.controller) controller_cost_->setText(words);
+  }
+  controller_cost_->setVisible(!controller_cost_->text().isEmpty());
+  chooseData(*force_at_, int(scene_.force_at));
+  chooseData(*removal_, int(scene_.removal));
+  rate_->show(scene_);
+}
+
+void ToolsPanel::setCosts(const Costs& costs) {
+  costs_ = costs;
+  showing_ = true;
+  showLaws();
+  showing_ = false;
+}
+
+void ToolsPanel::setScene(const Scene& scene) {
+  scene_ = scene;
+  showing_ = true;
+  body_->setEnabled(locked_->text().isEmpty());
+  const int row = std::max(0, tools_->currentRow());
+  tools_->clear();
+  for (const SceneTool& of : scene_.tools) {
+    new QListWidgetItem(tr("%1 \u2014 %2").arg(toQt(of.id), toolWord(of)), tools_);
+  }
+  tools_->setCurrentRow(std::min(row, tools_->count() - 1));
+  const int arm = std::max(0, arm_->currentIndex());
+  arm_->clear();
+  for (const SceneArm& of : scene_.arms) arm_->addItem(toQt(of.name));
+  arm_->setCurrentIndex(std::min(arm, arm_->count() - 1));
+  showTool();
+  showArm();
+  showLaws();
+  showing_ = false;
+}
+
+void ToolsPanel::setLocked(const QString& why) {
+  locked_->setText(why);
+  locked_->setVisible(!why.isEmpty());
+  body_->setEnabled(why.isEmpty() && !scene_.arms.empty());
+}
+
+}  // namespace trephine

@@ -1,0 +1,98 @@
+// Tools and arms of the exercise: what is in the hands, where an arm reaches in the patient, which
+// laws are felt and what keeps them steady. It shows a scene and tells what a person wants of it;
+// what is refused is said below the field's group and the scene stays.
+#pragma once
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QWidget>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "scene/scene.h"
+#include "scene/scene_numbers.h"
+#include "ui/common/number_rows.h"
+
+namespace trephine {
+
+class ToolsPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit ToolsPanel(QWidget* parent = nullptr);
+
+  void setScene(const Scene& scene);
+  // Why nothing may be changed; empty: it may.
+  void setLocked(const QString& why);
+  std::size_t chosenArm() const { return std::size_t(std::max(0, arm_->currentIndex())); }
+  // "3.1 us a tick", by law and by controller, as this machine has them; empty: not measured.
+  struct Costs {
+    std::vector<std::pair<LawKind, QString>> laws;
+    std::vector<std::pair<ControllerKind, QString>> controllers;
+  };
+  void setCosts(const Costs& costs);
+
+  // A person wants this scene; `what` of it.
+  std::function<Status(const Scene& wanted, const std::string& what)> wanted;
+
+ signals:
+  void armChosen();
+  void toolFileWanted();  // of an own tool
+  void meshWanted();
+  void costsWanted();
+
+ public slots:
+  // A tool file becomes one of the scene's.
+  void addTool(const std::filesystem::path& file);
+  void setMesh(const std::filesystem::path& file);
+
+ private:
+  QWidget* buildTools();
+  QWidget* buildArms();
+  QWidget* buildLaws();
+  void showTool();
+  void showArm();
+  void showLaws();
+  SceneTool* tool(Scene& scene) const;
+  void editTool(const std::string& what, const std::function<void(SceneTool&)>& edit);
+  void editArm(const std::string& what, const std::function<void(SceneArm&)>& edit);
+  void editScene(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& edit);
+  void removeTool();
+  void nameTool();
+
+  Scene scene_;
+  bool showing_ = false;
+  QWidget* body_;
+  QLabel* locked_;
+  QListWidget* tools_;
+  QToolButton *add_, *remove_;
+  QMenu* add_menu_;
+  QWidget* tool_editor_;
+  QLineEdit* id_;
+  QComboBox *kind_, *shape_;
+  QFormLayout* tool_form_;
+  QLabel* mesh_;
+  QToolButton *choose_mesh_, *no_mesh_;
+  std::unique_ptr<NumberRows<ToolDescription>> tool_numbers_, shaft_, head_;
+  std::unique_ptr<NumberRows<ToolLook>> look_numbers_;
+  QLabel *tool_problem_, *arm_problem_, *law_problem_;
+  QComboBox *arm_, *arm_tool_, *arm_landmark_;
+  QListWidget* other_tools_;
+  QFormLayout* arm_form_;
+  std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
+  std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
+  std::vector<std::pair<LawKind, QCheckBox*>> laws_;
+  std::vector<std::pair<LawKind, QLabel*>> law_costs_;
+  QComboBox *controller_, *force_at_, *removal_;
+  QLabel *controller_hint_, *controller_cost_;
+  QToolButton* measure_;
+  std::unique_ptr<NumberRows<Scene>> rate_;
+  Costs costs_;
+};
+
+}  // namespace trephine
