@@ -43,8 +43,24 @@ double stepOfUnit(const char* unit) {
   return 0.05;
 }
 
+namespace {
+
+// A wrapped text that always has room for its lines: forms within forms do not ask for it.
+class HintLabel : public QLabel {
+ public:
+  using QLabel::QLabel;
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override {
+    QLabel::resizeEvent(event);
+    setMinimumHeight(heightForWidth(width()));
+  }
+};
+
+}  // namespace
+
 QLabel* settingHint(const QString& words, QWidget* parent) {
-  auto* label = new QLabel(words, parent);
+  auto* label = new HintLabel(words, parent);
   label->setWordWrap(true);
   QFont small = label->font();
   small.setPointSizeF(small.pointSizeF() * 0.88);

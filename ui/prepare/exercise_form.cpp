@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/utf8.h"
+#include "scene/scene_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -520,6 +521,12 @@ QWidget* ExerciseForm::buildLocks() {
 }
 
 void ExerciseForm::setScene(const Scene& scene) {
+  if (!sameScene(scene, scene_)) {  // what was refused was of another
+    for (QLabel* problem :
+         {what_problem_, place_problem_, card_problem_, outline_problem_, lock_problem_}) {
+      problem->hide();
+    }
+  }
   scene_ = scene;
   showing_ = true;
   body_->setEnabled(locked_->text().isEmpty() && !scene_.arms.empty());

@@ -10,6 +10,7 @@
 #include "base/system.h"
 #include "base/utf8.h"
 #include "haptics/law_input.h"
+#include "scene/scene_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -316,7 +317,15 @@ void ToolsPanel::addTool(const std::filesystem::path& file) {
 }
 
 void ToolsPanel::removeTool() {
-  if (!tool(scene_)) return;
+  const SceneTool* of = tool(scene_);
+  if (!of) return;
+  for (const SceneArm& arm : scene_.arms) {
+    const bool other = std::ranges::find(arm.other_tools, of->id) != arm.other_tools.end();
+    if (arm.tool != of->id && !other) continue;
+    tool_problem_->setText(tr("Not removed. The %1 arm has it: give that another tool first.")
+                               .arg(toQt(arm.name)));
+    return tool_problem_->show();
+  }
   const int row = tools_->currentRow();
   editScene(tool_problem_, "remove tool",
             [&](Scene& scene) { scene.tools.erase(scene.tools.begin() + row); });
@@ -571,6 +580,9 @@ void ToolsPanel::setCosts(const Costs& costs) {
 }
 
 void ToolsPanel::setScene(const Scene& scene) {
+  if (!sameScene(scene, scene_)) {  // what was refused was of another
+    for (QLabel* problem : {tool_problem_, arm_problem_, law_problem_}) problem->hide();
+  }
   scene_ = scene;
   showing_ = true;
   body_->setEnabled(locked_->text().isEmpty());

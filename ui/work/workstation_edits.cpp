@@ -29,6 +29,7 @@ bool samePlaces(const Scene& a, const Scene& b) {
   const auto places = [](const Scene& scene) {
     Json json = toJson(scene).at("landmarks");
     json.push_back(scene.structures);
+    json.push_back(scene.anatomy);  // whether the case is one for it is said with its places
     for (const Tissue& t : scene.tissues.tissues) {
       json.push_back({t.id, t.structure, t.shell ? t.shell->of : "",
                       t.shell ? t.shell->thickness_mm : 0.0});

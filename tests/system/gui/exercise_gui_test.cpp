@@ -65,8 +65,8 @@ class ExerciseGuiTest : public test::WindowTest {
                           : box->findData(data);
     QVERIFY2(index >= 0, name);
     box->setCurrentIndex(index);
-    QTest::qWait(5);
     QMetaObject::invokeMethod(box, "activated", Q_ARG(int, index));
+    QTest::qWait(5);
   }
   void tick(const char* list, const QString& text, bool on) {
     auto* items = find<QListWidget>(list);
@@ -189,7 +189,7 @@ class ExerciseGuiTest : public test::WindowTest {
     const std::size_t count = scene().tools.size();
     find<QToolButton>("removeTool")->click();
     QCOMPARE(scene().tools.size(), count);
-    QVERIFY(find<QLabel>("toolProblem")->text().contains("unknown tool"));
+    QVERIFY(find<QLabel>("toolProblem")->text().contains("arm has it"));
   }
 
   void anArmsToolsScalesAndForceReachTheScene() {
