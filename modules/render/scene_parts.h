@@ -10,6 +10,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "render/canvas.h"
@@ -40,6 +41,7 @@ struct SceneRenderer::Parts {
   GridGeometry place_shown;
   CarveVolume volume;
   TissueLooks looks;
+  std::vector<std::string> visible;      // ids of the tissues that are drawn
   std::optional<DisplayVolume> reduced;  // stands in for the mirror's on the graphics card
   std::shared_ptr<LabelMap> reduced_labels;
   Index3 reduction{1, 1, 1};

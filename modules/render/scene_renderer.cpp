@@ -150,8 +150,14 @@ void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& look
   Parts& p = *parts_;
   p.spoilLooks();
   // What is seen through and what is not says how long a picture takes.
-  if (std::exchange(p.looks, looks) != looks) p.pictures.startAnew();
-  p.volume.setTissues(asSeen(tissues, looks), looks);
+  TissueSet seen = asSeen(tissues, looks);
+  std::vector<std::string> visible;
+  for (const Tissue& tissue : seen.tissues) {
+    if (tissue.opacity > 0.0) visible.push_back(tissue.id);
+  }
+  const bool others = std::exchange(p.visible, visible) != visible;
+  if (std::exchange(p.looks, looks) != looks || others) p.pictures.startAnew();
+  p.volume.setTissues(seen, looks);
   p.labels_held |= !p.volume.labelsSent();
 }
 

@@ -73,7 +73,7 @@ class NumberRows {
     auto* box = new DecimalField(name, line);
     const bool whole = std::holds_alternative<int Owner::*>(row.member) ||
                        std::holds_alternative<std::uint32_t Owner::*>(row.member);
-    box->setDecimals(whole ? 0 : part < 0 ? 3 : 1);
+    box->setDecimals(whole ? 0 : part < 0 || row.row.range.high <= 10.0 ? 3 : 1);
     box->setLimits(row.row.range.low, row.row.range.high);
     box->setSingleStep(whole ? 1.0 : stepOfUnit(row.row.range.unit));
     if (part < 0 && *row.row.range.unit) box->setSuffix(' ' + QString(row.row.range.unit));

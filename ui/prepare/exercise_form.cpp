@@ -233,6 +233,15 @@ void ExerciseForm::setStructures(const std::vector<std::string>& names) {
 
 // --- Where ---
 
+namespace {
+
+// The direction out of the patient; read as a unit vector.
+constexpr NumberOf<Landmark> kOutward[] = {
+    {{"outward", {-1, 1}, Given::always, "out of the patient: left, back, up"},
+     &Landmark::outward}};
+
+}  // namespace
+
 QWidget* ExerciseForm::buildPlaces() {
   auto* fields = new QWidget(body_);
   place_form_ = form(fields);
@@ -241,6 +250,27 @@ QWidget* ExerciseForm::buildPlaces() {
   connect(landmark_, &QComboBox::activated, this, [this] { showLandmark(); });
   place_form_->addRow(tr("Landmark"),
                       hinted(landmark_, tr("A place on any patient, found in the case."), fields));
+  auto* of_landmark = new QWidget(fields);
+  auto* of_layout = new QGridLayout(of_landmark);
+  of_layout->setContentsMargins(0, 0, 0, 0);
+  of_layout->setSpacing(4);
+  landmark_name_ = new QLineEdit(of_landmark);
+  landmark_name_->setObjectName("landmarkName");
+  landmark_name_->setAccessibleName(tr("Name of the landmark"));
+  landmark_name_->setMaxLength(kMostLetters / 2);
+  connect(landmark_name_, &QLineEdit::editingFinished, this, &ExerciseForm::nameLandmark);
+  add_landmark_ =
+      button("addLandmark", tr("Add one"), tr("Another place, as this one"), of_landmark);
+  remove_landmark_ =
+      button("removeLandmark", tr("Remove it"), tr("Where nothing is at it"), of_landmark);
+  connect(add_landmark_, &QToolButton::clicked, this, &ExerciseForm::addLandmark);
+  connect(remove_landmark_, &QToolButton::clicked, this, &ExerciseForm::removeLandmark);
+  of_layout->addWidget(landmark_name_, 0, 0, 1, 3);
+  of_layout->addWidget(add_landmark_, 1, 0);
+  of_layout->addWidget(remove_landmark_, 1, 1);
+  of_layout->setColumnStretch(2, 1);
+  place_form_->addRow(tr("Called"),
+                      hinted(of_landmark, tr("By this name arms and view have it."), fields));
   landmark_tissue_ = combo("landmarkTissue", tr("Tissue of the landmark"), fields);
   connect(landmark_tissue_, &QComboBox::activated, this, [this](int) {
     const std::string id = landmark_tissue_->currentData().toString().toStdString();
@@ -269,6 +299,16 @@ QWidget* ExerciseForm::buildPlaces() {
   ray_ = numbers(kRayNumbers);
   bulk_ = numbers(kBulkNumbers);
   place_ = numbers(kPlaceNumbers);
+  outward_ = numbers(kOutward);
+  outward_->entered = [this](const Landmark& other, const char* key) {
+    if (!(glm::length(other.outward) > 0.0)) {
+      place_problem_->setText(tr("Not applied. A direction has a length: leave one of the three."));
+      place_problem_->show();
+      return showLandmark();
+    }
+    editLandmark(key,
+                 [&](Landmark& landmark) { landmark.outward = glm::normalize(other.outward); });
+  };
   run_ = numbers(kLandmarkNumbers);
   view_landmark_ = combo("viewLandmark", tr("Looked at"), fields);
   connect(view_landmark_, &QComboBox::activated, this, [this](int) {
@@ -297,6 +337,46 @@ void ExerciseForm::editLandmark(const std::string& what,
        [&](Scene& scene) { change(scene.landmarks[std::size_t(row)]); });
 }
 
+// Whatever names it goes along.
+void ExerciseForm::nameLandmark() {
+  const int row = landmark_->currentIndex();
+  const std::string typed = cleanUtf8(landmark_name_->text().toStdString());
+  landmark_name_->setModified(false);
+  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  const std::string before = scene_.landmarks[std::size_t(row)].id;
+  if (typed.empty()) return landmark_name_->setText(toQt(before));
+  if (typed == before) return;
+  edit(place_problem_, "landmark name", [&](Scene& scene) {
+    scene.landmarks[std::size_t(row)].id = typed;
+    for (SceneArm& arm : scene.arms) {
+      if (arm.map.landmark == before) arm.map.landmark = typed;
+    }
+    if (scene.view.landmark == before) scene.view.landmark = typed;
+    if (scene.outline && scene.outline->frame && scene.outline->frame->landmark == before) {
+      scene.outline->frame->landmark = typed;
+    }
+  });
+}
+
+void ExerciseForm::addLandmark() {
+  const int row = landmark_->currentIndex();
+  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  Landmark more = scene_.landmarks[std::size_t(row)];
+  int number = 2;
+  while (scene_.findLandmarkById("place-" + std::to_string(number))) ++number;
+  more.id = "place-" + std::to_string(number);
+  edit(place_problem_, "add landmark", [&](Scene& scene) { scene.landmarks.push_back(more); });
+  landmark_->setCurrentIndex(landmark_->count() - 1);
+  showLandmark();
+}
+
+void ExerciseForm::removeLandmark() {
+  const int row = landmark_->currentIndex();
+  if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
+  edit(place_problem_, "remove landmark",
+       [&](Scene& scene) { scene.landmarks.erase(scene.landmarks.begin() + row); });
+}
+
 void ExerciseForm::showLandmark() {
   const int row = landmark_->currentIndex();
   if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
@@ -310,7 +390,11 @@ void ExerciseForm::showLandmark() {
   ray_->setVisible(!of.is_place && !bulk);
   bulk_->setVisible(bulk);
   place_->setVisible(of.is_place);
-  for (auto* rows : {&ray_, &bulk_, &place_, &run_}) (*rows)->show(of);
+  outward_->setVisible(of.is_place || bulk);
+  for (auto* rows : {&ray_, &bulk_, &place_, &outward_, &run_}) (*rows)->show(of);
+  if (!landmark_name_->hasFocus() || !landmark_name_->isModified()) {
+    landmark_name_->setText(toQt(of.id));
+  }
 }
 
 // --- The card ---

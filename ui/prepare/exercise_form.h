@@ -68,6 +68,9 @@ class ExerciseForm : public QWidget {
   QWidget* buildLocks();
   CardFields buildLanguage(QWidget* page, const QString& suffix);
   void showLandmark();
+  void nameLandmark();
+  void addLandmark();
+  void removeLandmark();
   void showCard();
   void showOutline();
   void edit(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& change);
@@ -89,9 +92,11 @@ class ExerciseForm : public QWidget {
   std::vector<std::string> of_case_;
   QLabel *what_problem_, *place_problem_, *card_problem_, *outline_problem_, *lock_problem_;
   QComboBox *landmark_, *landmark_tissue_, *view_landmark_;
+  QLineEdit* landmark_name_;
+  QToolButton *add_landmark_, *remove_landmark_;
   QFormLayout* place_form_;
   QLabel* landmark_kind_;
-  std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, run_;
+  std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, outward_, run_;
   std::unique_ptr<NumberRows<SceneView>> view_numbers_;
   QLabel* operator_;
   QCheckBox *card_on_, *chinese_on_;

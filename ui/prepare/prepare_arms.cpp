@@ -1,6 +1,17 @@
 // Tools and arms: their panel, and where the arms reach in the views.
-#include <QFileDialog>
+#include <unistd.h>
 
+#include <QFileDialog>
+#include <QStandardPaths>
+#include <algorithm>
+#include <cmath>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "lab/import/child_process.h"
+#include "lab/touch/law_costs.h"
+#include "lab/trades/recommended.h"
+#include "lab/trades/trades_measurement.h"
 #include "render/tool_view.h"
 #include "session/arm_devices.h"
 #include "ui/common/colours.h"
@@ -37,10 +48,121 @@ void PrepareWorkspace::connectArms() {
             [this](const QString& file) { tools_->setMesh(toPath(file)); });
     dialog->open();
   });
+  connect(tools_, &ToolsPanel::deviceWanted, this, [this] {
+    QFileDialog* dialog =
+        bench_.fileDialog("deviceDialog", tr("A file of the device"), tr("Devices (*.json)"));
+    connect(dialog, &QFileDialog::fileSelected, this,
+            [this](const QString& file) { tools_->setDevice(toPath(file)); });
+    dialog->open();
+  });
+  connect(tools_, &ToolsPanel::tradesWanted, this, &PrepareWorkspace::measureTrades);
+  showTrades();
+  connect(tools_, &ToolsPanel::costsWanted, this, &PrepareWorkspace::measureCosts);
+  connect(&costing_, &BackgroundTask::progressed, this,
+          [this](double share) { tools_->showMeasuring(share); });
   connect(views_, &FourUp::workspaceMoved, this, &PrepareWorkspace::workspaceMoved);
   connect(&workstation_, &Workstation::phaseChanged, this, &PrepareWorkspace::showArms);
   connect(&workstation_, &Workstation::caseOpened, this, &PrepareWorkspace::showArms);
   connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showArms);
+}
+
+// A second or two in the background; once more, and it is given up.
+void PrepareWorkspace::measureCosts() {
+  if (costing_.busy()) return costing_.cancel();
+  if (!workstation_.scene()) return;
+  if (workstation_.session()) {
+    return bench_.say(tr("An exercise is running: it would be measured with it. Stop it first."));
+  }
+  tools_->showMeasuring(0.0);
+  costing_.run(
+      [scene = *workstation_.scene()](const Progress& progress) {
+        return measureLawCosts(scene, progress);
+      },
+      [this](Result<LawCosts> costs) {
+        tools_->showMeasuring({});
+        if (!costs) {
+          if (costs.error().code != "CANCELLED") bench_.report(costs.error());
+          return;
+        }
+        ToolsPanel::Costs words;
+        for (const auto& [law, ns] : costs->law_ns) {
+          words.laws.emplace_back(
+              law, tr("%1 \u00b5s a tick").arg(std::max(0.0, ns) / 1000.0, 0, 'f', 2));
+        }
+        for (const auto& [kind, ns] : costs->controller_ns) {
+          words.controllers.emplace_back(
+              kind, tr("%1 \u00b5s a tick, all of it, one arm").arg(ns / 1000.0, 0, 'f', 2));
+        }
+        tools_->setCosts(words);
+      });
+}
+
+namespace {
+
+// Of this person on this machine.
+std::filesystem::path configFolder() {
+  return toPath(QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation));
+}
+
+}  // namespace
+
+// As measured here, else what was recommended on the machine of the makers.
+void PrepareWorkspace::showTrades() {
+  if (const auto here = readTrades(configFolder() / "trades.json")) {
+    return tools_->setTrades(here->rows, tr("Measured on this machine."));
+  }
+  std::vector<TradeRow> rows;
+  if (const auto shipped = readRecommended(resourceFolder() / "recommended.json")) {
+    for (const RecommendedSetting& of : *shipped) {
+      rows.push_back(
+          {of.knob, of.setting, of.error, of.error_unit, of.cost, of.cost_unit, "", true, {}});
+    }
+  }
+  tools_->setTrades(rows, tr("Measured on another machine: measure them here to see all."));
+}
+
+// By the program of the laboratory, beside this one: it draws as well.
+void PrepareWorkspace::measureTrades() {
+  std::error_code ec;
+  const std::filesystem::path lab =
+      std::filesystem::read_symlink("/proc/self/exe", ec).parent_path() / "trephine-lab";
+  workstation_.save(
+      tr("The trades are measured."),
+      [lab, to = configFolder()](const Progress& progress) -> Status {
+        const Result<std::filesystem::path> temporary = temporaryFolder();
+        if (!temporary) return temporary.error();
+        const std::filesystem::path out =
+            *temporary / ("trephine-trades-" + std::to_string(::getpid()));
+        std::error_code failed;
+        std::filesystem::create_directories(out, failed);
+        progress.at(0.0, "Measuring, some minutes");
+        constexpr double kLongest_s = 1200.0;
+        const Result<ChildRun> run =
+            runChild({{lab.string(), "measure", "trades", "--out", out.string(), "--json"},
+                      out / "answer.json",
+                      out,
+                      kLongest_s},
+                     progress);
+        Status done;
+        if (!run) {
+          done = run.error();
+        } else if (run->exit_code != 0) {
+          done = Error{"NOT_MEASURED", "The measurement did not come to its end", "trephine-lab",
+                       "Run 'trephine-lab measure trades --out DIR' to see why"};
+        }
+        for (const char* file : {"trades.json", "recommended.json"}) {
+          if (!done) break;
+          const Result<Json> json = readJsonFile(out / file);
+          if (!json) {
+            done = json.error();
+          } else if (done = makeFolder(to); done) {
+            done = writeTextFile(to / file, json->dump(1) + '\n');
+          }
+        }
+        std::filesystem::remove_all(out, failed);
+        return done;
+      },
+      [this] { showTrades(); });
 }
 
 // Of a form: what is refused is said there.

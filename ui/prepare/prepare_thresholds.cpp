@@ -28,10 +28,11 @@ void PrepareWorkspace::connectThresholds() {
 void PrepareWorkspace::countVoxels() {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!of || counting_.busy()) return;
-  if (counted_voxels_ == of->volume.get() && counted_labels_ == of->labels.get()) return;
-  if (counted_voxels_ != of->volume.get()) histogram_->setHistogram(nullptr);
-  counted_voxels_ = of->volume.get();
-  counted_labels_ = of->labels.get();
+  const bool same_voxels = counted_.voxels.lock() == of->volume;
+  const bool labelled = of->labels != nullptr;
+  if (same_voxels && counted_.labelled == labelled && counted_.labels.lock() == of->labels) return;
+  if (!same_voxels) histogram_->setHistogram(nullptr);
+  counted_ = {of->volume, of->labels, labelled};
   std::vector<std::string> names;
   if (of->labels) {
     for (const Structure& s : of->labels->structures) names.push_back(s.name);

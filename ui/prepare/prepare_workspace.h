@@ -86,6 +86,9 @@ class PrepareWorkspace : public Workspace {
   // Tools and arms (prepare_arms.cpp).
   void connectArms();
   void showArms();
+  void measureCosts();
+  void showTrades();
+  void measureTrades();
   void workspaceMoved(const Vec3& centre_mm, bool done);
   Status sceneWanted(const Scene& wanted, const std::string& what);
 
@@ -155,8 +158,12 @@ class PrepareWorkspace : public Workspace {
   QTimer poke_timer_;
   std::optional<ViewLayout> layout_before_;  // the poke
   BackgroundTask counting_;
-  const void* counted_voxels_ = nullptr;  // of which the histogram is, or is being counted
-  const void* counted_labels_ = nullptr;
+  struct Counted {  // of which the histogram is, or is being counted
+    std::weak_ptr<const Volume> voxels;
+    std::weak_ptr<const LabelMap> labels;
+    bool labelled = false;
+  };
+  Counted counted_;
   // A threshold is being moved, of this tissue, since the set was this one.
   struct Moving {
     TissueTable before;
@@ -166,6 +173,7 @@ class PrepareWorkspace : public Workspace {
   QTimer seen_later_;
   StructurePanel* structures_;
   ToolsPanel* tools_;
+  BackgroundTask costing_;
   ExerciseForm* form_;
   std::vector<Vec3> workspaces_mm_;                 // of the arms, device axes
   std::string workspaces_of_;                       // the devices that they were asked of

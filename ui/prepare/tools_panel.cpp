@@ -10,6 +10,7 @@
 #include "base/system.h"
 #include "base/utf8.h"
 #include "haptics/law_input.h"
+#include "render/scene_renderer.h"
 #include "scene/scene_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
@@ -110,12 +111,17 @@ void chooseData(QComboBox& box, int data) {
 
 constexpr Names<ToolKind, 3> kKinds{
     {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
+// Read as a unit vector.
+constexpr NumberOf<ToolLook> kAxis[] = {
+    {{"axis", {-1, 1}, Given::may_be, "from the tip to the handle, in the mesh's frame"},
+     &ToolLook::axis}};
 constexpr Names<BurrShape, 2> kShapes{
     {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
 }  // namespace
 
 ToolsPanel::ToolsPanel(QWidget* parent) : QWidget(parent) {
+  setObjectName("toolsPanel");
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(10);
@@ -215,6 +221,8 @@ QWidget* ToolsPanel::buildTools() {
   tool_numbers_ = numbers(std::span<const NumberOf<ToolDescription>>(kToolNumbers));
   shaft_ = numbers(std::span<const NumberOf<ToolDescription>>(kBurrNumbers).subspan(1));
   head_ = numbers(std::span<const NumberOf<ToolDescription>>(kCylinderNumbers));
+  points_trade_ = new TradeView("pointsTrade", tool_editor_);
+  tool_form_->addRow(points_trade_);
   auto* mesh_row = new QWidget(tool_editor_);
   auto* mesh_layout = new QGridLayout(mesh_row);
   mesh_layout->setContentsMargins(0, 0, 0, 0);
@@ -235,6 +243,12 @@ QWidget* ToolsPanel::buildTools() {
       std::span<const NumberOf<ToolLook>>(kLookNumbers), *tool_form_, tool_editor_, "tool:");
   look_numbers_->entered = [this](const ToolLook& look, const char* key) {
     editTool(key, [&](SceneTool& of) { of.look = look; });
+  };
+  axis_ = std::make_unique<NumberRows<ToolLook>>(std::span<const NumberOf<ToolLook>>(kAxis),
+                                                 *tool_form_, tool_editor_, "tool:");
+  axis_->entered = [this](const ToolLook& look, const char* key) {
+    if (!(glm::length(look.axis) > 0.0)) return showTool();
+    editTool(key, [&](SceneTool& of) { of.look.axis = glm::normalize(look.axis); });
   };
   tool_problem_ = problemLabel("toolProblem", box);
   connect(tools_, &QListWidget::currentRowChanged, this, [this] {
@@ -360,6 +374,9 @@ void ToolsPanel::showTool() {
   no_mesh_->setEnabled(mesh);
   look_numbers_->show(of->look);
   look_numbers_->setVisible(mesh);
+  axis_->show(of->look);
+  axis_->setVisible(mesh);
+  showTrades();
 }
 
 // --- Arms ---
@@ -379,6 +396,54 @@ QWidget* ToolsPanel::buildArms() {
   });
   arm_form_->addRow(tr("Arm"), hinted(arm_, tr("Drag its box in the slices: there it reaches in "
                                                "the patient."), fields));
+  auto* of_arm = new QWidget(fields);
+  auto* of_layout = new QGridLayout(of_arm);
+  of_layout->setContentsMargins(0, 0, 0, 0);
+  of_layout->setSpacing(4);
+  arm_name_ = new QLineEdit(of_arm);
+  arm_name_->setObjectName("armName");
+  arm_name_->setAccessibleName(tr("Name of the arm"));
+  arm_name_->setMaxLength(kMostLetters);
+  connect(arm_name_, &QLineEdit::editingFinished, this, [this] {
+    const std::string typed = cleanUtf8(arm_name_->text().toStdString());
+    arm_name_->setModified(false);
+    if (chosenArm() >= scene_.arms.size() || typed == scene_.arms[chosenArm()].name) return;
+    if (typed.empty()) return showArm();
+    editArm("name", [&](SceneArm& arm) { arm.name = typed; });
+  });
+  add_arm_ =
+      button("addArm", tr("Add one"), tr("Another arm, as this one, of the next device"), of_arm);
+  remove_arm_ = button("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
+  connect(add_arm_, &QToolButton::clicked, this, &ToolsPanel::addArm);
+  connect(remove_arm_, &QToolButton::clicked, this, &ToolsPanel::removeArm);
+  of_layout->addWidget(arm_name_, 0, 0, 1, 3);
+  of_layout->addWidget(add_arm_, 1, 0);
+  of_layout->addWidget(remove_arm_, 1, 1);
+  of_layout->setColumnStretch(2, 1);
+  arm_form_->addRow(tr("Called"), hinted(of_arm,
+                                         tr("Left and right are the hands that people "
+                                            "have."),
+                                         fields));
+  device_numbers_ = std::make_unique<NumberRows<SceneArm>>(
+      std::span<const NumberOf<SceneArm>>(kDeviceNumbers), *arm_form_, fields, "device:");
+  device_numbers_->entered = [this](const SceneArm& wanted, const char* key) {
+    editArm(key, [&](SceneArm& arm) { arm = wanted; });
+  };
+  auto* device = new QWidget(fields);
+  auto* device_layout = new QGridLayout(device);
+  device_layout->setContentsMargins(0, 0, 0, 0);
+  device_layout->setSpacing(4);
+  device_ = new QLabel(device);
+  device_->setObjectName("armDevice");
+  device_->setWordWrap(true);
+  auto* choose_device =
+      button("chooseDevice", tr("Choose\u2026"), tr("A file of the device"), device);
+  connect(choose_device, &QToolButton::clicked, this, &ToolsPanel::deviceWanted);
+  device_layout->addWidget(device_, 0, 0, 1, 2);
+  device_layout->addWidget(choose_device, 1, 0);
+  device_layout->setColumnStretch(1, 1);
+  arm_form_->addRow(tr("Device"),
+                    hinted(device, tr("What moves it, and the file that says how."), fields));
   arm_tool_ = combo("armTool", tr("Tool of the arm"), fields);
   connect(arm_tool_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_tool_->currentData().toString().toStdString();
@@ -436,6 +501,41 @@ void ToolsPanel::editArm(const std::string& what, const std::function<void(Scene
             [&](Scene& scene) { edit(scene.arms[index]); });
 }
 
+void ToolsPanel::setDevice(const std::filesystem::path& file) {
+  // One file configures all arms of a plugin.
+  editScene(arm_problem_, "device", [&](Scene& scene) {
+    if (chosenArm() >= scene.arms.size()) return;
+    const std::string plugin = scene.arms[chosenArm()].plugin;
+    for (SceneArm& arm : scene.arms) {
+      if (arm.plugin == plugin) arm.device_config = file.string();
+    }
+  });
+}
+
+void ToolsPanel::addArm() {
+  if (chosenArm() >= scene_.arms.size()) return;
+  SceneArm more = scene_.arms[chosenArm()];
+  const auto named = [&](const std::string& name) {
+    return std::ranges::find(scene_.arms, name, &SceneArm::name) != scene_.arms.end();
+  };
+  more.name = !named("left") ? "left" : !named("right") ? "right" : "arm-3";
+  for (int n = 3; named(more.name); ++n) more.name = "arm-" + std::to_string(n);
+  for (const SceneArm& arm : scene_.arms) {
+    if (arm.plugin == more.plugin) more.device_arm = std::max(more.device_arm, arm.device_arm + 1);
+  }
+  editScene(arm_problem_, "add arm", [&](Scene& scene) { scene.arms.push_back(more); });
+  arm_->setCurrentIndex(arm_->count() - 1);
+  showArm();
+  emit armChosen();
+}
+
+void ToolsPanel::removeArm() {
+  const std::size_t index = chosenArm();
+  if (index >= scene_.arms.size()) return;
+  editScene(arm_problem_, "remove arm",
+            [&](Scene& scene) { scene.arms.erase(scene.arms.begin() + std::ptrdiff_t(index)); });
+}
+
 void ToolsPanel::showArm() {
   const std::size_t index = chosenArm();
   if (index >= scene_.arms.size()) return;
@@ -458,6 +558,14 @@ void ToolsPanel::showArm() {
   arm_landmark_->setCurrentIndex(arm_landmark_->findText(toQt(arm.map.landmark)));
   // A map that is fixed in its own patient has no landmark.
   arm_form_->setRowVisible(arm_landmark_->parentWidget(), !arm.map.fixed);
+  if (!arm_name_->hasFocus() || !arm_name_->isModified()) arm_name_->setText(toQt(arm.name));
+  remove_arm_->setEnabled(scene_.arms.size() > 1);
+  device_numbers_->show(arm);
+  device_->setText(
+      arm.device_config.empty()
+          ? toQt(arm.plugin)
+          : tr("%1, %2").arg(toQt(arm.plugin),
+                             toQt(std::filesystem::path(arm.device_config).filename())));
   map_numbers_->setVisible(!arm.map.fixed);
   map_numbers_->show(arm.map);
   arm_numbers_->show(arm);
@@ -530,6 +638,8 @@ QWidget* ToolsPanel::buildLaws() {
   rows->addRow(tr("Force at"),
                hinted(force_at_, tr("The tip in the firmest tissue, or along the tool, each point "
                                     "in its own."), fields));
+  force_trade_ = new TradeView("forceTrade", fields);
+  rows->addRow(force_trade_);
   removal_ = combo("removal", tr("How tissue is removed"), fields);
   fill(*removal_, kRemovalNames);
   connect(removal_, &QComboBox::activated, this, [this](int) {
@@ -544,6 +654,23 @@ QWidget* ToolsPanel::buildLaws() {
   rate_->entered = [this](const Scene& other, const char* key) {
     editScene(law_problem_, key, [&](Scene& scene) { scene.rate_hz = other.rate_hz; });
   };
+  rate_trade_ = new TradeView("rateTrade", fields);
+  rows->addRow(rate_trade_);
+  rays_trade_ = new TradeView("raysTrade", fields);
+  auto* rays =
+      new QLabel(tr("Samples of a ray in 3-D: what the view draws with is in bold."), fields);
+  rays->setWordWrap(true);
+  rows->addRow(rays);
+  rows->addRow(rays_trade_);
+  trades_where_ = settingHint({}, fields);
+  trades_where_->setObjectName("tradesWhere");
+  rows->addRow(trades_where_);
+  measure_trades_ = button("measureTrades", tr("Measure the trades here"),
+                           tr("Some minutes, beside the window; error and cost of every setting on "
+                              "this machine"),
+                           fields);
+  connect(measure_trades_, &QToolButton::clicked, this, &ToolsPanel::tradesWanted);
+  rows->addRow(measure_trades_);
   layout->addWidget(fields);
   measure_ = button("measureCosts", tr("Measure what each costs"),
                     tr("A second of ticks on this machine, in the exercise's firmest tissue"), box);
@@ -570,6 +697,31 @@ void ToolsPanel::showLaws() {
   chooseData(*force_at_, int(scene_.force_at));
   chooseData(*removal_, int(scene_.removal));
   rate_->show(scene_);
+  showTrades();
+}
+
+void ToolsPanel::setTrades(const std::vector<TradeRow>& rows, const QString& where) {
+  trades_ = rows;
+  trades_where_->setText(where);
+  showTrades();
+}
+
+void ToolsPanel::showTrades() {
+  const SceneTool* of = tool(scene_);
+  const ToolDescription d = of ? of->tool.made_from : ToolDescription{};
+  const char* points = d.kind == ToolKind::blade  ? "points_blade"
+                       : d.kind == ToolKind::burr ? "points_burr"
+                                                  : "";
+  points_trade_->show(trades_, points, std::to_string(d.points));
+  force_trade_->show(trades_, "force_at", nameOf(kForceAtNames, scene_.force_at));
+  rate_trade_->show(trades_, "rate_hz", plainNumber(scene_.rate_hz));
+  rays_trade_->show(trades_, "ray_casting",
+                    plainNumber(SceneRenderer::kSampleDistance) + " voxels");
+}
+
+void ToolsPanel::showMeasuring(std::optional<double> share) {
+  measure_->setText(share ? tr("Measuring, %1 %: stop").arg(int(100.0 * *share))
+                          : tr("Measure what each costs"));
 }
 
 void ToolsPanel::setCosts(const Costs& costs) {

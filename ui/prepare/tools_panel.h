@@ -18,6 +18,7 @@
 #include "scene/scene.h"
 #include "scene/scene_numbers.h"
 #include "ui/common/number_rows.h"
+#include "ui/prepare/trade_view.h"
 
 namespace trephine {
 
@@ -36,6 +37,10 @@ class ToolsPanel : public QWidget {
     std::vector<std::pair<ControllerKind, QString>> controllers;
   };
   void setCosts(const Costs& costs);
+  // What settings cost and get wrong, and where that was measured.
+  void setTrades(const std::vector<TradeRow>& rows, const QString& where);
+  // How far that is; nothing: it is not being measured.
+  void showMeasuring(std::optional<double> share);
 
   // A person wants this scene; `what` of it.
   std::function<Status(const Scene& wanted, const std::string& what)> wanted;
@@ -44,12 +49,15 @@ class ToolsPanel : public QWidget {
   void armChosen();
   void toolFileWanted();  // of an own tool
   void meshWanted();
+  void deviceWanted();  // a file of the chosen arm's
   void costsWanted();
+  void tradesWanted();
 
  public slots:
   // A tool file becomes one of the scene's.
   void addTool(const std::filesystem::path& file);
   void setMesh(const std::filesystem::path& file);
+  void setDevice(const std::filesystem::path& file);
 
  private:
   QWidget* buildTools();
@@ -58,12 +66,15 @@ class ToolsPanel : public QWidget {
   void showTool();
   void showArm();
   void showLaws();
+  void showTrades();
   SceneTool* tool(Scene& scene) const;
   void editTool(const std::string& what, const std::function<void(SceneTool&)>& edit);
   void editArm(const std::string& what, const std::function<void(SceneArm&)>& edit);
   void editScene(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& edit);
   void removeTool();
   void nameTool();
+  void addArm();
+  void removeArm();
 
   Scene scene_;
   bool showing_ = false;
@@ -79,10 +90,14 @@ class ToolsPanel : public QWidget {
   QLabel* mesh_;
   QToolButton *choose_mesh_, *no_mesh_;
   std::unique_ptr<NumberRows<ToolDescription>> tool_numbers_, shaft_, head_;
-  std::unique_ptr<NumberRows<ToolLook>> look_numbers_;
+  std::unique_ptr<NumberRows<ToolLook>> look_numbers_, axis_;
   QLabel *tool_problem_, *arm_problem_, *law_problem_;
   QComboBox *arm_, *arm_tool_, *arm_landmark_;
   QListWidget* other_tools_;
+  QLineEdit* arm_name_;
+  QToolButton *add_arm_, *remove_arm_;
+  QLabel* device_;
+  std::unique_ptr<NumberRows<SceneArm>> device_numbers_;
   QFormLayout* arm_form_;
   std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
   std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
@@ -93,6 +108,10 @@ class ToolsPanel : public QWidget {
   QToolButton* measure_;
   std::unique_ptr<NumberRows<Scene>> rate_;
   Costs costs_;
+  std::vector<TradeRow> trades_;
+  TradeView *points_trade_, *force_trade_, *rate_trade_, *rays_trade_;
+  QLabel* trades_where_;
+  QToolButton* measure_trades_;
 };
 
 }  // namespace trephine

@@ -3,8 +3,10 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QPainter>
+#include <QPainterPath>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
@@ -43,14 +45,22 @@ const char* presetName(ViewPreset preset) {
 
 }  // namespace
 
-QIcon tissueSwatch(const QColor& colour, bool hidden) {
+QIcon tissueSwatch(const QColor& colour, double share) {
   QPixmap pixmap(32, 32);
   pixmap.fill(Qt::transparent);
   QPainter painter(&pixmap);
   painter.setRenderHint(QPainter::Antialiasing);
+  const QRectF square(4, 4, 24, 24);
+  QPainterPath frame;
+  frame.addRoundedRect(square, 6, 6);
+  painter.save();
+  painter.setClipPath(frame);
+  QRectF filled = square;
+  filled.setTop(square.bottom() - std::clamp(share, 0.0, 1.0) * square.height());
+  painter.fillRect(filled, colour);
+  painter.restore();
   painter.setPen(QPen(colour, 3));
-  painter.setBrush(hidden ? QBrush(Qt::NoBrush) : QBrush(colour));
-  painter.drawRoundedRect(QRectF(4, 4, 24, 24), 6, 6);
+  painter.drawPath(frame);
   QIcon icon(pixmap);
   icon.addPixmap(pixmap, QIcon::Selected);  // a colour must not change by being chosen
   return icon;
@@ -194,7 +204,9 @@ void TissueList::showItems() {
     item.setText(wordsOf(std::size_t(i)));
     const TissueLook look = lookOf(tissue, looks_);
     look_boxes_[std::size_t(i)]->show(tissue, look);
-    item.setIcon(tissueSwatch(colours::of(tissue.colour), look == TissueLook::hidden));
+    // As finely as the slider: where tissues are nearly clear.
+    const double share = look == TissueLook::hidden ? 0.0 : std::sqrt(tissue.opacity);
+    item.setIcon(tissueSwatch(colours::of(tissue.colour), share));
     const QString where =
         !tissue.structure.empty() ? tr(", in %1").arg(shownName(tissue.structure))
         : tissue.label            ? tr(", label %1").arg(*tissue.label)

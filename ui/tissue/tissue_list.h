@@ -51,7 +51,8 @@ class TissueList : public QWidget {
   std::vector<std::pair<ViewPreset, QToolButton*>> presets_;
 };
 
-// A square of a tissue's colour; its frame alone where it is not drawn.
-QIcon tissueSwatch(const QColor& colour, bool hidden);
+// A square of a tissue's colour, filled as far as it is opaque: 0 to 1, its frame alone where it is
+// not drawn.
+QIcon tissueSwatch(const QColor& colour, double share);
 
 }  // namespace trephine

@@ -385,7 +385,7 @@ void TissuePanel::showOutcome() {
   const Tissue* tissue = current();
   if (!tissue) return;
   if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(tissue->name));
-  colour_->setIcon(tissueSwatch(colours::of(tissue->colour), false));
+  colour_->setIcon(tissueSwatch(colours::of(tissue->colour), 1.0));
   {
     const QSignalBlocker quiet(opacity_);
     opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));

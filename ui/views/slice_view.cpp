@@ -416,6 +416,16 @@ bool SliceView::handleKey(int key) {
     case Qt::Key_V:
     case Qt::Key_Return:
     case Qt::Key_Enter:
+      // Without a mouse: at the common point.
+      if (tool_ == SliceTool::outline) {
+        emit structureClicked(tool_, point_mm_);
+        break;
+      }
+      if (tool_ == SliceTool::entry) {
+        emit entryChosen(point_mm_, point_mm_);
+        break;
+      }
+      [[fallthrough]];
     case Qt::Key_BracketLeft:
     case Qt::Key_BracketRight:
       emit structureKey(key);

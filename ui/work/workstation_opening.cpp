@@ -373,9 +373,18 @@ void Workstation::opened(Result<Opened> outcome) {
     placeTissues(outcome->scene.tissues, outcome->of->labels.get());
     declared_tissues_ = outcome->scene.tissues;
   }
-  const bool as_opened = !outcome->same_scene || !sceneEdited();
+  const bool same_scene = outcome->same_scene;
+  const bool as_opened = !same_scene || !sceneEdited();
   scene_ = std::move(outcome->scene);
-  if (as_opened) opened_scene_ = *scene_;
+  if (as_opened) {
+    Scene fresh = *scene_;
+    for (Landmark& landmark : fresh.landmarks) {  // a place that was clicked is no part of it
+      if (same_scene && isEntry(landmark)) {
+        landmark = *opened_scene_.findLandmarkById(landmark.id);
+      }
+    }
+    opened_scene_ = std::move(fresh);
+  }
   history_.settle(*scene_);
   scene_file_ = std::move(outcome->scene_file);
   in_force_ = scene_->controller;

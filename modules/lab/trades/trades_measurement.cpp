@@ -50,6 +50,8 @@ Status check(const TradesOptions& options) {
   return {};
 }
 
+constexpr const char* kTableFormat = "trephine.trades";
+
 bool withinLimit(const Knob& knob, const TradeRow& row) {
   const auto within = [&row](std::string_view figure, double limit) {
     if (figure.empty()) return true;
@@ -83,6 +85,10 @@ std::vector<RecommendedSetting> recommendedOf(const std::vector<TradeRow>& rows)
 
 Status writeTables(const TradesMeasurement& measurement, const std::filesystem::path& out) {
   if (Status csv = writeTextFile(out / "trades.csv", toCsv(measurement)); !csv) return csv;
+  Json table = toJson(measurement);
+  table["format"] = kTableFormat;
+  table["version"] = 1;
+  if (Status json = writeTextFile(out / "trades.json", table.dump(1) + "\n"); !json) return json;
   const Json recommended = toJson(recommendedOf(measurement.rows));
   return writeTextFile(out / "recommended.json", recommended.dump(2) + "\n");
 }
@@ -165,6 +171,33 @@ Json toJson(const TradesMeasurement& measurement) {
                     {"extra", extra}});
   }
   return {{"rows", rows}};
+}
+
+Result<TradesMeasurement> readTrades(const std::filesystem::path& file) {
+  constexpr Range kFigure{0, 1e15};
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  JsonReader reader(*json, file.string());
+  reader.format(kTableFormat, 1);
+  TradesMeasurement measurement;
+  for (JsonReader& item : reader.objects("rows", 1000)) {
+    TradeRow row;
+    row.knob = item.text("knob");
+    row.setting = item.text("setting");
+    row.error = item.number("error", kFigure);
+    row.error_unit = item.text("error_unit");
+    row.cost = item.number("cost", kFigure);
+    row.cost_unit = item.text("cost_unit");
+    row.reference = item.text("reference");
+    row.recommended = item.boolean("recommended", false);
+    const Json& extra = item.raw("extra");
+    for (auto it = extra.begin(); extra.is_object() && it != extra.end(); ++it) {
+      if (it->is_number()) row.extra.emplace_back(it.key(), it->get<double>());
+    }
+    measurement.rows.push_back(std::move(row));
+  }
+  if (Status read = reader.finish(); !read) return read.error();
+  return measurement;
 }
 
 std::string toText(const TradesMeasurement& measurement) {

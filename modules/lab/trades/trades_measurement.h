@@ -76,11 +76,14 @@ struct TradesMeasurement {
 // Marks one row of each knob by the rule above. Rows of a knob that is not in kKnobs stay unmarked.
 void recommend(std::vector<TradeRow>& rows);
 
-// Writes trades.csv and recommended.json into the folder `out` unless that is empty. Errors:
-// BAD_ARGUMENT, CANCELLED, CANNOT_WRITE.
+// Writes trades.csv, trades.json and recommended.json into the folder `out` unless that is empty.
+// Errors: BAD_ARGUMENT, CANCELLED, CANNOT_WRITE.
 Result<TradesMeasurement> measureTrades(const TradesOptions& options,
                                         const std::filesystem::path& out = {},
                                         const Progress& progress = Progress());
+
+// A trades.json. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (a newer version, a negative figure).
+Result<TradesMeasurement> readTrades(const std::filesystem::path& file);
 
 // {rows:[{knob, setting, error, error_unit, cost, cost_unit, reference, recommended, extra:{}}]}
 Json toJson(const TradesMeasurement& measurement);

@@ -100,6 +100,52 @@ class ExerciseGuiTest : public test::WindowTest {
     emit open->fileSelected(file);
     open->close();
   }
+  const Tissue* tissue(const char* id) { return scene().tissues.find(id); }
+  // To whatever has the keys now.
+  void press(Qt::Key of, Qt::KeyboardModifiers with = {}) {
+    if (!QApplication::activeWindow()) QApplication::setActiveWindow(window_.get());
+    QWidget* has = QApplication::focusWidget();
+    QTest::keyClick(has ? has : window_.get(), of, with);
+    QTest::qWait(15);
+  }
+  void typeKeys(const QString& text) {
+    QTest::keyClicks(QApplication::focusWidget(), text);
+    QTest::qWait(5);
+  }
+  // By Tab alone.
+  void tabTo(const char* name) {
+    for (int n = 0; n < 400; ++n) {
+      if (!QApplication::activeWindow()) QApplication::setActiveWindow(window_.get());
+      QWidget* has = QApplication::focusWidget();
+      if (has && has->objectName() == name) return;
+      QTest::keyClick(has ? has : window_.get(), Qt::Key_Tab);
+      if (n % 20 == 0) QTest::qWait(1);
+    }
+    QFAIL(qPrintable(QString("Tab does not come to %1").arg(name)));
+  }
+  void goToTab(int tab) {
+    auto* tabs = find<QTabWidget>("prepareTabs");
+    tabTo("qt_tabwidget_tabbar");
+    for (int n = 0; n < 8 && tabs->currentIndex() != tab; ++n) {
+      press(tabs->currentIndex() < tab ? Qt::Key_Right : Qt::Key_Left);
+    }
+    QCOMPARE(tabs->currentIndex(), tab);
+  }
+  // Once the menu that the next key opens is there.
+  void inPopup(Qt::Key of) {
+    QTimer::singleShot(300, this, [of] {
+      if (QWidget* popup = QApplication::activePopupWidget()) QTest::keyClick(popup, of);
+    });
+  }
+  void typeInto(const char* dialog, const QString& text) {
+    auto* open = find<QFileDialog>(dialog);
+    QTest::qWait(100);
+    auto* line = open->findChild<QLineEdit*>("fileNameEdit");
+    QVERIFY(line);
+    line->selectAll();
+    QTest::keyClicks(line, text);
+    QTest::keyClick(line, Qt::Key_Return);
+  }
   SliceView& slice(SliceAxis axis) { return window_->views().slice(axis); }
   std::filesystem::path storage() { return toPath(temporary_.path()); }
   void keepGrab(const char* name) {
@@ -223,6 +269,51 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(find<QLabel>("arm:force_scaleRefused")->isVisible());
   }
 
+  void armsAndLandmarksAreAddedNamedAndTakenAway() {
+    showTab(PrepareWorkspace::kToolTab);
+    choose("armChoice", QString("left"));
+    type("armName", "first");
+    QCOMPARE(scene().arms[0].name, std::string("first"));
+    find<QToolButton>("addArm")->click();
+    QCOMPARE(scene().arms.size(), std::size_t(3));
+    QCOMPARE(scene().arms[2].name, std::string("left"));
+    QCOMPARE(scene().arms[2].device_arm, 2u);
+    QVERIFY2(!find<QLabel>("armProblem")->isVisible(),
+             qPrintable(find<QLabel>("armProblem")->text()));
+    find<QToolButton>("removeArm")->click();
+    QCOMPARE(scene().arms.size(), std::size_t(2));
+    // Two arms of one device are none.
+    choose("armChoice", QString("right"));
+    enter("device:arm", "0");
+    QVERIFY(find<QLabel>("armProblem")->text().contains("another arm uses"));
+    QCOMPARE(scene().arms[1].device_arm, 1u);
+    const auto device = toPath(temporary_.filePath("mine.json"));
+    std::filesystem::copy_file(resourceFolder() / "devices" / "omni.json", device,
+                               std::filesystem::copy_options::overwrite_existing);
+    find<QToolButton>("chooseDevice")->click();
+    give("deviceDialog", toQt(device));
+    for (const SceneArm& arm : scene().arms) QCOMPARE(arm.device_config, device.string());
+
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QToolButton>("addLandmark")->click();
+    QCOMPARE(scene().landmarks.size(), std::size_t(2));
+    untilPlaced();
+    type("landmarkName", "side");
+    QCOMPARE(scene().landmarks[1].id, std::string("side"));
+    untilPlaced();
+    enter("landmark:towardsX", "0.3");
+    QCOMPARE(scene().landmarks[1].towards.x, 0.3);
+    untilPlaced();
+    choose("landmark", QString("vault"));
+    find<QToolButton>("removeLandmark")->click();
+    QCOMPARE(scene().landmarks.size(), std::size_t(2));
+    QVERIFY(find<QLabel>("placeProblem")->text().contains("vault"));  // arms are at it
+    choose("landmark", QString("side"));
+    find<QToolButton>("removeLandmark")->click();
+    QCOMPARE(scene().landmarks.size(), std::size_t(1));
+    untilPlaced();
+  }
+
   void theBoxOfAnArmIsDraggedInASliceAndIsOneStepBack() {
     showTab(PrepareWorkspace::kToolTab);
     choose("armChoice", QString("left"));
@@ -268,6 +359,27 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().removal, RemovalKind::instant);
     enter("scene:rate_hz", "2000");
     QCOMPARE(scene().rate_hz, 2000.0);
+  }
+
+  void costsAreMeasuredHereAndTradesStandBesideTheirSettings() {
+    showTab(PrepareWorkspace::kToolTab);
+    QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
+    find<QToolButton>("measureCosts")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("law:elastic:cost")->text().contains("a tick"), kLong_ms);
+    QVERIFY(find<QLabel>("controllerCost")->text().contains("a tick"));
+    find<QListWidget>("toolList")->setCurrentRow(0);
+    for (const char* trade : {"pointsTrade", "forceTrade", "rateTrade", "raysTrade"}) {
+      QVERIFY2(find<QLabel>(trade)->text().contains("recommended"), trade);
+    }
+    QVERIFY(find<QLabel>("rateTrade")->text().contains("<b>1000</b>"));
+    // As measured on this machine, once it is.
+    TradesMeasurement here;
+    here.rows = {{"rate_hz", "500", 7.0, "% of force", 0.1, "% of a CPU", "80 kHz", false, {}},
+                 {"rate_hz", "1000", 3.0, "% of force", 0.2, "% of a CPU", "80 kHz", true, {}}};
+    find<ToolsPanel>("toolsPanel")->setTrades(here.rows, "Measured on this machine.");
+    QVERIFY(find<QLabel>("rateTrade")->text().contains("500"));
+    enter("scene:rate_hz", "500");
+    QVERIFY(find<QLabel>("rateTrade")->text().contains("<b>500</b>"));
   }
 
   void whatItIsWhereItEntersAndWhatStaysReachTheScene() {
@@ -427,6 +539,129 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(another.workstation().currentCase()->sha256, workstation().currentCase()->sha256);
     Scene here = scene(), there = *another.workstation().scene();
     QCOMPARE(QString::fromStdString(toJson(there).dump()), QString::fromStdString(toJson(here).dump()));
+  }
+
+  // Open a case, a new set of tissues, three edits, a poke, an outline, the card, save, try,
+  // export, import elsewhere, run: no mouse, and every control reached by Tab.
+  void theEducatorsWholePathGoesByKeysAlone() {
+    window_->show(Place::cases);
+    QApplication::setActiveWindow(window_.get());
+    QTest::qWait(100);
+    const QString stored = toQt(workstation().currentCase()->stored);
+    auto* cards = find<QListWidget>("cases");
+    tabTo("cases");
+    for (int n = 0; n < cards->count() && cards->currentItem()->data(Qt::UserRole) != stored; ++n) {
+      press(Qt::Key_Right);
+    }
+    press(Qt::Key_2, Qt::ControlModifier);
+    QTRY_COMPARE(window_->place(), Place::prepare);
+    goToTab(PrepareWorkspace::kTissueTab);
+    // A new set.
+    tabTo("setMenu");
+    inPopup(Qt::Key_N);
+    press(Qt::Key_Space);
+    QTRY_VERIFY(!tissue("brain"));
+    untilPlaced();
+    // Three edits: a threshold, a number, an opacity.
+    tabTo("histogram");
+    const int low = tissue("bone")->hu_min;
+    for (int n = 0; n < 4 && tissue("bone")->hu_min == low; ++n) {
+      press(Qt::Key_Left, Qt::ShiftModifier);
+      for (const Tissue& t : scene().tissues.tissues) qInfo("%s %d %d focus %s", t.id.c_str(), t.hu_min, t.hu_max, QApplication::focusWidget() ? qPrintable(QApplication::focusWidget()->objectName()) : "-");
+      press(Qt::Key_Up);
+    }
+    QVERIFY(tissue("bone")->hu_min != low || tissue("soft")->hu_max != low - 1);
+    tabTo("tissueList");
+    press(Qt::Key_Home);
+    tabTo("stiffness");
+    typeKeys("777");
+    press(Qt::Key_Return);
+    QVERIFY(tissue("bone")->stiffness_N_per_m.value == 777.0 ||
+            tissue("soft")->stiffness_N_per_m.value == 777.0);
+    showTab(PrepareWorkspace::kTissueTab);
+    tabTo("opacity");
+    press(Qt::Key_Right);
+    QVERIFY(workstation().edits().canUndo());
+    // A poke.
+    press(Qt::Key_E, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().isPoke(), kLong_ms);
+    ViewWidget& view = window_->view();
+    view.setFocus();  // as a start gives it
+    for (int n = 0; n < 3; ++n) press(Qt::Key_Right);
+    for (int n = 0; n < 14; ++n) press(Qt::Key_PageDown);
+    auto* plot = find<PokePlot>("pokePlot");
+    QTRY_VERIFY_WITH_TIMEOUT(!plot->pokes().empty(), kLong_ms);
+    press(Qt::Key_E, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    // The outline: at the common point of the slices.
+    goToTab(PrepareWorkspace::kExerciseTab);
+    if (scene().outline) {
+      tabTo("clearOutline");
+      press(Qt::Key_Space);
+    }
+    QVERIFY(!scene().outline);
+    tabTo("drawOutline");
+    press(Qt::Key_Space);
+    QCOMPARE(window_->views().tool(), SliceTool::outline);
+    SliceView& axial = slice(SliceAxis::axial);
+    SliceView& coronal = slice(SliceAxis::coronal);
+    for (int n = 0; n < 3; ++n) {
+      coronal.setFocus();  // F8 brings each view with its keys
+      press(Qt::Key_PageUp);
+      axial.setFocus();
+      press(Qt::Key_Return);
+      QTest::qWait(30);
+    }
+    QVERIFY(scene().outline);
+    QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
+    press(Qt::Key_Escape);
+    // Its card and its name.
+    tabTo("exerciseName");
+    press(Qt::Key_A, Qt::ControlModifier);
+    typeKeys("By keys");
+    press(Qt::Key_Return);
+    tabTo("cardGoal");
+    press(Qt::Key_A, Qt::ControlModifier);
+    typeKeys("Cut by keys");
+    press(Qt::Key_Return);
+    QCOMPARE(scene().card->en.goal, std::string("Cut by keys"));
+    tabTo("saveExercise");
+    press(Qt::Key_Space);
+    untilSaved();
+    QVERIFY(!workstation().sceneEdited());
+    // Tried, and back.
+    tabTo("tryExercise");
+    press(Qt::Key_Space);
+    QTRY_COMPARE(window_->place(), Place::train);
+    press(Qt::Key_F5);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::running, kLong_ms);
+    press(Qt::Key_Period, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
+    press(Qt::Key_2, Qt::ControlModifier);
+    QTRY_COMPARE(window_->place(), Place::prepare);
+    // Out, and in on another account.
+    goToTab(PrepareWorkspace::kExerciseTab);
+    tabTo("exportExercise");
+    press(Qt::Key_Space);
+    const QString folder = temporary_.filePath("stick/keys");
+    typeInto("exportExerciseDialog", folder);
+    untilSaved();
+    QVERIFY(QFile::exists(folder + "/exercise.json"));
+    QTemporaryDir other;
+    const auto imported = importExercise(toPath(folder), toPath(other.path()));
+    QVERIFY(imported.ok() && imported->check.verified());
+    MainWindow another(toPath(other.path()) / "recordings");
+    another.resize(1280, 800);
+    another.QMainWindow::show();
+    QSignalSpy opened(&another.workstation(), &Workstation::caseOpened);
+    another.open(imported->scene);
+    QVERIFY(opened.wait(kLong_ms));
+    QSignalSpy started(&another.workstation(), &Workstation::sessionStarted);
+    another.startExercise();
+    QVERIFY(started.wait(kLong_ms));
+    QVERIFY(another.workstation().scene()->name == "By keys");
+    another.workstation().stop();
+    QTRY_VERIFY_WITH_TIMEOUT(another.workstation().phase() == Workstation::Phase::ready, kLong_ms);
   }
 
   void anExerciseThatWasChangedOnItsWayIsNamedPartByPart() {

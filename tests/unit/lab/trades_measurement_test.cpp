@@ -209,6 +209,9 @@ TEST(Trades, MeasureEveryKnobAndRecommendOneSettingEach) {
   std::size_t lines = 0;
   for (std::string line; std::getline(csv, line);) ++lines;
   EXPECT_EQ(lines, 1 + m->rows.size());
+  const auto table = readTrades(folder / "a" / "b" / "trades.json");
+  ASSERT_TRUE(table) << table.error().sentence();
+  EXPECT_EQ(toJson(*table), toJson(*m));
   const auto saved = readRecommended(folder / "a" / "b" / "recommended.json");
   ASSERT_TRUE(saved) << saved.error().sentence();
   ASSERT_EQ(saved->size(), knobsHere());

@@ -1,0 +1,128 @@
+#include "lab/touch/law_costs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "haptics/haptic_core.h"
+#include "lab/common/quantile.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kEdge = 96;            // voxels
+constexpr double kVoxel_mm = 0.5;
+constexpr int kRounds = 9;
+constexpr int kTicks = 2500;         // of a variant in a round
+
+// Half a box of this tissue.
+Volume halfFull(std::int16_t hu) {
+  Volume volume;
+  volume.geometry.size = {kEdge, kEdge, kEdge};
+  volume.geometry.spacing_mm = Vec3(kVoxel_mm);
+  volume.geometry.origin_mm = Vec3(-0.5 * kVoxel_mm * (kEdge - 1));
+  volume.hu.assign(volume.geometry.voxelCount(), kAirHu);
+  std::fill_n(volume.hu.begin(), volume.hu.size() / 2, hu);
+  return volume;
+}
+
+// Of any voxel, so that no label map is needed, and uncut: the cost is of touch.
+HapticParameters parametersOf(const Scene& scene, const Tissue& firmest) {
+  HapticParameters parameters = hapticParameters(scene);
+  Tissue alone = firmest;
+  alone.label.reset();
+  alone.structure.clear();
+  alone.shell.reset();
+  alone.cuttable = false;
+  parameters.tissues = tissueTable({"", {alone}});
+  parameters.arms.resize(1);
+  parameters.arms[0].map = WorkspaceMap{};
+  parameters.arms[0].other_tools.clear();
+  parameters.journal_voxels = 1000;
+  return parameters;
+}
+
+// One of what is compared: a core of its own that goes on where it was.
+class Variant {
+ public:
+  Variant(const HapticParameters& parameters, std::int16_t hu)
+      : grid_(halfFull(hu)), core_(parameters, *grid_.takeWriter()) {}
+
+  // Mean ns of a tick. 10 mm to and fro along the surface, 1 mm within it.
+  double run() {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int n = 0; n < kTicks; ++n, ++tick_) {
+      input_.tick = std::uint64_t(tick_);
+      input_.arms[0].position_m =
+          1e-3 * Vec3(5.0 * std::sin(2e-3 * tick_), 3.0 * std::cos(1.3e-3 * tick_), -1.0);
+      core_.tick(input_, nullptr, 0, record_);
+    }
+    const auto took = std::chrono::steady_clock::now() - begin;
+    return std::chrono::duration<double, std::nano>(took).count() / kTicks;
+  }
+
+ private:
+  Grid grid_;
+  HapticCore core_;
+  TickInput input_;
+  TickRecord record_;
+  int tick_ = 0;
+};
+
+}  // namespace
+
+Result<LawCosts> measureLawCosts(const Scene& scene, const Progress& progress) {
+  if (scene.arms.empty() || scene.tissues.tissues.empty() || !scene.findTool(scene.arms[0].tool)) {
+    return Error{"BAD_SCENE", "The exercise has no arm, no tool or no tissue to measure with", "",
+                 "Give it one of each"};
+  }
+  const Tissue& firmest =
+      *std::ranges::max_element(scene.tissues.tissues, {}, [](const Tissue& tissue) {
+        return tissue.stiffness_N_per_m.value;
+      });
+  const auto hu = std::int16_t(std::clamp((firmest.hu_min + firmest.hu_max) / 2, -999, 3000));
+  const HapticParameters own = parametersOf(scene, firmest);
+  std::vector<HapticParameters> wanted{own};
+  for (const auto& [name, law] : kLawNames) {
+    HapticParameters toggled = own;
+    if (std::erase(toggled.laws, law) == 0) toggled.laws.push_back(law);
+    wanted.push_back(toggled);
+  }
+  for (const auto& [name, kind] : kControllerNames) {
+    HapticParameters other = own;
+    other.controller = kind;
+    wanted.push_back(other);
+  }
+  std::vector<std::unique_ptr<Variant>> variants;
+  for (const HapticParameters& parameters : wanted) {
+    variants.push_back(std::make_unique<Variant>(parameters, hu));
+    (void)variants.back()->run();  // to warm it
+    if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+  }
+  std::vector<std::vector<double>> ns(variants.size());
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      ns[v].push_back(variants[v]->run());
+      if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
+    }
+    progress.at(double(round + 1) / kRounds, "Measuring the laws");
+  }
+  const auto median = [&](std::size_t v) {
+    std::ranges::sort(ns[v]);
+    return quantile(ns[v], 500);
+  };
+  LawCosts costs;
+  costs.tick_ns = median(0);
+  std::size_t v = 1;
+  for (const auto& [name, law] : kLawNames) {
+    const bool has = names(scene.laws, law);
+    const double other_ns = median(v++);
+    costs.law_ns.emplace_back(law, has ? costs.tick_ns - other_ns : other_ns - costs.tick_ns);
+  }
+  for (const auto& [name, kind] : kControllerNames) costs.controller_ns.emplace_back(kind, median(v++));
+  return costs;
+}
+
+}  // namespace trephine

@@ -1,0 +1,36 @@
+#include "lab/touch/law_costs.h"
+
+#include <gtest/gtest.h>
+
+#include "base/system.h"
+
+namespace trephine {
+namespace {
+
+Scene cranium() {
+  return *readScene(resourceFolder() / "scenes" / "cranium.json");
+}
+
+// Which law costs how much is the machine's; that each is measured, and that what all take is more
+// than what one adds, is not.
+TEST(LawCosts, EveryLawAndEveryControllerHasAFigure) {
+  const Result<LawCosts> costs = measureLawCosts(cranium());
+  ASSERT_TRUE(costs.ok()) << costs.error().sentence();
+  EXPECT_GT(costs->tick_ns, 50.0);
+  EXPECT_EQ(costs->law_ns.size(), kLawNames.size());
+  EXPECT_EQ(costs->controller_ns.size(), kControllerNames.size());
+  for (const auto& [law, ns] : costs->law_ns) EXPECT_LT(ns, 20.0 * costs->tick_ns);
+  for (const auto& [kind, ns] : costs->controller_ns) EXPECT_GT(ns, 50.0);
+}
+
+TEST(LawCosts, IsCancelledAndSaysWhatIsMissing) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_EQ(measureLawCosts(cranium(), progress).error().code, "CANCELLED");
+  Scene none = cranium();
+  none.arms.clear();
+  EXPECT_EQ(measureLawCosts(none).error().code, "BAD_SCENE");
+}
+
+}  // namespace
+}  // namespace trephine
