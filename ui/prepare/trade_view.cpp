@@ -9,6 +9,7 @@ TradeView::TradeView(const char* name, QWidget* parent) : QLabel(parent) {
   setObjectName(name);
   setTextFormat(Qt::RichText);
   setWordWrap(true);
+  setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   QFont small = font();
   small.setPointSizeF(small.pointSizeF() * 0.88);
   setFont(small);
@@ -24,8 +25,8 @@ void TradeView::show(const std::vector<TradeRow>& rows, const std::string& knob,
     cost_unit = toQt(row.cost_unit).toHtmlEscaped();
     QString setting = toQt(row.setting).toHtmlEscaped();
     if (row.setting == in_use) setting = QStringLiteral("<b>%1</b>").arg(setting);
-    html += QStringLiteral("<tr><td>%1&nbsp;</td><td align='right'>&nbsp;%2&nbsp;</td>"
-                           "<td align='right'>&nbsp;%3&nbsp;</td><td style='color:%4'>%5</td></tr>")
+    html += QStringLiteral("<tr><td>%1&nbsp;</td><td align='right'>%2&nbsp;</td>"
+                           "<td align='right'>%3&nbsp;</td><td style='color:%4'>%5</td></tr>")
                 .arg(setting)
                 .arg(row.error, 0, 'f', row.error < 10.0 ? 1 : 0)
                 .arg(row.cost, 0, 'g', 3)
