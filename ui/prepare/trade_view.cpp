@@ -29,13 +29,13 @@ void TradeView::show(const std::vector<TradeRow>& rows, const std::string& knob,
                            "<td align='right'>%3&nbsp;</td><td style='color:%4'>%5</td></tr>")
                 .arg(setting)
                 .arg(row.error, 0, 'f', row.error < 10.0 ? 1 : 0)
-                .arg(row.cost, 0, 'g', 3)
+                .arg(row.cost, 0, 'f', row.cost < 1.0 ? 2 : row.cost < 100.0 ? 1 : 0)
                 .arg(colours::kGood.name(), row.recommended ? tr("recommended") : QString());
   }
   setVisible(!html.isEmpty());
   if (html.isEmpty()) return clear();
-  setText(QStringLiteral("<table><tr><td></td><td>%1</td><td>%2</td></tr>%3</table>")
-              .arg(error_unit, cost_unit, html));
+  setText(tr("Setting, its error in %1, its cost in %2:").arg(error_unit, cost_unit) +
+          QStringLiteral("<table>%1</table>").arg(html));
 }
 
 }  // namespace trephine
