@@ -19,7 +19,12 @@ void PokeCurves::add(const TickRecord& record) {
     if (!poke.open) continue;
     const double depth_mm = glm::dot(now.patient_position_mm - poke.from_mm, poke.into);
     if (PokeCurve* curve = openOf(arm)) {
-      addPoint(*curve, {depth_mm, glm::length(now.demanded_N), glm::length(now.sent_N)});
+      const double sent_N = glm::length(now.sent_N);
+      addPoint(*curve, {depth_mm, glm::length(now.demanded_N), sent_N});
+      if (sent_N > curve->most_N && now.tissue_class >= 0) {
+        curve->most_N = sent_N;
+        curve->tissue = now.tissue_class;
+      }
     }
     poke.out_ticks = touches ? 0 : poke.out_ticks + 1;
     if (poke.out_ticks >= end_ticks_) end(arm);
@@ -39,18 +44,19 @@ void PokeCurves::begin(std::size_t arm, const ArmRecord& now) {
   poke.into = now.proxy_orientation * Vec3(0.0, 0.0, -1.0);
   poke.out_ticks = 0;
   poke.open = true;
-  curves_.push_back({arm, now.tissue_class, false, {}});
+  PokeCurve curve;
+  curve.arm = arm;
+  curve.tissue = now.tissue_class;
+  curves_.push_back(std::move(curve));
 }
 
 void PokeCurves::end(std::size_t arm) {
   pokes_[arm].open = false;
   PokeCurve* curve = openOf(arm);
   if (!curve) return;
-  double deepest_mm = 0.0, most_N = 0.0;
-  for (const PokePoint& point : curve->points) {
-    deepest_mm = std::max(deepest_mm, point.depth_mm);
-    most_N = std::max(most_N, point.sent_N);
-  }
+  double deepest_mm = 0.0;
+  for (const PokePoint& point : curve->points) deepest_mm = std::max(deepest_mm, point.depth_mm);
+  const double most_N = curve->most_N;
   PokeCurve ended = std::move(*curve);
   curves_.erase(curves_.begin() + (curve - curves_.data()));
   if (deepest_mm < kLeast_mm || most_N < kLeast_N) return;

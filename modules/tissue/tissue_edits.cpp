@@ -128,15 +128,18 @@ Result<TissueSet> withNewTissue(const TissueSet& set) {
     return Error{"NO_ROOM", "A set has at most " + std::to_string(kMaxTissues) + " tissues", "",
                  "Remove one first"};
   }
-  const std::vector<HuRange> free = freeHu(set, kCtHu);
+  std::vector<HuRange> free = freeHu(set, kNoAirHu);
+  const bool air = free.empty();
+  if (air) free = freeHu(set, kCtHu);
   if (free.empty()) {
     return Error{"NO_ROOM",
                  "Every HU from " + std::to_string(kCtHu.low) + " to " +
                      std::to_string(kCtHu.high) + " has a tissue",
                  "", "Narrow the range of one first, or restrict one to a structure"};
   }
-  const HuRange widest = *std::ranges::max_element(
+  HuRange widest = *std::ranges::max_element(
       free, {}, [](const HuRange& range) { return range.high - range.low; });
+  if (air) widest.low = std::max(widest.low, widest.high - 99);
   int number = 1;
   while (set.find("tissue-" + std::to_string(number))) ++number;
   Tissue tissue = softTissue("tissue-" + std::to_string(number),

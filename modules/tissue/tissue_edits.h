@@ -43,8 +43,9 @@ enum class RangeEnd { low, high };
 TissueSet withThreshold(const TissueSet& set, std::size_t tissue, RangeEnd end, int hu,
                         bool with_neighbour, const TissueSet& declared);
 
-// One more, of any voxel, in the widest free range within kCtHu, first of the list. Error: NO_ROOM.
-constexpr HuRange kCtHu{-1024, 3071};
+// One more, of any voxel, first of the list: in the widest free range of what is no air, or, where
+// there is none, in the topmost 100 HU of the widest within kCtHu. Error: NO_ROOM.
+constexpr HuRange kCtHu{-1024, 3071}, kNoAirHu{-200, 3071};
 Result<TissueSet> withNewTissue(const TissueSet& set);
 // Error: LAST_TISSUE.
 Result<TissueSet> withoutTissue(const TissueSet& set, std::size_t tissue);

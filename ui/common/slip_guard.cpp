@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QKeyEvent>
+#include <QLineEdit>
 #include <QScrollBar>
 #include <QTabBar>
 
@@ -38,6 +39,15 @@ bool filterKey(QComboBox& choices, QKeyEvent* event) {
   }
 }
 
+// Undo and redo are the window's where nothing was typed in the field that has the keys.
+bool hasNothingToUndo(QObject* watched, const QKeyEvent& key) {
+  const bool undo = key.matches(QKeySequence::Undo), redo = key.matches(QKeySequence::Redo);
+  if (!undo && !redo) return false;
+  auto* line = qobject_cast<QLineEdit*>(watched);
+  if (auto* box = qobject_cast<QAbstractSpinBox*>(watched)) line = box->findChild<QLineEdit*>();
+  return line && !(undo ? line->isUndoAvailable() : line->isRedoAvailable());
+}
+
 }  // namespace
 
 SlipGuard::SlipGuard(QObject* parent) : QObject(parent) {
@@ -46,6 +56,10 @@ SlipGuard::SlipGuard(QObject* parent) : QObject(parent) {
 
 bool SlipGuard::eventFilter(QObject* watched, QEvent* event) {
   const QEvent::Type type = event->type();
+  if (type == QEvent::ShortcutOverride) {
+    const bool nothing = hasNothingToUndo(watched, *static_cast<QKeyEvent*>(event));
+    return nothing && passOn(event);
+  }
   if (type != QEvent::Wheel && type != QEvent::KeyPress && type != QEvent::Polish) return false;
   auto* widget = qobject_cast<QWidget*>(watched);
   if (!widget) return false;

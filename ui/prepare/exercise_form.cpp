@@ -450,8 +450,9 @@ QWidget* ExerciseForm::buildCard() {
   connect(chinese_on_, &QCheckBox::toggled, this, [this](bool on) {
     edit(card_problem_, "card on", [&](Scene& scene) {
       if (!scene.card) return;
+      if (scene.card->zh_TW) kept_chinese_ = scene.card->zh_TW;  // for who ticks it again
       scene.card->zh_TW.reset();
-      if (on) scene.card->zh_TW = scene.card->en;
+      if (on) scene.card->zh_TW = kept_chinese_ ? *kept_chinese_ : scene.card->en;
     });
   });
   return group(tr("Card"), card_problem_, fields, body_);

@@ -101,6 +101,7 @@ class ExerciseForm : public QWidget {
   QLabel* operator_;
   QCheckBox *card_on_, *chinese_on_;
   CardFields en_, zh_;
+  std::optional<CardText> kept_chinese_;  // that was taken out
   QWidget *en_page_, *zh_page_;
   QToolButton *draw_, *clear_, *back_;
   QCheckBox* closed_;

@@ -1,6 +1,7 @@
 // The exercise itself: its form, the outline that is clicked, saving it, trying it, and taking it to
 // other workstations.
 #include <QFileDialog>
+#include <set>
 
 #include "exercise/exercise_folder.h"
 #include "ui/common/words.h"
@@ -32,7 +33,10 @@ void PrepareWorkspace::connectExercise() {
     return sceneWanted(scene, what);
   };
   connect(form_, &ExerciseForm::drawingWanted, this, &PrepareWorkspace::draw);
-  connect(form_, &ExerciseForm::entryWanted, this, [this] { views_->setTool(SliceTool::entry); });
+  connect(form_, &ExerciseForm::entryWanted, this, [this] {
+    views_->setTool(SliceTool::entry);
+    entry_once_ = true;
+  });
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
     if (!workstation_.scene()) return;
     Scene scene = *workstation_.scene();
@@ -59,8 +63,10 @@ void PrepareWorkspace::connectExercise() {
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::outline) outlineClicked(at_mm);
   });
-  connect(views_, &FourUp::toolChanged, this,
-          [this](SliceTool tool) { form_->showDrawing(tool == SliceTool::outline); });
+  connect(views_, &FourUp::toolChanged, this, [this](SliceTool tool) {
+    form_->showDrawing(tool == SliceTool::outline);
+    entry_once_ = false;
+  });
   connect(&workstation_, &Workstation::locksChanged, this, &PrepareWorkspace::showExercise);
   connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showExercise);
 }
@@ -151,6 +157,7 @@ void PrepareWorkspace::saveExercise(bool copy, Bench::Next then) {
   if (!scene) return;
   const bool in_place = isOwnExercise() && !copy;
   if (copy && isOwnExercise()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
+  if (!in_place) scene->name = freeName(scene->name);
   const std::filesystem::path folder = in_place ? workstation_.sceneFile().parent_path()
                                                 : freshExercise(bench_.storage(), scene->name);
   auto file = std::make_shared<std::filesystem::path>();
@@ -172,6 +179,19 @@ void PrepareWorkspace::saveExercise(bool copy, Bench::Next then) {
         bench_.tellExercises();
         if (then) then();
       });
+}
+
+// One that no exercise in the list has.
+std::string PrepareWorkspace::freeName(const std::string& wanted) const {
+  std::set<std::string> taken;
+  std::vector<std::filesystem::path> files = scenesOfWorkstation(workstation_.policy());
+  for (const auto& file : exercisesIn(bench_.storage())) files.push_back(file);
+  for (const auto& file : files) {
+    if (const Result<Scene> scene = readScene(file)) taken.insert(scene->name);
+  }
+  std::string name = wanted;
+  for (int n = 2; taken.contains(name); ++n) name = wanted + " (" + std::to_string(n) + ")";
+  return name;
 }
 
 void PrepareWorkspace::tryExercise() {

@@ -283,6 +283,7 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
   bench_.unlessLost({Bench::Loss::cuts}, [this, entry] {
     entry_asked_ = workstation_.placeEntry(entry);
+    if (entry_asked_ && entry_once_) views_->setTool(SliceTool::window);
     bench_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
                             : tr("Busy: try again in a moment."));
   });

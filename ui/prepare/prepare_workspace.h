@@ -102,6 +102,7 @@ class PrepareWorkspace : public Workspace {
   void saveExercise(bool copy, Bench::Next then);
   std::optional<Scene> sceneToSave();
   bool isOwnExercise() const;
+  std::string freeName(const std::string& wanted) const;
   void tryExercise();
   void exportExercise();
   void importExercise();
@@ -177,6 +178,7 @@ class PrepareWorkspace : public Workspace {
   ExerciseForm* form_;
   std::vector<Vec3> workspaces_mm_;                 // of the arms, device axes
   std::string workspaces_of_;                       // the devices that they were asked of
+  bool entry_once_ = false;                         // the entry tool goes once it was used
   std::optional<Vec3> outline_first_;               // the first point of a new outline
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   // What the library's case has, whatever was saved to files: the editor's changes() then, nothing

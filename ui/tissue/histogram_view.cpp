@@ -73,6 +73,7 @@ double HistogramView::huAt(double x) const {
 
 void HistogramView::setHistogram(std::shared_ptr<const HuHistogram> histogram) {
   histogram_ = std::move(histogram);
+  any_case_ = true;
   fitted_ = false;
   count();
 }
@@ -347,7 +348,9 @@ void HistogramView::paintEvent(QPaintEvent*) {
   if (counts_.empty()) {
     painter.setPen(colours::kQuiet);
     painter.drawText(in, Qt::AlignCenter,
-                     histogram_ ? tr("No voxel is of this structure.") : tr("Counting the case\u2026"));
+                     histogram_  ? tr("No voxel is of this structure.")
+                     : any_case_ ? tr("Counting the case\u2026")
+                                 : tr("Open a case first."));
   }
   paintCounts(painter, in);
   paintBands(painter);

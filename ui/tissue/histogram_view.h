@@ -20,7 +20,7 @@ class HistogramView : public QWidget {
  public:
   explicit HistogramView(QWidget* parent = nullptr);
 
-  // Null: it is being counted, or there is no case.
+  // Null: it is being counted; before the first time there is no case.
   void setHistogram(std::shared_ptr<const HuHistogram> histogram);
   // Placed in the case; `chosen` is a tissue of the set.
   void setTissues(const TissueSet& tissues, std::size_t chosen);
@@ -95,6 +95,7 @@ class HistogramView : public QWidget {
   bool locked_ = false;
   double from_hu_ = -1024.0, to_hu_ = 3071.0;  // what is seen
   bool fitted_ = false;
+  bool any_case_ = false;
   Threshold active_;
   std::optional<Threshold> dragged_, over_;
   double grip_hu_ = 0.0;      // between the pointer and the threshold that it holds

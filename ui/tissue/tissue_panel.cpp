@@ -465,6 +465,15 @@ void TissuePanel::placeChosen(int index) {
   if (wanted.structure.empty()) wanted.shell.reset();
   const Tissue& cited = declared(wanted);
   if (cited.structure == wanted.structure) wanted.shell = cited.shell;
+  // Alone in a structure it is all of it; HU may be narrowed again.
+  const bool alone = std::ranges::none_of(tissues_.tissues, [&](const Tissue& other) {
+    return other.id != wanted.id && other.structure == wanted.structure;
+  });
+  if (!wanted.structure.empty() && alone) {
+    wanted.hu_min = kRemovedHu + 1;
+    wanted.hu_max = kCtHu.high;
+    wanted.hu_source = "whatever HU, where the structure is";
+  }
   const Status valid = apply(wanted, "where");
   emit editEnded();
   if (valid) return showSelected();

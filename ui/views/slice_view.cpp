@@ -196,12 +196,24 @@ void SliceView::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   update();
 }
 
-// The chosen one, near its middle.
+// The chosen one, near its middle or an edge.
 const WorkspaceBox* SliceView::workspaceAt(const QPointF& in_widget) const {
-  constexpr double kReach_pixels = 11.0;
+  constexpr double kReach_pixels = 11.0, kEdge_pixels = 5.0;
   for (const WorkspaceBox& box : workspaces_) {
+    if (!box.chosen) continue;
     const QPointF away = fromPatient(box.centre_mm) - in_widget;
-    if (box.chosen && std::hypot(away.x(), away.y()) <= kReach_pixels) return &box;
+    if (std::hypot(away.x(), away.y()) <= kReach_pixels) return &box;
+    const std::array<Vec3, 8> corners = box.corners();
+    for (const auto& [a, b] : WorkspaceBox::kEdges) {
+      const QPointF from = fromPatient(corners[std::size_t(a)]);
+      const QPointF along = fromPatient(corners[std::size_t(b)]) - from;
+      const double squared = QPointF::dotProduct(along, along);
+      if (squared < 1.0) continue;
+      const double share =
+          std::clamp(QPointF::dotProduct(in_widget - from, along) / squared, 0.0, 1.0);
+      const QPointF off = in_widget - from - share * along;
+      if (std::hypot(off.x(), off.y()) <= kEdge_pixels) return &box;
+    }
   }
   return nullptr;
 }

@@ -120,9 +120,14 @@ TEST(NewTissue, TakesTheWidestFreeRangeUnderANameOfItsOwnAndTheSetStaysPossible)
   const Result<TissueSet> more = withNewTissue(set);
   ASSERT_TRUE(more.ok());
   EXPECT_EQ(more->tissues[0].id, "tissue-1");
-  EXPECT_EQ(rangeOf(*more, 0), (HuRange{-1024, -201}));
+  EXPECT_EQ(rangeOf(*more, 0), (HuRange{-300, -201})) << "not the air of the whole room";
   EXPECT_TRUE(validate(*more, "").ok());
-  const Result<TissueSet> full = withNewTissue(*more);
+  TissueSet gap = set;
+  gap.tissues[0].hu_min = 300;
+  EXPECT_EQ(rangeOf(*withNewTissue(gap), 0), (HuRange{226, 299}));
+  TissueSet whole = set;
+  whole.tissues[1].hu_min = -1024;
+  const Result<TissueSet> full = withNewTissue(whole);
   ASSERT_FALSE(full.ok());
   EXPECT_EQ(full.error().code, "NO_ROOM");
   EXPECT_NE(full.error().next, "");
