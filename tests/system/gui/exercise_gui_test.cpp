@@ -8,6 +8,7 @@
 #include "exercise/exercise_folder.h"
 #include "gui_support.h"
 #include "library/case_library.h"
+#include "session/arm_devices.h"
 #include "session/case.h"
 #include "tissue/tissue_edits.h"
 
@@ -292,6 +293,16 @@ class ExerciseGuiTest : public test::WindowTest {
     keepGrab("prepare-arms.png");
     workstation().undoEdit();
     QVERIFY(scene().arms[0].map.offset_mm == before);
+    // By an edge of it as well.
+    const WorkspaceMap map =
+        *withFixedMaps(scene(), workstation().currentCase()->landmarks).arms[0].map.fixed;
+    const double half_mm = 500.0 * (*readWorkspaces(scene()))[0].z * 1e-3;
+    const Vec3 edge_mm = map.centre_mm - map.rotation * Vec3(0.0, 0.0, half_mm);
+    const QPoint at = coronal.fromPatient(edge_mm).toPoint();
+    QTest::mousePress(&coronal, Qt::LeftButton, {}, at);
+    QTest::mouseMove(&coronal, at + QPoint(12, 0));
+    QTest::mouseRelease(&coronal, Qt::LeftButton, {}, at + QPoint(12, 0));
+    QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 2.0);
   }
 
   void whatIsFeltIsChosenLawByLaw() {
@@ -366,7 +377,10 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().operator_file, script.string());
     find<QToolButton>("placeEntry")->click();
     QCOMPARE(window_->views().tool(), SliceTool::entry);
-    window_->views().setTool(SliceTool::window);
+    QTest::mouseClick(&window_->view(), Qt::LeftButton, {}, window_->view().rect().center());
+    untilPlaced();
+    QVERIFY(workstation().entry());
+    QCOMPARE(window_->views().tool(), SliceTool::window);  // the next click turns the view
     undoAll();
     // Locks hold at once, so the last.
     for (const char* lock : {"controller", "rate"}) {
@@ -395,6 +409,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().card->en.goal, std::string("Cut it out"));
     find<QCheckBox>("cardChineseOn")->click();
     QVERIFY(!scene().card->zh_TW);
+    find<QCheckBox>("cardChineseOn")->click();  // nothing of it was lost
+    QCOMPARE(scene().card->zh_TW->goal, std::string("切開"));
+    find<QCheckBox>("cardChineseOn")->click();
     find<QCheckBox>("cardOn")->click();
     QVERIFY(!scene().card);
   }

@@ -287,6 +287,11 @@ class PrepareGuiTest : public test::WindowTest {
     const bool solid = tissue("dura").isSolid();
     find<QCheckBox>("solid")->click();
     QCOMPARE(tissue("dura").isSolid(), !solid);
+    // From a field in which nothing was typed Ctrl+Z takes back edits.
+    QApplication::setActiveWindow(window_.get());
+    find<QLineEdit>("dampingSource")->setFocus();
+    key(find<QLineEdit>("dampingSource"), Qt::Key_Z, Qt::ControlModifier);
+    QCOMPARE(tissue("dura").isSolid(), solid);
   }
 
   void whatTheArmsShowStandsBesideEveryNumberAndFollowsTheController() {

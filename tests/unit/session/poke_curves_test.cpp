@@ -54,6 +54,18 @@ TEST(PokeCurves, ThreeThatHaveEndedAreKeptAndTheOneThatGoesOn) {
   EXPECT_FALSE(curves.curves()[3].ended);
 }
 
+TEST(PokeCurves, NamesTheTissueWhereItPushedBackMost) {
+  PokeCurves curves(1, kRate_hz);
+  const auto through = [](double depth_mm) {
+    return at(depth_mm, depth_mm < 1.0 ? 0.1 : 1.0, depth_mm < 1.0 ? 0 : 3);
+  };
+  for (double d = -0.5; d < 2.0; d += 0.01) curves.add(through(d));
+  for (double d = 2.0; d > -0.5; d -= 0.01) curves.add(through(d));
+  for (int n = 0; n < 200; ++n) curves.add(through(-0.5));
+  ASSERT_EQ(curves.curves().size(), 1u);
+  EXPECT_EQ(curves.curves()[0].tissue, 3) << "not the skin above it";
+}
+
 TEST(PokeCurves, AGrazeIsNoPokeAndAToolThatWaitsBeginsNone) {
   PokeCurves curves(1, kRate_hz);
   poke(curves, 0.1, 0.5);
