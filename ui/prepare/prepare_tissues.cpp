@@ -117,6 +117,7 @@ void PrepareWorkspace::showSeen() {
 
 // An opacity or colour that was set for a tissue goes before one that was set for its structure.
 void PrepareWorkspace::tissuesEdited(const TissueSet& set, const QString& what) {
+  if (!workstation_.scene()) return;  // there is no exercise yet that they could be of
   const std::shared_ptr<const LabelMap> map = editor_.map();
   for (auto& [label, look] : structure_looks_) {
     const Structure* of = map ? map->find(label) : nullptr;

@@ -55,7 +55,11 @@ double sliderAtOpacity(double opacity) {
 
 TissuePanel::TissuePanel(QWidget* parent) : QWidget(parent) {
   build();
+  // Without an exercise there is no set.
   editor_->setEnabled(false);
+  list_->setLocked(true);
+  set_name_->setEnabled(false);
+  set_menu_->setEnabled(false);
 }
 
 void TissuePanel::build() {
@@ -227,6 +231,9 @@ QWidget* TissuePanel::buildEditor() {
 void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared) {
   tissues_ = tissues;
   declared_ = declared;
+  list_->setLocked(!locked_.isEmpty());
+  set_name_->setEnabled(locked_.isEmpty());
+  set_menu_->setEnabled(locked_.isEmpty());
   set_name_->setText(toQt(tissues_.name));
   list_->show(tissues_, looks_);
   showSelected();

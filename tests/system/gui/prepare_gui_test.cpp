@@ -100,6 +100,13 @@ class PrepareGuiTest : public test::WindowTest {
  private slots:
   void initTestCase() {
     openWindow("trephine-prepare-test");
+    // Without a case there is nothing to edit, whatever is clicked.
+    showTissues();
+    find<QToolButton>("addTissue")->click();
+    QVERIFY(!find<QToolButton>("addTissue")->isEnabled() &&
+            !find<QToolButton>("setMenu")->isEnabled());
+    emit panel().tissuesChanged(startingSet("none"), "set");
+    QVERIFY(!workstation().scene());
     QApplication::setActiveWindow(window_.get());
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     workstation().openImported(caseOf(std::make_shared<const Volume>(test::coarseCranium(2))));
