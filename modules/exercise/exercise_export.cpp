@@ -144,10 +144,6 @@ class Exporter {
   std::set<std::string> taken_;
 };
 
-}  // namespace
-
-namespace {
-
 // From a folder to a file: within one storage folder it stays true when that is moved.
 std::string pathFrom(const fs::path& folder, const fs::path& file, const fs::path& storage) {
   std::error_code ec;

@@ -60,6 +60,11 @@ bool isThere(const fs::path& target, const fs::path& folder, const Progress& pro
   return check && check->verified();
 }
 
+// The n-th folder of that name, from 1 on.
+fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
+  return storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
+}
+
 }  // namespace
 
 Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
@@ -115,8 +120,7 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
 
   const std::string stem = plainName(scene->name, "exercise");
   for (int n = 1;; ++n) {
-    const fs::path target =
-        storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
+    const fs::path target = numbered(storage, stem, n);
     std::error_code ec;
     if (fs::symlink_status(target, ec).type() != fs::file_type::not_found) {
       if (!isThere(target, folder, Progress(progress, 0.4, 0.5))) continue;
@@ -160,8 +164,7 @@ std::vector<fs::path> exercisesIn(const fs::path& storage) {
 fs::path freshExercise(const fs::path& storage, const std::string& name) {
   const std::string stem = plainName(name, "exercise");
   for (int n = 1;; ++n) {
-    const fs::path folder =
-        storage / "exercises" / (n == 1 ? stem : stem + "-" + std::to_string(n));
+    const fs::path folder = numbered(storage, stem, n);
     std::error_code ec;
     if (fs::symlink_status(folder, ec).type() == fs::file_type::not_found) return folder;
   }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/scene_structures.h"
-
 namespace trephine {
 
 void SceneHistory::begin(Scene scene) {
@@ -45,21 +43,7 @@ const Scene& SceneHistory::redo() {
 }
 
 bool sameScene(const Scene& a, const Scene& b) {
-  const auto all = [](const Scene& scene) {
-    Scene plain = scene;
-    plain.tissues = unplaced(std::move(plain.tissues));
-    Json json = toJson(plain);
-    if (scene.tissues_elsewhere) json["elsewhere"] = toJson(*scene.tissues_elsewhere);
-    json["files"] = {scene.case_source, scene.labels_file, scene.operator_file};
-    for (const SceneTool& tool : scene.tools) {
-      const ToolLook& look = tool.look;
-      json["looks"].push_back({tool.id, look.mesh.string(), look.tip_mm.x, look.tip_mm.y,
-                               look.tip_mm.z, look.axis.x, look.axis.y, look.axis.z});
-    }
-    for (const SceneArm& arm : scene.arms) json["files"].push_back(arm.device_config);
-    return json;
-  };
-  return all(a) == all(b);
+  return sceneFile(a) == sceneFile(b);
 }
 
 NewTissues withTissues(Scene scene, const TissueSet& set) {

@@ -46,8 +46,8 @@ class SceneHistory {
 // Older steps go: a scene with everything is some 20 KB.
 constexpr std::size_t kMostSteps = 500;
 
-// Equal in everything that is felt, cut, drawn or said; the numbers of labels that a case gives to
-// structures do not count.
+// The same file (sceneFile): equal in everything that is felt, cut, drawn or said; neither the
+// labels that a case gives to structures nor what devices say of their arms count.
 bool sameScene(const Scene& a, const Scene& b);
 
 // The scene with another set. Landmarks and looks that name a tissue which is no longer there: a

@@ -1,16 +1,10 @@
 #include "scene/scene_tool.h"
 
-#include "scene/names.h"
 #include "scene/scene_numbers.h"
 
 namespace trephine {
 
 namespace {
-
-constexpr Names<ToolKind, 3> kToolNames{
-    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
-constexpr Names<BurrShape, 2> kShapeNames{
-    {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
 // What a scene may set itself of a tool that comes from a file.
 constexpr std::span<const NumberOf<ToolDescription>> kOwnNumbers[] = {kToolNumbers, kBurrNumbers};

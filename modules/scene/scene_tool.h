@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "base/math.h"
 #include "haptics/tool.h"
+#include "scene/names.h"
 
 namespace trephine {
 
@@ -17,6 +18,11 @@ struct ToolLook {
   Vec3 tip_mm{0.0};            // in the mesh's frame
   Vec3 axis{0.0, 0.0, 1.0};    // from the tip to the handle; unit
 };
+
+inline constexpr Names<ToolKind, 3> kToolNames{
+    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
+inline constexpr Names<BurrShape, 2> kShapeNames{
+    {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
 struct SceneTool {
   std::string id;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 namespace trephine {
@@ -79,10 +78,6 @@ std::vector<HuRange> freeHu(const TissueSet& set, HuRange span) {
   }
   if (next <= span.high) free.push_back({next, span.high});
   return free;
-}
-
-bool inSamePlace(const Tissue& a, const Tissue& b) {
-  return a.structure == b.structure && (!a.structure.empty() || a.label == b.label);
 }
 
 std::vector<HuOverlap> overlapsOf(const TissueSet& set, std::size_t tissue, const Tissue& wanted) {

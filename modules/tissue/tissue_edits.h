@@ -23,9 +23,6 @@ struct HuRange {
 // Of `span`, in rising order, the HU that no tissue without a label holds: free space there.
 std::vector<HuRange> freeHu(const TissueSet& set, HuRange span);
 
-// Whether the two are known in the same voxels, so that their HU must differ.
-bool inSamePlace(const Tissue& a, const Tissue& b);
-
 // A range of HU that another tissue of the same place holds already.
 struct HuOverlap {
   std::size_t other = 0;  // of the set

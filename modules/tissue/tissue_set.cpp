@@ -17,9 +17,7 @@ std::string range(const Tissue& t) {
 }
 
 bool sameVoxels(const Tissue& a, const Tissue& b) {
-  const bool same_place =
-      a.structure == b.structure && (!a.structure.empty() || a.label == b.label);
-  return same_place && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
+  return inSamePlace(a, b) && a.hu_min <= b.hu_max && b.hu_min <= a.hu_max;
 }
 
 std::string shown(double value) {
@@ -69,6 +67,10 @@ Json mechanicsOf(const Tissue& tissue) {
 }
 
 }  // namespace
+
+bool inSamePlace(const Tissue& a, const Tissue& b) {
+  return a.structure == b.structure && (!a.structure.empty() || a.label == b.label);
+}
 
 const Tissue* TissueSet::find(const std::string& id) const {
   for (const Tissue& tissue : tissues) {

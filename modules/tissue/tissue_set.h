@@ -54,6 +54,9 @@ struct Tissue : SetNumbers {
   bool isSolid() const { return solid.value_or(stiffness_N_per_m.value >= kSolidFrom_N_per_m); }
 };
 
+// Whether the two are known in the same voxels, so that their HU must differ.
+bool inSamePlace(const Tissue& a, const Tissue& b);
+
 struct TissueSet {
   std::string name;
   std::vector<Tissue> tissues;

@@ -4,6 +4,8 @@
 #include <QPalette>
 #include <QStyleFactory>
 
+#include "scene/scene.h"
+
 namespace trephine::colours {
 
 namespace {
@@ -117,6 +119,11 @@ void applyTheme(QApplication& application, Theme theme, int text_percent) {
           .arg(1.3 * font.pointSizeF())
           .arg(1.5 * font.pointSizeF())
           .arg(2.3 * font.pointSizeF()));
+}
+
+QColor ofArm(const SceneArm& arm, std::size_t index) {
+  const bool left = arm.name == "left" || (arm.name != "right" && index == 0);
+  return left ? kLeftArm : kRightArm;
 }
 
 QColor of(const Vec3& rgb) {

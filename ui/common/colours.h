@@ -8,6 +8,10 @@
 
 #include "base/math.h"
 
+namespace trephine {
+struct SceneArm;
+}
+
 namespace trephine::colours {
 
 // Of the theme that was applied; the dark one until then.
@@ -36,6 +40,9 @@ enum class Theme { dark, light };
 // Fusion style, palette and a few style rules; text so many per cent of its usual size. Before the
 // first widget.
 void applyTheme(QApplication& application, Theme theme = Theme::dark, int text_percent = 100);
+
+// In which an arm's tool, box and card are drawn; `index`: among the scene's.
+QColor ofArm(const SceneArm& arm, std::size_t index);
 
 // A tissue's or structure's colour, each part from 0 to 1, and back.
 QColor of(const Vec3& rgb);

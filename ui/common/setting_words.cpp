@@ -2,10 +2,12 @@
 
 #include <QCoreApplication>
 #include <QStringList>
+#include <QVBoxLayout>
 #include <algorithm>
 #include <string_view>
 
 #include "ui/common/colours.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 
@@ -68,6 +70,65 @@ QLabel* settingHint(const QString& words, QWidget* parent) {
   label->setFont(small);
   colours::setText(*label, colours::kQuiet);
   label->setProperty("hint", true);
+  return label;
+}
+
+QWidget* withHint(QWidget* field, const QString& words, QWidget* parent) {
+  auto* both = new QWidget(parent);
+  auto* column = new QVBoxLayout(both);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(1);
+  column->addWidget(field);
+  column->addWidget(settingHint(words, both));
+  return both;
+}
+
+QLabel* problemLabel(const char* name, QWidget* parent) {
+  auto* label = new QLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  colours::setText(*label, colours::kCaution);
+  label->hide();
+  return label;
+}
+
+void sayNotApplied(QLabel& problem, const Error& why) {
+  problem.setText(QCoreApplication::translate("Setting", "Not applied. %1. %2.")
+                      .arg(toQt(why.what), toQt(why.next)));
+  problem.show();
+}
+
+QFormLayout* settingForm(QWidget* of) {
+  auto* layout = new QFormLayout(of);
+  layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
+  layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(6);
+  return layout;
+}
+
+QComboBox* settingChoice(const char* name, const QString& accessible, QWidget* parent) {
+  auto* box = new QComboBox(parent);
+  box->setObjectName(name);
+  box->setAccessibleName(accessible);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  box->setMinimumContentsLength(3);
+  return box;
+}
+
+QToolButton* settingButton(const char* name, const QString& text, const QString& tip,
+                           QWidget* parent) {
+  auto* made = new QToolButton(parent);
+  made->setObjectName(name);
+  made->setText(text);
+  made->setToolTip(tip);
+  made->setFocusPolicy(Qt::TabFocus);
+  return made;
+}
+
+QLabel* settingTitle(const QString& words, QWidget* parent) {
+  auto* label = new QLabel(words, parent);
+  label->setProperty("title", true);
   return label;
 }
 

@@ -1,11 +1,16 @@
-// What settings of scenes are called on the screen, and the line below each that says what it does.
+// Forms of settings: what these are called on the screen, the line below each that says what it
+// does, and how a refusal is said.
 #pragma once
 
+#include <QComboBox>
+#include <QFormLayout>
 #include <QLabel>
 #include <QString>
+#include <QToolButton>
 #include <QWidget>
 
 #include "base/number_row.h"
+#include "base/result.h"
 
 namespace trephine {
 
@@ -18,5 +23,19 @@ QString shortMeaningOf(const NumberRow& row);
 double stepOfUnit(const char* unit);
 // A small quiet line below a field.
 QLabel* settingHint(const QString& words, QWidget* parent);
+// A field, and below it what it does.
+QWidget* withHint(QWidget* field, const QString& words, QWidget* parent);
+
+// What is wrong, beside what it is of; hidden until there is something to say.
+QLabel* problemLabel(const char* name, QWidget* parent);
+// "Not applied.", why, and what to do.
+void sayNotApplied(QLabel& problem, const Error& why);
+
+// Of a narrow column.
+QFormLayout* settingForm(QWidget* of);
+QComboBox* settingChoice(const char* name, const QString& accessible, QWidget* parent);
+QToolButton* settingButton(const char* name, const QString& text, const QString& tip,
+                           QWidget* parent);
+QLabel* settingTitle(const QString& words, QWidget* parent);
 
 }  // namespace trephine

@@ -16,33 +16,6 @@ namespace {
 
 constexpr int kMostLetters = 80;
 
-QLabel* problemLabel(const char* name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
-  colours::setText(*label, colours::kCaution);
-  label->hide();
-  return label;
-}
-
-QComboBox* combo(const char* name, const QString& accessible, QWidget* parent) {
-  auto* box = new QComboBox(parent);
-  box->setObjectName(name);
-  box->setAccessibleName(accessible);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  box->setMinimumContentsLength(3);
-  return box;
-}
-
-QToolButton* button(const char* name, const QString& text, const QString& tip, QWidget* parent) {
-  auto* made = new QToolButton(parent);
-  made->setObjectName(name);
-  made->setText(text);
-  made->setToolTip(tip);
-  made->setFocusPolicy(Qt::TabFocus);
-  return made;
-}
-
 QPushButton* way(const char* name, const QString& text, const QString& tip, QWidget* parent) {
   auto* made = new QPushButton(text, parent);
   made->setObjectName(name);
@@ -50,36 +23,11 @@ QPushButton* way(const char* name, const QString& text, const QString& tip, QWid
   return made;
 }
 
-QFormLayout* form(QWidget* of) {
-  auto* layout = new QFormLayout(of);
-  layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
-  layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setVerticalSpacing(6);
-  return layout;
-}
-
-QWidget* hinted(QWidget* field, const QString& words, QWidget* parent) {
-  auto* both = new QWidget(parent);
-  auto* column = new QVBoxLayout(both);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(1);
-  column->addWidget(field);
-  column->addWidget(settingHint(words, both));
-  return both;
-}
-
-QLabel* heading(const QString& words, QWidget* parent) {
-  auto* label = new QLabel(words, parent);
-  label->setProperty("title", true);
-  return label;
-}
-
 QWidget* group(const QString& title, QLabel* problem, QWidget* fields, QWidget* parent) {
   auto* box = new QWidget(parent);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(heading(title, box));
+  layout->addWidget(settingTitle(title, box));
   layout->addWidget(problem);
   layout->addWidget(fields);
   return box;
@@ -153,20 +101,15 @@ QWidget* ExerciseForm::buildWays() {
 void ExerciseForm::edit(QLabel* problem, const std::string& what,
                         const std::function<void(Scene&)>& change) {
   if (showing_) return;
-  Scene scene = scene_;
-  change(scene);
-  const Status done = wanted ? wanted(scene, what) : Status();
-  problem->setVisible(!done.ok());
-  if (done) return;
-  problem->setText(
-      tr("Not applied. %1. %2.").arg(toQt(done.error().what), toQt(done.error().next)));
+  const Status done = wanted ? wanted(what, change) : Status();
+  done ? problem->hide() : sayNotApplied(*problem, done.error());
 }
 
 // --- What it is ---
 
 QWidget* ExerciseForm::buildWhat() {
   auto* fields = new QWidget(body_);
-  QFormLayout* rows = what_form_ = form(fields);
+  QFormLayout* rows = what_form_ = settingForm(fields);
   what_problem_ = problemLabel("whatProblem", body_);
   name_ = new QLineEdit(fields);
   name_->setObjectName("exerciseName");
@@ -178,16 +121,17 @@ QWidget* ExerciseForm::buildWhat() {
     if (typed == scene_.name) return;
     edit(what_problem_, "exercise name", [&](Scene& scene) { scene.name = typed; });
   });
-  rows->addRow(tr("Name"), hinted(name_, tr("As it stands in the list of exercises."), fields));
-  anatomy_ = combo("anatomy", tr("Part of the body"), fields);
+  rows->addRow(tr("Name"), withHint(name_, tr("As it stands in the list of exercises."), fields));
+  anatomy_ = settingChoice("anatomy", tr("Part of the body"), fields);
   anatomy_->addItem(tr("Head"), QStringLiteral("cranium"));
   anatomy_->addItem(tr("Abdomen"), QStringLiteral("abdomen"));
   connect(anatomy_, &QComboBox::activated, this, [this](int) {
     const std::string of = anatomy_->currentData().toString().toStdString();
     edit(what_problem_, "anatomy", [&](Scene& scene) { scene.anatomy = of; });
   });
-  rows->addRow(tr("For"), hinted(anatomy_, tr("Cases of another part of the body are asked about."),
-                                 fields));
+  rows->addRow(
+      tr("For"),
+      withHint(anatomy_, tr("Cases of another part of the body are asked about."), fields));
   structures_ = new QListWidget(fields);
   structures_->setObjectName("neededStructures");
   structures_->setAccessibleName(tr("Structures that it needs"));
@@ -200,24 +144,25 @@ QWidget* ExerciseForm::buildWhat() {
     }
     edit(what_problem_, "structures", [&](Scene& scene) { scene.structures = names; });
   });
-  rows->addRow(tr("Needs"), hinted(structures_, tr("A case that lacks one is helped to it first."),
-                                   fields));
+  rows->addRow(tr("Needs"),
+               withHint(structures_, tr("A case that lacks one is helped to it first."), fields));
   auto* script = new QWidget(fields);
   auto* script_row = new QGridLayout(script);
   script_row->setContentsMargins(0, 0, 0, 0);
   script_row->setSpacing(4);
   operator_ = new QLabel(script);
   operator_->setObjectName("operatorFile");
-  auto* choose = button("chooseOperator", tr("Choose\u2026"), tr("An operator script"), script);
-  auto* none = button("noOperator", tr("None"), tr("Nothing moves by itself"), script);
+  auto* choose =
+      settingButton("chooseOperator", tr("Choose\u2026"), tr("An operator script"), script);
+  auto* none = settingButton("noOperator", tr("None"), tr("Nothing moves by itself"), script);
   connect(choose, &QToolButton::clicked, this, &ExerciseForm::operatorWanted);
   connect(none, &QToolButton::clicked, this, [this] { setOperator({}); });
   script_row->addWidget(operator_, 0, 0, 1, 3);
   script_row->addWidget(choose, 1, 0);
   script_row->addWidget(none, 1, 1);
   script_row->setColumnStretch(2, 1);
-  rows->addRow(tr("Script"), hinted(script, tr("Moves the hands where nobody does, as in a check."),
-                                    fields));
+  rows->addRow(tr("Script"),
+               withHint(script, tr("Moves the hands where nobody does, as in a check."), fields));
   return group(tr("What it is"), what_problem_, fields, body_);
 }
 
@@ -244,12 +189,13 @@ constexpr NumberOf<Landmark> kOutward[] = {
 
 QWidget* ExerciseForm::buildPlaces() {
   auto* fields = new QWidget(body_);
-  place_form_ = form(fields);
+  place_form_ = settingForm(fields);
   place_problem_ = problemLabel("placeProblem", body_);
-  landmark_ = combo("landmark", tr("Landmark"), fields);
+  landmark_ = settingChoice("landmark", tr("Landmark"), fields);
   connect(landmark_, &QComboBox::activated, this, [this] { showLandmark(); });
-  place_form_->addRow(tr("Landmark"),
-                      hinted(landmark_, tr("A place on any patient, found in the case."), fields));
+  place_form_->addRow(
+      tr("Landmark"),
+      withHint(landmark_, tr("A place on any patient, found in the case."), fields));
   auto* of_landmark = new QWidget(fields);
   auto* of_layout = new QGridLayout(of_landmark);
   of_layout->setContentsMargins(0, 0, 0, 0);
@@ -259,27 +205,28 @@ QWidget* ExerciseForm::buildPlaces() {
   landmark_name_->setAccessibleName(tr("Name of the landmark"));
   landmark_name_->setMaxLength(kMostLetters / 2);
   connect(landmark_name_, &QLineEdit::editingFinished, this, &ExerciseForm::nameLandmark);
-  add_landmark_ =
-      button("addLandmark", tr("Add one"), tr("Another place, as this one"), of_landmark);
-  remove_landmark_ =
-      button("removeLandmark", tr("Remove it"), tr("Where nothing is at it"), of_landmark);
-  connect(add_landmark_, &QToolButton::clicked, this, &ExerciseForm::addLandmark);
-  connect(remove_landmark_, &QToolButton::clicked, this, &ExerciseForm::removeLandmark);
+  auto* add =
+      settingButton("addLandmark", tr("Add one"), tr("Another place, as this one"), of_landmark);
+  auto* remove =
+      settingButton("removeLandmark", tr("Remove it"), tr("Where nothing is at it"), of_landmark);
+  connect(add, &QToolButton::clicked, this, &ExerciseForm::addLandmark);
+  connect(remove, &QToolButton::clicked, this, &ExerciseForm::removeLandmark);
   of_layout->addWidget(landmark_name_, 0, 0, 1, 3);
-  of_layout->addWidget(add_landmark_, 1, 0);
-  of_layout->addWidget(remove_landmark_, 1, 1);
+  of_layout->addWidget(add, 1, 0);
+  of_layout->addWidget(remove, 1, 1);
   of_layout->setColumnStretch(2, 1);
   place_form_->addRow(tr("Called"),
-                      hinted(of_landmark, tr("By this name arms and view have it."), fields));
-  landmark_tissue_ = combo("landmarkTissue", tr("Tissue of the landmark"), fields);
+                      withHint(of_landmark, tr("By this name arms and view have it."), fields));
+  landmark_tissue_ = settingChoice("landmarkTissue", tr("Tissue of the landmark"), fields);
   connect(landmark_tissue_, &QComboBox::activated, this, [this](int) {
     const std::string id = landmark_tissue_->currentData().toString().toStdString();
     editLandmark("tissue", [&](Landmark& of) { of.tissue = id; });
   });
-  place_form_->addRow(tr("On"), hinted(landmark_tissue_, tr("The tissue that its ray meets first."),
-                                       fields));
-  auto* entry = button("placeEntry", tr("Click it in a view"),
-                       tr("A click on skin, bone or a slice is where it enters (I)"), fields);
+  place_form_->addRow(
+      tr("On"), withHint(landmark_tissue_, tr("The tissue that its ray meets first."), fields));
+  auto* entry =
+      settingButton("placeEntry", tr("Click it in a view"),
+                    tr("A click on skin, bone or a slice is where it enters (I)"), fields);
   connect(entry, &QToolButton::clicked, this, &ExerciseForm::entryWanted);
   landmark_kind_ = settingHint({}, fields);
   landmark_kind_->setObjectName("landmarkKind");
@@ -310,22 +257,23 @@ QWidget* ExerciseForm::buildPlaces() {
                  [&](Landmark& landmark) { landmark.outward = glm::normalize(other.outward); });
   };
   run_ = numbers(kLandmarkNumbers);
-  view_landmark_ = combo("viewLandmark", tr("Looked at"), fields);
+  view_landmark_ = settingChoice("viewLandmark", tr("Looked at"), fields);
   connect(view_landmark_, &QComboBox::activated, this, [this](int) {
     const std::string id = view_landmark_->currentData().toString().toStdString();
     edit(place_problem_, "view landmark", [&](Scene& scene) { scene.view.landmark = id; });
   });
-  place_form_->addRow(tr("Look at"), hinted(view_landmark_, tr("Where the camera begins."), fields));
+  place_form_->addRow(tr("Look at"),
+                      withHint(view_landmark_, tr("Where the camera begins."), fields));
   view_numbers_ = std::make_unique<NumberRows<SceneView>>(
       std::span<const NumberOf<SceneView>>(kViewNumbers), *place_form_, fields, "view:");
   view_numbers_->entered = [this](const SceneView& view, const char* key) {
     edit(place_problem_, key, [&](Scene& scene) { scene.view = view; });
   };
-  auto* looks = button("keepLooks", tr("Keep the looks as they are"),
-                       tr("Shown, ghosted, hidden: as the tissues look now"), fields);
+  auto* looks = settingButton("keepLooks", tr("Keep the looks as they are"),
+                              tr("Shown, ghosted, hidden: as the tissues look now"), fields);
   connect(looks, &QToolButton::clicked, this, &ExerciseForm::looksWanted);
-  place_form_->addRow(tr("Looks"), hinted(looks, tr("What is shown, ghosted or hidden at the start."),
-                                          fields));
+  place_form_->addRow(
+      tr("Looks"), withHint(looks, tr("What is shown, ghosted or hidden at the start."), fields));
   return group(tr("Where"), place_problem_, fields, body_);
 }
 
@@ -400,7 +348,7 @@ void ExerciseForm::showLandmark() {
 // --- The card ---
 
 ExerciseForm::CardFields ExerciseForm::buildLanguage(QWidget* page, const QString& suffix) {
-  auto* rows = form(page);
+  auto* rows = settingForm(page);
   CardFields fields{new QLineEdit(page), new QPlainTextEdit(page), new QLineEdit(page)};
   fields.goal->setObjectName("cardGoal" + suffix);
   fields.goal->setAccessibleName(tr("Goal"));
@@ -410,10 +358,10 @@ ExerciseForm::CardFields ExerciseForm::buildLanguage(QWidget* page, const QStrin
   fields.steps->setFixedHeight(6 * fontMetrics().height());
   fields.hands->setObjectName("cardHands" + suffix);
   fields.hands->setAccessibleName(tr("Hands"));
-  rows->addRow(tr("Goal"), hinted(fields.goal, tr("What is to be reached."), page));
-  rows->addRow(tr("Steps"), hinted(fields.steps, tr("One a line, in their order."), page));
+  rows->addRow(tr("Goal"), withHint(fields.goal, tr("What is to be reached."), page));
+  rows->addRow(tr("Steps"), withHint(fields.steps, tr("One a line, in their order."), page));
   rows->addRow(tr("Hands"),
-               hinted(fields.hands, tr("Which tool in which hand, and how to move it."), page));
+               withHint(fields.hands, tr("Which tool in which hand, and how to move it."), page));
   connect(fields.goal, &QLineEdit::editingFinished, this, &ExerciseForm::cardEntered);
   connect(fields.hands, &QLineEdit::editingFinished, this, &ExerciseForm::cardEntered);
   fields.steps->installEventFilter(this);
@@ -514,15 +462,16 @@ void ExerciseForm::showCard() {
 
 QWidget* ExerciseForm::buildOutline() {
   auto* fields = new QWidget(body_);
-  outline_form_ = form(fields);
+  outline_form_ = settingForm(fields);
   outline_problem_ = problemLabel("outlineProblem", body_);
   auto* row = new QWidget(fields);
   auto* buttons = new QHBoxLayout(row);
   buttons->setContentsMargins(0, 0, 0, 0);
-  draw_ = button("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"), row);
+  draw_ = settingButton("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"),
+                        row);
   draw_->setCheckable(true);
-  back_ = button("outlineBack", tr("Last off"), tr("Takes the last point away"), row);
-  clear_ = button("clearOutline", tr("Clear"), tr("No outline"), row);
+  back_ = settingButton("outlineBack", tr("Last off"), tr("Takes the last point away"), row);
+  clear_ = settingButton("clearOutline", tr("Clear"), tr("No outline"), row);
   connect(draw_, &QToolButton::toggled, this, [this](bool on) {
     if (!showing_) emit drawingWanted(on);
   });
@@ -542,8 +491,10 @@ QWidget* ExerciseForm::buildOutline() {
   buttons->addStretch(1);
   points_ = settingHint({}, fields);
   points_->setObjectName("outlinePoints");
-  outline_form_->addRow(hinted(row, tr("A line on the tissue that shows where to work; it is neither "
-                                       "felt nor scored."), fields));
+  outline_form_->addRow(withHint(row,
+                                 tr("A line on the tissue that shows where to work; it is neither "
+                                    "felt nor scored."),
+                                 fields));
   outline_form_->addRow(points_);
   closed_ = new QCheckBox(tr("Closed"), fields);
   closed_->setObjectName("outlineClosed");
@@ -552,7 +503,7 @@ QWidget* ExerciseForm::buildOutline() {
       if (scene.outline) scene.outline->closed = on;
     });
   });
-  outline_form_->addRow(hinted(closed_, tr("The last point is joined to the first."), fields));
+  outline_form_->addRow(withHint(closed_, tr("The last point is joined to the first."), fields));
   width_ = std::make_unique<NumberRows<SceneOutline>>(
       std::span<const NumberOf<SceneOutline>>(kOutlineNumbers), *outline_form_, fields, "outline:");
   width_->entered = [this](const SceneOutline& outline, const char* key) {

@@ -36,9 +36,9 @@ class ExerciseForm : public QWidget {
   void showSaved(const QString& words);
   // Clicks on the surface add points.
   void showDrawing(bool drawing);
-  bool isDrawing() const { return draw_->isChecked(); }
 
-  std::function<Status(const Scene& wanted, const std::string& what)> wanted;
+  // A person wants this change of the scene as it is then; `what` of it.
+  std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
 
  signals:
   void drawingWanted(bool on);
@@ -93,7 +93,6 @@ class ExerciseForm : public QWidget {
   QLabel *what_problem_, *place_problem_, *card_problem_, *outline_problem_, *lock_problem_;
   QComboBox *landmark_, *landmark_tissue_, *view_landmark_;
   QLineEdit* landmark_name_;
-  QToolButton *add_landmark_, *remove_landmark_;
   QFormLayout* place_form_;
   QLabel* landmark_kind_;
   std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, outward_, run_;

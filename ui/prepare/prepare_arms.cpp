@@ -1,7 +1,6 @@
 // Tools and arms: their panel, and where the arms reach in the views.
 #include <unistd.h>
 
-#include <QFileDialog>
 #include <QStandardPaths>
 #include <algorithm>
 #include <cmath>
@@ -20,40 +19,22 @@
 
 namespace trephine {
 
-namespace {
-
-QColor colourOf(const SceneArm& arm, std::size_t index) {
-  if (arm.name == "left") return colours::kLeftArm;
-  if (arm.name == "right") return colours::kRightArm;
-  return index % 2 == 0 ? colours::kLeftArm : colours::kRightArm;
-}
-
-}  // namespace
-
 void PrepareWorkspace::connectArms() {
-  tools_->wanted = [this](const Scene& scene, const std::string& what) {
-    return sceneWanted(scene, what);
+  tools_->wanted = [this](const std::string& what, const auto& change) {
+    return changeScene(what, change);
   };
   connect(tools_, &ToolsPanel::armChosen, this, &PrepareWorkspace::showArms);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {
-    QFileDialog* dialog =
-        bench_.fileDialog("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"));
-    connect(dialog, &QFileDialog::fileSelected, this,
-            [this](const QString& file) { tools_->addTool(toPath(file)); });
-    dialog->open();
+    bench_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
+                      [this](const auto& file) { tools_->addTool(file); });
   });
   connect(tools_, &ToolsPanel::meshWanted, this, [this] {
-    QFileDialog* dialog = bench_.fileDialog("meshDialog", tr("A mesh"), tr("Surface (*.stl)"));
-    connect(dialog, &QFileDialog::fileSelected, this,
-            [this](const QString& file) { tools_->setMesh(toPath(file)); });
-    dialog->open();
+    bench_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"),
+                      [this](const auto& file) { tools_->setMesh(file); });
   });
   connect(tools_, &ToolsPanel::deviceWanted, this, [this] {
-    QFileDialog* dialog =
-        bench_.fileDialog("deviceDialog", tr("A file of the device"), tr("Devices (*.json)"));
-    connect(dialog, &QFileDialog::fileSelected, this,
-            [this](const QString& file) { tools_->setDevice(toPath(file)); });
-    dialog->open();
+    bench_.askForFile("deviceDialog", tr("A file of the device"), tr("Devices (*.json)"),
+                      [this](const auto& file) { tools_->setDevice(file); });
   });
   connect(tools_, &ToolsPanel::tradesWanted, this, &PrepareWorkspace::measureTrades);
   showTrades();
@@ -166,10 +147,10 @@ void PrepareWorkspace::measureTrades() {
 }
 
 // Of a form: what is refused is said there.
-Status PrepareWorkspace::sceneWanted(const Scene& wanted, const std::string& what) {
-  // The tissues are those in use: a form may have been shown before they were edited.
-  Scene scene = wanted;
-  scene.tissues = workstation_.scene()->tissues;
+Status PrepareWorkspace::changeScene(const std::string& what,
+                                     const std::function<void(Scene&)>& change) {
+  Scene scene = *workstation_.scene();
+  change(scene);
   Status done = workstation_.edit(scene, what);
   workstation_.closeEdit();
   return done;
@@ -205,7 +186,7 @@ void PrepareWorkspace::showArms() {
     const SceneArm& arm = placed.arms[i];
     if (!arm.map.fixed) continue;
     const WorkspaceMap& map = *arm.map.fixed;
-    const QColor colour = colourOf(arm, i);
+    const QColor colour = colours::ofArm(arm, i);
     boxes.push_back({map.centre_mm, map.rotation, map.motion_scale * workspaces_mm_[i], colour,
                      i == tools_->chosenArm()});
     if (const SceneTool* tool = placed.findTool(arm.tool)) {

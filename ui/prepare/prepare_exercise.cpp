@@ -4,6 +4,7 @@
 #include <set>
 
 #include "exercise/exercise_folder.h"
+#include "library/case_folders.h"
 #include "ui/common/words.h"
 #include "ui/prepare/prepare_workspace.h"
 #include "volume/phantom.h"
@@ -29,8 +30,8 @@ Error notVerified(const ExerciseCheck& check) {
 }  // namespace
 
 void PrepareWorkspace::connectExercise() {
-  form_->wanted = [this](const Scene& scene, const std::string& what) {
-    return sceneWanted(scene, what);
+  form_->wanted = [this](const std::string& what, const auto& change) {
+    return changeScene(what, change);
   };
   connect(form_, &ExerciseForm::drawingWanted, this, &PrepareWorkspace::draw);
   connect(form_, &ExerciseForm::entryWanted, this, [this] {
@@ -39,21 +40,17 @@ void PrepareWorkspace::connectExercise() {
   });
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
     if (!workstation_.scene()) return;
-    Scene scene = *workstation_.scene();
-    scene.view.looks.clear();
-    for (const auto& [id, look] : workstation_.looks()) {
-      if (scene.tissues.find(id)) scene.view.looks[id] = look;
-    }
-    const Status done = sceneWanted(scene, "looks");
+    const Status done = changeScene("looks", [this](Scene& scene) {
+      scene.view.looks.clear();
+      for (const auto& [id, look] : workstation_.looks()) {
+        if (scene.tissues.find(id)) scene.view.looks[id] = look;
+      }
+    });
     done ? bench_.say(tr("The exercise begins with these looks.")) : bench_.report(done.error());
   });
   connect(form_, &ExerciseForm::operatorWanted, this, [this] {
-    QFileDialog* dialog =
-        bench_.fileDialog("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"));
-    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
-      form_->setOperator(toPath(file).string());
-    });
-    dialog->open();
+    bench_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
+                      [this](const auto& file) { form_->setOperator(file.string()); });
   });
   connect(form_, &ExerciseForm::saveWanted, this, [this] { saveExercise(false, {}); });
   connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { saveExercise(true, {}); });
@@ -71,21 +68,27 @@ void PrepareWorkspace::connectExercise() {
   connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showExercise);
 }
 
+// In the tab that is in front: a threshold that is dragged pays for no form that nobody sees.
 void PrepareWorkspace::showExercise() {
-  if (!workstation_.scene()) return;
+  showArms();
+  const int tab = tabs_->currentIndex();
+  if (!workstation_.scene() || (tab != kToolTab && tab != kExerciseTab)) return;
   const QString locked =
       workstation_.anyLocked()
           ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
           : QString();
   tools_->setLocked(locked);
   form_->setLocked(locked);
-  tools_->setScene(*workstation_.scene());
+  if (tab == kToolTab) {
+    tools_->setScene(*workstation_.scene());
+    return showArms();  // which arm is chosen is known now
+  }
   form_->setScene(*workstation_.scene());
   const bool edited = workstation_.sceneEdited() || workstation_.tissuesEdited();
   form_->showSaved(isOwnExercise()
-                       ? edited ? tr("Changed since it was saved.") : tr("Saved on this workstation.")
+                       ? edited ? tr("Changed since it was saved.")
+                                : tr("Saved on this workstation.")
                        : tr("It came from elsewhere: saving makes one of your own of it."));
-  showArms();
 }
 
 // --- The outline ---
@@ -100,7 +103,7 @@ void PrepareWorkspace::draw(bool on) {
 void PrepareWorkspace::outlineClicked(const Vec3& at_mm) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!workstation_.scene() || !of || of->landmarks.empty()) return;
-  Scene scene = *workstation_.scene();
+  const Scene& scene = *workstation_.scene();
   // It goes with the landmark that is looked at, or the first.
   const PlacedLandmark* with = &of->landmarks.front();
   for (const PlacedLandmark& landmark : of->landmarks) {
@@ -119,8 +122,7 @@ void PrepareWorkspace::outlineClicked(const Vec3& at_mm) {
     outline.frame = SceneOutline::Frame{with->id, with->frame};
   }
   outline.points_mm.push_back(at_mm);
-  scene.outline = outline;
-  const Status done = sceneWanted(scene, "outline");
+  const Status done = changeScene("outline", [&](Scene& now) { now.outline = outline; });
   if (!done) return bench_.report(done.error());
   outline_first_.reset();
 }
@@ -144,8 +146,8 @@ std::optional<Scene> PrepareWorkspace::sceneToSave() {
     return {};
   }
   const std::filesystem::path folder = bench_.storage() / "cases" / of.stored;
-  scene.case_source = (folder / "volume.mha").string();
-  const std::filesystem::path structures = folder / "structures.seg.nrrd";
+  scene.case_source = (folder / kVolumeFile).string();
+  const std::filesystem::path structures = folder / kStructuresFile;
   std::error_code ec;
   scene.labels_file =
       std::filesystem::is_regular_file(structures, ec) ? structures.string() : std::string();
@@ -184,9 +186,7 @@ void PrepareWorkspace::saveExercise(bool copy, Bench::Next then) {
 // One that no exercise in the list has.
 std::string PrepareWorkspace::freeName(const std::string& wanted) const {
   std::set<std::string> taken;
-  std::vector<std::filesystem::path> files = scenesOfWorkstation(workstation_.policy());
-  for (const auto& file : exercisesIn(bench_.storage())) files.push_back(file);
-  for (const auto& file : files) {
+  for (const auto& file : bench_.exercises()) {
     if (const Result<Scene> scene = readScene(file)) taken.insert(scene->name);
   }
   std::string name = wanted;
@@ -208,23 +208,16 @@ void PrepareWorkspace::exportExercise() {
   const bool saved =
       isOwnExercise() && !workstation_.sceneEdited() && !workstation_.tissuesEdited();
   if (!saved) return saveExercise(false, [this] { exportExercise(); });
-  QFileDialog* dialog =
-      bench_.fileDialog("exportExerciseDialog", tr("Export the exercise as a new folder"));
-  dialog->setAcceptMode(QFileDialog::AcceptSave);
-  dialog->setFileMode(QFileDialog::AnyFile);
-  dialog->setOption(QFileDialog::ShowDirsOnly);
-  dialog->selectFile(toQt(workstation_.sceneFile().parent_path().filename()));
-  dialog->setLabelText(QFileDialog::FileName, tr("New folder:"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this, scene = workstation_.sceneFile()](const QString& folder) {
-            workstation_.save(tr("The exercise is exported: one folder with all that it needs."),
-                              [scene, to = toPath(folder)](const Progress& progress) {
-                                const auto done =
-                                    trephine::exportExercise(scene, "", to, progress);
-                                return done ? Status() : Status(done.error());
-                              });
-          });
-  dialog->open();
+  bench_.askForNewFolder(
+      "exportExerciseDialog", tr("Export the exercise as a new folder"),
+      toQt(workstation_.sceneFile().parent_path().filename()),
+      [this, scene = workstation_.sceneFile()](const std::filesystem::path& folder) {
+        workstation_.save(tr("The exercise is exported: one folder with all that it needs."),
+                          [scene, folder](const Progress& progress) {
+                            const auto done = trephine::exportExercise(scene, "", folder, progress);
+                            return done ? Status() : Status(done.error());
+                          });
+      });
 }
 
 void PrepareWorkspace::importExercise() {

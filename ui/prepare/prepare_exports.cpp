@@ -47,21 +47,14 @@ bool PrepareWorkspace::sourceAtHand() const {
 }
 
 void PrepareWorkspace::askToSaveDicom(bool for_source) {
-  // A name that is not there yet is a folder that will be made.
-  QFileDialog* dialog =
-      bench_.fileDialog("dicomDialog", tr("Save the DICOM files as a new folder"));
-  dialog->setAcceptMode(QFileDialog::AcceptSave);
-  dialog->setFileMode(QFileDialog::AnyFile);
-  dialog->setOption(QFileDialog::ShowDirsOnly);
-  dialog->selectFile(QStringLiteral("structures-dicom"));
-  dialog->setLabelText(QFileDialog::FileName, tr("New folder:"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this, for_source, volume = workstation_.currentCase()->volume](const QString& folder) {
-            const std::optional<Case>& of = workstation_.currentCase();
-            if (!of || of->volume != volume || !bench_.keepsTheCase(toPath(folder))) return;
-            saveDicom(toPath(folder), for_source);
-          });
-  dialog->open();
+  bench_.askForNewFolder(
+      "dicomDialog", tr("Save the DICOM files as a new folder"), "structures-dicom",
+      [this, for_source,
+       volume = workstation_.currentCase()->volume](const std::filesystem::path& folder) {
+        const std::optional<Case>& of = workstation_.currentCase();
+        if (!of || of->volume != volume || !bench_.keepsTheCase(folder)) return;
+        saveDicom(folder, for_source);
+      });
 }
 
 void PrepareWorkspace::saveDicom(const std::filesystem::path& folder, bool for_source) {

@@ -51,8 +51,6 @@ void PrepareWorkspace::showPoke() {
   tissues_->showPoke(poke_->isEnabled(), poking);
   const bool tab = tabs_->currentIndex() == kTissueTab;
   poke_plot_->setVisible(tab && (poking || !poke_plot_->pokes().empty()));
-  poke_plot_->setHint(tr("Push the tool into the tissue: the force against the depth is drawn "
-                         "here."));
 }
 
 void PrepareWorkspace::togglePoke() {

@@ -122,11 +122,8 @@ void PrepareWorkspace::duplicateSet() {
 }
 
 void PrepareWorkspace::askForSet() {
-  QFileDialog* dialog =
-      bench_.fileDialog("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"));
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [this](const QString& file) { useSet(toPath(file)); });
-  dialog->open();
+  bench_.askForFile("importSetDialog", tr("Import tissues"), tr("Tissues (*.json)"),
+                    [this](const auto& file) { useSet(file); });
 }
 
 void PrepareWorkspace::useSet(const std::filesystem::path& file) {

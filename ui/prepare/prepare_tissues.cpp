@@ -52,7 +52,6 @@ void PrepareWorkspace::showScene() {
   views_->setAnatomy(scene->anatomy);
   showHistogram();
   showHistory();
-  showExercise();
 }
 
 // What lies below the views is the tissues'.
@@ -60,7 +59,7 @@ void PrepareWorkspace::showTab() {
   histogram_->setVisible(tabs_->currentIndex() == kTissueTab);
   showPoke();
   if (tabs_->currentIndex() != kExerciseTab) draw(false);
-  showArms();
+  showExercise();
 }
 
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {

@@ -90,7 +90,8 @@ class PrepareWorkspace : public Workspace {
   void showTrades();
   void measureTrades();
   void workspaceMoved(const Vec3& centre_mm, bool done);
-  Status sceneWanted(const Scene& wanted, const std::string& what);
+  // Of the scene as it is now, as a step of its own.
+  Status changeScene(const std::string& what, const std::function<void(Scene&)>& change);
 
   // The exercise (prepare_exercise.cpp).
   void connectExercise();

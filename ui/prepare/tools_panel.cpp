@@ -1,9 +1,7 @@
 #include "ui/prepare/tools_panel.h"
 
-#include <QGroupBox>
 #include <QHBoxLayout>
 #include <QMenu>
-#include <QSignalBlocker>
 #include <algorithm>
 
 #include "base/json.h"
@@ -20,53 +18,6 @@ namespace trephine {
 namespace {
 
 constexpr int kMostLetters = 40;
-
-QLabel* problemLabel(const char* name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
-  colours::setText(*label, colours::kCaution);
-  label->hide();
-  return label;
-}
-
-QComboBox* combo(const char* name, const QString& accessible, QWidget* parent) {
-  auto* box = new QComboBox(parent);
-  box->setObjectName(name);
-  box->setAccessibleName(accessible);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  box->setMinimumContentsLength(3);
-  return box;
-}
-
-QToolButton* button(const char* name, const QString& text, const QString& tip, QWidget* parent) {
-  auto* made = new QToolButton(parent);
-  made->setObjectName(name);
-  made->setText(text);
-  made->setToolTip(tip);
-  made->setFocusPolicy(Qt::TabFocus);
-  return made;
-}
-
-QFormLayout* form(QWidget* of) {
-  auto* layout = new QFormLayout(of);
-  layout->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
-  layout->setRowWrapPolicy(QFormLayout::WrapLongRows);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setVerticalSpacing(6);
-  return layout;
-}
-
-// A field and below it what it does.
-QWidget* hinted(QWidget* field, const QString& words, QWidget* parent) {
-  auto* both = new QWidget(parent);
-  auto* column = new QVBoxLayout(both);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(1);
-  column->addWidget(field);
-  column->addWidget(settingHint(words, both));
-  return both;
-}
 
 QString lawName(LawKind law) {
   switch (law) {
@@ -109,14 +60,10 @@ void chooseData(QComboBox& box, int data) {
   box.setCurrentIndex(box.findData(data));
 }
 
-constexpr Names<ToolKind, 3> kKinds{
-    {{"needle", ToolKind::needle}, {"blade", ToolKind::blade}, {"burr", ToolKind::burr}}};
 // Read as a unit vector.
 constexpr NumberOf<ToolLook> kAxis[] = {
     {{"axis", {-1, 1}, Given::may_be, "from the tip to the handle, in the mesh's frame"},
      &ToolLook::axis}};
-constexpr Names<BurrShape, 2> kShapes{
-    {{"sphere", BurrShape::sphere}, {"cylinder", BurrShape::cylinder}}};
 
 }  // namespace
 
@@ -145,13 +92,13 @@ QWidget* ToolsPanel::buildTools() {
   auto* box = new QWidget(body_);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
-  auto* title = new QLabel(tr("Tools"), box);
-  title->setProperty("title", true);
+  auto* title = settingTitle(tr("Tools"), box);
   tools_ = new QListWidget(box);
   tools_->setObjectName("toolList");
   tools_->setAccessibleName(tr("Tools of the exercise"));
   tools_->setMaximumHeight(5 * fontMetrics().height() + 12);
-  add_ = button("addTool", tr("Add a tool"), tr("One of the shipped ones, or of a tool file"), box);
+  add_ = settingButton("addTool", tr("Add a tool"),
+                       tr("One of the shipped ones, or of a tool file"), box);
   add_->setPopupMode(QToolButton::InstantPopup);
   add_menu_ = new QMenu(add_);
   add_->setMenu(add_menu_);
@@ -171,7 +118,7 @@ QWidget* ToolsPanel::buildTools() {
     QAction* own = add_menu_->addAction(tr("From a &file\u2026"), this, &ToolsPanel::toolFileWanted);
     own->setObjectName("toolFromFile");
   });
-  remove_ = button("removeTool", tr("Remove it"), tr("Where no arm has it"), box);
+  remove_ = settingButton("removeTool", tr("Remove it"), tr("Where no arm has it"), box);
   connect(remove_, &QToolButton::clicked, this, &ToolsPanel::removeTool);
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(add_);
@@ -179,14 +126,14 @@ QWidget* ToolsPanel::buildTools() {
   buttons->addStretch(1);
 
   tool_editor_ = new QWidget(box);
-  tool_form_ = form(tool_editor_);
+  tool_form_ = settingForm(tool_editor_);
   id_ = new QLineEdit(tool_editor_);
   id_->setObjectName("toolName");
   id_->setMaxLength(kMostLetters);
   connect(id_, &QLineEdit::editingFinished, this, &ToolsPanel::nameTool);
-  tool_form_->addRow(tr("Name"), hinted(id_, tr("By it the arms name the tool."), tool_editor_));
-  kind_ = combo("toolKind", tr("Kind of tool"), tool_editor_);
-  fill(*kind_, kKinds);
+  tool_form_->addRow(tr("Name"), withHint(id_, tr("By it the arms name the tool."), tool_editor_));
+  kind_ = settingChoice("toolKind", tr("Kind of tool"), tool_editor_);
+  fill(*kind_, kToolNames);
   connect(kind_, &QComboBox::activated, this, [this](int) {
     editTool("kind", [this](SceneTool& of) {
       ToolDescription& d = of.tool.made_from;
@@ -196,10 +143,12 @@ QWidget* ToolsPanel::buildTools() {
       if (d.kind != ToolKind::burr) d.shape = BurrShape::sphere;
     });
   });
-  tool_form_->addRow(tr("Kind"), hinted(kind_, tr("A needle punctures, a blade slices, a burr "
-                                                  "grinds."), tool_editor_));
-  shape_ = combo("toolShape", tr("Shape of the burr"), tool_editor_);
-  fill(*shape_, kShapes);
+  tool_form_->addRow(tr("Kind"), withHint(kind_,
+                                          tr("A needle punctures, a blade slices, a burr "
+                                             "grinds."),
+                                          tool_editor_));
+  shape_ = settingChoice("toolShape", tr("Shape of the burr"), tool_editor_);
+  fill(*shape_, kShapeNames);
   connect(shape_, &QComboBox::activated, this, [this](int) {
     editTool("shape", [this](SceneTool& of) {
       ToolDescription& d = of.tool.made_from;
@@ -208,8 +157,8 @@ QWidget* ToolsPanel::buildTools() {
       d.length_mm = std::max(d.length_mm, d.head_mm + 1.0);
     });
   });
-  tool_form_->addRow(tr("Shape"), hinted(shape_, tr("A ball, or a rod with round ends."),
-                                         tool_editor_));
+  tool_form_->addRow(tr("Shape"),
+                     withHint(shape_, tr("A ball, or a rod with round ends."), tool_editor_));
   const auto numbers = [this](auto rows) {
     auto made = std::make_unique<NumberRows<ToolDescription>>(rows, *tool_form_, tool_editor_,
                                                               "tool:");
@@ -229,16 +178,18 @@ QWidget* ToolsPanel::buildTools() {
   mesh_layout->setSpacing(4);
   mesh_ = new QLabel(mesh_row);
   mesh_->setObjectName("toolMesh");
-  choose_mesh_ = button("chooseMesh", tr("Choose\u2026"), tr("An STL file, in mm"), mesh_row);
-  no_mesh_ = button("noMesh", tr("None"), tr("A plain shape is drawn"), mesh_row);
-  connect(choose_mesh_, &QToolButton::clicked, this, &ToolsPanel::meshWanted);
+  auto* choose =
+      settingButton("chooseMesh", tr("Choose\u2026"), tr("An STL file, in mm"), mesh_row);
+  no_mesh_ = settingButton("noMesh", tr("None"), tr("A plain shape is drawn"), mesh_row);
+  connect(choose, &QToolButton::clicked, this, &ToolsPanel::meshWanted);
   connect(no_mesh_, &QToolButton::clicked, this, [this] { setMesh({}); });
   mesh_layout->addWidget(mesh_, 0, 0, 1, 3);
-  mesh_layout->addWidget(choose_mesh_, 1, 0);
+  mesh_layout->addWidget(choose, 1, 0);
   mesh_layout->addWidget(no_mesh_, 1, 1);
   mesh_layout->setColumnStretch(2, 1);
-  tool_form_->addRow(tr("Mesh"), hinted(mesh_row, tr("How it is drawn; what it cuts is as above."),
-                                        tool_editor_));
+  tool_form_->addRow(
+      tr("Mesh"),
+      withHint(mesh_row, tr("How it is drawn; what it cuts is as above."), tool_editor_));
   look_numbers_ = std::make_unique<NumberRows<ToolLook>>(
       std::span<const NumberOf<ToolLook>>(kLookNumbers), *tool_form_, tool_editor_, "tool:");
   look_numbers_->entered = [this](const ToolLook& look, const char* key) {
@@ -270,32 +221,27 @@ SceneTool* ToolsPanel::tool(Scene& scene) const {
 
 void ToolsPanel::editScene(QLabel* problem, const std::string& what,
                            const std::function<void(Scene&)>& edit) {
-  Scene scene = scene_;
-  edit(scene);
-  const Status done = wanted ? wanted(scene, what) : Status();
-  problem->setVisible(!done.ok());
-  if (done) return;
-  problem->setText(
-      tr("Not applied. %1. %2.").arg(toQt(done.error().what), toQt(done.error().next)));
+  const Status done = wanted ? wanted(what, edit) : Status();
+  if (done) return problem->hide();
+  sayNotApplied(*problem, done.error());
   const Scene as_it_is = scene_;
   setScene(as_it_is);
 }
 
 // The tool is made anew of what it is described by.
 void ToolsPanel::editTool(const std::string& what, const std::function<void(SceneTool&)>& edit) {
-  Scene scene = scene_;
-  SceneTool* of = tool(scene);
+  const SceneTool* of = tool(scene_);
   if (!of) return;
-  edit(*of);
-  const Result<Tool> made = makeTool(of->tool.made_from);
+  SceneTool edited = *of;
+  edit(edited);
+  const Result<Tool> made = makeTool(edited.tool.made_from);
   if (!made) {
-    tool_problem_->setText(
-        tr("Not applied. %1. %2.").arg(toQt(made.error().what), toQt(made.error().next)));
-    tool_problem_->show();
+    sayNotApplied(*tool_problem_, made.error());
     return showTool();
   }
-  of->tool = *made;
-  editScene(tool_problem_, "tool:" + of->id + ":" + what, [&](Scene& all) { all = scene; });
+  edited.tool = *made;
+  editScene(tool_problem_, "tool:" + edited.id + ":" + what,
+            [&](Scene& scene) { *tool(scene) = edited; });
 }
 
 void ToolsPanel::nameTool() {
@@ -385,17 +331,18 @@ QWidget* ToolsPanel::buildArms() {
   auto* box = new QWidget(body_);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
-  auto* title = new QLabel(tr("Arms"), box);
-  title->setProperty("title", true);
+  auto* title = settingTitle(tr("Arms"), box);
   auto* fields = new QWidget(box);
-  arm_form_ = form(fields);
-  arm_ = combo("armChoice", tr("Arm"), fields);
+  arm_form_ = settingForm(fields);
+  arm_ = settingChoice("armChoice", tr("Arm"), fields);
   connect(arm_, &QComboBox::activated, this, [this] {
     showArm();
     emit armChosen();
   });
-  arm_form_->addRow(tr("Arm"), hinted(arm_, tr("Drag its box in the slices: there it reaches in "
-                                               "the patient."), fields));
+  arm_form_->addRow(tr("Arm"), withHint(arm_,
+                                        tr("Drag its box in the slices: there it reaches in "
+                                           "the patient."),
+                                        fields));
   auto* of_arm = new QWidget(fields);
   auto* of_layout = new QGridLayout(of_arm);
   of_layout->setContentsMargins(0, 0, 0, 0);
@@ -411,19 +358,19 @@ QWidget* ToolsPanel::buildArms() {
     if (typed.empty()) return showArm();
     editArm("name", [&](SceneArm& arm) { arm.name = typed; });
   });
-  add_arm_ =
-      button("addArm", tr("Add one"), tr("Another arm, as this one, of the next device"), of_arm);
-  remove_arm_ = button("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
+  add_arm_ = settingButton("addArm", tr("Add one"),
+                           tr("Another arm, as this one, of the next device"), of_arm);
+  remove_arm_ = settingButton("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
   connect(add_arm_, &QToolButton::clicked, this, &ToolsPanel::addArm);
   connect(remove_arm_, &QToolButton::clicked, this, &ToolsPanel::removeArm);
   of_layout->addWidget(arm_name_, 0, 0, 1, 3);
   of_layout->addWidget(add_arm_, 1, 0);
   of_layout->addWidget(remove_arm_, 1, 1);
   of_layout->setColumnStretch(2, 1);
-  arm_form_->addRow(tr("Called"), hinted(of_arm,
-                                         tr("Left and right are the hands that people "
-                                            "have."),
-                                         fields));
+  arm_form_->addRow(tr("Called"), withHint(of_arm,
+                                           tr("Left and right are the hands that people "
+                                              "have."),
+                                           fields));
   device_numbers_ = std::make_unique<NumberRows<SceneArm>>(
       std::span<const NumberOf<SceneArm>>(kDeviceNumbers), *arm_form_, fields, "device:");
   device_numbers_->entered = [this](const SceneArm& wanted, const char* key) {
@@ -437,14 +384,14 @@ QWidget* ToolsPanel::buildArms() {
   device_->setObjectName("armDevice");
   device_->setWordWrap(true);
   auto* choose_device =
-      button("chooseDevice", tr("Choose\u2026"), tr("A file of the device"), device);
+      settingButton("chooseDevice", tr("Choose\u2026"), tr("A file of the device"), device);
   connect(choose_device, &QToolButton::clicked, this, &ToolsPanel::deviceWanted);
   device_layout->addWidget(device_, 0, 0, 1, 2);
   device_layout->addWidget(choose_device, 1, 0);
   device_layout->setColumnStretch(1, 1);
   arm_form_->addRow(tr("Device"),
-                    hinted(device, tr("What moves it, and the file that says how."), fields));
-  arm_tool_ = combo("armTool", tr("Tool of the arm"), fields);
+                    withHint(device, tr("What moves it, and the file that says how."), fields));
+  arm_tool_ = settingChoice("armTool", tr("Tool of the arm"), fields);
   connect(arm_tool_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_tool_->currentData().toString().toStdString();
     editArm("tool", [&](SceneArm& arm) {
@@ -452,7 +399,7 @@ QWidget* ToolsPanel::buildArms() {
       std::erase(arm.other_tools, id);
     });
   });
-  arm_form_->addRow(tr("In hand"), hinted(arm_tool_, tr("What it holds at first."), fields));
+  arm_form_->addRow(tr("In hand"), withHint(arm_tool_, tr("What it holds at first."), fields));
   other_tools_ = new QListWidget(fields);
   other_tools_->setObjectName("otherTools");
   other_tools_->setAccessibleName(tr("Other tools of the arm"));
@@ -468,15 +415,16 @@ QWidget* ToolsPanel::buildArms() {
     }
     editArm("other tools", [&](SceneArm& arm) { arm.other_tools = ids; });
   });
-  arm_form_->addRow(tr("Others"), hinted(other_tools_, tr("What may be taken meanwhile (Ctrl+T)."),
-                                         fields));
-  arm_landmark_ = combo("armLandmark", tr("Landmark of the arm"), fields);
+  arm_form_->addRow(tr("Others"),
+                    withHint(other_tools_, tr("What may be taken meanwhile (Ctrl+T)."), fields));
+  arm_landmark_ = settingChoice("armLandmark", tr("Landmark of the arm"), fields);
   connect(arm_landmark_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_landmark_->currentText().toStdString();
     editArm("landmark", [&](SceneArm& arm) { arm.map.landmark = id; });
   });
-  arm_form_->addRow(tr("Landmark"),
-                    hinted(arm_landmark_, tr("The place in the case that it is put at."), fields));
+  arm_form_->addRow(
+      tr("Landmark"),
+      withHint(arm_landmark_, tr("The place in the case that it is put at."), fields));
   map_numbers_ = std::make_unique<NumberRows<SceneMap>>(
       std::span<const NumberOf<SceneMap>>(kSceneMapNumbers), *arm_form_, fields, "arm:");
   map_numbers_->entered = [this](const SceneMap& map, const char* key) {
@@ -578,8 +526,7 @@ QWidget* ToolsPanel::buildLaws() {
   auto* box = new QWidget(body_);
   auto* layout = new QVBoxLayout(box);
   layout->setContentsMargins(0, 0, 0, 0);
-  auto* title = new QLabel(tr("What is felt"), box);
-  title->setProperty("title", true);
+  auto* title = settingTitle(tr("What is felt"), box);
   layout->addWidget(title);
   law_problem_ = problemLabel("lawProblem", box);
   layout->addWidget(law_problem_);
@@ -606,8 +553,8 @@ QWidget* ToolsPanel::buildLaws() {
     law_costs_.emplace_back(law, cost);
   }
   auto* fields = new QWidget(box);
-  auto* rows = form(fields);
-  controller_ = combo("sceneController", tr("Controller"), fields);
+  auto* rows = settingForm(fields);
+  controller_ = settingChoice("sceneController", tr("Controller"), fields);
   for (const auto& [name, kind] : kControllerNames) {
     controller_->addItem(controllerWord(kind), int(kind));
   }
@@ -628,7 +575,7 @@ QWidget* ToolsPanel::buildLaws() {
   control_layout->addWidget(controller_cost_);
   control_layout->addWidget(controller_hint_);
   rows->addRow(tr("Control"), control);
-  force_at_ = combo("forceAt", tr("Where the force acts"), fields);
+  force_at_ = settingChoice("forceAt", tr("Where the force acts"), fields);
   fill(*force_at_, kForceAtNames);
   connect(force_at_, &QComboBox::activated, this, [this](int) {
     editScene(law_problem_, "force at", [this](Scene& scene) {
@@ -636,19 +583,23 @@ QWidget* ToolsPanel::buildLaws() {
     });
   });
   rows->addRow(tr("Force at"),
-               hinted(force_at_, tr("The tip in the firmest tissue, or along the tool, each point "
-                                    "in its own."), fields));
+               withHint(force_at_,
+                        tr("The tip in the firmest tissue, or along the tool, each point "
+                           "in its own."),
+                        fields));
   force_trade_ = new TradeView("forceTrade", fields);
   rows->addRow(force_trade_);
-  removal_ = combo("removal", tr("How tissue is removed"), fields);
+  removal_ = settingChoice("removal", tr("How tissue is removed"), fields);
   fill(*removal_, kRemovalNames);
   connect(removal_, &QComboBox::activated, this, [this](int) {
     editScene(law_problem_, "removal", [this](Scene& scene) {
       scene.removal = RemovalKind(removal_->currentData().toInt());
     });
   });
-  rows->addRow(tr("Removal"), hinted(removal_, tr("As much as the work of hand and motor pays for, "
-                                                  "or all that is met."), fields));
+  rows->addRow(tr("Removal"), withHint(removal_,
+                                       tr("As much as the work of hand and motor pays for, "
+                                          "or all that is met."),
+                                       fields));
   rate_ = std::make_unique<NumberRows<Scene>>(std::span<const NumberOf<Scene>>(kSceneNumbers), *rows,
                                               fields, "scene:");
   rate_->entered = [this](const Scene& other, const char* key) {
@@ -665,14 +616,16 @@ QWidget* ToolsPanel::buildLaws() {
   trades_where_ = settingHint({}, fields);
   trades_where_->setObjectName("tradesWhere");
   rows->addRow(trades_where_);
-  measure_trades_ = button("measureTrades", tr("Measure the trades here"),
-                           tr("Some minutes, beside the window; error and cost of every setting on "
-                              "this machine"),
-                           fields);
-  connect(measure_trades_, &QToolButton::clicked, this, &ToolsPanel::tradesWanted);
-  rows->addRow(measure_trades_);
+  auto* measure =
+      settingButton("measureTrades", tr("Measure the trades here"),
+                    tr("Some minutes, beside the window; error and cost of every setting on "
+                       "this machine"),
+                    fields);
+  connect(measure, &QToolButton::clicked, this, &ToolsPanel::tradesWanted);
+  rows->addRow(measure);
   layout->addWidget(fields);
-  measure_ = button("measureCosts", tr("Measure what each costs"),
+  measure_ =
+      settingButton("measureCosts", tr("Measure what each costs"),
                     tr("A second of ticks on this machine, in the exercise's firmest tissue"), box);
   connect(measure_, &QToolButton::clicked, this, &ToolsPanel::costsWanted);
   layout->addWidget(measure_, 0, Qt::AlignLeft);

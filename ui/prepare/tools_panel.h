@@ -42,8 +42,8 @@ class ToolsPanel : public QWidget {
   // How far that is; nothing: it is not being measured.
   void showMeasuring(std::optional<double> share);
 
-  // A person wants this scene; `what` of it.
-  std::function<Status(const Scene& wanted, const std::string& what)> wanted;
+  // A person wants this change of the scene as it is then; `what` of it.
+  std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
 
  signals:
   void armChosen();
@@ -88,7 +88,7 @@ class ToolsPanel : public QWidget {
   QComboBox *kind_, *shape_;
   QFormLayout* tool_form_;
   QLabel* mesh_;
-  QToolButton *choose_mesh_, *no_mesh_;
+  QToolButton* no_mesh_;
   std::unique_ptr<NumberRows<ToolDescription>> tool_numbers_, shaft_, head_;
   std::unique_ptr<NumberRows<ToolLook>> look_numbers_, axis_;
   QLabel *tool_problem_, *arm_problem_, *law_problem_;
@@ -111,7 +111,6 @@ class ToolsPanel : public QWidget {
   std::vector<TradeRow> trades_;
   TradeView *points_trade_, *force_trade_, *rate_trade_, *rays_trade_;
   QLabel* trades_where_;
-  QToolButton* measure_trades_;
 };
 
 }  // namespace trephine

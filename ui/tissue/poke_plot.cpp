@@ -54,11 +54,6 @@ void PokePlot::showPokes(const std::vector<PokeCurve>& pokes, const TissueSet& t
   update();
 }
 
-void PokePlot::setHint(const QString& words) {
-  hint_ = words;
-  update();
-}
-
 QString PokePlot::nameOf(const PokeCurve& poke) const {
   const auto tissue = std::size_t(poke.tissue);
   return poke.tissue >= 0 && tissue < tissues_.tissues.size()
@@ -77,7 +72,9 @@ void PokePlot::paintEvent(QPaintEvent*) {
   painter.drawRect(in);
   if (pokes_.empty()) {
     painter.setPen(colours::kQuiet);
-    painter.drawText(in.adjusted(6, 0, -6, 0), Qt::AlignCenter | Qt::TextWordWrap, hint_);
+    painter.drawText(
+        in.adjusted(6, 0, -6, 0), Qt::AlignCenter | Qt::TextWordWrap,
+        tr("Push the tool into the tissue: the force against the depth is drawn here."));
     return;
   }
   double deepest = 1.0, most = 0.2, least = 0.0;

@@ -18,8 +18,6 @@ class PokePlot : public QWidget {
   // `limit_N`: of the arm that pokes.
   void showPokes(const std::vector<PokeCurve>& pokes, const TissueSet& tissues, double limit_N);
   const std::vector<PokeCurve>& pokes() const { return pokes_; }
-  // What is said where there is none yet.
-  void setHint(const QString& words);
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
@@ -33,7 +31,6 @@ class PokePlot : public QWidget {
   std::vector<PokeCurve> pokes_;
   TissueSet tissues_;
   double limit_N_ = 0.0;
-  QString hint_;
 };
 
 }  // namespace trephine

@@ -14,6 +14,7 @@
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"
+#include "ui/common/setting_words.h"
 #include "ui/common/words.h"
 
 namespace trephine {
@@ -22,16 +23,6 @@ namespace {
 
 constexpr int kOpacitySteps = 1000;
 constexpr int kMostLetters = 60;
-
-// Stands beside what it speaks of, where there is something to say.
-QLabel* notice(const char* name, QWidget* parent) {
-  auto* label = new QLabel(parent);
-  label->setObjectName(name);
-  label->setWordWrap(true);
-  colours::setText(*label, colours::kCaution);
-  label->hide();
-  return label;
-}
 
 QToolButton* smallButton(const char* name, Symbol symbol, const QString& tip, QWidget* parent) {
   auto* button = new QToolButton(parent);
@@ -64,8 +55,8 @@ TissuePanel::TissuePanel(QWidget* parent) : QWidget(parent) {
 
 void TissuePanel::build() {
   list_ = new TissueList(this);
-  locked_words_ = notice("tissuesLocked", this);
-  felt_ = notice("tissueFelt", this);
+  locked_words_ = problemLabel("tissuesLocked", this);
+  felt_ = problemLabel("tissueFelt", this);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(10, 10, 10, 10);
   layout->setSpacing(10);
@@ -189,8 +180,8 @@ QWidget* TissuePanel::buildEditor() {
   label_->setWord(0, tr("any"));
   label_->setPrefix(tr("label "));
   for (WholeNumberField* box : {low_, high_, label_}) box->entered = [this] { rangeEntered(); };
-  problem_ = notice("tissueProblem", editor_);
-  gaps_ = notice("tissueGaps", editor_);
+  problem_ = problemLabel("tissueProblem", editor_);
+  gaps_ = problemLabel("tissueGaps", editor_);
   auto* high_row = high_->withReason();
   high_row->addWidget(problem_);
   high_row->addWidget(gaps_);
@@ -431,7 +422,7 @@ void TissuePanel::chooseColour() {
 
 void TissuePanel::showProblem(const Error* why, const std::vector<HuOverlap>& overlaps) {
   if (why) {
-    problem_->setText(tr("Not applied. %1. %2.").arg(toQt(why->what), toQt(why->next)));
+    sayNotApplied(*problem_, *why);
     giveRoom(*problem_, high_->width());
   }
   problem_->setVisible(why);

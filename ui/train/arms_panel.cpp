@@ -35,11 +35,6 @@ QString newtons(double force_N) {
 
 }  // namespace
 
-QColor armColour(const SceneArm& arm, std::size_t index) {
-  const bool left = arm.name == "left" || (arm.name != "right" && index == 0);
-  return left ? colours::kLeftArm : colours::kRightArm;
-}
-
 QString armName(const SceneArm& arm) {
   if (arm.name == "left") return ArmsPanel::tr("Left arm");
   if (arm.name == "right") return ArmsPanel::tr("Right arm");
@@ -130,7 +125,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
   const QString prefix = toQt(arm.name);
   auto* title = new QLabel(armName(arm), frame);
   title->setProperty("title", true);
-  colours::setText(*title, armColour(arm, index));
+  colours::setText(*title, colours::ofArm(arm, index));
 
   Card card{value(frame, prefix + "Contact"),
             value(frame, prefix + "Position"),
@@ -180,7 +175,7 @@ ArmsPanel::Card ArmsPanel::addCard(const Scene& scene, std::size_t index) {
           [this, index](int number) { emit toolWanted(index, std::size_t(number)); });
 
   for (TraceView* trace : {card.force_trace, card.energy_trace}) {
-    trace->setColour(armColour(arm, index));
+    trace->setColour(colours::ofArm(arm, index));
   }
   card.force_trace->setObjectName(prefix + "ForceTrace");
   card.energy_trace->setObjectName(prefix + "EnergyTrace");

@@ -62,8 +62,6 @@ class ArmsPanel : public QWidget {
   std::uint64_t traced_tick_ = 0;
 };
 
-// The colour in which an arm's tool and card are drawn.
-QColor armColour(const SceneArm& arm, std::size_t index);
 // "Left arm".
 QString armName(const SceneArm& arm);
 // While another tool waits for the one in hand to be out of tissue.

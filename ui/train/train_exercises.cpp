@@ -4,7 +4,6 @@
 #include <QStandardItemModel>
 #include <algorithm>
 
-#include "exercise/exercise_folder.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
@@ -12,14 +11,11 @@
 
 namespace trephine {
 
-// Those of the workstation, then those that were made or imported here.
 void TrainWorkspace::fillScenes() {
   const QSignalBlocker quiet(scenes_);
   scenes_->clear();
   listed_.clear();
-  std::vector<std::filesystem::path> files = scenesOfWorkstation(workstation_.policy());
-  for (const auto& file : exercisesIn(bench_.storage())) files.push_back(file);
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& file : bench_.exercises()) {
     Result<Scene> scene = readScene(file);
     if (!scene) continue;
     scenes_->addItem(toQt(scene->name), toQt(file));

@@ -30,7 +30,7 @@ std::vector<ToolView> toolViews(const Scene& scene, const LoopState& state) {
     const SceneTool* tool = scene.toolOf(i, std::size_t(state.tools[i]));
     const ArmRecord& arm = state.record.arms[i];
     if (!tool || !isFinite(arm.proxy_position_mm)) continue;
-    const QColor colour = armColour(scene.arms[i], i);
+    const QColor colour = colours::ofArm(scene.arms[i], i);
     tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
                              arm.tissue_class >= 0, colours::rgbOf(colour)));
   }
@@ -135,7 +135,7 @@ void TrainWorkspace::showHand() {
   const SceneArm& arm = session->scene().arms[active];
   const LoopState& state = session->state();
   const SceneTool& tool = *session->scene().toolOf(active, std::size_t(state.tools[active]));
-  hand_bar_->showHand(handName(arm), armColour(arm, active), toolWord(tool),
+  hand_bar_->showHand(handName(arm), colours::ofArm(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),
                       hands_->mostPush_N(),
                       touchedName(state.record.arms[active], session->scene().tissues));
@@ -276,7 +276,7 @@ void TrainWorkspace::showRewind(const LoopState& state) {
     std::vector<RewindBar::Stroke> strokes;
     for (const Session::Stroke& stroke : session->strokes()) {
       const auto arm = std::size_t(stroke.arm);
-      strokes.push_back({stroke.second, armColour(session->scene().arms[arm], arm)});
+      strokes.push_back({stroke.second, colours::ofArm(session->scene().arms[arm], arm)});
     }
     rewind_->showStrokes(strokes);
   }

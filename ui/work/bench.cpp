@@ -6,6 +6,7 @@
 #include <QSettings>
 
 #include "base/log.h"
+#include "exercise/exercise_folder.h"
 #include "ui/common/actions.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/event_loop.h"
@@ -56,6 +57,12 @@ Bench::Bench(QMainWindow& window, std::filesystem::path recordings, const Policy
   connect(&views_->threeD(), &ViewWidget::failed, this, &Bench::report);
 }
 
+std::vector<std::filesystem::path> Bench::exercises() const {
+  std::vector<std::filesystem::path> files = scenesOfWorkstation(workstation_.policy());
+  for (const auto& file : exercisesIn(storage_)) files.push_back(file);
+  return files;
+}
+
 void Bench::openExercise(const std::filesystem::path& file, Place then) {
   goOnceOpen(then);
   const Result<Scene> scene = readScene(file);
@@ -103,6 +110,28 @@ QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QSt
     settings.remove("FileDialog/lastVisited");
   });
   return dialog;
+}
+
+void Bench::askForFile(const char* name, const QString& title, const QString& filter,
+                       GotPath then) {
+  QFileDialog* dialog = fileDialog(name, title, filter);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [then = std::move(then)](const QString& file) { then(toPath(file)); });
+  dialog->open();
+}
+
+// A name that is not there yet is a folder that will be made.
+void Bench::askForNewFolder(const char* name, const QString& title, const QString& suggestion,
+                            GotPath then) {
+  QFileDialog* dialog = fileDialog(name, title);
+  dialog->setAcceptMode(QFileDialog::AcceptSave);
+  dialog->setFileMode(QFileDialog::AnyFile);
+  dialog->setOption(QFileDialog::ShowDirsOnly);
+  dialog->selectFile(suggestion);
+  dialog->setLabelText(QFileDialog::FileName, tr("New folder:"));
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [then = std::move(then)](const QString& folder) { then(toPath(folder)); });
+  dialog->open();
 }
 
 QFileDialog* Bench::saveDialog(const QString& title, const QString& suggestion,

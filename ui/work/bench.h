@@ -38,6 +38,8 @@ class Bench : public QObject {
   const std::shared_ptr<CaseLibrary>& library() const { return library_; }
   // An exercise of a file; one that was made on a case of the library opens that as well.
   void openExercise(const std::filesystem::path& scene, Place then);
+  // Those of the workstation, then those that were made or imported here.
+  std::vector<std::filesystem::path> exercises() const;
   // Of the storage folder: there is another one, or one is called otherwise.
   void tellExercises() { emit exercisesChanged(); }
   // An exercise is tried from Prepare, and one comes back there.
@@ -64,6 +66,12 @@ class Bench : public QObject {
 
   // A dialog over the window that goes away by itself and leaves no names on disk.
   QFileDialog* fileDialog(const char* name, const QString& title, const QString& filter = {});
+  // Asks for a file of that kind; nothing comes where a person gives none.
+  using GotPath = std::function<void(const std::filesystem::path&)>;
+  void askForFile(const char* name, const QString& title, const QString& filter, GotPath then);
+  // The same for a folder that will be made.
+  void askForNewFolder(const char* name, const QString& title, const QString& suggestion,
+                       GotPath then);
   QFileDialog* saveDialog(const QString& title, const QString& suggestion, const QString& filter);
 
   // --- What would be lost ---

@@ -236,7 +236,7 @@ class Workstation : public QObject {
   void fail(const Error& error);
 
   Status mayEdit(const Scene& wanted) const;
-  void take(Scene wanted);
+  bool take(Scene wanted);
   bool mayGoTo(const Scene* step);
   void goTo(Scene scene);
   void placeEdited();

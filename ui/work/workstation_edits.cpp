@@ -94,7 +94,7 @@ Status Workstation::edit(const Scene& wanted, const std::string& what) {
   if (!scene_) return Error{"NO_CASE", "There is no exercise yet", "", "Open a case first"};
   if (Status may = mayEdit(wanted); !may) return may;
   history_.note(wanted, what);
-  take(wanted);
+  if (take(wanted)) emit sceneChanged();
   emit editsChanged();
   return {};
 }
@@ -109,7 +109,8 @@ void Workstation::setTissues(const TissueSet& tissues, const std::string& what) 
   }
 }
 
-void Workstation::take(Scene wanted) {
+// True where more than tissues and controller changed.
+bool Workstation::take(Scene wanted) {
   const LabelMap* labels = case_ ? case_->labels.get() : nullptr;
   placeTissues(wanted.tissues, labels);
   const bool places_stay = samePlaces(wanted, *scene_);
@@ -126,13 +127,11 @@ void Workstation::take(Scene wanted) {
   if (!devices_stay) (void)readArmDynamics(*scene_);
   if (new_set) applyTissues(scene_->tissues);
   if (new_controller) {
-    const ControllerKind opened = opened_scene_.controller;
     applyController(controller);
-    opened_scene_.controller = opened;
     emit controllerChanged();
   }
-  if (!live_alone) emit sceneChanged();
   if (!places_stay && case_ && phase_ == Phase::ready) placeEdited();
+  return !live_alone;
 }
 
 // What is edited while that goes on is placed after it.
@@ -192,7 +191,7 @@ bool Workstation::mayGoTo(const Scene* step) {
 
 void Workstation::goTo(Scene scene) {
   keepCase(scene, *scene_);
-  take(std::move(scene));
+  (void)take(std::move(scene));
   emit sceneChanged();
   emit editsChanged();
 }

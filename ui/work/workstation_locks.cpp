@@ -71,7 +71,7 @@ void Workstation::setController(ControllerKind kind) {
 }
 
 void Workstation::applyController(ControllerKind kind) {
-  scene_->controller = opened_scene_.controller = kind;
+  scene_->controller = kind;
   history_.settle(*scene_);
   if (!session()) noteController(kind);
   if (session() && !session_->setController(kind)) {

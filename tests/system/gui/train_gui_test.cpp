@@ -218,6 +218,7 @@ class TrainGuiTest : public test::TrainTest {
     QTRY_VERIFY(!waits->isVisible());
     QTRY_COMPARE(named->text(), "blade, 16 mm");
     // On the arm's card by name.
+    QTRY_COMPARE(chosen->currentText(), "blade, 16 mm");
     chosen->setFocus();
     chosen->showPopup();
     QTest::keyClick(chosen->view(), Qt::Key_Down);
