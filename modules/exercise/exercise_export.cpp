@@ -154,6 +154,31 @@ std::string pathFrom(const fs::path& folder, const fs::path& file, const fs::pat
   return of.lexically_relative(fs::absolute(folder, ec).lexically_normal()).string();
 }
 
+// The files of the exercise that lies there: paths in the folder.
+std::set<fs::path> filesOf(const fs::path& folder) {
+  std::set<fs::path> files{kSceneFile, kListFile};
+  const auto add = [&](const fs::path& by, const std::string& name) {
+    files.insert((by.parent_path() / name).lexically_normal());
+  };
+  if (const Result<ExerciseCheck> list = readList(folder); list) {
+    for (const ExercisePart& part : list->parts) files.insert(part.file);
+  }
+  Result<Json> scene = readJsonFile(folder / kSceneFile);
+  if (!scene) return files;
+  (void)eachNamedFile(*scene, [&](NamedFile kind, const std::string&, Json& name) {
+    const std::string file = name.get<std::string>();
+    add(kSceneFile, file);
+    if (kind != NamedFile::tissues && kind != NamedFile::tool) return Status();
+    Result<Json> json = readJsonFile(folder / file);
+    const Json* inner = !json                     ? nullptr
+                        : kind == NamedFile::tool ? meshOf(*json)
+                                                  : elsewhereOf(*json);
+    if (inner) add(file, inner->get<std::string>());
+    return Status();
+  });
+  return files;
+}
+
 }  // namespace
 
 Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const fs::path& storage,
@@ -175,7 +200,7 @@ Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const 
     return written.error();
   }
   if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
-  if (Status done = part->becomeInstead(); !done) return done.error();
+  if (Status done = part->becomeInstead(filesOf(folder)); !done) return done.error();
   return folder / kSceneFile;
 }
 

@@ -26,10 +26,10 @@ Json toJson(const ExercisePart& part);
 struct Scene;
 
 // An exercise that is made on this workstation: the scene and the files that it names, in a folder
-// of its own, in the place of what is there. Its case and label map stay where they are and are
-// named from there, within `storage` relatively. The same scene, read and saved again, gives the
-// same bytes. The scene's file. Errors: those of readScene (what it names is not there, a number
-// out of range), CANNOT_WRITE, CANCELLED.
+// of its own, in the place of what is there: files that are not of the exercise stay. Its case and
+// label map stay where they are and are named from there, within `storage` relatively. The same
+// scene, read and saved again, gives the same bytes. The scene's file. Errors: those of readScene
+// (what it names is not there, a number out of range), CANNOT_WRITE, CANCELLED.
 Result<std::filesystem::path> saveExercise(const Scene& scene, const std::filesystem::path& folder,
                                            const std::filesystem::path& storage,
                                            const Progress& progress = Progress());

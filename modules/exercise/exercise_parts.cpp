@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -17,6 +18,8 @@
 namespace trephine {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kPart = ".part-";
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
   constexpr std::size_t kMost = 40;
@@ -69,12 +72,34 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
   return part;
 }
 
+namespace {
+
+// Of programs that were killed: none works on one for a day.
+void removeLeftParts(const fs::path& folder) {
+  constexpr auto kOld = std::chrono::hours(24);
+  std::vector<fs::path> left;
+  std::error_code ec;
+  for (auto it = fs::directory_iterator(folder, ec); !ec && it != fs::end(it); it.increment(ec)) {
+    const std::string name = it->path().filename().string();
+    std::error_code none;
+    if (!name.starts_with('.') || name.find(kPart) == std::string::npos) continue;
+    if (!fs::is_directory(it->symlink_status(none))) continue;
+    const auto last = fs::last_write_time(it->path(), none);
+    if (!none && fs::file_time_type::clock::now() - last > kOld) left.push_back(it->path());
+  }
+  for (const fs::path& part : left) fs::remove_all(part, ec);
+}
+
+}  // namespace
+
 Result<PartFolder> PartFolder::make(const fs::path& target) {
   std::error_code ec;
   fs::path to = fs::absolute(target, ec).lexically_normal();
   if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
   if (Status made = makeFolder(to.parent_path()); !made) return made.error();
-  std::string path = (to.parent_path() / ("." + to.filename().string() + ".part-XXXXXX")).string();
+  removeLeftParts(to.parent_path());
+  std::string path =
+      (to.parent_path() / ("." + to.filename().string() + kPart + "XXXXXX")).string();
   if (!::mkdtemp(path.data())) return writeError(target, errno);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);
@@ -137,9 +162,29 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
   return parts;
 }
 
-Status PartFolder::becomeInstead() {
+// As they are, links too; what this part has itself is newer.
+Status PartFolder::keepOthers(const std::set<fs::path>& own) {
+  std::error_code ec;
+  for (auto it = fs::recursive_directory_iterator(target_, ec); !ec && it != fs::end(it);
+       it.increment(ec)) {
+    const fs::path file = it->path().lexically_relative(target_);
+    const fs::path to = path_ / file;
+    std::error_code none;
+    if (it->is_directory(none) && !it->is_symlink(none)) continue;
+    if (own.contains(file) || fs::symlink_status(to, none).type() != fs::file_type::not_found) {
+      continue;
+    }
+    if (Status made = makeFolder(to.parent_path()); !made) return made;
+    fs::copy(it->path(), to, fs::copy_options::copy_symlinks, none);
+    if (none) return writeError(target_, none.value());
+  }
+  return ec ? Status(writeError(target_, ec.value())) : Status();
+}
+
+Status PartFolder::becomeInstead(const std::set<fs::path>& own) {
   std::error_code ec;
   if (fs::symlink_status(target_, ec).type() == fs::file_type::not_found) return become();
+  if (Status kept = keepOthers(own); !kept) return kept;
   if (Status synced = syncFolder(path_); !synced) return synced;
   if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
     // A file system without exchange: the one that was there stays beside it until it is done.

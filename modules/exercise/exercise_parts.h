@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +23,9 @@ std::string plainName(const std::string& text, const std::string& otherwise);
 
 // CANNOT_WRITE where something is there that is not an empty folder.
 Status checkFreeFolder(const std::filesystem::path& folder);
+
+// What the list of the folder says; nothing is looked at yet. Errors: those of checkExercise.
+Result<ExerciseCheck> readList(const std::filesystem::path& folder);
 
 // Of a regular file; a link is none. Errors: MISSING_FILE, UNREADABLE, CANCELLED.
 Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::string& file,
@@ -45,10 +49,12 @@ class PartFolder {
   Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
   // The folder that it was made for, by one rename. CANNOT_WRITE.
   Status become();
-  // The same in the place of one that is there, which goes: either is whole at any time.
-  Status becomeInstead();
+  // The same in the place of one that is there, which goes: either is whole at any time. What a
+  // person has put into it stays: every file but `own`, paths in the folder.
+  Status becomeInstead(const std::set<std::filesystem::path>& own);
 
  private:
+  Status keepOthers(const std::set<std::filesystem::path>& own);
   PartFolder(std::filesystem::path path, std::filesystem::path target)
       : path_(std::move(path)), target_(std::move(target)) {}
 

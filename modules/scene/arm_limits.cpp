@@ -35,6 +35,18 @@ std::optional<ArmsLimit> armsLimit(const Scene& scene) {
   return limit;
 }
 
+bool isFelt(const TissueNumber& number, const std::vector<LawKind>& laws) {
+  const std::string_view meaning = number.meaning;
+  const std::string_view of = meaning.substr(0, meaning.find(':'));  // "elastic and rupture laws"
+  bool any = false;
+  for (const auto& [name, law] : kLawNames) {
+    if (of.find(name) == std::string_view::npos) continue;
+    if (names(laws, law)) return true;
+    any = true;
+  }
+  return !any;
+}
+
 std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue,
                                 const ArmsLimit& arms, const DemandedOf& demanded) {
   const auto at = [&](double value) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "scene/scene.h"
 #include "tissue/tissue_numbers.h"
@@ -16,6 +17,9 @@ struct ArmsLimit {
 };
 // None where the dynamics of no arm are known.
 std::optional<ArmsLimit> armsLimit(const Scene& scene);
+
+// Whether one of these laws uses the number; work that removes counts under any.
+bool isFelt(const TissueNumber& number, const std::vector<LawKind>& laws);
 
 // The most of this number that such arms show while the tissue's others stay as they are: of
 // impedances what `demanded` of the whole tissue leaves, of forces the limit of the arms as well.

@@ -46,6 +46,25 @@ bool sameScene(const Scene& a, const Scene& b) {
   return sceneFile(a) == sceneFile(b);
 }
 
+SceneMap movedTo(const Scene& scene, std::size_t arm, const std::string& landmark,
+                 const std::vector<PlacedLandmark>& landmarks) {
+  SceneMap map = scene.arms[arm].map;
+  if (landmark.empty()) {
+    map.fixed = withFixedMaps(scene, landmarks).arms[arm].map.fixed;
+    if (map.fixed) map.landmark.clear();
+    return map;
+  }
+  map.landmark = landmark;
+  if (!map.fixed) return map;
+  for (const PlacedLandmark& placed : landmarks) {
+    if (placed.id != landmark) continue;
+    map.offset_mm =
+        glm::conjugate(placed.frame.rotation) * (map.fixed->centre_mm - placed.frame.position_mm);
+  }
+  map.fixed.reset();
+  return map;
+}
+
 NewTissues withTissues(Scene scene, const TissueSet& set) {
   NewTissues out{std::move(scene), {}};
   Scene& to = out.scene;

@@ -50,6 +50,11 @@ constexpr std::size_t kMostSteps = 500;
 // labels that a case gives to structures nor what devices say of their arms count.
 bool sameScene(const Scene& a, const Scene& b);
 
+// The map of an arm that goes with `landmark` from now on, or with "" is fixed where it is in this
+// patient. From a landmark to another it keeps its offset; from a fixed place it stays there.
+SceneMap movedTo(const Scene& scene, std::size_t arm, const std::string& landmark,
+                 const std::vector<PlacedLandmark>& landmarks);
+
 // The scene with another set. Landmarks and looks that name a tissue which is no longer there: a
 // landmark takes the solid tissue of the set, or its first; a look goes. What was done is said, a
 // sentence each.

@@ -39,6 +39,10 @@ class NumberRows {
       if (field.part <= 0) form_.setRowVisible(field.line, visible);
     }
   }
+  // They stay where they are, for nothing that could be changed.
+  void setEnabled(bool enabled) {
+    for (const Field& field : fields_) field.box->setEnabled(enabled);
+  }
 
  private:
   struct Field {

@@ -29,4 +29,12 @@ QMessageBox* ask(QWidget* parent, const char* name, const QString& loses, const 
   return question;
 }
 
+void orElse(QMessageBox& question, const char* name, const QString& words,
+            std::function<void()> then) {
+  QPushButton* button = question.addButton(words, QMessageBox::AcceptRole);
+  button->setObjectName(name);
+  QObject::connect(button, &QPushButton::clicked, question.parent(), std::move(then),
+                   Qt::QueuedConnection);
+}
+
 }  // namespace trephine

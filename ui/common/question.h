@@ -10,5 +10,8 @@ namespace trephine {
 // question is a child of `parent` named `name` and goes away when it is answered.
 QMessageBox* ask(QWidget* parent, const char* name, const QString& loses, const QString& stays,
                  const QString& yes, std::function<void()> go_on);
+// One more answer beside it.
+void orElse(QMessageBox& question, const char* name, const QString& words,
+            std::function<void()> then);
 
 }  // namespace trephine

@@ -48,6 +48,13 @@ bool hasNothingToUndo(QObject* watched, const QKeyEvent& key) {
   return line && !(undo ? line->isUndoAvailable() : line->isRedoAvailable());
 }
 
+// To Qt on X these two are the end of the line and deleting up to it; End is on every keyboard, and
+// the window has a use for both.
+bool isOfWindow(const QKeyEvent& key) {
+  return key.modifiers() == Qt::ControlModifier &&
+         (key.key() == Qt::Key_E || key.key() == Qt::Key_K);
+}
+
 }  // namespace
 
 SlipGuard::SlipGuard(QObject* parent) : QObject(parent) {
@@ -57,8 +64,8 @@ SlipGuard::SlipGuard(QObject* parent) : QObject(parent) {
 bool SlipGuard::eventFilter(QObject* watched, QEvent* event) {
   const QEvent::Type type = event->type();
   if (type == QEvent::ShortcutOverride) {
-    const bool nothing = hasNothingToUndo(watched, *static_cast<QKeyEvent*>(event));
-    return nothing && passOn(event);
+    const auto& key = *static_cast<QKeyEvent*>(event);
+    return (hasNothingToUndo(watched, key) || isOfWindow(key)) && passOn(event);
   }
   if (type != QEvent::Wheel && type != QEvent::KeyPress && type != QEvent::Polish) return false;
   auto* widget = qobject_cast<QWidget*>(watched);

@@ -4,7 +4,7 @@
 //
 // - The wheel turns a number, a slider or a row of tabs only where that has the focus, which the
 //   wheel does not give.
-// - Ctrl+Z in a field in which nothing was typed is the window's.
+// - Ctrl+Z in a field in which nothing was typed is the window's, as are Ctrl+E and Ctrl+K in any.
 // - A list of choices changes by opening it and choosing: the wheel does nothing to it, Up and Down
 //   open it, other keys pass it by.
 #pragma once

@@ -114,18 +114,26 @@ QString verdictWord(Verdict verdict) {
   return {};
 }
 
+namespace {
+
+// A needle's and a blade's length, a burr's diameter.
+double sizeOf_mm(const ToolDescription& made) {
+  return made.kind == ToolKind::burr ? 2.0 * made.radius_mm : made.length_mm;
+}
+
+}  // namespace
+
 QString toolWord(const SceneTool& tool) {
+  return tr("%1, %2 mm").arg(toQt(tool.id)).arg(sizeOf_mm(tool.tool.made_from));
+}
+
+QString toolKindWord(const SceneTool& tool) {
   const ToolDescription& made = tool.tool.made_from;
-  switch (made.kind) {
-    case ToolKind::needle:
-      return tr("needle, %1 mm").arg(made.length_mm);
-    case ToolKind::blade:
-      return tr("blade, %1 mm").arg(made.length_mm);
-    case ToolKind::burr:
-      return made.shape == BurrShape::cylinder ? tr("rod burr, %1 mm").arg(2.0 * made.radius_mm)
-                                               : tr("burr, %1 mm").arg(2.0 * made.radius_mm);
-  }
-  return {};
+  const QString kind = made.kind == ToolKind::needle       ? tr("needle")
+                       : made.kind == ToolKind::blade      ? tr("blade")
+                       : made.shape == BurrShape::cylinder ? tr("rod burr")
+                                                           : tr("burr");
+  return tr("%1, %2 mm").arg(kind).arg(sizeOf_mm(made));
 }
 
 QString controllerWord(ControllerKind kind) {

@@ -31,8 +31,10 @@ QString builtInName(const std::string& phantom);
 QString touchedName(const ArmRecord& arm, const TissueSet& tissues);
 QString verdictWord(Verdict verdict);
 QString controllerWord(ControllerKind kind);
-// "burr, 6 mm": of a burr how thick it is, else how long.
+// "craniotome, 2.4 mm": as the exercise calls it; of a burr how thick it is, else how long.
 QString toolWord(const SceneTool& tool);
+// "rod burr, 2.4 mm": what it is, whatever it is called.
+QString toolKindWord(const SceneTool& tool);
 // What a controller does, in a sentence.
 QString controllerMeaning(ControllerKind kind);
 // What makes the sent force another than the demanded one: the parts of the controller that acted

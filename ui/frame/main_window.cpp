@@ -181,6 +181,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     close_when_saved_ = true;
     return bench_.say(tr("A file is being saved; the window closes when it is written."));
   }
+  bench_.takeTyped();
   const bool running = phase != Phase::empty && phase != Phase::ready;
   const bool unsaved = bench_.cutsUnsaved() || workstation().tissuesEdited() ||
                        workstation().tissuesWait() || workstation().sceneEdited() ||

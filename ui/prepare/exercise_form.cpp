@@ -146,28 +146,73 @@ QWidget* ExerciseForm::buildWhat() {
   });
   rows->addRow(tr("Needs"),
                withHint(structures_, tr("A case that lacks one is helped to it first."), fields));
-  auto* script = new QWidget(fields);
-  auto* script_row = new QGridLayout(script);
-  script_row->setContentsMargins(0, 0, 0, 0);
-  script_row->setSpacing(4);
-  operator_ = new QLabel(script);
-  operator_->setObjectName("operatorFile");
+  case_ = new QLabel(fields);
+  case_->setObjectName("exerciseCase");
+  case_->setWordWrap(true);
+  auto* labels = settingButton("chooseLabels", tr("Structures from a file\u2026"),
+                               tr("A label map of this case, also from another program"), fields);
+  connect(labels, &QToolButton::clicked, this, &ExerciseForm::labelsWanted);
+  auto* of_case = new QWidget(fields);
+  auto* case_column = new QVBoxLayout(of_case);
+  case_column->setContentsMargins(0, 0, 0, 0);
+  case_column->setSpacing(4);
+  case_column->addWidget(case_);
+  case_column->addWidget(labels, 0, Qt::AlignLeft);
+  rows->addRow(tr("Made on"),
+               withHint(of_case,
+                        tr("The open case goes with it, and the structures that are saved "
+                           "in the case."),
+                        fields));
+  const auto fileRow = [&](QLabel*& name, const char* object, QToolButton* choose,
+                           QToolButton* none) {
+    auto* row = new QWidget(fields);
+    auto* grid = new QGridLayout(row);
+    grid->setContentsMargins(0, 0, 0, 0);
+    grid->setSpacing(4);
+    name = new QLabel(row);
+    name->setObjectName(object);
+    name->setWordWrap(true);
+    grid->addWidget(name, 0, 0, 1, 3);
+    grid->addWidget(choose, 1, 0);
+    grid->addWidget(none, 1, 1);
+    grid->setColumnStretch(2, 1);
+    return row;
+  };
+  choose_elsewhere_ = settingButton("chooseElsewhere", tr("Choose\u2026"),
+                                    tr("A set of tissues that are known by their HU"), fields);
+  no_elsewhere_ = settingButton("noElsewhere", tr("None"),
+                                tr("A case that lacks a structure is then refused"), fields);
+  connect(choose_elsewhere_, &QToolButton::clicked, this, &ExerciseForm::elsewhereWanted);
+  connect(no_elsewhere_, &QToolButton::clicked, this, [this] { setElsewhere({}); });
+  rows->addRow(
+      tr("Other cases"),
+      withHint(fileRow(elsewhere_, "elsewhereSet", choose_elsewhere_, no_elsewhere_),
+               tr("The tissues on a case that lacks a structure which is needed."), fields));
   auto* choose =
-      settingButton("chooseOperator", tr("Choose\u2026"), tr("An operator script"), script);
-  auto* none = settingButton("noOperator", tr("None"), tr("Nothing moves by itself"), script);
+      settingButton("chooseOperator", tr("Choose\u2026"), tr("An operator script"), fields);
+  auto* none = settingButton("noOperator", tr("None"), tr("Nothing moves by itself"), fields);
   connect(choose, &QToolButton::clicked, this, &ExerciseForm::operatorWanted);
   connect(none, &QToolButton::clicked, this, [this] { setOperator({}); });
-  script_row->addWidget(operator_, 0, 0, 1, 3);
-  script_row->addWidget(choose, 1, 0);
-  script_row->addWidget(none, 1, 1);
-  script_row->setColumnStretch(2, 1);
   rows->addRow(tr("Script"),
-               withHint(script, tr("Moves the hands where nobody does, as in a check."), fields));
+               withHint(fileRow(operator_, "operatorFile", choose, none),
+                        tr("Moves the hands where nobody does, as in a check."), fields));
   return group(tr("What it is"), what_problem_, fields, body_);
 }
 
 void ExerciseForm::setOperator(const std::string& file) {
   edit(what_problem_, "operator", [&](Scene& scene) { scene.operator_file = file; });
+}
+
+void ExerciseForm::setElsewhere(const std::optional<TissueSet>& set) {
+  edit(what_problem_, "elsewhere", [&](Scene& scene) { scene.tissues_elsewhere = set; });
+}
+
+void ExerciseForm::showCase(const QString& words) {
+  case_->setText(words);
+}
+
+void ExerciseForm::setElsewherePossible(bool possible) {
+  for (QWidget* of : {choose_elsewhere_, no_elsewhere_}) of->setEnabled(possible);
 }
 
 void ExerciseForm::setStructures(const std::vector<std::string>& names) {
@@ -522,8 +567,8 @@ void ExerciseForm::showOutline() {
   closed_->setChecked(any && scene_.outline->closed);
   back_->setEnabled(any);
   clear_->setEnabled(any);
-  width_->setVisible(any);
-  if (any) width_->show(*scene_.outline);
+  width_->setEnabled(any);
+  width_->show(any ? *scene_.outline : SceneOutline{});
 }
 
 void ExerciseForm::showDrawing(bool drawing) {
@@ -585,6 +630,9 @@ void ExerciseForm::setScene(const Scene& scene) {
   operator_->setText(scene_.operator_file.empty()
                          ? tr("none")
                          : toQt(std::filesystem::path(scene_.operator_file).filename()));
+  elsewhere_->setText(!choose_elsewhere_->isEnabled() ? tr("in use: this case lacks a structure")
+                      : scene_.tissues_elsewhere      ? shownName(scene_.tissues_elsewhere->name)
+                                                      : tr("none: these tissues everywhere"));
   const int row = std::max(0, landmark_->currentIndex());
   landmark_->clear();
   view_landmark_->clear();

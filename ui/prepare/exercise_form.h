@@ -32,6 +32,10 @@ class ExerciseForm : public QWidget {
   // Names of the case's structures, to be asked for.
   void setStructures(const std::vector<std::string>& names);
   void setLocked(const QString& why);
+  // What it is made on: the case, and how many structures that has.
+  void showCase(const QString& words);
+  // False: the case lacks structures, and the exercise runs on its other set already.
+  void setElsewherePossible(bool possible);
   // What it is called where it is saved, and whether it is as it was saved.
   void showSaved(const QString& words);
   // Clicks on the surface add points.
@@ -45,6 +49,8 @@ class ExerciseForm : public QWidget {
   void entryWanted();  // the tool that places it
   void looksWanted();  // as they are now
   void operatorWanted();
+  void labelsWanted();     // structures of the case from a file
+  void elsewhereWanted();  // a set of tissues for other cases
   void saveWanted();
   void saveCopyWanted();
   void tryWanted();
@@ -53,6 +59,7 @@ class ExerciseForm : public QWidget {
 
  public slots:
   void setOperator(const std::string& file);
+  void setElsewhere(const std::optional<TissueSet>& set);
 
  private:
   struct CardFields {
@@ -97,7 +104,8 @@ class ExerciseForm : public QWidget {
   QLabel* landmark_kind_;
   std::unique_ptr<NumberRows<Landmark>> ray_, bulk_, place_, outward_, run_;
   std::unique_ptr<NumberRows<SceneView>> view_numbers_;
-  QLabel* operator_;
+  QLabel *operator_, *case_, *elsewhere_;
+  QToolButton *choose_elsewhere_, *no_elsewhere_;
   QCheckBox *card_on_, *chinese_on_;
   CardFields en_, zh_;
   std::optional<CardText> kept_chinese_;  // that was taken out

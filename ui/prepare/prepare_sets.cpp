@@ -14,19 +14,58 @@ namespace trephine {
 
 namespace {
 
-// What an edit is called where it can be taken back.
+// What an edit is called where it can be taken back: by what stands before the colon.
+constexpr std::pair<const char*, const char*> kEditWords[] = {
+    {"threshold", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "HU of a tissue")},
+    {"hu", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "HU of a tissue")},
+    {"opacity", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "opacity")},
+    {"colour", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "colour")},
+    {"name", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the name of a tissue")},
+    {"set name", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the name of the set")},
+    {"where", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "where a tissue is")},
+    {"add tissue", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a new tissue")},
+    {"remove tissue", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a tissue removed")},
+    {"set", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "another set of tissues")},
+    {"elsewhere", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the set for other cases")},
+    {"revert", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the set reverted")},
+    {"entry", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the entry point")},
+    {"landmark", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a landmark")},
+    {"add landmark", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a new landmark")},
+    {"remove landmark", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a landmark removed")},
+    {"tool", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a tool")},
+    {"add tool", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a new tool")},
+    {"remove tool", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a tool removed")},
+    {"arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "an arm")},
+    {"workspace", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "where an arm is")},
+    {"device", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the device of an arm")},
+    {"add arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a new arm")},
+    {"remove arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "an arm removed")},
+    {"laws", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "what is felt")},
+    {"controller", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the controller")},
+    {"force at", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "where the force acts")},
+    {"removal", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "how tissue is removed")},
+    {"rate_hz", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the rate")},
+    {"exercise name", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the name of the exercise")},
+    {"anatomy", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the part of the body")},
+    {"structures", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the structures it needs")},
+    {"operator", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the script")},
+    {"view landmark", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "what is looked at")},
+    {"distance_mm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the distance of the eye")},
+    {"looks", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the looks it begins with")},
+    {"card", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the card")},
+    {"card on", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the card")},
+    {"outline", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the outline")},
+    {"outline off", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the outline")},
+    {"outline closed", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the outline")},
+    {"width_mm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the outline")},
+    {"locks", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "what stays")},
+};
+
 QString editWords(const std::string& what) {
   const std::string of = what.substr(0, what.find(':'));
-  if (of == "threshold" || of == "hu") return PrepareWorkspace::tr("HU of a tissue");
-  if (of == "opacity") return PrepareWorkspace::tr("opacity");
-  if (of == "colour") return PrepareWorkspace::tr("colour");
-  if (of == "name" || of == "set name") return PrepareWorkspace::tr("a name");
-  if (of == "where") return PrepareWorkspace::tr("where a tissue is");
-  if (of == "add tissue") return PrepareWorkspace::tr("a new tissue");
-  if (of == "remove tissue") return PrepareWorkspace::tr("a tissue removed");
-  if (of == "set") return PrepareWorkspace::tr("another set of tissues");
-  if (of == "revert") return PrepareWorkspace::tr("the set reverted");
-  if (of == "entry") return PrepareWorkspace::tr("the entry point");
+  for (const auto& [edit, words] : kEditWords) {
+    if (of == edit) return PrepareWorkspace::tr(words);
+  }
   return PrepareWorkspace::tr("a number of a tissue");
 }
 

@@ -283,7 +283,7 @@ void PrepareWorkspace::placeEntry(const Vec3& at_mm, const Vec3& from_mm) {
   const Landmark entry = placedAt(*landmark, at_mm, glm::normalize(outward));
   bench_.unlessLost({Bench::Loss::cuts}, [this, entry] {
     entry_asked_ = workstation_.placeEntry(entry);
-    if (entry_asked_ && entry_once_) views_->setTool(SliceTool::window);
+    if (entry_asked_ && exercise_->wantsOneEntry()) views_->setTool(SliceTool::window);
     bench_.say(entry_asked_ ? tr("The exercise enters here now. Del: back to its own place.")
                             : tr("Busy: try again in a moment."));
   });
@@ -397,15 +397,10 @@ void PrepareWorkspace::askAboutPreview(Bench::Next go_on) {
                                 editor_.takePreview();
                                 beforeStart(go_on);
                               });
-  auto* without = question->addButton(tr("Start &without it"), QMessageBox::AcceptRole);
-  without->setObjectName("startWithout");
-  connect(
-      without, &QPushButton::clicked, this,
-      [this, go_on = std::move(go_on)] {
-        editor_.leavePreview();
-        beforeStart(go_on);
-      },
-      Qt::QueuedConnection);
+  orElse(*question, "startWithout", tr("Start &without it"), [this, go_on = std::move(go_on)] {
+    editor_.leavePreview();
+    beforeStart(go_on);
+  });
 }
 
 // An exercise runs on what was made a moment ago.
@@ -521,17 +516,11 @@ void PrepareWorkspace::unlessStructuresAreLost(Bench::Next go_on) {
                               tr("The structures have been made or changed and not saved."),
                               tr("Going on takes them away."), tr("&Go on without them"), go_on);
   if (isStored()) {
-    auto* in_case = question->addButton(tr("Save in the &case"), QMessageBox::AcceptRole);
-    in_case->setObjectName("saveInCaseFirst");
-    connect(
-        in_case, &QPushButton::clicked, this, [this, go_on] { saveInCase(go_on); },
-        Qt::QueuedConnection);
+    orElse(*question, "saveInCaseFirst", tr("Save in the &case"),
+           [this, go_on] { saveInCase(go_on); });
   }
-  auto* save = question->addButton(tr("&Save structures\u2026"), QMessageBox::AcceptRole);
-  save->setObjectName("saveFirst");
-  connect(
-      save, &QPushButton::clicked, this,
-      [this, go_on = std::move(go_on)] { saveStructuresThen(go_on); }, Qt::QueuedConnection);
+  orElse(*question, "saveFirst", tr("&Save structures\u2026"),
+         [this, go_on = std::move(go_on)] { saveStructuresThen(go_on); });
 }
 
 }  // namespace trephine

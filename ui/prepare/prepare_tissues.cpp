@@ -58,14 +58,15 @@ void PrepareWorkspace::showScene() {
 void PrepareWorkspace::showTab() {
   histogram_->setVisible(tabs_->currentIndex() == kTissueTab);
   showPoke();
-  if (tabs_->currentIndex() != kExerciseTab) draw(false);
-  showExercise();
+  arms_->show(here_ && tabs_->currentIndex() == kToolTab);
+  exercise_->show(here_ && tabs_->currentIndex() == kExerciseTab);
 }
 
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
   tissues_->setRenderable(
-      armsLimit(scene), [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, in_force);
+      armsLimit(scene), [scene](const Tissue& tissue) { return demandedOf(scene, tissue); },
+      scene.laws, in_force);
 }
 
 // The views show what the panel of structures lists while it is in front, else what the exercise
@@ -173,7 +174,8 @@ void PrepareWorkspace::unlessTissuesStay(Bench::Next go_on) {
   connect(box, &QMessageBox::finished, this, [this, scene, go_on = std::move(go_on)](int answer) {
     if (answer == QMessageBox::Discard) return go_on();
     if (answer != QMessageBox::Save) return;
-    if (scene) return saveExercise(false, go_on);
+    // And what is changed while that is written.
+    if (scene) return exercise_->save(false, [this, go_on] { unlessTissuesStay(go_on); });
     if (isStored()) return saveInCase(go_on);
     QFileDialog* dialog =
         bench_.saveDialog(tr("Save tissues"), "tissues.json", tr("Tissues (*.json)"));

@@ -25,9 +25,9 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   tabs_->setDocumentMode(true);
   tabs_->insertTab(kTissueTab, scrolled(tissues_, "tissuePage"), tr("Tissues"));
   tabs_->insertTab(kStructureTab, scrolled(structures_, "structurePage"), tr("Structures"));
-  tools_ = new ToolsPanel;
+  auto* tools = new ToolsPanel;
   form_ = new ExerciseForm;
-  tabs_->insertTab(kToolTab, scrolled(tools_, "toolPage"), tr("Tools"));
+  tabs_->insertTab(kToolTab, scrolled(tools, "toolPage"), tr("Tools"));
   tabs_->insertTab(kExerciseTab, scrolled(form_, "exercisePage"), tr("Exercise"));
   tabs_->setMinimumWidth(275);
   // Four names beside each other in a narrow column.
@@ -44,8 +44,12 @@ PrepareWorkspace::PrepareWorkspace(Bench& bench)
   connectThresholds();
   connectSets();
   connectPoke();
-  connectArms();
-  connectExercise();
+  arms_ = new ArmsTab(bench_, *tools);
+  exercise_ = new ExerciseTab(bench_, *form_);
+  exercise_->structuresInCase = [this] { return in_case_ == editor_.changes(); };
+  exercise_->saveInCase = [this](Bench::Next then) { saveInCase(std::move(then)); };
+  connect(exercise_, &ExerciseTab::saved, this, [this] { tissues_touched_ = false; });
+  connect(exercise_, &ExerciseTab::labelsWanted, this, &PrepareWorkspace::askForLabels);
   connectStructures();
   connectExports();
   showUndo();
@@ -68,9 +72,9 @@ void PrepareWorkspace::enter() {
 
 void PrepareWorkspace::leave() {
   here_ = false;
+  histogram_->letGo();
   if (workstation_.isPoke()) workstation_.stop();
-  draw(false);
-  showArms();
+  showTab();
   showStructureTab();
 }
 

@@ -1,15 +1,16 @@
 // Prepare: what tissue is felt and cut, and where it is: tissues, structures, the entry point, and
 // the ways out for other programs. Between its panels, the editor of structures, the views and the
-// workstation. (prepare_tissues.cpp, prepare_thresholds.cpp, prepare_sets.cpp,
-// prepare_structures.cpp and prepare_exports.cpp are what it does with those.)
+// workstation. Tools and exercise have a tab of their own (arms_tab.h, exercise_tab.h);
+// prepare_tissues.cpp, prepare_thresholds.cpp, prepare_sets.cpp, prepare_poke.cpp,
+// prepare_structures.cpp and prepare_exports.cpp are what it does with the rest.
 #pragma once
 
 #include <QTabWidget>
 #include <QTimer>
 #include <optional>
 
-#include "ui/prepare/exercise_form.h"
-#include "ui/prepare/tools_panel.h"
+#include "ui/prepare/arms_tab.h"
+#include "ui/prepare/exercise_tab.h"
 #include "ui/structures/structure_panel.h"
 #include "ui/tissue/histogram_view.h"
 #include "ui/tissue/poke_plot.h"
@@ -83,31 +84,6 @@ class PrepareWorkspace : public Workspace {
   void togglePoke();
   void showPokesOf(Session& session);
 
-  // Tools and arms (prepare_arms.cpp).
-  void connectArms();
-  void showArms();
-  void measureCosts();
-  void showTrades();
-  void measureTrades();
-  void workspaceMoved(const Vec3& centre_mm, bool done);
-  // Of the scene as it is now, as a step of its own.
-  Status changeScene(const std::string& what, const std::function<void(Scene&)>& change);
-
-  // The exercise (prepare_exercise.cpp).
-  void connectExercise();
-  void showExercise();
-  bool mayEditExercise() const;
-  void draw(bool on);
-  void outlineClicked(const Vec3& at_mm);
-  // Saves it in the storage folder, in its own place or as another one.
-  void saveExercise(bool copy, Bench::Next then);
-  std::optional<Scene> sceneToSave();
-  bool isOwnExercise() const;
-  std::string freeName(const std::string& wanted) const;
-  void tryExercise();
-  void exportExercise();
-  void importExercise();
-
   // Structures (prepare_structures.cpp).
   bool structuresShown() const;
   bool takeStructures();
@@ -174,13 +150,9 @@ class PrepareWorkspace : public Workspace {
   std::optional<Moving> moving_;
   QTimer seen_later_;
   StructurePanel* structures_;
-  ToolsPanel* tools_;
-  BackgroundTask costing_;
   ExerciseForm* form_;
-  std::vector<Vec3> workspaces_mm_;                 // of the arms, device axes
-  std::string workspaces_of_;                       // the devices that they were asked of
-  bool entry_once_ = false;                         // the entry tool goes once it was used
-  std::optional<Vec3> outline_first_;               // the first point of a new outline
+  ArmsTab* arms_;
+  ExerciseTab* exercise_;
   std::shared_ptr<const LabelMap> own_structures_;  // of the case, as the editor gave or got them
   // What the library's case has, whatever was saved to files: the editor's changes() then, nothing
   // for structures of another file; and whether tissues have been edited since.

@@ -419,16 +419,29 @@ QWidget* ToolsPanel::buildArms() {
                     withHint(other_tools_, tr("What may be taken meanwhile (Ctrl+T)."), fields));
   arm_landmark_ = settingChoice("armLandmark", tr("Landmark of the arm"), fields);
   connect(arm_landmark_, &QComboBox::activated, this, [this](int) {
-    const std::string id = arm_landmark_->currentText().toStdString();
-    editArm("landmark", [&](SceneArm& arm) { arm.map.landmark = id; });
+    const std::string id = arm_landmark_->currentData().toString().toStdString();
+    const std::size_t index = chosenArm();
+    if (!mapAt || index >= scene_.arms.size()) return;
+    const SceneMap map = mapAt(scene_, index, id);
+    editArm("landmark", [&](SceneArm& arm) { arm.map = map; });
   });
   arm_form_->addRow(
       tr("Landmark"),
-      withHint(arm_landmark_, tr("The place in the case that it is put at."), fields));
+      withHint(arm_landmark_,
+               tr("The place that it goes with, on any patient; or none, in this one."), fields));
   map_numbers_ = std::make_unique<NumberRows<SceneMap>>(
       std::span<const NumberOf<SceneMap>>(kSceneMapNumbers), *arm_form_, fields, "arm:");
   map_numbers_->entered = [this](const SceneMap& map, const char* key) {
     editArm(key, [&](SceneArm& arm) { arm.map = map; });
+  };
+  fixed_numbers_ = std::make_unique<NumberRows<WorkspaceMap>>(
+      std::span<const NumberOf<WorkspaceMap>>(kWorkspaceMapNumbers), *arm_form_, fields, "fixed:");
+  fixed_numbers_->entered = [this](const WorkspaceMap& map, const char* key) {
+    editArm(key, [&](SceneArm& arm) {
+      arm.map.fixed = map;
+      arm.map.motion_scale = map.motion_scale;
+      arm.map.force_scale = map.force_scale;
+    });
   };
   arm_numbers_ = std::make_unique<NumberRows<SceneArm>>(
       std::span<const NumberOf<SceneArm>>(kArmNumbers), *arm_form_, fields, "arm:");
@@ -502,10 +515,12 @@ void ToolsPanel::showArm() {
   }
   arm_tool_->setCurrentIndex(arm_tool_->findData(toQt(arm.tool)));
   arm_landmark_->clear();
-  for (const Landmark& landmark : scene_.landmarks) arm_landmark_->addItem(toQt(landmark.id));
-  arm_landmark_->setCurrentIndex(arm_landmark_->findText(toQt(arm.map.landmark)));
-  // A map that is fixed in its own patient has no landmark.
-  arm_form_->setRowVisible(arm_landmark_->parentWidget(), !arm.map.fixed);
+  for (const Landmark& landmark : scene_.landmarks) {
+    arm_landmark_->addItem(toQt(landmark.id), toQt(landmark.id));
+  }
+  arm_landmark_->addItem(tr("none: fixed in this patient"), QString());
+  arm_landmark_->setCurrentIndex(
+      arm_landmark_->findData(arm.map.fixed ? QString() : toQt(arm.map.landmark)));
   if (!arm_name_->hasFocus() || !arm_name_->isModified()) arm_name_->setText(toQt(arm.name));
   remove_arm_->setEnabled(scene_.arms.size() > 1);
   device_numbers_->show(arm);
@@ -516,6 +531,8 @@ void ToolsPanel::showArm() {
                              toQt(std::filesystem::path(arm.device_config).filename())));
   map_numbers_->setVisible(!arm.map.fixed);
   map_numbers_->show(arm.map);
+  fixed_numbers_->setVisible(arm.map.fixed.has_value());
+  if (arm.map.fixed) fixed_numbers_->show(*arm.map.fixed);
   arm_numbers_->show(arm);
   showing_ = before;
 }
@@ -694,7 +711,7 @@ void ToolsPanel::setScene(const Scene& scene) {
   const int row = std::max(0, tools_->currentRow());
   tools_->clear();
   for (const SceneTool& of : scene_.tools) {
-    new QListWidgetItem(tr("%1 \u2014 %2").arg(toQt(of.id), toolWord(of)), tools_);
+    new QListWidgetItem(tr("%1 \u2014 %2").arg(toQt(of.id), toolKindWord(of)), tools_);
   }
   tools_->setCurrentRow(std::min(row, tools_->count() - 1));
   const int arm = std::max(0, arm_->currentIndex());

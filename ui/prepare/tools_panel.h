@@ -44,6 +44,9 @@ class ToolsPanel : public QWidget {
 
   // A person wants this change of the scene as it is then; `what` of it.
   std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
+  // The map of an arm that goes with that landmark instead, or, with "", stays where it is in this
+  // patient.
+  std::function<SceneMap(const Scene& scene, std::size_t arm, const std::string& landmark)> mapAt;
 
  signals:
   void armChosen();
@@ -100,6 +103,7 @@ class ToolsPanel : public QWidget {
   std::unique_ptr<NumberRows<SceneArm>> device_numbers_;
   QFormLayout* arm_form_;
   std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
+  std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;
   std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
   std::vector<std::pair<LawKind, QCheckBox*>> laws_;
   std::vector<std::pair<LawKind, QLabel*>> law_costs_;

@@ -218,7 +218,12 @@ void HistogramView::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void HistogramView::mouseReleaseEvent(QMouseEvent* event) {
-  if (event->button() != Qt::LeftButton || !dragged_) return;
+  if (event->button() == Qt::LeftButton) letGo();
+}
+
+void HistogramView::letGo() {
+  stopStepping();
+  if (!dragged_) return;
   dragged_.reset();
   emit dragEnded();
   update();

@@ -27,6 +27,8 @@ class HistogramView : public QWidget {
   // Of a range that was typed for the chosen tissue and is not possible; empty: none.
   void showOverlaps(const std::vector<HuOverlap>& overlaps);
   void setLocked(bool locked);
+  // What is being dragged or stepped ends where it is.
+  void letGo();
 
   const TissueShares& shares() const { return shares_; }
 

@@ -24,6 +24,11 @@ void LimitBar::setValue(double value) {
   tell();
 }
 
+void LimitBar::setFelt(bool felt) {
+  felt_ = felt;
+  tell();
+}
+
 void LimitBar::setLimit(std::optional<double> shown, bool bounds) {
   limit_ = shown;
   bounds_ = bounds;
@@ -35,14 +40,20 @@ double LimitBar::at(double value) const {
 }
 
 QString LimitBar::words() const {
+  if (!felt_) return tr("not felt");
+  if (limit_ && *limit_ < 0.5 * std::pow(10.0, -decimals_)) return tr("none left");
   if (!limit_ || *limit_ >= most_) return tr("any arm");
   return tr("arm %1").arg(*limit_, 0, 'f', *limit_ < 1.0 ? 2 : *limit_ < 100.0 ? 1 : 0);
 }
 
 void LimitBar::tell() {
   QString tip = tr("From 0 to %1.").arg(most_, 0, 'g', 6) + ' ';
-  if (!limit_ || *limit_ >= most_) {
+  if (!felt_) {
+    tip += tr("No law of this exercise uses it (Tools, What is felt).");
+  } else if (!limit_ || *limit_ >= most_) {
     tip += tr("No arm limits it.");
+  } else if (*limit_ < 0.5 * std::pow(10.0, -decimals_)) {
+    tip += tr("The tissue's other numbers take all that the arms can show.");
   } else if (bounds_) {
     tip += tr("The arms show up to %1; more is felt as that.").arg(*limit_, 0, 'g', 3);
   } else {
@@ -71,8 +82,8 @@ void LimitBar::paintEvent(QPaintEvent*) {
   painter.setPen(Qt::NoPen);
   painter.setBrush(colours::kLine);
   painter.drawRoundedRect(track, 2.5, 2.5);
-  const bool limited = limit_ && *limit_ < most_;
-  const double end = limited ? at(*limit_) : 1.0;
+  const bool limited = felt_ && limit_ && *limit_ < most_;
+  const double end = !felt_ ? 0.0 : limited ? at(*limit_) : 1.0;
   QRectF shown = track;
   shown.setWidth(track.width() * end);
   painter.setBrush(colours::kGood);

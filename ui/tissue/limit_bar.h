@@ -14,12 +14,14 @@ class LimitBar : public QWidget {
   // From 0 to `most`, drawn by its logarithm from `least_step` on.
   void setRange(double most, double least_step, int decimals);
   void setValue(double value);
+  // False: no law of the exercise uses the number.
+  void setFelt(bool felt);
   // `shown`: the most that the arms show; none: they have no say in it. `bounds`: the controller
   // keeps to it, else what lies above may shake.
   void setLimit(std::optional<double> shown, bool bounds);
   std::optional<double> limit() const { return limit_; }
 
-  // "arm 8.3", "no limit", as it is written beside the bar.
+  // "arm 8.3", "any arm", "not felt", as it is written beside the bar.
   QString words() const;
 
   QSize sizeHint() const override;
@@ -35,7 +37,7 @@ class LimitBar : public QWidget {
   double most_ = 1.0, step_ = 0.01, value_ = 0.0;
   int decimals_ = 2;
   std::optional<double> limit_;
-  bool bounds_ = true;
+  bool bounds_ = true, felt_ = true;
 };
 
 }  // namespace trephine

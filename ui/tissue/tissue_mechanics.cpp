@@ -98,9 +98,10 @@ void TissueMechanics::update(const Tissue& tissue, const Tissue& declared) {
 }
 
 void TissueMechanics::setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
-                                ControllerKind in_force) {
+                                const std::vector<LawKind>& laws, ControllerKind in_force) {
   arms_ = arms;
   demanded_ = std::move(demanded);
+  laws_ = laws;
   in_force_ = in_force;
   showOutcome();
 }
@@ -119,6 +120,7 @@ void TissueMechanics::showOutcome() {
                           .arg(n.row->most, 0, 'g', 6)
                           .arg(unitOf(*n.row)) +
                       (given ? '\n' + tr("Source: %1").arg(source) : QString()));
+    n.bar->setFelt(laws_.empty() || isFelt(*n.row, laws_));
     n.bar->setValue(n.row->valueOf(tissue_) * n.row->shown_per);
     std::optional<double> most;
     if (arms_ && demanded_) most = mostShown(*n.row, tissue_, *arms_, demanded_);

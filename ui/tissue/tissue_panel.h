@@ -49,11 +49,12 @@ class TissuePanel : public QWidget {
   void setLabelsOpen(bool open);
   // Of the case: a tissue can be restricted to one.
   void setStructures(const std::vector<std::string>& names);
-  // What the arms show, and what the scene's laws together demand of a tissue: what lies above is
+  // What the arms show, and what the scene's `laws` together demand of a tissue: what lies above is
   // said to be felt as that under `bounded`, and to be bounded by nothing under the others.
   // `in_force` is the controller now.
   void setRenderable(const std::optional<ArmsLimit>& most,
-                     std::function<Impedance(const Tissue&)> demanded, ControllerKind in_force);
+                     std::function<Impedance(const Tissue&)> demanded,
+                     const std::vector<LawKind>& laws, ControllerKind in_force);
   // Sets of this workstation, to be taken: a name and a file.
   void setSets(const std::vector<std::pair<QString, std::filesystem::path>>& sets);
   // What the last edit was; empty: there is none.

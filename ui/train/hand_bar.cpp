@@ -62,7 +62,7 @@ void HandBar::setTissues(const TissueSet& tissues) {
 }
 
 void HandBar::showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
-                       double push_N, double most_N, const QString& touches) {
+                       double push_N, double most_N, const QString& touches, bool at_edge) {
   hand_->setText(hand);
   colours::setText(*hand_, colour);
   tool_->setText(tool);
@@ -71,9 +71,11 @@ void HandBar::showHand(const QString& hand, const QColor& colour, const QString&
   colours::setText(*touches_, touches.isEmpty() ? colours::kQuiet : colours::kText);
   bar_->setForce(push_N, 0.0, most_N);
   // The hand's, where tissue answers it: what its arm sends is beside the arm's own bar.
-  push_->setText(push_N > 0.0        ? tr("presses up to %1 N").arg(push_N, 0, 'f', 1)
+  push_->setText(at_edge             ? tr("the arm reaches no further")
+                 : push_N > 0.0      ? tr("presses up to %1 N").arg(push_N, 0, 'f', 1)
                  : touches.isEmpty() ? tr("hovers")
                                      : tr("rests"));
+  colours::setText(*push_, at_edge ? colours::kCaution : colours::kText);
   push_->setMinimumWidth(
       push_->fontMetrics().horizontalAdvance(tr("presses up to %1 N").arg("0.0")));
   show();

@@ -18,9 +18,10 @@ class HandBar : public FloatingCard {
 
   void setTissues(const TissueSet& tissues);
   // `waits`: another tool is wanted, and comes once this one is out of tissue. `touches`: a
-  // tissue's name; empty: nothing.
+  // tissue's name; empty: nothing. `at_edge`: the arm is at the edge of its workspace, and pressing
+  // does nothing there.
   void showHand(const QString& hand, const QColor& colour, const QString& tool, bool waits,
-                double push_N, double most_N, const QString& touches);
+                double push_N, double most_N, const QString& touches, bool at_edge);
 
  private:
   void fit(int width, int most_height) override;

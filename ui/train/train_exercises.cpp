@@ -17,8 +17,15 @@ void TrainWorkspace::fillScenes() {
   listed_.clear();
   for (const std::filesystem::path& file : bench_.exercises()) {
     Result<Scene> scene = readScene(file);
-    if (!scene) continue;
-    scenes_->addItem(toQt(scene->name), toQt(file));
+    const QString folder = toQt(file.parent_path().filename());
+    if (!scene) {  // said where one looks for it
+      scenes_->addItem(tr("%1 (cannot be read)").arg(folder), toQt(file));
+      refuse(scenes_->count() - 1, toQt(scene.error().sentence()));
+      continue;
+    }
+    const QString name = toQt(scene->name);  // of two that came from elsewhere perhaps the same
+    scenes_->addItem(scenes_->findText(name) < 0 ? name : tr("%1 (%2)").arg(name, folder),
+                     toQt(file));
     listed_.emplace_back(file, *std::move(scene));
   }
   showAllowed();
@@ -114,14 +121,19 @@ void TrainWorkspace::showLocks() {
 
 // What would be refused cannot be chosen.
 void TrainWorkspace::showAllowed() {
-  auto* rows = qobject_cast<QStandardItemModel*>(scenes_->model());
   for (const auto& [file, scene] : listed_) {
-    QStandardItem* row = rows ? rows->item(scenes_->findData(toQt(file))) : nullptr;
-    if (!row) continue;
     const Status may = workstation_.mayPractise(scene, file);
-    row->setEnabled(may.ok());
-    row->setToolTip(may ? QString() : toQt(may.error().sentence()));
+    refuse(scenes_->findData(toQt(file)), may ? QString() : toQt(may.error().sentence()));
   }
+}
+
+// Why the row cannot be chosen; empty: it can.
+void TrainWorkspace::refuse(int index, const QString& why) {
+  auto* rows = qobject_cast<QStandardItemModel*>(scenes_->model());
+  QStandardItem* row = rows ? rows->item(index) : nullptr;
+  if (!row) return;
+  row->setEnabled(why.isEmpty());
+  row->setToolTip(why);
 }
 
 // Until it is open, or cannot be had.
@@ -173,21 +185,13 @@ void TrainWorkspace::unlessItDoesNotFit(Bench::Next go_on) {
   if (!fits.empty()) {
     const std::filesystem::path file = defaultScene(fits);
     const int index = scenes_->findData(toQt(file));
-    auto* other = question->addButton(tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
-                                      QMessageBox::AcceptRole);
-    other->setObjectName("changeExercise");
-    connect(
-        other, &QPushButton::clicked, this,
-        [this, file] {
-          bench_.unlessLost({Bench::Loss::cuts, Bench::Loss::tissues},
-                            [this, file] { useScene(file); });
-        },
-        Qt::QueuedConnection);
+    orElse(*question, "changeExercise", tr("&Change to \"%1\"").arg(scenes_->itemText(index)),
+           [this, file] {
+             bench_.unlessLost({Bench::Loss::cuts, Bench::Loss::tissues},
+                               [this, file] { useScene(file); });
+           });
   } else if (lacks) {
-    auto* make = question->addButton(tr("&Make it"), QMessageBox::AcceptRole);
-    make->setObjectName("makeStructure");
-    connect(make, &QPushButton::clicked, this, &TrainWorkspace::structureWanted,
-            Qt::QueuedConnection);
+    orElse(*question, "makeStructure", tr("&Make it"), [this] { emit structureWanted(); });
   }
 }
 

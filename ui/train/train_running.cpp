@@ -1,6 +1,7 @@
 // What Train shows while an exercise runs, and what is done with one.
 #include <algorithm>
 
+#include "device/trephine_device.h"
 #include "render/tool_view.h"
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
@@ -138,7 +139,8 @@ void TrainWorkspace::showHand() {
   hand_bar_->showHand(handName(arm), colours::ofArm(arm, active), toolWord(tool),
                       state.wanted_tools[active] != state.tools[active], hands_->push_N(),
                       hands_->mostPush_N(),
-                      touchedName(state.record.arms[active], session->scene().tissues));
+                      touchedName(state.record.arms[active], session->scene().tissues),
+                      state.record.arms[active].flags & TREPHINE_ARM_AT_LIMIT);
 }
 
 // Of the hand that the mouse and the keys have.

@@ -138,7 +138,13 @@ void TrainWorkspace::connectParts() {
   connect(&bench_, &Bench::exercisesChanged, this, &TrainWorkspace::fillScenes);
   connect(&bench_, &Bench::tryingChanged, this, [this] { exercise_->offerBack(bench_.trying()); });
   connect(exercise_, &ExercisePanel::backWanted, this, [this] {
-    workstation_.stop();
+    // Of a trial nothing is kept but its recording.
+    if (workstation_.session()) {
+      back_from_trial_ = true;
+      workstation_.stop();
+    } else if (bench_.carved()) {
+      bench_.showWholeCase();
+    }
     bench_.setTrying(false);
     bench_.go(Place::prepare);
   });
@@ -292,6 +298,7 @@ void TrainWorkspace::sessionEnded(Session& session) {
   if (session.isPoke()) return;
   const RunReport report = session.report();
   bench_.exerciseEnded(report.removed_voxels > 0);
+  if (std::exchange(back_from_trial_, false)) bench_.showWholeCase();
   std::error_code ec;
   const bool any = std::filesystem::exists(report.recording, ec);
   bench_.say(session.recordingStatus() ? QString()

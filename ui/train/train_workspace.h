@@ -90,6 +90,7 @@ class TrainWorkspace : public Workspace {
   void showOutline();
   void showLocks();
   void showAllowed();
+  void refuse(int index, const QString& why);
   void showResult(Session& session, const RunReport& report);
   void showChangeTool();
   void giveTool(std::size_t arm, std::size_t tool);
@@ -130,6 +131,7 @@ class TrainWorkspace : public Workspace {
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;
   QString exercise_said_;  // the last one that was open
+  bool back_from_trial_ = false;  // once it has ended
   bool warned_ = false;    // of this case in this exercise, and it was gone on
 };
 

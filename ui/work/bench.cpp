@@ -1,8 +1,12 @@
 #include "ui/work/bench.h"
 
+#include <QAbstractSpinBox>
 #include <QFileInfo>
+#include <QLineEdit>
 #include <QMessageBox>
+#include <QPlainTextEdit>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QSettings>
 
 #include "base/log.h"
@@ -103,6 +107,11 @@ QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QSt
   dialog->setObjectName(name);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::ExistingFile);
+  // Where files of this kind were last: Qt's own memory is one place for all kinds.
+  QString& last = folders_[name + filter];
+  dialog->setDirectory(last.isEmpty() ? QDir::homePath() : last);
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [&last](const QString& file) { last = QFileInfo(file).absolutePath(); });
   // Qt keeps where its dialogs have been, for the next user to read: folders named for patients.
   connect(dialog, &QObject::destroyed, [] {
     QSettings settings(QSettings::UserScope, "QtProject");
@@ -140,14 +149,31 @@ QFileDialog* Bench::saveDialog(const QString& title, const QString& suggestion,
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
   dialog->selectFile(suggestion);
-  dialog->setDefaultSuffix(QFileInfo(suggestion).suffix());
+  dialog->setDefaultSuffix(QFileInfo(suggestion).completeSuffix());
+  // A plain name is of the kind that is chosen.
+  connect(dialog, &QFileDialog::filterSelected, dialog, [dialog](const QString& chosen) {
+    static const QRegularExpression first("\\*\\.([^ )]+)");
+    const QString suffix = first.match(chosen).captured(1);
+    if (!suffix.isEmpty()) dialog->setDefaultSuffix(suffix);
+  });
   return dialog;
 }
 
 // --- What would be lost ---
 
+// A field takes what was typed when the focus leaves it.
+void Bench::takeTyped() {
+  QWidget* typed = window_.focusWidget();
+  const bool field = qobject_cast<QLineEdit*>(typed) || qobject_cast<QPlainTextEdit*>(typed) ||
+                     qobject_cast<QAbstractSpinBox*>(typed);
+  if (!field) return;
+  typed->clearFocus();
+  typed->setFocus();
+}
+
 void Bench::unlessLost(const std::vector<Loss>& losses, Next go_on) {
   if (losses.empty()) return go_on();
+  takeTyped();
   const Guard& first = guards_[std::size_t(losses.front())];
   const std::vector<Loss> rest(losses.begin() + 1, losses.end());
   const Next next = [this, rest, go_on = std::move(go_on)] { unlessLost(rest, go_on); };
@@ -160,11 +186,8 @@ void Bench::unlessCutsAreLost(Next go_on) {
       ask(&window_, "cutsQuestion", tr("What was cut is not saved as a volume."),
           tr("Going on takes it from the view. The recording of the exercise is kept."),
           tr("&Go on without it"), go_on);
-  auto* save = question->addButton(tr("&Save volume\u2026"), QMessageBox::AcceptRole);
-  save->setObjectName("saveFirst");
-  connect(
-      save, &QPushButton::clicked, this,
-      [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); }, Qt::QueuedConnection);
+  orElse(*question, "saveFirst", tr("&Save volume\u2026"),
+         [this, go_on = std::move(go_on)] { askToSaveVolume(go_on); });
 }
 
 bool Bench::keepsTheCase(const std::filesystem::path& target) {

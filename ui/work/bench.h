@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "library/case_library.h"
@@ -79,6 +80,8 @@ class Bench : public QObject {
   // Goes on at once, or once a person has decided.
   using Guard = std::function<void(Next)>;
   void setGuard(Loss loss, Guard guard) { guards_[std::size_t(loss)] = std::move(guard); }
+  // What is being typed counts as entered.
+  void takeTyped();
   void unlessLost(const std::vector<Loss>& losses, Next go_on);
   // What has to be settled before an exercise starts.
   void setBeforeStart(Guard guard) { before_start_ = std::move(guard); }
@@ -127,6 +130,7 @@ class Bench : public QObject {
   std::array<Guard, 3> guards_;
   Place once_open_ = Place::prepare;
   std::string review_of_;
+  std::map<QString, QString> folders_;  // by kind of dialog; in memory alone
   Guard before_start_;
   QAction *undo_, *redo_;
   std::filesystem::path case_source_;

@@ -16,9 +16,13 @@ Workstation::Workstation(const Policy& policy, QObject* parent) : QObject(parent
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::openingEnded);
   connect(&opening_, &BackgroundTask::began, this, &Workstation::phaseChanged);
   connect(&opening_, &BackgroundTask::ended, this, &Workstation::phaseChanged);
-  connect(&opening_, &BackgroundTask::ended, this, [this] {
-    if (std::exchange(place_again_, false) && case_ && phase_ == Phase::ready) placeEdited();
-  });
+  // Once the outcome of this one is taken.
+  connect(
+      &opening_, &BackgroundTask::ended, this,
+      [this] {
+        if (std::exchange(place_again_, false) && case_ && phase_ == Phase::ready) placeEdited();
+      },
+      Qt::QueuedConnection);
   connect(&import_, &ImportTask::failed, this, &Workstation::failed);
   connect(&saving_, &BackgroundTask::progressed, this, &Workstation::savingProgressed);
   connect(&saving_, &BackgroundTask::ended, this, &Workstation::savingEnded);

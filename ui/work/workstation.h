@@ -122,6 +122,8 @@ class Workstation : public QObject {
   // step of edits() until closeEdit(). Errors, and nothing has changed: LOCKED, BUSY (what waits
   // for the end of an exercise), those of checkEdited().
   Status edit(const Scene& wanted, const std::string& what);
+  // One change of the scene as it is now, as a step of its own.
+  Status edit(const std::string& what, const std::function<void(Scene&)>& change);
   void closeEdit() { history_.close(); }
   // The same for the tissues alone, and what is refused is said; another set than the landmarks
   // know is withTissues().
@@ -132,6 +134,8 @@ class Workstation : public QObject {
   // Whether anything but tissues and controller is another than the exercise was opened with, or
   // saved as.
   bool sceneEdited() const;
+  // The case lacks a structure that is needed: the exercise runs on its set for such cases.
+  bool isElsewhere() const;
   // How tissues look: the scene's until a person chooses. Of the view alone, so neither the scene
   // nor a recording changes with it.
   void setLooks(const TissueLooks& looks) { looks_ = looks; }
@@ -257,6 +261,7 @@ class Workstation : public QObject {
   Scene opened_scene_;  // as it was opened, or saved
   SceneHistory history_;
   bool one_set_ = false;  // an edit took away the scene's tissues for elsewhere
+  std::optional<TissueSet> elsewhere_;  // or put these in their place
   TissueSet declared_tissues_;
   std::optional<TissueSet> edited_other_;  // the scene's for cases unlike the open one
   TissueLooks looks_;

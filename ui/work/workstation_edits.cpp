@@ -14,7 +14,6 @@ namespace {
 // What can be changed while an exercise runs made the same.
 Scene withLiveOf(Scene scene, const Scene& other) {
   scene.tissues = other.tissues;
-  scene.tissues_elsewhere = other.tissues_elsewhere;
   scene.controller = other.controller;
   return scene;
 }
@@ -46,6 +45,20 @@ bool sameLandmark(const Landmark& a, const Landmark& b) {
     return toJson(scene).at("landmarks");
   };
   return whole(a) == whole(b);
+}
+
+// The files beside the scene: what a save copies into the exercise's folder.
+bool sameFiles(const Scene& a, const Scene& b) {
+  return a.operator_file == b.operator_file &&
+         std::ranges::equal(
+             a.tools, b.tools, {}, [](const SceneTool& t) { return t.look.mesh; },
+             [](const SceneTool& t) { return t.look.mesh; }) &&
+         std::ranges::equal(a.arms, b.arms, {}, &SceneArm::device_config, &SceneArm::device_config);
+}
+
+bool sameElsewhere(const Scene& a, const Scene& b) {
+  const auto &one = a.tissues_elsewhere, &other = b.tissues_elsewhere;
+  return one && other ? sameSet(*one, *other) : one.has_value() == other.has_value();
 }
 
 bool sameDevices(const Scene& a, const Scene& b) {
@@ -99,6 +112,14 @@ Status Workstation::edit(const Scene& wanted, const std::string& what) {
   return {};
 }
 
+Status Workstation::edit(const std::string& what, const std::function<void(Scene&)>& change) {
+  Scene wanted = scene_.value_or(Scene());
+  change(wanted);
+  Status done = edit(wanted, what);
+  closeEdit();
+  return done;
+}
+
 void Workstation::setTissues(const TissueSet& tissues, const std::string& what) {
   if (!scene_) return;
   Scene wanted = *scene_;
@@ -116,8 +137,9 @@ bool Workstation::take(Scene wanted) {
   const bool places_stay = samePlaces(wanted, *scene_);
   const bool devices_stay = sameDevices(wanted, *scene_);
   const bool live_alone = sameScene(withLiveOf(wanted, *scene_), *scene_);
-  if (wanted.tissues_elsewhere.has_value() != scene_->tissues_elsewhere.has_value()) {
+  if (!sameElsewhere(wanted, *scene_)) {
     one_set_ = !wanted.tissues_elsewhere;
+    elsewhere_ = wanted.tissues_elsewhere;
   }
   const bool new_set = !sameSet(wanted.tissues, scene_->tissues);
   const bool new_controller = wanted.controller != scene_->controller;
@@ -196,9 +218,17 @@ void Workstation::goTo(Scene scene) {
   emit editsChanged();
 }
 
+bool Workstation::isElsewhere() const {
+  return case_ && std::ranges::any_of(case_->warnings, [](const Warning& warning) {
+           return warning.code == "LACKS_STRUCTURE";
+         });
+}
+
 bool Workstation::sceneEdited() const {
   if (!scene_) return false;
   Scene opened = withLiveOf(opened_scene_, *scene_);
+  // Another case took the set for elsewhere, or an edit of the tissues did.
+  if (!elsewhere_) opened.tissues_elsewhere = scene_->tissues_elsewhere;
   keepCase(opened, *scene_);
   for (Landmark& landmark : opened.landmarks) {  // of preparing a case
     const Landmark* now = scene_->findLandmarkById(landmark.id);
@@ -210,7 +240,11 @@ bool Workstation::sceneEdited() const {
 void Workstation::exerciseSaved(const std::filesystem::path& file) {
   const Result<Scene> saved = readScene(file);
   if (!scene_ || !saved) return;
+  // What earlier steps named lies there no longer.
+  const bool replaced = scene_file_ == file && !sameFiles(*scene_, *saved);
   scene_file_ = file;
+  one_set_ = false;
+  elsewhere_.reset();
   // Its files lie elsewhere now; numbers and the labels of this case stay.
   keepCase(*scene_, *saved);
   scene_->operator_file = saved->operator_file;
@@ -222,7 +256,7 @@ void Workstation::exerciseSaved(const std::filesystem::path& file) {
   }
   opened_scene_ = *scene_;
   declared_tissues_ = scene_->tissues;
-  history_.settle(*scene_);
+  replaced ? history_.begin(*scene_) : history_.settle(*scene_);
   emit sceneChanged();
   emit editsChanged();
 }
@@ -244,6 +278,7 @@ Scene Workstation::asEdited(Scene file, bool another_case) const {
   out.tissues = file.tissues;
   out.tissues_elsewhere = file.tissues_elsewhere;
   if (one_set_) out.tissues_elsewhere.reset();
+  if (elsewhere_) out.tissues_elsewhere = elsewhere_;
   if (!tissuesEdited()) return out;
   const bool of_elsewhere =
       !one_set_ && file.tissues_elsewhere && !scene_->tissues_elsewhere.has_value();

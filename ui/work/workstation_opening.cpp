@@ -170,6 +170,7 @@ void Workstation::openSource(Scene scene, const std::filesystem::path& scene_fil
     opened_scene_ = *scene_;
     history_.begin(*scene_);
     one_set_ = false;
+    elsewhere_.reset();
     emit sceneChanged();
     emit locksChanged();
     emit editsChanged();
@@ -344,6 +345,7 @@ void Workstation::keepEdits(Opened& opened) {
   declared_tissues_ = opened.scene.tissues;
   if (!opened.same_scene) {
     one_set_ = false;
+    elsewhere_.reset();
     looks_ = opened.scene.view.looks;
     edited_other_.reset();
     return;

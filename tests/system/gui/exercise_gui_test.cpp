@@ -326,6 +326,73 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().rate_hz, 2000.0);
   }
 
+  void anArmIsFixedInThePatientAndGoesBackToItsLandmark() {
+    showTab(PrepareWorkspace::kToolTab);
+    choose("armChoice", QString("left"));
+    const auto& landmarks = workstation().currentCase()->landmarks;
+    const auto centre = [&] {
+      return withFixedMaps(scene(), landmarks).arms[0].map.fixed->centre_mm;
+    };
+    const Vec3 before = centre();
+    choose("armLandmark", QString(""));
+    QVERIFY(scene().arms[0].map.fixed && scene().arms[0].map.landmark.empty());
+    QCOMPARE(glm::length(centre() - before) < 1e-9, true);
+    enter("fixed:centre_mmX", "5");
+    QCOMPARE(scene().arms[0].map.fixed->centre_mm.x, 5.0);
+    enter("fixed:motion_scale", "0.5");
+    QCOMPARE(scene().arms[0].map.fixed->motion_scale, 0.5);
+    enter("fixed:force_scale", "2");
+    QCOMPARE(scene().arms[0].map.force_scale, 2.0);
+    const Vec3 moved = centre();
+    choose("armLandmark", QString("vault"));
+    QVERIFY(!scene().arms[0].map.fixed);
+    QVERIFY(glm::length(centre() - moved) < 1e-6);
+    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+  }
+
+  // What another part of the window has changed meanwhile stays.
+  void aFormSendsItsOwnChangeAlone() {
+    showTab(PrepareWorkspace::kToolTab);
+    workstation().setController(ControllerKind::off);
+    enter("arm:motion_scale", "0.5");
+    QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
+    QCOMPARE(scene().controller, ControllerKind::off);
+  }
+
+  void whatIsNoScriptDeviceOrMeshIsSaidAndNotTaken() {
+    const QString text = temporary_.filePath("shopping.json");
+    QVERIFY(writeTextFile(toPath(text), "{\"milk\": 2}").ok());
+    const Scene before = scene();
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    const auto refused = [&](int tab, const char* button, const char* dialog, const QString& file) {
+      showTab(tab);
+      find<QToolButton>(button)->click();
+      give(dialog, file);
+      QTRY_COMPARE(failed.count(), 1);
+      failed.clear();
+      closeDialogs();
+    };
+    refused(PrepareWorkspace::kExerciseTab, "chooseOperator", "operatorDialog", text);
+    refused(PrepareWorkspace::kExerciseTab, "chooseElsewhere", "elsewhereDialog", text);
+    refused(PrepareWorkspace::kToolTab, "chooseDevice", "deviceDialog", text);
+    find<QListWidget>("toolList")->setCurrentRow(0);
+    refused(PrepareWorkspace::kToolTab, "chooseMesh", "meshDialog", text);
+    QVERIFY(sameScene(scene(), before));
+    // Each kind of file is asked for where it was last.
+    const auto opensIn = [&](const char* button, const char* dialog) {
+      find<QToolButton>(button)->click();
+      auto* open = find<QFileDialog>(dialog);
+      const QString folder = open->directory().absolutePath();
+      open->close();
+      QTest::qWait(10);
+      return folder;
+    };
+    find<QToolButton>("chooseMesh")->click();
+    give("meshDialog", toQt(resourceFolder() / "tools" / "burr4.stl"));
+    QCOMPARE(opensIn("chooseMesh", "meshDialog"), toQt(resourceFolder() / "tools"));
+    QCOMPARE(opensIn("chooseDevice", "deviceDialog"), QFileInfo(text).absolutePath());
+  }
+
   void costsAreMeasuredHereAndTradesStandBesideTheirSettings() {
     showTab(PrepareWorkspace::kToolTab);
     QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
@@ -386,6 +453,73 @@ class ExerciseGuiTest : public test::WindowTest {
     for (const char* lock : {"controller", "rate"}) {
       QVERIFY(!find<QCheckBox>(QString("lock:") + lock)->isChecked());
     }
+  }
+
+  void theCaseAndTheSetForOtherCasesStandInTheForm() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    QVERIFY(find<QLabel>("exerciseCase")->text().contains("no structures"));
+    QVERIFY(!scene().tissues_elsewhere);
+    find<QToolButton>("chooseElsewhere")->click();
+    const auto sets = resourceFolder() / "tissues";
+    give("elsewhereDialog", toQt(sets / "cranium.json"));
+    QVERIFY(scene().tissues_elsewhere);
+    QVERIFY(workstation().sceneEdited());
+    QCOMPARE(find<QLabel>("elsewhereSet")->text(), toQt(scene().tissues_elsewhere->name));
+    // It lacks the tissue of the landmark: beside the field, and what was there stays.
+    TissueSet without = *readTissueSet(sets / "cranium.json");
+    for (Tissue& tissue : without.tissues) {
+      if (tissue.id == scene().landmarks[0].tissue) tissue.id = "stone";
+    }
+    const QString file = temporary_.filePath("without.json");
+    QVERIFY(writeTextFile(toPath(file), toJson(without).dump()).ok());
+    find<QToolButton>("chooseElsewhere")->click();
+    give("elsewhereDialog", file);
+    QVERIFY(find<QLabel>("whatProblem")->text().contains("set for other cases"));
+    QCOMPARE(scene().tissues_elsewhere->name, readTissueSet(sets / "cranium.json")->name);
+    // It is still there once the case has been placed anew, and after a save.
+    enter("landmark:run_mm", "2");
+    untilPlaced();
+    QVERIFY(scene().tissues_elsewhere);
+    find<QToolButton>("noElsewhere")->click();
+    QVERIFY(!scene().tissues_elsewhere);
+    // Structures of a file.
+    find<QToolButton>("chooseLabels")->click();
+    QVERIFY(find<QFileDialog>("labelsDialog")->isVisible());
+    find<QFileDialog>("labelsDialog")->close();
+  }
+
+  // Faster than the case can be placed.
+  void aStormOfEditsOfAPlaceIsNeverRefused() {
+    QSignalSpy failed(window_.get(), &MainWindow::failed);
+    for (int n = 1; n <= 30; ++n) {
+      Scene moved = scene();
+      moved.landmarks[0].from.x = 0.4 + 0.005 * n;
+      QVERIFY(workstation().edit(moved, "landmark").ok());
+      workstation().closeEdit();
+      QTest::qWait(n % 5);
+    }
+    for (int n = 1; n <= 30; ++n) {
+      workstation().undoEdit();
+      QTest::qWait(n % 7);
+    }
+    untilPlaced();
+    QCOMPARE(failed.count(), 0);
+    QVERIFY(!workstation().edits().canUndo());
+  }
+
+  void whatIsTypedIsNotLostWhenTheWindowCloses() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    auto* goal = find<QLineEdit>("cardGoal");
+    goal->setFocus();
+    goal->selectAll();
+    QTest::keyClicks(goal, "Half a sentence");
+    QVERIFY(scene().card->en.goal != "Half a sentence");
+    window_->close();
+    QCOMPARE(scene().card->en.goal, std::string("Half a sentence"));
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("unsavedTissues"));
+    find<QMessageBox>("unsavedTissues")->button(QMessageBox::Cancel)->click();
+    QVERIFY(window_->isVisible());
+    QVERIFY(find<QAction>("undo")->toolTip().contains("the card"));
   }
 
   void theCardIsWrittenInBothLanguagesAndKeepsItsLimits() {
@@ -484,6 +618,9 @@ class ExerciseGuiTest : public test::WindowTest {
     QTest::mouseClick(find<QPushButton>("backToPrepare"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(workstation().phase() == Workstation::Phase::ready, kLong_ms);
     QCOMPARE(window_->place(), Place::prepare);
+    // Of a trial no cut stays in the view.
+    QVERIFY(!window_->findChild<Bench*>()->carved());
+    QVERIFY(!workstation().carved());
     // Out, and in again elsewhere.
     find<QPushButton>("exportExercise")->click();
     const QString folder = temporary_.filePath("stick/mine");
@@ -535,6 +672,76 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY2(error.what.find("missing: operator.json") != std::string::npos, error.what.c_str());
     QVERIFY2(error.what.find("changed: scene.json") != std::string::npos, error.what.c_str());
     QCOMPARE(exercisesIn(storage()).size(), before);
+  }
+
+  void anExerciseThatAnotherProgramHasChangedIsAskedAboutBeforeItIsReplaced() {
+    showTab(PrepareWorkspace::kExerciseTab);
+    const std::filesystem::path file = workstation().sceneFile();
+    Json other = *readJsonFile(file);
+    other["name"] = "Of somebody else";
+    QVERIFY(writeTextFile(file, other.dump(1) + '\n').ok());
+    const std::size_t before = exercisesIn(storage()).size();
+    enter("view:distance_mm", "244");
+    find<QPushButton>("saveExercise")->click();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("changedOnDisk"));
+    QCOMPARE(readScene(file)->name, std::string("Of somebody else"));
+    QTest::mouseClick(find<QPushButton>("saveBeside"), Qt::LeftButton);
+    QTRY_COMPARE(exercisesIn(storage()).size(), before + 1);
+    untilSaved();
+    QVERIFY(workstation().sceneFile() != file);
+    QCOMPARE(readScene(file)->name, std::string("Of somebody else"));
+    QCOMPARE(readScene(workstation().sceneFile())->view.distance_mm, 244.0);
+  }
+
+  void ofTwoOfOneNameEachCanBeToldAndOneThatCannotBeReadIsListed() {
+    const std::filesystem::path exercises = storage() / "exercises";
+    const auto all = std::filesystem::copy_options::recursive;
+    std::filesystem::copy(exercises / "mine", exercises / "mine-77", all);
+    std::filesystem::create_directories(exercises / "torn");
+    QVERIFY(writeTextFile(exercises / "torn" / "scene.json", "{\"format\"").ok());
+    window_->findChild<Bench*>()->tellExercises();
+    auto* list = find<QComboBox>("scenes");
+    const auto rowOf = [&](const char* folder) {
+      return list->findData(toQt(exercises / folder / "scene.json"));
+    };
+    QVERIFY(rowOf("mine") >= 0 && rowOf("mine-77") >= 0);
+    QVERIFY(list->itemText(rowOf("mine")) != list->itemText(rowOf("mine-77")));
+    const int torn = rowOf("torn");
+    QVERIFY(torn >= 0);
+    QVERIFY(list->itemText(torn).contains("cannot be read"));
+    QVERIFY(!(list->model()->flags(list->model()->index(torn, 0)) & Qt::ItemIsEnabled));
+    QVERIFY(!list->itemData(torn, Qt::ToolTipRole).toString().isEmpty());
+    std::filesystem::remove_all(exercises / "mine-77");
+    std::filesystem::remove_all(exercises / "torn");
+    window_->findChild<Bench*>()->tellExercises();
+  }
+
+  void changedStructuresAreAskedAboutBeforeAnExport() {
+    showStructures();
+    window_->views().setTool(SliceTool::brush);
+    SliceView& axial = slice(SliceAxis::axial);
+    QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center());
+    QTRY_VERIFY(window_->findChild<PrepareWorkspace*>()->structuresEdited());
+    window_->views().setTool(SliceTool::window);
+    QTest::qWait(700);  // until the exercise has it
+    untilPlaced();
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QPushButton>("exportExercise")->click();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("exportQuestion"));
+    QVERIFY(find<QPushButton>("saveInCaseFirst"));
+    find<QMessageBox>("exportQuestion")->close();
+    QVERIFY(!window_->findChild<QFileDialog*>("exportExerciseDialog"));
+    // A name without an ending is of the kind that is chosen.
+    showStructures();
+    find<QAbstractButton>("saveStructures")->click();
+    auto* dialog = find<QFileDialog>("saveDialog");
+    QCOMPARE(dialog->defaultSuffix(), QString("nii.gz"));
+    emit dialog->filterSelected("3D Slicer (*.seg.nrrd *.nrrd)");
+    QCOMPARE(dialog->defaultSuffix(), QString("seg.nrrd"));
+    dialog->close();
+    find<QAction>("saveInCase")->trigger();
+    untilSaved();
+    QVERIFY(!window_->findChild<PrepareWorkspace*>()->structuresEdited());
   }
 
   void aCaseThatIsGoneIsSaidAndWhatIsOpenStays() {

@@ -177,7 +177,7 @@ class TrainGuiTest : public test::TrainTest {
     // By its key to the last of three: the picture changes where the tool is.
     key(Qt::Key_T, Qt::ControlModifier);
     QTRY_COMPARE(inHand(), 1);
-    QTRY_COMPARE(named->text(), "rod burr, 2.4 mm");
+    QTRY_COMPARE(named->text(), "craniotome, 2.4 mm");
     key(Qt::Key_T, Qt::ControlModifier);
     QTRY_COMPARE(inHand(), 2);
     QTRY_COMPARE(named->text(), "burr, 6 mm");

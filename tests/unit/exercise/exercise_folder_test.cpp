@@ -275,6 +275,36 @@ TEST_F(ExerciseFolder, EveryShippedSceneIsSavedReadAndSavedAgainInTheSameBytes) 
   }
 }
 
+TEST_F(ExerciseFolder, SavingItAgainKeepsWhatAPersonHasPutBesideItAndDropsWhatItNoLongerNames) {
+  const fs::path storage = folder_ / "storage", folder = storage / "exercises" / "mine";
+  Scene scene = *readScene(shipped("burr-hole"));
+  ASSERT_TRUE(saveExercise(scene, folder, storage).ok());
+  ASSERT_TRUE(fs::exists(folder / "operator.json"));
+  fs::create_directories(folder / "notes");
+  ASSERT_TRUE(writeTextFile(folder / "notes" / "lesson.txt", "Tuesday").ok());
+  ASSERT_TRUE(writeTextFile(folder / "photo.jpg", "?").ok());
+  fs::create_symlink("photo.jpg", folder / "cover");
+  scene.operator_file.clear();
+  ASSERT_TRUE(saveExercise(scene, folder, storage).ok());
+  EXPECT_EQ(textOf(folder / "notes" / "lesson.txt"), "Tuesday");
+  EXPECT_TRUE(fs::exists(folder / "photo.jpg"));
+  EXPECT_EQ(fs::read_symlink(folder / "cover"), "photo.jpg");
+  EXPECT_FALSE(fs::exists(folder / "operator.json"));
+}
+
+TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayADayLater) {
+  const fs::path storage = folder_ / "storage", exercises = storage / "exercises";
+  const fs::path old = exercises / ".mine.part-abcdef", young = exercises / ".mine.part-ghijkl";
+  for (const fs::path& part : {old, young}) {
+    fs::create_directories(part / "tools");
+    ASSERT_TRUE(writeTextFile(part / "scene.json", "{").ok());
+  }
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  ASSERT_TRUE(saveExercise(*readScene(shipped("liver")), exercises / "mine", storage).ok());
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(young)) << "another program may be at it";
+}
+
 TEST_F(ExerciseFolder, ASavedOneNamesItsCaseFromWhereItLiesAndMovesWithTheStorage) {
   const Result<Scene> scene = readScene(ofAPatient());
   ASSERT_TRUE(scene.ok()) << scene.error().sentence();

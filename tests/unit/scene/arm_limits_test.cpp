@@ -34,6 +34,20 @@ TEST(ArmLimits, AreOfTheWeakestArmAndNoneWithoutDynamics) {
   EXPECT_FALSE(armsLimit(scene));
 }
 
+TEST(ArmLimits, ANumberIsFeltWhereALawOfTheExerciseUsesIt) {
+  const std::vector<LawKind> viscous{LawKind::viscous}, rupture{LawKind::rupture};
+  EXPECT_TRUE(isFelt(number("damping_Ns_per_m"), viscous));
+  EXPECT_FALSE(isFelt(number("stiffness_N_per_m"), viscous));
+  EXPECT_FALSE(isFelt(number("friction_N"), viscous));
+  EXPECT_FALSE(isFelt(number("rupture_N"), viscous));
+  EXPECT_TRUE(isFelt(number("cutting_J_per_mm3"), viscous)) << "removal uses it";
+  EXPECT_FALSE(isFelt(number("damping_Ns_per_m"), rupture));
+  EXPECT_TRUE(isFelt(number("stiffness_N_per_m"), rupture));
+  EXPECT_TRUE(isFelt(number("rupture_N"), rupture));
+  EXPECT_FALSE(isFelt(number("friction_N"), rupture));
+  EXPECT_TRUE(isFelt(number("friction_N"), {LawKind::coulomb}));
+}
+
 TEST(ArmLimits, TheMostOfANumberIsJustShownAndALittleMoreIsNot) {
   const Scene scene = cranium();
   const ArmsLimit arms = *armsLimit(scene);

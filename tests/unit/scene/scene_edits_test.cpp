@@ -120,6 +120,35 @@ TEST(SceneFile, AnEditIsHeldToTheRulesOfAFile) {
             std::string::npos);
   EXPECT_NE(wrong([](Scene& s) { s.view.landmark = "moon"; }).find("moon"), std::string::npos);
   EXPECT_NE(wrong([](Scene& s) { s.card->en.goal = ""; }).find("goal"), std::string::npos);
+  Scene edited = scene;
+  edited.arms[1].device_arm = edited.arms[0].device_arm;
+  const Error error = checkEdited(edited).error();
+  EXPECT_EQ(error.next.find("schema"), std::string::npos) << "nobody wrote a file: " << error.next;
+}
+
+TEST(MovedTo, AnArmThatIsFixedStaysWhereItIsAndBackAtItsLandmarkAsWell) {
+  Scene scene = cranium();
+  scene.arms[0].map.offset_mm = Vec3(3.0, -4.0, 12.0);
+  const LandmarkFrame frame{Vec3(10.0, 20.0, 30.0), glm::angleAxis(0.7, Vec3(0.0, 1.0, 0.0))};
+  const LandmarkFrame other{Vec3(1.0, 2.0, 3.0), glm::angleAxis(0.2, Vec3(1.0, 0.0, 0.0))};
+  const std::vector<PlacedLandmark> placed{{"vault", frame}, {"side", other}};
+  const Vec3 at_mm = withFixedMaps(scene, placed).arms[0].map.fixed->centre_mm;
+  scene.arms[0].map = movedTo(scene, 0, "", placed);
+  ASSERT_TRUE(scene.arms[0].map.fixed);
+  EXPECT_TRUE(scene.arms[0].map.landmark.empty());
+  EXPECT_EQ(scene.arms[0].map.fixed->centre_mm, at_mm);
+  EXPECT_TRUE(checkEdited(scene).ok());
+  const Result<Scene> read = parseScene(sceneFile(scene), "x.json");
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(sceneFile(*read).dump(), sceneFile(scene).dump()) << "byte for byte";
+  scene.arms[0].map = movedTo(scene, 0, "side", placed);
+  EXPECT_FALSE(scene.arms[0].map.fixed);
+  const Vec3 back_mm = withFixedMaps(scene, placed).arms[0].map.fixed->centre_mm;
+  EXPECT_LT(glm::length(back_mm - at_mm), 1e-9);
+  // From a landmark to another it goes along.
+  const Vec3 offset_mm = scene.arms[0].map.offset_mm;
+  scene.arms[0].map = movedTo(scene, 0, "vault", placed);
+  EXPECT_EQ(scene.arms[0].map.offset_mm, offset_mm);
 }
 
 TEST(WithTissues, ALandmarkWhoseTissueIsGoneTakesASolidOneAndThatIsSaid) {

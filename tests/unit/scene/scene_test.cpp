@@ -193,6 +193,9 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
          s["landmarks"][0]["outward"] = {0, 0, 0};
        },
        "landmarks[0].outward", "length of 0"},
+      {"a ray that goes nowhere",
+       [](Json& s) { s["landmarks"][0]["towards"] = s["landmarks"][0]["from"]; },
+       "landmarks[0].towards", "'vault' goes nowhere"},
       {"many landmarks", [](Json& s) { s["landmarks"] = Json(100'000, s["landmarks"][0]); },
        "landmarks", "100000"},
       {"text for number", [](Json& s) { s["rate_hz"] = "fast"; }, "rate_hz", "fast"},

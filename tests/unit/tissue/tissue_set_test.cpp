@@ -8,6 +8,7 @@
 #include "base/system.h"
 #include "schema_page.h"
 #include "support.h"
+#include "tissue/tissue_edits.h"
 
 namespace trephine {
 namespace {
@@ -228,6 +229,22 @@ TEST(TissueFile, ComesBackAsItWasWritten) {
   EXPECT_TRUE(skin.cuttable);
   EXPECT_EQ(read->tissues[1].label, 5);
   EXPECT_FALSE(read->tissues[2].cuttable);
+}
+
+TEST(TissueFile, EveryShippedSetIsSavedReadAndSavedAgainInTheSameBytes) {
+  int sets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "tissues")) {
+    SCOPED_TRACE(entry.path());
+    const Result<TissueSet> shipped = readTissueSet(entry.path());
+    ASSERT_TRUE(shipped.ok()) << shipped.error().sentence();
+    const Json saved = toJson(*shipped);
+    const Result<TissueSet> again = parseTissueSet(saved, "again.json");
+    ASSERT_TRUE(again.ok()) << again.error().sentence();
+    EXPECT_TRUE(sameSet(*again, *shipped));
+    EXPECT_EQ(toJson(*again).dump(1), saved.dump(1));
+    ++sets;
+  }
+  EXPECT_GE(sets, 3);
 }
 
 TEST(TissueFile, ComesBackWithEveryNumberAndLacksNoneThatMustBeThere) {

@@ -15,6 +15,7 @@
 #include "ui/common/colours.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "ui/tissue/limit_bar.h"
 #include "ui/tissue/tissue_panel.h"
 #include "ui/train/arms_panel.h"
 #include "ui/train/hand_bar.h"
@@ -150,7 +151,7 @@ TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
       [](const Tissue& tissue) {
         return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
       },
-      ControllerKind::bounded);
+      {}, ControllerKind::bounded);
   EXPECT_TRUE(felt.text().contains("demand 1200 N/m")) << felt.text().toStdString();
   EXPECT_TRUE(felt.text().contains("at most 1000 N/m")) << felt.text().toStdString();
   find<QDoubleSpinBox>(panel_, "damping").setValue(50.0);
@@ -168,13 +169,34 @@ TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMost
         [](const Tissue& tissue) {
           return Impedance{0.0, tissue.stiffness_N_per_m.value};
         },
-        kind);
+        {}, kind);
     EXPECT_FALSE(felt.isHidden());
     EXPECT_FALSE(felt.text().contains("is felt")) << felt.text().toStdString();
     EXPECT_FALSE(felt.text().contains("at most")) << felt.text().toStdString();
     EXPECT_TRUE(felt.text().contains("above 1000 N/m these arms may shake"))
         << felt.text().toStdString();
   }
+}
+
+TEST_F(TissuePanelTest, BesideANumberStandsWhetherItIsFeltAndWhatTheOthersLeave) {
+  const auto words = [&](const char* bar) {
+    return find<LimitBar>(panel_, bar).words().toStdString();
+  };
+  // All that the arms show goes to the stiffness.
+  find<QDoubleSpinBox>(panel_, "stiffness").setValue(5000.0);
+  const ArmsLimit arms{{10.0, 1000.0}, 3.3};
+  const auto demanded = [](const Tissue& tissue) {
+    return Impedance{tissue.damping_Ns_per_m.value, tissue.stiffness_N_per_m.value};
+  };
+  panel_.setRenderable(arms, demanded, {LawKind::viscous, LawKind::elastic},
+                       ControllerKind::bounded);
+  EXPECT_EQ(words("ruptureLimit"), "not felt");
+  EXPECT_EQ(words("frictionLimit"), "not felt");
+  EXPECT_EQ(words("stiffnessLimit"), "arm 1000");
+  EXPECT_EQ(words("dampingLimit"), "none left");
+  panel_.setRenderable(arms, demanded, {LawKind::rupture}, ControllerKind::bounded);
+  EXPECT_EQ(words("ruptureLimit"), "arm 3.3");
+  EXPECT_EQ(words("dampingLimit"), "not felt");
 }
 
 class LooksTest : public TissuePanelTest {
@@ -457,13 +479,14 @@ TEST_F(PanelTest, TheBarOfTheHandSaysThatAPushIsTheMostAndThatAToolInTissueRests
   QWidget over;
   over.resize(800, 600);
   HandBar bar(over);
-  const auto words = [&](double push_N, const char* touches) {
-    bar.showHand("Left hand", Qt::white, "needle", false, push_N, 3.0, touches);
+  const auto words = [&](double push_N, const char* touches, bool at_edge = false) {
+    bar.showHand("Left hand", Qt::white, "needle", false, push_N, 3.0, touches, at_edge);
     return find<QLabel>(bar, "pushWords").text().toStdString();
   };
   EXPECT_EQ(words(2.0, "Liver"), "presses up to 2.0 N");
   EXPECT_EQ(words(0.0, "Liver"), "rests");
   EXPECT_EQ(words(0.0, ""), "hovers");
+  EXPECT_EQ(words(2.0, "", true), "the arm reaches no further");
 }
 
 TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {

@@ -1,12 +1,15 @@
-// The exercise itself: its form, the outline that is clicked, saving it, trying it, and taking it to
-// other workstations.
+#include "ui/prepare/exercise_tab.h"
+
 #include <QFileDialog>
+#include <QMessageBox>
+#include <fstream>
 #include <set>
 
 #include "exercise/exercise_folder.h"
 #include "library/case_folders.h"
+#include "session/operator_script.h"
+#include "ui/common/question.h"
 #include "ui/common/words.h"
-#include "ui/prepare/prepare_workspace.h"
 #include "volume/phantom.h"
 
 namespace trephine {
@@ -29,18 +32,23 @@ Error notVerified(const ExerciseCheck& check) {
 
 }  // namespace
 
-void PrepareWorkspace::connectExercise() {
+ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
+    : QObject(&bench),
+      bench_(bench),
+      workstation_(bench.workstation()),
+      views_(&bench.views()),
+      form_(&form) {
   form_->wanted = [this](const std::string& what, const auto& change) {
-    return changeScene(what, change);
+    return workstation_.edit(what, change);
   };
-  connect(form_, &ExerciseForm::drawingWanted, this, &PrepareWorkspace::draw);
+  connect(form_, &ExerciseForm::drawingWanted, this, &ExerciseTab::draw);
   connect(form_, &ExerciseForm::entryWanted, this, [this] {
     views_->setTool(SliceTool::entry);
     entry_once_ = true;
   });
   connect(form_, &ExerciseForm::looksWanted, this, [this] {
     if (!workstation_.scene()) return;
-    const Status done = changeScene("looks", [this](Scene& scene) {
+    const Status done = workstation_.edit("looks", [this](Scene& scene) {
       scene.view.looks.clear();
       for (const auto& [id, look] : workstation_.looks()) {
         if (scene.tissues.find(id)) scene.view.looks[id] = look;
@@ -50,13 +58,27 @@ void PrepareWorkspace::connectExercise() {
   });
   connect(form_, &ExerciseForm::operatorWanted, this, [this] {
     bench_.askForFile("operatorDialog", tr("An operator script"), tr("Scripts (*.json)"),
-                      [this](const auto& file) { form_->setOperator(file.string()); });
+                      [this](const auto& file) {
+                        if (!workstation_.scene()) return;
+                        const auto script = readOperatorScript(file, *workstation_.scene());
+                        if (!script) return bench_.report(script.error());
+                        form_->setOperator(file.string());
+                      });
   });
-  connect(form_, &ExerciseForm::saveWanted, this, [this] { saveExercise(false, {}); });
-  connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { saveExercise(true, {}); });
-  connect(form_, &ExerciseForm::tryWanted, this, &PrepareWorkspace::tryExercise);
-  connect(form_, &ExerciseForm::exportWanted, this, &PrepareWorkspace::exportExercise);
-  connect(form_, &ExerciseForm::importWanted, this, &PrepareWorkspace::importExercise);
+  connect(form_, &ExerciseForm::labelsWanted, this, &ExerciseTab::labelsWanted);
+  connect(form_, &ExerciseForm::elsewhereWanted, this, [this] {
+    bench_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
+                      [this](const auto& file) {
+                        const Result<TissueSet> set = readTissueSet(file);
+                        if (!set) return bench_.report(set.error());
+                        form_->setElsewhere(*set);
+                      });
+  });
+  connect(form_, &ExerciseForm::saveWanted, this, [this] { save(false, {}); });
+  connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { save(true, {}); });
+  connect(form_, &ExerciseForm::tryWanted, this, &ExerciseTab::tryIt);
+  connect(form_, &ExerciseForm::exportWanted, this, &ExerciseTab::exportIt);
+  connect(form_, &ExerciseForm::importWanted, this, &ExerciseTab::importIt);
   connect(views_, &FourUp::structureClicked, this, [this](SliceTool tool, const Vec3& at_mm) {
     if (tool == SliceTool::outline) outlineClicked(at_mm);
   });
@@ -64,43 +86,58 @@ void PrepareWorkspace::connectExercise() {
     form_->showDrawing(tool == SliceTool::outline);
     entry_once_ = false;
   });
-  connect(&workstation_, &Workstation::locksChanged, this, &PrepareWorkspace::showExercise);
-  connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showExercise);
+  connect(&workstation_, &Workstation::sceneOpening, this,
+          [this](const Scene&, const std::filesystem::path& file) { opened_ = onDisk(file); });
+  connect(&workstation_, &Workstation::caseOpened, this, &ExerciseTab::refresh);
+  connect(&workstation_, &Workstation::caseNamed, this, &ExerciseTab::refresh);
+  connect(&workstation_, &Workstation::structuresChanged, this, &ExerciseTab::refresh);
+  connect(&workstation_, &Workstation::locksChanged, this, &ExerciseTab::refresh);
+  connect(&workstation_, &Workstation::editsChanged, this, &ExerciseTab::refresh);
 }
 
-// In the tab that is in front: a threshold that is dragged pays for no form that nobody sees.
-void PrepareWorkspace::showExercise() {
-  showArms();
-  const int tab = tabs_->currentIndex();
-  if (!workstation_.scene() || (tab != kToolTab && tab != kExerciseTab)) return;
-  const QString locked =
-      workstation_.anyLocked()
-          ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
-          : QString();
-  tools_->setLocked(locked);
-  form_->setLocked(locked);
-  if (tab == kToolTab) {
-    tools_->setScene(*workstation_.scene());
-    return showArms();  // which arm is chosen is known now
-  }
+void ExerciseTab::show(bool in_front) {
+  in_front_ = in_front;
+  if (!in_front_) draw(false);
+  refresh();
+}
+
+// A threshold that is dragged pays for no form that nobody sees.
+void ExerciseTab::refresh() {
+  if (!in_front_ || !workstation_.scene()) return;
+  form_->setLocked(workstation_.anyLocked()
+                       ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
+                       : QString());
+  form_->setElsewherePossible(!workstation_.isElsewhere());
   form_->setScene(*workstation_.scene());
+  form_->showCase(caseWords());
   const bool edited = workstation_.sceneEdited() || workstation_.tissuesEdited();
-  form_->showSaved(isOwnExercise()
-                       ? edited ? tr("Changed since it was saved.")
-                                : tr("Saved on this workstation.")
-                       : tr("It came from elsewhere: saving makes one of your own of it."));
+  form_->showSaved(isOwn() ? edited ? tr("Changed since it was saved.")
+                                    : tr("Saved on this workstation.")
+                           : tr("It came from elsewhere: saving makes one of your own of it."));
+}
+
+QString ExerciseTab::caseWords() const {
+  const std::optional<Case>& of = workstation_.currentCase();
+  if (!of) return tr("no case");
+  const auto phantom = phantomNamed(workstation_.scene()->case_source);
+  const QString name = of->built_in && phantom ? builtInName(std::string(*phantom))
+                       : of->stored.empty()    ? tr("a case that is not saved yet")
+                                               : toQt(of->name);
+  const int count = of->structures ? int(of->structures->structures.size()) : 0;
+  return count == 0 ? tr("%1, no structures").arg(name)
+                    : tr("%1, structures: %2").arg(name).arg(count);
 }
 
 // --- The outline ---
 
-void PrepareWorkspace::draw(bool on) {
+void ExerciseTab::draw(bool on) {
   outline_first_.reset();
   if (on == (views_->tool() == SliceTool::outline)) return;
   views_->setTool(on ? SliceTool::outline : SliceTool::window);
   if (on) bench_.say(tr("Each click on the surface adds a point to the outline. Esc: done."));
 }
 
-void PrepareWorkspace::outlineClicked(const Vec3& at_mm) {
+void ExerciseTab::outlineClicked(const Vec3& at_mm) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!workstation_.scene() || !of || of->landmarks.empty()) return;
   const Scene& scene = *workstation_.scene();
@@ -122,20 +159,20 @@ void PrepareWorkspace::outlineClicked(const Vec3& at_mm) {
     outline.frame = SceneOutline::Frame{with->id, with->frame};
   }
   outline.points_mm.push_back(at_mm);
-  const Status done = changeScene("outline", [&](Scene& now) { now.outline = outline; });
+  const Status done = workstation_.edit("outline", [&](Scene& now) { now.outline = outline; });
   if (!done) return bench_.report(done.error());
   outline_first_.reset();
 }
 
 // --- Saving, trying ---
 
-bool PrepareWorkspace::isOwnExercise() const {
+bool ExerciseTab::isOwn() const {
   const std::filesystem::path& file = workstation_.sceneFile();
   return file.parent_path().parent_path() == bench_.storage() / "exercises";
 }
 
 // With the case that is open, as it lies in the library.
-std::optional<Scene> PrepareWorkspace::sceneToSave() {
+std::optional<Scene> ExerciseTab::sceneToSave() {
   if (!workstation_.scene() || !workstation_.currentCase()) return {};
   Scene scene = *workstation_.scene();
   const Case& of = *workstation_.currentCase();
@@ -146,19 +183,38 @@ std::optional<Scene> PrepareWorkspace::sceneToSave() {
     return {};
   }
   const std::filesystem::path folder = bench_.storage() / "cases" / of.stored;
-  scene.case_source = (folder / kVolumeFile).string();
-  const std::filesystem::path structures = folder / kStructuresFile;
+  scene.case_source = (folder / case_folders::kVolumeFile).string();
+  const std::filesystem::path structures = folder / case_folders::kStructuresFile;
   std::error_code ec;
   scene.labels_file =
       std::filesystem::is_regular_file(structures, ec) ? structures.string() : std::string();
   return scene;
 }
 
-void PrepareWorkspace::saveExercise(bool copy, Bench::Next then) {
+ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {file, {std::istreambuf_iterator<char>(in), {}}};
+}
+
+void ExerciseTab::save(bool copy, Bench::Next then) {
+  bench_.takeTyped();
   std::optional<Scene> scene = sceneToSave();
   if (!scene) return;
-  const bool in_place = isOwnExercise() && !copy;
-  if (copy && isOwnExercise()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
+  const bool in_place = isOwn() && !copy;
+  const OnDisk now = onDisk(workstation_.sceneFile());
+  if (in_place && opened_.file == now.file && !now.text.empty() && opened_.text != now.text) {
+    QMessageBox* question =
+        ask(bench_.window(), "changedOnDisk",
+            tr("The exercise has been changed by another program since it was opened here."),
+            tr("Save yours as another one, or in the place of what is there now."),
+            tr("&Replace it"), [this, now, then] {
+              opened_ = now;
+              save(false, then);
+            });
+    orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
+    return;
+  }
+  if (copy && isOwn()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
   if (!in_place) scene->name = freeName(scene->name);
   const std::filesystem::path folder = in_place ? workstation_.sceneFile().parent_path()
                                                 : freshExercise(bench_.storage(), scene->name);
@@ -176,15 +232,16 @@ void PrepareWorkspace::saveExercise(bool copy, Bench::Next then) {
           named.name = name;
           (void)workstation_.edit(named, "exercise name");
         }
+        opened_ = onDisk(*file);
         workstation_.exerciseSaved(*file);
-        tissues_touched_ = false;
+        emit saved();
         bench_.tellExercises();
         if (then) then();
       });
 }
 
 // One that no exercise in the list has.
-std::string PrepareWorkspace::freeName(const std::string& wanted) const {
+std::string ExerciseTab::freeName(const std::string& wanted) const {
   std::set<std::string> taken;
   for (const auto& file : bench_.exercises()) {
     if (const Result<Scene> scene = readScene(file)) taken.insert(scene->name);
@@ -194,8 +251,9 @@ std::string PrepareWorkspace::freeName(const std::string& wanted) const {
   return name;
 }
 
-void PrepareWorkspace::tryExercise() {
+void ExerciseTab::tryIt() {
   if (!workstation_.currentCase()) return bench_.say(tr("Open a case first."));
+  bench_.takeTyped();
   draw(false);
   bench_.go(Place::train);
   bench_.setTrying(true);
@@ -203,11 +261,27 @@ void PrepareWorkspace::tryExercise() {
 
 // --- To and from other workstations ---
 
-void PrepareWorkspace::exportExercise() {
+void ExerciseTab::exportIt() {
   if (!workstation_.currentCase()) return bench_.say(tr("Open a case first."));
-  const bool saved =
-      isOwnExercise() && !workstation_.sceneEdited() && !workstation_.tissuesEdited();
-  if (!saved) return saveExercise(false, [this] { exportExercise(); });
+  bench_.takeTyped();
+  if (!structuresInCase()) {
+    QMessageBox* question =
+        ask(bench_.window(), "exportQuestion",
+            tr("The structures have been changed and are not saved in the case."),
+            tr("The exercise goes with those of the case as it was saved."),
+            tr("Export &without the changes"), [this] { exportSaved(); });
+    if (!workstation_.currentCase()->stored.empty()) {
+      orElse(*question, "saveInCaseFirst", tr("Save in the &case"),
+             [this] { saveInCase([this] { exportSaved(); }); });
+    }
+    return;
+  }
+  exportSaved();
+}
+
+void ExerciseTab::exportSaved() {
+  const bool saved = isOwn() && !workstation_.sceneEdited() && !workstation_.tissuesEdited();
+  if (!saved) return save(false, [this] { exportSaved(); });
   bench_.askForNewFolder(
       "exportExerciseDialog", tr("Export the exercise as a new folder"),
       toQt(workstation_.sceneFile().parent_path().filename()),
@@ -220,7 +294,7 @@ void PrepareWorkspace::exportExercise() {
       });
 }
 
-void PrepareWorkspace::importExercise() {
+void ExerciseTab::importIt() {
   QFileDialog* dialog =
       bench_.fileDialog("importExerciseDialog", tr("Import an exercise: its folder"));
   dialog->setFileMode(QFileDialog::Directory);

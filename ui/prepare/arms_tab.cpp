@@ -1,4 +1,5 @@
-// Tools and arms: their panel, and where the arms reach in the views.
+#include "ui/prepare/arms_tab.h"
+
 #include <unistd.h>
 
 #include <QStandardPaths>
@@ -11,44 +12,69 @@
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
 #include "lab/trades/trades_measurement.h"
+#include "render/tool_mesh.h"
 #include "render/tool_view.h"
 #include "session/arm_devices.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
-#include "ui/prepare/prepare_workspace.h"
 
 namespace trephine {
 
-void PrepareWorkspace::connectArms() {
+ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
+    : QObject(&bench),
+      bench_(bench),
+      workstation_(bench.workstation()),
+      views_(&bench.views()),
+      tools_(&tools) {
   tools_->wanted = [this](const std::string& what, const auto& change) {
-    return changeScene(what, change);
+    return workstation_.edit(what, change);
   };
-  connect(tools_, &ToolsPanel::armChosen, this, &PrepareWorkspace::showArms);
+  tools_->mapAt = [this](const Scene& scene, std::size_t arm, const std::string& landmark) {
+    const std::optional<Case>& of = workstation_.currentCase();
+    return of ? movedTo(scene, arm, landmark, of->landmarks) : scene.arms[arm].map;
+  };
+  connect(tools_, &ToolsPanel::armChosen, this, &ArmsTab::showBoxes);
   connect(tools_, &ToolsPanel::toolFileWanted, this, [this] {
     bench_.askForFile("toolFileDialog", tr("A tool file"), tr("Tools (*.json)"),
                       [this](const auto& file) { tools_->addTool(file); });
   });
   connect(tools_, &ToolsPanel::meshWanted, this, [this] {
-    bench_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"),
-                      [this](const auto& file) { tools_->setMesh(file); });
+    bench_.askForFile("meshDialog", tr("A mesh"), tr("Surface (*.stl)"), [this](const auto& file) {
+      const Status mesh = checkToolMesh(file);
+      mesh ? tools_->setMesh(file) : bench_.report(mesh.error());
+    });
   });
   connect(tools_, &ToolsPanel::deviceWanted, this, [this] {
     bench_.askForFile("deviceDialog", tr("A file of the device"), tr("Devices (*.json)"),
-                      [this](const auto& file) { tools_->setDevice(file); });
+                      [this](const auto& file) { takeDevice(file); });
   });
-  connect(tools_, &ToolsPanel::tradesWanted, this, &PrepareWorkspace::measureTrades);
+  connect(tools_, &ToolsPanel::tradesWanted, this, &ArmsTab::measureTrades);
   showTrades();
-  connect(tools_, &ToolsPanel::costsWanted, this, &PrepareWorkspace::measureCosts);
+  connect(tools_, &ToolsPanel::costsWanted, this, &ArmsTab::measureCosts);
   connect(&costing_, &BackgroundTask::progressed, this,
           [this](double share) { tools_->showMeasuring(share); });
-  connect(views_, &FourUp::workspaceMoved, this, &PrepareWorkspace::workspaceMoved);
-  connect(&workstation_, &Workstation::phaseChanged, this, &PrepareWorkspace::showArms);
-  connect(&workstation_, &Workstation::caseOpened, this, &PrepareWorkspace::showArms);
-  connect(&workstation_, &Workstation::structuresChanged, this, &PrepareWorkspace::showArms);
+  connect(views_, &FourUp::workspaceMoved, this, &ArmsTab::workspaceMoved);
+  connect(&workstation_, &Workstation::editsChanged, this, &ArmsTab::refresh);
+  connect(&workstation_, &Workstation::locksChanged, this, &ArmsTab::refresh);
+  connect(&workstation_, &Workstation::phaseChanged, this, &ArmsTab::showBoxes);
+  connect(&workstation_, &Workstation::caseOpened, this, &ArmsTab::showBoxes);
+  connect(&workstation_, &Workstation::structuresChanged, this, &ArmsTab::showBoxes);
+}
+
+// Where the arms of the scene can be had with it.
+void ArmsTab::takeDevice(const std::filesystem::path& file) {
+  if (!workstation_.scene()) return;
+  Scene with = *workstation_.scene();
+  const std::size_t chosen = std::min(tools_->chosenArm(), with.arms.size() - 1);
+  for (SceneArm& arm : with.arms) {
+    if (arm.plugin == with.arms[chosen].plugin) arm.device_config = file.string();
+  }
+  const Status arms = readArmDynamics(with);
+  arms ? tools_->setDevice(file) : bench_.report(arms.error());
 }
 
 // A second or two in the background; once more, and it is given up.
-void PrepareWorkspace::measureCosts() {
+void ArmsTab::measureCosts() {
   if (costing_.busy()) return costing_.cancel();
   if (!workstation_.scene()) return;
   if (workstation_.session()) {
@@ -88,7 +114,7 @@ std::filesystem::path configFolder() {
 }  // namespace
 
 // As measured here, else what was recommended on the machine of the makers.
-void PrepareWorkspace::showTrades() {
+void ArmsTab::showTrades() {
   if (const auto here = readTrades(configFolder() / "trades.json")) {
     return tools_->setTrades(here->rows, tr("Measured on this machine."));
   }
@@ -103,7 +129,7 @@ void PrepareWorkspace::showTrades() {
 }
 
 // By the program of the laboratory, beside this one: it draws as well.
-void PrepareWorkspace::measureTrades() {
+void ArmsTab::measureTrades() {
   std::error_code ec;
   const std::filesystem::path lab =
       std::filesystem::read_symlink("/proc/self/exe", ec).parent_path() / "trephine-lab";
@@ -146,26 +172,32 @@ void PrepareWorkspace::measureTrades() {
       [this] { showTrades(); });
 }
 
-// Of a form: what is refused is said there.
-Status PrepareWorkspace::changeScene(const std::string& what,
-                                     const std::function<void(Scene&)>& change) {
-  Scene scene = *workstation_.scene();
-  change(scene);
-  Status done = workstation_.edit(scene, what);
-  workstation_.closeEdit();
-  return done;
+void ArmsTab::show(bool in_front) {
+  in_front_ = in_front;
+  refresh();
+}
+
+void ArmsTab::refresh() {
+  if (in_front_ && workstation_.scene()) {
+    tools_->setLocked(
+        workstation_.anyLocked()
+            ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
+            : QString());
+    tools_->setScene(*workstation_.scene());
+  }
+  showBoxes();
 }
 
 // While their tab is in front and no exercise runs: the boxes, and the tools where it begins.
-void PrepareWorkspace::showArms() {
+void ArmsTab::showBoxes() {
   const std::optional<Scene>& scene = workstation_.scene();
   const std::optional<Case>& of = workstation_.currentCase();
   const bool idle = workstation_.phase() == Workstation::Phase::ready;
-  const bool shown = here_ && tabs_->currentIndex() == kToolTab && scene && of && idle;
+  const bool shown = in_front_ && scene && of && idle;
   if (!shown) {
     views_->setWorkspaces({});
     if (idle) {
-      view_->setTools({});
+      views_->threeD().setTools({});
       views_->setTools({});
     }
     return;
@@ -190,16 +222,17 @@ void PrepareWorkspace::showArms() {
     boxes.push_back({map.centre_mm, map.rotation, map.motion_scale * workspaces_mm_[i], colour,
                      i == tools_->chosenArm()});
     if (const SceneTool* tool = placed.findTool(arm.tool)) {
-      tools.push_back(toolView(*tool, {map.centre_mm, map.rotation}, false, colours::rgbOf(colour)));
+      tools.push_back(
+          toolView(*tool, {map.centre_mm, map.rotation}, false, colours::rgbOf(colour)));
     }
   }
   views_->setWorkspaces(boxes);
-  view_->setTools(tools);
+  views_->threeD().setTools(tools);
   views_->setTools(tools);
 }
 
 // One drag is one edit.
-void PrepareWorkspace::workspaceMoved(const Vec3& centre_mm, bool done) {
+void ArmsTab::workspaceMoved(const Vec3& centre_mm, bool done) {
   const std::optional<Case>& of = workstation_.currentCase();
   if (!workstation_.scene() || !of || !isFinite(centre_mm)) return;
   Scene scene = *workstation_.scene();
@@ -211,8 +244,8 @@ void PrepareWorkspace::workspaceMoved(const Vec3& centre_mm, bool done) {
   } else {
     for (const PlacedLandmark& landmark : of->landmarks) {
       if (landmark.id != map.landmark) continue;
-      map.offset_mm = glm::conjugate(landmark.frame.rotation) *
-                      (centre_mm - landmark.frame.position_mm);
+      map.offset_mm =
+          glm::conjugate(landmark.frame.rotation) * (centre_mm - landmark.frame.position_mm);
       for (int axis = 0; axis < 3; ++axis) {  // tenths of a mm: what a hand means
         map.offset_mm[axis] = std::round(10.0 * map.offset_mm[axis]) / 10.0;
       }
@@ -221,7 +254,7 @@ void PrepareWorkspace::workspaceMoved(const Vec3& centre_mm, bool done) {
   const Status moved = workstation_.edit(scene, "workspace:" + scene.arms[index].name);
   if (done) workstation_.closeEdit();
   if (!moved && done) bench_.report(moved.error());
-  showArms();
+  showBoxes();
 }
 
 }  // namespace trephine

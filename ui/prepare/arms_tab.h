@@ -1,0 +1,43 @@
+// Tools and arms: their panel, where the arms reach in the views, and what settings cost on this
+// machine. Between the panel, the views and the workstation.
+#pragma once
+
+#include <QObject>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ui/common/background_task.h"
+#include "ui/prepare/tools_panel.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class ArmsTab : public QObject {
+  Q_OBJECT
+ public:
+  ArmsTab(Bench& bench, ToolsPanel& tools);
+
+  // Whether it is seen; the panel is filled, and boxes and tools are drawn, while it is.
+  void show(bool in_front);
+
+ private:
+  void refresh();
+  void showBoxes();
+  void takeDevice(const std::filesystem::path& file);
+  void measureCosts();
+  void showTrades();
+  void measureTrades();
+  void workspaceMoved(const Vec3& centre_mm, bool done);
+
+  Bench& bench_;
+  Workstation& workstation_;
+  FourUp* views_;
+  ToolsPanel* tools_;
+  BackgroundTask costing_;
+  bool in_front_ = false;
+  std::vector<Vec3> workspaces_mm_;  // of the arms, device axes
+  std::string workspaces_of_;        // the devices that they were asked of
+};
+
+}  // namespace trephine

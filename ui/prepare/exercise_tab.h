@@ -1,0 +1,65 @@
+// The exercise itself: its form, the outline that is clicked, saving it, trying it, and taking it
+// to other workstations. Between the form, the views and the workstation.
+#pragma once
+
+#include <QObject>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "ui/prepare/exercise_form.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class ExerciseTab : public QObject {
+  Q_OBJECT
+ public:
+  ExerciseTab(Bench& bench, ExerciseForm& form);
+
+  // Whether it is seen; the form is filled while it is.
+  void show(bool in_front);
+  // In the storage folder, in its own place or as another one. `then` follows once it is written.
+  void save(bool copy, Bench::Next then);
+
+  // The tool that places the entry goes once it was used.
+  bool wantsOneEntry() const { return entry_once_; }
+
+  // Whether the case has the structures as they are now, and what gives it them.
+  std::function<bool()> structuresInCase;
+  std::function<void(Bench::Next then)> saveInCase;
+
+ signals:
+  void saved();
+  void labelsWanted();  // structures of the case from a file
+
+ private:
+  void refresh();
+  QString caseWords() const;
+  void draw(bool on);
+  void outlineClicked(const Vec3& at_mm);
+  std::optional<Scene> sceneToSave();
+  bool isOwn() const;
+  std::string freeName(const std::string& wanted) const;
+  struct OnDisk {
+    std::filesystem::path file;
+    std::string text;
+  };
+  static OnDisk onDisk(const std::filesystem::path& file);
+  void tryIt();
+  void exportIt();
+  void exportSaved();
+  void importIt();
+
+  Bench& bench_;
+  Workstation& workstation_;
+  FourUp* views_;
+  ExerciseForm* form_;
+  bool in_front_ = false;
+  bool entry_once_ = false;            // the entry tool goes once it was used
+  std::optional<Vec3> outline_first_;  // the first point of a new outline
+  OnDisk opened_;                      // the exercise's file as it was opened, or saved, here
+};
+
+}  // namespace trephine
