@@ -9,6 +9,7 @@
 #include "exercise/named_files.h"
 #include "scene/scene.h"
 #include "session/case.h"
+#include "session/operator_script.h"
 #include "volume/phantom.h"
 #include "volume/segmentation.h"
 #include "volume/volume_files.h"
@@ -36,7 +37,8 @@ CaseFiles caseFiles(const std::string& source) {
 
 class Exporter {
  public:
-  Exporter(const fs::path& scene_file, PartFolder& to) : from_(scene_file.parent_path()), to_(to) {}
+  Exporter(const fs::path& scene_file, const Scene& scene, PartFolder& to)
+      : from_(scene_file.parent_path()), scene_(scene), to_(to) {}
 
   Status copyCase(Json& json, Scene scene, const std::string& case_source,
                   const Progress& progress) {
@@ -52,7 +54,11 @@ class Exporter {
     const std::string labels = given.structures.empty() ? scene.labels_file : given.structures;
     json.erase("labels");
     if (scene.case_source.empty()) return {};
-    const bool built_in = phantomNamed(scene.case_source).has_value();
+    const auto phantom = phantomNamed(scene.case_source);
+    const bool built_in = phantom.has_value();
+    if (built_in) {
+      if (const auto there = phantomGeometry(*phantom); !there) return there.error();
+    }
     json["case"] = scene.case_source;
     if (built_in && labels.empty()) return {};
     Result<Case> of = readCase(scene.case_source, Progress(progress, 0.0, 0.6));
@@ -96,23 +102,26 @@ class Exporter {
           Json* mesh = meshOf(tool);
           if (!mesh) return Status();
           const fs::path of = folder / mesh->get<std::string>();
-          const std::string mesh_as = fs::path(as).replace_extension(of.extension()).string();
+          const std::string mesh_as = fs::path(as).replace_extension(".stl").string();
           *mesh = fs::path(mesh_as).filename().string();  // beside the tool
-          return to_.copy(of, mesh_as);
+          return to_.copyMesh(of, mesh_as);
         });
       }
       case NamedFile::mesh:
-        name = own("tools/", id, file.extension().string());
-        return to_.copy(file, name.get<std::string>());
+        name = own("tools/", id, ".stl");
+        return to_.copyMesh(file, name.get<std::string>());
       case NamedFile::device: {
         const auto [known, is_new] = devices_.try_emplace(file, "");
-        if (is_new) known->second = own("devices/", "device", file.extension().string());
+        if (is_new) known->second = own("devices/", "device", ".json");
         name = known->second;
         return is_new ? to_.copy(file, known->second) : Status();
       }
-      case NamedFile::operatorScript:
+      case NamedFile::operatorScript: {
+        const Result<OperatorScript> script = readOperatorScript(file, scene_);
+        if (!script) return script.error();
         name = "operator.json";
         return to_.copy(file, "operator.json");
+      }
     }
     return {};
   }
@@ -139,6 +148,7 @@ class Exporter {
   }
 
   fs::path from_;
+  const Scene& scene_;
   PartFolder& to_;
   std::map<fs::path, std::string> devices_;
   std::set<std::string> taken_;
@@ -154,19 +164,18 @@ std::string pathFrom(const fs::path& folder, const fs::path& file, const fs::pat
   return of.lexically_relative(fs::absolute(folder, ec).lexically_normal()).string();
 }
 
-// The files of the exercise that lies there: paths in the folder.
+// The files that saving makes anew, of the exercise that lies there: paths in the folder. Its case
+// and the structures of that are not among them.
 std::set<fs::path> filesOf(const fs::path& folder) {
   std::set<fs::path> files{kSceneFile, kListFile};
   const auto add = [&](const fs::path& by, const std::string& name) {
     files.insert((by.parent_path() / name).lexically_normal());
   };
-  if (const Result<ExerciseCheck> list = readList(folder); list) {
-    for (const ExercisePart& part : list->parts) files.insert(part.file);
-  }
   Result<Json> scene = readJsonFile(folder / kSceneFile);
   if (!scene) return files;
   (void)eachNamedFile(*scene, [&](NamedFile kind, const std::string&, Json& name) {
     const std::string file = name.get<std::string>();
+    if (kind == NamedFile::caseVolume || kind == NamedFile::labels) return Status();
     add(kSceneFile, file);
     if (kind != NamedFile::tissues && kind != NamedFile::tool) return Status();
     Result<Json> json = readJsonFile(folder / file);
@@ -185,9 +194,11 @@ Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const 
                               const Progress& progress) {
   Json json = sceneFile(scene);
   if (Result<Scene> valid = parseScene(json, folder / kSceneFile); !valid) return valid.error();
+  std::error_code ec;
+  const bool fresh = fs::symlink_status(folder, ec).type() == fs::file_type::not_found;
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
-  Exporter exporter(folder / kSceneFile, *part);
+  Exporter exporter(folder / kSceneFile, scene, *part);
   const Status named = eachNamedFile(json, [&](NamedFile kind, const std::string& id, Json& name) {
     if (kind != NamedFile::caseVolume && kind != NamedFile::labels) {
       return exporter.copyNamed(kind, id, name);
@@ -200,7 +211,9 @@ Result<fs::path> saveExercise(const Scene& scene, const fs::path& folder, const 
     return written.error();
   }
   if (progress.cancelled()) return Error{"CANCELLED", "It was cancelled", "", ""};
-  if (Status done = part->becomeInstead(filesOf(folder)); !done) return done.error();
+  // Where there was nothing, what another program has put there meanwhile is not replaced.
+  const Status done = fresh ? part->become() : part->becomeInstead(filesOf(folder));
+  if (!done) return done.error();
   return folder / kSceneFile;
 }
 
@@ -213,7 +226,7 @@ Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::s
   if (Status free = checkFreeFolder(folder); !free) return free.error();
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
-  Exporter exporter(scene_file, *part);
+  Exporter exporter(scene_file, *scene, *part);
   progress.at(0.0, "Reading the case");
   if (Status copied =
           exporter.copyCase(*json, *scene, case_source, Progress(progress, 0.0, kCaseShare));

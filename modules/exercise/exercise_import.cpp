@@ -8,6 +8,7 @@
 #include "exercise/exercise_parts.h"
 #include "exercise/named_files.h"
 #include "scene/scene.h"
+#include "session/operator_script.h"
 
 namespace trephine {
 
@@ -90,6 +91,10 @@ Result<ExerciseCheck> readList(const fs::path& folder) {
     scene_listed = scene_listed || part.file == check.scene;
     check.parts.push_back(std::move(part));
   }
+  if (reader.ok() && check.scene != kSceneFile) {
+    reader.fail("scene", "It must be '" + std::string(kSceneFile) + "'",
+                "Export the exercise anew");
+  }
   if (reader.ok() && !scene_listed) reader.fail("scene", "It is not among the parts");
   if (Status read = reader.finish(); !read) return read.error();
   return check;
@@ -108,7 +113,7 @@ Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& prog
     if (!found && found.error().code == "CANCELLED") return found.error();
     if (!found && found.error().code == "MISSING_FILE") {
       check.missing.push_back(part.file);
-    } else if (!found || found->sha256 != part.sha256) {
+    } else if (!found || found->sha256 != part.sha256 || found->bytes != part.bytes) {
       check.changed.push_back(part.file);
     }
   }
@@ -124,12 +129,18 @@ Result<ImportedExercise> importExercise(const fs::path& folder, const fs::path& 
   if (Status names = namesPartsAlone(folder, imported.check); !names) return names.error();
   const Result<Scene> scene = readScene(folder / imported.check.scene);
   if (!scene) return scene.error();
+  if (!scene->operator_file.empty()) {
+    const Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
+    if (!script) return script.error();
+  }
 
   const std::string stem = plainName(scene->name, "exercise");
   for (int n = 1;; ++n) {
     const fs::path target = numbered(storage, stem, n);
     std::error_code ec;
-    if (fs::symlink_status(target, ec).type() != fs::file_type::not_found) {
+    const fs::file_type there = fs::symlink_status(target, ec).type();
+    if (there == fs::file_type::none) return writeError(target, ec.value());
+    if (there != fs::file_type::not_found) {
       if (!isThere(target, folder, Progress(progress, 0.4, 0.5))) continue;
       imported.scene = target / imported.check.scene;
       return imported;
@@ -173,7 +184,9 @@ fs::path freshExercise(const fs::path& storage, const std::string& name) {
   for (int n = 1;; ++n) {
     const fs::path folder = numbered(storage, stem, n);
     std::error_code ec;
-    if (fs::symlink_status(folder, ec).type() == fs::file_type::not_found) return folder;
+    const fs::file_type there = fs::symlink_status(folder, ec).type();
+    // What cannot be looked at cannot be written either, and that says why.
+    if (there == fs::file_type::not_found || there == fs::file_type::none) return folder;
   }
 }
 

@@ -8,7 +8,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <optional>
+#include <sstream>
 
 #include "base/file.h"
 #include "base/json.h"
@@ -20,6 +23,7 @@ namespace trephine {
 namespace fs = std::filesystem;
 
 constexpr const char* kPart = ".part-";
+constexpr int kMostNames = 1000;
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
   constexpr std::size_t kMost = 40;
@@ -54,7 +58,11 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
                             const Progress& progress) {
   const fs::path path = folder / file;
   std::error_code ec;
-  if (fs::symlink_status(path, ec).type() != fs::file_type::regular) {
+  bool linked = false;  // a folder of it, out of here
+  for (fs::path up = fs::path(file).parent_path(); !up.empty(); up = up.parent_path()) {
+    linked = linked || fs::is_symlink(fs::symlink_status(folder / up, ec));
+  }
+  if (linked || fs::symlink_status(path, ec).type() != fs::file_type::regular) {
     return Error{"MISSING_FILE", "It is not there, or is no file", file, ""};
   }
   std::ifstream in(path, std::ios::binary);
@@ -130,11 +138,57 @@ Status PartFolder::copy(const fs::path& from, const std::string& file) {
   }
   return write(file, [&](const fs::path& path) {
     return replaceFile(path, [&](const fs::path& temporary) {
-      std::error_code failed;
+      std::error_code failed, unknown;
       fs::copy_file(from, temporary, failed);
-      return failed ? Status(writeError(path, failed.value())) : Status();
+      if (!failed) return Status();
+      // A full disk comes as an error of the device from the copying of the system.
+      const bool full =
+          fs::space(temporary.parent_path(), unknown).available < fs::file_size(from, unknown);
+      return Status(writeError(target_ / file, full && !unknown ? ENOSPC : failed.value()));
     });
   });
+}
+
+namespace {
+
+// Of an STL file, binary (80 bytes, a count, 50 bytes a triangle) or text ("solid NAME" to
+// "endsolid NAME").
+std::optional<std::string> withoutHeader(std::string stl) {
+  constexpr std::size_t kHeader = 80, kFirst = 84, kTriangle = 50;
+  std::uint32_t count = 0;
+  if (stl.size() >= kFirst) std::memcpy(&count, stl.data() + kHeader, sizeof count);
+  if (stl.size() == kFirst + kTriangle * std::size_t(count)) {
+    std::fill_n(stl.begin(), kHeader, '\0');
+    return stl;
+  }
+  const std::size_t begin = stl.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos || stl.compare(begin, 5, "solid") != 0) return {};
+  std::string text;
+  std::istringstream lines(stl);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    const auto is = [&](const char* word) {
+      return first != std::string::npos && line.compare(first, std::strlen(word), word) == 0;
+    };
+    text += (is("solid") ? "solid" : is("endsolid") ? "endsolid" : line) + '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+Status PartFolder::copyMesh(const fs::path& from, const std::string& file) {
+  constexpr std::uintmax_t kMost = 256u << 20;
+  std::error_code ec;
+  const std::uintmax_t size = fs::file_size(from, ec);
+  if (ec || size > kMost) return copy(from, file);  // which says what is wrong with it
+  std::ifstream in(from, std::ios::binary);
+  const std::string stl{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) return copy(from, file);
+  const std::optional<std::string> plain = withoutHeader(stl);
+  if (plain) return writeText(file, *plain);
+  return Error{"NOT_STL", "A mesh of the exercise is not an STL file, or a damaged one",
+               from.string(), "Choose another mesh, or none"};
 }
 
 Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene,
@@ -162,21 +216,31 @@ Result<std::vector<ExercisePart>> PartFolder::writeList(const std::string& scene
   return parts;
 }
 
-// As they are, links too; what this part has itself is newer.
+// As they are, links and empty folders too: the same file under a second name where the disk knows
+// that, so that a large one costs nothing. What has a name that the exercise needs now gets
+// another.
 Status PartFolder::keepOthers(const std::set<fs::path>& own) {
   std::error_code ec;
   for (auto it = fs::recursive_directory_iterator(target_, ec); !ec && it != fs::end(it);
        it.increment(ec)) {
     const fs::path file = it->path().lexically_relative(target_);
-    const fs::path to = path_ / file;
+    if (own.contains(file)) continue;
+    fs::path to = path_ / file;
     std::error_code none;
-    if (it->is_directory(none) && !it->is_symlink(none)) continue;
-    if (own.contains(file) || fs::symlink_status(to, none).type() != fs::file_type::not_found) {
+    if (it->is_directory(none) && !it->is_symlink(none)) {
+      if (Status made = makeFolder(to); !made) return made;
       continue;
     }
-    if (Status made = makeFolder(to.parent_path()); !made) return made;
+    const fs::path stem = to.parent_path() / to.stem(), extension = to.extension();
+    for (int n = 1; fs::symlink_status(to, none).type() != fs::file_type::not_found; ++n) {
+      if (n > kMostNames) return writeError(it->path(), 0);
+      to = stem.string() + "-kept" + (n > 1 ? std::to_string(n) : "") + extension.string();
+    }
+    fs::create_hard_link(it->path(), to, none);
+    if (!none) continue;
+    none.clear();
     fs::copy(it->path(), to, fs::copy_options::copy_symlinks, none);
-    if (none) return writeError(target_, none.value());
+    if (none) return writeError(it->path(), none.value());
   }
   return ec ? Status(writeError(target_, ec.value())) : Status();
 }

@@ -45,6 +45,8 @@ class PartFolder {
                const std::function<Status(const std::filesystem::path&)>& write);
   Status writeText(const std::string& file, std::string_view text);
   Status copy(const std::filesystem::path& from, const std::string& file);
+  // A surface: the same triangles, without what its header says of who made it and where.
+  Status copyMesh(const std::filesystem::path& from, const std::string& file);
   // The list of all that lies here, the scene first.
   Result<std::vector<ExercisePart>> writeList(const std::string& scene, const Progress& progress);
   // The folder that it was made for, by one rename. CANNOT_WRITE.

@@ -12,11 +12,18 @@ bool isForce(const TissueNumber& number) {
   return std::string_view(number.unit) == "N";
 }
 
-bool within(const Impedance& demanded, const Renderable& most) {
-  return demanded.damping <= most.b_max && demanded.stiffness <= most.k_max;
+double valueOf(std::string_view key, const Tissue& tissue) {
+  for (const TissueNumber& number : kTissueNumbers) {
+    if (number.key == key) return number.valueOf(tissue);
+  }
+  return 0.0;
 }
 
 }  // namespace
+
+double mostForce_N(const SceneArm& arm) {
+  return arm.dynamics ? std::min(arm.max_force_N, arm.dynamics->peak_force_N) : arm.max_force_N;
+}
 
 std::optional<ArmsLimit> armsLimit(const Scene& scene) {
   std::optional<ArmsLimit> limit;
@@ -24,7 +31,7 @@ std::optional<ArmsLimit> armsLimit(const Scene& scene) {
     if (!arm.dynamics) continue;
     const Renderable most = renderableOn(arm, scene.rate_hz);
     const double scale = arm.map.fixed ? arm.map.fixed->force_scale : arm.map.force_scale;
-    const double force_N = arm.max_force_N / scale;
+    const double force_N = mostForce_N(arm) / scale;
     if (!limit) {
       limit = ArmsLimit{most, force_N};
       continue;
@@ -35,16 +42,26 @@ std::optional<ArmsLimit> armsLimit(const Scene& scene) {
   return limit;
 }
 
-bool isFelt(const TissueNumber& number, const std::vector<LawKind>& laws) {
-  const std::string_view meaning = number.meaning;
-  const std::string_view of = meaning.substr(0, meaning.find(':'));  // "elastic and rupture laws"
-  bool any = false;
-  for (const auto& [name, law] : kLawNames) {
-    if (of.find(name) == std::string_view::npos) continue;
-    if (names(laws, law)) return true;
-    any = true;
+bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
+            RemovalKind removal) {
+  const std::string_view key = number.key;
+  const bool elastic = names(laws, LawKind::elastic), coulomb = names(laws, LawKind::coulomb);
+  const bool rupture = names(laws, LawKind::rupture);
+  const auto has = [&](const char* other) { return valueOf(other, tissue) > 0.0; };
+  if (key == "damping_Ns_per_m") return names(laws, LawKind::viscous);
+  if (key == "stiffness_N_per_m") {
+    return elastic || (coulomb && has("friction_N")) || (rupture && has("rupture_N"));
   }
-  return !any;
+  if (key == "friction_N") return coulomb && has("stiffness_N_per_m");
+  if (key == "rupture_N") return rupture && has("stiffness_N_per_m");
+  if (key == "cutting_J_per_mm3") return removal == RemovalKind::work && tissue.cuttable;
+  return true;
+}
+
+bool isWeaker(const TissueNumber& number, const Tissue& tissue, const ArmsLimit& arms,
+              const DemandedOf& demanded) {
+  return std::string_view(number.key) == "rupture_N" && number.valueOf(tissue) > 0.0 &&
+         demanded(tissue).stiffness > arms.most.k_max;
 }
 
 std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue,
@@ -54,13 +71,16 @@ std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue
     number.set(other, {value, "asked"});
     return demanded(other);
   };
-  const auto shows = [&](double value) { return within(at(value), arms.most); };
+  if (isForce(number)) return arms.force_N;
   const double highest = kMechanicsRange.high;
   const Impedance least = at(0.0), most = at(highest);
-  const bool counts = least.damping != most.damping || least.stiffness != most.stiffness;
-  std::optional<double> limit;
-  if (isForce(number)) limit = arms.force_N;
-  if (!counts) return limit;
+  const bool damps = least.damping != most.damping, pulls = least.stiffness != most.stiffness;
+  if (!damps && !pulls) return {};
+  const auto shows = [&](double value) {
+    const Impedance with = at(value);
+    return (!damps || with.damping <= arms.most.b_max) &&
+           (!pulls || with.stiffness <= arms.most.k_max);
+  };
   double low = 0.0, high = highest;
   if (shows(high)) {
     low = high;
@@ -73,7 +93,7 @@ std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue
       (shows(middle) ? low : high) = middle;
     }
   }
-  return limit ? std::min(*limit, low) : low;
+  return low;
 }
 
 }  // namespace trephine

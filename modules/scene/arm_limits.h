@@ -10,6 +10,9 @@
 
 namespace trephine {
 
+// The most that is sent to an arm: what the scene allows, and the device, where that was asked.
+double mostForce_N(const SceneArm& arm);
+
 // Of the weakest of the arms, in the tissue's own numbers.
 struct ArmsLimit {
   Renderable most;
@@ -18,14 +21,23 @@ struct ArmsLimit {
 // None where the dynamics of no arm are known.
 std::optional<ArmsLimit> armsLimit(const Scene& scene);
 
-// Whether one of these laws uses the number; work that removes counts under any.
-bool isFelt(const TissueNumber& number, const std::vector<LawKind>& laws);
+// Whether the exercise has a use for the number in this tissue: a law that uses it, and whatever
+// else of the tissue that law needs; of cutting energy, removal by work of a tissue that can be
+// cut.
+bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
+            RemovalKind removal);
 
-// The most of this number that such arms show while the tissue's others stay as they are: of
-// impedances what `demanded` of the whole tissue leaves, of forces the limit of the arms as well.
-// None where no law uses the number, or where an arm has no say in it, as in the energy of cutting.
+// The most of this number that such arms show while the tissue's others stay as they are. Damping
+// and stiffness are bounded each by itself: of either what `demanded` of the whole tissue leaves;
+// of forces the limit of the arms. None where no law uses the number, or where an arm has no say in
+// it, as in the energy of cutting.
 using DemandedOf = std::function<Impedance(const Tissue&)>;
 std::optional<double> mostShown(const TissueNumber& number, const Tissue& tissue,
                                 const ArmsLimit& arms, const DemandedOf& demanded);
+
+// Whether a force comes weaker than it says, under `bounded`: what pushes with it is a spring that
+// is softer in the hand than the tissue's.
+bool isWeaker(const TissueNumber& number, const Tissue& tissue, const ArmsLimit& arms,
+              const DemandedOf& demanded);
 
 }  // namespace trephine

@@ -86,7 +86,13 @@ Result<std::vector<Vec3>> readWorkspaces(Scene scene) {
 Status readArmDynamics(Scene& scene) {
   std::vector<LoopDevice> devices;
   std::vector<TrephineCapabilities> capabilities;
-  return openDevices(scene, devices, capabilities);
+  Scene asked = scene;
+  for (SceneArm& arm : asked.arms) arm.max_force_N = kPeakForce_N.high;
+  if (Status opened = openDevices(asked, devices, capabilities); !opened) return opened;
+  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
+    scene.arms[i].dynamics = asked.arms[i].dynamics;
+  }
+  return {};
 }
 
 }  // namespace trephine

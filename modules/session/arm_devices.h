@@ -17,7 +17,8 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities);
 
 // Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
-// arms' dynamics and their force limits. Errors: as above.
+// arms' dynamics, with the most that the devices give; what the scene asks for stays. Errors: as
+// above.
 Status readArmDynamics(Scene& scene);
 
 // How far each arm reaches: the full extents of its workspace, device axes, mm. Errors: as above.

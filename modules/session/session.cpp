@@ -42,8 +42,11 @@ void warnOfAbsentLabels(const TissueSet& tissues, const LabelMap* labels) {
   }
 }
 
-TissueSet uncuttable(TissueSet tissues) {
-  for (Tissue& tissue : tissues.tissues) tissue.cuttable = false;
+// Nothing of it can be paid for, and it is felt as it is: a sharp tool parts what could be cut.
+TissueSet tooToughToCut(TissueSet tissues) {
+  for (Tissue& tissue : tissues.tissues) {
+    tissue.cutting_J_per_mm3.value = kMechanicsRange.high;
+  }
   return tissues;
 }
 
@@ -85,7 +88,8 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   landmarks_ = of.landmarks;
   scene_ = withFixedMaps(scene, landmarks_);
   if (options.poke) {
-    scene_.tissues = uncuttable(std::move(scene_.tissues));
+    scene_.tissues = tooToughToCut(std::move(scene_.tissues));
+    scene_.removal = RemovalKind::work;
     poke_curves_.emplace(scene_.arms.size(), scene_.rate_hz);
   }
   controllers_.emplace_back(controllerName(scene.controller));
@@ -363,7 +367,7 @@ bool Session::setController(ControllerKind kind) {
 }
 
 Status Session::setTissues(const TissueSet& wanted) {
-  const TissueSet tissues = isPoke() ? uncuttable(wanted) : wanted;
+  const TissueSet tissues = isPoke() ? tooToughToCut(wanted) : wanted;
   if (Status valid = validate(tissues, "tissues"); !valid) return valid;
   if (Status known = checkLabels(tissues, grid_->labels().get()); !known) return known;
   // Voxels are counted by a tissue's place in the set, so the places stay.

@@ -5,6 +5,7 @@
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
+#include "scene/scene.h"
 #include "scene/scene_structures.h"
 #include "ui/cases/report_file.h"
 #include "ui/common/actions.h"
@@ -263,14 +264,25 @@ void CasesWorkspace::rename(const CaseEntry& entry, const QString& name) {
 }
 
 void CasesWorkspace::askToDelete(const CaseEntry& entry) {
+  int made_on_it = 0;
+  for (const auto& file : bench_.exercises()) {
+    const Result<Scene> scene = readScene(file);
+    const std::filesystem::path of = scene ? scene->case_source : "";
+    made_on_it += of.parent_path() == bench_.storage() / "cases" / entry.id;
+  }
   const std::size_t exercises = entry.exercises.size();
+  const QString made = made_on_it == 0 ? QString()
+                                       : ' ' + tr("Exercises that were made on it: %1; they have "
+                                                  "no case then.")
+                                                   .arg(made_on_it);
   ask(bench_.window(), "deleteQuestion",
       tr("Delete \"%1\"?").arg(toQt(entry.record.name.empty() ? entry.id : entry.record.name)),
-      exercises == 0
-          ? tr("Its volume, structures and report are removed from this workstation for good.")
-          : tr("Its volume, structures and report are removed from this workstation for good. The "
-               "recordings of %1 exercises stay, but cannot be replayed without it.")
-                .arg(exercises),
+      (exercises == 0
+           ? tr("Its volume, structures and report are removed from this workstation for good.")
+           : tr("Its volume, structures and report are removed from this workstation for good. The "
+                "recordings of %1 exercises stay, but cannot be replayed without it.")
+                 .arg(exercises)) +
+          made,
       tr("&Delete it"), [this, entry] {
         const bool begun =
             changing_.run([library = bench_.library(),

@@ -12,6 +12,7 @@
 namespace trephine {
 
 QString nameOfSetting(const char* key) {
+  if (std::string_view(key) == "arm") return QCoreApplication::translate("Setting", "Number");
   QStringList parts = QString(key).split('_');
   static const QStringList kUnits{"mm", "N", "Hz", "hz", "W", "s", "m"};
   if (parts.size() > 1 && kUnits.contains(parts.back())) parts.removeLast();
@@ -31,6 +32,12 @@ QString meaningOf(const NumberRow& row) {
   QString meaning = QCoreApplication::translate("Setting", row.meaning);
   meaning.remove('`');
   meaning[0] = meaning[0].toUpper();
+  constexpr double kNoLimit = 1e6;  // nobody comes there
+  if (row.range.high >= kNoLimit) {
+    return QCoreApplication::translate("Setting", "%1%2.")
+        .arg(meaning)
+        .arg(*row.range.unit ? ", " + QString(row.range.unit) : QString());
+  }
   return QCoreApplication::translate("Setting", "%1. %2 to %3%4.")
       .arg(meaning)
       .arg(row.range.low, 0, 'g', 6)
@@ -52,11 +59,14 @@ namespace {
 class HintLabel : public QLabel {
  public:
   using QLabel::QLabel;
+  QSize minimumSizeHint() const override {
+    return {QLabel::minimumSizeHint().width(), std::max(0, heightForWidth(width()))};
+  }
 
  protected:
   void resizeEvent(QResizeEvent* event) override {
     QLabel::resizeEvent(event);
-    setMinimumHeight(std::max(0, heightForWidth(width())));
+    updateGeometry();  // minimumSizeHint() follows the width
   }
 };
 
@@ -70,6 +80,13 @@ QLabel* settingHint(const QString& words, QWidget* parent) {
   label->setFont(small);
   colours::setText(*label, colours::kQuiet);
   label->setProperty("hint", true);
+  return label;
+}
+
+QLabel* settingText(const char* name, QWidget* parent) {
+  auto* label = new HintLabel(parent);
+  label->setObjectName(name);
+  label->setWordWrap(true);
   return label;
 }
 

@@ -23,6 +23,8 @@ QString shortMeaningOf(const NumberRow& row);
 double stepOfUnit(const char* unit);
 // A small quiet line below a field.
 QLabel* settingHint(const QString& words, QWidget* parent);
+// What a setting is that no field could hold.
+QLabel* settingText(const char* name, QWidget* parent);
 // A field, and below it what it does.
 QWidget* withHint(QWidget* field, const QString& words, QWidget* parent);
 

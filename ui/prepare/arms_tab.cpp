@@ -94,7 +94,10 @@ void ArmsTab::measureCosts() {
         ToolsPanel::Costs words;
         for (const auto& [law, ns] : costs->law_ns) {
           words.laws.emplace_back(
-              law, tr("%1 \u00b5s a tick").arg(std::max(0.0, ns) / 1000.0, 0, 'f', 2));
+              law, ns > costs->noise_ns
+                       ? tr("%1 \u00b5s a tick").arg(ns / 1000.0, 0, 'f', 2)
+                       : tr("under %1 \u00b5s")
+                             .arg(std::max(costs->noise_ns, 10.0) / 1000.0, 0, 'f', 2));
         }
         for (const auto& [kind, ns] : costs->controller_ns) {
           words.controllers.emplace_back(

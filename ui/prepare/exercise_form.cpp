@@ -131,7 +131,8 @@ QWidget* ExerciseForm::buildWhat() {
   });
   rows->addRow(
       tr("For"),
-      withHint(anatomy_, tr("Cases of another part of the body are asked about."), fields));
+      withHint(anatomy_, tr("On a case of another part of the body it asks before it starts."),
+               fields));
   structures_ = new QListWidget(fields);
   structures_->setObjectName("neededStructures");
   structures_->setAccessibleName(tr("Structures that it needs"));
@@ -146,9 +147,7 @@ QWidget* ExerciseForm::buildWhat() {
   });
   rows->addRow(tr("Needs"),
                withHint(structures_, tr("A case that lacks one is helped to it first."), fields));
-  case_ = new QLabel(fields);
-  case_->setObjectName("exerciseCase");
-  case_->setWordWrap(true);
+  case_ = settingText("exerciseCase", fields);
   auto* labels = settingButton("chooseLabels", tr("Structures from a file\u2026"),
                                tr("A label map of this case, also from another program"), fields);
   connect(labels, &QToolButton::clicked, this, &ExerciseForm::labelsWanted);
@@ -158,7 +157,7 @@ QWidget* ExerciseForm::buildWhat() {
   case_column->setSpacing(4);
   case_column->addWidget(case_);
   case_column->addWidget(labels, 0, Qt::AlignLeft);
-  rows->addRow(tr("Made on"),
+  rows->addRow(tr("Case"),
                withHint(of_case,
                         tr("The open case goes with it, and the structures that are saved "
                            "in the case."),
@@ -169,9 +168,7 @@ QWidget* ExerciseForm::buildWhat() {
     auto* grid = new QGridLayout(row);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setSpacing(4);
-    name = new QLabel(row);
-    name->setObjectName(object);
-    name->setWordWrap(true);
+    name = settingText(object, row);
     grid->addWidget(name, 0, 0, 1, 3);
     grid->addWidget(choose, 1, 0);
     grid->addWidget(none, 1, 1);

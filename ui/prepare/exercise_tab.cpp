@@ -162,6 +162,7 @@ void ExerciseTab::outlineClicked(const Vec3& at_mm) {
   const Status done = workstation_.edit("outline", [&](Scene& now) { now.outline = outline; });
   if (!done) return bench_.report(done.error());
   outline_first_.reset();
+  bench_.say(tr("The outline has %1 points. Esc: done.").arg(outline.points_mm.size()));
 }
 
 // --- Saving, trying ---
@@ -174,12 +175,17 @@ bool ExerciseTab::isOwn() const {
 // With the case that is open, as it lies in the library.
 std::optional<Scene> ExerciseTab::sceneToSave() {
   if (!workstation_.scene() || !workstation_.currentCase()) return {};
-  Scene scene = *workstation_.scene();
+  Result<Scene> made = workstation_.asMade();
+  if (!made) {
+    bench_.report(made.error());
+    return {};
+  }
+  Scene scene = *std::move(made);
   const Case& of = *workstation_.currentCase();
   if (of.built_in) return scene;
   if (of.stored.empty()) {
-    bench_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library yet", "",
-                   "Save the case first: Cases, Save the case"});
+    bench_.report({"CASE_NOT_SAVED", "The case of the exercise is not in the library", "",
+                   "Save the case first (Cases), or import it again where it was deleted"});
     return {};
   }
   const std::filesystem::path folder = bench_.storage() / "cases" / of.stored;
@@ -197,6 +203,7 @@ ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
 }
 
 void ExerciseTab::save(bool copy, Bench::Next then) {
+  if (!then && workstation_.isWriting()) return bench_.say(tr("It is being saved."));
   bench_.takeTyped();
   std::optional<Scene> scene = sceneToSave();
   if (!scene) return;
@@ -215,6 +222,24 @@ void ExerciseTab::save(bool copy, Bench::Next then) {
     return;
   }
   if (copy && isOwn()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
+  if (in_place && !replaces_) {
+    const Result<Scene> there = readScene(now.file);
+    const auto place = [](const std::string& source) {
+      return std::filesystem::path(source).lexically_normal();
+    };
+    if (there && place(there->case_source) != place(scene->case_source)) {
+      QMessageBox* question = ask(
+          bench_.window(), "madeOnAnotherCase", tr("This exercise was made on another case."),
+          tr("Save it on the open case as another one, or in the place of the one that is there."),
+          tr("&Replace it"), [this, then] {
+            replaces_ = true;
+            save(false, then);
+            replaces_ = false;
+          });
+      orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
+      return;
+    }
+  }
   if (!in_place) scene->name = freeName(scene->name);
   const std::filesystem::path folder = in_place ? workstation_.sceneFile().parent_path()
                                                 : freshExercise(bench_.storage(), scene->name);
@@ -226,12 +251,7 @@ void ExerciseTab::save(bool copy, Bench::Next then) {
         if (saved) *file = *saved;
         return saved ? Status() : Status(saved.error());
       },
-      [this, file, name = scene->name, then = std::move(then)] {
-        if (workstation_.scene() && workstation_.scene()->name != name) {
-          Scene named = *workstation_.scene();
-          named.name = name;
-          (void)workstation_.edit(named, "exercise name");
-        }
+      [this, file, then = std::move(then)] {
         opened_ = onDisk(*file);
         workstation_.exerciseSaved(*file);
         emit saved();

@@ -57,6 +57,7 @@ class ExerciseTab : public QObject {
   FourUp* views_;
   ExerciseForm* form_;
   bool in_front_ = false;
+  bool replaces_ = false;              // an exercise that was made on another case: that was asked
   bool entry_once_ = false;            // the entry tool goes once it was used
   std::optional<Vec3> outline_first_;  // the first point of a new outline
   OnDisk opened_;                      // the exercise's file as it was opened, or saved, here

@@ -65,8 +65,9 @@ void PrepareWorkspace::showTab() {
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
   tissues_->setRenderable(
-      armsLimit(scene), [scene](const Tissue& tissue) { return demandedOf(scene, tissue); },
-      scene.laws, in_force);
+      armsLimit(withArmsOfThisPlace(scene)),
+      [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, scene.laws,
+      scene.removal, in_force);
 }
 
 // The views show what the panel of structures lists while it is in front, else what the exercise

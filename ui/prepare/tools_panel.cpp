@@ -47,6 +47,13 @@ QString lawMeaning(LawKind law) {
   return {};
 }
 
+// What laws and controllers cost holds while these alone are changed.
+bool sameButLaws(Scene a, const Scene& b) {
+  a.laws = b.laws;
+  a.controller = b.controller;
+  return sameScene(a, b);
+}
+
 template <class Kind, std::size_t N>
 void fill(QComboBox& box, const Names<Kind, N>& names) {
   for (const auto& [name, kind] : names) {
@@ -395,8 +402,12 @@ QWidget* ToolsPanel::buildArms() {
   connect(arm_tool_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_tool_->currentData().toString().toStdString();
     editArm("tool", [&](SceneArm& arm) {
-      arm.tool = id;
+      // The one that it had stays at hand.
+      const std::string before = std::exchange(arm.tool, id);
       std::erase(arm.other_tools, id);
+      if (before != id && arm.other_tools.size() + 1 < kMostTools) {
+        arm.other_tools.push_back(before);
+      }
     });
   });
   arm_form_->addRow(tr("In hand"), withHint(arm_tool_, tr("What it holds at first."), fields));
@@ -584,6 +595,7 @@ QWidget* ToolsPanel::buildLaws() {
   controller_cost_ = new QLabel(fields);
   controller_cost_->setObjectName("controllerCost");
   controller_cost_->setProperty("quiet", true);
+  controller_cost_->setWordWrap(true);
   auto* control = new QWidget(fields);
   auto* control_layout = new QVBoxLayout(control);
   control_layout->setContentsMargins(0, 0, 0, 0);
@@ -705,6 +717,7 @@ void ToolsPanel::setScene(const Scene& scene) {
   if (!sameScene(scene, scene_)) {  // what was refused was of another
     for (QLabel* problem : {tool_problem_, arm_problem_, law_problem_}) problem->hide();
   }
+  if (!sameButLaws(scene, scene_)) costs_ = {};  // they were of another
   scene_ = scene;
   showing_ = true;
   body_->setEnabled(locked_->text().isEmpty());

@@ -29,6 +29,11 @@ void LimitBar::setFelt(bool felt) {
   tell();
 }
 
+void LimitBar::setWeaker(bool weaker) {
+  weaker_ = weaker;
+  tell();
+}
+
 void LimitBar::setLimit(std::optional<double> shown, bool bounds) {
   limit_ = shown;
   bounds_ = bounds;
@@ -41,6 +46,7 @@ double LimitBar::at(double value) const {
 
 QString LimitBar::words() const {
   if (!felt_) return tr("not felt");
+  if (weaker_) return tr("felt weaker");
   if (limit_ && *limit_ < 0.5 * std::pow(10.0, -decimals_)) return tr("none left");
   if (!limit_ || *limit_ >= most_) return tr("any arm");
   return tr("arm %1").arg(*limit_, 0, 'f', *limit_ < 1.0 ? 2 : *limit_ < 100.0 ? 1 : 0);
@@ -49,7 +55,13 @@ QString LimitBar::words() const {
 void LimitBar::tell() {
   QString tip = tr("From 0 to %1.").arg(most_, 0, 'g', 6) + ' ';
   if (!felt_) {
-    tip += tr("No law of this exercise uses it (Tools, What is felt).");
+    tip +=
+        tr("Nothing in this exercise uses it, with the tissue's other numbers and the laws "
+           "(Tools, What is felt) as they are.");
+  } else if (weaker_) {
+    tip +=
+        tr("The tissue is stiffer than the arms can show: its force is felt weaker than this "
+           "when it gives way.");
   } else if (!limit_ || *limit_ >= most_) {
     tip += tr("No arm limits it.");
   } else if (*limit_ < 0.5 * std::pow(10.0, -decimals_)) {

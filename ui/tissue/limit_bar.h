@@ -16,12 +16,14 @@ class LimitBar : public QWidget {
   void setValue(double value);
   // False: no law of the exercise uses the number.
   void setFelt(bool felt);
+  // A force that comes weaker than it says.
+  void setWeaker(bool weaker);
   // `shown`: the most that the arms show; none: they have no say in it. `bounds`: the controller
   // keeps to it, else what lies above may shake.
   void setLimit(std::optional<double> shown, bool bounds);
   std::optional<double> limit() const { return limit_; }
 
-  // "arm 8.3", "any arm", "not felt", as it is written beside the bar.
+  // "arm 8.3", "any arm", "not felt", "felt weaker", as it is written beside the bar.
   QString words() const;
 
   QSize sizeHint() const override;
@@ -37,7 +39,7 @@ class LimitBar : public QWidget {
   double most_ = 1.0, step_ = 0.01, value_ = 0.0;
   int decimals_ = 2;
   std::optional<double> limit_;
-  bool bounds_ = true, felt_ = true;
+  bool bounds_ = true, felt_ = true, weaker_ = false;
 };
 
 }  // namespace trephine

@@ -34,7 +34,10 @@ QColor toneOf(std::size_t age) {
 PokePlot::PokePlot(QWidget* parent) : QWidget(parent) {
   setObjectName("pokePlot");
   setAccessibleName(tr("Force against depth of the last pokes"));
-  setToolTip(tr("Solid: the force that the arm was sent; dashed: what the tissue demanded"));
+  setToolTip(
+      tr("Solid: the force that the arm was sent; dashed: what the tissue demanded. Depth is "
+         "how far the hand has gone along the tool: where bone stops the tool, it is the "
+         "hand that goes on."));
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
 }
 
@@ -119,10 +122,8 @@ void PokePlot::paintEvent(QPaintEvent*) {
   double y = in.top() + 2.0;
   for (std::size_t age = 0; age < pokes_.size() && y + line < in.bottom(); ++age, y += line) {
     const PokeCurve& poke = pokes_[pokes_.size() - 1 - age];
-    double peak = 0.0;
-    for (const PokePoint& p : poke.points) peak = std::max(peak, p.sent_N);
     painter.setPen(toneOf(age));
-    const QString words = tr("%1, up to %2 N").arg(nameOf(poke)).arg(peak, 0, 'f', 2);
+    const QString words = tr("%1, up to %2 N").arg(nameOf(poke)).arg(poke.most_N, 0, 'f', 2);
     painter.drawText(QRectF(in.left() + 6.0, y, in.width() - 12.0, line), Qt::AlignLeft,
                      fontMetrics().elidedText(words, Qt::ElideRight, int(in.width()) - 12));
   }

@@ -98,10 +98,12 @@ void TissueMechanics::update(const Tissue& tissue, const Tissue& declared) {
 }
 
 void TissueMechanics::setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
-                                const std::vector<LawKind>& laws, ControllerKind in_force) {
+                                const std::vector<LawKind>& laws, RemovalKind removal,
+                                ControllerKind in_force) {
   arms_ = arms;
   demanded_ = std::move(demanded);
   laws_ = laws;
+  removal_ = removal;
   in_force_ = in_force;
   showOutcome();
 }
@@ -120,12 +122,16 @@ void TissueMechanics::showOutcome() {
                           .arg(n.row->most, 0, 'g', 6)
                           .arg(unitOf(*n.row)) +
                       (given ? '\n' + tr("Source: %1").arg(source) : QString()));
-    n.bar->setFelt(laws_.empty() || isFelt(*n.row, laws_));
+    n.bar->setFelt(!laws_ || isFelt(*n.row, tissue_, *laws_, removal_));
+    n.bar->setWeaker(arms_ && demanded_ && in_force_ == ControllerKind::bounded &&
+                     isWeaker(*n.row, tissue_, *arms_, demanded_));
     n.bar->setValue(n.row->valueOf(tissue_) * n.row->shown_per);
     std::optional<double> most;
     if (arms_ && demanded_) most = mostShown(*n.row, tissue_, *arms_, demanded_);
     if (most) *most *= n.row->shown_per;
-    n.bar->setLimit(most, in_force_ == ControllerKind::bounded);
+    // Forces are clamped under every controller.
+    const bool force = std::string_view(n.row->unit) == "N";
+    n.bar->setLimit(most, force || in_force_ == ControllerKind::bounded);
   }
   const QSignalBlocker quiet_cut(cuttable_), quiet_solid(solid_);
   cuttable_->setChecked(tissue_.cuttable);

@@ -26,7 +26,7 @@ class TissueMechanics : public QWidget {
   // The same, but for what is typed: after another field was taken.
   void update(const Tissue& tissue, const Tissue& declared);
   void setLimits(const std::optional<ArmsLimit>& arms, DemandedOf demanded,
-                 const std::vector<LawKind>& laws, ControllerKind in_force);
+                 const std::vector<LawKind>& laws, RemovalKind removal, ControllerKind in_force);
 
   // A person wants this; `what` is the number's key. The tissue is as it was where it is refused.
   std::function<Status(const Tissue& wanted, const char* what)> wanted;
@@ -48,7 +48,8 @@ class TissueMechanics : public QWidget {
   Tissue tissue_, declared_;
   std::optional<ArmsLimit> arms_;
   DemandedOf demanded_;
-  std::vector<LawKind> laws_;
+  std::optional<std::vector<LawKind>> laws_;
+  RemovalKind removal_ = RemovalKind::work;
   ControllerKind in_force_ = ControllerKind::bounded;
 };
 

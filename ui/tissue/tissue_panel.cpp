@@ -237,11 +237,12 @@ void TissuePanel::setLooks(const TissueLooks& looks) {
 
 void TissuePanel::setRenderable(const std::optional<ArmsLimit>& most,
                                 std::function<Impedance(const Tissue&)> demanded,
-                                const std::vector<LawKind>& laws, ControllerKind in_force) {
+                                const std::vector<LawKind>& laws, RemovalKind removal,
+                                ControllerKind in_force) {
   arms_ = most;
   demanded_ = std::move(demanded);
   in_force_ = in_force;
-  mechanics_->setLimits(arms_, demanded_, laws, in_force_);
+  mechanics_->setLimits(arms_, demanded_, laws, removal, in_force_);
   showFelt();
 }
 

@@ -54,7 +54,8 @@ class TissuePanel : public QWidget {
   // `in_force` is the controller now.
   void setRenderable(const std::optional<ArmsLimit>& most,
                      std::function<Impedance(const Tissue&)> demanded,
-                     const std::vector<LawKind>& laws, ControllerKind in_force);
+                     const std::vector<LawKind>& laws, RemovalKind removal,
+                     ControllerKind in_force);
   // Sets of this workstation, to be taken: a name and a file.
   void setSets(const std::vector<std::pair<QString, std::filesystem::path>>& sets);
   // What the last edit was; empty: there is none.

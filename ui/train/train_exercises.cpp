@@ -11,6 +11,19 @@
 
 namespace trephine {
 
+namespace {
+
+// One line that leaves room for the buttons beside it, whatever a file calls itself.
+QString listedName(const std::string& name) {
+  constexpr int kMostLetters = 40;
+  QString line = toQt(name).simplified();
+  line.removeIf([](QChar c) { return !c.isPrint(); });
+  if (line.isEmpty()) return TrainWorkspace::tr("(no name)");
+  return line.size() > kMostLetters ? line.left(kMostLetters - 1) + QChar(0x2026) : line;
+}
+
+}  // namespace
+
 void TrainWorkspace::fillScenes() {
   const QSignalBlocker quiet(scenes_);
   scenes_->clear();
@@ -23,7 +36,7 @@ void TrainWorkspace::fillScenes() {
       refuse(scenes_->count() - 1, toQt(scene.error().sentence()));
       continue;
     }
-    const QString name = toQt(scene->name);  // of two that came from elsewhere perhaps the same
+    const QString name = listedName(scene->name);  // of two from elsewhere perhaps the same
     scenes_->addItem(scenes_->findText(name) < 0 ? name : tr("%1 (%2)").arg(name, folder),
                      toQt(file));
     listed_.emplace_back(file, *std::move(scene));
@@ -57,9 +70,9 @@ void TrainWorkspace::showInUse() {
   }
   const QString file = toQt(workstation_.sceneFile());
   int index = scenes_->findData(file);
-  if (index < 0) index = scenes_->findText(toQt(scene->name));
+  if (index < 0) index = scenes_->findText(listedName(scene->name));
   if (index < 0) {
-    scenes_->addItem(toQt(scene->name), file);
+    scenes_->addItem(listedName(scene->name), file);
     index = scenes_->count() - 1;
   }
   scenes_->setCurrentIndex(index);
@@ -139,9 +152,9 @@ void TrainWorkspace::refuse(int index, const QString& why) {
 // Until it is open, or cannot be had.
 void TrainWorkspace::showOpening(const Scene& scene, const std::filesystem::path& file) {
   if (!result_shown_) aside_ = false;
-  scenes_->setPlaceholderText(toQt(scene.name));  // where the list has it not yet
+  scenes_->setPlaceholderText(listedName(scene.name));  // where the list has it not yet
   const int index = scenes_->findData(toQt(file));
-  scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(toQt(scene.name)));
+  scenes_->setCurrentIndex(index >= 0 ? index : scenes_->findText(listedName(scene.name)));
   arms_->showController(scene.controller);
 }
 

@@ -82,7 +82,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     }
     touched_ = touched_ || hands_->taken();
     notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
-    exercise_->showTime(double(state.seconds));
+    if (!session.isPoke()) exercise_->showTime(double(state.seconds));
     exercise_->showTools(session.scene(), state.tools);
     if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
     showHand();

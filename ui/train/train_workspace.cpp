@@ -32,6 +32,8 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   scenes_->setToolTip(tr("The exercise"));
   scenes_->setAccessibleName(tr("Exercise"));
   scenes_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  constexpr int kMostWidth = 320;  // of the widest letters
+  scenes_->setMaximumWidth(kMostWidth);
   notice_ = new StateNotice(views_);
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;

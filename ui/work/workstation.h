@@ -134,6 +134,9 @@ class Workstation : public QObject {
   // Whether anything but tissues and controller is another than the exercise was opened with, or
   // saved as.
   bool sceneEdited() const;
+  // The exercise as it is made: scene(), but with the tissues for which it was made where the case
+  // lacks a structure that they need. Errors: those of reading its file.
+  Result<Scene> asMade() const;
   // The case lacks a structure that is needed: the exercise runs on its set for such cases.
   bool isElsewhere() const;
   // How tissues look: the scene's until a person chooses. Of the view alone, so neither the scene

@@ -218,6 +218,16 @@ void Workstation::goTo(Scene scene) {
   emit editsChanged();
 }
 
+Result<Scene> Workstation::asMade() const {
+  if (one_set_ || scene_->tissues_elsewhere) return *scene_;
+  Result<Scene> file = readScene(scene_file_);
+  if (!file) return isElsewhere() ? file : *scene_;
+  if (!file->tissues_elsewhere && !elsewhere_) return *scene_;
+  Scene made = asEdited(*std::move(file));
+  if (edited_other_) made.tissues = unplaced(*edited_other_);
+  return made;
+}
+
 bool Workstation::isElsewhere() const {
   return case_ && std::ranges::any_of(case_->warnings, [](const Warning& warning) {
            return warning.code == "LACKS_STRUCTURE";
@@ -247,6 +257,7 @@ void Workstation::exerciseSaved(const std::filesystem::path& file) {
   elsewhere_.reset();
   // Its files lie elsewhere now; numbers and the labels of this case stay.
   keepCase(*scene_, *saved);
+  scene_->name = saved->name;
   scene_->operator_file = saved->operator_file;
   for (std::size_t i = 0; i < scene_->tools.size() && i < saved->tools.size(); ++i) {
     scene_->tools[i].look.mesh = saved->tools[i].look.mesh;
@@ -267,7 +278,11 @@ Scene Workstation::asEdited(Scene file, bool another_case) const {
   if (!scene_) return file;
   Scene out = *scene_;
   keepCase(out, file);
-  for (Landmark& landmark : out.landmarks) {  // a place is of one patient
+  for (SceneArm& arm : out.arms) {  // a place is of one patient
+    const auto same = std::ranges::find(file.arms, arm.name, &SceneArm::name);
+    if (another_case && arm.map.fixed && same != file.arms.end()) arm.map = same->map;
+  }
+  for (Landmark& landmark : out.landmarks) {
     const Landmark* of_file = file.findLandmarkById(landmark.id);
     if (another_case && of_file && isEntry(landmark)) landmark = *of_file;
   }

@@ -14,6 +14,7 @@
 #include "lab/trades/recommended.h"
 #include "lab/trades/trade_knobs.h"
 #include "render/scene_renderer.h"
+#include "scene/arm_limits.h"
 #include "scene/names.h"
 #include "session/arm_devices.h"
 #include "session/case.h"
@@ -178,6 +179,7 @@ std::vector<std::pair<std::string, std::string>> sceneSettings(const Scene& scen
 
 Result<Json> explainScene(Scene scene, const Progress& progress) {
   if (Status asked = readArmDynamics(scene); !asked) return asked.error();
+  for (SceneArm& arm : scene.arms) arm.max_force_N = mostForce_N(arm);
   const Result<Json> warnings = warningsAtStart(scene, Progress(progress, 0.0, 0.5));
   if (!warnings) return warnings.error();
   HapticParameters parameters = hapticParameters(scene);

@@ -13,8 +13,11 @@ namespace trephine {
 
 struct LawCosts {
   double tick_ns = 0.0;  // as the scene is, one arm
-  // What a tick with it takes more than one without it, the scene's other laws as they are.
+  // What a tick with it takes more than one without it, the scene's other laws as they are: the
+  // median of the rounds' differences, and half of what the middle half of them spans.
   std::vector<std::pair<LawKind, double>> law_ns;
+  double noise_ns = 0.0;  // of the noisiest law: what is less is not measured
+  bool touched = false;   // each tool was in the tissue, with its force
   // A tick's time with it.
   std::vector<std::pair<ControllerKind, double>> controller_ns;
 };

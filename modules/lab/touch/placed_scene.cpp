@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/system.h"
+#include "scene/arm_limits.h"
 #include "session/arm_devices.h"
 #include "session/case.h"
 
@@ -18,6 +19,7 @@ Result<PlacedScene> placeScene(const std::string& name, const std::string& case_
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / (name + ".json"));
   if (!scene) return scene.error();
   if (Status asked = readArmDynamics(*scene); !asked) return asked.error();
+  for (SceneArm& arm : scene->arms) arm.max_force_N = mostForce_N(arm);
   if (!case_source.empty()) useCase(*scene, case_source);
   const Result<Case> of = openCase(*scene, progress);
   if (!of) return of.error();

@@ -16,6 +16,10 @@ namespace trephine {
 
 namespace {
 constexpr int kLong_ms = 30000;
+
+bool names(const std::vector<std::string>& list, const char* name) {
+  return std::ranges::find(list, name) != list.end();
+}
 }
 
 class ExerciseGuiTest : public test::WindowTest {
@@ -197,12 +201,13 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     choose("armTool", QString("burr"));
     QCOMPARE(scene().arms[0].tool, std::string("burr"));
+    QVERIFY(names(scene().arms[0].other_tools, "blade"));  // it stays at hand
     tick("otherTools", "craniotome", false);
-    QVERIFY(std::ranges::find(scene().arms[0].other_tools, "craniotome") ==
-            scene().arms[0].other_tools.end());
+    QVERIFY(!names(scene().arms[0].other_tools, "craniotome"));
+    tick("otherTools", "blade", false);
+    QVERIFY(!names(scene().arms[0].other_tools, "blade"));
     tick("otherTools", "blade", true);
-    QVERIFY(std::ranges::find(scene().arms[0].other_tools, "blade") !=
-            scene().arms[0].other_tools.end());
+    QVERIFY(names(scene().arms[0].other_tools, "blade"));
     enter("arm:motion_scale", "0.5");
     QCOMPARE(scene().arms[0].map.motion_scale, 0.5);
     enter("arm:force_scale", "2");
@@ -213,6 +218,15 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().arms[0].max_force_N, 1.5);
     // What the arms show of the tissues follows.
     QCOMPARE(*find<LimitBar>("frictionLimit")->limit(), 0.75);
+    // What is asked for stays as it is asked for; what the device gives is said.
+    enter("arm:max_force_N", "50");
+    QCOMPARE(scene().arms[0].max_force_N, 50.0);
+    QCOMPARE(*find<LimitBar>("frictionLimit")->limit(), 1.65);
+    const Json before = sceneFile(scene());
+    find<QToolButton>("removeArm")->click();
+    QCOMPARE(scene().arms.size(), std::size_t(1));
+    workstation().undoEdit();
+    QCOMPARE(toQt(sceneFile(scene()).dump()), toQt(before.dump()));
     choose("armChoice", QString("right"));
     enter("arm:motion_scale", "0.8");
     QCOMPARE(scene().arms[1].map.motion_scale, 0.8);
@@ -397,7 +411,8 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kToolTab);
     QVERIFY(find<QLabel>("law:elastic:cost")->text().isEmpty());
     find<QToolButton>("measureCosts")->click();
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("law:elastic:cost")->text().contains("a tick"), kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("law:elastic:cost")->text().contains("\u00b5s a tick"),
+                             kLong_ms);
     QVERIFY(find<QLabel>("controllerCost")->text().contains("a tick"));
     find<QListWidget>("toolList")->setCurrentRow(0);
     for (const char* trade : {"pointsTrade", "forceTrade", "rateTrade", "raysTrade"}) {
@@ -556,7 +571,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(!scene().outline);
     ViewWidget& view = window_->view();
     QTRY_VERIFY_WITH_TIMEOUT(view.isComplete(), kLong_ms);
-    const QImage before = view.grab().toImage();
+    const QImage before = view.grabFramebuffer();
     find<QToolButton>("drawOutline")->click();
     QCOMPARE(window_->views().tool(), SliceTool::outline);
     const QPoint middle = view.rect().center();
@@ -575,6 +590,15 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().outline->width_mm, 2.5);
     QTest::qWait(300);
     keepGrab("prepare-outline.png");
+    const QImage with = view.grabFramebuffer();
+    QCOMPARE(with.size(), before.size());
+    int changed = 0;
+    for (int y = 0; y < with.height(); ++y) {
+      for (int x = 0; x < with.width(); ++x) {
+        changed += qAbs(qGray(with.pixel(x, y)) - qGray(before.pixel(x, y))) > 24;
+      }
+    }
+    QVERIFY2(changed > 150, qPrintable(QString::number(changed)));
     find<QToolButton>("outlineBack")->click();
     QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
     key(&slice(SliceAxis::axial), Qt::Key_Escape);
@@ -777,6 +801,31 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QPushButton>("saveExercise")->click();
     untilSaved();
     QCOMPARE(readScene(file)->view.distance_mm, 333.0);
+  }
+
+  void onAnotherCaseItIsAskedWhetherItIsReplacedAndAFixedArmIsNotTakenAlong() {
+    showTab(PrepareWorkspace::kToolTab);
+    choose("armChoice", QString("left"));
+    choose("armLandmark", QString(""));
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QPushButton>("saveExercise")->click();
+    untilSaved();
+    choose("viewLandmark", QString(""));
+    const std::filesystem::path file = workstation().sceneFile();
+    const std::string before = readScene(file)->case_source;
+    QSignalSpy opened(&workstation(), &Workstation::caseOpened);
+    workstation().openPhantom("cranium");
+    QVERIFY(opened.count() == 1 || opened.wait(kLong_ms));
+    QVERIFY(workstation().sceneFile() == file);
+    showTab(PrepareWorkspace::kExerciseTab);
+    find<QPushButton>("saveExercise")->click();
+    QTRY_VERIFY(window_->findChild<QMessageBox*>("madeOnAnotherCase"));
+    QCOMPARE(readScene(file)->case_source, before);
+    QTest::mouseClick(find<QPushButton>("saveBeside"), Qt::LeftButton);
+    QTRY_VERIFY_WITH_TIMEOUT(workstation().sceneFile() != file, kLong_ms);
+    untilSaved();
+    QCOMPARE(readScene(file)->case_source, before);
+    QCOMPARE(readScene(workstation().sceneFile())->case_source, std::string("phantom:cranium"));
   }
 
   void whatIsLockedIsNotEdited() {

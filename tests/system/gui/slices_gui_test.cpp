@@ -463,7 +463,7 @@ class SlicesGuiTest : public test::WindowTest {
         for (int x = -30; x <= 30; ++x) {
           const QPoint p = at + QPoint(x, y);
           if (!image.valid(p)) continue;
-          coloured += near(image.pixelColor(p), armColour(scene.arms[0], 0), 30);
+          coloured += near(image.pixelColor(p), colours::ofArm(scene.arms[0], 0), 30);
         }
       }
       marked = coloured > 15 && removed > 0;

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
+#include "base/system.h"
 #include "packed_words.h"
 #include "scene/scene.h"
 #include "session/case.h"
@@ -198,6 +199,7 @@ TEST_F(ExerciseFolder, WhatLiesOutsideOfItIsRefused) {
   Json matching = good;
   ASSERT_EQ(matching["parts"][0]["file"], "scene.json");
   matching["parts"][0]["sha256"] = sha256Hex(bytes.data(), bytes.size());
+  matching["parts"][0]["bytes"] = bytes.size();
   ASSERT_TRUE(writeTextFile(list, matching.dump()));
   const auto refused = importExercise(folder_ / "stick", folder_ / "there");
   ASSERT_FALSE(refused);
@@ -290,6 +292,114 @@ TEST_F(ExerciseFolder, SavingItAgainKeepsWhatAPersonHasPutBesideItAndDropsWhatIt
   EXPECT_TRUE(fs::exists(folder / "photo.jpg"));
   EXPECT_EQ(fs::read_symlink(folder / "cover"), "photo.jpg");
   EXPECT_FALSE(fs::exists(folder / "operator.json"));
+}
+
+TEST_F(ExerciseFolder, TheCaseThatCameWithItStaysWhenItIsSavedOnAnother) {
+  exported(ofAPatient());
+  const ImportedExercise there = imported();
+  ASSERT_TRUE(there.check.verified());
+  const fs::path folder = there.scene.parent_path();
+  Scene scene = *readScene(there.scene);
+  const std::string volume = textOf(folder / "case" / "volume.mha");
+  scene.case_source = "phantom:abdomen";
+  scene.labels_file.clear();
+  ASSERT_TRUE(saveExercise(scene, folder, folder_ / "there").ok());
+  EXPECT_EQ(textOf(folder / "case" / "volume.mha"), volume);
+  EXPECT_TRUE(fs::exists(folder / "case" / "structures.seg.nrrd"));
+  EXPECT_FALSE(fs::exists(folder / "exercise.json")) << "it is no longer what was exported";
+}
+
+TEST_F(ExerciseFolder, APersonsFileWhoseNameItNeedsNowIsKeptBesideItAsAreEmptyFolders) {
+  const fs::path storage = folder_ / "storage", folder = storage / "exercises" / "mine";
+  Scene scene = *readScene(shipped("liver"));
+  ASSERT_TRUE(saveExercise(scene, folder, storage).ok());
+  fs::create_directories(folder / "pictures");
+  ASSERT_TRUE(writeTextFile(folder / "tools" / "probe.stl", "precious").ok());
+  scene.tools[0].id = "probe";
+  scene.tools[0].look.mesh = resourceFolder() / "tools" / "burr4.stl";
+  for (SceneArm& arm : scene.arms) arm.tool = "probe", arm.other_tools.clear();
+  ASSERT_TRUE(saveExercise(scene, folder, storage).ok());
+  EXPECT_EQ(textOf(folder / "tools" / "probe-kept.stl"), "precious");
+  EXPECT_GT(fs::file_size(folder / "tools" / "probe.stl"), 100u);
+  EXPECT_TRUE(fs::is_directory(folder / "pictures"));
+}
+
+TEST_F(ExerciseFolder, APlaceThatCannotBeLookedAtIsAnErrorAndNoEndlessSearch) {
+  fs::create_symlink("loop", folder_ / "loop");
+  const fs::path storage = folder_ / "loop";
+  const Scene scene = *readScene(shipped("liver"));
+  EXPECT_EQ(saveExercise(scene, freshExercise(storage, "Mine"), storage).error().code,
+            "CANNOT_WRITE");
+  exported(shipped("liver"));
+  EXPECT_EQ(importExercise(folder_ / "stick", storage).error().code, "CANNOT_WRITE");
+}
+
+TEST_F(ExerciseFolder, WhatIsNoCaseScriptOrMeshIsNotExported) {
+  const auto refused = [&](const fs::path& scene, const std::string& of) {
+    const auto done = exportExercise(scene, of, folder_ / "stick");
+    EXPECT_FALSE(done.ok());
+    EXPECT_FALSE(fs::exists(folder_ / "stick"));
+    return done ? std::string() : done.error().code;
+  };
+  EXPECT_FALSE(refused(shipped("liver"), "phantom:nope").empty());
+  const fs::path of = ofAPatient(), file = folder_ / "letter.txt";
+  ASSERT_TRUE(writeTextFile(file, "Dear Sir").ok());
+  Json scene = *readJsonFile(of);
+  scene["operator"] = file.string();
+  ASSERT_TRUE(writeTextFile(of, scene.dump()).ok());
+  EXPECT_EQ(refused(of, ""), "BAD_JSON");
+  scene.erase("operator");
+  scene["tools"][0]["mesh"] = file.string();
+  ASSERT_TRUE(writeTextFile(of, scene.dump()).ok());
+  EXPECT_EQ(refused(of, ""), "NOT_STL");
+}
+
+TEST_F(ExerciseFolder, AnotherNameOfTheSceneALinkedFolderOrAFalseSizeIsNoVerifiedImport) {
+  exported(shipped("liver"));
+  const fs::path stick = folder_ / "stick";
+  const std::string list = textOf(stick / "exercise.json");
+  Json other = Json::parse(list);
+  other["scene"] = "lesson.json";
+  ASSERT_TRUE(writeTextFile(stick / "exercise.json", other.dump()).ok());
+  EXPECT_EQ(importExercise(stick, folder_ / "there").error().code, "BAD_FIELD");
+  other = Json::parse(list);
+  other["parts"][0]["bytes"] = 1;
+  ASSERT_TRUE(writeTextFile(stick / "exercise.json", other.dump()).ok());
+  EXPECT_FALSE(imported().check.verified());
+  ASSERT_TRUE(writeTextFile(stick / "exercise.json", list).ok());
+  fs::rename(stick / "tools", folder_ / "elsewhere");
+  fs::create_directory_symlink(folder_ / "elsewhere", stick / "tools");
+  EXPECT_FALSE(imported().check.missing.empty());
+  EXPECT_TRUE(exercisesIn(folder_ / "there").empty());
+}
+
+TEST_F(ExerciseFolder, AMeshGoesWithoutWhatItsHeaderSaysOfItsMaker) {
+  const std::string maker = "Exported from /home/ann/Patients/Smith_John/burr.blend";
+  std::string binary = maker + std::string(80 - maker.size(), ' ');
+  const std::uint32_t count = 1;
+  binary.append(reinterpret_cast<const char*>(&count), 4);
+  binary +=
+      std::string("solid triangle, not to be read as text, of exactly fifty bytes").substr(0, 50);
+  const std::string text = "solid " + maker +
+                           "\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                           "vertex 0 1 0\nendloop\nendfacet\nendsolid " +
+                           maker + "\n";
+  for (const std::string& stl : {binary, text}) {
+    const fs::path mesh = folder_ / "mesh.stl", storage = folder_ / "storage";
+    ASSERT_TRUE(writeTextFile(mesh, stl).ok());
+    Scene scene = *readScene(shipped("burr-hole"));
+    scene.tools[0].look.mesh = mesh;
+    const Result<fs::path> saved = saveExercise(scene, storage / "exercises" / "mine", storage);
+    ASSERT_TRUE(saved.ok()) << saved.error().sentence();
+    const std::string copy = textOf(readScene(*saved)->tools[0].look.mesh);
+    EXPECT_EQ(copy.find("ann"), std::string::npos);
+    if (stl == binary) {
+      EXPECT_EQ(copy.substr(80), stl.substr(80)) << "the same triangles";
+    } else {
+      EXPECT_NE(copy.find("vertex 1 0 0"), std::string::npos);
+      EXPECT_EQ(copy.substr(0, 6), "solid\n");
+    }
+  }
 }
 
 TEST_F(ExerciseFolder, WhatAKilledProgramLeftIsTakenAwayADayLater) {

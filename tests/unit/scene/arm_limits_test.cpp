@@ -35,17 +35,67 @@ TEST(ArmLimits, AreOfTheWeakestArmAndNoneWithoutDynamics) {
 }
 
 TEST(ArmLimits, ANumberIsFeltWhereALawOfTheExerciseUsesIt) {
-  const std::vector<LawKind> viscous{LawKind::viscous}, rupture{LawKind::rupture};
-  EXPECT_TRUE(isFelt(number("damping_Ns_per_m"), viscous));
-  EXPECT_FALSE(isFelt(number("stiffness_N_per_m"), viscous));
-  EXPECT_FALSE(isFelt(number("friction_N"), viscous));
-  EXPECT_FALSE(isFelt(number("rupture_N"), viscous));
-  EXPECT_TRUE(isFelt(number("cutting_J_per_mm3"), viscous)) << "removal uses it";
-  EXPECT_FALSE(isFelt(number("damping_Ns_per_m"), rupture));
-  EXPECT_TRUE(isFelt(number("stiffness_N_per_m"), rupture));
-  EXPECT_TRUE(isFelt(number("rupture_N"), rupture));
-  EXPECT_FALSE(isFelt(number("friction_N"), rupture));
-  EXPECT_TRUE(isFelt(number("friction_N"), {LawKind::coulomb}));
+  Tissue tissue = startingSet("Mine").tissues[1];
+  tissue.stiffness_N_per_m.value = 300.0;
+  tissue.friction_N.value = 0.2;
+  tissue.rupture_N = SourcedNumber{2.0, "here"};
+  const auto felt = [&](const char* key, const std::vector<LawKind>& laws,
+                        RemovalKind removal = RemovalKind::work) {
+    return isFelt(number(key), tissue, laws, removal);
+  };
+  const std::vector<LawKind> viscous{LawKind::viscous}, rupture{LawKind::rupture},
+      coulomb{LawKind::coulomb};
+  EXPECT_TRUE(felt("damping_Ns_per_m", viscous));
+  EXPECT_FALSE(felt("stiffness_N_per_m", viscous));
+  EXPECT_FALSE(felt("friction_N", viscous));
+  EXPECT_FALSE(felt("rupture_N", viscous));
+  EXPECT_FALSE(felt("damping_Ns_per_m", rupture));
+  EXPECT_TRUE(felt("stiffness_N_per_m", rupture));
+  EXPECT_TRUE(felt("rupture_N", rupture));
+  EXPECT_FALSE(felt("friction_N", rupture));
+  EXPECT_TRUE(felt("friction_N", coulomb));
+  EXPECT_TRUE(felt("stiffness_N_per_m", coulomb));
+  for (const char* key : {"damping_Ns_per_m", "stiffness_N_per_m", "friction_N", "rupture_N"}) {
+    EXPECT_FALSE(felt(key, {})) << key << ": there is no law";
+  }
+  // Each law needs more than one number.
+  tissue.friction_N.value = 0.0;
+  EXPECT_FALSE(felt("stiffness_N_per_m", coulomb));
+  tissue.rupture_N.reset();
+  EXPECT_FALSE(felt("stiffness_N_per_m", rupture));
+  tissue.stiffness_N_per_m.value = 0.0;
+  EXPECT_FALSE(felt("friction_N", coulomb));
+  EXPECT_FALSE(felt("rupture_N", rupture));
+  EXPECT_TRUE(felt("stiffness_N_per_m", {LawKind::elastic}));
+  // Removal, not a law.
+  tissue.cuttable = true;
+  EXPECT_TRUE(felt("cutting_J_per_mm3", {}));
+  EXPECT_FALSE(felt("cutting_J_per_mm3", {}, RemovalKind::instant));
+  tissue.cuttable = false;
+  EXPECT_FALSE(felt("cutting_J_per_mm3", {}));
+}
+
+TEST(ArmLimits, DampingAndStiffnessAreBoundedEachByItself) {
+  const ArmsLimit arms{{20.0, 1000.0}, 3.3};
+  const DemandedOf demanded = [](const Tissue& tissue) {
+    return Impedance{tissue.damping_Ns_per_m.value, tissue.stiffness_N_per_m.value};
+  };
+  Tissue firm = startingSet("Mine").tissues[1];
+  firm.stiffness_N_per_m.value = 4000.0;
+  firm.damping_Ns_per_m.value = 400.0;
+  firm.rupture_N = SourcedNumber{2.0, "here"};
+  EXPECT_NEAR(*mostShown(number("damping_Ns_per_m"), firm, arms, demanded), 20.0, 1e-6);
+  EXPECT_NEAR(*mostShown(number("stiffness_N_per_m"), firm, arms, demanded), 1000.0, 1e-4);
+  EXPECT_TRUE(isWeaker(number("rupture_N"), firm, arms, demanded));
+  EXPECT_FALSE(isWeaker(number("friction_N"), firm, arms, demanded));
+  firm.stiffness_N_per_m.value = 900.0;
+  EXPECT_FALSE(isWeaker(number("rupture_N"), firm, arms, demanded));
+}
+
+TEST(ArmLimits, NoMoreIsSentThanTheDeviceGivesWhateverTheSceneAllows) {
+  Scene scene = cranium();
+  for (SceneArm& arm : scene.arms) arm.max_force_N = 50.0;
+  EXPECT_DOUBLE_EQ(armsLimit(scene)->force_N, 3.3);
 }
 
 TEST(ArmLimits, TheMostOfANumberIsJustShownAndALittleMoreIsNot) {
@@ -59,13 +109,16 @@ TEST(ArmLimits, TheMostOfANumberIsJustShownAndALittleMoreIsNot) {
       Tissue at = tissue;
       number(key).set(at, {*most, "asked"});
       const Impedance felt = demanded(at);
-      EXPECT_LE(felt.damping, arms.most.b_max);
-      EXPECT_LE(felt.stiffness, arms.most.k_max);
-      if (*most == 0.0) continue;  // the others demand too much already
       number(key).set(at, {*most * 1.001, "asked"});
       const Impedance more = demanded(at);
-      EXPECT_TRUE(more.damping > arms.most.b_max || more.stiffness > arms.most.k_max)
-          << tissue.id << ' ' << key << ' ' << *most;
+      ASSERT_GT(*most, 0.0) << tissue.id << ' ' << key;
+      if (std::string_view(key).starts_with("damping")) {
+        EXPECT_LE(felt.damping, arms.most.b_max);
+        EXPECT_GT(more.damping, arms.most.b_max) << tissue.id << ' ' << *most;
+      } else {
+        EXPECT_LE(felt.stiffness, arms.most.k_max);
+        EXPECT_GT(more.stiffness, arms.most.k_max) << tissue.id << ' ' << *most;
+      }
     }
   }
 }

@@ -281,6 +281,32 @@ TEST(Session, APokeCutsNothingWhateverIsEditedAndTellsForceAgainstDepth) {
   EXPECT_LE(most_N, 3.3);
 }
 
+// A sharp tool parts soft tissue in a poke as it does in the exercise, which here cannot pay for a
+// cut either.
+TEST(Session, APokeIsFeltAsTheExerciseIsUntilThatCuts) {
+  Scene tough = cranium();
+  for (Tissue& tissue : tough.tissues.tissues) {
+    tissue.cutting_J_per_mm3.value = kMechanicsRange.high;
+  }
+  const auto felt = [](const Scene& scene, bool poke) {
+    SessionOptions options = scripted();
+    options.poke = poke;
+    auto session = *Session::create(scene, test::placed(scene, smallHead()), options);
+    std::vector<double> forces_N;
+    freewheelTalking(*session, 8.0, [&] {
+      for (std::size_t arm = 0; arm < session->scene().arms.size(); ++arm) {
+        forces_N.push_back(glm::length(session->state().record.arms[arm].demanded_N));
+      }
+    });
+    EXPECT_EQ(session->report().removed_voxels, 0u);
+    return forces_N;
+  };
+  const std::vector<double> exercise_N = felt(tough, false), poke_N = felt(cranium(), true);
+  ASSERT_EQ(poke_N.size(), exercise_N.size());
+  EXPECT_GT(*std::ranges::max_element(exercise_N), 0.1);
+  for (std::size_t i = 0; i < poke_N.size(); ++i) EXPECT_EQ(poke_N[i], exercise_N[i]) << i;
+}
+
 // A tool that rests in bone, or in soft tissue, while the numbers of that change a hundredfold: the
 // arm has them two ticks later, and its force goes there no faster than 0.05 N/ms.
 TEST(Session, AnEditIsFeltWithinTwoTicksAndTheForceNeverJumps) {

@@ -151,7 +151,7 @@ TEST_F(TissuePanelTest, WhatIsFeltIsSaidOfTheSumOfTheLaws) {
       [](const Tissue& tissue) {
         return Impedance{0.0, 2.0 * tissue.stiffness_N_per_m.value};
       },
-      {}, ControllerKind::bounded);
+      {LawKind::elastic}, RemovalKind::work, ControllerKind::bounded);
   EXPECT_TRUE(felt.text().contains("demand 1200 N/m")) << felt.text().toStdString();
   EXPECT_TRUE(felt.text().contains("at most 1000 N/m")) << felt.text().toStdString();
   find<QDoubleSpinBox>(panel_, "damping").setValue(50.0);
@@ -169,7 +169,7 @@ TEST_F(TissuePanelTest, UnderAControllerThatBoundsNothingItDoesNotSayThatTheMost
         [](const Tissue& tissue) {
           return Impedance{0.0, tissue.stiffness_N_per_m.value};
         },
-        {}, kind);
+        {LawKind::elastic}, RemovalKind::work, kind);
     EXPECT_FALSE(felt.isHidden());
     EXPECT_FALSE(felt.text().contains("is felt")) << felt.text().toStdString();
     EXPECT_FALSE(felt.text().contains("at most")) << felt.text().toStdString();
@@ -188,15 +188,23 @@ TEST_F(TissuePanelTest, BesideANumberStandsWhetherItIsFeltAndWhatTheOthersLeave)
   const auto demanded = [](const Tissue& tissue) {
     return Impedance{tissue.damping_Ns_per_m.value, tissue.stiffness_N_per_m.value};
   };
-  panel_.setRenderable(arms, demanded, {LawKind::viscous, LawKind::elastic},
+  panel_.setRenderable(arms, demanded, {LawKind::viscous, LawKind::elastic}, RemovalKind::work,
                        ControllerKind::bounded);
   EXPECT_EQ(words("ruptureLimit"), "not felt");
   EXPECT_EQ(words("frictionLimit"), "not felt");
   EXPECT_EQ(words("stiffnessLimit"), "arm 1000");
-  EXPECT_EQ(words("dampingLimit"), "none left");
-  panel_.setRenderable(arms, demanded, {LawKind::rupture}, ControllerKind::bounded);
+  EXPECT_EQ(words("dampingLimit"), "arm 10.0") << "bounded by itself";
+  panel_.setRenderable(arms, demanded, {LawKind::rupture}, RemovalKind::instant,
+                       ControllerKind::bounded);
   EXPECT_EQ(words("ruptureLimit"), "arm 3.3");
   EXPECT_EQ(words("dampingLimit"), "not felt");
+  EXPECT_EQ(words("cuttingLimit"), "not felt") << "all that is met goes";
+  find<QDoubleSpinBox>(panel_, "rupture").setValue(2.0);
+  EXPECT_EQ(words("ruptureLimit"), "felt weaker") << "a spring of 5000 N/m in an arm of 1000";
+  panel_.setRenderable(arms, demanded, {}, RemovalKind::work, ControllerKind::bounded);
+  for (const char* bar : {"dampingLimit", "stiffnessLimit", "frictionLimit", "ruptureLimit"}) {
+    EXPECT_EQ(words(bar), "not felt") << bar;
+  }
 }
 
 class LooksTest : public TissuePanelTest {
@@ -369,15 +377,16 @@ TEST_F(PanelTest, AnArmsToolIsNamedAndChosenFromThoseThatTheExerciseGivesIt) {
   ArmsPanel panel;
   Scene scene;
   scene.tissues = twoTissues();
-  scene.tools = {{"a", makeBurr(0.003, 16, 2, 0.03), {}}, {"b", makeBlade(0.016, 4), {}}};
+  scene.tools = {{"cutter", makeBurr(0.003, 16, 2, 0.03), {}},
+                 {"scalpel", makeBlade(0.016, 4), {}}};
   scene.arms.resize(2);
   scene.arms[0].name = "left";
   scene.arms[1].name = "right";
-  scene.arms[0].tool = scene.arms[1].tool = "a";
-  scene.arms[1].other_tools = {"b"};
+  scene.arms[0].tool = scene.arms[1].tool = "cutter";
+  scene.arms[1].other_tools = {"scalpel"};
   panel.setScene(scene);
   auto &left = find<QComboBox>(panel, "leftTool"), &right = find<QComboBox>(panel, "rightTool");
-  EXPECT_EQ(right.currentText(), "burr, 6 mm");
+  EXPECT_EQ(right.currentText(), "cutter, 6 mm");
   EXPECT_FALSE(right.isEnabled()) << "nothing runs";
   LoopState state;
   panel.showState(state, scene.tissues, {3.3, 3.3});
@@ -395,13 +404,13 @@ TEST_F(PanelTest, AnArmsToolIsNamedAndChosenFromThoseThatTheExerciseGivesIt) {
   // It waits for the tool to be out of tissue.
   state.wanted_tools[1] = 1;
   panel.showState(state, scene.tissues, {3.3, 3.3});
-  EXPECT_EQ(right.currentText(), "burr, 6 mm") << "as it is";
+  EXPECT_EQ(right.currentText(), "cutter, 6 mm") << "as it is";
   EXPECT_FALSE(find<QLabel>(panel, "rightToolWaits").isHidden());
   EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").text().contains("out of the tissue"));
   EXPECT_TRUE(find<QLabel>(panel, "leftToolWaits").isHidden());
   state.tools[1] = 1;
   panel.showState(state, scene.tissues, {3.3, 3.3});
-  EXPECT_EQ(right.currentText(), "blade, 16 mm");
+  EXPECT_EQ(right.currentText(), "scalpel, 16 mm");
   EXPECT_TRUE(find<QLabel>(panel, "rightToolWaits").isHidden());
 }
 

@@ -384,6 +384,18 @@ TEST_F(WorkstationTest, TissuesThatWereEditedComeBackWithTheStructuresThatTheyAr
   ASSERT_TRUE(wait());
   EXPECT_FALSE(workstation_.scene()->tissues_elsewhere) << "those by HU are in force";
   EXPECT_FALSE(workstation_.tissuesEdited());
+  // What is saved now is the exercise, not what this case leaves of it.
+  TissueSet by_hu = workstation_.scene()->tissues;
+  by_hu.tissues.front().opacity = 0.456;
+  workstation_.setTissues(by_hu);
+  EXPECT_TRUE(workstation_.isElsewhere());
+  const Result<Scene> made = workstation_.asMade();
+  ASSERT_TRUE(made.ok()) << made.error().sentence();
+  EXPECT_EQ(made->tissues.tissues.front().opacity, 0.123);
+  EXPECT_FALSE(made->tissues.find("liver")->structure.empty());
+  ASSERT_TRUE(made->tissues_elsewhere);
+  EXPECT_EQ(made->tissues_elsewhere->tissues.front().opacity, 0.456);
+  workstation_.undoEdit();
   ASSERT_TRUE(workstation_.useStructures(structures));
   ASSERT_TRUE(wait());
   EXPECT_TRUE(workstation_.tissuesEdited());
