@@ -60,7 +60,8 @@ Result<ExercisePart> partOf(const fs::path& folder, const std::string& file,
   std::error_code ec;
   bool linked = false;  // a folder of it, out of here
   for (fs::path up = fs::path(file).parent_path(); !up.empty(); up = up.parent_path()) {
-    linked = linked || fs::is_symlink(fs::symlink_status(folder / up, ec));
+    const fs::path part_of = folder / up;
+    linked = linked || fs::symlink_status(part_of, ec).type() == fs::file_type::symlink;
   }
   if (linked || fs::symlink_status(path, ec).type() != fs::file_type::regular) {
     return Error{"MISSING_FILE", "It is not there, or is no file", file, ""};
@@ -91,7 +92,7 @@ void removeLeftParts(const fs::path& folder) {
     const std::string name = it->path().filename().string();
     std::error_code none;
     if (!name.starts_with('.') || name.find(kPart) == std::string::npos) continue;
-    if (!fs::is_directory(it->symlink_status(none))) continue;
+    if (it->symlink_status(none).type() != fs::file_type::directory) continue;
     const auto last = fs::last_write_time(it->path(), none);
     if (!none && fs::file_time_type::clock::now() - last > kOld) left.push_back(it->path());
   }
@@ -138,13 +139,14 @@ Status PartFolder::copy(const fs::path& from, const std::string& file) {
   }
   return write(file, [&](const fs::path& path) {
     return replaceFile(path, [&](const fs::path& temporary) {
-      std::error_code failed, unknown;
+      std::error_code failed, ec;
       fs::copy_file(from, temporary, failed);
       if (!failed) return Status();
       // A full disk comes as an error of the device from the copying of the system.
-      const bool full =
-          fs::space(temporary.parent_path(), unknown).available < fs::file_size(from, unknown);
-      return Status(writeError(target_ / file, full && !unknown ? ENOSPC : failed.value()));
+      const fs::path beside = temporary.parent_path();
+      const fs::space_info room = fs::space(beside, ec);
+      const bool full = !ec && room.available < fs::file_size(from, ec);
+      return Status(writeError(target_ / file, full ? ENOSPC : failed.value()));
     });
   });
 }

@@ -1,6 +1,7 @@
 #include "ui/prepare/exercise_form.h"
 
 #include <QHBoxLayout>
+#include <QMenu>
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -179,7 +180,17 @@ QWidget* ExerciseForm::buildWhat() {
                                     tr("A set of tissues that are known by their HU"), fields);
   no_elsewhere_ = settingButton("noElsewhere", tr("None"),
                                 tr("A case that lacks a structure is then refused"), fields);
-  connect(choose_elsewhere_, &QToolButton::clicked, this, &ExerciseForm::elsewhereWanted);
+  choose_elsewhere_->setPopupMode(QToolButton::InstantPopup);
+  auto* offered = new QMenu(choose_elsewhere_);
+  choose_elsewhere_->setMenu(offered);
+  connect(offered, &QMenu::aboutToShow, this, [this, offered] {
+    offered->clear();
+    for (const auto& [name, file] : sets ? sets() : decltype(sets()){}) {
+      offered->addAction(name, this, [this, file = file] { emit elsewhereChosen(file); });
+    }
+    offered->addSeparator();
+    offered->addAction(tr("From a &file\u2026"), this, &ExerciseForm::elsewhereWanted);
+  });
   connect(no_elsewhere_, &QToolButton::clicked, this, [this] { setElsewhere({}); });
   rows->addRow(
       tr("Other cases"),
@@ -221,6 +232,9 @@ void ExerciseForm::setStructures(const std::vector<std::string>& names) {
 // --- Where ---
 
 namespace {
+
+constexpr const char *kByRay = "ray", *kByBulk = "bulk", *kByPlace = "place";
+constexpr double kUsualBulk_mm = 20.0;
 
 // The direction out of the patient; read as a unit vector.
 constexpr NumberOf<Landmark> kOutward[] = {
@@ -266,6 +280,15 @@ QWidget* ExerciseForm::buildPlaces() {
   });
   place_form_->addRow(
       tr("On"), withHint(landmark_tissue_, tr("The tissue that its ray meets first."), fields));
+  landmark_found_ = settingChoice("landmarkFound", tr("How the landmark is found"), fields);
+  landmark_found_->addItem(tr("By a ray"), QString(kByRay));
+  landmark_found_->addItem(tr("At the most of its tissue"), QString(kByBulk));
+  landmark_found_->addItem(tr("Where it is clicked"), QString(kByPlace));
+  connect(landmark_found_, &QComboBox::activated, this,
+          [this](int) { findLandmarkBy(landmark_found_->currentData().toString()); });
+  place_form_->addRow(
+      tr("Found"),
+      withHint(landmark_found_, tr("On each patient anew; a click is of this one."), fields));
   auto* entry =
       settingButton("placeEntry", tr("Click it in a view"),
                     tr("A click on skin, bone or a slice is where it enters (I)"), fields);
@@ -348,6 +371,23 @@ void ExerciseForm::nameLandmark() {
   });
 }
 
+void ExerciseForm::findLandmarkBy(const QString& kind) {
+  if (kind == kByPlace) {
+    showLandmark();  // as it is until it has been clicked
+    return emit entryWanted();
+  }
+  const bool bulk = kind == kByBulk;
+  editLandmark("found", [&](Landmark& of) {
+    of.is_place = false;
+    of.bulk_radius_mm = bulk ? kUsualBulk_mm : 0.0;
+    if (bulk && !(glm::length(of.outward) > 0.0)) of.outward = Vec3(0.0, 0.0, 1.0);
+    if (!bulk && of.from == of.towards) {  // from above to the middle
+      of.from = Vec3(0.5, 0.5, 1.5);
+      of.towards = Vec3(0.5, 0.5, 0.5);
+    }
+  });
+}
+
 void ExerciseForm::addLandmark() {
   const int row = landmark_->currentIndex();
   if (row < 0 || std::size_t(row) >= scene_.landmarks.size()) return;
@@ -373,6 +413,9 @@ void ExerciseForm::showLandmark() {
   const Landmark& of = scene_.landmarks[std::size_t(row)];
   landmark_tissue_->setCurrentIndex(landmark_tissue_->findData(toQt(of.tissue)));
   const bool bulk = !of.is_place && of.bulk_radius_mm > 0.0;
+  landmark_found_->setCurrentIndex(landmark_found_->findData(QString(of.is_place ? kByPlace
+                                                                     : bulk      ? kByBulk
+                                                                                 : kByRay)));
   landmark_kind_->setText(of.is_place ? tr("Now: a place of this patient. Del in a slice: its own.")
                           : bulk      ? tr("Now: towards the most of its tissue, on any patient.")
                                       : tr("Now: a ray through the box of its tissue, on any "

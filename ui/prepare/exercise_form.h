@@ -32,6 +32,9 @@ class ExerciseForm : public QWidget {
   // Names of the case's structures, to be asked for.
   void setStructures(const std::vector<std::string>& names);
   void setLocked(const QString& why);
+  // Sets of this workstation, a name and a file each: asked for whenever they are offered.
+  std::function<std::vector<std::pair<QString, std::filesystem::path>>()> sets;
+
   // What it is made on: the case, and how many structures that has.
   void showCase(const QString& words);
   // False: the case lacks structures, and the exercise runs on its other set already.
@@ -50,7 +53,8 @@ class ExerciseForm : public QWidget {
   void looksWanted();  // as they are now
   void operatorWanted();
   void labelsWanted();     // structures of the case from a file
-  void elsewhereWanted();  // a set of tissues for other cases
+  void elsewhereWanted();  // a set of tissues for other cases, of a file
+  void elsewhereChosen(const std::filesystem::path& set);
   void saveWanted();
   void saveCopyWanted();
   void tryWanted();
@@ -76,6 +80,7 @@ class ExerciseForm : public QWidget {
   CardFields buildLanguage(QWidget* page, const QString& suffix);
   void showLandmark();
   void nameLandmark();
+  void findLandmarkBy(const QString& kind);
   void addLandmark();
   void removeLandmark();
   void showCard();
@@ -98,7 +103,7 @@ class ExerciseForm : public QWidget {
   QListWidget* structures_;
   std::vector<std::string> of_case_;
   QLabel *what_problem_, *place_problem_, *card_problem_, *outline_problem_, *lock_problem_;
-  QComboBox *landmark_, *landmark_tissue_, *view_landmark_;
+  QComboBox *landmark_, *landmark_tissue_, *landmark_found_, *view_landmark_;
   QLineEdit* landmark_name_;
   QFormLayout* place_form_;
   QLabel* landmark_kind_;

@@ -66,13 +66,10 @@ ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
                       });
   });
   connect(form_, &ExerciseForm::labelsWanted, this, &ExerciseTab::labelsWanted);
+  connect(form_, &ExerciseForm::elsewhereChosen, this, &ExerciseTab::takeElsewhere);
   connect(form_, &ExerciseForm::elsewhereWanted, this, [this] {
     bench_.askForFile("elsewhereDialog", tr("Tissues for other cases"), tr("Tissues (*.json)"),
-                      [this](const auto& file) {
-                        const Result<TissueSet> set = readTissueSet(file);
-                        if (!set) return bench_.report(set.error());
-                        form_->setElsewhere(*set);
-                      });
+                      [this](const auto& file) { takeElsewhere(file); });
   });
   connect(form_, &ExerciseForm::saveWanted, this, [this] { save(false, {}); });
   connect(form_, &ExerciseForm::saveCopyWanted, this, [this] { save(true, {}); });
@@ -93,6 +90,11 @@ ExerciseTab::ExerciseTab(Bench& bench, ExerciseForm& form)
   connect(&workstation_, &Workstation::structuresChanged, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::locksChanged, this, &ExerciseTab::refresh);
   connect(&workstation_, &Workstation::editsChanged, this, &ExerciseTab::refresh);
+}
+
+void ExerciseTab::takeElsewhere(const std::filesystem::path& file) {
+  const Result<TissueSet> set = readTissueSet(file);
+  set ? form_->setElsewhere(*set) : bench_.report(set.error());
 }
 
 void ExerciseTab::show(bool in_front) {

@@ -37,6 +37,7 @@ class ExerciseTab : public QObject {
  private:
   void refresh();
   QString caseWords() const;
+  void takeElsewhere(const std::filesystem::path& file);
   void draw(bool on);
   void outlineClicked(const Vec3& at_mm);
   std::optional<Scene> sceneToSave();

@@ -88,21 +88,26 @@ void PrepareWorkspace::connectSets() {
   connect(tissues_, &TissuePanel::undoWanted, &workstation_, &Workstation::undoEdit);
   connect(tissues_, &TissuePanel::redoWanted, &workstation_, &Workstation::redoEdit);
   connect(&workstation_, &Workstation::editsChanged, this, &PrepareWorkspace::showHistory);
-  connect(tissues_, &TissuePanel::setsWanted, this, [this] {
-    std::vector<std::pair<QString, std::filesystem::path>> sets;
-    for (const auto& folder : {resourceFolder() / "tissues", ownSets()}) {
-      const std::size_t first = sets.size();
-      std::error_code ec;
-      for (std::filesystem::directory_iterator at(folder, ec), end; !ec && at != end;
-           at.increment(ec)) {
-        if (at->path().extension() != ".json") continue;
-        const Result<TissueSet> set = readTissueSet(at->path());
-        if (set) sets.emplace_back(shownName(set->name), at->path());
-      }
-      std::sort(sets.begin() + std::ptrdiff_t(first), sets.end());
+  connect(tissues_, &TissuePanel::setsWanted, this,
+          [this] { tissues_->setSets(setsOfWorkstation()); });
+  form_->sets = [this] { return setsOfWorkstation(); };
+}
+
+// The product's, then a person's own, each by name.
+std::vector<std::pair<QString, std::filesystem::path>> PrepareWorkspace::setsOfWorkstation() const {
+  std::vector<std::pair<QString, std::filesystem::path>> sets;
+  for (const auto& folder : {resourceFolder() / "tissues", ownSets()}) {
+    const std::size_t first = sets.size();
+    std::error_code ec;
+    for (std::filesystem::directory_iterator at(folder, ec), end; !ec && at != end;
+         at.increment(ec)) {
+      if (at->path().extension() != ".json") continue;
+      const Result<TissueSet> set = readTissueSet(at->path());
+      if (set) sets.emplace_back(shownName(set->name), at->path());
     }
-    tissues_->setSets(sets);
-  });
+    std::sort(sets.begin() + std::ptrdiff_t(first), sets.end());
+  }
+  return sets;
 }
 
 std::filesystem::path PrepareWorkspace::ownSets() const {

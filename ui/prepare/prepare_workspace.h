@@ -76,6 +76,7 @@ class PrepareWorkspace : public Workspace {
   void askToExportSet();
   void revertSet();
   std::filesystem::path ownSets() const;
+  std::vector<std::pair<QString, std::filesystem::path>> setsOfWorkstation() const;
   bool editsServe() const;
 
   // Poking: what was set is felt, and nothing is cut (prepare_poke.cpp).

@@ -424,6 +424,11 @@ void TissuePanel::chooseColour() {
 void TissuePanel::showProblem(const Error* why, const std::vector<HuOverlap>& overlaps) {
   if (why) {
     sayNotApplied(*problem_, *why);
+    QString words = problem_->text();  // by the names that a person knows
+    for (const Tissue& tissue : tissues_.tissues) {
+      words.replace('\'' + toQt(tissue.id) + '\'', '"' + shownName(tissue.name) + '"');
+    }
+    problem_->setText(words);
     giveRoom(*problem_, high_->width());
   }
   problem_->setVisible(why);

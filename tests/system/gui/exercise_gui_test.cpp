@@ -105,6 +105,14 @@ class ExerciseGuiTest : public test::WindowTest {
     emit open->fileSelected(file);
     open->close();
   }
+  void chooseElsewhere(const QString& entry) {
+    auto* menu = find<QToolButton>("chooseElsewhere")->menu();
+    emit menu->aboutToShow();
+    for (QAction* action : menu->actions()) {
+      if (action->text() == entry) return action->trigger();
+    }
+    QFAIL(qPrintable(entry));
+  }
   SliceView& slice(SliceAxis axis) { return window_->views().slice(axis); }
   std::filesystem::path storage() { return toPath(temporary_.path()); }
   void keepGrab(const char* name) {
@@ -380,7 +388,11 @@ class ExerciseGuiTest : public test::WindowTest {
     QSignalSpy failed(window_.get(), &MainWindow::failed);
     const auto refused = [&](int tab, const char* button, const char* dialog, const QString& file) {
       showTab(tab);
-      find<QToolButton>(button)->click();
+      if (std::string_view(button) == "chooseElsewhere") {
+        chooseElsewhere("From a &file\u2026");
+      } else {
+        find<QToolButton>(button)->click();
+      }
       give(dialog, file);
       QTRY_COMPARE(failed.count(), 1);
       failed.clear();
@@ -444,6 +456,16 @@ class ExerciseGuiTest : public test::WindowTest {
     enter("landmark:fromX", "0.6");
     QCOMPARE(scene().landmarks[0].from.x, 0.6);
     untilPlaced();
+    choose("landmarkFound", QString("bulk"));
+    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 20.0);
+    untilPlaced();
+    enter("landmark:bulk_radius_mm", "12");
+    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 12.0);
+    untilPlaced();
+    choose("landmarkFound", QString("ray"));
+    QCOMPARE(scene().landmarks[0].bulk_radius_mm, 0.0);
+    QCOMPARE(scene().landmarks[0].from.x, 0.6);
+    untilPlaced();
     choose("viewLandmark", QString(""));
     QVERIFY(scene().view.landmark.empty());
     enter("view:distance_mm", "200");
@@ -474,9 +496,9 @@ class ExerciseGuiTest : public test::WindowTest {
     showTab(PrepareWorkspace::kExerciseTab);
     QVERIFY(find<QLabel>("exerciseCase")->text().contains("no structures"));
     QVERIFY(!scene().tissues_elsewhere);
-    find<QToolButton>("chooseElsewhere")->click();
     const auto sets = resourceFolder() / "tissues";
-    give("elsewhereDialog", toQt(sets / "cranium.json"));
+    const QString cranium = shownName(readTissueSet(sets / "cranium.json")->name);
+    chooseElsewhere(cranium);
     QVERIFY(scene().tissues_elsewhere);
     QVERIFY(workstation().sceneEdited());
     QCOMPARE(find<QLabel>("elsewhereSet")->text(), toQt(scene().tissues_elsewhere->name));
@@ -487,7 +509,7 @@ class ExerciseGuiTest : public test::WindowTest {
     }
     const QString file = temporary_.filePath("without.json");
     QVERIFY(writeTextFile(toPath(file), toJson(without).dump()).ok());
-    find<QToolButton>("chooseElsewhere")->click();
+    chooseElsewhere("From a &file\u2026");
     give("elsewhereDialog", file);
     QVERIFY(find<QLabel>("whatProblem")->text().contains("set for other cases"));
     QCOMPARE(scene().tissues_elsewhere->name, readTissueSet(sets / "cranium.json")->name);

@@ -232,6 +232,7 @@ class PrepareGuiTest : public test::WindowTest {
     auto* problem = find<QLabel>("tissueProblem");
     QVERIFY(problem->isVisible());
     QVERIFY(problem->text().contains("overlap"));
+    QVERIFY2(problem->text().contains("\"Bone\""), qPrintable(problem->text()));
     QVERIFY(sameSet(tissues(), before));
     const QImage band = histogram().grab().toImage();
     QVERIFY(pixelsOf(band, colours::kBad, 40) > 20);

@@ -374,7 +374,7 @@ TEST_F(ExerciseFolder, AnotherNameOfTheSceneALinkedFolderOrAFalseSizeIsNoVerifie
 }
 
 TEST_F(ExerciseFolder, AMeshGoesWithoutWhatItsHeaderSaysOfItsMaker) {
-  const std::string maker = "Exported from /home/ann/Patients/Smith_John/burr.blend";
+  const std::string maker = "Exported by ann from C:/Patients/Smith_John/burr.blend";
   std::string binary = maker + std::string(80 - maker.size(), ' ');
   const std::uint32_t count = 1;
   binary.append(reinterpret_cast<const char*>(&count), 4);
