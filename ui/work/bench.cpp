@@ -148,8 +148,15 @@ QFileDialog* Bench::saveDialog(const QString& title, const QString& suggestion,
   QFileDialog* dialog = fileDialog("saveDialog", title, filter);
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
-  dialog->selectFile(suggestion);
-  dialog->setDefaultSuffix(QFileInfo(suggestion).completeSuffix());
+  // A name that is free there: nothing is replaced by one that nobody typed.
+  const QFileInfo suggested(suggestion);
+  QString free = suggestion;
+  for (int n = 2; dialog->directory().exists(free); ++n) {
+    free =
+        QStringLiteral("%1-%2.%3").arg(suggested.baseName()).arg(n).arg(suggested.completeSuffix());
+  }
+  dialog->selectFile(free);
+  dialog->setDefaultSuffix(suggested.completeSuffix());
   // A plain name is of the kind that is chosen.
   connect(dialog, &QFileDialog::filterSelected, dialog, [dialog](const QString& chosen) {
     static const QRegularExpression first("\\*\\.([^ )]+)");
