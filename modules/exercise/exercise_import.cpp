@@ -68,7 +68,7 @@ fs::path numbered(const fs::path& storage, const std::string& stem, int n) {
 
 }  // namespace
 
-Result<ExerciseCheck> readList(const fs::path& folder) {
+Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
   Result<Json> json = readJsonFile(folder / kListFile);
   if (!json) {
     Error error = json.error();
@@ -97,13 +97,6 @@ Result<ExerciseCheck> readList(const fs::path& folder) {
   }
   if (reader.ok() && !scene_listed) reader.fail("scene", "It is not among the parts");
   if (Status read = reader.finish(); !read) return read.error();
-  return check;
-}
-
-Result<ExerciseCheck> checkExercise(const fs::path& folder, const Progress& progress) {
-  Result<ExerciseCheck> list = readList(folder);
-  if (!list) return list.error();
-  ExerciseCheck check = *std::move(list);
   std::uint64_t bytes = 0, done = 0;
   for (const ExercisePart& part : check.parts) bytes += part.bytes;
   for (const ExercisePart& part : check.parts) {

@@ -22,7 +22,8 @@ namespace trephine {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPart = ".part-";
+// Of folders that are being written: mkdtemp's pattern.
+constexpr const char *kPart = ".part-", *kRandom = "XXXXXX";
 constexpr int kMostNames = 1000;
 
 std::string plainName(const std::string& text, const std::string& otherwise) {
@@ -91,7 +92,9 @@ void removeLeftParts(const fs::path& folder) {
   for (auto it = fs::directory_iterator(folder, ec); !ec && it != fs::end(it); it.increment(ec)) {
     const std::string name = it->path().filename().string();
     std::error_code none;
-    if (!name.starts_with('.') || name.find(kPart) == std::string::npos) continue;
+    const std::size_t part = name.rfind(kPart);
+    if (!name.starts_with('.') || part == std::string::npos) continue;
+    if (name.size() != part + std::strlen(kPart) + std::strlen(kRandom)) continue;
     if (it->symlink_status(none).type() != fs::file_type::directory) continue;
     const auto last = fs::last_write_time(it->path(), none);
     if (!none && fs::file_time_type::clock::now() - last > kOld) left.push_back(it->path());
@@ -107,8 +110,7 @@ Result<PartFolder> PartFolder::make(const fs::path& target) {
   if (!to.has_filename()) to = to.parent_path();  // it ended with a slash
   if (Status made = makeFolder(to.parent_path()); !made) return made.error();
   removeLeftParts(to.parent_path());
-  std::string path =
-      (to.parent_path() / ("." + to.filename().string() + kPart + "XXXXXX")).string();
+  std::string path = (to.parent_path() / ("." + to.filename().string() + kPart + kRandom)).string();
   if (!::mkdtemp(path.data())) return writeError(target, errno);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);

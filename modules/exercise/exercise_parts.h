@@ -24,9 +24,6 @@ std::string plainName(const std::string& text, const std::string& otherwise);
 // CANNOT_WRITE where something is there that is not an empty folder.
 Status checkFreeFolder(const std::filesystem::path& folder);
 
-// What the list of the folder says; nothing is looked at yet. Errors: those of checkExercise.
-Result<ExerciseCheck> readList(const std::filesystem::path& folder);
-
 // Of a regular file; a link is none. Errors: MISSING_FILE, UNREADABLE, CANCELLED.
 Result<ExercisePart> partOf(const std::filesystem::path& folder, const std::string& file,
                             const Progress& progress);

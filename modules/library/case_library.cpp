@@ -152,7 +152,7 @@ Error ofStorage(Error error, const Folders& folders, std::uint64_t needed) {
   return error;
 }
 
-Error cancelled() {
+Error savingCancelled() {
   return Error{"CANCELLED", "Saving was cancelled", "", ""};
 }
 
@@ -295,7 +295,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   record.region = of.region;
   record.grid = volume.geometry;
   if (of.report) record.verdict = verdictOf(*of.report);
-  if (progress.cancelled()) return cancelled();
+  if (progress.cancelled()) return savingCancelled();
 
   const Status volume_written =
       writeVolume(slabsOf(volume), part / kVolumeFile, Progress(progress, 0.1, 0.7));
@@ -319,7 +319,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   for (const auto& [name, text] : texts) {
     if (Status written = writeTextFile(part / name, text); !written) return failed(written.error());
   }
-  if (progress.cancelled()) return cancelled();
+  if (progress.cancelled()) return savingCancelled();
 
   progress.at(0.9, "Keeping what the case may not be called");
   NameGuard guard;
@@ -335,7 +335,7 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   // From here on it is quick, and nobody else changes the list.
   const Result<FileLock> list_lock = folders_.lock();
   if (!list_lock) return failed(list_lock.error());
-  if (progress.cancelled()) return cancelled();
+  if (progress.cancelled()) return savingCancelled();
   const std::string day = timeText("%Y-%m-%d");
   record.imported = timeText("%Y-%m-%dT%H:%M:%S");
   const std::set<std::string> taken = namesBeside("");

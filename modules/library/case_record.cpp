@@ -7,7 +7,7 @@ namespace trephine {
 namespace {
 
 constexpr const char* kFormat = "trephine.case";
-constexpr int kVersion = 1;
+constexpr int kRecordVersion = 1;
 constexpr Range kSize{1, 2048}, kSpacing_mm{1e-4, 1e4}, kPlace_mm{-1e6, 1e6},
     kCosines{-1.001, 1.001};
 constexpr Range kMl{0, 1e9}, kShares{0, 1};
@@ -52,7 +52,7 @@ Json toJson(const CaseRecord& record) {
   const GridGeometry& g = record.grid;
   Json json = {
       {"format", kFormat},
-      {"version", kVersion},
+      {"version", kRecordVersion},
       {"name", record.name},
       {"imported", record.imported},
       {"region", regionText(record.region)},
@@ -70,7 +70,7 @@ Json toJson(const CaseRecord& record) {
 
 Result<CaseRecord> caseRecordFrom(const Json& json, const std::string& file) {
   JsonReader reader(json, file);
-  reader.format(kFormat, kVersion);
+  reader.format(kFormat, kRecordVersion);
   CaseRecord record;
   record.name = reader.text("name");
   record.imported = reader.text("imported");

@@ -11,11 +11,11 @@ namespace trephine {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kNamesVersion = 1;
 constexpr std::size_t kMostHashes = 4096;
 constexpr Range kIterations{1, 1e7}, kWords{1, 16}, kLengths{1, 64};
 
-Error cancelled() {
+Error checkCancelled() {
   return Error{"CANCELLED", "Checking the name was cancelled", "", ""};
 }
 
@@ -46,7 +46,7 @@ Result<NameGuard> NameGuard::of(const SourceKeys& source, const Progress& progre
   for (const auto& [key, hash] : guard.hashesOf(keys, progress)) {
     guard.hashes_[hash] = source.keys.at(key);
   }
-  if (progress.cancelled()) return cancelled();
+  if (progress.cancelled()) return checkCancelled();
   return guard;
 }
 
@@ -55,7 +55,7 @@ Result<NameGuard> NameGuard::read(const std::filesystem::path& file) {
   if (!json) return json.error();
   JsonReader reader(*json, file.filename().string());
   NameGuard guard;
-  reader.format("trephine.names", kVersion);
+  reader.format("trephine.names", kNamesVersion);
   guard.salt_ = reader.text("salt");
   guard.iterations_ = int(reader.integer("iterations", kIterations));
   guard.most_words_ = int(reader.integer("most_words", kWords));
@@ -83,7 +83,7 @@ Json NameGuard::toJson() const {
   for (const auto& [hash, kind] : hashes_) {
     refused.push_back({{"hash", hash}, {"kind", identityKindName(kind)}});
   }
-  return {{"format", "trephine.names"},   {"version", kVersion},       {"salt", salt_},
+  return {{"format", "trephine.names"},   {"version", kNamesVersion},  {"salt", salt_},
           {"iterations", iterations_},    {"most_words", most_words_}, {"lengths", lengths_},
           {"refused", std::move(refused)}};
 }
@@ -111,7 +111,7 @@ Status NameGuard::checkPatient(const std::vector<std::string>& names,
     all.insert(keys.back().begin(), keys.back().end());
   }
   const auto by_key = hashesOf({all.begin(), all.end()}, progress);
-  if (progress.cancelled()) return cancelled();
+  if (progress.cancelled()) return checkCancelled();
   for (std::size_t n = 0; n < names.size(); ++n) {
     for (const std::string& key : keys[n]) {
       const auto found = hashes_.find(by_key.at(key));

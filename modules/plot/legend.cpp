@@ -7,7 +7,7 @@ namespace trephine::plot {
 
 namespace {
 
-constexpr double kRow = 25.0, kMargin = 24.0, kGap = 48.0;
+constexpr double kRow = 25.0, kSides = 24.0, kGap = 48.0;
 constexpr double kCellWidth = 36.0, kCellHeight = 18.0, kLineWidth = 48.0, kText = 10.0;
 
 struct Item {
@@ -70,9 +70,9 @@ void drawLegend(Canvas& canvas, const Plot& plot, double top, double width,
   const QColor ink = canvas.colour(Tone::ink);
   const std::vector<Item> items = itemsOf(plot, seen);
   const double first = headed(plot) ? top : top - kRow;
-  double left = kMargin;
+  double left = kSides;
   if (plot.heat_map) {
-    const double most = (items.empty() ? 1.0 : 0.5) * width - 2.0 * kMargin;
+    const double most = (items.empty() ? 1.0 : 0.5) * width - 2.0 * kSides;
     double widest = std::min(most, canvas.sizeOf(cells_bear, {16.0, true}).width());
     canvas.text({left, top}, Side::left, cells_bear, {16.0, true}, ink, most + 1.0);
     double row = first;
@@ -86,12 +86,12 @@ void drawLegend(Canvas& canvas, const Plot& plot, double top, double width,
     }
     left += widest + kGap;
   }
-  const double room = width - kMargin - left - kLineWidth - kText;
+  const double room = width - kSides - left - kLineWidth - kText;
   Font font;
   for (const Item& item : items) font = canvas.fitting(item.text, font, room);
   if (!items.empty()) {
     canvas.text({left, top}, Side::left, plot.legend_heading, {16.0, true}, ink,
-                width - kMargin - left);
+                width - kSides - left);
   }
   double row = first;
   for (const Item& item : items) {

@@ -6,21 +6,6 @@
 
 namespace trephine {
 
-namespace {
-
-bool isForce(const TissueNumber& number) {
-  return std::string_view(number.unit) == "N";
-}
-
-double valueOf(std::string_view key, const Tissue& tissue) {
-  for (const TissueNumber& number : kTissueNumbers) {
-    if (number.key == key) return number.valueOf(tissue);
-  }
-  return 0.0;
-}
-
-}  // namespace
-
 double mostForce_N(const SceneArm& arm) {
   return arm.dynamics ? std::min(arm.max_force_N, arm.dynamics->peak_force_N) : arm.max_force_N;
 }
@@ -42,18 +27,23 @@ std::optional<ArmsLimit> armsLimit(const Scene& scene) {
   return limit;
 }
 
+bool isForce(const TissueNumber& number) {
+  return std::string_view(number.unit) == "N";
+}
+
 bool isFelt(const TissueNumber& number, const Tissue& tissue, const std::vector<LawKind>& laws,
             RemovalKind removal) {
   const std::string_view key = number.key;
   const bool elastic = names(laws, LawKind::elastic), coulomb = names(laws, LawKind::coulomb);
   const bool rupture = names(laws, LawKind::rupture);
-  const auto has = [&](const char* other) { return valueOf(other, tissue) > 0.0; };
+  const bool stiff = tissue.stiffness_N_per_m.value > 0.0, rubs = tissue.friction_N.value > 0.0;
+  const bool tears = tissue.rupture_N && tissue.rupture_N->value > 0.0;
   if (key == "damping_Ns_per_m") return names(laws, LawKind::viscous);
   if (key == "stiffness_N_per_m") {
-    return elastic || (coulomb && has("friction_N")) || (rupture && has("rupture_N"));
+    return elastic || (coulomb && rubs) || (rupture && tears);
   }
-  if (key == "friction_N") return coulomb && has("stiffness_N_per_m");
-  if (key == "rupture_N") return rupture && has("stiffness_N_per_m");
+  if (key == "friction_N") return coulomb && stiff;
+  if (key == "rupture_N") return rupture && stiff;
   if (key == "cutting_J_per_mm3") return removal == RemovalKind::work && tissue.cuttable;
   return true;
 }

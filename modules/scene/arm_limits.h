@@ -21,6 +21,9 @@ struct ArmsLimit {
 // None where the dynamics of no arm are known.
 std::optional<ArmsLimit> armsLimit(const Scene& scene);
 
+// Newtons, which are clamped under every controller.
+bool isForce(const TissueNumber& number);
+
 // Whether the exercise has a use for the number in this tissue: a law that uses it, and whatever
 // else of the tissue that law needs; of cutting energy, removal by work of a tissue that can be
 // cut.

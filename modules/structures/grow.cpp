@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "base/formatted.h"
 #include "base/memory.h"
 #include "structures/block_border.h"
 #include "structures/voxel_runs.h"
@@ -204,17 +204,11 @@ bool reachesBorder(const LabelMap& mask) {
   return false;
 }
 
-std::string said(const char* text, double a, double b = 0.0) {
-  char line[120];
-  std::snprintf(line, sizeof line, text, a, b);
-  return line;
-}
-
 Error nothingGrown(const HuSpan& hu, double open_mm) {
   return {"NOTHING_GROWN",
-          said("There is no organ at this place: within 20 mm nothing of %.0f to %.0f HU", hu.low,
-               hu.high) +
-              said(" is as wide as %.0f mm", 2.0 * open_mm),
+          formatted("There is no organ at this place: within 20 mm nothing of %.0f to %.0f HU",
+                    hu.low, hu.high) +
+              formatted(" is as wide as %.0f mm", 2.0 * open_mm),
           "seed", "Choose a place well inside, a wider range of HU or a smaller ball"};
 }
 
@@ -281,8 +275,8 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   const double border_mm = std::clamp(0.03 * noise_HU - 0.3, 0.3, 0.8) * kBlock_mm;
   const Blocks smooth = smoothed(means, grid, core_mm);
   const Blocks border = smoothed(means, grid, border_mm);
-  growth.steps = {said("noise of %.0f HU in blocks of %.1f mm", noise_HU, grid.block_mm.x),
-                  said("smoothed by %.1f mm, its border by %.1f mm", core_mm, border_mm)};
+  growth.steps = {formatted("noise of %.0f HU in blocks of %.1f mm", noise_HU, grid.block_mm.x),
+                  formatted("smoothed by %.1f mm, its border by %.1f mm", core_mm, border_mm)};
 
   const BlockMask taken = blocksOf(options.others.get(), grid);
   const Index3 at = grid.blockOf(voxel);
@@ -327,8 +321,8 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
     if (here == 0) return nothingGrown(hu, options.open_mm);
     core = only(piece, here);
   }
-  growth.steps.push_back(said("core within %.0f to %.0f HU", hu.low, hu.high) +
-                         said(", opened by %.1f mm", options.open_mm));
+  growth.steps.push_back(formatted("core within %.0f to %.0f HU", hu.low, hu.high) +
+                         formatted(", opened by %.1f mm", options.open_mm));
 
   if (!on(0.7, "border")) return cancelled;
   const std::vector<float> from_core = distance_mm(core, grid);
@@ -358,14 +352,15 @@ Result<BlockMask> growBlocks(const Volume& volume, const WorkGrid& grid, const I
   for (std::size_t n = 0; n < found.size(); ++n) found[n] = found[n] || closed[n];
   fillHoles(found, grid);
   keepFree(found, taken);
-  growth.steps.push_back(said("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
+  growth.steps.push_back(formatted("border within %.0f to %.0f HU", growth.hu.low, growth.hu.high));
   if (!options.hu && isBeside(found, grid, at)) {
     const double far_HU = 2.0 * kLeastHalf_HU;  // beyond noise, and what a blurred edge makes
     if (seed_HU < growth.hu.low - far_HU || seed_HU > growth.hu.high + far_HU) {
-      return Error{"NOTHING_GROWN",
-                   said("The seed is of %.0f HU, and what has room near it", seed_HU) +
-                       said(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
-                   "seed", "Choose a place well inside, another range of HU or a smaller ball"};
+      return Error{
+          "NOTHING_GROWN",
+          formatted("The seed is of %.0f HU, and what has room near it", seed_HU) +
+              formatted(" of %.0f to %.0f HU: another thing", growth.hu.low, growth.hu.high),
+          "seed", "Choose a place well inside, another range of HU or a smaller ball"};
     }
   }
   return found;
@@ -425,12 +420,12 @@ Result<Growth> grow(const Volume& volume, const Vec3& seed_mm, const GrowOptions
   if (std::isinf(growth.seed_off_mm)) {
     return Error{"NOTHING_GROWN",
                  "The place is of no organ as wide as " +
-                     said("%.0f mm: what was found lies more than %.0f mm beside it",
-                          2.0 * options.open_mm, kMostOff_mm),
+                     formatted("%.0f mm: what was found lies more than %.0f mm beside it",
+                               2.0 * options.open_mm, kMostOff_mm),
                  "seed", "Choose a place well inside, another range of HU or a smaller ball"};
   }
   if (growth.seed_off_mm > 0.0) {
-    growth.steps.push_back(said("the seed itself lies %.1f mm beside it", growth.seed_off_mm));
+    growth.steps.push_back(formatted("the seed itself lies %.1f mm beside it", growth.seed_off_mm));
   }
   return growth;
 }

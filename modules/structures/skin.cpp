@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
+#include "base/formatted.h"
 #include "base/memory.h"
 #include "structures/voxel_runs.h"
 #include "structures/work_grid.h"
@@ -14,12 +14,6 @@ namespace trephine {
 namespace {
 
 constexpr double kAirBlock_mm = 2.0;
-
-std::string said(const char* text, double a, double b = 0.0) {
-  char line[120];
-  std::snprintf(line, sizeof line, text, a, b);
-  return line;
-}
 
 Error noBody(const std::string& what) {
   return {"NO_BODY", what, "", "Choose a CT that shows the body and the air at its sides"};
@@ -228,7 +222,7 @@ Result<Skin> make(const Volume& volume, double thickness_mm, const Progress& pro
   SkinMask mask(volume);
   const double body_ml = double(mask.takeBody()) * voxel_ml;
   if (body_ml < kLeastBody_ml) {
-    return noBody(said("The largest piece over %.0f HU has %.1f mL", kBody_HU, body_ml));
+    return noBody(formatted("The largest piece over %.0f HU has %.1f mL", kBody_HU, body_ml));
   }
   if (!on(0.3, "air")) return cancelled;
   if (!mask.takeAir()) return noBody("There is no air at the sides of the scan");
@@ -236,10 +230,10 @@ Result<Skin> make(const Volume& volume, double thickness_mm, const Progress& pro
   skin.voxels = mask.keepLayer(thickness_mm);
   skin.ml = double(skin.voxels) * voxel_ml;
   skin.mask.labels = mask.take();
-  skin.steps = {said("body over %.0f HU: %.0f mL", kBody_HU, body_ml),
-                said("air where a ball of %.0f mm fits, and %.0f mm further", kOpening_mm,
-                     kInto_mm - kOpening_mm),
-                said("layer of %.1f mm: %.1f mL", thickness_mm, skin.ml)};
+  skin.steps = {formatted("body over %.0f HU: %.0f mL", kBody_HU, body_ml),
+                formatted("air where a ball of %.0f mm fits, and %.0f mm further", kOpening_mm,
+                          kInto_mm - kOpening_mm),
+                formatted("layer of %.1f mm: %.1f mL", thickness_mm, skin.ml)};
   return skin;
 }
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <numeric>
 
+#include "base/formatted.h"
 #include "base/memory.h"
 #include "structures/voxel_runs.h"
 
@@ -19,12 +19,6 @@ constexpr double kAirPocket_HU = -200.0;  // the mean of one that holds air
 constexpr double kNear_mm = 1.5;          // where the least and the most HU are looked for
 constexpr double kBlur_mm = 1.3;          // how far it reaches into bone
 constexpr int kDensestBone_HU = 1600;     // beyond is enamel or metal
-
-std::string said(const char* text, double a, double b = 0.0) {
-  char line[120];
-  std::snprintf(line, sizeof line, text, a, b);
-  return line;
-}
 
 // Steps to the voxels whose middles lie within a ball, nearest first; one along each axis at least.
 std::vector<Index3> ballSteps(const Vec3& spacing_mm, double radius_mm) {
@@ -321,8 +315,9 @@ Result<Skull> make(const Volume& volume, const Progress& progress) {
   SkullMask mask(volume);
   const std::size_t bone = mask.takeLargest();
   if (ml(bone) < kLeastBone_ml) {
-    return Error{"NO_BONE", said("The largest piece over %.0f HU has %.1f mL", kBone_HU, ml(bone)),
-                 "", "Choose a CT of a head whose values are HU"};
+    return Error{"NO_BONE",
+                 formatted("The largest piece over %.0f HU has %.1f mL", kBone_HU, ml(bone)), "",
+                 "Choose a CT of a head whose values are HU"};
   }
   if (!on(0.3, "pockets")) return cancelled;
   const std::size_t filled = mask.fillPockets(progress);
@@ -332,9 +327,9 @@ Result<Skull> make(const Volume& volume, const Progress& progress) {
   skull.voxels = mask.keepLargest();
   skull.ml = ml(skull.voxels);
   skull.mask.labels = mask.take();
-  skull.steps = {said("largest piece over %.0f HU: %.1f mL", kBone_HU, ml(bone)),
-                 said("%.1f mL of marrow filled", ml(filled)),
-                 said("border half-way: %.1f mL less", ml(peeled))};
+  skull.steps = {formatted("largest piece over %.0f HU: %.1f mL", kBone_HU, ml(bone)),
+                 formatted("%.1f mL of marrow filled", ml(filled)),
+                 formatted("border half-way: %.1f mL less", ml(peeled))};
   return skull;
 }
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostHeader = std::size_t{1} << 20;
+constexpr std::size_t kMostNrrdHeader = std::size_t{1} << 20;
 
 // The format's fields, without blanks. Any other is refused: what it changes is not known.
 constexpr std::string_view kFields =
@@ -56,7 +56,7 @@ const std::map<std::string, double> kUnits_mm{
     {"mm", 1.0},   {"millimeter", 1.0}, {"millimeters", 1.0}, {"cm", 10.0}, {"m", 1000.0},
     {"um", 0.001}, {"", 1.0},           {"???", 1.0}};
 
-struct Fields {
+struct NrrdFields {
   std::map<std::string, std::string> values;  // by a name of kFields
   std::map<std::string, std::string> segments;  // key:=value, as 3D Slicer names segments
   std::size_t length = 0;                     // of the header, with the blank line that ends it
@@ -81,9 +81,9 @@ std::string unescaped(const std::string& text) {
   return out;
 }
 
-Result<Fields> fieldsOf(const std::string& text, const fs::path& file) {
+Result<NrrdFields> nrrdFieldsOf(const std::string& text, const fs::path& file) {
   if (!text.starts_with("NRRD000")) return unreadable("The file is not a NRRD file", file);
-  Fields fields;
+  NrrdFields fields;
   for (std::size_t at = std::min(text.find('\n'), text.size() - 1) + 1; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string line = text.substr(at, end - at);
@@ -117,7 +117,7 @@ Result<Fields> fieldsOf(const std::string& text, const fs::path& file) {
     }
     if (name == "datafile" && value.starts_with("LIST")) break;  // file names follow
   }
-  if (!fields.ended && text.size() == kMostHeader) {
+  if (!fields.ended && text.size() == kMostNrrdHeader) {
     return unreadable("The file's header does not end", file);
   }
   return fields;
@@ -162,7 +162,7 @@ std::vector<std::string> wordsIn(const std::string& text) {
 }
 
 // One length for all three axes, in mm.
-Result<double> unitOf(const Fields& fields, const fs::path& file) {
+Result<double> unitOf(const NrrdFields& fields, const fs::path& file) {
   const std::vector<std::string> units = wordsIn(fields.text("spaceunits"));
   if (units.empty()) return 1.0;  // by custom
   const auto found = kUnits_mm.find(units[0]);
@@ -174,13 +174,13 @@ Result<double> unitOf(const Fields& fields, const fs::path& file) {
 }
 
 // 3D Slicer keeps segments that overlap in layers: a first axis that is a list, no space.
-bool isLayered(const Fields& fields) {
+bool isLayered(const NrrdFields& fields) {
   const std::vector<std::string> kinds = wordsIn(fields.text("kinds"));
   return !fields.segments.empty() && numberIn(fields.text("dimension")) == 4.0 && !kinds.empty() &&
          kinds[0] == "list";
 }
 
-Result<GridGeometry> geometryOf(const Fields& fields, VolumeFileHeader& header,
+Result<GridGeometry> geometryOf(const NrrdFields& fields, VolumeFileHeader& header,
                                 const fs::path& file) {
   auto sizes = numbersIn(fields.text("sizes"));
   if (!sizes) return unreadable("The header's sizes are not numbers", file);
@@ -238,7 +238,7 @@ Result<GridGeometry> geometryOf(const Fields& fields, VolumeFileHeader& header,
 }
 
 // One number a voxel, in three dimensions, as it was measured.
-Status checkKind(const Fields& fields, const fs::path& file) {
+Status checkKind(const NrrdFields& fields, const fs::path& file) {
   const auto dimension = numberIn(fields.text("dimension"));
   if (!dimension || *dimension < 3.0) {
     return unreadable("The image is not three-dimensional", file);
@@ -273,7 +273,7 @@ std::optional<std::uint64_t> afterLines(const fs::path& file, std::uint64_t at, 
   return std::uint64_t(in.tellg());
 }
 
-Status findVoxels(const Fields& fields, const fs::path& file, VolumeFileHeader& header) {
+Status findVoxels(const NrrdFields& fields, const fs::path& file, VolumeFileHeader& header) {
   std::uint64_t offset = fields.length;
   header.data.file = file;
   if (fields.has("datafile")) {
@@ -312,9 +312,9 @@ Status findVoxels(const Fields& fields, const fs::path& file, VolumeFileHeader& 
 }  // namespace
 
 Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
-  const auto text = readStart(file, kMostHeader);
+  const auto text = readStart(file, kMostNrrdHeader);
   if (!text) return text.error();
-  const auto fields = fieldsOf(*text, file);
+  const auto fields = nrrdFieldsOf(*text, file);
   if (!fields) return fields.error();
   for (const char* name : {"dimension", "type", "sizes", "encoding"}) {
     if (!fields->has(name)) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ui/cases/named_button.h"
 #include "ui/common/colours.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"
@@ -19,25 +20,18 @@ namespace trephine {
 
 namespace {
 
-constexpr QSize kPicture(192, 144);
+constexpr QSize kCardPicture(192, 144);
 constexpr QSize kCard(208, 222);
 constexpr int kDetailsWidth = 280;
 constexpr int kIdRole = Qt::UserRole;
-
-QPushButton* button(const char* name, const QString& text, bool primary = false) {
-  auto* made = new QPushButton(text);
-  made->setObjectName(name);
-  if (primary) made->setProperty("primary", true);
-  return made;
-}
 
 // A case without one: a frame with its initial, so that the card is not a hole.
 QPixmap cardPicture(const CaseEntry& entry) {
   if (!entry.picture.isNull()) {
     return QPixmap::fromImage(
-        entry.picture.scaled(kPicture, Qt::KeepAspectRatio, Qt::SmoothTransformation));
+        entry.picture.scaled(kCardPicture, Qt::KeepAspectRatio, Qt::SmoothTransformation));
   }
-  QPixmap empty(kPicture);
+  QPixmap empty(kCardPicture);
   empty.fill(colours::kPanel);
   QPainter painter(&empty);
   painter.setPen(colours::kLine);
@@ -65,7 +59,7 @@ CasesPage::CasesPage(QWidget* parent) : QWidget(parent) {
   cards_->setViewMode(QListView::IconMode);
   cards_->setMovement(QListView::Static);
   cards_->setResizeMode(QListView::Adjust);
-  cards_->setIconSize(kPicture);
+  cards_->setIconSize(kCardPicture);
   cards_->setGridSize(kCard);
   cards_->setWordWrap(true);
   cards_->setSpacing(4);
@@ -103,12 +97,12 @@ QWidget* CasesPage::buildStrip() {
   strip_words_->setObjectName("caseLabel");
   strip_words_->setTextFormat(Qt::PlainText);
   strip_words_->setWordWrap(true);
-  strip_train_ = button("nextTrain", tr("&Train"), true);
-  strip_prepare_ = button("nextPrepare", tr("&Prepare"));
-  strip_save_ = button("saveCase", tr("&Save the case"), true);
-  folder_ = button("openFolder", tr("Open &folder of CT\u2026"));
+  strip_train_ = namedButton("nextTrain", tr("&Train"), true);
+  strip_prepare_ = namedButton("nextPrepare", tr("&Prepare"));
+  strip_save_ = namedButton("saveCase", tr("&Save the case"), true);
+  folder_ = namedButton("openFolder", tr("Open &folder of CT\u2026"));
   folder_->setIcon(symbolIcon(Symbol::open));
-  series_ = button("anotherSeries", tr("Use another se&ries\u2026"));
+  series_ = namedButton("anotherSeries", tr("Use another se&ries\u2026"));
   auto* words = new QVBoxLayout;
   words->setSpacing(4);
   words->addWidget(strip_title_);
@@ -149,12 +143,12 @@ QWidget* CasesPage::buildDetails() {
   done_->setProperty("quiet", true);
   done_->setTextFormat(Qt::PlainText);
   done_->setWordWrap(true);
-  train_ = button("trainOnCase", tr("T&rain on it"), true);
-  prepare_ = button("prepareCase", tr("Pr&epare it"));
-  rename_ = button("renameCase", tr("Re&name\u2026"));
-  report_ = button("caseReport", tr("&Import report"));
-  delete_ = button("deleteCase", tr("&Delete\u2026"));
-  exercises_ = button("caseRecordings", tr("Its e&xercises"));
+  train_ = namedButton("trainOnCase", tr("T&rain on it"), true);
+  prepare_ = namedButton("prepareCase", tr("Pr&epare it"));
+  rename_ = namedButton("renameCase", tr("Re&name\u2026"));
+  report_ = namedButton("caseReport", tr("&Import report"));
+  delete_ = namedButton("deleteCase", tr("&Delete\u2026"));
+  exercises_ = namedButton("caseRecordings", tr("Its e&xercises"));
   auto* page = new QWidget;
   auto* layout = new QVBoxLayout(page);
   layout->setContentsMargins(8, 0, 4, 0);

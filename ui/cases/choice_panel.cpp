@@ -13,7 +13,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kPicture = 72;
+constexpr int kOptionPicture = 72;
 
 // A radio button whose words may take several lines: the words are a label that chooses it.
 class OptionLabel : public QLabel {
@@ -89,7 +89,7 @@ void ChoicePanel::addChoice(const Choice& choice) {
     if (i < choice.shown.size() && choice.shown[i] >= 0) {
       auto* picture = new OptionLabel({}, button);
       picture->setObjectName(toQt("picture_" + choice.code + "_" + option));
-      picture->setFixedSize(kPicture, kPicture);
+      picture->setFixedSize(kOptionPicture, kOptionPicture);
       picture->setAlignment(Qt::AlignCenter);
       grid->addWidget(picture, row, 2, 2, 1, Qt::AlignTop);
       pictures_.emplace(choice.shown[i], picture);
@@ -112,7 +112,7 @@ std::vector<int> ChoicePanel::slicesShown() const {
 void ChoicePanel::setPicture(int slice, const QImage& picture) {
   if (picture.isNull()) return;
   const double ratio = devicePixelRatioF();
-  QPixmap shown = QPixmap::fromImage(picture).scaled(QSize(kPicture, kPicture) * ratio,
+  QPixmap shown = QPixmap::fromImage(picture).scaled(QSize(kOptionPicture, kOptionPicture) * ratio,
                                                      Qt::KeepAspectRatio, Qt::SmoothTransformation);
   shown.setDevicePixelRatio(ratio);
   const auto [first, last] = pictures_.equal_range(slice);

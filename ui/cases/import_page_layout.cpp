@@ -3,6 +3,7 @@
 #include <QVBoxLayout>
 
 #include "ui/cases/import_page.h"
+#include "ui/cases/named_button.h"
 #include "ui/common/icons.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
@@ -27,13 +28,6 @@ QLabel* heading(const QString& text) {
   auto* label = new QLabel(text);
   label->setProperty("title", true);
   return label;
-}
-
-QPushButton* button(const char* name, const QString& text) {
-  auto* made = new QPushButton(text);
-  made->setObjectName(name);
-  made->setAutoDefault(false);
-  return made;
 }
 
 }  // namespace
@@ -65,8 +59,8 @@ void ImportPage::build() {
 }
 
 QWidget* ImportPage::buildFolderColumn() {
-  open_folder_ = button("importFolder", tr("Open &folder\u2026"));
-  open_file_ = button("importFile", tr("Open fi&le\u2026"));
+  open_folder_ = namedButton("importFolder", tr("Open &folder\u2026"));
+  open_file_ = namedButton("importFile", tr("Open fi&le\u2026"));
   open_folder_->setIcon(symbolIcon(Symbol::open));
   auto* open_row = new QHBoxLayout;
   open_row->addWidget(open_folder_);
@@ -78,7 +72,7 @@ QWidget* ImportPage::buildFolderColumn() {
   auto* layout = new QVBoxLayout(column);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addLayout(open_row);
-  scan_on_ = button("scanOn", tr("Look at &all files"));
+  scan_on_ = namedButton("scanOn", tr("Look at &all files"));
   scan_on_->setToolTip(tr("The search was ended early: look through the files that were left out"));
   layout->addWidget(list_, 1);
   layout->addWidget(scan_on_);
@@ -154,16 +148,16 @@ QLayout* ImportPage::buildBottomRow() {
   progress_->setRange(0, kProgressSteps);
   progress_->setTextVisible(false);
   progress_->setMaximumHeight(14);
-  report_ = button("saveReport", tr("Save &report\u2026"));
-  cancel_ = button("cancelImport", tr("&Cancel"));
-  close_ = button("closeImport", tr("&Close"));
-  back_ = button("importBack", tr("&Back"));
-  import_ = button("import", tr("&Import"));
+  report_ = namedButton("saveReport", tr("Save &report\u2026"));
+  cancel_ = namedButton("cancelImport", tr("&Cancel"));
+  close_ = namedButton("closeImport", tr("&Close"));
+  back_ = namedButton("importBack", tr("&Back"));
+  import_ = namedButton("import", tr("&Import"));
   import_->setProperty("primary", true);
-  take_found_ = button("takeFound", tr("Use this &series"));
+  take_found_ = namedButton("takeFound", tr("Use this &series"));
   take_found_->setToolTip(
       tr("Look only at the files beside those of this series, and at no others"));
-  open_case_ = button("openCase", tr("&Open the case"));
+  open_case_ = namedButton("openCase", tr("&Open the case"));
   open_case_->setProperty("primary", true);
   auto* row = new QHBoxLayout;
   row->addWidget(status_);

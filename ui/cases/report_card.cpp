@@ -9,7 +9,7 @@
 namespace trephine {
 
 namespace {
-constexpr int kMark = 28;
+constexpr int kCardMark = 28;
 }
 
 ReportCard::ReportCard(QWidget* questions, QWidget* parent) : QWidget(parent) {
@@ -47,7 +47,7 @@ ReportCard::ReportCard(QWidget* questions, QWidget* parent) : QWidget(parent) {
 void ReportCard::showSeries(const SeriesReport& series, const Answers& answers, double needed_mb,
                             double free_mb) {
   const SeriesState state = seriesState(series, answers);
-  mark_->setPixmap(stateIcon(state).pixmap(QSize(kMark, kMark), devicePixelRatioF()));
+  mark_->setPixmap(stateIcon(state).pixmap(QSize(kCardMark, kCardMark), devicePixelRatioF()));
   word_->setText(stateWord(state));
   sentence_->setText(verdictSentence(series, answers));
   report_->setText(reportHtml(series));

@@ -204,7 +204,14 @@ ExerciseTab::OnDisk ExerciseTab::onDisk(const std::filesystem::path& file) {
   return {file, {std::istreambuf_iterator<char>(in), {}}};
 }
 
-void ExerciseTab::save(bool copy, Bench::Next then) {
+// Something of a person's would go: it is replaced, or stays and this one is saved beside it.
+void ExerciseTab::askToReplace(const char* name, const QString& why, const QString& what,
+                               const Bench::Next& replace, const Bench::Next& then) {
+  QMessageBox* question = ask(bench_.window(), name, why, what, tr("&Replace it"), replace);
+  orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
+}
+
+void ExerciseTab::save(bool copy, Bench::Next then, bool on_another_case) {
   if (!then && workstation_.isWriting()) return bench_.say(tr("It is being saved."));
   bench_.takeTyped();
   std::optional<Scene> scene = sceneToSave();
@@ -212,34 +219,26 @@ void ExerciseTab::save(bool copy, Bench::Next then) {
   const bool in_place = isOwn() && !copy;
   const OnDisk now = onDisk(workstation_.sceneFile());
   if (in_place && opened_.file == now.file && !now.text.empty() && opened_.text != now.text) {
-    QMessageBox* question =
-        ask(bench_.window(), "changedOnDisk",
-            tr("The exercise has been changed by another program since it was opened here."),
-            tr("Save yours as another one, or in the place of what is there now."),
-            tr("&Replace it"), [this, now, then] {
-              opened_ = now;
-              save(false, then);
-            });
-    orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
-    return;
+    const auto replace = [this, now, then] {
+      opened_ = now;
+      save(false, then);
+    };
+    return askToReplace(
+        "changedOnDisk",
+        tr("The exercise has been changed by another program since it was opened here."),
+        tr("Save yours as another one, or in the place of what is there now."), replace, then);
   }
   if (copy && isOwn()) scene->name = tr("Copy of %1").arg(toQt(scene->name)).toStdString();
-  if (in_place && !replaces_) {
+  if (in_place && !on_another_case) {
     const Result<Scene> there = readScene(now.file);
     const auto place = [](const std::string& source) {
       return std::filesystem::path(source).lexically_normal();
     };
     if (there && place(there->case_source) != place(scene->case_source)) {
-      QMessageBox* question = ask(
-          bench_.window(), "madeOnAnotherCase", tr("This exercise was made on another case."),
+      return askToReplace(
+          "madeOnAnotherCase", tr("This exercise was made on another case."),
           tr("Save it on the open case as another one, or in the place of the one that is there."),
-          tr("&Replace it"), [this, then] {
-            replaces_ = true;
-            save(false, then);
-            replaces_ = false;
-          });
-      orElse(*question, "saveBeside", tr("Save a &copy"), [this, then] { save(true, then); });
-      return;
+          [this, then] { save(false, then, true); }, then);
     }
   }
   if (!in_place) scene->name = freeName(scene->name);

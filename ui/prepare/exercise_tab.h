@@ -21,7 +21,8 @@ class ExerciseTab : public QObject {
   // Whether it is seen; the form is filled while it is.
   void show(bool in_front);
   // In the storage folder, in its own place or as another one. `then` follows once it is written.
-  void save(bool copy, Bench::Next then);
+  // `on_another_case`: in the place of one that was made on another case, which is asked otherwise.
+  void save(bool copy, Bench::Next then, bool on_another_case = false);
 
   // The tool that places the entry goes once it was used.
   bool wantsOneEntry() const { return entry_once_; }
@@ -47,6 +48,8 @@ class ExerciseTab : public QObject {
     std::filesystem::path file;
     std::string text;
   };
+  void askToReplace(const char* name, const QString& why, const QString& what,
+                    const Bench::Next& replace, const Bench::Next& then);
   static OnDisk onDisk(const std::filesystem::path& file);
   void tryIt();
   void exportIt();
@@ -58,7 +61,6 @@ class ExerciseTab : public QObject {
   FourUp* views_;
   ExerciseForm* form_;
   bool in_front_ = false;
-  bool replaces_ = false;              // an exercise that was made on another case: that was asked
   bool entry_once_ = false;            // the entry tool goes once it was used
   std::optional<Vec3> outline_first_;  // the first point of a new outline
   OnDisk opened_;                      // the exercise's file as it was opened, or saved, here

@@ -14,7 +14,7 @@ namespace trephine {
 namespace {
 
 // Letters that a file system could trip over become "_".
-QString fileNameOf(const std::string& structure) {
+QString surfaceFileName(const std::string& structure) {
   QString name;
   for (const QChar c : toQt(structure))
     name += c.isLetterOrNumber() || c == QChar('-') ? c : QChar('_');
@@ -99,7 +99,7 @@ void PrepareWorkspace::askToSaveSurface() {
   const std::shared_ptr<const LabelMap> copy = editor_.finished();
   if (!copy) return;
   QFileDialog* dialog = bench_.saveDialog(tr("Save the surface of \"%1\"").arg(toQt(of->name)),
-                                          fileNameOf(of->name), tr("Surface (*.stl)"));
+                                          surfaceFileName(of->name), tr("Surface (*.stl)"));
   connect(dialog, &QFileDialog::fileSelected, this, [this, copy, label](const QString& file) {
     if (!bench_.keepsTheCase(toPath(file))) return;
     workstation_.save(tr("The surface is saved."),

@@ -70,7 +70,7 @@ QString editWords(const std::string& what) {
 }
 
 // A file name that nobody has to escape.
-QString fileNameOf(const std::string& set) {
+QString setFileName(const std::string& set) {
   QString name;
   for (const QChar c : toQt(set)) name += c.isLetterOrNumber() ? c.toLower() : QChar('-');
   return (name.isEmpty() ? QStringLiteral("tissues") : name) + ".json";
@@ -181,7 +181,7 @@ void PrepareWorkspace::askToExportSet() {
   if (!workstation_.scene()) return;
   (void)makeFolder(ownSets());
   QFileDialog* dialog =
-      bench_.saveDialog(tr("Export tissues"), fileNameOf(workstation_.scene()->tissues.name),
+      bench_.saveDialog(tr("Export tissues"), setFileName(workstation_.scene()->tissues.name),
                         tr("Tissues (*.json)"));
   dialog->setDirectory(toQt(ownSets()));
   connect(dialog, &QFileDialog::fileSelected, this,

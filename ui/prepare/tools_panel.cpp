@@ -380,8 +380,8 @@ QWidget* ToolsPanel::buildArms() {
                                            fields));
   device_numbers_ = std::make_unique<NumberRows<SceneArm>>(
       std::span<const NumberOf<SceneArm>>(kDeviceNumbers), *arm_form_, fields, "device:");
-  device_numbers_->entered = [this](const SceneArm& wanted, const char* key) {
-    editArm(key, [&](SceneArm& arm) { arm = wanted; });
+  device_numbers_->entered = [this](const SceneArm& entered, const char* key) {
+    editArm(key, [&](SceneArm& arm) { arm = entered; });
   };
   auto* device = new QWidget(fields);
   auto* device_layout = new QGridLayout(device);
@@ -456,8 +456,8 @@ QWidget* ToolsPanel::buildArms() {
   };
   arm_numbers_ = std::make_unique<NumberRows<SceneArm>>(
       std::span<const NumberOf<SceneArm>>(kArmNumbers), *arm_form_, fields, "arm:");
-  arm_numbers_->entered = [this](const SceneArm& wanted, const char* key) {
-    editArm(key, [&](SceneArm& arm) { arm = wanted; });
+  arm_numbers_->entered = [this](const SceneArm& entered, const char* key) {
+    editArm(key, [&](SceneArm& arm) { arm = entered; });
   };
   arm_problem_ = problemLabel("armProblem", box);
   layout->addWidget(title);

@@ -129,9 +129,7 @@ void TissueMechanics::showOutcome() {
     std::optional<double> most;
     if (arms_ && demanded_) most = mostShown(*n.row, tissue_, *arms_, demanded_);
     if (most) *most *= n.row->shown_per;
-    // Forces are clamped under every controller.
-    const bool force = std::string_view(n.row->unit) == "N";
-    n.bar->setLimit(most, force || in_force_ == ControllerKind::bounded);
+    n.bar->setLimit(most, isForce(*n.row) || in_force_ == ControllerKind::bounded);
   }
   const QSignalBlocker quiet_cut(cuttable_), quiet_solid(solid_);
   cuttable_->setChecked(tissue_.cuttable);

@@ -13,7 +13,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kWidest = 560;
+constexpr int kResultWidest = 560;
 
 QString row(const QString& what, const QString& value) {
   return QStringLiteral("<tr><td>%1&nbsp;&nbsp;&nbsp;</td><td align='right'>%2</td></tr>")
@@ -42,7 +42,7 @@ const CutStructure* structureOf(const RemovedOf& tissue, const ExerciseResult& r
 
 }  // namespace
 
-ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
+ResultPage::ResultPage(QWidget& over) : FloatingCard(over, At::middle, kResultWidest) {
   setObjectName("resultPage");
   title_ = new QLabel;
   title_->setObjectName("resultTitle");

@@ -9,10 +9,10 @@
 namespace trephine {
 
 namespace {
-constexpr int kWidest = 560;
+constexpr int kStartWidest = 560;
 }  // namespace
 
-StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kWidest) {
+StartCard::StartCard(QWidget& over) : FloatingCard(over, At::middle, kStartWidest) {
   setObjectName("startCard");
   title_ = new QLabel;
   title_->setObjectName("startCardTitle");

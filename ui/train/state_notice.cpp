@@ -14,7 +14,7 @@ namespace trephine {
 
 namespace {
 
-constexpr int kWidest = 460;
+constexpr int kNoticeWidest = 460;
 constexpr int kMargin = 16;
 
 // "Left arm", "Both arms": what a line is about.
@@ -218,7 +218,7 @@ bool StateNotice::eventFilter(QObject* watched, QEvent* event) {
 
 void StateNotice::place() {
   const QWidget* view = parentWidget();
-  const int width = std::min(kWidest, view->width() - 2 * kMargin);
+  const int width = std::min(kNoticeWidest, view->width() - 2 * kMargin);
   // Where words changed within a card, only the card's own layout knows it yet.
   for (QFrame* frame : {pause_.frame, force_.frame, ready_.frame}) frame->updateGeometry();
   layout()->activate();

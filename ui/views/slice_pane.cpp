@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "ui/common/colours.h"
+#include "ui/views/steps.h"
 
 namespace trephine {
 
 namespace {
 constexpr double kLeastZoom = 0.25, kMostZoom = 64.0;
-constexpr double kZoomStep = 1.1;        // a notch of the wheel, or a key
 constexpr double kZoomPerPixel = 0.008;  // of a drag, natural logarithm
-constexpr double kWheelNotch = 120.0;    // Qt: eighths of a degree
 }  // namespace
 
 void paintWords(QPainter& painter, const QRectF& inside, int alignment, const QString& words,

@@ -8,11 +8,11 @@
 #include <QWheelEvent>
 
 #include "ui/common/words.h"
+#include "ui/views/steps.h"
 
 namespace trephine {
 
 namespace {
-constexpr int kPageOfSlices = 10;
 constexpr int kNoAirHu = -900;  // what removeCouch counts as gone
 }  // namespace
 

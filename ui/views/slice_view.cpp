@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "ui/common/words.h"
+#include "ui/views/steps.h"
 
 namespace trephine {
 
 namespace {
-constexpr int kPageOfSlices = 10;
 constexpr double kShortestDrag_pixels = 3.0;    // less is a click
 constexpr double kWidthPerPixel = 0.006;        // natural logarithm
 constexpr double kLevelPerPixel = 1.0 / 300.0;  // of the width

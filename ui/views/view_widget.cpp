@@ -10,6 +10,7 @@
 
 #include "ui/common/colours.h"
 #include "ui/common/event_loop.h"
+#include "ui/views/steps.h"
 #include "ui/views/view_tools.h"
 
 namespace trephine {
@@ -24,13 +25,11 @@ constexpr double kRefine_ms = 30.0;
 constexpr double kRefineInTraining_ms = 10.0;
 constexpr int kNothingToRefine_ms = 40;  // while cuts follow each other too fast for full quality
 constexpr double kTurn_deg_per_pixel = 0.4;
-constexpr double kZoomStep = 1.1;
 constexpr int kKeyTurn_pixels = 12;
 // Movements of a tool that no picture shows.
 constexpr double kToolMoved_mm = 0.02;
 const Vec3 kLightColour(1.0, 0.95, 0.5);
 constexpr double kReach_pixels = 11.0;  // of a handle
-constexpr double kWheelNotch = 120.0;   // Qt: eighths of a degree
 
 bool looksAlike(const ToolView& a, const ToolView& b) {
   return a.contact == b.contact && a.shape == b.shape && a.length_mm == b.length_mm &&

@@ -148,14 +148,12 @@ QFileDialog* Bench::saveDialog(const QString& title, const QString& suggestion,
   QFileDialog* dialog = fileDialog("saveDialog", title, filter);
   dialog->setFileMode(QFileDialog::AnyFile);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
-  // A name that is free there: nothing is replaced by one that nobody typed.
   const QFileInfo suggested(suggestion);
-  QString free = suggestion;
-  for (int n = 2; dialog->directory().exists(free); ++n) {
-    free =
-        QStringLiteral("%1-%2.%3").arg(suggested.baseName()).arg(n).arg(suggested.completeSuffix());
-  }
-  dialog->selectFile(free);
+  // A name that is free there: nothing is replaced by one that nobody typed.
+  const auto free =
+      freshFile(toPath(dialog->directory().absolutePath()), suggested.baseName().toStdString(),
+                '.' + suggested.completeSuffix().toStdString());
+  dialog->selectFile(toQt(free.filename()));
   dialog->setDefaultSuffix(suggested.completeSuffix());
   // A plain name is of the kind that is chosen.
   connect(dialog, &QFileDialog::filterSelected, dialog, [dialog](const QString& chosen) {

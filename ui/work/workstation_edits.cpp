@@ -113,7 +113,8 @@ Status Workstation::edit(const Scene& wanted, const std::string& what) {
 }
 
 Status Workstation::edit(const std::string& what, const std::function<void(Scene&)>& change) {
-  Scene wanted = scene_.value_or(Scene());
+  if (!scene_) return edit(Scene(), what);  // which says so
+  Scene wanted = *scene_;
   change(wanted);
   Status done = edit(wanted, what);
   closeEdit();

@@ -34,7 +34,7 @@ constexpr Mode kModes[] = {
 };
 // Where air lies without the usual intercept of -1024. Brain lies there, too, but is not cut at 0.
 constexpr int kStoredAir[] = {24, 32, 40};
-constexpr double kClamped = 0.001;  // share of voxels at 0 where values were cut there
+constexpr double kClampedShare = 0.001;  // share of voxels at 0 where values were cut there
 
 std::string percent(double share) {
   return std::to_string(int(100.0 * share)) + " %";
@@ -113,7 +113,7 @@ std::vector<std::string> HuLook::doubts(int lowest, int highest) const {
     said(mode.hu, mode.words);
     return doubts;
   }
-  if (first != 0 || share(0, 0) <= kClamped || air > kModes[0].most_air) return doubts;
+  if (first != 0 || share(0, 0) <= kClampedShare || air > kModes[0].most_air) return doubts;
   for (const int hu : kStoredAir) {
     if (3.0 * around(hu) <= 1.0) continue;
     said(hu, kStored);

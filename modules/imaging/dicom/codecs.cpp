@@ -11,14 +11,11 @@
 
 #include "imaging/dicom/dicom_values.h"
 #include "imaging/dicom/jpeg2000.h"
+#include "imaging/dicom/pixel_error.h"
 
 namespace trephine {
 
 namespace {
-
-Error failed(std::string what) {
-  return Error{"UNREADABLE", std::move(what), "", ""};
-}
 
 struct JpegFrame {
   int rows = 0, columns = 0, components = 0, precision = 0;
@@ -109,16 +106,17 @@ bool hasJpegEnd(std::span<const std::uint8_t> bytes) {
 
 Status checkJpeg(std::span<const std::uint8_t> codestream, const DicomHeader& header) {
   const auto frame = jpegFrame(codestream);
-  if (!frame) return failed("its compressed pixels are damaged");
+  if (!frame) return unreadablePixels("its compressed pixels are damaged");
   if (frame->rows != header.rows || frame->columns != header.columns || frame->components != 1) {
-    return failed("its compressed pixels are " + std::to_string(frame->columns) + "x" +
-                  std::to_string(frame->rows) + " where the header says " +
-                  std::to_string(header.columns) + "x" + std::to_string(header.rows));
+    return unreadablePixels("its compressed pixels are " + std::to_string(frame->columns) + "x" +
+                            std::to_string(frame->rows) + " where the header says " +
+                            std::to_string(header.columns) + "x" + std::to_string(header.rows));
   }
   if ((frame->precision > 8) != (header.bits_allocated > 8)) {
-    return failed("its compressed pixels have " + std::to_string(frame->precision) + " bits");
+    return unreadablePixels("its compressed pixels have " + std::to_string(frame->precision) +
+                            " bits");
   }
-  if (!hasJpegEnd(codestream)) return failed("its compressed pixels are cut short");
+  if (!hasJpegEnd(codestream)) return unreadablePixels("its compressed pixels are cut short");
   return {};
 }
 
@@ -154,7 +152,8 @@ Status decodeWithDcmtk(const TransferSyntax& syntax, std::span<const std::uint8_
   const OFCondition decoded =
       pixels.getUncompressedFrame(&data, 0, fragment, to, Uint32(bytes), colour);
   if (decoded.bad()) {
-    return failed(std::string("its compressed pixels cannot be decoded: ") + decoded.text());
+    return unreadablePixels(std::string("its compressed pixels cannot be decoded: ") +
+                            decoded.text());
   }
   return {};
 }
@@ -183,14 +182,15 @@ Status decodeFrame(const TransferSyntax& syntax, std::span<const std::uint8_t> c
   const bool rle = syntax.uid == "1.2.840.10008.1.2.5";
   if (rle) {
     if (!fitsRle(codestream, std::size_t(header.bits_allocated / 8), header.pixelCount())) {
-      return failed("its RLE pixels are not as many as rows and columns say, or are damaged");
+      return unreadablePixels(
+          "its RLE pixels are not as many as rows and columns say, or are damaged");
     }
   } else {
     if (const Status valid = checkJpeg(codestream, header); !valid) return valid;
   }
   const std::uint64_t bytes = header.frameBytes();
   const std::uint64_t even = bytes + bytes % 2;
-  if (even > 0xFFFFFFFEU) return failed("its pixels are too many");
+  if (even > 0xFFFFFFFEU) return unreadablePixels("its pixels are too many");
   if (header.bits_allocated != 8) {
     return decodeWithDcmtk(syntax, codestream, header, reinterpret_cast<std::uint8_t*>(words),
                            bytes);

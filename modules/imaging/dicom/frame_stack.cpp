@@ -20,11 +20,6 @@ constexpr double kFinest_mm = 1e-3, kCoarsest_mm = 1e3;  // of a pixel
 constexpr double kEven = 0.01, kNearlyEven = 0.1;        // of a step
 constexpr double kMostSlices = 8192;
 
-Error noGeometry(const std::string& what) {
-  return Error{"NO_GEOMETRY", what, "",
-               "Export the segmentation anew from the program that made it"};
-}
-
 Error framesDiffer(const std::string& what) {
   return Error{"FRAMES_DIFFER", what, "", "Export it on the grid of the CT that it was made from"};
 }
@@ -198,6 +193,11 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
     return Error{"TOO_LARGE", size.error().what, "", ""};
   }
   return stack;
+}
+
+Error noGeometry(const std::string& what) {
+  return Error{"NO_GEOMETRY", what, "",
+               "Export the segmentation anew from the program that made it"};
 }
 
 }  // namespace trephine

@@ -31,4 +31,7 @@ Result<FrameStack> stackFrames(const std::vector<FramePlane>& frames, int column
                                std::optional<double> between_mm,
                                std::optional<double> thickness_mm);
 
+// NO_GEOMETRY: the frames' places are not stated, or make no sense.
+Error noGeometry(const std::string& what);
+
 }  // namespace trephine

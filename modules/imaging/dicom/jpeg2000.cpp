@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "imaging/dicom/pixel_error.h"
+
 namespace trephine {
 
 namespace {
@@ -33,16 +35,12 @@ enum Marker : unsigned {
 constexpr std::array kOtherSegments = {0xFF50, 0xFF55, 0xFF57, 0xFF58, 0xFF59, 0xFF5C, 0xFF5D,
                                        0xFF5E, 0xFF5F, 0xFF60, 0xFF61, 0xFF63, 0xFF64};
 
-Error unreadable(std::string what) {
-  return Error{"UNREADABLE", std::move(what), "", ""};
-}
-
 Error cutOrDamaged() {
-  return unreadable("its JPEG 2000 picture is cut short or damaged");
+  return unreadablePixels("its JPEG 2000 picture is cut short or damaged");
 }
 
 Error unsupported(const std::string& what) {
-  return unreadable("its JPEG 2000 picture " + what + ", which cannot be read");
+  return unreadablePixels("its JPEG 2000 picture " + what + ", which cannot be read");
 }
 
 // A big-endian number; 0 where it is not all there, which no marker, length or count may be.
@@ -159,7 +157,7 @@ Bytes segmentAt(Bytes stream, std::size_t at) {
 
 Result<MainHeader> readMainHeader(Bytes stream) {
   if (number(stream, 0, 2) != kSoc || number(stream, 2, 2) != kSiz) {
-    return unreadable("its pixels are not the JPEG 2000 that its header says");
+    return unreadablePixels("its pixels are not the JPEG 2000 that its header says");
   }
   MainHeader header;
   int sizes = 0, styles = 0;
@@ -182,15 +180,15 @@ Result<MainHeader> readMainHeader(Bytes stream) {
 Status compare(const MainHeader& header, const Jpeg2000Expectation& expected) {
   if (header.columns != std::uint64_t(expected.columns) ||
       header.rows != std::uint64_t(expected.rows)) {
-    return unreadable("its JPEG 2000 picture is " + std::to_string(header.columns) + "x" +
-                      std::to_string(header.rows) + " where its header says " +
-                      std::to_string(expected.columns) + "x" + std::to_string(expected.rows));
+    return unreadablePixels("its JPEG 2000 picture is " + std::to_string(header.columns) + "x" +
+                            std::to_string(header.rows) + " where its header says " +
+                            std::to_string(expected.columns) + "x" + std::to_string(expected.rows));
   }
   if (header.columns * header.rows > kMostPixels) return unsupported("is over 8192x8192");
   if (header.precision > std::min(expected.bits_allocated, 16)) {
-    return unreadable("its JPEG 2000 picture has " + std::to_string(header.precision) +
-                      " bits a pixel where its header says " +
-                      std::to_string(expected.bits_allocated));
+    return unreadablePixels("its JPEG 2000 picture has " + std::to_string(header.precision) +
+                            " bits a pixel where its header says " +
+                            std::to_string(expected.bits_allocated));
   }
   return {};
 }
@@ -286,7 +284,7 @@ struct Destroy {
   }
 };
 using Stream = std::unique_ptr<opj_stream_t, Destroy<&opj_stream_destroy>>;
-using Codec = std::unique_ptr<opj_codec_t, Destroy<&opj_destroy_codec>>;
+using Decoder = std::unique_ptr<opj_codec_t, Destroy<&opj_destroy_codec>>;
 using Image = std::unique_ptr<opj_image_t, Destroy<&opj_image_destroy>>;
 
 // Null where OpenJPEG gives up. It prints nothing unless it is given somewhere to.
@@ -294,8 +292,8 @@ Image decode(Bytes codestream) {
   constexpr OPJ_SIZE_T kBuffer = OPJ_SIZE_T(1) << 16;
   Reader reader{codestream};
   const Stream stream(opj_stream_create(kBuffer, OPJ_TRUE));
-  const Codec codec(opj_create_decompress(OPJ_CODEC_J2K));
-  if (!stream || !codec) return nullptr;
+  const Decoder decoder(opj_create_decompress(OPJ_CODEC_J2K));
+  if (!stream || !decoder) return nullptr;
   opj_stream_set_user_data(stream.get(), &reader, nullptr);
   opj_stream_set_user_data_length(stream.get(), codestream.size());
   opj_stream_set_read_function(stream.get(), &Reader::read);
@@ -305,12 +303,12 @@ Image decode(Bytes codestream) {
   opj_dparameters_t parameters;
   opj_set_default_decoder_parameters(&parameters);
   opj_image_t* read = nullptr;
-  const bool ready = opj_setup_decoder(codec.get(), &parameters) &&
-                     opj_decoder_set_strict_mode(codec.get(), OPJ_TRUE) &&
-                     opj_codec_set_threads(codec.get(), 0) &&  // whatever OPJ_NUM_THREADS says
-                     opj_read_header(stream.get(), codec.get(), &read);
+  const bool ready = opj_setup_decoder(decoder.get(), &parameters) &&
+                     opj_decoder_set_strict_mode(decoder.get(), OPJ_TRUE) &&
+                     opj_codec_set_threads(decoder.get(), 0) &&  // whatever OPJ_NUM_THREADS says
+                     opj_read_header(stream.get(), decoder.get(), &read);
   Image image(read);
-  if (!ready || !opj_decode(codec.get(), stream.get(), image.get())) return nullptr;
+  if (!ready || !opj_decode(decoder.get(), stream.get(), image.get())) return nullptr;
   return image;
 }
 

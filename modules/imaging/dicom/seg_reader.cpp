@@ -71,11 +71,6 @@ Error wrongSize(const std::string& what) {
   return Error{"SIZE_MISMATCH", what, "", "Copy or export the file anew"};
 }
 
-Error noGeometry(const std::string& what) {
-  return Error{"NO_GEOMETRY", what, "",
-               "Export the segmentation anew from the program that made it"};
-}
-
 template <class Group>
 Group* groupOf(DcmSegmentation& segmentation, std::size_t frame, DcmFGTypes::E_FGType type) {
   return dynamic_cast<Group*>(segmentation.getFunctionalGroups().get(Uint32(frame), type));

@@ -78,8 +78,8 @@ double shareOfKind(const LabelMap& map, const HuByLabel& hu, const Labels& wrong
 }
 
 // Of the voxels as they lie moved by so many; those that leave the CT are left out.
-HuCounts huOfMoved(const std::vector<Index3>& voxels, const Volume& ct, const Index3& by) {
-  HuCounts counts;
+StructureHu huOfMoved(const std::vector<Index3>& voxels, const Volume& ct, const Index3& by) {
+  StructureHu counts;
   const Index3& size = ct.geometry.size;
   for (const Index3& v : voxels) {
     const int i = v[0] + by[0], j = v[1] + by[1], k = v[2] + by[2];
@@ -100,7 +100,7 @@ bool isOfKindNearby(const std::vector<Index3>& voxels, const Volume& ct, const H
   for (const int k : moves[2]) {
     for (const int j : moves[1]) {
       for (const int i : moves[0]) {
-        const HuCounts counts = huOfMoved(voxels, ct, {i, j, k});
+        const StructureHu counts = huOfMoved(voxels, ct, {i, j, k});
         if (2 * counts.total() > voxels.size() && isOfKind(counts, kind)) return true;
       }
     }
@@ -110,12 +110,12 @@ bool isOfKindNearby(const std::vector<Index3>& voxels, const Volume& ct, const H
 
 }  // namespace
 
-void HuCounts::add(std::int16_t hu) {
+void StructureHu::add(std::int16_t hu) {
   ++bins_[std::size_t(std::clamp(int(hu) + 1024, 0, kBins - 1))];
   ++total_;
 }
 
-double HuCounts::percentile(double share) const {
+double StructureHu::percentile(double share) const {
   const double wanted = share * double(total_);
   double seen = 0.0;
   for (int bin = 0; bin < kBins; ++bin) {
@@ -125,7 +125,7 @@ double HuCounts::percentile(double share) const {
   return kBins - 1025.0;
 }
 
-double HuCounts::shareIn(double low, double high) const {
+double StructureHu::shareIn(double low, double high) const {
   double in = 0.0;
   for (int bin = 0; bin < kBins; ++bin) {
     if (bin - 1024 >= low && bin - 1024 <= high) in += bins_[std::size_t(bin)];
@@ -163,7 +163,7 @@ HuByLabel huOfTurned(const LabelMap& map, const Volume& ct, int axis, const Voxe
   return counts;
 }
 
-bool isOfKind(const HuCounts& hu, const HuOfKind& kind) {
+bool isOfKind(const StructureHu& hu, const HuOfKind& kind) {
   const double median = hu.percentile(0.5);
   return median >= kind.low && median <= kind.high &&
          hu.shareIn(kind.low - kNearKind_HU, kind.high + kNearKind_HU) >= kLeastOfKind;

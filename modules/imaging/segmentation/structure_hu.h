@@ -12,7 +12,7 @@
 
 namespace trephine {
 
-class HuCounts {
+class StructureHu {
  public:
   void add(std::int16_t hu);
   std::size_t total() const { return total_; }
@@ -25,14 +25,14 @@ class HuCounts {
   std::size_t total_ = 0;
 };
 
-using HuByLabel = std::array<std::optional<HuCounts>, 256>;
+using HuByLabel = std::array<std::optional<StructureHu>, 256>;
 
 // Of each label's voxels, as the map lies or, with an axis, turned about along it within the box.
 HuByLabel huOf(const LabelMap& map, const Volume& ct);
 HuByLabel huOfTurned(const LabelMap& map, const Volume& ct, int axis, const VoxelBox& box);
 
 // Most voxels have HU of the kind or nearly (noise, blur), and the median has.
-bool isOfKind(const HuCounts& hu, const HuOfKind& kind);
+bool isOfKind(const StructureHu& hu, const HuOfKind& kind);
 
 // Labels whose names say a kind that their HU are not, neither as they lie nor moved by up to
 // `slack_mm`: a rib that is a voxel off lies on muscle. `here`: huOf() of them.

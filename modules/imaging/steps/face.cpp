@@ -16,8 +16,6 @@ namespace trephine {
 
 namespace {
 
-constexpr int kBoneMeanHu = 150;    // noise in brain does not reach it, nor 600 HU in a voxel
-constexpr int kSkinHu = -500;       // half way from air to skin
 constexpr double kMargin_mm = 8.0;  // from the braincase's inside to the cut: its bone
 // From the middle of the braincase: the chin is nearer than kBottom_mm, and the air of the face
 // than kNose_mm; without air, where the face's middle is taken to be.

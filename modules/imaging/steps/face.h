@@ -18,6 +18,10 @@
 
 namespace trephine {
 
+// Of a cell of the coarse grid.
+constexpr int kBoneMeanHu = 150;  // noise in brain does not reach it, nor 600 HU in a voxel
+constexpr int kSkinHu = -500;     // half way from air to skin
+
 struct FaceFinding {
   bool found = false;
   // With a braincase in view the cut is fitted to it. Without one (a scan of sinuses or jaws) a

@@ -4,19 +4,17 @@
 #include <cmath>
 
 #include "imaging/steps/coarse_parts.h"
+#include "imaging/steps/face.h"
 
 namespace trephine {
 
 namespace {
 
-constexpr int kSkinHu = -500;  // half way from air to skin
-constexpr int kBoneMeanHu = 150;
-
 // How far two eyes, and the tip of the nose and the middle between them, lie apart: children's and
 // adults', with some room.
 constexpr double kEyesLeast_mm = 38.0, kEyesApart_mm = 62.0, kEyesMost_mm = 85.0;
 // What of an eye and its lids, of a nose or of lips makes a person known.
-constexpr double kEye_mm = 12.0, kNose_mm = 18.0;
+constexpr double kEye_mm = 12.0, kNoseReach_mm = 18.0;
 constexpr double kLids_mm = 9.0;  // in front of the eye's middle
 constexpr double kSharpNose = 0.30;
 constexpr double kNoseLeast_mm = 25.0, kNoseMost_mm = 75.0;
@@ -157,7 +155,7 @@ class MarkSearch {
   // `place` where there is skin or flesh around it, nothing where it is beyond the scan or in air.
   std::optional<Vec3> matterAt(const Vec3& place_mm) const {
     const Index3 middle = grid_.cellAt(place_mm);
-    const std::vector<Near> ball = shell(grid_, 0.0, kNose_mm);
+    const std::vector<Near> ball = shell(grid_, 0.0, kNoseReach_mm);
     int matter = 0;
     for (const Near& near : ball) {
       const Cell cell{middle[0], middle[1], middle[2]};
@@ -356,8 +354,8 @@ FaceLeft faceLeft(const FaceMarks& marks, const CoarseGrid& before, const Coarse
   for (const Vec3& eye : marks.eyes) {
     found.eyes = std::max(found.eyes, left(eye + kLids_mm * marks.forwards, kEye_mm));
   }
-  if (marks.nose) found.nose = left(*marks.nose, kNose_mm);
-  if (marks.mouth) found.mouth = left(*marks.mouth, kNose_mm);
+  if (marks.nose) found.nose = left(*marks.nose, kNoseReach_mm);
+  if (marks.mouth) found.mouth = left(*marks.mouth, kNoseReach_mm);
   return found;
 }
 

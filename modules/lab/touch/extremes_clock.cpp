@@ -14,7 +14,8 @@ Outcome clockBack(std::int64_t back_ns) {
   ScriptedClock clock;
   clock.jump_ns = -back_ns;
   Outcome outcome = undisturbed({.clock = &clock});
-  outcome.got += say(", %d sleeps, the longest %.4g ms", clock.sleeps, clock.longest_sleep_ms);
+  outcome.got +=
+      formatted(", %d sleeps, the longest %.4g ms", clock.sleeps, clock.longest_sleep_ms);
   outcome.pass = outcome.pass && clock.sleeps == kTicks - 1;
   return outcome;
 }
@@ -24,9 +25,10 @@ Outcome clockJitter() {
   clock.jitter_ns = 500'000;
   const Run r = run({.clock = &clock});
   const bool same = sameForces(r, run({}));
-  return judge(r, same && r.missed == 0 && !r.faulty(),
-               facts(r) + say(", %llu missed, %s forces", static_cast<unsigned long long>(r.missed),
-                              same ? "the reference's" : "other"));
+  return judge(
+      r, same && r.missed == 0 && !r.faulty(),
+      facts(r) + formatted(", %llu missed, %s forces", static_cast<unsigned long long>(r.missed),
+                           same ? "the reference's" : "other"));
 }
 
 Outcome clockGap() {
@@ -38,8 +40,8 @@ Outcome clockGap() {
   const bool ramped = std::abs(in_N - before_N * 2.0 / 3.0) < 1e-9;
   return judge(
       r, ramped && before_N > kFelt_N && r.missed == 1 && !r.faulty() && clock.sleeps == kTicks - 1,
-      say("%.3g N before and %.3g N in the late tick, %llu missed, ", before_N, in_N,
-          static_cast<unsigned long long>(r.missed)) +
+      formatted("%.3g N before and %.3g N in the late tick, %llu missed, ", before_N, in_N,
+                static_cast<unsigned long long>(r.missed)) +
           facts(r));
 }
 
@@ -50,9 +52,10 @@ Outcome clockLie(std::int64_t lie_ns, bool must_fault) {
   const Run r = run({.clock = &clock});
   const bool late = r.faultTick(kFaultLate) >= 0;
   const int after = kTicks - 1 - kMiddle;
-  return judge(r, (late || !must_fault) && clock.sleeps_after_middle >= after - 1,
-               say("%s, %d of the %d ticks after it waited for their deadline",
-                   late ? "late with a fault" : "not late", clock.sleeps_after_middle, after));
+  return judge(
+      r, (late || !must_fault) && clock.sleeps_after_middle >= after - 1,
+      formatted("%s, %d of the %d ticks after it waited for their deadline",
+                late ? "late with a fault" : "not late", clock.sleeps_after_middle, after));
 }
 
 Outcome clockFromTheFirstValue() {

@@ -13,12 +13,12 @@ Outcome accumulatedEnergy(double energy_J) {
   const double grown_J = r.arm(kTicks - 1).energy_out_J.x - energy_J;
   const double expected_J = fresh.arm(kTicks - 1).energy_out_J.x;
   const bool same = sameForces(r, fresh);
-  return judge(
-      r,
-      same && !r.faulty() && std::abs(grown_J - expected_J) < 1e-7 && std::abs(expected_J) > 1e-5 &&
-          r.trace.back().tick == kBillion + kTicks - 1,
-      say("%.7g J more after %.7g J, %.7g J in a fresh session, ", grown_J, energy_J, expected_J) +
-          (same ? "the same forces, " : "other forces, ") + facts(r));
+  return judge(r,
+               same && !r.faulty() && std::abs(grown_J - expected_J) < 1e-7 &&
+                   std::abs(expected_J) > 1e-5 && r.trace.back().tick == kBillion + kTicks - 1,
+               formatted("%.7g J more after %.7g J, %.7g J in a fresh session, ", grown_J, energy_J,
+                         expected_J) +
+                   (same ? "the same forces, " : "other forces, ") + facts(r));
 }
 
 // One step of 10 m into the bone gives the observer 1 MJ: as 1e9 ticks of 1 mJ would.
@@ -35,7 +35,8 @@ Outcome accumulatedObserver() {
       r,
       start_J > 0.9e6 && expected_J > 1e-4 && std::abs(grown_J - expected_J) < 1e-7 &&
           r.largest_N() > kFelt_N && !r.faulty(),
-      say("%.7g J more after %.7g J, %.7g J exactly, ", grown_J, start_J, expected_J) + facts(r));
+      formatted("%.7g J more after %.7g J, %.7g J exactly, ", grown_J, start_J, expected_J) +
+          facts(r));
 }
 
 Outcome vanished() {
@@ -51,9 +52,9 @@ Outcome vanished() {
       r,
       stands && after_N == 0.0 && before == 6 && r.removed == std::uint64_t(before) &&
           r.largest_N(0, kMiddle) > kFelt_N,
-      say("%.3g N before and %.3g N after, %d voxels cut before, %d after, a fault that %s",
-          r.largest_N(0, kMiddle), after_N, before, r.cut(kMiddle),
-          stands ? "stands to the end" : "does not stand"));
+      formatted("%.3g N before and %.3g N after, %d voxels cut before, %d after, a fault that %s",
+                r.largest_N(0, kMiddle), after_N, before, r.cut(kMiddle),
+                stands ? "stands to the end" : "does not stand"));
 }
 
 Outcome lostForAWhile() {

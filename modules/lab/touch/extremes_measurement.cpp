@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/file.h"
+#include "base/formatted.h"
 #include "lab/touch/extremes_rows.h"
 #include "lab/touch/extremes_touch.h"
 
@@ -99,7 +100,7 @@ std::string toText(const ExtremesMeasurement& measurement) {
     if (!row.pass) text += "       expected: " + row.expected + "\n";
     text += "       got: " + row.got + "\n";
   }
-  return text + say("%zu of %zu as expected\n", passed, measurement.rows.size());
+  return text + formatted("%zu of %zu as expected\n", passed, measurement.rows.size());
 }
 
 }  // namespace trephine

@@ -24,7 +24,7 @@ Outcome denormalVelocity() {
   return judge(r,
                std::fpclassify(v) == FP_SUBNORMAL && r.largest_N() < 1e-9 && r.removed == 1 &&
                    r.touching() == kTicks && !r.faulty(),
-               say("v = %.3g m/s, ", v) + facts(r));
+               formatted("v = %.3g m/s, ", v) + facts(r));
 }
 
 // In and out of the bone, 1 km a tick, each time where it stands yet.
@@ -41,7 +41,7 @@ Outcome hugeVelocity() {
   double v = 0.0;
   for (int i = 0; i < kTicks; ++i) v = std::max(v, std::abs(r.arm(i).velocity_m_s.x));
   return judge(r, v > 0.99e6 && r.removed == kTicks / 2 && !r.faulty(),
-               say("v up to %.3g m/s, ", v) + facts(r));
+               formatted("v up to %.3g m/s, ", v) + facts(r));
 }
 
 Outcome afterHugeVelocity() {
@@ -57,7 +57,8 @@ Outcome afterHugeVelocity() {
   }
   return judge(
       r, ticks == 0 && r.largest_N(kTicks - 100) > kFelt_N && !r.faulty(),
-      say("up to %.3g N above the demand, %d ticks with over 0.1 N, ", above_N, ticks) + facts(r));
+      formatted("up to %.3g N above the demand, %d ticks with over 0.1 N, ", above_N, ticks) +
+          facts(r));
 }
 
 Outcome noImpedance() {
@@ -86,7 +87,7 @@ Outcome hugeImpedance() {
   }
   const bool as_expected =
       demanded_N > 1e5 && r.largest_N(150, 200) == 0.0 && r.largest_N(200) > kFelt_N && !r.faulty();
-  return judge(r, as_expected, say("%.3g N demanded, ", demanded_N) + facts(r));
+  return judge(r, as_expected, formatted("%.3g N demanded, ", demanded_N) + facts(r));
 }
 
 }  // namespace

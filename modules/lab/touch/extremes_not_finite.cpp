@@ -56,7 +56,7 @@ struct Refusals {
     if (!answer && ++refused == 1) first = answer.error().sentence();
   }
   Outcome outcome() const {
-    return {say("%d of %d refused: ", refused, cases) + first, refused == cases};
+    return {formatted("%d of %d refused: ", refused, cases) + first, refused == cases};
   }
 };
 

@@ -41,8 +41,9 @@ Outcome faultThenWork(const Setup& setup, std::uint32_t fault, int tick) {
   const bool stood = r.faultTick(fault) == tick && r.arm(kClear - 1).faults != 0;
   const double after_N = r.largest_N(kClear);
   const int cut = r.cut(kClear);
-  const std::string got = (stood ? say("a fault from tick %d to %d", tick, kClear - 1) : facts(r)) +
-                          say(", then up to %.3g N and %d voxels cut", after_N, cut);
+  const std::string got =
+      (stood ? formatted("a fault from tick %d to %d", tick, kClear - 1) : facts(r)) +
+      formatted(", then up to %.3g N and %d voxels cut", after_N, cut);
   return judge(r, stood && r.arm(kClear).faults == 0 && after_N > kFelt_N && cut > 0, got);
 }
 

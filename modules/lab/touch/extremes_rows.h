@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "base/formatted.h"
 #include "lab/touch/extremes_rig.h"
 
 namespace trephine::extremes {
@@ -38,12 +38,6 @@ inline const char* const kStroke = "above 0.1 N, 11 voxels cut (2 more or less),
 inline const char* const kAsUsual = "the reference's force in every tick, no fault";
 inline const char* const kFaultInMiddle =
     "a fault from tick 200 until it is cleared, no force meanwhile, force and cutting after it";
-
-inline std::string say(const char* format, auto... values) {
-  char text[240];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 // The stroke with `change` made to its samples from tick `from` to before `to`.
 auto strokeWith(auto change, int from = 0, int to = kTicks) {

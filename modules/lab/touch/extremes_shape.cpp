@@ -39,11 +39,11 @@ Outcome oneVoxel() {
   setup.tissues.classes[0].cuttable = 0;
   const Run kept = run(setup);
   const Outcome a = judge(cut, cut.removed == 1 && cut.touching() <= 70 && !cut.faulty(),
-                          say("%d tick of contact, ", cut.touching()) + facts(cut));
+                          formatted("%d tick of contact, ", cut.touching()) + facts(cut));
   const Outcome b = judge(
       kept,
       kept.removed == 0 && kept.touching() >= 40 && kept.largest_N() > kFelt_N && !kept.faulty(),
-      say("%d ticks of contact, ", kept.touching()) + facts(kept));
+      formatted("%d ticks of contact, ", kept.touching()) + facts(kept));
   return {a.got + "; not cuttable: " + b.got, a.pass && b.pass};
 }
 

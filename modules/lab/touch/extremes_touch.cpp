@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
+#include "base/formatted.h"
 #include "lab/common/on_all_processors.h"
 #include "lab/touch/placed_scene.h"
 #include "lab/touch/rest_measurement.h"
@@ -19,12 +19,6 @@ namespace {
 constexpr int kBoneFrom_hu = 226;
 constexpr ArmDynamics kOmni{0.045, 0.055e-3, 3.3, 0};
 constexpr double kAccepted = 1.5;  // of what the push allows
-
-std::string say(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 // A hand that swings out at half the critical damping of the arm in it.
 Impedance handOf(double stiffness) {
@@ -256,21 +250,21 @@ ExtremeRow barrierRow(const std::string& tool, const Target& target, const std::
   const double half_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   ExtremeRow out;
   out.name = "barrier: " + tool + ", " + target.name;
-  out.input =
-      say("%zu times pressed at 0.5, 2 and 3.3 N by hands of 5 to 1000 N/m for 10 s, from "
-          "every side, leaning, over edges, turning; cuts nothing",
-          runs);
-  out.expected =
-      say("proxy inside bone by at most %.3g mm; arm beyond it by at most 1.5 times push / "
-          "renderable stiffness + 0.5 mm",
-          half_mm);
-  out.got =
-      say("inside by %.3f mm; arm at most %.2f mm beyond, %.2f times what %.2f N allow (%s of "
-          "%.1f N by %.0f N/m, learnt scale %.2f), over once that in %zu, over 1.5 times in %zu",
-          inside_mm, worst.beyond_mm, worst.beyond_share, worst.push_N, where ? wayOf(*where) : "",
-          where ? where->force_N : 0.0, where ? where->hand_N_per_m : 0.0, worst.learnt, over,
-          runs - accepted);
-  if (not_held > 0) out.got += say(", never held in %zu", not_held);
+  out.input = formatted(
+      "%zu times pressed at 0.5, 2 and 3.3 N by hands of 5 to 1000 N/m for 10 s, from "
+      "every side, leaning, over edges, turning; cuts nothing",
+      runs);
+  out.expected = formatted(
+      "proxy inside bone by at most %.3g mm; arm beyond it by at most 1.5 times push / "
+      "renderable stiffness + 0.5 mm",
+      half_mm);
+  out.got = formatted(
+      "inside by %.3f mm; arm at most %.2f mm beyond, %.2f times what %.2f N allow (%s of "
+      "%.1f N by %.0f N/m, learnt scale %.2f), over once that in %zu, over 1.5 times in %zu",
+      inside_mm, worst.beyond_mm, worst.beyond_share, worst.push_N, where ? wayOf(*where) : "",
+      where ? where->force_N : 0.0, where ? where->hand_N_per_m : 0.0, worst.learnt, over,
+      runs - accepted);
+  if (not_held > 0) out.got += formatted(", never held in %zu", not_held);
   out.pass = runs > 0 && inside_mm <= half_mm && accepted == runs && not_held < runs;
   return out;
 }
@@ -319,9 +313,9 @@ ExtremeRow atRest(const PlacedScene& liver) {
   for (std::size_t i = 0; i < held.size(); ++i) {
     row.pass = row.pass && held[i].touched && !held[i].waited &&
                !faultsOf(HoldKind::rest, held[i], arms[i].encoder_m).any();
-    row.got +=
-        say("%s%s: %.0f um at %.0f Hz, %.3f mJ", i ? "; " : "", liver.scene.arms[i].tool.c_str(),
-            1e6 * held[i].cycle_m, held[i].cycle_Hz, 1e3 * held[i].energy_out_J);
+    row.got += formatted("%s%s: %.0f um at %.0f Hz, %.3f mJ", i ? "; " : "",
+                         liver.scene.arms[i].tool.c_str(), 1e6 * held[i].cycle_m, held[i].cycle_Hz,
+                         1e3 * held[i].energy_out_J);
   }
   return row;
 }
@@ -347,9 +341,10 @@ ExtremeRow softens(const Tool& burr) {
   const double k = std::min(900.0, renderable(kOmni, 1000.0, 0, {}).k_max);
   const double allowed_mm = 3000.0 / k + 0.5;
   return {"3 N through a spring of 5 N/m", "a burr without its motor falls by 1 mm onto bone, 8 s",
-          say("under bounded at most %.1f mm deep, 1.5 times push / renderable stiffness + 0.5 mm",
+          formatted(
+              "under bounded at most %.1f mm deep, 1.5 times push / renderable stiffness + 0.5 mm",
               kAccepted * allowed_mm),
-          say("%.1f mm under bounded, %.1f mm under off", bounded_mm, off_mm),
+          formatted("%.1f mm under bounded, %.1f mm under off", bounded_mm, off_mm),
           bounded_mm <= kAccepted * allowed_mm && bounded_mm > 0.0};
 }
 
@@ -388,8 +383,8 @@ ExtremeRow comesBack(const std::string& name, const Tool& burr, ControllerKind f
   return {
       name, "a burr without its motor pressed onto bone by 600 N/m, about 1 N",
       "0.8 to 1.2 of what is demanded after 0.5 s, at most 0.05 N more in a tick, no alternation",
-      say("%.2f of what is demanded, at most %.3f N more in a tick, %d alternations", share, step_N,
-          alternations),
+      formatted("%.2f of what is demanded, at most %.3f N more in a tick, %d alternations", share,
+                step_N, alternations),
       share >= 0.8 && share <= 1.2 && step_N <= 0.05 + 1e-9 && alternations == 0};
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "base/formatted.h"
 #include "haptics/unseen_energy.h"
 #include "lab/common/on_all_processors.h"
 #include "lab/touch/rest_places.h"
@@ -231,12 +231,6 @@ Json sumJson(const RestSum& s) {
           {"felt_nothing", s.apart}};
 }
 
-std::string say(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
 }  // namespace
 
 Json toJson(const RestFigures& figures) {
@@ -270,21 +264,22 @@ Json toJson(const RestFigures& figures) {
 std::string toText(const RestFigures& figures) {
   std::string text = "rest\n";
   for (const RestSum& s : sumsOf(figures)) {
-    text +=
-        say("  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
-            "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; at least %.2f of the "
-            "demand sent; cutting in %zu, nothing felt in %zu\n",
-            s.name.c_str(), s.unstable, s.cells,
-            s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal,
-            s.beyond, 1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.least_shown,
-            s.cutting, s.apart);
+    text += formatted(
+        "  %-30s %5zu of %5zu unstable (%.1f %%), %zu as the ideal law, %zu beyond what is "
+        "accepted; at most %.3f mJ given out, cycle %.0f um at %.0f Hz; at least %.2f of the "
+        "demand sent; cutting in %zu, nothing felt in %zu\n",
+        s.name.c_str(), s.unstable, s.cells,
+        s.cells > 0 ? 100.0 * double(s.unstable) / double(s.cells) : 0.0, s.also_ideal, s.beyond,
+        1e3 * s.energy_out_J_max, 1e6 * s.cycle_m_max, s.cycle_Hz, s.least_shown, s.cutting,
+        s.apart);
   }
   for (const RestRow& row : figures.rows) {
     if (!row.unstable) continue;
-    text += say("    %s: %s arm, %s, %s, %s: %.0f um at %.0f Hz, %.3f mJ%s\n", row.scene.c_str(),
-                row.arm.c_str(), row.tool.c_str(), row.place.c_str(), kindName(row.kind).c_str(),
-                1e6 * row.result.cycle_m, row.result.cycle_Hz, 1e3 * row.result.energy_out_J,
-                row.result.removed_voxels > 0 ? ", cutting" : "");
+    text +=
+        formatted("    %s: %s arm, %s, %s, %s: %.0f um at %.0f Hz, %.3f mJ%s\n", row.scene.c_str(),
+                  row.arm.c_str(), row.tool.c_str(), row.place.c_str(), kindName(row.kind).c_str(),
+                  1e6 * row.result.cycle_m, row.result.cycle_Hz, 1e3 * row.result.energy_out_J,
+                  row.result.removed_voxels > 0 ? ", cutting" : "");
   }
   return text;
 }

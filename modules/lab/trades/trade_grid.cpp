@@ -13,7 +13,6 @@ namespace trephine {
 
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
 constexpr int kTissue_hu = 226;
 
 // A channel 1.5 mm deep over the top of the shell, at 10 mm/s.
@@ -83,8 +82,8 @@ TradeRows tradeGrid(const TradesOptions& options, const Progress& progress) {
   burr.motor_W = 4.0;
   const HapticParameters parameters = tradeParameters(
       *makeTool(burr), tradeTissue(kTissue_hu, true, 0.06),
-      {LawKind::viscous, LawKind::coulomb, LawKind::elastic}, ForceAt::tip, kPeriod_s);
-  const auto ticks = std::size_t(std::llround(options.stroke_s / kPeriod_s));
+      {LawKind::viscous, LawKind::coulomb, LawKind::elastic}, ForceAt::tip, kTradePeriod_s);
+  const auto ticks = std::size_t(std::llround(options.stroke_s / kTradePeriod_s));
   std::vector<TradeRow> rows;
   std::set<std::pair<int, int>> columns;
   std::vector<double> full_mm;

@@ -11,7 +11,6 @@ namespace trephine {
 
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
 // Soft to cut, so that a hand's work takes enough voxels to count by.
 constexpr double kSoftToCut_J_per_mm3 = 0.004;
 constexpr int kReferenceTimes = 8;
@@ -61,7 +60,7 @@ Volume block(int size, double box_mm) {
 TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const TradesOptions& options,
                       const Progress& progress) {
   Grid grid(hapticsVolume(options.grid, 49.2));
-  const auto ticks = std::size_t(std::llround(options.stroke_s / kPeriod_s));
+  const auto ticks = std::size_t(std::llround(options.stroke_s / kTradePeriod_s));
   const auto pose_mm = [&](double t_s) { return obliquePose_mm(t_s, options.stroke_s); };
   // The force with the tissue left whole, and what goes where it may.
   struct Run {
@@ -72,7 +71,8 @@ TradeRows tradePoints(ToolKind kind, const std::vector<int>& counts, const Trade
     const auto stroke = [&](bool cuttable) {
       return runStroke(
           tradeParameters(toolOf(kind, points), tradeTissue(226, cuttable, kSoftToCut_J_per_mm3),
-                          {LawKind::viscous, LawKind::coulomb}, ForceAt::distributed, kPeriod_s),
+                          {LawKind::viscous, LawKind::coulomb}, ForceAt::distributed,
+                          kTradePeriod_s),
           grid, ticks, pose_mm, cuttable, progress);
     };
     std::optional<StrokeRun> whole = leastCost([&] { return stroke(false); }, times);
@@ -113,7 +113,7 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
   Grid grid(block(options.grid, 49.2));
   const TissueTable tissues = tradeTissue(226, false, 1.0);
   const double b = tissues.classes[0].damping_Ns_per_m;
-  const auto ticks = std::size_t(2.0 * kMost_rad / kTurn_rad_per_s / kPeriod_s);
+  const auto ticks = std::size_t(2.0 * kMost_rad / kTurn_rad_per_s / kTradePeriod_s);
   const auto angle = [&](double t_s) { return -kMost_rad + kTurn_rad_per_s * t_s; };
   const auto pose_mm = [&](double t_s) {
     return Pose{1000.0 * (velocity_m_s * (t_s - 0.4) + Vec3(0.0, 0.0, -kDeep_m)),
@@ -122,7 +122,7 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
   // -(b / L) integral from 0 to s of (v + omega x u r) dr, s where the blade leaves the tissue.
   std::vector<Vec3> exact_N;
   for (std::size_t n = 0; n < ticks; ++n) {
-    const double a = angle(double(n) * kPeriod_s);
+    const double a = angle(double(n) * kTradePeriod_s);
     const Vec3 along(std::sin(a), 0.0, std::cos(a));
     const Vec3 turning = glm::cross(Vec3(0.0, kTurn_rad_per_s, 0.0), along);
     const double s = std::min(kLength_m, kDeep_m / std::cos(a));
@@ -131,8 +131,8 @@ TradeRows tradeForceAt(const TradesOptions& options, const Progress& progress) {
   exact_N[0] = Vec3(0.0);  // the first sample has no velocity yet
   std::vector<TradeRow> rows;
   for (const auto& [name, kind] : kForceAtNames) {
-    const HapticParameters parameters =
-        tradeParameters(makeBlade(kLength_m, 64), tissues, {LawKind::viscous}, kind, kPeriod_s);
+    const HapticParameters parameters = tradeParameters(makeBlade(kLength_m, 64), tissues,
+                                                        {LawKind::viscous}, kind, kTradePeriod_s);
     const std::optional<StrokeRun> run = leastCost(
         [&] { return runStroke(parameters, grid, ticks, pose_mm, false, progress); }, kTimes);
     if (!run) return tradesCancelled();

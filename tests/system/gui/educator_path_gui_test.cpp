@@ -119,7 +119,8 @@ class EducatorPathTest : public test::WindowTest {
     made.region = BodyRegion::head;
     made.tissues = toJson(*readTissueSet(resourceFolder() / "tissues" / "cranium.json"));
     QVERIFY(library.save(made).ok());
-    MainWindow window(toPath(home.path()) / "recordings");
+    window_ = std::make_unique<MainWindow>(toPath(home.path()) / "recordings");
+    MainWindow& window = *window_;
     open(window);
     const Workstation& work = window.workstation();
 
@@ -168,7 +169,7 @@ class EducatorPathTest : public test::WindowTest {
     };
     for (int attempt = 0; attempt < 5 && !pushed(); ++attempt) {
       if (way == Way::mouse) {
-        pokeWithMouse(window.view());
+        pokeWithMouse();
       } else {
         press(Qt::Key_Right);
         press(Qt::Key_PageDown, {}, 15);
@@ -249,6 +250,7 @@ class EducatorPathTest : public test::WindowTest {
              toQt(toJson(*work.scene()).dump()));
     run(elsewhere);
     at_ = nullptr;
+    window_.reset();
   }
   void open(MainWindow& window) {
     at_ = &window;
@@ -267,23 +269,11 @@ class EducatorPathTest : public test::WindowTest {
     press(Qt::Key_Period, Qt::ControlModifier);
     QTRY_VERIFY_WITH_TIMEOUT(work.phase() == Workstation::Phase::ready, kLong_ms);
   }
-  void pokeWithMouse(ViewWidget& view) {
-    const auto wheel = [&](int notches) {
-      const QPointF at = QRectF(view.rect()).center();
-      for (int n = 0; n < std::abs(notches); ++n) {
-        QWheelEvent event(at, view.mapToGlobal(at), {}, {0, notches > 0 ? 120 : -120}, Qt::NoButton,
-                          Qt::NoModifier, Qt::NoScrollPhase, false);
-        QCoreApplication::sendEvent(&view, &event);
-        QTest::qWait(15);
-      }
-    };
-    QTest::mouseMove(&view, view.rect().center() + QPoint(3, 0));
-    QTest::qWait(20);
-    QTest::mouseMove(&view, view.rect().center());
-    QTest::qWait(50);
-    wheel(15);
+  void pokeWithMouse() {
+    pointAt(window_->view().rect().center());
+    pushHand(15);
     QTest::qWait(2500);
-    wheel(-15);
+    pushHand(-15);
     QTest::qWait(1500);
     press(Qt::Key_F, Qt::ControlModifier);
   }

@@ -31,7 +31,7 @@ TEST(Standstill, DoesNotBeginWhileTicksComeOrNothingIsDue) {
 }
 
 // A device of one arm whose exchange waits while `held`.
-struct Held {
+struct Watched {
   static inline std::atomic<bool> held{false}, stops_wait{false};
   static inline std::atomic<int> silences{0}, exchanges{0}, waiting{0};
   static inline std::atomic<double> commanded_N{0.0};
@@ -87,10 +87,10 @@ struct Held {
 // The loop and its watchdog, each on a thread.
 struct Running {
   Running() : grid(test::boneSlab()), core(parameters(), *grid.takeWriter()) {
-    Held::held = false;
-    Held::silences = Held::exchanges = 0;
+    Watched::held = false;
+    Watched::silences = Watched::exchanges = 0;
     std::vector<LoopDevice> devices;
-    devices.push_back({*Device::open(*DevicePlugin::builtIn(Held::api()), {0}, "{}"), {0}});
+    devices.push_back({*Device::open(*DevicePlugin::builtIn(Watched::api()), {0}, "{}"), {0}});
     loop = std::make_unique<HapticLoop>(core, std::move(devices), nullptr);
     watchdog = std::make_unique<Watchdog>(*loop);
     EXPECT_TRUE(loop->startDevices().ok());
@@ -102,7 +102,7 @@ struct Running {
     until([this] { return loop->ticks() > 50; });
   }
   ~Running() {
-    Held::held = false;
+    Watched::held = false;
     stop = true;
     ticking.join();
     watchdog->end();
@@ -134,12 +134,12 @@ struct Running {
 
 TEST(Watchdog, TakesTheForceAwayWhileADeviceBlocksAndTheNextTickKnows) {
   Running running;
-  Held::silences = 0;  // a busy machine may have stood still before
-  Held::held = true;
-  ASSERT_TRUE(Running::until([] { return Held::silences > 0; }));
+  Watched::silences = 0;  // a busy machine may have stood still before
+  Watched::held = true;
+  ASSERT_TRUE(Running::until([] { return Watched::silences > 0; }));
   EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.02; }));
   const std::uint64_t tick = running.loop->ticks();
-  Held::held = false;
+  Watched::held = false;
   ASSERT_TRUE(Running::until([&] { return running.loop->ticks() > tick + 20; }));
   Event event;
   bool silenced = false, late = false;
@@ -149,38 +149,38 @@ TEST(Watchdog, TakesTheForceAwayWhileADeviceBlocksAndTheNextTickKnows) {
   }
   EXPECT_TRUE(silenced);
   EXPECT_TRUE(late);
-  EXPECT_EQ(Held::commanded_N, 0.0) << "by the rule of lateness";
+  EXPECT_EQ(Watched::commanded_N, 0.0) << "by the rule of lateness";
   EXPECT_EQ(running.watchdog->stillFor_s(), 0.0);
 }
 
 TEST(Watchdog, SilencesAtOnceWhenAskedEvenWhileADeviceBlocks) {
   Running running;
-  Held::held = true;
-  ASSERT_TRUE(Running::until([] { return Held::waiting == 1; }));
-  const int before = Held::silences;
+  Watched::held = true;
+  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
+  const int before = Watched::silences;
   EXPECT_TRUE(running.watchdog->silence(20s));
-  EXPECT_GT(Held::silences, before);
+  EXPECT_GT(Watched::silences, before);
 }
 
 // Its safe_stop waits until the device lets go, as one that needs the same mutex.
 TEST(Watchdog, SaysThatTicksStandStillThoughSafeStopDoesNotReturnAndCountsThemOnce) {
   Running running;
-  Held::stops_wait = true;
-  Held::held = true;
+  Watched::stops_wait = true;
+  Watched::held = true;
   EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.05; }));
   EXPECT_TRUE(running.loop->silenceIsPending());
-  Held::held = false;
-  Held::stops_wait = false;
+  Watched::held = false;
+  Watched::stops_wait = false;
   EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() == 0.0; }));
 }
 
 TEST(HapticLoop, AThreadThatADeviceHoldsIsLeftBehindAndTouchesNoVoxelsLater) {
   Running running;
-  Held::held = true;
-  ASSERT_TRUE(Running::until([] { return Held::waiting == 1; }));
+  Watched::held = true;
+  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
   const std::uint64_t ticks = running.loop->ticks();
   ASSERT_EQ(running.loop->leaveBehind(), std::size_t(0));
-  Held::held = false;
+  Watched::held = false;
   EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
   EXPECT_EQ(running.loop->ticks(), ticks) << "without the tick that it was in";
   EXPECT_FALSE(running.here);

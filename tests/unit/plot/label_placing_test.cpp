@@ -5,17 +5,17 @@
 namespace trephine::plot {
 namespace {
 
-const QRectF kArea(0.0, 0.0, 200.0, 100.0);
+const QRectF kPage(0.0, 0.0, 200.0, 100.0);
 
 TEST(LabelPlacing, TakesTheFirstPlaceThatIsFree) {
   const std::vector<QRectF> candidates{{-5, 0, 20, 10}, {50, 50, 20, 10}, {80, 50, 20, 10}};
-  EXPECT_EQ(placed(candidates, {{55, 55, 5, 5}}, kArea), candidates[2]);
-  EXPECT_EQ(placed(candidates, {}, kArea), candidates[1]);
+  EXPECT_EQ(placed(candidates, {{55, 55, 5, 5}}, kPage), candidates[2]);
+  EXPECT_EQ(placed(candidates, {}, kPage), candidates[1]);
 }
 
 TEST(LabelPlacing, TakesTheLeastCoveredWhereNoneIsFree) {
   const std::vector<QRectF> candidates{{50, 50, 20, 10}, {60, 50, 20, 10}};
-  EXPECT_EQ(placed(candidates, {{50, 50, 12, 10}}, kArea), candidates[1]);
+  EXPECT_EQ(placed(candidates, {{50, 50, 12, 10}}, kPage), candidates[1]);
 }
 
 TEST(LabelPlacing, AroundADiscLeavesTheDiscFree) {

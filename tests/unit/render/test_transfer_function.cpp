@@ -3,20 +3,12 @@
 #include <cmath>
 
 #include "render/transfer_function.h"
+#include "scenes.h"
 
 using namespace trephine;
+using test::tissue;
 
 namespace {
-
-Tissue tissue(const char* id, int low, int high, Vec3 colour, double opacity) {
-  Tissue t;
-  t.id = id;
-  t.hu_min = low;
-  t.hu_max = high;
-  t.colour = colour;
-  t.opacity = opacity;
-  return t;
-}
 
 const Vec3 kRed(1, 0, 0), kBlue(0, 0, 1);
 

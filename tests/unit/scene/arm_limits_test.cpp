@@ -15,14 +15,14 @@ const TissueNumber& number(std::string_view key) {
   throw std::runtime_error("no such number");
 }
 
-Scene cranium() {
+Scene craniumOnOmnis() {
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
   for (SceneArm& arm : scene.arms) arm.dynamics = ArmDynamics{0.045, 5.5e-5, 3.3, 0};
   return scene;
 }
 
 TEST(ArmLimits, AreOfTheWeakestArmAndNoneWithoutDynamics) {
-  Scene scene = cranium();
+  Scene scene = craniumOnOmnis();
   ASSERT_GE(scene.arms.size(), 2u);
   const ArmsLimit both = *armsLimit(scene);
   scene.arms[1].map.force_scale = 2.0;
@@ -93,13 +93,13 @@ TEST(ArmLimits, DampingAndStiffnessAreBoundedEachByItself) {
 }
 
 TEST(ArmLimits, NoMoreIsSentThanTheDeviceGivesWhateverTheSceneAllows) {
-  Scene scene = cranium();
+  Scene scene = craniumOnOmnis();
   for (SceneArm& arm : scene.arms) arm.max_force_N = 50.0;
   EXPECT_DOUBLE_EQ(armsLimit(scene)->force_N, 3.3);
 }
 
 TEST(ArmLimits, TheMostOfANumberIsJustShownAndALittleMoreIsNot) {
-  const Scene scene = cranium();
+  const Scene scene = craniumOnOmnis();
   const ArmsLimit arms = *armsLimit(scene);
   const DemandedOf demanded = [&](const Tissue& tissue) { return demandedOf(scene, tissue); };
   for (const Tissue& tissue : scene.tissues.tissues) {

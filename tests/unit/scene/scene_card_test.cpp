@@ -3,16 +3,13 @@
 #include "base/system.h"
 #include "base/utf8.h"
 #include "scene/scene.h"
+#include "shipped.h"
 
 namespace trephine {
 namespace {
 
-std::filesystem::path file() {
-  return resourceFolder() / "scenes" / "burr-hole.json";
-}
-Json shipped() {
-  return *readJsonFile(file());
-}
+using test::burrHole;
+using test::burrHoleFile;
 
 TEST(SceneCard, EveryShippedSceneHasOneInBothLanguages) {
   for (const auto& entry : std::filesystem::directory_iterator(resourceFolder() / "scenes")) {
@@ -33,9 +30,9 @@ TEST(SceneCard, EveryShippedSceneHasOneInBothLanguages) {
 }
 
 TEST(SceneCard, IsInEnglishWhereItHasNoOtherLanguage) {
-  Json json = shipped();
+  Json json = burrHole();
   json["card"].erase("zh_TW");
-  Scene scene = *parseScene(json, file());
+  Scene scene = *parseScene(json, burrHoleFile());
   EXPECT_EQ(cardFor(scene, "zh_TW"), &scene.card->en);
   EXPECT_EQ(cardFor(scene, "de"), &scene.card->en);
   scene.card.reset();
@@ -43,11 +40,11 @@ TEST(SceneCard, IsInEnglishWhereItHasNoOtherLanguage) {
 }
 
 TEST(SceneCard, IsWrittenAsItWasRead) {
-  const Json json = shipped();
-  EXPECT_EQ(toJson(*parseScene(json, file()))["card"], json["card"]);
+  const Json json = burrHole();
+  EXPECT_EQ(toJson(*parseScene(json, burrHoleFile()))["card"], json["card"]);
   Json bare = json;
   bare.erase("card");
-  EXPECT_FALSE(toJson(*parseScene(bare, file())).contains("card"));
+  EXPECT_FALSE(toJson(*parseScene(bare, burrHoleFile())).contains("card"));
 }
 
 std::string times(const char* text, int count) {
@@ -76,28 +73,28 @@ TEST(SceneCard, ThatCannotBeReadAtAGlanceIsRefusedByField) {
       {"card.en.steps", [](Json& c) { c["en"]["steps"][0] = 7; }},
   };
   for (const Wrong& wrong : all) {
-    Json json = shipped();
+    Json json = burrHole();
     wrong.change(json["card"]);
-    const Result<Scene> scene = parseScene(json, file());
+    const Result<Scene> scene = parseScene(json, burrHoleFile());
     ASSERT_FALSE(scene) << wrong.field;
     EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos) << scene.error().sentence();
   }
   // Characters are counted, not bytes: Chinese has as much room.
-  Json json = shipped();
+  Json json = burrHole();
   json["card"]["zh_TW"]["goal"] = times("骨", 300);
-  EXPECT_TRUE(parseScene(json, file()));
+  EXPECT_TRUE(parseScene(json, burrHoleFile()));
 }
 
 TEST(SceneLocks, AreReadAndWrittenAndNothingElseIsLocked) {
-  Json json = shipped();
-  EXPECT_TRUE(parseScene(json, file())->locks.empty());
-  EXPECT_FALSE(toJson(*parseScene(json, file())).contains("locks"));
+  Json json = burrHole();
+  EXPECT_TRUE(parseScene(json, burrHoleFile())->locks.empty());
+  EXPECT_FALSE(toJson(*parseScene(json, burrHoleFile())).contains("locks"));
   json["locks"] = {"controller", "rate"};
-  const Scene scene = *parseScene(json, file());
+  const Scene scene = *parseScene(json, burrHoleFile());
   EXPECT_EQ(scene.locks, (Locks{Lock::controller, Lock::rate}));
   EXPECT_EQ(toJson(scene)["locks"], json["locks"]);
   json["locks"] = {"everything"};
-  const Result<Scene> wrong = parseScene(json, file());
+  const Result<Scene> wrong = parseScene(json, burrHoleFile());
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().sentence().find("everything"), std::string::npos);
   EXPECT_NE(wrong.error().next.find("controller, tissues, rate"), std::string::npos);

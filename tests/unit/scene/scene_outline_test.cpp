@@ -2,16 +2,13 @@
 
 #include "base/system.h"
 #include "scene/scene.h"
+#include "shipped.h"
 
 namespace trephine {
 namespace {
 
-std::filesystem::path file() {
-  return resourceFolder() / "scenes" / "burr-hole.json";
-}
-Json shipped() {
-  return *readJsonFile(file());
-}
+using test::burrHole;
+using test::burrHoleFile;
 
 // A ball of bone of this radius around `centre_mm`, in air.
 Volume ball(const Vec3& centre_mm, double radius_mm) {
@@ -35,7 +32,7 @@ constexpr double kRadius_mm = 40.0;
 const Vec3 kCentre_mm(10, -20, 30);
 
 Scene onBall(double above_mm) {
-  Scene scene = *parseScene(shipped(), file());
+  Scene scene = *parseScene(burrHole(), burrHoleFile());
   const auto placed = *placeLandmarks(scene, ball(kCentre_mm, kRadius_mm));
   scene.outline->frame = {"vault", placed[0].frame};
   scene.outline->points_mm.clear();
@@ -89,9 +86,9 @@ TEST(Outline, KeepsItsPlaceWhereThereIsNoSurface) {
 }
 
 TEST(Outline, WithoutAFrameIsOfOnePatientAndLeftOutOnAnother) {
-  Json json = shipped();
+  Json json = burrHole();
   json["outline"].erase("frame");
-  Scene scene = *parseScene(json, file());
+  Scene scene = *parseScene(json, burrHoleFile());
   const Volume volume = ball(kCentre_mm, kRadius_mm);
   const auto drawn = outlineOn(scene, {}, volume);
   EXPECT_EQ(drawn.front(), scene.outline->points_mm.front());
@@ -100,7 +97,7 @@ TEST(Outline, WithoutAFrameIsOfOnePatientAndLeftOutOnAnother) {
   useCase(scene, "/data/ct");
   EXPECT_FALSE(scene.outline);
 
-  Scene framed = *parseScene(shipped(), file());
+  Scene framed = *parseScene(burrHole(), burrHoleFile());
   useCase(framed, "/data/ct");
   EXPECT_TRUE(framed.outline);
   EXPECT_TRUE(outlineOn(framed, {}, volume).empty()) << "its landmark has no place there";
@@ -157,9 +154,9 @@ TEST(Outline, ThatCannotBeIsRefusedByField) {
       {"outline.frame.centre_mm", [](Json& o) { o["frame"].erase("centre_mm"); }},
   };
   for (const Wrong& wrong : all) {
-    Json json = shipped();
+    Json json = burrHole();
     wrong.change(json["outline"]);
-    const Result<Scene> scene = parseScene(json, file());
+    const Result<Scene> scene = parseScene(json, burrHoleFile());
     ASSERT_FALSE(scene) << wrong.field;
     EXPECT_NE(scene.error().where.find(wrong.field), std::string::npos) << scene.error().sentence();
   }

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "base/system.h"
+#include "session_support.h"
 
 namespace trephine {
 namespace {
 
-Scene cranium() { return *readScene(resourceFolder() / "scenes" / "cranium.json"); }
+using test::cranium;
 
 Json script() {
   return *parseJson(R"({"format": "trephine.operator", "version": 1, "name": "t",

@@ -16,7 +16,7 @@ PointerInput at(std::int64_t time_ns, double x_mm, double push_N = 0.0) {
   return {{time_ns, Vec3(x_mm, 0.0, 100.0), Vec3(0.0, 0.0, -1.0), 100.0}, push_N};
 }
 
-struct Played {
+struct Pursued {
   PointerPath path;
   std::int64_t now_ns = 0;
   std::vector<double> x_mm{};  // by tick
@@ -30,7 +30,7 @@ struct Played {
 
 TEST(PointerPath, IsTheSameAtAnyRateOfEventsAConstantTimeLater) {
   for (const double rate : {60.0, 125.0, 1000.0}) {
-    Played played;
+    Pursued played;
     int sent = 0;
     for (int n = 0; n < 1000; ++n) {
       while (1000.0 * sent / rate <= double(n)) {  // an event comes as it happens
@@ -46,7 +46,7 @@ TEST(PointerPath, IsTheSameAtAnyRateOfEventsAConstantTimeLater) {
 }
 
 TEST(PointerPath, OfEventsThatComeLateAndInBurstsKeepsItsLineAtABoundedSpeed) {
-  Played played;
+  Pursued played;
   // 100 mm/s, round a corner; what happened in 50 ms comes 40 ms after, all at once.
   double furthest_mm = 0.0;
   for (int n = 0; n < 1500; ++n) {
@@ -71,7 +71,7 @@ TEST(PointerPath, OfEventsThatComeLateAndInBurstsKeepsItsLineAtABoundedSpeed) {
 }
 
 TEST(PointerPath, APointerThatRestedGoesOnFromThereAndDoesNotJump) {
-  Played played;
+  Pursued played;
   played.path.push(at(0, 0.0));
   for (int n = 0; n < 2000; ++n) played.tick();
   played.path.push(at(2000 * kMs, 3.0));
@@ -85,7 +85,7 @@ TEST(PointerPath, APointerThatRestedGoesOnFromThereAndDoesNotJump) {
 }
 
 TEST(PointerPath, ThatWasQueuedAheadIsPlayedAsOneThatComesByItself) {
-  Played ahead, live;
+  Pursued ahead, live;
   for (int n = 0; n < 60; ++n) ahead.path.push(at(n * 16 * kMs, n < 30 ? n : 60 - n));
   for (int n = 0; n < 1100; ++n) {
     if (n % 16 == 0 && n < 960) live.path.push(at(n * kMs, n < 480 ? n / 16 : 60 - n / 16));
@@ -94,7 +94,7 @@ TEST(PointerPath, ThatWasQueuedAheadIsPlayedAsOneThatComesByItself) {
 }
 
 TEST(PointerPath, GivesWhatIsPushedAtItsTimeAndWaitsForNoTimeThatIsYetToCome) {
-  Played played;
+  Pursued played;
   played.path.push(at(0, 0.0));
   played.path.push(at(100 * kMs, 0.0, 2.0));
   double since = -1;
@@ -106,7 +106,7 @@ TEST(PointerPath, GivesWhatIsPushedAtItsTimeAndWaitsForNoTimeThatIsYetToCome) {
 }
 
 TEST(PointerPath, OfAJumpIsWalked) {
-  Played played;
+  Pursued played;
   played.path.push(at(0, 0.0));
   for (int n = 0; n < 50; ++n) played.tick();
   played.path.push(at(50 * kMs, 100.0));
