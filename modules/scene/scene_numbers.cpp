@@ -1,5 +1,7 @@
 #include "scene/scene_numbers.h"
 
+#include <cmath>
+
 namespace trephine {
 
 namespace {
@@ -16,6 +18,26 @@ Quat readRotation(JsonReader& item) {
     item.fail("rotation_wxyz", "Expected a unit quaternion, found " + Json(q).dump());
   }
   return map.rotation;
+}
+
+// R = Rz Ry Rx.
+MapTurn turnOf(const Quat& rotation) {
+  const glm::dmat3 r = glm::mat3_cast(rotation);  // r[column][row]
+  const double flat = std::hypot(r[0][0], r[0][1]);
+  Vec3 turn(0.0, std::atan2(-r[0][2], flat), 0.0);
+  if (flat > 1e-9) {
+    turn.x = std::atan2(r[1][2], r[2][2]);
+    turn.z = std::atan2(r[0][1], r[0][0]);
+  } else {
+    turn.x = std::atan2(-r[2][1], r[1][1]);
+  }
+  return {glm::degrees(turn)};
+}
+
+Quat rotationOf(const MapTurn& turn) {
+  const Vec3 of = glm::radians(turn.turned_deg);
+  return glm::normalize(glm::angleAxis(of.z, Vec3(0, 0, 1)) * glm::angleAxis(of.y, Vec3(0, 1, 0)) *
+                        glm::angleAxis(of.x, Vec3(1, 0, 0)));
 }
 
 std::string sceneNumbersPage() {

@@ -79,6 +79,19 @@ inline constexpr NumberOf<SceneMap> kSceneMapNumbers[] = {
      &SceneMap::force_scale},
 };
 
+// The rotation of a fixed map for people: the device turned about the patient's axes, LPS, first
+// about x, then y, then z.
+struct MapTurn {
+  Vec3 turned_deg{0.0};
+};
+inline constexpr NumberOf<MapTurn> kMapTurnNumbers[] = {
+    {{"turned_deg", {-180, 180, "\u00b0"}, Given::always, "about the patient's x, then y, then z"},
+     &MapTurn::turned_deg},
+};
+// Where y is 90 degrees away from none, x and z turn about one axis, and z is 0.
+MapTurn turnOf(const Quat& rotation);
+Quat rotationOf(const MapTurn& turn);
+
 inline constexpr NumberOf<ToolDescription> kToolNumbers[] = {
     {{"length_mm", kToolLength_mm, Given::always,
       "from the tip to the handle; of a blade, its edge; of a burr, at least its head"},

@@ -14,7 +14,7 @@ namespace trephine {
 QString nameOfSetting(const char* key) {
   if (std::string_view(key) == "arm") return QCoreApplication::translate("Setting", "Number");
   QStringList parts = QString(key).split('_');
-  static const QStringList kUnits{"mm", "N", "Hz", "hz", "W", "s", "m"};
+  static const QStringList kUnits{"mm", "N", "Hz", "hz", "W", "s", "m", "deg"};
   if (parts.size() > 1 && kUnits.contains(parts.back())) parts.removeLast();
   QString name = parts.join(' ');
   name[0] = name[0].toUpper();
@@ -47,7 +47,7 @@ QString meaningOf(const NumberRow& row) {
 
 double stepOfUnit(const char* unit) {
   const std::string_view of = unit;
-  if (of == "mm" || of == "W") return 1.0;
+  if (of == "mm" || of == "W" || of == "\u00b0") return 1.0;
   if (of == "N") return 0.1;
   if (of == "Hz") return 100.0;
   return 0.05;

@@ -62,7 +62,12 @@ ExerciseForm::ExerciseForm(QWidget* parent) : QWidget(parent) {
   groups->addWidget(buildWhat());
   groups->addWidget(buildPlaces());
   groups->addWidget(buildCard());
-  groups->addWidget(buildOutline());
+  outline_ = new OutlineForm(body_);
+  outline_->wanted = [this](const std::string& what, const std::function<void(Scene&)>& change) {
+    return wanted ? wanted(what, change) : Status();
+  };
+  connect(outline_, &OutlineForm::drawingWanted, this, &ExerciseForm::drawingWanted);
+  groups->addWidget(outline_);
   groups->addWidget(buildLocks());
   layout->addWidget(body_);
   layout->addStretch(1);
@@ -543,79 +548,6 @@ void ExerciseForm::showCard() {
   showText(zh_, chinese ? &*scene_.card->zh_TW : nullptr);
 }
 
-// --- The outline ---
-
-QWidget* ExerciseForm::buildOutline() {
-  auto* fields = new QWidget(body_);
-  outline_form_ = settingForm(fields);
-  outline_problem_ = problemLabel("outlineProblem", body_);
-  auto* row = new QWidget(fields);
-  auto* buttons = new QHBoxLayout(row);
-  buttons->setContentsMargins(0, 0, 0, 0);
-  draw_ = settingButton("drawOutline", tr("Draw it"), tr("Each click on the surface adds a point"),
-                        row);
-  draw_->setCheckable(true);
-  back_ = settingButton("outlineBack", tr("Last off"), tr("Takes the last point away"), row);
-  clear_ = settingButton("clearOutline", tr("Clear"), tr("No outline"), row);
-  connect(draw_, &QToolButton::toggled, this, [this](bool on) {
-    if (!showing_) emit drawingWanted(on);
-  });
-  connect(clear_, &QToolButton::clicked, this, [this] {
-    edit(outline_problem_, "outline off", [](Scene& scene) { scene.outline.reset(); });
-  });
-  connect(back_, &QToolButton::clicked, this, [this] {
-    edit(outline_problem_, "outline", [](Scene& scene) {
-      if (!scene.outline) return;
-      scene.outline->points_mm.pop_back();
-      if (scene.outline->points_mm.size() < 2) scene.outline.reset();
-    });
-  });
-  buttons->addWidget(draw_);
-  buttons->addWidget(back_);
-  buttons->addWidget(clear_);
-  buttons->addStretch(1);
-  points_ = settingHint({}, fields);
-  points_->setObjectName("outlinePoints");
-  outline_form_->addRow(withHint(row,
-                                 tr("A line on the tissue that shows where to work; it is neither "
-                                    "felt nor scored."),
-                                 fields));
-  outline_form_->addRow(points_);
-  closed_ = new QCheckBox(tr("Closed"), fields);
-  closed_->setObjectName("outlineClosed");
-  connect(closed_, &QCheckBox::toggled, this, [this](bool on) {
-    edit(outline_problem_, "outline closed", [&](Scene& scene) {
-      if (scene.outline) scene.outline->closed = on;
-    });
-  });
-  outline_form_->addRow(withHint(closed_, tr("The last point is joined to the first."), fields));
-  width_ = std::make_unique<NumberRows<SceneOutline>>(
-      std::span<const NumberOf<SceneOutline>>(kOutlineNumbers), *outline_form_, fields, "outline:");
-  width_->entered = [this](const SceneOutline& outline, const char* key) {
-    edit(outline_problem_, key, [&](Scene& scene) {
-      if (scene.outline) scene.outline->width_mm = outline.width_mm;
-    });
-  };
-  return group(tr("Outline"), outline_problem_, fields, body_);
-}
-
-void ExerciseForm::showOutline() {
-  const bool any = scene_.outline.has_value();
-  const std::size_t count = any ? scene_.outline->points_mm.size() : 0;
-  points_->setText(any ? tr("%1 points").arg(count) : tr("No outline yet."));
-  closed_->setEnabled(any);
-  closed_->setChecked(any && scene_.outline->closed);
-  back_->setEnabled(any);
-  clear_->setEnabled(any);
-  width_->setEnabled(any);
-  width_->show(any ? *scene_.outline : SceneOutline{});
-}
-
-void ExerciseForm::showDrawing(bool drawing) {
-  const QSignalBlocker quiet(draw_);
-  draw_->setChecked(drawing);
-}
-
 // --- Locks ---
 
 QWidget* ExerciseForm::buildLocks() {
@@ -641,12 +573,12 @@ QWidget* ExerciseForm::buildLocks() {
   return group(tr("What stays"), lock_problem_, fields, body_);
 }
 
-void ExerciseForm::setScene(const Scene& scene) {
+void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark>& landmarks) {
   if (!sameScene(scene, scene_)) {  // what was refused was of another
-    for (QLabel* problem :
-         {what_problem_, place_problem_, card_problem_, outline_problem_, lock_problem_}) {
+    for (QLabel* problem : {what_problem_, place_problem_, card_problem_, lock_problem_}) {
       problem->hide();
     }
+    outline_->forgetRefusal();
   }
   scene_ = scene;
   showing_ = true;
@@ -690,7 +622,7 @@ void ExerciseForm::setScene(const Scene& scene) {
   view_numbers_->show(scene_.view);
   showLandmark();
   showCard();
-  showOutline();
+  outline_->show(scene_, landmarks);
   for (std::size_t i = 0; i < locks_.size(); ++i) {
     locks_[i]->setChecked(scene_.locks.contains(kLockNames[i].second));
   }

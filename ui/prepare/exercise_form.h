@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "scene/scene_numbers.h"
 #include "ui/common/number_rows.h"
+#include "ui/prepare/outline_form.h"
 
 namespace trephine {
 
@@ -28,7 +29,8 @@ class ExerciseForm : public QWidget {
  public:
   explicit ExerciseForm(QWidget* parent = nullptr);
 
-  void setScene(const Scene& scene);
+  // `landmarks`: as they are placed in the open case.
+  void setScene(const Scene& scene, const std::vector<PlacedLandmark>& landmarks);
   // Names of the case's structures, to be asked for.
   void setStructures(const std::vector<std::string>& names);
   void setLocked(const QString& why);
@@ -42,7 +44,7 @@ class ExerciseForm : public QWidget {
   // What it is called where it is saved, and whether it is as it was saved.
   void showSaved(const QString& words);
   // Clicks on the surface add points.
-  void showDrawing(bool drawing);
+  void showDrawing(bool drawing) { outline_->showDrawing(drawing); }
 
   // A person wants this change of the scene as it is then; `what` of it.
   std::function<Status(const std::string& what, const std::function<void(Scene&)>& change)> wanted;
@@ -75,7 +77,6 @@ class ExerciseForm : public QWidget {
   QWidget* buildWhat();
   QWidget* buildPlaces();
   QWidget* buildCard();
-  QWidget* buildOutline();
   QWidget* buildLocks();
   CardFields buildLanguage(QWidget* page, const QString& suffix);
   void showLandmark();
@@ -84,7 +85,6 @@ class ExerciseForm : public QWidget {
   void addLandmark();
   void removeLandmark();
   void showCard();
-  void showOutline();
   void edit(QLabel* problem, const std::string& what, const std::function<void(Scene&)>& change);
   void editLandmark(const std::string& what, const std::function<void(Landmark&)>& change);
   void cardEntered();
@@ -102,7 +102,7 @@ class ExerciseForm : public QWidget {
   QComboBox* anatomy_;
   QListWidget* structures_;
   std::vector<std::string> of_case_;
-  QLabel *what_problem_, *place_problem_, *card_problem_, *outline_problem_, *lock_problem_;
+  QLabel *what_problem_, *place_problem_, *card_problem_, *lock_problem_;
   QComboBox *landmark_, *landmark_tissue_, *landmark_found_, *view_landmark_;
   QLineEdit* landmark_name_;
   QFormLayout* place_form_;
@@ -115,11 +115,7 @@ class ExerciseForm : public QWidget {
   CardFields en_, zh_;
   std::optional<CardText> kept_chinese_;  // that was taken out
   QWidget *en_page_, *zh_page_;
-  QToolButton *draw_, *clear_, *back_;
-  QCheckBox* closed_;
-  QLabel* points_;
-  QFormLayout* outline_form_;
-  std::unique_ptr<NumberRows<SceneOutline>> width_;
+  OutlineForm* outline_;
   std::array<QCheckBox*, kLockNames.size()> locks_{};
 };
 

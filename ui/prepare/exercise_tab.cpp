@@ -110,7 +110,8 @@ void ExerciseTab::refresh() {
                        ? tr("The exercise is locked. %1.").arg(unlockWords(workstation_.policy()))
                        : QString());
   form_->setElsewherePossible(!workstation_.isElsewhere());
-  form_->setScene(*workstation_.scene());
+  const std::optional<Case>& of = workstation_.currentCase();
+  form_->setScene(*workstation_.scene(), of ? of->landmarks : std::vector<PlacedLandmark>());
   form_->showCase(caseWords());
   const bool edited = workstation_.sceneEdited() || workstation_.tissuesEdited();
   form_->showSaved(isOwn() ? edited ? tr("Changed since it was saved.")

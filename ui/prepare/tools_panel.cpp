@@ -454,6 +454,13 @@ QWidget* ToolsPanel::buildArms() {
       arm.map.force_scale = map.force_scale;
     });
   };
+  fixed_turn_ = std::make_unique<NumberRows<MapTurn>>(
+      std::span<const NumberOf<MapTurn>>(kMapTurnNumbers), *arm_form_, fields, "fixed:");
+  fixed_turn_->entered = [this](const MapTurn& turn, const char* key) {
+    editArm(key, [&](SceneArm& arm) {
+      if (arm.map.fixed) arm.map.fixed->rotation = rotationOf(turn);
+    });
+  };
   arm_numbers_ = std::make_unique<NumberRows<SceneArm>>(
       std::span<const NumberOf<SceneArm>>(kArmNumbers), *arm_form_, fields, "arm:");
   arm_numbers_->entered = [this](const SceneArm& entered, const char* key) {
@@ -543,7 +550,11 @@ void ToolsPanel::showArm() {
   map_numbers_->setVisible(!arm.map.fixed);
   map_numbers_->show(arm.map);
   fixed_numbers_->setVisible(arm.map.fixed.has_value());
-  if (arm.map.fixed) fixed_numbers_->show(*arm.map.fixed);
+  fixed_turn_->setVisible(arm.map.fixed.has_value());
+  if (arm.map.fixed) {
+    fixed_numbers_->show(*arm.map.fixed);
+    fixed_turn_->show(turnOf(arm.map.fixed->rotation));
+  }
   arm_numbers_->show(arm);
   showing_ = before;
 }

@@ -104,6 +104,7 @@ class ToolsPanel : public QWidget {
   QFormLayout* arm_form_;
   std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
   std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;
+  std::unique_ptr<NumberRows<MapTurn>> fixed_turn_;
   std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
   std::vector<std::pair<LawKind, QCheckBox*>> laws_;
   std::vector<std::pair<LawKind, QLabel*>> law_costs_;

@@ -13,6 +13,8 @@ namespace trephine {
 
 namespace {
 
+enum Stopping { kByStiffness, kStops, kGoesIn };  // in the order of the list
+
 QString unitOf(const TissueNumber& row) {
   return QString::fromUtf8(row.shown_unit ? row.shown_unit : row.unit);
 }
@@ -28,21 +30,26 @@ TissueMechanics::TissueMechanics(QWidget* parent) : QWidget(parent) {
   cuttable_ = new QCheckBox(tr("Can be cut"), this);
   cuttable_->setObjectName("cuttable");
   cuttable_->setToolTip(tr("Whether a tool may remove it, by the work that is put in"));
-  solid_ = new QCheckBox(tr("Stops a tool until it is cut"), this);
+  solid_ = new QComboBox(this);
   solid_->setObjectName("solid");
-  solid_->setToolTip(tr("A tool stays outside of it, as of bone; by itself from %1 N/m on")
+  solid_->setAccessibleName(tr("Whether it stops a tool"));
+  solid_->setToolTip(tr("A tool stays outside of what stops it, as of bone, until it is cut; by "
+                        "its stiffness: from %1 N/m on")
                          .arg(kSolidFrom_N_per_m));
+  solid_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  solid_->setMinimumContentsLength(3);
+  for (int i = 0; i < 3; ++i) solid_->addItem({});
   form->addRow(cuttable_);
-  form->addRow(solid_);
+  form->addRow(tr("A tool"), solid_);
   connect(cuttable_, &QCheckBox::toggled, this, [this](bool on) {
     Tissue other = tissue_;
     other.cuttable = on;
     if (wanted) (void)wanted(other, "cuttable");
   });
-  connect(solid_, &QCheckBox::toggled, this, [this](bool on) {
+  connect(solid_, &QComboBox::activated, this, [this](int chosen) {
     Tissue other = tissue_;
     other.solid.reset();
-    if (declared_.solid || other.isSolid() != on) other.solid = on;
+    if (chosen != kByStiffness) other.solid = chosen == kStops;
     if (wanted) (void)wanted(other, "solid");
   });
 }
@@ -131,9 +138,15 @@ void TissueMechanics::showOutcome() {
     if (most) *most *= n.row->shown_per;
     n.bar->setLimit(most, isForce(*n.row) || in_force_ == ControllerKind::bounded);
   }
-  const QSignalBlocker quiet_cut(cuttable_), quiet_solid(solid_);
+  const QSignalBlocker quiet_cut(cuttable_);
   cuttable_->setChecked(tissue_.cuttable);
-  solid_->setChecked(tissue_.isSolid());
+  Tissue by_itself = tissue_;
+  by_itself.solid.reset();
+  solid_->setItemText(kByStiffness, by_itself.isSolid() ? tr("is stopped, by its stiffness")
+                                                        : tr("goes in, by its stiffness"));
+  solid_->setItemText(kStops, tr("is stopped until it is cut"));
+  solid_->setItemText(kGoesIn, tr("goes in"));
+  solid_->setCurrentIndex(!tissue_.solid ? kByStiffness : *tissue_.solid ? kStops : kGoesIn);
 }
 
 void TissueMechanics::entered(const Number& n) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QLineEdit>
 #include <QWidget>
 #include <functional>
@@ -44,7 +45,8 @@ class TissueMechanics : public QWidget {
   void showOutcome();
 
   std::vector<Number> numbers_;
-  QCheckBox *cuttable_, *solid_;
+  QCheckBox* cuttable_;
+  QComboBox* solid_;
   Tissue tissue_, declared_;
   std::optional<ArmsLimit> arms_;
   DemandedOf demanded_;

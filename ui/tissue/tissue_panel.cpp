@@ -198,17 +198,26 @@ QWidget* TissuePanel::buildEditor() {
   auto* opacity_row = new QHBoxLayout;
   opacity_row->addWidget(opacity_, 1);
   opacity_row->addWidget(opacity_text_);
-  auto* form = new QFormLayout;
+  hu_source_ = new QLineEdit(editor_);
+  hu_source_->setObjectName("huSource");
+  hu_source_->setAccessibleName(tr("Source of the HU"));
+  hu_source_->setPlaceholderText(tr("where the range comes from"));
+  hu_source_->setMaxLength(300);
+  connect(hu_source_, &QLineEdit::editingFinished, this, &TissuePanel::huSourceEntered);
+  auto* form = form_ = new QFormLayout;
   form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
   form->setVerticalSpacing(6);
   form->addRow(tr("From"), low_->withReason());
   form->addRow(tr("To"), high_row);
+  form->addRow(tr("Source"), hu_source_);
   auto* where = new QGridLayout;
   where->setSpacing(4);
   where->addWidget(place_, 0, 0, Qt::AlignTop);
   where->addLayout(label_->withReason(), 0, 1);
   where->setColumnStretch(0, 1);
   form->addRow(tr("Where"), where);
+  shell_ = buildShell();
+  form->addRow(tr("Else"), shell_);
   form->addRow(tr("Opacity"), opacity_row);
 
   auto* editor_layout = new QVBoxLayout(editor_);
@@ -217,6 +226,35 @@ QWidget* TissuePanel::buildEditor() {
   editor_layout->addLayout(form);
   editor_layout->addWidget(mechanics_);
   return editor_;
+}
+
+// What stands in for a structure that a case lacks.
+QWidget* TissuePanel::buildShell() {
+  auto* row = new QWidget(editor_);
+  shell_of_ = new QComboBox(row);
+  shell_of_->setObjectName("shellOf");
+  shell_of_->setAccessibleName(tr("Where a case lacks the structure"));
+  shell_of_->setToolTip(
+      tr("What the tissue is on a case that lacks its structure; it holds when one is opened"));
+  shell_of_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  shell_of_->setMinimumContentsLength(3);
+  connect(shell_of_, &QComboBox::activated, this,
+          [this](int) { shellEntered(shell_of_->currentData().toString().toStdString()); });
+  shell_mm_ = new DecimalField("shellThickness", row);
+  shell_mm_->setAccessibleName(tr("Thickness of the layer"));
+  shell_mm_->setDecimals(1);
+  shell_mm_->setSingleStep(0.5);
+  shell_mm_->setLimits(kShellRange.low, kShellRange.high);
+  shell_mm_->setSuffix(tr(" mm"));
+  shell_mm_->entered = [this] {
+    if (current() && current()->shell) shellEntered(current()->shell->of);
+  };
+  auto* beside = new QHBoxLayout(row);
+  beside->setContentsMargins(0, 0, 0, 0);
+  beside->setSpacing(4);
+  beside->addWidget(shell_of_, 1);
+  beside->addLayout(shell_mm_->withReason());
+  return row;
 }
 
 void TissuePanel::setTissues(const TissueSet& tissues, const TissueSet& declared) {
@@ -374,6 +412,7 @@ void TissuePanel::showPlaces() {
     now = place_->count() - 1;
   }
   place_->setCurrentIndex(now);
+  showShell();
   place_->setEnabled(place_->count() > 1);
   place_->setToolTip(place_->count() > 1
                          ? tr("Only voxels of this structure are this tissue")
@@ -389,8 +428,10 @@ void TissuePanel::showOutcome() {
     const QSignalBlocker quiet(opacity_);
     opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
   }
-  for (QSpinBox* box : {low_, high_}) {
-    box->setToolTip(tr("Source: %1").arg(toQt(tissue->hu_source)));
+  if (!hu_source_->hasFocus() || !hu_source_->isModified()) {
+    hu_source_->setText(toQt(tissue->hu_source));
+    hu_source_->setCursorPosition(0);
+    hu_source_->setToolTip(toQt(tissue->hu_source));
   }
   showPlaces();
   const bool by_label = tissue->structure.empty() && tissue->label;
@@ -484,6 +525,50 @@ void TissuePanel::placeChosen(int index) {
   const Error why = valid.error();
   showPlaces();
   showProblem(&why, overlapsOf(tissues_, chosen(), wanted));
+}
+
+// Empty: nothing stands in.
+void TissuePanel::shellEntered(const std::string& of) {
+  if (!current()) return;
+  Tissue wanted = *current();
+  wanted.shell.reset();
+  if (!of.empty()) wanted.shell = Tissue::Shell{of, shell_mm_->wanted()};
+  const Status valid = apply(wanted, "where");
+  emit editEnded();
+  if (valid) return showShell();
+  const Error why = valid.error();
+  showProblem(&why, {});
+}
+
+void TissuePanel::showShell() {
+  const Tissue* tissue = current();
+  form_->setRowVisible(shell_, tissue && !tissue->structure.empty());
+  if (!tissue) return;
+  const std::string of = tissue->shell ? tissue->shell->of : std::string();
+  shell_of_->clear();
+  shell_of_->addItem(tr("nowhere without it"), QString());
+  std::vector<std::string> names = structures_;
+  if (!of.empty() && std::ranges::find(names, of) == names.end()) names.push_back(of);
+  for (const std::string& name : names) {
+    if (name == tissue->structure) continue;
+    shell_of_->addItem(tr("the outside of %1").arg(shownName(name)), toQt(name));
+  }
+  shell_of_->setCurrentIndex(shell_of_->findData(toQt(of)));
+  shell_mm_->setEnabled(!of.empty());
+  shell_mm_->show(tissue->shell.value_or(Tissue::Shell{}).thickness_mm);
+}
+
+void TissuePanel::huSourceEntered() {
+  if (!current()) return;
+  Tissue wanted = *current();
+  const std::string typed = cleanUtf8(hu_source_->text().simplified().toStdString());
+  hu_source_->setModified(false);
+  if (typed.empty() || typed == wanted.hu_source) {
+    return hu_source_->setText(toQt(wanted.hu_source));
+  }
+  wanted.hu_source = typed;
+  (void)apply(wanted, "hu");
+  emit editEnded();
 }
 
 void TissuePanel::nameEntered() {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <QComboBox>
+#include <QFormLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenu>
@@ -102,7 +103,11 @@ class TissuePanel : public QWidget {
   void chooseColour();
   void rangeEntered();
   void placeChosen(int index);
+  QWidget* buildShell();
+  void showShell();
+  void shellEntered(const std::string& of);
   void nameEntered();
+  void huSourceEntered();
   void add();
   void remove();
   // Puts it in the place of the selected one, where that makes a possible set.
@@ -119,7 +124,7 @@ class TissuePanel : public QWidget {
   bool labels_open_ = false;
   std::vector<std::string> structures_;
   QString locked_;
-  QLineEdit *set_name_, *name_;
+  QLineEdit *set_name_, *name_, *hu_source_;
   QToolButton *set_menu_, *undo_, *redo_;
   QMenu* sets_;
   QLabel* locked_words_;
@@ -129,7 +134,10 @@ class TissuePanel : public QWidget {
   QLabel *opacity_text_, *gaps_, *felt_, *problem_;
   QToolButton* colour_;
   QSlider* opacity_;
-  QComboBox* place_;
+  QComboBox *place_, *shell_of_;
+  QWidget* shell_;
+  DecimalField* shell_mm_;
+  QFormLayout* form_;
   WholeNumberField *low_, *high_, *label_;
   TissueMechanics* mechanics_;
 };

@@ -365,6 +365,19 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().arms[0].map.fixed->motion_scale, 0.5);
     enter("fixed:force_scale", "2");
     QCOMPARE(scene().arms[0].map.force_scale, 2.0);
+    const Pose ahead{Vec3(0.0, 0.0, 0.01), Quat(1, 0, 0, 0)};
+    const auto points = [&] {
+      const WorkspaceMap& map = *scene().arms[0].map.fixed;
+      return glm::normalize(map.toPatient_mm(ahead).position - map.centre_mm);
+    };
+    for (const char* axis : {"X", "Y", "Z"}) {
+      enter(("fixed:turned_deg" + std::string(axis)).c_str(), "0");
+    }
+    QVERIFY(glm::length(points() - Vec3(0, 0, 1)) < 1e-6);
+    enter("fixed:turned_degX", "90");  // what was up is in front
+    QVERIFY(glm::length(points() - Vec3(0, -1, 0)) < 1e-6);
+    enter("fixed:turned_degZ", "90");
+    QVERIFY(glm::length(points() - Vec3(1, 0, 0)) < 1e-6);
     const Vec3 moved = centre();
     choose("armLandmark", QString("vault"));
     QVERIFY(!scene().arms[0].map.fixed);
@@ -621,8 +634,23 @@ class ExerciseGuiTest : public test::WindowTest {
       }
     }
     QVERIFY2(changed > 150, qPrintable(QString::number(changed)));
-    find<QToolButton>("outlineBack")->click();
+    // A point by itself, and the landmark that all go with.
+    find<QSpinBox>("outlinePoint")->setValue(2);
+    const auto points = scene().outline->points_mm;
+    auto* z = find<QDoubleSpinBox>("outlinePoint:at_mmZ");
+    QVERIFY(std::abs(z->value() - points[1].z) < 0.06);
+    z->setValue(points[1].z + 4.0);
+    QVERIFY(std::abs(scene().outline->points_mm[1].z - points[1].z - 4.0) < 0.06);
+    QCOMPARE(scene().outline->points_mm[0], points[0]);
+    choose("outlineLandmark", QString(""));
+    QVERIFY(scene().outline && !scene().outline->frame);
+    choose("outlineLandmark", QString("vault"));
+    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
+    find<QToolButton>("outlinePointOff")->click();
     QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
+    QVERIFY(glm::length(scene().outline->points_mm[1] - points[2]) < 1e-6);
+    find<QToolButton>("outlineBack")->click();
+    QCOMPARE(scene().outline->points_mm.size(), std::size_t(2));
     key(&slice(SliceAxis::axial), Qt::Key_Escape);
     QCOMPARE(window_->views().tool(), SliceTool::window);
     QVERIFY(!find<QToolButton>("drawOutline")->isChecked());

@@ -292,14 +292,29 @@ class PrepareGuiTest : public test::WindowTest {
     QVERIFY(tissue("dura").cuttable);
     find<QCheckBox>("cuttable")->click();
     QVERIFY(!tissue("dura").cuttable);
-    const bool solid = tissue("dura").isSolid();
-    find<QCheckBox>("solid")->click();
-    QCOMPARE(tissue("dura").isSolid(), !solid);
+    auto* solid = find<QComboBox>("solid");
+    const std::optional<bool> before = tissue("dura").solid;
+    const auto stops = [&](int chosen) {
+      solid->setCurrentIndex(chosen);
+      emit solid->activated(chosen);
+      return tissue("dura").solid;
+    };
+    QCOMPARE(stops(1), std::optional<bool>(true));
+    QCOMPARE(stops(0), std::optional<bool>());
+    QCOMPARE(stops(2), std::optional<bool>(false));
+    auto* hu_source = find<QLineEdit>("huSource");
+    hu_source->setFocus();
+    hu_source->selectAll();
+    QTest::keyClicks(hu_source, "an atlas, plate 4");
+    key(hu_source, Qt::Key_Return);
+    QCOMPARE(tissue("dura").hu_source, std::string("an atlas, plate 4"));
+    key(hu_source, Qt::Key_Z, Qt::ControlModifier);
     // From a field in which nothing was typed Ctrl+Z takes back edits.
     QApplication::setActiveWindow(window_.get());
     find<QLineEdit>("dampingSource")->setFocus();
     key(find<QLineEdit>("dampingSource"), Qt::Key_Z, Qt::ControlModifier);
-    QCOMPARE(tissue("dura").isSolid(), solid);
+    QCOMPARE(tissue("dura").solid, std::optional<bool>());
+    QVERIFY(before != std::optional<bool>(false));
   }
 
   void whatTheArmsShowStandsBesideEveryNumberAndFollowsTheController() {

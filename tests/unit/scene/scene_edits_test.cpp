@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "base/system.h"
+#include "scene/scene_numbers.h"
 #include "scene/tissue_shares.h"
 #include "tissue/tissue_edits.h"
 
@@ -13,6 +16,24 @@ Scene cranium() {
   Result<Scene> scene = readScene(resourceFolder() / "scenes" / "cranium.json");
   EXPECT_TRUE(scene.ok());
   return *std::move(scene);
+}
+
+TEST(MapTurn, IsTheRotationThatItCameFrom) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-180.0, 180.0);
+  const auto apart = [](const Quat& a, const Quat& b) {
+    return 1.0 - std::abs(glm::dot(a, b));  // q and -q are one
+  };
+  for (int n = 0; n < 2000; ++n) {
+    const Quat rotation = rotationOf({{any(random), any(random), any(random)}});
+    EXPECT_LT(apart(rotationOf(turnOf(rotation)), rotation), 1e-12);
+  }
+  for (const double y : {90.0, -90.0}) {
+    const Quat rotation = rotationOf({{30.0, y, 50.0}});
+    EXPECT_LT(apart(rotationOf(turnOf(rotation)), rotation), 1e-9);
+  }
+  const MapTurn turn = turnOf(rotationOf({{10.0, -20.0, 30.0}}));
+  EXPECT_LT(glm::length(turn.turned_deg - Vec3(10.0, -20.0, 30.0)), 1e-9);
 }
 
 TEST(SceneHistory, TakesBackAndDoesAgainStepByStep) {

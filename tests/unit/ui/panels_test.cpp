@@ -132,6 +132,34 @@ TEST_F(TissuePanelTest, ATissueIsRestrictedToALabelOnceThereIsALabelMapAndFreedA
   EXPECT_FALSE(label.isEnabled());
 }
 
+TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
+  panel_.setStructures({"capsule", "liver"});
+  panel_.select("bone");
+  auto* place = &find<QComboBox>(panel_, "tissueStructure");
+  auto* of = &find<QComboBox>(panel_, "shellOf");
+  EXPECT_TRUE(of->parentWidget()->isHidden()) << "of a tissue that is anywhere";
+  const auto choose = [](QComboBox* box, const QString& data) {
+    const int index = box->findData(data);
+    ASSERT_GE(index, 0) << data.toStdString();
+    box->setCurrentIndex(index);
+    emit box->activated(index);
+  };
+  choose(place, "capsule");
+  EXPECT_FALSE(of->parentWidget()->isHidden());
+  EXPECT_EQ(of->findData("capsule"), -1) << "not of itself";
+  EXPECT_FALSE(changed_.find("bone")->shell);
+  choose(of, "liver");
+  ASSERT_TRUE(changed_.find("bone")->shell);
+  EXPECT_EQ(changed_.find("bone")->shell->of, "liver");
+  auto* thickness = &find<QDoubleSpinBox>(panel_, "shellThickness");
+  thickness->setValue(2.5);
+  EXPECT_EQ(changed_.find("bone")->shell->thickness_mm, 2.5);
+  thickness->setValue(25.0);
+  EXPECT_EQ(changed_.find("bone")->shell->thickness_mm, 2.5) << "too thick to be a layer";
+  choose(of, "");
+  EXPECT_FALSE(changed_.find("bone")->shell);
+}
+
 TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
   QSlider& slider = find<QSlider>(panel_, "opacity");
   slider.setValue(slider.maximum());
