@@ -32,7 +32,7 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
     {{"apparent_mass_kg", kApparentMass_kg, Given::always, "what `bounded` goes by"},
      offsetof(TrephineCapabilities, apparent_mass_kg)},
     {{"rate_hz", kDeviceRate_hz, Given::always,
-      "the highest rate of exchange; a scene that asks for more is refused"},
+      "the highest rate of its samples; a scene that asks for more is refused"},
      offsetof(TrephineCapabilities, rate_hz)},
     {{"max_stiffness_N_per_m", kMaxStiffness_N_per_m, Given::always,
       "the maker's; reported; nothing here reads it, below"},

@@ -40,17 +40,12 @@ std::string tableFault(const TrephineDeviceApi& api) {
            std::to_string(sizeof(TrephineDeviceApi));
   }
   const std::pair<const char*, bool> functions[] = {
-      {"enumerate", api.enumerate},
-      {"open", api.open},
-      {"configure", api.configure},
-      {"calibrate", api.calibrate},
-      {"start", api.start},
-      {"exchange", api.exchange},
-      {"stop", api.stop},
-      {"safe_stop", api.safe_stop},
-      {"capabilities", api.capabilities},
-      {"close", api.close},
-      {"name", api.name},
+      {"enumerate", api.enumerate},   {"open", api.open},
+      {"configure", api.configure},   {"calibrate", api.calibrate},
+      {"start", api.start},           {"read", api.read},
+      {"write", api.write},           {"stop", api.stop},
+      {"safe_stop", api.safe_stop},   {"capabilities", api.capabilities},
+      {"close", api.close},           {"name", api.name},
       {"last_error", api.last_error},
   };
   for (const auto& [name, present] : functions) {
@@ -224,6 +219,7 @@ Status Device::start() {
     return Error{"DEVICE_NOT_STARTED", lastSentence(api, handle_),
                  std::string("device '") + api.name + "'", "Check the arm and start again"};
   }
+  refused_ = false;
   running_ = true;
   return {};
 }
@@ -244,14 +240,10 @@ void Device::safeStop() {
   plugin_->api().safe_stop(handle_);
 }
 
-bool Device::exchange(double dt_s, TrephineArmState* states, const TrephineArmCommand* commands) {
+bool Device::read(double dt_s, TrephineArmState* states) {
   const std::size_t count = armCount();
-  for (std::size_t i = 0; i < count; ++i) {
-    states[i] = last_states_[i];
-    std::copy_n(commands[i].force_N, 3, commands_[i].force_N);
-    std::copy_n(commands[i].torque_Nm, 3, commands_[i].torque_Nm);
-  }
-  const bool good = plugin_->api().exchange(handle_, dt_s, states, commands_.data()) == TREPHINE_OK;
+  for (std::size_t i = 0; i < count; ++i) states[i] = last_states_[i];
+  const bool good = plugin_->api().read(handle_, dt_s, states) == TREPHINE_OK && !refused_;
   for (std::size_t i = 0; i < count; ++i) {
     if (good) {
       last_states_[i] = states[i];
@@ -261,6 +253,14 @@ bool Device::exchange(double dt_s, TrephineArmState* states, const TrephineArmCo
     }
   }
   return good;
+}
+
+void Device::write(const TrephineArmCommand* commands) {
+  for (std::size_t i = 0; i < armCount(); ++i) {
+    std::copy_n(commands[i].force_N, 3, commands_[i].force_N);
+    std::copy_n(commands[i].torque_Nm, 3, commands_[i].torque_Nm);
+  }
+  refused_ = plugin_->api().write(handle_, commands_.data()) != TREPHINE_OK;
 }
 
 void Device::setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,

@@ -55,7 +55,7 @@ class Device {
   // Calibrates and starts every arm. Error: DEVICE_NOT_STARTED with the plugin's own sentence.
   Status start();
   void stop();
-  // Zero force until an exchange has commanded zero on all arms, or the next start. Any thread,
+  // Zero force until a write has commanded zero on all arms, or the next start. Any thread,
   // also while another call does not return.
   void safeStop();
   // A call to this device did not return: it is not offered again while this program runs, since a
@@ -63,9 +63,10 @@ class Device {
   void leaveBehind() const;
 
   // Haptic thread. `states` and `commands` have armCount() elements; sizes and versions in them are
-  // set here. False when the device failed: the states are then the last good ones, marked
-  // TREPHINE_ARM_LOST.
-  bool exchange(double dt_s, TrephineArmState* states, const TrephineArmCommand* commands);
+  // set here. read() is false when the device failed, or did not take what was written last: the
+  // states are then the last good ones, marked TREPHINE_ARM_LOST.
+  bool read(double dt_s, TrephineArmState* states);
+  void write(const TrephineArmCommand* commands);
   // Haptic thread; nothing happens on arms that are not simulated. Position in device metres.
   void setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,
                  double damping_Ns_per_m);
@@ -78,6 +79,7 @@ class Device {
   std::vector<TrephineCapabilities> capabilities_;
   std::vector<TrephineArmState> last_states_;  // good ones
   std::vector<TrephineArmCommand> commands_;   // scratch: the caller's, with size and version
+  bool refused_ = false;                       // the last write
   bool running_ = false;
 };
 

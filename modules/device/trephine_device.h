@@ -12,8 +12,9 @@
  * Orientation is a unit quaternion (w, x, y, z) from the tool's frame into the device frame.
  * Forces are those that push the hand.
  *
- * Threads: `exchange` and `set_target` are called on the haptic thread: they do not block,
- * allocate, log or throw. Everything else is called on one other thread while no exchange runs.
+ * Threads: `read`, `write` and `set_target` are called on the haptic thread: they do not block,
+ * allocate, log or throw. Everything else is called on one other thread while none of them runs.
+ * A tick reads, computes, writes at once, and then waits for the next.
  * Functions return TREPHINE_OK or a TREPHINE_ERROR_*; `last_error` then has one sentence.
  */
 #ifndef TREPHINE_DEVICE_H
@@ -25,15 +26,15 @@
 extern "C" {
 #endif
 
-#define TREPHINE_DEVICE_ABI 1u
+#define TREPHINE_DEVICE_ABI 2u
 #define TREPHINE_DEVICE_ENTRY "trephine_device_plugin"
 
 enum {
   TREPHINE_OK = 0,
-  TREPHINE_ERROR_ARGUMENT = 1,   /* wrong index, wrong struct size, bad configuration text */
-  TREPHINE_ERROR_NO_DEVICE = 2,  /* nothing there, or it went away */
-  TREPHINE_ERROR_STATE = 3,      /* not allowed now: exchange before start, and the like */
-  TREPHINE_ERROR_DEVICE = 4      /* the device reports a fault */
+  TREPHINE_ERROR_ARGUMENT = 1,  /* wrong index, wrong struct size, bad configuration text */
+  TREPHINE_ERROR_NO_DEVICE = 2, /* nothing there, or it went away */
+  TREPHINE_ERROR_STATE = 3,     /* not allowed now: reading before start, and the like */
+  TREPHINE_ERROR_DEVICE = 4     /* the device reports a fault */
 };
 
 /* Flags of an arm's state. */
@@ -48,8 +49,8 @@ enum {
 
 /* How a plugin is paced. */
 enum {
-  TREPHINE_CLOCK_HOST = 0,   /* the host's timer calls exchange */
-  TREPHINE_CLOCK_DEVICE = 1  /* the plugin calls the servo callback */
+  TREPHINE_CLOCK_HOST = 0,  /* the host's timer paces read and write */
+  TREPHINE_CLOCK_DEVICE = 1 /* the plugin calls the servo callback */
 };
 
 typedef struct TrephineArmInfo {
@@ -67,7 +68,7 @@ typedef struct TrephineCapabilities {
   double max_stiffness_N_per_m, max_damping_Ns_per_m;
   double apparent_mass_kg;
   double encoder_step_m;
-  double rate_hz; /* highest rate of exchange */
+  double rate_hz; /* highest rate of reading and writing */
 } TrephineCapabilities;
 
 typedef struct TrephineArmState {
@@ -109,17 +110,19 @@ typedef struct TrephineDeviceApi {
   int (*calibrate)(TrephineDevice* device, uint32_t arm);
   /* `servo` is NULL for TREPHINE_CLOCK_HOST. */
   int (*start)(TrephineDevice* device, TrephineServo servo, void* user);
-  /* Gives every arm its command, lets dt_s pass (simulated arms) and reads every arm's state. */
-  int (*exchange)(TrephineDevice* device, double dt_s, TrephineArmState* states,
-                  const TrephineArmCommand* commands);
+  /* Every arm's newest sample. Simulated arms first move on by dt_s under the force that was
+   * written last, none since start; others take no notice of dt_s. */
+  int (*read)(TrephineDevice* device, double dt_s, TrephineArmState* states);
+  /* Gives every arm its force, at once: it holds until the next. */
+  int (*write)(TrephineDevice* device, const TrephineArmCommand* commands);
   /* Simulated arms only, NULL elsewhere: the rest pose of the hand that holds the arm, and the
    * stiffness [N/m] and damping [N s/m] with which it holds. */
   int (*set_target)(TrephineDevice* device, uint32_t arm, const double position_m[3],
                     const double orientation[4], double hand_k, double hand_b);
   int (*stop)(TrephineDevice* device);
   /* Zero force at once, from any thread, in any state, also while another call runs or blocks. It
-   * holds until the next start, or until an exchange that began after it has commanded zero force and torque for
-   * every arm: so the host says that it knows, and later exchanges move the arms again. */
+   * holds until the next start, or until a write that began after it has commanded zero force and
+   * torque for every arm: so the host says that it knows, and later writes move the arms again. */
   void (*safe_stop)(TrephineDevice* device);
   const char* (*last_error)(TrephineDevice* device);
   void (*close)(TrephineDevice* device);

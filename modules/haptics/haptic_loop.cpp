@@ -91,24 +91,25 @@ bool HapticLoop::step(std::int64_t late_ns) {
     const bool commanded =
         core_.acceptsCommands() &&
         (commands_.pop(command) || (operator_ && operator_->command(tick, command)));
-    if (!exchange(input)) return false;
+    if (!read(input)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
     if (operator_) operator_->moved(record, core_.parameters());
-    for (std::size_t i = 0; i < forces_N_.size(); ++i) forces_N_[i] = record.arms[i].sent_N;
 
-    // The record last: who finds it finds all that belongs to it.
+    // The record last: who finds it finds all that belongs to it. Before the force goes out, so
+    // that a device that does not take it leaves a whole recording.
     for (const CarveRecord& carve : core_.carves()) carves_.push(carve);
     for (const Event& event : core_.events()) events_.push(event);
     records_.push(record);
     tick_.store(tick + 1, std::memory_order_release);
+    if (!write(record)) return false;
     publish(record);
   }
   durations_.add(clock.now_ns() - begin_ns);
   return true;
 }
 
-bool HapticLoop::exchange(TickInput& input) {
+bool HapticLoop::read(TickInput& input) {
   const std::size_t arm_count = core_.parameters().arms.size();
   const double period_s = core_.parameters().period_s;
   std::array<OperatorSetPoint, kMaxArms> set_points{};
@@ -116,17 +117,11 @@ bool HapticLoop::exchange(TickInput& input) {
   for (std::size_t place = 0; place < devices_.size(); ++place) {
     LoopDevice& d = devices_[place];
     in_call_ = int(place);
-    for (std::size_t i = 0; i < d.arms.size(); ++i) {
-      const std::size_t arm = d.arms[i];
-      if (operator_) {
-        const OperatorSetPoint& at = set_points[arm];
-        d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
-      }
-      TrephineArmCommand& command = arm_commands_[i];
-      command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};
-      for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = forces_N_[arm][axis];
+    for (std::size_t i = 0; operator_ && i < d.arms.size(); ++i) {
+      const OperatorSetPoint& at = set_points[d.arms[i]];
+      d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
     }
-    d.device->exchange(period_s, arm_states_.data(), arm_commands_.data());
+    d.device->read(period_s, arm_states_.data());
     if (!leaveCall(place)) return false;
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       const TrephineArmState& state = arm_states_[i];
@@ -141,6 +136,22 @@ bool HapticLoop::exchange(TickInput& input) {
     }
   }
   input.arms = last_samples_;
+  return true;
+}
+
+bool HapticLoop::write(const TickRecord& record) {
+  for (std::size_t place = 0; place < devices_.size(); ++place) {
+    LoopDevice& d = devices_[place];
+    for (std::size_t i = 0; i < d.arms.size(); ++i) {
+      TrephineArmCommand& command = arm_commands_[i];
+      command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};
+      const Vec3& force_N = record.arms[d.arms[i]].sent_N;
+      for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = force_N[axis];
+    }
+    in_call_ = int(place);
+    d.device->write(arm_commands_.data());
+    if (!leaveCall(place)) return false;
+  }
   return true;
 }
 

@@ -1,5 +1,6 @@
-// The haptic loop: operator -> devices -> core -> rings, one tick at a time. Run in real time on its
-// own thread against a clock, or freewheeled as fast as it goes; both take the same steps.
+// The haptic loop: operator, devices, core, devices, rings, one tick at a time: what was computed
+// is sent at once, and waited for the next tick is after that. Run in real time on its own thread
+// against a clock, or freewheeled as fast as it goes; both take the same steps.
 //
 // A call of a device may never return. The loop's thread can then be left behind: it ends by itself
 // when the call returns, and touches nothing but the loop and its devices, which it must own with
@@ -118,7 +119,9 @@ class HapticLoop {
 
  private:
   bool leaveCall(std::size_t device);
-  bool exchange(TickInput& input);
+  // False when this thread was left behind in it.
+  bool read(TickInput& input);
+  bool write(const TickRecord& record);
   void publish(const TickRecord& record);
 
   HapticCore& core_;
@@ -132,7 +135,6 @@ class HapticLoop {
   DurationHistogram durations_;
   std::vector<TrephineArmState> arm_states_;      // scratch for one device
   std::vector<TrephineArmCommand> arm_commands_;  // scratch for one device
-  std::array<Vec3, kMaxArms> forces_N_{};         // sent in the next exchange
   std::array<ArmSample, kMaxArms> last_samples_{};
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;

@@ -60,8 +60,8 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
       }
       double& limit_N = scene.arms[arms[i]].max_force_N;
       limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
-      // A simulated arm moves on with the force that answers its sample. A real one gets that force
-      // with the next exchange, a period later.
+      // A simulated arm moves on with the force that answers its sample. What a real one takes on
+      // its way is not stated yet: one period at most.
       const int delay_ticks = (*device)->takesTargets() ? 0 : 1;
       scene.arms[arms[i]].dynamics =
           ArmDynamics{capabilities[arms[i]].apparent_mass_kg, capabilities[arms[i]].encoder_step_m,

@@ -70,7 +70,7 @@ inline constexpr ArmNumber kArmNumbers[] = {
 struct DeviceConfig {
   std::vector<ArmConfig> arms;   // one an opened arm
   double vanish_after_s = -1.0;  // simulated time at which the device goes away; negative: never
-  double block_after_s = -1.0;   // simulated time at which an exchange blocks once; negative: never
+  double block_after_s = -1.0;   // simulated time at which a reading blocks once; negative: never
   double block_for_s = 0.0;      // for so long, of the host's time
 };
 

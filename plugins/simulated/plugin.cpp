@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kBusPaths[] = {"sim-left", "sim-right"};
 constexpr std::uint32_t kArms = 2;
-constexpr double kMaxStep_s = 0.1;      // longer exchanges are refused: they would block
+constexpr double kMaxStep_s = 0.1;      // longer steps are refused: they would block
 constexpr double kMaxReach_m = 1000.0;  // of a hand's rest pose
 constexpr double kMaxHandStiffness = 1e9;
 constexpr double kMaxHandDamping = 1e9;
@@ -35,6 +35,7 @@ struct Arm {
   ArmConfig config;
   Hand hand;
   ArmMotion motion;
+  Vector force_N{};  // written last
   double orientation[4] = {1.0, 0.0, 0.0, 0.0};
 };
 
@@ -185,6 +186,7 @@ int start(TrephineDevice* device, TrephineServo servo, void*) {
     return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away, as configured.");
   }
   device->answered = device->silences.load();
+  for (Arm& arm : device->arms) arm.force_N = {};
   device->running = true;
   return TREPHINE_OK;
 }
@@ -234,14 +236,10 @@ bool commandsNothing(const TrephineDevice& device, const TrephineArmCommand* com
   return true;
 }
 
-int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
-             const TrephineArmCommand* commands) {
+int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
-  // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silences.load();
-  if (!states || !commands || states->size < sizeof(TrephineArmState) ||
-      commands->size < sizeof(TrephineArmCommand)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states or commands have no valid size.");
+  if (!states || states->size < sizeof(TrephineArmState)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
   }
   if (!device->running) {
     return lose(device, states, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
@@ -263,19 +261,39 @@ int exchange(TrephineDevice* device, double dt_s, TrephineArmState* states,
     block(device->block_for_s);
   }
   ++device->sequence;
-  if (seen != device->answered && commandsNothing(*device, commands)) device->answered = seen;
   const bool silenced = device->silences.load() != device->answered;
-  bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = device->arms[i];
-    const TrephineArmCommand& command = *element(commands, i);
-    const bool usable = finite(command.force_N, 3) && finite(command.torque_Nm, 3);
-    Vector force{};
-    if (usable && !silenced) force = {command.force_N[0], command.force_N[1], command.force_N[2]};
-    refused = refused || !usable;
-    arm.motion = advance(arm.config.parameters, arm.hand, arm.motion, force, dt_s);
+    arm.motion = advance(arm.config.parameters, arm.hand, arm.motion,
+                         silenced ? Vector{} : arm.force_N, dt_s);
     report(*device, arm, *element(states, i));
   }
+  return TREPHINE_OK;
+}
+
+int write(TrephineDevice* device, const TrephineArmCommand* commands) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  // What was commanded before a safe_stop is no answer to it.
+  const std::uint32_t seen = device->silences.load();
+  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
+  }
+  if (!device->running) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
+  }
+  if (device->vanished) {
+    return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
+  }
+  bool refused = false;
+  for (std::size_t i = 0; i < device->arms.size(); ++i) {
+    const TrephineArmCommand& command = *element(commands, i);
+    const bool usable = finite(command.force_N, 3) && finite(command.torque_Nm, 3);
+    Vector& force_N = device->arms[i].force_N;
+    force_N = {};
+    if (usable) force_N = {command.force_N[0], command.force_N[1], command.force_N[2]};
+    refused = refused || !usable;
+  }
+  if (seen != device->answered && commandsNothing(*device, commands)) device->answered = seen;
   if (refused) {
     return fail(device, TREPHINE_ERROR_ARGUMENT,
                 "A commanded force was not finite: that arm got none.");
@@ -346,7 +364,8 @@ const TrephineDeviceApi kApi = {
     capabilities,
     calibrate,
     start,
-    exchange,
+    read,
+    write,
     setTarget,
     stop,
     safeStop,

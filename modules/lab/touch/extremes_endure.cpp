@@ -76,7 +76,7 @@ std::vector<Case> endureCases() {
        [] { return accumulatedEnergy(1e6); }},
       {"1e9 ticks in the seed's observer", "first tick 1e9, controller seed, 1e6 J observed before",
        "the stroke's energy kept to 1e-7 J, above 0.1 N, no fault", accumulatedObserver},
-      {"device vanishes", "every exchange fails from tick 200 on, a clear at 300 in vain",
+      {"device vanishes", "every reading fails from tick 200 on, a clear at 300 in vain",
        "no force from tick 200 on, a fault to the end, the 6 voxels cut before stay cut", vanished},
       {"arm lost for a while", "the plugin reports it lost from tick 200 to 279", kFaultInMiddle,
        lostForAWhile},

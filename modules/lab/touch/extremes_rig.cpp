@@ -33,12 +33,15 @@ int answer(TrephineDevice*) {
   return TREPHINE_OK;
 }
 
-int exchange(TrephineDevice* device, double, TrephineArmState* states,
-             const TrephineArmCommand* commands) {
+int write(TrephineDevice* device, const TrephineArmCommand* commands) {
+  const double* force = commands[0].force_N;
+  armOf(device).commanded_N.emplace_back(force[0], force[1], force[2]);
+  return TREPHINE_OK;
+}
+
+int read(TrephineDevice* device, double, TrephineArmState* states) {
   ScriptedArm& arm = armOf(device);
   const Sample sample = arm.script(int(arm.commanded_N.size()));
-  const double* force = commands[0].force_N;
-  arm.commanded_N.emplace_back(force[0], force[1], force[2]);
   if (sample.answer != TREPHINE_OK) return sample.answer;
   TrephineArmState& state = states[0];
   ++state.sequence;
@@ -69,7 +72,8 @@ const TrephineDeviceApi kApi = [] {
   };
   api.calibrate = [](TrephineDevice* device, std::uint32_t) { return answer(device); };
   api.start = [](TrephineDevice* device, TrephineServo, void*) { return answer(device); };
-  api.exchange = exchange;
+  api.read = read;
+  api.write = write;
   api.stop = answer;
   api.safe_stop = [](TrephineDevice*) {};
   api.last_error = [](TrephineDevice*) { return "scripted"; };
@@ -119,11 +123,11 @@ std::uint64_t voxelsOfAir(const Volume& volume) {
   return std::uint64_t(std::count(volume.hu.begin(), volume.hu.end(), kAirHu));
 }
 
-// The arm must be sent what the record says, a tick later, and nothing else.
+// The arm must be sent what the record says, in the same tick, and nothing else.
 bool wasSent(const std::vector<Vec3>& commanded_N, const std::vector<TickRecord>& trace) {
-  bool same = commanded_N.size() == trace.size() && commanded_N.front() == Vec3(0.0);
-  for (std::size_t i = 1; same && i < trace.size(); ++i) {
-    const Vec3& sent_N = trace[i - 1].arms[0].sent_N;
+  bool same = commanded_N.size() == trace.size();
+  for (std::size_t i = 0; same && i < trace.size(); ++i) {
+    const Vec3& sent_N = trace[i].arms[0].sent_N;
     same = commanded_N[i] == sent_N || !isFinite(sent_N);  // the latter is found elsewhere
   }
   return same;

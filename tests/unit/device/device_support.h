@@ -68,7 +68,8 @@ struct Bench {
     return started.ok();
   }
   bool tick(double dt_s = kTick_s) {
-    return device->exchange(dt_s, states.data(), commands.data());
+    device->write(commands.data());
+    return device->read(dt_s, states.data());
   }
   Vec3 position(std::size_t arm = 0) const {
     const double* p = states[arm].position_m;

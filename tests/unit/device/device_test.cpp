@@ -206,7 +206,8 @@ TEST(Device, ArmsStepByTheSizeOfTheHostsStructs) {
   }
   commands[1].command.force_N[0] = 1.0;
   for (int i = 0; i < 100; ++i) {
-    ASSERT_EQ(api.exchange(handle, kTick_s, &states[0].state, &commands[0].command), TREPHINE_OK);
+    ASSERT_EQ(api.write(handle, &commands[0].command), TREPHINE_OK);
+    ASSERT_EQ(api.read(handle, kTick_s, &states[0].state), TREPHINE_OK);
   }
   EXPECT_EQ(states[0].state.position_m[0], 0.0);
   EXPECT_GT(states[1].state.position_m[0], 0.001);
@@ -216,12 +217,13 @@ TEST(Device, ArmsStepByTheSizeOfTheHostsStructs) {
     for (double field : state.appended) EXPECT_EQ(field, 7.0);
   }
   states[0].state.size = sizeof(TrephineArmState) - 8;
-  EXPECT_EQ(api.exchange(handle, kTick_s, &states[0].state, &commands[0].command),
-            TREPHINE_ERROR_ARGUMENT);
+  EXPECT_EQ(api.read(handle, kTick_s, &states[0].state), TREPHINE_ERROR_ARGUMENT);
+  commands[0].command.size = sizeof(TrephineArmCommand) - 8;
+  EXPECT_EQ(api.write(handle, &commands[0].command), TREPHINE_ERROR_ARGUMENT);
   api.close(handle);
 }
 
-TEST(Device, AnExchangeAllocatesNothing) {
+TEST(Device, ReadingAndWritingAllocateNothing) {
   Json json = omni();
   json["vanish_after_s"] = 0.9;
   Bench bench(json, 2);
@@ -253,7 +255,8 @@ TEST(Device, TheAllocationGuardSeesIntoAPlugin) {
   const std::uint64_t before = rt::guardedAllocations();
   {
     rt::NoAllocation guard;
-    (*device)->exchange(kTick_s, &state, &command);
+    (*device)->write(&command);
+    (*device)->read(kTick_s, &state);
   }
   EXPECT_GE(rt::guardedAllocations(), before + 2);
 }

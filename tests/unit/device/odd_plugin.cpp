@@ -41,7 +41,10 @@ int calibrate(TrephineDevice*, uint32_t) {
 int start(TrephineDevice*, TrephineServo, void*) {
   return TREPHINE_OK;
 }
-int exchange(TrephineDevice*, double, TrephineArmState*, const TrephineArmCommand*) {
+int write(TrephineDevice*, const TrephineArmCommand*) {
+  return TREPHINE_OK;
+}
+int read(TrephineDevice*, double, TrephineArmState*) {
 #ifdef ODD_GREEDY
   kept = new int(1);
   delete kept;
@@ -82,7 +85,8 @@ void close(TrephineDevice*) {}
     capabilities,
     calibrate,
     start,
-    exchange,
+    read,
+    write,
     nullptr,
 #ifdef ODD_HOLE
     nullptr,

@@ -1,4 +1,4 @@
-// The simulated arm as an exchange sees it, against closed formulas.
+// The simulated arm as the host sees it, against closed formulas.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

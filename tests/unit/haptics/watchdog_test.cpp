@@ -30,20 +30,25 @@ TEST(Standstill, DoesNotBeginWhileTicksComeOrNothingIsDue) {
   EXPECT_FALSE(still.begins(1000, true, 2000 * kMs)) << "counts from here";
 }
 
-// A device of one arm whose exchange waits while `held`.
+// A device of one arm whose reading waits while `held`, and its writing while `write_held`.
 struct Watched {
-  static inline std::atomic<bool> held{false}, stops_wait{false};
-  static inline std::atomic<int> silences{0}, exchanges{0}, waiting{0};
+  static inline std::atomic<bool> held{false}, write_held{false}, stops_wait{false};
+  static inline std::atomic<int> silences{0}, reads{0}, waiting{0};
   static inline std::atomic<double> commanded_N{0.0};
 
-  static int exchange(TrephineDevice*, double, TrephineArmState* states,
-                      const TrephineArmCommand* commands) {
-    ++exchanges;
+  static int read(TrephineDevice*, double, TrephineArmState* states) {
+    ++reads;
     waiting = 1;
     while (held) std::this_thread::sleep_for(1ms);
     waiting = 0;
+    states->position_m[2] = -0.004 - 1e-5 * (reads % 2);  // in bone, moving
+    return TREPHINE_OK;
+  }
+  static int write(TrephineDevice*, const TrephineArmCommand* commands) {
+    if (write_held) waiting = 1;
+    while (write_held) std::this_thread::sleep_for(1ms);
+    waiting = 0;
     commanded_N = commands->force_N[2];
-    states->position_m[2] = -0.004 - 1e-5 * (exchanges % 2);  // in bone, moving
     return TREPHINE_OK;
   }
   static int capabilities(TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
@@ -70,7 +75,8 @@ struct Watched {
         capabilities,
         [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); },
         [](TrephineDevice*, TrephineServo, void*) { return int(TREPHINE_OK); },
-        exchange,
+        read,
+        write,
         nullptr,
         [](TrephineDevice*) { return int(TREPHINE_OK); },
         [](TrephineDevice*) {
@@ -87,8 +93,8 @@ struct Watched {
 // The loop and its watchdog, each on a thread.
 struct Running {
   Running() : grid(test::boneSlab()), core(parameters(), *grid.takeWriter()) {
-    Watched::held = false;
-    Watched::silences = Watched::exchanges = 0;
+    Watched::held = Watched::write_held = false;
+    Watched::silences = Watched::reads = 0;
     std::vector<LoopDevice> devices;
     devices.push_back({*Device::open(*DevicePlugin::builtIn(Watched::api()), {0}, "{}"), {0}});
     loop = std::make_unique<HapticLoop>(core, std::move(devices), nullptr);
@@ -102,7 +108,7 @@ struct Running {
     until([this] { return loop->ticks() > 50; });
   }
   ~Running() {
-    Watched::held = false;
+    Watched::held = Watched::write_held = false;
     stop = true;
     ticking.join();
     watchdog->end();
@@ -184,6 +190,49 @@ TEST(HapticLoop, AThreadThatADeviceHoldsIsLeftBehindAndTouchesNoVoxelsLater) {
   EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
   EXPECT_EQ(running.loop->ticks(), ticks) << "without the tick that it was in";
   EXPECT_FALSE(running.here);
+}
+
+TEST(Watchdog, TakesTheForceAwayWhileADeviceDoesNotTakeItsForce) {
+  Running running;
+  Watched::silences = 0;
+  Watched::write_held = true;
+  EXPECT_TRUE(Running::until([] { return Watched::silences > 0; }));
+  EXPECT_TRUE(Running::until([&] { return running.watchdog->stillFor_s() > 0.02; }));
+}
+
+TEST(HapticLoop, AThreadThatADeviceHoldsInWritingIsLeftBehindWithAWholeRecord) {
+  Running running;
+  Watched::write_held = true;
+  ASSERT_TRUE(Running::until([] { return Watched::waiting == 1; }));
+  const std::uint64_t ticks = running.loop->ticks();
+  ASSERT_EQ(running.loop->leaveBehind(), std::size_t(0));
+  Watched::write_held = false;
+  EXPECT_TRUE(Running::until([&] { return !running.loop->running(); })) << "it ends by itself";
+  EXPECT_EQ(running.loop->ticks(), ticks);
+  std::uint64_t recorded = 0;
+  for (TickRecord record; running.loop->records().pop(record);) ++recorded;
+  EXPECT_EQ(recorded, ticks);
+}
+
+TEST(HapticLoop, SendsTheForceOfATickInThatTick) {
+  Watched::held = Watched::write_held = false;
+  Watched::reads = 0;
+  Grid grid(test::boneSlab());
+  HapticCore core(Running::parameters(), *grid.takeWriter());
+  std::vector<LoopDevice> devices;
+  devices.push_back({*Device::open(*DevicePlugin::builtIn(Watched::api()), {0}, "{}"), {0}});
+  HapticLoop loop(core, std::move(devices), nullptr);
+  ASSERT_TRUE(loop.startDevices().ok());
+  int felt = 0;
+  for (int tick = 1; tick <= 200; ++tick) {
+    ASSERT_TRUE(loop.step(0));
+    TickRecord record;
+    ASSERT_TRUE(loop.records().pop(record));
+    EXPECT_EQ(Watched::reads, tick);
+    EXPECT_EQ(Watched::commanded_N, record.arms[0].sent_N.z);
+    felt += record.arms[0].sent_N.z != 0.0;
+  }
+  EXPECT_GT(felt, 100);
 }
 
 TEST(HapticLoop, AThreadThatIsInNoCallIsNotLeftBehind) {

@@ -20,7 +20,7 @@ Volume block() {
   return test::shells(64, 1.5, {{40, 1200}});
 }
 
-// Arms whose exchange blocks at 0.3 s for `block_s`.
+// Arms whose reading blocks at 0.3 s for `block_s`.
 Scene scene(const std::filesystem::path& folder, double block_s) {
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium.json");
   Json json = *readJsonFile(resourceFolder() / "devices" / "omni.json");
