@@ -43,6 +43,9 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
     {{"encoder_step_m", kEncoderStep_m, Given::always,
       "what `bounded` goes by; 0: finer than it sees"},
      offsetof(TrephineCapabilities, encoder_step_m)},
+    {{"latency_s", kLatency_s, Given::always,
+      "from a sample to the force that answers it, p99; what `bounded` goes by"},
+     offsetof(TrephineCapabilities, latency_s)},
 };
 
 // Empty when an arm can have these capabilities, else which of them is impossible and why.

@@ -13,6 +13,7 @@ constexpr Range kPeakForce_N{1e-3, 1000, "N"};
 constexpr Range kMaxStiffness_N_per_m{1e-3, 1e9, "N/m"};
 constexpr Range kMaxDamping_Ns_per_m{0, 1e9, "N s/m"};
 constexpr Range kDeviceRate_hz{1, 1e6, "Hz"};
+constexpr Range kLatency_s{0, 0.1, "s"};
 // Of an arm's pose, along an axis from its origin: beyond any arm, and near enough that all that
 // follows from it is finite.
 constexpr Range kPosePlace_m{-1e4, 1e4, "m"};

@@ -69,6 +69,7 @@ typedef struct TrephineCapabilities {
   double apparent_mass_kg;
   double encoder_step_m;
   double rate_hz; /* highest rate of reading and writing */
+  double latency_s; /* from a sample to the force at the arm that answers it, p99, as measured */
 } TrephineCapabilities;
 
 typedef struct TrephineArmState {

@@ -24,7 +24,7 @@ constexpr double kMassSure = 0.06;
 constexpr double kFaded = 1e-9;       // of the noise's variance: an answer this small is over
 constexpr double kAirTime_s = 0.005;  // time constant of the mean square surprise in air
 constexpr double kHandNoise = 8.0;    // factor on that mean square, beyond the encoder's noise
-constexpr int kMostShift_ticks = 1;
+constexpr double kMostShift = 1.0;    // samples
 
 }  // namespace
 
@@ -32,8 +32,8 @@ ArmCheck::ArmCheck(const ArmDynamics& stated, const ArmEstimator& estimator, dou
     : T_(period_s),
       stated_kg_(stated.apparent_mass_kg),
       variance_m2_(estimator.surpriseVariance_m2()),
-      stated_ticks_(stated.delay_ticks),
-      delay_ticks_(stated.delay_ticks) {}
+      stated_samples_(trephine::delaySamples(stated, period_s)),
+      delay_samples_(stated_samples_) {}
 
 void ArmCheck::forget() {
   x_ = v_ = a_ = last_answer_m_ = last_y_m_ = Vec3(0.0);
@@ -103,12 +103,12 @@ void ArmCheck::judgeDelay() {
              yy_ - 2.0 * ya_after_ + aa_ - noise_ < kUnexplained * yy_) {
     shift = -1;
   }
-  const int found = delay_ticks_ + shift;
-  if (shift == 0 || std::abs(found - stated_ticks_) > kMostShift_ticks || found < 0 ||
+  const double found = std::max(0.0, delay_samples_ + shift);
+  if (shift == 0 || found == delay_samples_ || std::abs(found - stated_samples_) > kMostShift ||
       found > kMaxDelayTicks) {
     return;
   }
-  delay_ticks_ = found;
+  delay_samples_ = found;
   not_as_stated_ = true;
   // From now on the forces act in other ticks than those in which the sums took them to act.
   aa_ = aa_before_ = yy_ = ya_ = ya_before_ = ya_after_ = noise_ = 0.0;

@@ -12,13 +12,16 @@ struct ArmDynamics {
   double apparent_mass_kg = 0.045;
   double encoder_step_m = 0.0;  // 0: samples count as exact
   double peak_force_N = 3.3;
-  // Whole periods between a sample and the force that answers it, beyond the period in which that
-  // force is held: 0 for an arm that takes its force at once.
-  int delay_ticks = 0;
+  // From a sample to the moment in which the force that answers it begins to act and to be held
+  // for a period: 0 for an arm that takes its force at once.
+  double delay_s = 0.0;
 };
 
-constexpr int kMaxDelayTicks = 16;
-constexpr Range kDelayTicks{0, kMaxDelayTicks, "ticks"};
+constexpr int kMaxDelayTicks = 16;  // periods, at any rate
+constexpr Range kDelaySamples{0, kMaxDelayTicks, "samples"};
+constexpr Range kDelay_s{0, 0.16, "s"};
+// The delay in periods; one that is whole but for rounding is whole.
+double delaySamples(const ArmDynamics& arm, double period_s);
 
 // Those that a recording keeps; the peak force is the scene's `max_force_N`.
 inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
@@ -26,9 +29,8 @@ inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
      &ArmDynamics::apparent_mass_kg},
     {{"encoder_step_m", kEncoderStep_m, Given::always, "of its position"},
      &ArmDynamics::encoder_step_m},
-    {{"delay_ticks", kDelayTicks, Given::may_be,
-      "whole periods between a sample and the force that answers it"},
-     &ArmDynamics::delay_ticks},
+    {{"delay_s", kDelay_s, Given::may_be, "from a sample to the force that answers it"},
+     &ArmDynamics::delay_s},
 };
 inline constexpr NumberRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
                                          "no more is sent"};
@@ -51,7 +53,7 @@ struct Renderable {
   double b_max = 0.0;  // N s/m
   double k_max = 0.0;  // N/m
 };
-Renderable renderable(const ArmDynamics& arm, double rate_hz, int delay_ticks,
+Renderable renderable(const ArmDynamics& arm, double rate_hz, double delay_samples,
                       const WorkspaceMap& map);
 
 }  // namespace trephine

@@ -62,7 +62,7 @@ double springEnergy(double force_N, double stiffness, double peak_N) {
 // The greatest impedance that this arm renders, at the device. `held`: share of a firm hand, 0 to
 // 1, that was found to hold the arm back. CONTROLLERS.md, part 1.
 Impedance mostOf(const ArmDynamics& arm, double T, double lag_s, double held) {
-  const double m = arm.apparent_mass_kg, delay_s = T * arm.delay_ticks;
+  const double m = arm.apparent_mass_kg, delay_s = arm.delay_s;
   const double tau_b = T + kDelayInDamping * delay_s;
   const double tau_k = tau_b + kLagInStiffness * lag_s;
   const double damper = (kAnyHandDamping + held * kFirmHandDamping) * delay_s / m;
@@ -81,11 +81,11 @@ Impedance mostOf(const ArmDynamics& arm, double T, double lag_s, double held) {
 
 }  // namespace
 
-Renderable renderable(const ArmDynamics& arm, double rate_hz, int delay_ticks,
+Renderable renderable(const ArmDynamics& arm, double rate_hz, double delay_samples,
                       const WorkspaceMap& map) {
   ArmDynamics delayed = arm;
-  delayed.delay_ticks = delay_ticks;
   const double T = 1.0 / rate_hz;
+  delayed.delay_s = T * delay_samples;
   const Impedance most = mostOf(delayed, T, ArmEstimator(delayed, T).lag_s(), 0.0);
   const double at_arm = map.motion_scale * map.force_scale;
   return {most.damping / at_arm, most.stiffness / at_arm};
@@ -154,13 +154,22 @@ void BoundedController::forget() {
   last_force_N_ = drift_N_ = Vec3(0.0);
 }
 
-// The force that acted since the last sample: with a delay of d ticks the one sent d ticks before
-// the last.
+// The mean of the force that acted since the last sample: with a delay of d ticks the one sent d
+// ticks before the last, and for a share f of the period, where d is f more than a whole number,
+// the one before that.
 Vec3 BoundedController::heldForce(const Vec3& last_sent_N) {
-  const int delay = check_.delay_ticks();
-  std::copy_backward(sent_N_.begin(), sent_N_.begin() + delay + 1, sent_N_.begin() + delay + 2);
+  const auto [whole, share] = delay();
+  const int oldest = whole + (share > 0.0 ? 1 : 0);
+  std::copy_backward(sent_N_.begin(), sent_N_.begin() + oldest + 1, sent_N_.begin() + oldest + 2);
   sent_N_[0] = last_sent_N;
-  return sent_N_[std::size_t(delay)];
+  const Vec3& newer_N = sent_N_[std::size_t(whole)];
+  if (share == 0.0) return newer_N;
+  return (1.0 - share) * newer_N + share * sent_N_[std::size_t(whole) + 1];
+}
+
+BoundedController::Delay BoundedController::delay() const {
+  const int whole = int(check_.delaySamples());
+  return {whole, check_.delaySamples() - whole};
 }
 
 // Credit: the energy that the held force took from the arm over the last period, exact for any
@@ -251,14 +260,16 @@ BoundedController::Ahead BoundedController::ahead() const {
   Ahead at{estimator_.position_m(), estimator_.velocity_m_s(),
            credit_J_ + kCreditSlack * tolerance_J_};
   const double per_kg = 1.0 / mass_kg();
-  for (int i = check_.delay_ticks() - 1; i >= 0; --i) {
-    const Vec3& pending_N = sent_N_[std::size_t(i)];
+  const auto [whole, share] = delay();
+  const auto act = [&](const Vec3& pending_N, double for_s) {
     const Vec3 a = pending_N * per_kg + estimator_.handAcceleration_m_s2();
-    const Vec3 step = T_ * at.velocity_m_s + (0.5 * T_ * T_) * a;
+    const Vec3 step = for_s * at.velocity_m_s + (0.5 * for_s * for_s) * a;
     at.credit_J -= glm::dot(pending_N, step);
     at.position_m += step;
-    at.velocity_m_s += T_ * a;
-  }
+    at.velocity_m_s += for_s * a;
+  };
+  if (share > 0.0) act(sent_N_[std::size_t(whole)], share * T_);
+  for (int i = whole - 1; i >= 0; --i) act(sent_N_[std::size_t(i)], T_);
   return at;
 }
 
@@ -334,13 +345,13 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
   if (check_.look(estimator_, held_N, in.touching)) {
     ArmDynamics found = arm_;
     found.apparent_mass_kg = mass_kg();
-    found.delay_ticks = check_.delay_ticks();
+    found.delay_s = T_ * check_.delaySamples();
     most_ = mostOf(found, T_, estimator_.lag_s(), check_.handShare());
   }
   // In a pause, a fault or a ramp other forces are sent than were computed here. Nothing is learnt
   // until the forces computed here act again, a delay and a tick later.
   if (glm::length(in.last_sent_N - last_force_N_) > kObeyed * arm_.peak_force_N) {
-    not_obeyed_ticks_ = check_.delay_ticks() + 1;
+    not_obeyed_ticks_ = int(std::ceil(check_.delaySamples())) + 1;
   } else if (not_obeyed_ticks_ > 0) {
     --not_obeyed_ticks_;
   }

@@ -82,6 +82,11 @@ class BoundedController {
     double credit_J;
   };
 
+  struct Delay {
+    int whole;
+    double share;  // of a period more, below 1
+  };
+  Delay delay() const;
   Vec3 heldForce(const Vec3& last_sent_N);
   void account(const ControllerInput& in, const Vec3& held_N);
   void owe();

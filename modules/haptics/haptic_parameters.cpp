@@ -16,6 +16,11 @@ Status validate(const ArmDynamics& arm, const std::string& of) {
   return checkNumber(kArmPeakForce, arm.peak_force_N, of);
 }
 
+double delaySamples(const ArmDynamics& arm, double period_s) {
+  const double samples = arm.delay_s / period_s, whole = std::round(samples);
+  return std::abs(samples - whole) < 1e-6 ? whole : samples;
+}
+
 Status validate(const WorkspaceMap& map, const std::string& of) {
   if (Status s = checkNumbers<WorkspaceMap>(kWorkspaceMapNumbers, map, of); !s) return s;
   const double length = glm::length(map.rotation);
@@ -37,6 +42,10 @@ Status validate(const HapticParameters& parameters) {
     const ArmParameters& arm = parameters.arms[i];
     const std::string of = "arm " + std::to_string(i);
     if (Status s = validate(arm.dynamics, of); !s) return s;
+    const double samples = delaySamples(arm.dynamics, parameters.period_s);
+    if (!kDelaySamples.holds(samples)) {
+      return checkNumber({"delay_s", kDelaySamples, Given::always, ""}, samples, of);
+    }
     if (Status s = validate(arm.map, of); !s) return s;
     if (Status s = checkNumber(kMaxForce, arm.max_force_N, of); !s) return s;
     if (arm.other_tools.size() >= kMostTools) {

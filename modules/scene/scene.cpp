@@ -101,7 +101,8 @@ Renderable renderableOn(const SceneArm& arm, double rate_hz) {
   WorkspaceMap map;
   map.motion_scale = arm.map.motion_scale;
   map.force_scale = arm.map.force_scale;
-  return renderable(dynamics, rate_hz, dynamics.delay_ticks, arm.map.fixed.value_or(map));
+  return renderable(dynamics, rate_hz, delaySamples(dynamics, 1.0 / rate_hz),
+                    arm.map.fixed.value_or(map));
 }
 
 Impedance demandedOf(const Scene& scene, const Tissue& tissue) {

@@ -51,6 +51,8 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   if (item.has("dynamics")) {
     JsonReader dynamics = item.object("dynamics");
     readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
+    // Recordings of before have it in periods, and of simulated arms alone, which have none.
+    if (dynamics.has("delay_ticks")) dynamics.integer("delay_ticks", {0, 0});
   }
   return arm;
 }

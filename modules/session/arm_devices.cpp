@@ -60,12 +60,9 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
       }
       double& limit_N = scene.arms[arms[i]].max_force_N;
       limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
-      // A simulated arm moves on with the force that answers its sample. What a real one takes on
-      // its way is not stated yet: one period at most.
-      const int delay_ticks = (*device)->takesTargets() ? 0 : 1;
       scene.arms[arms[i]].dynamics =
           ArmDynamics{capabilities[arms[i]].apparent_mass_kg, capabilities[arms[i]].encoder_step_m,
-                      limit_N, delay_ticks};
+                      limit_N, capabilities[arms[i]].latency_s};
     }
     devices.push_back({*std::move(device), arms});
   }

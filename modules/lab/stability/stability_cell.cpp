@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "haptics/unseen_energy.h"
 #include "lab/common/held_arm.h"
@@ -44,12 +45,12 @@ class Chain {
       : zero_(driver == CellDriver::zero_force),
         tissue_{scale * cell.tissue.damping, scale * cell.tissue.stiffness},
         period_s_(cell.period_s),
-        controller_(
-            makeController(kindOf(driver),
-                           ArmDynamics{told.mass_claimed * cell.mass_kg,
-                                       told.encoder_claimed_exact ? 0.0 : cell.encoder_m,
-                                       kCellForce_N, cell.delay_samples + told.delay_claimed_more},
-                           cell.period_s)) {}
+        controller_(makeController(
+            kindOf(driver),
+            ArmDynamics{told.mass_claimed * cell.mass_kg,
+                        told.encoder_claimed_exact ? 0.0 : cell.encoder_m, kCellForce_N,
+                        cell.period_s * (cell.delay_samples + told.delay_claimed_more)},
+            cell.period_s)) {}
 
   double tick(double sample_m) {
     const double moved_m = started_ ? sample_m - last_m_ : 0.0;
@@ -177,33 +178,39 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
   const HeldArm plant(cell.mass_kg, cell.plant_damping, cell.hand, T / kParts);
   const RestPoint rest{conditions.moving};
   Chain chain(cell, driver, tissue_scale, conditions);
-  std::vector<double> pending(std::size_t(cell.delay_samples), 0.0);  // a ring
+  // A force begins to act with the part of a period in which its delay ends.
+  const auto whole = std::size_t(cell.delay_samples);
+  const int late_parts = int(std::lround(kParts * (cell.delay_samples - double(whole))));
+  std::vector<double> pending(whole, 0.0);  // a ring
   std::size_t oldest = 0;
   std::vector<double> positions;
   positions.reserve(ticks);
 
-  double x = kCellStart_m, v = kCellSpeed_m_s, last_N = 0.0;
+  double x = kCellStart_m, v = kCellSpeed_m_s, last_N = 0.0, before_N = 0.0;
   double put_in_J = 0.0, error2 = 0.0, ideal2 = 0.0, contact2 = 0.0;
   std::size_t inside = 0;
   CellResult result;
   for (std::size_t n = 0; n < ticks; ++n) {
     const double sample =
         cell.encoder_m > 0.0 ? std::round(x / cell.encoder_m) * cell.encoder_m : x;
-    double held_N = chain.tick(sample);
+    double next_N = chain.tick(sample);
     if (!pending.empty()) {
-      std::swap(held_N, pending[oldest]);
+      std::swap(next_N, pending[oldest]);
       oldest = (oldest + 1) % pending.size();
     }
+    const double earlier_N = std::exchange(before_N, next_N);
+    double held_N = late_parts > 0 ? earlier_N : next_N;
     if (x < 0.0) {
-      contact2 += held_N * held_N;
+      contact2 += next_N * next_N;
       ++inside;
     }
-    if (n >= last_quarter) result.step_N += std::abs(held_N - last_N);
-    last_N = held_N;
+    if (n >= last_quarter) result.step_N += std::abs(next_N - last_N);
+    last_N = next_N;
     positions.push_back(x);
     for (int part = 0; part < kParts; ++part) {
       const double t = (double(n) + double(part) / kParts) * T;
       const double x0 = x, v0 = v;
+      if (part == late_parts) held_N = next_N;
       plant.step(x, v, held_N, rest.at(t), rest.speedAt(t));
       put_in_J -= held_N * (x - x0);
       result.energy_out_J = std::max(result.energy_out_J, -put_in_J);
@@ -267,7 +274,7 @@ std::vector<StabilityCell> fullGrid() {
   std::vector<StabilityCell> cells;
   for (double mass : {0.020, 0.045, 0.200}) {
     for (double period : {0.25e-3, 1e-3, 2e-3}) {
-      for (int delay : {0, 1, 3}) {
+      for (double delay : {0.0, 1.0, 3.0}) {
         for (double encoder : {0.0, 0.055e-3, 0.2e-3}) {
           for (const Impedance& hand :
                {Impedance{}, Impedance{2.0, 300.0}, Impedance{10.0, 1000.0}}) {

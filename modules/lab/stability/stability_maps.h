@@ -16,7 +16,7 @@ struct MapCell {
   std::string controller;
   double mass_kg = 0.0;
   double period_s = 0.0;
-  int delay_samples = 0;
+  double delay_samples = 0.0;
   double encoder_m = 0.0;
   double hand_k = 0.0, hand_b = 0.0;      // 0, 0: no hand
   double tissue_b = 0.0, tissue_k = 0.0;  // k == 0: a damper

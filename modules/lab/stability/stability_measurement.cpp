@@ -25,7 +25,7 @@ StabilityCell readCell(JsonReader item) {
   StabilityCell cell;
   cell.mass_kg = item.number("mass_kg", {1e-3, 10.0});
   cell.period_s = item.number("period_s", {2e-5, 0.05});
-  cell.delay_samples = int(item.integer("delay_samples", kDelayTicks));
+  cell.delay_samples = item.number("delay_samples", kDelaySamples);
   cell.encoder_m = 1e-3 * item.number("encoder_mm", {0.0, 5.0});
   if (item.has("plant_damping")) cell.plant_damping = item.number("plant_damping", {0.0, 100.0});
   if (!item.raw("hand").is_null()) {
@@ -73,7 +73,8 @@ std::string instability(const StabilityCell& cell, const CellResult& r) {
 
 // What kept the rendered tissue below the demanded one.
 std::string limitOf(const StabilityCell& cell) {
-  const ArmDynamics arm{cell.mass_kg, cell.encoder_m, kCellForce_N, cell.delay_samples};
+  const ArmDynamics arm{cell.mass_kg, cell.encoder_m, kCellForce_N,
+                        cell.period_s * cell.delay_samples};
   const double rate_hz = 1.0 / cell.period_s;
   const Renderable most = renderable(arm, rate_hz, cell.delay_samples, {});
   ArmDynamics fine = arm;

@@ -142,7 +142,8 @@ Result<SetFigures> measureStabilitySet(StabilitySet set, const std::vector<Stabi
     for (StabilityCell cell : cells) {
       if (!applies(variations[v], cell)) continue;
       if (variations[v].hand) cell.hand = *variations[v].hand;
-      cell.delay_samples = std::min(cell.delay_samples + variations[v].more_delay, kMaxDelayTicks);
+      cell.delay_samples =
+          std::min(cell.delay_samples + variations[v].more_delay, kDelaySamples.high);
       runs.push_back({cell, v, {}, false});
     }
   }

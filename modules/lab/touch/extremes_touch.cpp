@@ -118,7 +118,7 @@ PressResult pressInto(const Tool& tool, const TissueTable& tissues, const Volume
     start_mm -= 5.0 * press.push;
   }
   const double stiffness = std::min(tissues.classes[0].stiffness_N_per_m,
-                                    renderable(kOmni, 1.0 / kT, kOmni.delay_ticks, {}).k_max);
+                                    renderable(kOmni, 1.0 / kT, delaySamples(kOmni, kT), {}).k_max);
   const double sink_mm = 1000.0 * press.force_N * (1.0 / press.hand_N_per_m + 1.0 / stiffness);
   const Vec3 held_mm = press.surface_mm + sink_mm * press.push;
   rig.place(0, 0.001 * start_mm);

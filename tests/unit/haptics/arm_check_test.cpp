@@ -53,7 +53,7 @@ struct FallingArm {
 };
 
 ArmDynamics told(double mass_kg, int delay, double encoder_m = 0.0) {
-  return {mass_kg, encoder_m, ArmDynamics{}.peak_force_N, delay};
+  return {mass_kg, encoder_m, ArmDynamics{}.peak_force_N, delay * kT};
 }
 
 TEST(ArmCheck, IsSilentOnAnArmThatIsAsStated) {

@@ -15,11 +15,12 @@ namespace trephine::test {
 constexpr double kT = 0.001;
 constexpr double kOmniStep_m = 0.055e-3;
 
-inline ArmDynamics arm(double mass_kg, double encoder_m, int delay = 0) {
+// `delay`: in periods of kT.
+inline ArmDynamics arm(double mass_kg, double encoder_m, double delay = 0.0) {
   ArmDynamics dynamics;
   dynamics.apparent_mass_kg = mass_kg;
   dynamics.encoder_step_m = encoder_m;
-  dynamics.delay_ticks = delay;
+  dynamics.delay_s = delay * kT;
   return dynamics;
 }
 
@@ -82,6 +83,8 @@ struct SimulatedArm {
   double period_s;
   double encoder_m;
   std::deque<double> on_the_way;
+  double late_share;  // of a period, beyond whole ones
+  double before_N = 0.0;
   double x = 0.002;
   double v = 0.0;
   double push_N = 0.0;
@@ -93,15 +96,17 @@ struct SimulatedArm {
       : mass_kg(dynamics.apparent_mass_kg),
         period_s(T),
         encoder_m(dynamics.encoder_step_m),
-        on_the_way(std::size_t(dynamics.delay_ticks), 0.0) {}
+        on_the_way(std::size_t(delaySamples(dynamics, T)), 0.0),
+        late_share(delaySamples(dynamics, T) - double(on_the_way.size())) {}
 
   void tick(Touch& touch) {
     on_the_way.push_back(touch.at(encoder_m > 0.0 ? std::round(x / encoder_m) * encoder_m : x));
-    const double force_N = on_the_way.front();
+    const double next_N = on_the_way.front();
     on_the_way.pop_front();
     constexpr int kParts = 8;
     const double h = period_s / kParts;
     for (int i = 0; i < kParts; ++i) {
+      const double force_N = i < kParts * late_share ? before_N : next_N;
       const double a = (force_N + push_N - friction_N_s_m * v) / mass_kg;
       const double moved = h * v + 0.5 * h * h * a;
       x += moved;
@@ -109,6 +114,7 @@ struct SimulatedArm {
       given_J += force_N * moved;
       most_given_J = std::max(most_given_J, given_J);
     }
+    before_N = next_N;
   }
 };
 

@@ -37,7 +37,7 @@ struct Pressed {
         arm(dynamics),
         k(hand_k),
         bench(parameters(of, dynamics, controller)),
-        on_the_way_N(std::size_t(dynamics.delay_ticks) + 1, Vec3(0.0)) {}
+        on_the_way_N(std::size_t(delaySamples(dynamics, kT)) + 1, Vec3(0.0)) {}
 
   static HapticParameters parameters(const Tissue& of, const ArmDynamics& dynamics,
                                      ControllerKind controller) {
@@ -116,7 +116,7 @@ using Happening = std::vector<Command> (*)(Pressed&);
 
 void expectTheForceBack(ControllerKind before, Happening happen) {
   for (const ArmDynamics& arm :
-       {ArmDynamics{0.045, kOmniStep_m, 3.3, 0}, ArmDynamics{0.045, kOmniStep_m, 3.3, 1},
+       {ArmDynamics{0.045, kOmniStep_m, 3.3, 0}, ArmDynamics{0.045, kOmniStep_m, 3.3, kT},
         ArmDynamics{0.020, 0.0, 3.3, 0}}) {
     for (const Tissue& tissue : {kBone, kThick, kLiver}) {
       for (double hand : {300.0, 1000.0}) {
@@ -125,7 +125,7 @@ void expectTheForceBack(ControllerKind before, Happening happen) {
         const Return back = watch(pressed, happen(pressed));
         const auto where = [&] {
           return std::string(tissue.name) + ", " + std::to_string(arm.apparent_mass_kg) +
-                 " kg, delay " + std::to_string(arm.delay_ticks) + ", hand " + std::to_string(hand);
+                 " kg, delay " + std::to_string(arm.delay_s) + ", hand " + std::to_string(hand);
         };
         EXPECT_LE(back.steepest_N, 0.05 + 1e-9) << where();
         EXPECT_GE(back.back, 0.8) << where();

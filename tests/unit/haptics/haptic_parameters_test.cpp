@@ -19,9 +19,8 @@ TEST(HapticParameters, ThatAreImpossibleAreRefusedByNameAndValue) {
     const char* value;
   };
   const Wrong cases[] = {
-      {[](auto& p) { p.arms[0].dynamics.delay_ticks = kMaxDelayTicks + 1; }, "arm 0: delay_ticks",
-       "17"},
-      {[](auto& p) { p.arms[0].dynamics.delay_ticks = -5; }, "arm 0: delay_ticks", "-5"},
+      {[](auto& p) { p.arms[0].dynamics.delay_s = 17 * p.period_s; }, "arm 0: delay_s", "17"},
+      {[](auto& p) { p.arms[0].dynamics.delay_s = -5; }, "arm 0: delay_s", "-5"},
       {[](auto& p) { p.arms[0].dynamics.apparent_mass_kg = 0.0; }, "arm 0: apparent_mass_kg", "0"},
       {[](auto& p) { p.arms[0].dynamics.encoder_step_m = 1.0; }, "arm 0: encoder_step_m", "1"},
       {[&](auto& p) { p.arms[0].dynamics.peak_force_N = nan; }, "arm 0: peak_force_N", "nan"},

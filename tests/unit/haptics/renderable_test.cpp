@@ -11,10 +11,10 @@ using test::kOmniStep_m;
 TEST(Renderable, FallsWithDelayAndPeriodAndRisesWithMass) {
   for (double mass : {0.02, 0.045, 0.2}) {
     for (double rate_hz : {500.0, 1000.0, 4000.0}) {
-      for (int delay : {0, 1, 3, 15}) {
+      for (double delay : {0.0, 0.3, 1.0, 1.2, 3.0, 15.0}) {
         for (double step : {0.0, kOmniStep_m, 0.2e-3}) {
           const Renderable here = renderable(arm(mass, step), rate_hz, delay, {});
-          const Renderable later = renderable(arm(mass, step), rate_hz, delay + 1, {});
+          const Renderable later = renderable(arm(mass, step), rate_hz, delay + 0.1, {});
           const Renderable slower = renderable(arm(mass, step), rate_hz / 2.0, delay, {});
           const Renderable heavier = renderable(arm(2.0 * mass, step), rate_hz, delay, {});
           EXPECT_LT(later.b_max, here.b_max);

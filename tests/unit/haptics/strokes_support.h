@@ -102,7 +102,7 @@ inline Account cut(const Stroke& stroke) {
   TickInput input;
   TickRecord record;
   Vec3 at_m = arm.map.toDevice_m(stroke.way[0].at_mm), speed_m_s(0.0), sampled_m(0.0);
-  std::deque<Vec3> on_the_way_N(std::size_t(stroke.arm.delay_ticks) + 1, Vec3(0.0));
+  std::deque<Vec3> on_the_way_N(std::size_t(delaySamples(stroke.arm, T)) + 1, Vec3(0.0));
   std::size_t leg = 0;
   double most_in_J = 0.0;
   const double q = stroke.arm.encoder_step_m;
@@ -292,7 +292,7 @@ inline void expectSameByAnyArm(const Tried& tried, double spacing_mm) {
   Stroke light = s, weak = s, scaled = s;
   light.arm.apparent_mass_kg = 0.020;
   weak.arm.apparent_mass_kg = 0.020;
-  weak.arm.delay_ticks = 1;
+  weak.arm.delay_s = 0.001;
   ASSERT_LT(renderable(weak.arm, 1000.0, 1, {}).k_max, 0.7 * 2500.0);
   scaled.force_scale = 0.5;
   scaled.motion_scale = 1.5;

@@ -24,6 +24,7 @@ class IndependentPlant {
     const int ticks = int(std::lround(2.0 / T));
     const int quarter = ticks - ticks / 4;
     std::deque<double> on_the_way(std::size_t(cell.delay_samples), 0.0);
+    const double late = kSubsteps * (cell.delay_samples - std::floor(cell.delay_samples));
     std::vector<double> track;
     CellResult result;
     double x = 0.004, v = -0.05, before_N = 0.0, taken_J = 0.0;
@@ -32,7 +33,9 @@ class IndependentPlant {
       double sample = x;
       if (cell.encoder_m > 0.0) sample = cell.encoder_m * std::floor(x / cell.encoder_m + 0.5);
       on_the_way.push_back(answer(sample));
-      const double force = on_the_way.front();
+      const double held = before_N;
+      double force = on_the_way.front();
+      const double next = force;
       on_the_way.pop_front();
       track.push_back(x);
       if (n >= quarter) result.step_N += std::abs(force - before_N) / double(ticks - quarter);
@@ -43,6 +46,7 @@ class IndependentPlant {
       }
       for (int i = 0; i < kSubsteps; ++i) {
         const double x_old = x, v_old = v;
+        force = i < late ? held : next;
         rungeKutta(cell, force, n * T + i * h, h, x, v);
         const double ideal = idealForce(cell, 0.5 * (x_old + x), 0.5 * (v_old + v));
         ideal2 += ideal * ideal;
@@ -80,7 +84,7 @@ class IndependentPlant {
     arm.apparent_mass_kg = cell.mass_kg;
     arm.encoder_step_m = cell.encoder_m;
     arm.peak_force_N = 3.3;
-    arm.delay_ticks = cell.delay_samples;
+    arm.delay_s = cell.delay_samples * cell.period_s;
     return [=, controller = makeController(kind, arm, cell.period_s), last = 0.004, sent = 0.0,
             first = true](double sample) mutable {
       ControllerInput in;

@@ -29,7 +29,7 @@ std::vector<StabilityCell> randomCells(std::size_t count) {
   for (StabilityCell& cell : cells) {
     cell.mass_kg = decades(0.020, 0.200);
     cell.period_s = kPeriods_s[std::size_t(between(0.0, 4.0))];
-    cell.delay_samples = int(between(0.0, 4.0));
+    cell.delay_samples = 0.25 * int(between(0.0, 16.0));
     if (between(0.0, 1.0) < 0.6) cell.encoder_m = between(0.02e-3, 0.2e-3);
     if (between(0.0, 1.0) < 0.6) {
       cell.hand.stiffness = between(300.0, 1000.0);
@@ -276,7 +276,7 @@ TEST(StabilityGrid, IsTheWholeProductOnce) {
   EXPECT_EQ(grid.size(), 3645u);
   std::set<std::tuple<double, double, int, double, double, double, double, double>> different;
   std::set<double> masses, periods, encoders, hands;
-  std::set<int> delays;
+  std::set<double> delays;
   std::set<std::pair<double, double>> tissues;
   for (const StabilityCell& c : grid) {
     different.emplace(c.mass_kg, c.period_s, c.delay_samples, c.encoder_m, c.hand.damping,
@@ -294,7 +294,7 @@ TEST(StabilityGrid, IsTheWholeProductOnce) {
   EXPECT_EQ(different.size(), grid.size());
   EXPECT_EQ(masses, (std::set<double>{0.020, 0.045, 0.200}));
   EXPECT_EQ(periods, (std::set<double>{0.25e-3, 1e-3, 2e-3}));
-  EXPECT_EQ(delays, (std::set<int>{0, 1, 3}));
+  EXPECT_EQ(delays, (std::set<double>{0.0, 1.0, 3.0}));
   EXPECT_EQ(encoders, (std::set<double>{0.0, 0.055e-3, 0.2e-3}));
   EXPECT_EQ(hands, (std::set<double>{0.0, 300.0, 1000.0}));
   EXPECT_EQ(tissues, (std::set<std::pair<double, double>>{

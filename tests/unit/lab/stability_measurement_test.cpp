@@ -118,7 +118,7 @@ TEST(StabilityGridFile, IsRefusedByTheFieldThatIsWrong) {
   refused("period_s", 1.0, "cells[0].period_s");
   refused("delay_samples", 17, "cells[0].delay_samples");
   refused("delay_samples", -1, "cells[0].delay_samples");
-  refused("delay_samples", 1.5, "cells[0].delay_samples");
+  refused("delay_samples", 16.5, "cells[0].delay_samples");
   refused("delay_samples", 1e18, "cells[0].delay_samples");
   refused("encoder_mm", -0.055, "cells[0].encoder_mm");
   refused("plant_damping", -0.05, "cells[0].plant_damping");

@@ -248,7 +248,7 @@ TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
   json["arms"][0]["map"]["force_scale"] = 0.5;
   json["arms"][0]["map"]["offset_mm"] = {1.0, 2.0, 3.0};
   json["arms"][0]["dynamics"] = {
-      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_ticks", 3}};
+      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_s", 0.0031}};
   const Result<Scene> scene = parseScene(json, shippedFile());
   ASSERT_TRUE(scene.ok()) << scene.error().sentence();
   const Json written = toJson(*scene);
@@ -256,9 +256,20 @@ TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
        {"/rate_hz", "/view/distance_mm", "/landmarks/0/run_mm", "/arms/0/max_force_N",
         "/arms/0/map/motion_scale", "/arms/0/map/force_scale", "/arms/0/map/offset_mm",
         "/arms/0/dynamics/apparent_mass_kg", "/arms/0/dynamics/encoder_step_m",
-        "/arms/0/dynamics/delay_ticks"}) {
+        "/arms/0/dynamics/delay_s"}) {
     EXPECT_EQ(written.at(Json::json_pointer(at)), json.at(Json::json_pointer(at))) << at;
   }
+}
+
+TEST(Scene, OfAnOlderRecordingHasNoDelay) {
+  Json json = shipped();
+  json["arms"][0]["dynamics"] = {
+      {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_ticks", 0}};
+  const Result<Scene> scene = parseScene(json, shippedFile());
+  ASSERT_TRUE(scene.ok()) << scene.error().sentence();
+  EXPECT_EQ(scene->arms[0].dynamics->delay_s, 0.0);
+  json["arms"][0]["dynamics"]["delay_ticks"] = 2;
+  EXPECT_FALSE(parseScene(json, shippedFile()).ok());
 }
 
 TEST(Scene, SaysHowTissuesLookAndIsWrittenWithIt) {
