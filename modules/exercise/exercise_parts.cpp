@@ -141,13 +141,13 @@ Status PartFolder::copy(const fs::path& from, const std::string& file) {
   }
   return write(file, [&](const fs::path& path) {
     return replaceFile(path, [&](const fs::path& temporary) {
-      std::error_code failed, ec;
+      std::error_code failed, none;
       fs::copy_file(from, temporary, failed);
       if (!failed) return Status();
       // A full disk comes as an error of the device from the copying of the system.
       const fs::path beside = temporary.parent_path();
-      const fs::space_info room = fs::space(beside, ec);
-      const bool full = !ec && room.available < fs::file_size(from, ec);
+      const fs::space_info room = fs::space(beside, none);
+      const bool full = !none && room.available < fs::file_size(from, none);
       return Status(writeError(target_ / file, full ? ENOSPC : failed.value()));
     });
   });

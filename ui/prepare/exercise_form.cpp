@@ -231,7 +231,7 @@ void ExerciseForm::setElsewherePossible(bool possible) {
 void ExerciseForm::setStructures(const std::vector<std::string>& names) {
   of_case_ = names;
   const Scene same = scene_;
-  setScene(same);
+  setScene(same, landmarks_);
 }
 
 // --- Where ---
@@ -581,6 +581,7 @@ void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark
     outline_->forgetRefusal();
   }
   scene_ = scene;
+  landmarks_ = landmarks;
   showing_ = true;
   body_->setEnabled(locked_->text().isEmpty() && !scene_.arms.empty());
   if (!name_->hasFocus() || !name_->isModified()) name_->setText(toQt(scene_.name));
@@ -622,7 +623,7 @@ void ExerciseForm::setScene(const Scene& scene, const std::vector<PlacedLandmark
   view_numbers_->show(scene_.view);
   showLandmark();
   showCard();
-  outline_->show(scene_, landmarks);
+  outline_->show(scene_, landmarks_);
   for (std::size_t i = 0; i < locks_.size(); ++i) {
     locks_[i]->setChecked(scene_.locks.contains(kLockNames[i].second));
   }

@@ -93,6 +93,7 @@ class ExerciseForm : public QWidget {
   static CardText textOf(const CardFields& fields);
 
   Scene scene_;
+  std::vector<PlacedLandmark> landmarks_;
   bool showing_ = false;
   QWidget* body_;
   QLabel *locked_, *saved_;

@@ -81,10 +81,11 @@ TEST(BoundedController, LetsNoMoreBeRenderedThanTheArmRendersOnceAContactLasts) 
   Numbers numbers(2);
   for (int i = 0; i < 200; ++i) {
     const double step = i % 3 == 0 ? 0.0 : numbers.decadesBetween(1e-6, 1e-3);
-    const ArmDynamics dynamics =
-        arm(numbers.decadesBetween(0.005, 0.5), step, i % (kMaxDelayTicks + 1));
+    ArmDynamics dynamics = arm(numbers.decadesBetween(0.005, 0.5), step);
     const double rate_hz = numbers.decadesBetween(250.0, 8000.0);
-    const Renderable most = renderable(dynamics, rate_hz, dynamics.delay_ticks, {});
+    const double delay = 0.5 * (i % (2 * kMaxDelayTicks + 1));
+    dynamics.delay_s = delay / rate_hz;
+    const Renderable most = renderable(dynamics, rate_hz, delay, {});
     ASSERT_GT(most.b_max, 0.0);
     ASSERT_GT(most.k_max, 0.0);
     const Impedance below{0.9 * most.b_max, 0.9 * most.k_max};

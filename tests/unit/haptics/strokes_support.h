@@ -216,7 +216,8 @@ inline Stroke randomStroke(unsigned seed) {
   s.block.up = Vec3(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 1.0);
   s.rate_hz = random.of({500, 1000, 2000, 4000, 8000});
   const int arm = random.below(3);  // the last renders about half as much as the first
-  s.arm = {arm == 1 ? 0.045 : 0.020, random.of({0.0, 5.5e-5}), 3.3, arm == 2 ? 1 : 0};
+  s.arm = {arm == 1 ? 0.045 : 0.020, random.of({0.0, 5.5e-5}), 3.3,
+           arm == 2 ? 1.0 / s.rate_hz : 0.0};
   s.force_scale = random.of({0.5, 1, 2});
   s.motion_scale = random.of({0.5, 1, 1.5});
   s.in_the_hand = random.below(2);
