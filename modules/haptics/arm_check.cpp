@@ -40,7 +40,8 @@ void ArmCheck::forget() {
   since_air_s_ = 1e9;
 }
 
-bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touching) {
+bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touching,
+                    const Vec3& skew_N) {
   const bool looks = since_air_s_ < kWindow_s;
   since_air_s_ = touching ? since_air_s_ + T_ : 0.0;
   if (!looks) return false;
@@ -57,7 +58,7 @@ bool ArmCheck::look(const ArmEstimator& estimator, const Vec3& held_N, bool touc
   }
 
   const Vec3 acceleration = held_N / stated_kg_ + a_;
-  x_ += T_ * v_ + (0.5 * T_ * T_) * acceleration;
+  x_ += T_ * v_ + (0.5 * T_ * T_) * (acceleration + skew_N / stated_kg_);
   v_ += T_ * acceleration;
   const Vec3 answer_m = x_;
   x_ -= estimator.gain()[0] * answer_m;

@@ -25,9 +25,10 @@ class ArmCheck {
  public:
   ArmCheck(const ArmDynamics& stated, const ArmEstimator& estimator, double period_s);
 
-  // After `estimator` took a sample, before which `held_N` acted. True where what is known of the arm
-  // may have changed: in air and as a contact begins.
-  bool look(const ArmEstimator& estimator, const Vec3& held_N, bool touching);
+  // After `estimator` took a sample, before which `held_N` acted. True where what is known of the
+  // arm may have changed: in air and as a contact begins. `skew_N`: as the estimator takes it.
+  bool look(const ArmEstimator& estimator, const Vec3& held_N, bool touching,
+            const Vec3& skew_N = Vec3(0.0));
   // After samples were left out: what was found of the arm stays.
   void forget();
 

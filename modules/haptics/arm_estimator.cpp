@@ -62,10 +62,11 @@ void ArmEstimator::restart(const Vec3& position_m) {
   v_ = a_ = surprise_m_ = Vec3(0.0);
 }
 
-void ArmEstimator::update(const Vec3& position_m, const Vec3& held_N, double lighter) {
+void ArmEstimator::update(const Vec3& position_m, const Vec3& held_N, double lighter,
+                          const Vec3& skew_N) {
   if (!started_) return restart(position_m);
   const Vec3 acceleration = held_N * (lighter / mass_kg_) + a_;
-  x_ += T_ * v_ + (0.5 * T_ * T_) * acceleration;
+  x_ += T_ * v_ + (0.5 * T_ * T_) * (acceleration + skew_N * (lighter / mass_kg_));
   v_ += T_ * acceleration;
   surprise_m_ = position_m - x_;
   // No hand moves an arm so far in a period: the sample jumped.

@@ -19,7 +19,10 @@ class ArmEstimator {
 
   // After a period in which `held_N` acted on the arm, the sample reads `position_m`. A sample 20
   // mm from the expected one starts the filter anew, at rest. `lighter`: stated mass / mass.
-  void update(const Vec3& position_m, const Vec3& held_N, double lighter = 1.0);
+  // `skew_N`: what a force that changed within the period moves the arm further than its mean does,
+  // as a force: share (1 - share) (first - second), `share` that of the first in the period.
+  void update(const Vec3& position_m, const Vec3& held_N, double lighter = 1.0,
+              const Vec3& skew_N = Vec3(0.0));
   void forget() { started_ = false; }
 
   const Vec3& position_m() const { return x_; }

@@ -157,14 +157,15 @@ void BoundedController::forget() {
 // The mean of the force that acted since the last sample: with a delay of d ticks the one sent d
 // ticks before the last, and for a share f of the period, where d is f more than a whole number,
 // the one before that.
-Vec3 BoundedController::heldForce(const Vec3& last_sent_N) {
+BoundedController::Held BoundedController::heldForce(const Vec3& last_sent_N) {
   const auto [whole, share] = delay();
   const int oldest = whole + (share > 0.0 ? 1 : 0);
   std::copy_backward(sent_N_.begin(), sent_N_.begin() + oldest + 1, sent_N_.begin() + oldest + 2);
   sent_N_[0] = last_sent_N;
   const Vec3& newer_N = sent_N_[std::size_t(whole)];
-  if (share == 0.0) return newer_N;
-  return (1.0 - share) * newer_N + share * sent_N_[std::size_t(whole) + 1];
+  if (share == 0.0) return {newer_N};
+  const Vec3& older_N = sent_N_[std::size_t(whole) + 1];
+  return {(1.0 - share) * newer_N + share * older_N, share * (1.0 - share) * (older_N - newer_N)};
 }
 
 BoundedController::Delay BoundedController::delay() const {
@@ -172,9 +173,19 @@ BoundedController::Delay BoundedController::delay() const {
   return {whole, check_.delaySamples() - whole};
 }
 
+// By a force that is F1 for a share f of the period and F2 after it, over a motion s of a constant
+// push beside it: F1 s1 + F2 (s - s1), where s1 - f s = -f (1 - f) T^2 / 2 times the mean
+// acceleration.
+double BoundedController::workOf(const Held& held, const Vec3& moved_m) const {
+  const double work_J = glm::dot(held.mean_N, moved_m);
+  if (held.skew_N == Vec3(0.0)) return work_J;
+  const Vec3 mean_m_s2 = held.mean_N / mass_kg() + estimator_.handAcceleration_m_s2();
+  return work_J - 0.5 * T_ * T_ * glm::dot(held.skew_N, mean_m_s2);
+}
+
 // Credit: the energy that the held force took from the arm over the last period, exact for any
 // motion in between. Loss: what of it the rendered spring neither holds nor has given back.
-void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
+void BoundedController::account(const ControllerInput& in, const Held& held) {
   const Vec3& x = estimator_.position_m();
   const double k = in.rendered.stiffness;
   Vec3 spring_N = in.rendered.elastic_N - k * (x - in.position_m);
@@ -186,7 +197,7 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
       k > 0.0 ? std::max(0.0, in.rendered.stored_J - sum_N * sum_N / (2.0 * k)) : 0.0;
   const double stored_J = beside_J + springEnergy(glm::length(spring_N), k, arm_.peak_force_N);
   if (started_) {
-    credit_J_ += in.rotation_work_J - glm::dot(held_N, x - last_estimate_m_);
+    credit_J_ += in.rotation_work_J - workOf(held, x - last_estimate_m_);
   } else if (in.touching) {
     credit_J_ = stored_J;  // begins in contact: what the spring holds counts as put in
   }
@@ -208,7 +219,7 @@ void BoundedController::account(const ControllerInput& in, const Vec3& held_N) {
     dissipated_J_ = most_dissipated_J_ = 0.0;
   } else if (was_touching_ && k <= last_stiffness_) {
     // Not where the spring became stiffer: its energy rises then without any motion.
-    const double put_in_J = in.rotation_work_J - glm::dot(held_N, seen_m - last_seen_m_);
+    const double put_in_J = in.rotation_work_J - workOf(held, seen_m - last_seen_m_);
     dissipated_J_ += put_in_J - (as_seen_J - stored_as_seen_J_);
     most_dissipated_J_ = std::max(most_dissipated_J_, dissipated_J_);
   }
@@ -340,9 +351,9 @@ void BoundedController::watchForce(const Vec3& force_N, bool touching) {
 }
 
 Vec3 BoundedController::bound(const ControllerInput& in) {
-  const Vec3 held_N = heldForce(in.last_sent_N);
-  estimator_.update(in.position_m, held_N, check_.lighter());
-  if (check_.look(estimator_, held_N, in.touching)) {
+  const Held held = heldForce(in.last_sent_N);
+  estimator_.update(in.position_m, held.mean_N, check_.lighter(), held.skew_N);
+  if (check_.look(estimator_, held.mean_N, in.touching, held.skew_N)) {
     ArmDynamics found = arm_;
     found.apparent_mass_kg = mass_kg();
     found.delay_s = T_ * check_.delaySamples();
@@ -355,7 +366,7 @@ Vec3 BoundedController::bound(const ControllerInput& in) {
   } else if (not_obeyed_ticks_ > 0) {
     --not_obeyed_ticks_;
   }
-  account(in, held_N);
+  account(in, held);
   learn(in.touching);
 
   Vec3 force_N(0.0);

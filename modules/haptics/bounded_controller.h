@@ -87,8 +87,14 @@ class BoundedController {
     double share;  // of a period more, below 1
   };
   Delay delay() const;
-  Vec3 heldForce(const Vec3& last_sent_N);
-  void account(const ControllerInput& in, const Vec3& held_N);
+  // What acted since the last sample; `skew_N` as the estimator takes it.
+  struct Held {
+    Vec3 mean_N;
+    Vec3 skew_N{0.0};
+  };
+  Held heldForce(const Vec3& last_sent_N);
+  double workOf(const Held& held, const Vec3& moved_m) const;
+  void account(const ControllerInput& in, const Held& held);
   void owe();
   void learn(bool touching);
   Ahead ahead() const;

@@ -71,7 +71,7 @@ class TissuePanelTest : public PanelTest {
 
 TEST_F(TissuePanelTest, ShowsANumberAndItsSource) {
   EXPECT_EQ(find<QSpinBox>(panel_, "huLow").value(), 201);
-  EXPECT_TRUE(find<QSpinBox>(panel_, "huLow").toolTip().contains("a book"));
+  EXPECT_TRUE(find<QLineEdit>(panel_, "huSource").text().contains("a book"));
   EXPECT_TRUE(find<QDoubleSpinBox>(panel_, "damping").toolTip().contains("a paper"));
   EXPECT_EQ(changes_, 0) << "showing is no change";
 }
