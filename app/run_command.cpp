@@ -54,7 +54,7 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
 
 // A run writes over nothing: what it is to save goes to names that nothing has, neither now nor by
 // its own recording.
-Status checkTargets(const RunArguments& arguments, const fs::path& recording) {
+Status checkRunTargets(const RunArguments& arguments, const fs::path& recording) {
   const std::pair<const char*, const std::string&> targets[] = {
       {"--save-volume", arguments.save_volume}, {"--csv", arguments.csv}};
   std::error_code ec;
@@ -171,7 +171,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   if (Status made = folder.make(); !made) return made.error();
   const fs::path out = arguments.out;
   options.recording = freshFile(out, "session", ".h5");
-  if (Status can = checkTargets(arguments, options.recording); !can) return can.error();
+  if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
 
   Result<Case> of = openCase(*scene, progress);
   if (!of) return of.error();
@@ -180,7 +180,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   std::error_code ec;
   while (!session && session.error().code == "CANNOT_WRITE" && fs::exists(options.recording, ec)) {
     options.recording = freshFile(out, "session", ".h5");
-    if (Status can = checkTargets(arguments, options.recording); !can) return can.error();
+    if (Status can = checkRunTargets(arguments, options.recording); !can) return can.error();
     session = Session::create(*scene, *of, options);
   }
   if (!session) return session.error();

@@ -24,7 +24,7 @@ constexpr double kMassSure = 0.06;
 constexpr double kFaded = 1e-9;       // of the noise's variance: an answer this small is over
 constexpr double kAirTime_s = 0.005;  // time constant of the mean square surprise in air
 constexpr double kHandNoise = 8.0;    // factor on that mean square, beyond the encoder's noise
-constexpr double kMostShift = 1.0;    // samples
+constexpr int kMostShift = 1;         // samples
 
 }  // namespace
 
@@ -32,8 +32,11 @@ ArmCheck::ArmCheck(const ArmDynamics& stated, const ArmEstimator& estimator, dou
     : T_(period_s),
       stated_kg_(stated.apparent_mass_kg),
       variance_m2_(estimator.surpriseVariance_m2()),
-      stated_samples_(trephine::delaySamples(stated, period_s)),
-      delay_samples_(stated_samples_) {}
+      stated_samples_(std::min(trephine::delaySamples(stated, period_s), double(kMaxDelayTicks))) {}
+
+double ArmCheck::delaySamples() const {
+  return std::clamp(stated_samples_ + more_samples_, 0.0, double(kMaxDelayTicks));
+}
 
 void ArmCheck::forget() {
   x_ = v_ = a_ = last_answer_m_ = last_y_m_ = Vec3(0.0);
@@ -104,12 +107,10 @@ void ArmCheck::judgeDelay() {
              yy_ - 2.0 * ya_after_ + aa_ - noise_ < kUnexplained * yy_) {
     shift = -1;
   }
-  const double found = std::max(0.0, delay_samples_ + shift);
-  if (shift == 0 || found == delay_samples_ || std::abs(found - stated_samples_) > kMostShift ||
-      found > kMaxDelayTicks) {
-    return;
-  }
-  delay_samples_ = found;
+  const int more = more_samples_ + shift;
+  const double found = stated_samples_ + more;
+  if (shift == 0 || std::abs(more) > kMostShift || found <= -1.0 || found > kMaxDelayTicks) return;
+  more_samples_ = more;
   not_as_stated_ = true;
   // From now on the forces act in other ticks than those in which the sums took them to act.
   aa_ = aa_before_ = yy_ = ya_ = ya_before_ = ya_after_ = noise_ = 0.0;

@@ -34,7 +34,8 @@ class ArmCheck {
 
   // Stated mass / mass found, 1 to 5. Not below 1: a heavier arm answers as one that a hand holds.
   double lighter() const { return lighter_; }
-  double delaySamples() const { return delay_samples_; }  // stated, or one more or less
+  // As stated, or one more or less; 0 to kMaxDelayTicks, whatever was stated.
+  double delaySamples() const;
   double handShare() const { return hand_share_; }  // 0: the arm answers as if free; 1: not at all
   // True from when it was sure that mass or delay is not as stated.
   bool notAsStated() const { return not_as_stated_; }
@@ -43,7 +44,8 @@ class ArmCheck {
   void judgeDelay();
 
   double T_, stated_kg_, variance_m2_;
-  double stated_samples_, delay_samples_;
+  double stated_samples_;
+  int more_samples_ = 0;           // that were found: -1, 0 or 1
   Vec3 x_{0.0}, v_{0.0}, a_{0.0};  // the arm's answer to the forces alone: m, m/s, m/s2
   Vec3 last_answer_m_{0.0}, last_y_m_{0.0};
   double since_air_s_ = 1e9;

@@ -30,7 +30,8 @@ SceneMap readMap(JsonReader map) {
   return out;
 }
 
-SceneArm readArm(JsonReader& item, const fs::path& folder) {
+// `delay_ticks`: of older recordings, which have it in periods.
+SceneArm readArm(JsonReader& item, const fs::path& folder, int& delay_ticks) {
   SceneArm arm;
   arm.name = item.text("name");
   JsonReader device = item.object("device");
@@ -51,8 +52,9 @@ SceneArm readArm(JsonReader& item, const fs::path& folder) {
   if (item.has("dynamics")) {
     JsonReader dynamics = item.object("dynamics");
     readNumbers(dynamics, kArmDynamicsNumbers, arm.dynamics.emplace());
-    // Recordings of before have it in periods, and of simulated arms alone, which have none.
-    if (dynamics.has("delay_ticks")) dynamics.integer("delay_ticks", {0, 0});
+    if (dynamics.has("delay_ticks")) {
+      delay_ticks = int(dynamics.integer("delay_ticks", kDelaySamples));
+    }
   }
   return arm;
 }
@@ -220,8 +222,9 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
     scene.landmarks.push_back(readLandmark(item));
   for (JsonReader& item : reader.objects("tools", kMostInAList))
     scene.tools.push_back(readSceneTool(item, folder));
+  std::vector<int> delay_ticks;
   for (JsonReader& item : reader.objects("arms", kMostInAList))
-    scene.arms.push_back(readArm(item, folder));
+    scene.arms.push_back(readArm(item, folder, delay_ticks.emplace_back(0)));
   for (const std::string& name : reader.texts("laws", kMostInAList)) {
     if (auto kind = kindOf(kLawNames, name)) {
       scene.laws.push_back(*kind);
@@ -266,6 +269,15 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   if (reader.has("outline")) scene.outline = readSceneOutline(reader.object("outline"));
   if (reader.has("locks")) scene.locks = readLocks(reader);
   if (reader.ok()) checkReferences(reader, scene);
+  for (std::size_t i = 0; reader.ok() && i < scene.arms.size(); ++i) {
+    if (!scene.arms[i].dynamics) continue;
+    ArmDynamics& dynamics = *scene.arms[i].dynamics;
+    if (delay_ticks[i] > 0) dynamics.delay_s = delay_ticks[i] / scene.rate_hz;
+    if (!kDelaySamples.holds(delaySamples(dynamics, 1.0 / scene.rate_hz))) {
+      reader.fail("arms", "The delay of the arm '" + scene.arms[i].name + "' is longer than " +
+                              std::to_string(kMaxDelayTicks) + " periods of the rate");
+    }
+  }
   if (Status status = reader.finish(); !status) return status.error();
   return scene;
 }

@@ -58,6 +58,14 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                          plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
+      if (capabilities[arms[i]].latency_s * scene.rate_hz > kMaxDelayTicks) {
+        return Error{"BAD_SCENE",
+                     "The " + scene.arms[arms[i]].name + " arm's device '" + name + "' answers " +
+                         plainNumber(1e3 * capabilities[arms[i]].latency_s) +
+                         " ms late, more than " + std::to_string(kMaxDelayTicks) +
+                         " periods of the scene's " + plainNumber(scene.rate_hz) + " Hz",
+                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
+      }
       double& limit_N = scene.arms[arms[i]].max_force_N;
       limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
       scene.arms[arms[i]].dynamics =

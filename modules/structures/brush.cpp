@@ -96,7 +96,7 @@ std::vector<Vec3> straightened(const std::vector<Vec3>& path, double within) {
   return out;
 }
 
-int voxelAt(double voxels, int size) {
+int brushedVoxel(double voxels, int size) {
   return int(std::clamp(std::floor(voxels), -1.0, double(size)));
 }
 
@@ -113,15 +113,16 @@ class Cover {
       const int a = int(axis);
       const double first = (std::min(from[a], to[a]) - radius_mm) / edge[a];
       const double last = (std::max(from[a], to[a]) + radius_mm) / edge[a];
-      low[axis] = std::max(box.low[axis], voxelAt(std::ceil(first), g_.size[axis]));
-      high[axis] = std::min(box.high[axis], voxelAt(last, g_.size[axis]) + 1);
+      low[axis] = std::max(box.low[axis], brushedVoxel(std::ceil(first), g_.size[axis]));
+      high[axis] = std::min(box.high[axis], brushedVoxel(last, g_.size[axis]) + 1);
     }
     for (int k = low[2]; k < high[2]; ++k) {
       for (int j = low[1]; j < high[1]; ++j) {
         const auto span = inCapsule(from, to, radius_mm, Vec3(0.0, j * edge.y, k * edge.z));
         if (!span) continue;
-        const int begin = std::max(box.low[0], voxelAt(std::ceil(span->low / edge.x), g_.size[0]));
-        const int end = std::min(box.high[0], voxelAt(span->high / edge.x, g_.size[0]) + 1);
+        const int begin =
+            std::max(box.low[0], brushedVoxel(std::ceil(span->low / edge.x), g_.size[0]));
+        const int end = std::min(box.high[0], brushedVoxel(span->high / edge.x, g_.size[0]) + 1);
         add(begin, end, j, k);
       }
     }
@@ -129,7 +130,7 @@ class Cover {
   void voxel(const Vec3& at_mm, const VoxelBox& box) {
     Index3 at;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      at[axis] = voxelAt(at_mm[int(axis)] / g_.spacing_mm[int(axis)] + 0.5, g_.size[axis]);
+      at[axis] = brushedVoxel(at_mm[int(axis)] / g_.spacing_mm[int(axis)] + 0.5, g_.size[axis]);
       if (at[axis] < box.low[axis] || at[axis] >= box.high[axis]) return;
     }
     add(at[0], at[0] + 1, at[1], at[2]);
@@ -198,7 +199,7 @@ std::vector<Line> linesOf(const GridGeometry& g, std::span<const Vec3> path_mm,
     Vec3 at = Vec3(to_voxel * glm::dvec4(point_mm, 1.0));
     VoxelBox box = whole;
     if (disc) {
-      const int slice = voxelAt(at[brush.across] + 0.5, g.size[across]);
+      const int slice = brushedVoxel(at[brush.across] + 0.5, g.size[across]);
       at[brush.across] = slice;
       box.low[across] = slice;
       box.high[across] = slice < 0 ? slice : std::min(slice + 1, g.size[across]);

@@ -15,7 +15,7 @@ VoxelBox both(const VoxelBox& a, const VoxelBox& b) {
   return box;
 }
 
-VoxelBox boxOf(const std::vector<LabelEdit>& edits) {
+VoxelBox editedBox(const std::vector<LabelEdit>& edits) {
   if (edits.empty()) return {};
   VoxelBox box = edits.front().box;
   for (const LabelEdit& edit : edits) box = both(box, edit.box);
@@ -68,7 +68,7 @@ std::optional<VoxelBox> EditHistory::undo(LabelMap& map) {
     trephine::undo(map, *edit);
   }
   if (step.row) setRow(map, step.row->before);
-  return boxOf(step.edits);
+  return editedBox(step.edits);
 }
 
 std::optional<VoxelBox> EditHistory::redo(LabelMap& map) {
@@ -76,7 +76,7 @@ std::optional<VoxelBox> EditHistory::redo(LabelMap& map) {
   const Step& step = steps_[done_++];
   for (const LabelEdit& edit : step.edits) apply(map, edit);
   if (step.row) setRow(map, step.row->after);
-  return boxOf(step.edits);
+  return editedBox(step.edits);
 }
 
 void EditHistory::clear() {

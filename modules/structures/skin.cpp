@@ -209,7 +209,7 @@ class SkinMask {
   std::vector<std::uint8_t> mask_;
 };
 
-Result<Skin> make(const Volume& volume, double thickness_mm, const Progress& progress) {
+Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
   const Error cancelled{"CANCELLED", "Finding the skin was cancelled", "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
@@ -248,7 +248,7 @@ Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& p
     return enough.error();
   }
   try {
-    return make(volume, thickness_mm, progress);
+    return skinOf(volume, thickness_mm, progress);
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the skin", "");
   }

@@ -129,7 +129,7 @@ Result<Mat4> voxelToRas(const Header& h, const fs::path& file) {
                      file);
 }
 
-std::optional<VoxelType> typeFrom(int code) {
+std::optional<VoxelType> niftiType(int code) {
   static const std::map<int, VoxelType> types{{256, VoxelType::int8},   {2, VoxelType::uint8},
                                               {4, VoxelType::int16},    {512, VoxelType::uint16},
                                               {8, VoxelType::int32},    {768, VoxelType::uint32},
@@ -201,7 +201,7 @@ Result<VolumeFileHeader> readNiftiHeader(const fs::path& file) {
 
   const auto size = sizeOf(*h, file);
   if (!size) return size.error();
-  const auto type = typeFrom(h->type());
+  const auto type = niftiType(h->type());
   if (!type) return notHu("The voxels are not one number each", file);
   header.type = *type;
   header.big_endian = h->bigEndian();

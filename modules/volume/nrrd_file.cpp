@@ -180,8 +180,8 @@ bool isLayered(const NrrdFields& fields) {
          kinds[0] == "list";
 }
 
-Result<GridGeometry> geometryOf(const NrrdFields& fields, VolumeFileHeader& header,
-                                const fs::path& file) {
+Result<GridGeometry> nrrdGeometry(const NrrdFields& fields, VolumeFileHeader& header,
+                                  const fs::path& file) {
   auto sizes = numbersIn(fields.text("sizes"));
   if (!sizes) return unreadable("The header's sizes are not numbers", file);
   if (isLayered(fields)) {
@@ -273,7 +273,7 @@ std::optional<std::uint64_t> afterLines(const fs::path& file, std::uint64_t at, 
   return std::uint64_t(in.tellg());
 }
 
-Status findVoxels(const NrrdFields& fields, const fs::path& file, VolumeFileHeader& header) {
+Status findNrrdVoxels(const NrrdFields& fields, const fs::path& file, VolumeFileHeader& header) {
   std::uint64_t offset = fields.length;
   header.data.file = file;
   if (fields.has("datafile")) {
@@ -345,12 +345,12 @@ Result<VolumeFileHeader> readNrrdHeader(const fs::path& file) {
     return unreadable("The header does not say in which order bytes are (endian)", file);
   }
   header.big_endian = endian == "big";
-  const auto geometry = geometryOf(*fields, header, file);
+  const auto geometry = nrrdGeometry(*fields, header, file);
   if (!geometry) return geometry.error();
   header.geometry = *geometry;
   header.segments = fields->segments;
   if (auto status = settle(header, file); !status) return status.error();
-  if (auto status = findVoxels(*fields, file, header); !status) return status.error();
+  if (auto status = findNrrdVoxels(*fields, file, header); !status) return status.error();
   return header;
 }
 

@@ -62,7 +62,7 @@ struct NamedLabel {
   Segment segment;
 };
 
-Result<std::vector<NamedLabel>> readSidecar(const fs::path& file) {
+Result<std::vector<NamedLabel>> readSegmentNames(const fs::path& file) {
   const Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   JsonReader reader(*json, file.string());
@@ -118,7 +118,7 @@ std::optional<std::vector<NamedLabel>> labelsIn(const std::string& text) {
 Result<std::vector<NamedLabel>> namesBeside(const fs::path& file) {
   std::error_code ec;
   if (const fs::path sidecar = structuresFile(file); fs::exists(sidecar, ec)) {
-    return readSidecar(sidecar);
+    return readSegmentNames(sidecar);
   }
   for (const char* ending : {".label", ".txt"}) {
     const fs::path text_file = withoutEndings(file).string() + ending;

@@ -57,8 +57,10 @@ OutlineForm::OutlineForm(QWidget* parent) : QWidget(parent) {
   point_->entered = [this] { showPoint(); };
   point_off_ = settingButton("outlinePointOff", tr("Take it off"), tr("Takes this point away"),
                              fields);
-  connect(point_off_, &QToolButton::clicked, this,
-          [this] { takeOff(std::size_t(point_->wanted() - 1)); });
+  connect(point_off_, &QToolButton::clicked, this, [this] {
+    point_->interpretText();  // a click leaves the field as it was typed
+    takeOff(std::size_t(point_->wanted() - 1));
+  });
   auto* chosen = new QWidget(fields);
   auto* beside = new QHBoxLayout(chosen);
   beside->setContentsMargins(0, 0, 0, 0);
@@ -132,6 +134,7 @@ void OutlineForm::takeOff(std::size_t point) {
 }
 
 void OutlineForm::goWith(const std::string& landmark) {
+  if (!here_ || landmark == (here_->frame ? here_->frame->landmark : std::string())) return;
   editHere("outline", [&](SceneOutline& outline) {
     outline.frame.reset();
     for (const PlacedLandmark& placed : landmarks_) {
@@ -144,11 +147,16 @@ void OutlineForm::show(const Scene& scene, const std::vector<PlacedLandmark>& la
   showing_ = true;
   landmarks_ = landmarks;
   here_ = scene.outline;
+  bool is_here = here_.has_value();
   if (here_) {
-    if (const auto placed = placedOutline(*here_, landmarks_)) here_ = placed;
+    const auto placed = placedOutline(*here_, landmarks_);
+    is_here = placed.has_value();
+    if (placed) here_ = placed;
   }
   const std::size_t count = here_ ? here_->points_mm.size() : 0;
-  count_->setText(here_ ? tr("%1 points").arg(count) : tr("No outline yet."));
+  count_->setText(!here_    ? tr("No outline yet.")
+                  : is_here ? tr("%1 points").arg(count)
+                            : tr("%1 points. Its landmark is not in this case.").arg(count));
   closed_->setChecked(here_ && here_->closed);
   landmark_->clear();
   landmark_->addItem(tr("none: in this patient"), QString());
@@ -156,16 +164,19 @@ void OutlineForm::show(const Scene& scene, const std::vector<PlacedLandmark>& la
   const QString with = here_ && here_->frame ? toQt(here_->frame->landmark) : QString();
   if (landmark_->findData(with) < 0) landmark_->addItem(with, with);  // not in this case
   landmark_->setCurrentIndex(landmark_->findData(with));
-  for (QWidget* of : std::initializer_list<QWidget*>{closed_, back_, clear_, landmark_, point_,
-                                                     point_off_}) {
+  for (QWidget* of : std::initializer_list<QWidget*>{closed_, back_, clear_, point_off_}) {
     of->setEnabled(here_.has_value());
+  }
+  // What lies in another patient cannot be placed in this one.
+  for (QWidget* of : std::initializer_list<QWidget*>{landmark_, point_, point_off_}) {
+    of->setEnabled(is_here);
   }
   width_->setEnabled(here_.has_value());
   width_->show(here_ ? *here_ : SceneOutline{});
   const int last = std::max(1, int(count));
   point_->setLimits(1, last);
   point_->show(std::clamp(point_->wanted(), 1, last));
-  place_->setEnabled(here_.has_value());
+  place_->setEnabled(is_here);
   showPoint();
   showing_ = false;
 }

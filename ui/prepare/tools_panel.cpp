@@ -3,6 +3,7 @@
 #include <QHBoxLayout>
 #include <QMenu>
 #include <algorithm>
+#include <cmath>
 
 #include "base/json.h"
 #include "base/system.h"
@@ -457,6 +458,7 @@ QWidget* ToolsPanel::buildArms() {
   fixed_turn_ = std::make_unique<NumberRows<MapTurn>>(
       std::span<const NumberOf<MapTurn>>(kMapTurnNumbers), *arm_form_, fields, "fixed:");
   fixed_turn_->entered = [this](const MapTurn& turn, const char* key) {
+    turned_ = turn;
     editArm(key, [&](SceneArm& arm) {
       if (arm.map.fixed) arm.map.fixed->rotation = rotationOf(turn);
     });
@@ -553,7 +555,10 @@ void ToolsPanel::showArm() {
   fixed_turn_->setVisible(arm.map.fixed.has_value());
   if (arm.map.fixed) {
     fixed_numbers_->show(*arm.map.fixed);
-    fixed_turn_->show(turnOf(arm.map.fixed->rotation));
+    const Quat& rotation = arm.map.fixed->rotation;
+    const bool as_entered = std::abs(glm::dot(rotationOf(turned_), rotation)) > 1.0 - 1e-12;
+    if (!as_entered) turned_ = turnOf(rotation);
+    fixed_turn_->show(turned_);
   }
   arm_numbers_->show(arm);
   showing_ = before;

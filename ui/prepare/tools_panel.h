@@ -105,6 +105,7 @@ class ToolsPanel : public QWidget {
   std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
   std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;
   std::unique_ptr<NumberRows<MapTurn>> fixed_turn_;
+  MapTurn turned_;  // as it was entered: other angles are the same rotation
   std::unique_ptr<NumberRows<SceneArm>> arm_numbers_;
   std::vector<std::pair<LawKind, QCheckBox*>> laws_;
   std::vector<std::pair<LawKind, QLabel*>> law_costs_;

@@ -428,7 +428,8 @@ void TissuePanel::showOutcome() {
     const QSignalBlocker quiet(opacity_);
     opacity_->setValue(int(std::lround(sliderAtOpacity(tissue->opacity) * kOpacitySteps)));
   }
-  if (!hu_source_->hasFocus() || !hu_source_->isModified()) {
+  if (hu_source_of_ != tissue->id || !hu_source_->hasFocus() || !hu_source_->isModified()) {
+    hu_source_of_ = tissue->id;
     hu_source_->setText(toQt(tissue->hu_source));
     hu_source_->setCursorPosition(0);
     hu_source_->setToolTip(toQt(tissue->hu_source));
@@ -482,11 +483,10 @@ void TissuePanel::rangeEntered() {
   Tissue wanted = *current();
   wanted.hu_min = low_->wanted();
   wanted.hu_max = high_->wanted();
-  const Tissue& cited = declared(wanted);
-  if (wanted.hu_min == cited.hu_min && wanted.hu_max == cited.hu_max) {
-    wanted.hu_source = cited.hu_source;
-  } else if (wanted.hu_min != current()->hu_min || wanted.hu_max != current()->hu_max) {
-    wanted.hu_source = kOwnSource;
+  if (wanted.hu_min != current()->hu_min || wanted.hu_max != current()->hu_max) {
+    const Tissue& cited = declared(wanted);
+    const bool as_cited = wanted.hu_min == cited.hu_min && wanted.hu_max == cited.hu_max;
+    wanted.hu_source = as_cited ? cited.hu_source : kOwnSource;
   }
   if (wanted.structure.empty()) {
     wanted.label.reset();
@@ -559,7 +559,7 @@ void TissuePanel::showShell() {
 }
 
 void TissuePanel::huSourceEntered() {
-  if (!current()) return;
+  if (!current() || current()->id != hu_source_of_) return;
   Tissue wanted = *current();
   const std::string typed = cleanUtf8(hu_source_->text().simplified().toStdString());
   hu_source_->setModified(false);
@@ -583,6 +583,7 @@ void TissuePanel::nameEntered() {
 }
 
 void TissuePanel::add() {
+  huSourceEntered();  // a click of a button leaves the field as it was typed
   const Result<TissueSet> more = withNewTissue(tissues_);
   if (!more) {
     const Error why = more.error();
@@ -599,6 +600,7 @@ void TissuePanel::add() {
 
 void TissuePanel::remove() {
   if (!current()) return;
+  huSourceEntered();
   const Result<TissueSet> less = withoutTissue(tissues_, chosen());
   if (!less) {
     const Error why = less.error();

@@ -125,6 +125,7 @@ class TissuePanel : public QWidget {
   std::vector<std::string> structures_;
   QString locked_;
   QLineEdit *set_name_, *name_, *hu_source_;
+  std::string hu_source_of_;  // the tissue whose source stands there
   QToolButton *set_menu_, *undo_, *redo_;
   QMenu* sets_;
   QLabel* locked_words_;

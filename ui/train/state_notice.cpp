@@ -123,7 +123,7 @@ QString undoneWords(const LoopState& before, const LoopState& after, const Scene
   return all.join(' ');
 }
 
-StateNotice::StateNotice(QWidget* view) : QWidget(view) {
+StateNotice::StateNotice(QWidget* view, const QWidget* bar) : QWidget(view), bar_(bar) {
   setObjectName("stateNotice");
   force_on_ = new QAction(tr("Force on"), this);
   force_on_->setObjectName("forceBack");
@@ -223,7 +223,9 @@ void StateNotice::place() {
   for (QFrame* frame : {pause_.frame, force_.frame, ready_.frame}) frame->updateGeometry();
   layout()->activate();
   const int height = layout()->totalHeightForWidth(width);
-  setGeometry((view->width() - width) / 2, kMargin, width, height);
+  const int top =
+      bar_ && bar_->isVisibleTo(view) ? bar_->geometry().bottom() + kMargin / 2 : kMargin;
+  setGeometry((view->width() - width) / 2, top, width, height);
 }
 
 }  // namespace trephine

@@ -32,8 +32,8 @@ QString undoneWords(const LoopState& before, const LoopState& after, const Scene
 class StateNotice : public QWidget {
   Q_OBJECT
  public:
-  // Lies over `view`, at its top, as wide as there is room.
-  explicit StateNotice(QWidget* view);
+  // Lies over `view`, as wide as there is room, at its top or below `bar`, a child of it.
+  explicit StateNotice(QWidget* view, const QWidget* bar = nullptr);
 
   // `ready`: nothing has been touched yet.
   void showState(const LoopState& state, const Scene& scene, double still_s, bool ready = false);
@@ -59,6 +59,7 @@ class StateNotice : public QWidget {
   void place();
 
   Card pause_, force_, ready_;
+  const QWidget* bar_;
   QAction* force_on_;
 };
 

@@ -34,7 +34,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   scenes_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   constexpr int kMostWidth = 320;  // of the widest letters
   scenes_->setMaximumWidth(kMostWidth);
-  notice_ = new StateNotice(views_);
+  notice_ = new StateNotice(views_, views_->bar());
   rewind_ = new RewindBar;
   arms_ = new ArmsPanel;
   exercise_ = new ExercisePanel;

@@ -247,6 +247,10 @@ void FourUp::setBox(const std::optional<VoxelBox>& box) {
   for (const Slices& of : slices_) of.view->setBox(box);
 }
 
+const QWidget* FourUp::bar() const {
+  return bar_;
+}
+
 void FourUp::setWorkspaces(const std::vector<WorkspaceBox>& boxes) {
   for (const Slices& of : slices_) of.view->setWorkspaces(boxes);
   three_d_->setWorkspaces(boxes);

@@ -64,6 +64,8 @@ class FourUp : public QWidget {
   void setEntry(const std::optional<SliceView::Entry>& entry);
   // Where arms reach, in all four; the chosen one is dragged in the slices.
   void setWorkspaces(const std::vector<WorkspaceBox>& boxes);
+  // Above the views: what lies over them stays below it.
+  const QWidget* bar() const;
   void setOverlay(Overlay overlay, double opacity);
   // Other labels of the same voxels; labelsChanged() of each box that is changed in them.
   void showLabels(const std::shared_ptr<const LabelMap>& labels);

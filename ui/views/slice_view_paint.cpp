@@ -2,6 +2,7 @@
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ui/common/colours.h"
 #include "ui/views/slice_view.h"
@@ -206,15 +207,23 @@ void SliceView::paintEntry(QPainter& painter) const {
        off_mm <= std::max(1.0, 0.5 * stack_.spacing_mm.z));
 }
 
-// Their edges as they lie over the slice, and what they are dragged by.
+// Their edges as they lie over the slice, dotted where it does not cut the box, and what they are
+// dragged by.
 void SliceView::paintWorkspaces(QPainter& painter) const {
   if (!hasSlice()) return;
   for (const WorkspaceBox& box : workspaces_) {
     const std::array<Vec3, 8> corners = box.corners();
+    double first = std::numeric_limits<double>::max(), last = -first;
+    for (const Vec3& corner : corners) {
+      const double slice = toVoxel(stack_, corner).z;
+      first = std::min(first, slice);
+      last = std::max(last, slice);
+    }
+    const bool cut = first <= slice_ && slice_ <= last;  // else it lies before or behind
     QColor colour = box.colour;
-    if (!box.chosen) colour.setAlphaF(0.5f);
+    if (!box.chosen || !cut) colour.setAlphaF(0.5f);
     painter.setBrush(Qt::NoBrush);
-    painter.setPen(QPen(colour, box.chosen ? 1.6 : 1.0));
+    painter.setPen(QPen(colour, box.chosen ? 1.6 : 1.0, cut ? Qt::SolidLine : Qt::DotLine));
     for (const auto& [a, b] : WorkspaceBox::kEdges) {
       painter.drawLine(fromPatient(corners[std::size_t(a)]), fromPatient(corners[std::size_t(b)]));
     }

@@ -18,7 +18,7 @@ namespace trephine {
 struct StabilityCell {
   double mass_kg = 0.045;
   double period_s = 0.001;
-  double delay_samples = 0.0;  // from a sample to the force that answers it
+  double delay_samples = 0.0;  // from a sample to the force that answers it; run in eighths
   double encoder_m = 0.0;
   double plant_damping = 0.05;  // N s/m
   Impedance hand;               // zero: nobody holds the arm

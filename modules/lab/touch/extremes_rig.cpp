@@ -88,7 +88,7 @@ Result<std::unique_ptr<Device>> openArm(ScriptedArm& arm) {
   return Device::open(*plugin, {0}, "{}");
 }
 
-HapticParameters parametersOf(const Setup& setup, const TrephineCapabilities& capabilities) {
+HapticParameters rigParameters(const Setup& setup, const TrephineCapabilities& capabilities) {
   HapticParameters p;
   const double peak_N = capabilities.peak_force_N;
   p.period_s = kPeriod_s;
@@ -253,7 +253,7 @@ Run run(const Setup& setup) {
   }
   const TrephineCapabilities capabilities = (*device)->capabilities(0);
   Grid grid(setup.volume);
-  HapticCore core(parametersOf(setup, capabilities), *grid.takeWriter());
+  HapticCore core(rigParameters(setup, capabilities), *grid.takeWriter());
   core.setEnergyOut(0, Vec3(setup.energy_out_J));
   std::vector<LoopDevice> devices;
   devices.push_back({*std::move(device), {0}});

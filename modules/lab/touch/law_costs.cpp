@@ -31,7 +31,7 @@ Volume halfFull(std::int16_t hu) {
 }
 
 // Of any voxel, so that no label map is needed, and uncut: the cost is of touch.
-HapticParameters parametersOf(const Scene& scene, const Tissue& firmest) {
+HapticParameters costParameters(const Scene& scene, const Tissue& firmest) {
   HapticParameters parameters = hapticParameters(scene);
   Tissue alone = firmest;
   alone.label.reset();
@@ -93,7 +93,7 @@ Result<LawCosts> measureLawCosts(const Scene& scene, const Progress& progress) {
         return tissue.stiffness_N_per_m.value;
       });
   const auto hu = std::int16_t(std::clamp((firmest.hu_min + firmest.hu_max) / 2, -999, 3000));
-  const HapticParameters own = parametersOf(scene, firmest);
+  const HapticParameters own = costParameters(scene, firmest);
   std::vector<HapticParameters> wanted{own};
   for (const auto& [name, law] : kLawNames) {
     HapticParameters toggled = own;

@@ -17,7 +17,7 @@ struct Sink {
   std::size_t at = 0;
 };
 
-OPJ_SIZE_T write(void* data, OPJ_SIZE_T count, void* user) {
+OPJ_SIZE_T writeBytes(void* data, OPJ_SIZE_T count, void* user) {
   Sink& sink = *static_cast<Sink*>(user);
   sink.bytes.resize(std::max(sink.bytes.size(), sink.at + count));
   std::memcpy(sink.bytes.data() + sink.at, data, count);
@@ -64,7 +64,7 @@ std::vector<std::uint8_t> encodeJ2k(const std::vector<std::uint16_t>& words, int
 
   Sink sink;
   opj_stream_set_user_data(stream.get(), &sink, nullptr);
-  opj_stream_set_write_function(stream.get(), write);
+  opj_stream_set_write_function(stream.get(), writeBytes);
   opj_stream_set_skip_function(stream.get(), skip);
   opj_stream_set_seek_function(stream.get(), seek);
   if (!opj_setup_encoder(codec.get(), &parameters, image.get()) ||

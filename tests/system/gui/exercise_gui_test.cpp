@@ -313,6 +313,27 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY2(glm::length(moved - expected) < 1.0, qPrintable(QString::number(moved.x)));
     QVERIFY(glm::length(scene().arms[0].map.offset_mm - before) > 5.0);
     keepGrab("prepare-arms.png");
+    // In a slice before the box its edges are dotted.
+    const QColor colour = colours::ofArm(scene().arms[0], 0);
+    const auto solid = [&] {
+      const QImage image = coronal.grab().toImage();
+      int of_the_arm = 0;
+      for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+          const QColor at = image.pixelColor(x, y);
+          of_the_arm += std::abs(at.red() - colour.red()) < 30 &&
+                        std::abs(at.green() - colour.green()) < 30 &&
+                        std::abs(at.blue() - colour.blue()) < 30;
+        }
+      }
+      return of_the_arm;
+    };
+    const int through = coronal.slice(), cut = solid();
+    coronal.setSlice(0);
+    const int beyond = solid();
+    coronal.setSlice(through);
+    QVERIFY2(cut > 100 && beyond < cut / 2,
+             qPrintable(QString("%1 and %2 pixels").arg(cut).arg(beyond)));
     workstation().undoEdit();
     QVERIFY(scene().arms[0].map.offset_mm == before);
     // By an edge of it as well.
@@ -646,6 +667,15 @@ class ExerciseGuiTest : public test::WindowTest {
     QVERIFY(scene().outline && !scene().outline->frame);
     choose("outlineLandmark", QString("vault"));
     QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
+    const Vec3 at_mm = scene().outline->frame->at.position_mm;
+    choose("outlineLandmark", QString("vault"));  // once more: nothing changes
+    QCOMPARE(scene().outline->frame->landmark, std::string("vault"));
+    QCOMPARE(scene().outline->frame->at.position_mm, at_mm);
+    find<QSpinBox>("outlinePoint")->setValue(1);
+    auto* number = find<QSpinBox>("outlinePoint");
+    number->setFocus();
+    number->selectAll();
+    QTest::keyClicks(number, "2");  // as a click leaves it
     find<QToolButton>("outlinePointOff")->click();
     QCOMPARE(scene().outline->points_mm.size(), std::size_t(3));
     QVERIFY(glm::length(scene().outline->points_mm[1] - points[2]) < 1e-6);

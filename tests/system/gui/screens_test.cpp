@@ -7,7 +7,9 @@
 #include <QPushButton>
 #include <QRadioButton>
 #include <QScreen>
+#include <QScrollArea>
 #include <QSignalSpy>
+#include <QTabWidget>
 #include <QtTest>
 #include <cstdlib>
 
@@ -51,6 +53,20 @@ class ScreensTest : public test::WindowTest {
     QVERIFY2(wrong.isEmpty(), qPrintable(name + ": " + wrong.join("; ")));
     auto* purpose = find<QLabel>("purpose");
     QCOMPARE(purpose->visibleRegion().boundingRect(), purpose->rect());
+  }
+
+  // A long form, once from its top and once for each of these of its fields.
+  void showTab(int tab, const QString& name, const QStringList& fields) {
+    find<QTabWidget>("prepareTabs")->setCurrentIndex(tab);
+    take("prepare-" + name);
+    for (const QString& field : fields) {
+      auto* widget = window_->findChild<QWidget*>(field);
+      QVERIFY2(widget, qPrintable(field));
+      for (QWidget* up = widget; up; up = up->parentWidget()) {
+        if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(widget, 0, 200);
+      }
+      take("prepare-" + name + "-" + field);
+    }
   }
 
  private slots:
@@ -110,6 +126,8 @@ class ScreensTest : public test::WindowTest {
     take("prepare-tissues");
     showStructures();
     take("prepare-structures");
+    showTab(PrepareWorkspace::kToolTab, "tools", {"armLandmark", "measureCosts"});
+    showTab(PrepareWorkspace::kExerciseTab, "exercise", {"landmark", "cardGoal", "outlinePoint"});
     window_->show(Place::train);
     take("train-card");
     QTRY_VERIFY_WITH_TIMEOUT(!workstation().isOpening(), kLong_ms);

@@ -9,7 +9,7 @@ namespace {
 
 using test::omni;
 
-Error refusal(const std::string& config, std::vector<std::uint32_t> arms = {0, 1}) {
+Error configRefusal(const std::string& config, std::vector<std::uint32_t> arms = {0, 1}) {
   auto plugin = test::simulatedPlugin();
   if (!plugin) return {};
   auto device = Device::open(plugin, arms, config);
@@ -21,7 +21,7 @@ Error refusal(const std::string& config, std::vector<std::uint32_t> arms = {0, 1
 Error refusalAfter(const std::function<void(Json&)>& edit) {
   Json json = omni();
   edit(json);
-  return refusal(json.dump());
+  return configRefusal(json.dump());
 }
 
 void expectRefused(const Error& error, const std::string& field, const std::string& value) {
@@ -157,30 +157,31 @@ TEST(DeviceConfig, AnotherFormatAndANewerVersionAreRefusedByName) {
 }
 
 TEST(DeviceConfig, TextThatIsNotAJsonObjectIsRefused) {
-  EXPECT_NE(refusal("").what.find("not valid JSON"), std::string::npos);
-  EXPECT_NE(refusal("{\"format\": ").what.find("not valid JSON"), std::string::npos);
-  EXPECT_NE(refusal("[1, 2]").what.find("Expected an object"), std::string::npos);
+  EXPECT_NE(configRefusal("").what.find("not valid JSON"), std::string::npos);
+  EXPECT_NE(configRefusal("{\"format\": ").what.find("not valid JSON"), std::string::npos);
+  EXPECT_NE(configRefusal("[1, 2]").what.find("Expected an object"), std::string::npos);
   // A number beyond a double, and bytes that are not UTF-8.
-  EXPECT_EQ(refusal("{\"version\": 1e999}").code, "BAD_DEVICE_CONFIG");
-  EXPECT_EQ(refusal("{\"\xff\": 1}").code, "BAD_DEVICE_CONFIG");
+  EXPECT_EQ(configRefusal("{\"version\": 1e999}").code, "BAD_DEVICE_CONFIG");
+  EXPECT_EQ(configRefusal("{\"\xff\": 1}").code, "BAD_DEVICE_CONFIG");
 }
 
 TEST(DeviceConfig, NestingWithoutEndIsRefused) {
   const std::size_t depth = 100'000;
   for (const char* before : {"", R"({"arm": )", R"({"format": )"}) {
     const std::string end = *before ? "}" : "";
-    const Error error = refusal(before + std::string(depth, '[') + std::string(depth, ']') + end);
+    const Error error =
+        configRefusal(before + std::string(depth, '[') + std::string(depth, ']') + end);
     EXPECT_EQ(error.code, "BAD_DEVICE_CONFIG") << before;
     EXPECT_NE(error.what.find("nested deeper than 64"), std::string::npos) << error.sentence();
   }
 }
 
 TEST(DeviceConfig, AnArmThatIsNotThereIsNamed) {
-  const Error error = refusal(omni().dump(), {7});
+  const Error error = configRefusal(omni().dump(), {7});
   EXPECT_EQ(error.code, "NO_DEVICE");
   EXPECT_NE(error.what.find("no simulated arm 7"), std::string::npos) << error.sentence();
-  EXPECT_EQ(refusal(omni().dump(), {1, 1}).code, "NO_DEVICE");
-  EXPECT_EQ(refusal(omni().dump(), {}).code, "NO_DEVICE");
+  EXPECT_EQ(configRefusal(omni().dump(), {1, 1}).code, "NO_DEVICE");
+  EXPECT_EQ(configRefusal(omni().dump(), {}).code, "NO_DEVICE");
 }
 
 }  // namespace

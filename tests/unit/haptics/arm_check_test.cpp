@@ -17,12 +17,14 @@ struct FallingArm {
   BoundedController controller;
   double mass_kg, encoder_m;
   std::deque<double> on_the_way;
+  double late_share, before_N = 0.0;
 
-  FallingArm(const ArmDynamics& told, double true_kg, int true_delay)
+  FallingArm(const ArmDynamics& told, double true_kg, double true_delay)
       : controller(told, kT),
         mass_kg(true_kg),
         encoder_m(told.encoder_step_m),
-        on_the_way(std::size_t(true_delay), 0.0) {}
+        on_the_way(std::size_t(true_delay), 0.0),
+        late_share(true_delay - double(on_the_way.size())) {}
 
   bool notAsStated(int falls) {
     double sent_N = 0.0, last_m = 0.004;
@@ -42,9 +44,11 @@ struct FallingArm {
         sent_N = controller.bound(in).x;
         on_the_way.push_back(sent_N);
         for (int i = 0; i < 20; ++i) {
-          v += kT / 20 * (on_the_way.front() - 0.05 * v) / mass_kg;
+          const double acting_N = i < 20 * late_share ? before_N : on_the_way.front();
+          v += kT / 20 * (acting_N - 0.05 * v) / mass_kg;
           x += kT / 20 * v;
         }
+        before_N = on_the_way.front();
         on_the_way.pop_front();
       }
     }
@@ -52,13 +56,13 @@ struct FallingArm {
   }
 };
 
-ArmDynamics told(double mass_kg, int delay, double encoder_m = 0.0) {
+ArmDynamics told(double mass_kg, double delay, double encoder_m = 0.0) {
   return {mass_kg, encoder_m, ArmDynamics{}.peak_force_N, delay * kT};
 }
 
 TEST(ArmCheck, IsSilentOnAnArmThatIsAsStated) {
   for (double mass : {0.02, 0.045, 0.2}) {
-    for (int delay : {0, 1, 3}) {
+    for (double delay : {0.0, 0.4, 1.0, 1.7, 3.0}) {
       for (double step : {0.0, 0.055e-3, 0.2e-3}) {
         EXPECT_FALSE(FallingArm(told(mass, delay, step), mass, delay).notAsStated(5))
             << mass << " kg, delay " << delay << ", encoder " << step;
@@ -76,6 +80,12 @@ TEST(ArmCheck, FindsAnArmThatIsLighterThanStatedInItsFirstContacts) {
 TEST(ArmCheck, FindsASampleMoreOrLessDelayThanStated) {
   EXPECT_TRUE(FallingArm(told(0.045, 0), 0.045, 1).notAsStated(3)) << "one more";
   EXPECT_TRUE(FallingArm(told(0.045, 2), 0.045, 1).notAsStated(3)) << "one less";
+  EXPECT_TRUE(FallingArm(told(0.045, 1.7), 0.045, 2.7).notAsStated(3)) << "of no whole number";
+}
+
+TEST(ArmCheck, GoesByNoDelayBeyondThoseThatAreKept) {
+  const ArmDynamics late = told(0.045, 100.0);
+  EXPECT_EQ(ArmCheck(late, ArmEstimator(late, kT), kT).delaySamples(), double(kMaxDelayTicks));
 }
 
 TEST(ArmCheck, KeepsWhatItFoundThroughAnUndo) {

@@ -22,7 +22,7 @@ Volume belly(const Vec3& origin_mm = Vec3(0.0), std::int16_t corner_HU = 0) {
   return volume;
 }
 
-LabelMap liverOf(const Volume& volume) {
+LabelMap importedLiver(const Volume& volume) {
   LabelMap map{volume.geometry, std::vector<std::uint8_t>(volume.hu.size()), {}};
   for (std::size_t v = 0; v < map.labels.size(); ++v) map.labels[v] = volume.hu[v] == 50 ? 4 : 0;
   map.structures = {{4, "liver", Vec3(0.5, 0.25, 0.25)}};
@@ -36,7 +36,7 @@ struct Written {
 };
 
 Written write(const Volume& volume, const std::filesystem::path& folder) {
-  EXPECT_TRUE(writeStructuresAsDicom(volume, liverOf(volume), folder).ok());
+  EXPECT_TRUE(writeStructuresAsDicom(volume, importedLiver(volume), folder).ok());
   auto scanned = CtFolder::scan(folder / "CT", Progress());
   auto read = scanned->read(*scanned->bestSeries(), {}, Progress());
   EXPECT_TRUE(read.ok());
@@ -59,7 +59,7 @@ TEST(StructureImporter, ASegmentationOfThisCtIsTakenWithoutAWord) {
   EXPECT_EQ(fit->structures[0].voxels, 600u);
   EXPECT_TRUE(fit->choices.empty());
   for (const Finding& f : fit->findings) EXPECT_EQ(f.code, "PART_OF_CT") << f.text;
-  const LabelMap liver = liverOf(own.volume);
+  const LabelMap liver = importedLiver(own.volume);
   for (std::size_t v = 0; v < liver.labels.size(); ++v) {
     ASSERT_EQ(fit->map.labels[v] != 0, liver.labels[v] != 0) << v;
   }

@@ -261,7 +261,7 @@ TEST(Scene, IsWrittenWithEveryNumberThatItIsReadWith) {
   }
 }
 
-TEST(Scene, OfAnOlderRecordingHasNoDelay) {
+TEST(Scene, OfAnOlderRecordingHasItsDelayInPeriodsAndNoneHasMoreThanSixteen) {
   Json json = shipped();
   json["arms"][0]["dynamics"] = {
       {"apparent_mass_kg", 0.1}, {"encoder_step_m", 1e-5}, {"delay_ticks", 0}};
@@ -269,6 +269,10 @@ TEST(Scene, OfAnOlderRecordingHasNoDelay) {
   ASSERT_TRUE(scene.ok()) << scene.error().sentence();
   EXPECT_EQ(scene->arms[0].dynamics->delay_s, 0.0);
   json["arms"][0]["dynamics"]["delay_ticks"] = 2;
+  json["rate_hz"] = 2000.0;
+  EXPECT_EQ(parseScene(json, shippedFile())->arms[0].dynamics->delay_s, 0.001);
+  json["arms"][0]["dynamics"].erase("delay_ticks");
+  json["arms"][0]["dynamics"]["delay_s"] = 0.0085;  // 17 periods
   EXPECT_FALSE(parseScene(json, shippedFile()).ok());
 }
 

@@ -7,7 +7,7 @@
 namespace trephine {
 namespace {
 
-Tissue tissue(const char* id, double opacity) {
+Tissue clearTissue(const char* id, double opacity) {
   Tissue t;
   t.id = id;
   t.opacity = opacity;
@@ -18,7 +18,8 @@ double opacityOf(const TissueSet& set, const char* id) {
   return set.find(id)->opacity;
 }
 
-const TissueSet kSet{"", {tissue("fat", 0.0), tissue("liver", 0.25), tissue("bone", 0.9)}};
+const TissueSet kSet{
+    "", {clearTissue("fat", 0.0), clearTissue("liver", 0.25), clearTissue("bone", 0.9)}};
 
 TEST(TissueLook, OfATissueThatIsNotNamedIsThatOfItsSet) {
   EXPECT_EQ(lookOf(kSet.tissues[0], {}), TissueLook::hidden);
@@ -62,8 +63,8 @@ TEST(ViewPresets, AreOfferedWhereTheShippedSetsHaveTheirTissue) {
   EXPECT_EQ(
       offered(*readTissueSet(folder / "abdomen.json")),
       (Offered{ViewPreset::bone, ViewPreset::skin, ViewPreset::soft_tissue, ViewPreset::liver}));
-  EXPECT_EQ(offered({"", {tissue("steel", 1.0)}}), Offered{ViewPreset::soft_tissue});
-  EXPECT_EQ(offered({"", {tissue("steel", 0.0)}}), Offered{});
+  EXPECT_EQ(offered({"", {clearTissue("steel", 1.0)}}), Offered{ViewPreset::soft_tissue});
+  EXPECT_EQ(offered({"", {clearTissue("steel", 0.0)}}), Offered{});
 }
 
 TEST(ViewPresets, NameEveryTissueSoThatNoneIsLeftAsTheLastPresetHadIt) {

@@ -16,7 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Tissue tissue(const std::string& id, int hu_min, int hu_max) {
+Tissue plainTissue(const std::string& id, int hu_min, int hu_max) {
   Tissue t;
   t.id = id;
   t.name = "The " + id;
@@ -34,7 +34,8 @@ Tissue tissue(const std::string& id, int hu_min, int hu_max) {
 
 TissueSet head() {
   return {"head",
-          {tissue("skin", -200, 100), tissue("brain", 101, 299), tissue("bone", 300, 3071)}};
+          {plainTissue("skin", -200, 100), plainTissue("brain", 101, 299),
+           plainTissue("bone", 300, 3071)}};
 }
 
 // The error of a valid set after `change`, which must make it invalid.
@@ -60,9 +61,9 @@ TEST(TissueSet, HasAtLeastOneTissueAndAtMostSixteen) {
   EXPECT_EQ(none.where, "t.json: tissues");
   EXPECT_PART(none.what, "this one has 0");
   TissueSet set{"many", {}};
-  for (int i = 0; i < 16; ++i) set.tissues.push_back(tissue("t" + std::to_string(i), i, i));
+  for (int i = 0; i < 16; ++i) set.tissues.push_back(plainTissue("t" + std::to_string(i), i, i));
   EXPECT_TRUE(validate(set, "t.json").ok());
-  set.tissues.push_back(tissue("t16", 16, 16));
+  set.tissues.push_back(plainTissue("t16", 16, 16));
   ASSERT_FALSE(validate(set, "t.json").ok());
   EXPECT_PART(validate(set, "t.json").error().what, "this one has 17");
 }
@@ -78,14 +79,14 @@ TEST(TissueSet, HasItsLowerHuFirst) {
   const Error error = errorAfter([](TissueSet& s) { s.tissues[2].hu_min = 4000; });
   EXPECT_EQ(error.where, "t.json: tissues[2].hu");
   EXPECT_PART(error.what, "4000..3071");
-  TissueSet one_value{"x", {tissue("a", 7, 7)}};
+  TissueSet one_value{"x", {plainTissue("a", 7, 7)}};
   EXPECT_TRUE(validate(one_value, "t.json").ok());
 }
 
 TEST(TissueSet, KeepsItsHuWithinInt16) {
   EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[2].hu_max = 32768; }).what, "300..32768");
   EXPECT_PART(errorAfter([](TissueSet& s) { s.tissues[0].hu_min = -32769; }).what, "-32769..100");
-  TissueSet whole{"x", {tissue("a", -32768, 32767)}};
+  TissueSet whole{"x", {plainTissue("a", -32768, 32767)}};
   EXPECT_TRUE(validate(whole, "t.json").ok());
 }
 
@@ -95,12 +96,12 @@ TEST(TissueSet, HasNoTwoRangesThatOverlap) {
   EXPECT_PART(error.what, "101..300 of 'brain'");
   EXPECT_PART(error.what, "300..3071 of 'bone'");
   EXPECT_PART(error.next, "labels");
-  const TissueSet falling{"x", {tissue("bone", 300, 3071), tissue("brain", 0, 300)}};
+  const TissueSet falling{"x", {plainTissue("bone", 300, 3071), plainTissue("brain", 0, 300)}};
   EXPECT_FALSE(validate(falling, "t.json").ok()) << "the order in the list does not matter";
 }
 
 TEST(TissueSet, MayOverlapWhereTheLabelsDifferOrOneHasNone) {
-  TissueSet set{"x", {tissue("liver", 0, 200), tissue("kidney", 100, 300)}};
+  TissueSet set{"x", {plainTissue("liver", 0, 200), plainTissue("kidney", 100, 300)}};
   EXPECT_FALSE(validate(set, "t.json").ok());
   set.tissues[0].label = 5;
   EXPECT_TRUE(validate(set, "t.json").ok()) << "the liver holds label 5, the other the rest";
@@ -450,7 +451,7 @@ TEST(Classify, FindsNoTissueThatIsBoundToALabel) {
 
 TEST(Classify, PutsATissueOfTheLabelBeforeOneOfAnyVoxelInWhateverOrder) {
   for (bool labelled_first : {true, false}) {
-    TissueSet set{"x", {tissue("soft", -100, 300), tissue("liver", -1000, 1000)}};
+    TissueSet set{"x", {plainTissue("soft", -100, 300), plainTissue("liver", -1000, 1000)}};
     set.tissues[1].label = 5;
     if (labelled_first) std::swap(set.tissues[0], set.tissues[1]);
     const int liver = labelled_first ? 0 : 1, soft = 1 - liver;
@@ -464,7 +465,7 @@ TEST(Classify, PutsATissueOfTheLabelBeforeOneOfAnyVoxelInWhateverOrder) {
 }
 
 TEST(Classify, HoldsWhatRemovalLeavesToBeFreeSpace) {
-  TissueSet set{"x", {tissue("all", -2000, 3000)}};
+  TissueSet set{"x", {plainTissue("all", -2000, 3000)}};
   EXPECT_EQ(classify(tissueTable(set), kRemovedHu), -1);
   EXPECT_EQ(classify(tissueTable(set), kRemovedHu + 1), 0);
   EXPECT_EQ(classify(tissueTable(set), kRemovedHu - 1), 0);
@@ -488,7 +489,7 @@ TEST(LabelRows, GivesEachLabelThatIsNamedARowAndAllOthersTheFirst) {
 TEST(TissueTable, TakesNoMoreThanItHoldsOfASetThatIsTooLong) {
   TissueSet set{"many", {}};
   for (int i = 0; i < kMaxTissues + 4; ++i) {
-    set.tissues.push_back(tissue("t" + std::to_string(i), i, i));
+    set.tissues.push_back(plainTissue("t" + std::to_string(i), i, i));
   }
   EXPECT_EQ(tissueTable(set).count, kMaxTissues);
 }

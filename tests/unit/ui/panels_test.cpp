@@ -160,6 +160,24 @@ TEST_F(TissuePanelTest, WhereACaseLacksItsStructureItIsTheOutsideOfAnother) {
   EXPECT_FALSE(changed_.find("bone")->shell);
 }
 
+TEST_F(TissuePanelTest, ASourceThatIsBeingTypedStaysWithItsTissue) {
+  QLineEdit& source = find<QLineEdit>(panel_, "huSource");
+  const std::string of_soft = twoTissues().find("soft")->hu_source;
+  source.setText("an atlas");
+  source.setModified(true);
+  find<QToolButton>(panel_, "addTissue").click();
+  EXPECT_EQ(changed_.find("bone")->hu_source, "an atlas");
+  panel_.setTissues(twoTissues());
+  panel_.select("bone");
+  source.setText("another atlas");
+  source.setModified(true);
+  find<QToolButton>(panel_, "removeTissue").click();
+  ASSERT_EQ(changed_.tissues.size(), 1u);
+  emit source.editingFinished();
+  EXPECT_EQ(panel_.tissues().find("soft")->hu_source, of_soft);
+  EXPECT_EQ(source.text().toStdString(), of_soft);
+}
+
 TEST_F(TissuePanelTest, TheOpacitySliderReachesClearAndSolid) {
   QSlider& slider = find<QSlider>(panel_, "opacity");
   slider.setValue(slider.maximum());

@@ -22,7 +22,7 @@ TissueSet bone() {
 }
 
 // Each voxel a HU of its own.
-Volume numbered(const Mat3& direction, const Index3& size = {40, 30, 12}) {
+Volume numberedSlices(const Mat3& direction, const Index3& size = {40, 30, 12}) {
   Volume volume;
   GridGeometry& g = volume.geometry;
   g.size = size;
@@ -93,7 +93,7 @@ TEST_F(SliceViewTest, SaysTheStoredHuUnderThePointerInAnyGrid) {
   const Mat3 oblique(glm::rotate(Mat4(1.0), 0.7, glm::normalize(Vec3(1, 2, -0.5))));
   for (const Mat3& direction : {Mat3(1.0), Mat3(-1, 0, 0, 0, -1, 0, 0, 0, 1), oblique}) {
     for (SliceAxis axis : kSliceAxes) {
-      show(numbered(direction), axis);
+      show(numberedSlices(direction), axis);
       const QRectF box = view_->target();
       int read = 0;
       for (int n = 1; n < 20; ++n) {
@@ -116,7 +116,7 @@ TEST_F(SliceViewTest, SaysTheStoredHuUnderThePointerInAnyGrid) {
 }
 
 TEST_F(SliceViewTest, SaysTheLabelToo) {
-  const Volume volume = numbered(Mat3(1.0));
+  const Volume volume = numberedSlices(Mat3(1.0));
   LabelMap map{volume.geometry, std::vector<std::uint8_t>(volume.hu.size(), 4)};
   show(volume, SliceAxis::axial, std::make_shared<const LabelMap>(std::move(map)));
   hover(at(20, 10));
@@ -124,7 +124,7 @@ TEST_F(SliceViewTest, SaysTheLabelToo) {
 }
 
 TEST_F(SliceViewTest, ShowsACutAtOnceAndIsDrawnOnlyWhereOneTouchesIt) {
-  Volume volume = numbered(Mat3(1.0));
+  Volume volume = numberedSlices(Mat3(1.0));
   volume.hu.assign(volume.hu.size(), 1400);
   Grid grid(volume);
   show(volume);
@@ -147,8 +147,8 @@ TEST_F(SliceViewTest, ShowsACutAtOnceAndIsDrawnOnlyWhereOneTouchesIt) {
   picture();
   EXPECT_EQ(view_->drawn(), drawn + 1) << "a pointer that moves draws no slice";
 
-  show(numbered(Mat3(1.0), {40, 30, 40}));
-  Grid tall(numbered(Mat3(1.0), {40, 30, 40}));
+  show(numberedSlices(Mat3(1.0), {40, 30, 40}));
+  Grid tall(numberedSlices(Mat3(1.0), {40, 30, 40}));
   picture();
   const int before = view_->drawn();
   tall.takeWriter()->store(3, 3, 39, kAirHu);  // far above
@@ -159,7 +159,7 @@ TEST_F(SliceViewTest, ShowsACutAtOnceAndIsDrawnOnlyWhereOneTouchesIt) {
 }
 
 TEST_F(SliceViewTest, GoesThroughItsSlicesByWheelAndKeysAndStopsAtTheirEnds) {
-  show(numbered(Mat3(1.0), {40, 30, 60}));
+  show(numberedSlices(Mat3(1.0), {40, 30, 60}));
   EXPECT_EQ(view_->slice(), 30);
   wheel(-120);
   EXPECT_EQ(view_->slice(), 31);
@@ -182,7 +182,7 @@ TEST_F(SliceViewTest, GoesThroughItsSlicesByWheelAndKeysAndStopsAtTheirEnds) {
 }
 
 TEST_F(SliceViewTest, WindowsByKeysAndByDragging) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   for (std::size_t i = 0; i < kWindowPresets.size(); ++i) {
     press(Qt::Key(Qt::Key_1 + int(i)));
     EXPECT_EQ(colours_.window(), kWindowPresets[i].window);
@@ -204,7 +204,7 @@ TEST_F(SliceViewTest, WindowsByKeysAndByDragging) {
 }
 
 TEST_F(SliceViewTest, ZoomsAroundThePointerAndShifts) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   const QPointF centre(200, 200);
   const QPointF place = view_->toSlice(centre);
   const double scale = view_->pixelsPerMm();
@@ -224,7 +224,7 @@ TEST_F(SliceViewTest, ZoomsAroundThePointerAndShifts) {
 }
 
 TEST_F(SliceViewTest, MeasuresALengthAndAnAngleAndForgetsThemAgain) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   press(Qt::Key_M);
   drag(at(5, 5), at(25, 20));
   ASSERT_EQ(view_->measures().size(), 1u);
@@ -259,7 +259,7 @@ TEST_F(SliceViewTest, MeasuresALengthAndAnAngleAndForgetsThemAgain) {
 }
 
 TEST_F(SliceViewTest, APointIsChosenWithShiftAndStaysInTheSlice) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   Vec3 chosen(0.0);
   QObject::connect(view_.get(), &SliceView::pointChosen, view_.get(),
                    [&](const Vec3& point) { chosen = point; });
@@ -271,7 +271,7 @@ TEST_F(SliceViewTest, APointIsChosenWithShiftAndStaysInTheSlice) {
 }
 
 TEST_F(SliceViewTest, ALineOfAnotherViewIsDraggedAndThePointerSaysSo) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   const HuWindow window = colours_.window();
   const auto voxel = [&] { return toVoxel(grid(), view_->point_mm()); };
   const auto shape = [&](const QPointF& place) {
@@ -315,7 +315,7 @@ TEST_F(SliceViewTest, ALineOfAnotherViewIsDraggedAndThePointerSaysSo) {
 }
 
 TEST_F(SliceViewTest, MarksAToolBoldlyInItsSliceAndFaintlyBeyond) {
-  Volume dark = numbered(Mat3(1.0));
+  Volume dark = numberedSlices(Mat3(1.0));
   dark.hu.assign(dark.hu.size(), kAirHu);
   show(dark);
   ToolView tool;
@@ -345,7 +345,7 @@ TEST_F(SliceViewTest, MarksAToolBoldlyInItsSliceAndFaintlyBeyond) {
 
 // The letter as it is drawn where nothing is under the pointer.
 TEST_F(SliceViewTest, TheLetterBelowStaysReadableHoweverLongTheNameOfATissueIs) {
-  show(numbered(Mat3(1.0)));
+  show(numberedSlices(Mat3(1.0)));
   TissueSet set = bone();
   set.tissues[0].name = "Bone of the kind that has a very long name";
   set.tissues[0].hu_min = -3000;
@@ -364,7 +364,7 @@ TEST_F(SliceViewTest, TheLetterBelowStaysReadableHoweverLongTheNameOfATissueIs) 
 }
 
 TEST_F(SliceViewTest, TheScaleBarIsAsLongAsItSaysToThePixel) {
-  Volume dark = numbered(Mat3(1.0));
+  Volume dark = numberedSlices(Mat3(1.0));
   dark.hu.assign(dark.hu.size(), kAirHu);
   show(dark);
   for (int width = 300; width < 640; width += 17) {
@@ -387,7 +387,7 @@ TEST_F(SliceViewTest, TheScaleBarIsAsLongAsItSaysToThePixel) {
 }
 
 TEST_F(SliceViewTest, OfOneSliceOfEqualHuOrOfNoSizeIsAPictureAndNoCrash) {
-  Volume flat = numbered(Mat3(1.0), {40, 30, 1});
+  Volume flat = numberedSlices(Mat3(1.0), {40, 30, 1});
   flat.hu.assign(flat.hu.size(), 500);
   for (SliceAxis axis : kSliceAxes) {
     show(flat, axis);

@@ -62,6 +62,17 @@ TEST_F(StateNoticeTest, NothingIsSaidWhileTheArmsHaveTheirForce) {
   EXPECT_FALSE(notice_.forceOnAction()->isEnabled());
 }
 
+TEST_F(StateNoticeTest, LiesBelowTheToolsOfItsViews) {
+  QWidget bar(&view_);
+  bar.setGeometry(0, 0, 700, 34);
+  StateNotice below(&view_, &bar);
+  state_.paused = true;
+  below.showState(state_, scene_, 0.0);
+  EXPECT_GE(below.geometry().top(), 34);
+  show();
+  EXPECT_LT(notice_.geometry().top(), 34) << "without tools at the top";
+}
+
 TEST_F(StateNoticeTest, APauseIsSaidInLargeWordsWithTheWayOut) {
   state_.paused = true;
   show();
