@@ -209,7 +209,7 @@ class SkinMask {
   std::vector<std::uint8_t> mask_;
 };
 
-Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
+Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress& progress) {
   const Error cancelled{"CANCELLED", "Finding the skin was cancelled", "", ""};
   const auto on = [&](double fraction, const char* step) {
     progress.at(fraction, step);
@@ -239,7 +239,7 @@ Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& p
 
 }  // namespace
 
-Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
+Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress& progress) {
   if (!(thickness_mm >= 0.1 && thickness_mm <= 20.0)) {
     return Error{"BAD_ARGUMENT", "The skin is from 0.1 to 20 mm thick", "thickness", ""};
   }
@@ -248,7 +248,7 @@ Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& p
     return enough.error();
   }
   try {
-    return skinOf(volume, thickness_mm, progress);
+    return madeSkin(volume, thickness_mm, progress);
   } catch (const std::bad_alloc&) {
     return outOfMemory("for the skin", "");
   }
