@@ -239,7 +239,7 @@ Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress&
 
 }  // namespace
 
-Result<Skin> madeSkin(const Volume& volume, double thickness_mm, const Progress& progress) {
+Result<Skin> skinOf(const Volume& volume, double thickness_mm, const Progress& progress) {
   if (!(thickness_mm >= 0.1 && thickness_mm <= 20.0)) {
     return Error{"BAD_ARGUMENT", "The skin is from 0.1 to 20 mm thick", "thickness", ""};
   }
