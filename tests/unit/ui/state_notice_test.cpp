@@ -65,6 +65,7 @@ TEST_F(StateNoticeTest, NothingIsSaidWhileTheArmsHaveTheirForce) {
 TEST_F(StateNoticeTest, LiesBelowTheToolsOfItsViews) {
   QWidget bar(&view_);
   bar.setGeometry(0, 0, 700, 34);
+  bar.show();
   StateNotice below(&view_, &bar);
   state_.paused = true;
   below.showState(state_, scene_, 0.0);
