@@ -164,7 +164,7 @@ void OutlineForm::show(const Scene& scene, const std::vector<PlacedLandmark>& la
   const QString with = here_ && here_->frame ? toQt(here_->frame->landmark) : QString();
   if (landmark_->findData(with) < 0) landmark_->addItem(with, with);  // not in this case
   landmark_->setCurrentIndex(landmark_->findData(with));
-  for (QWidget* of : std::initializer_list<QWidget*>{closed_, back_, clear_, point_off_}) {
+  for (QWidget* of : std::initializer_list<QWidget*>{closed_, back_, clear_}) {
     of->setEnabled(here_.has_value());
   }
   // What lies in another patient cannot be placed in this one.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "haptics/unseen_energy.h"
 #include "lab/common/held_arm.h"
@@ -186,7 +185,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
   std::vector<double> positions;
   positions.reserve(ticks);
 
-  double x = kCellStart_m, v = kCellSpeed_m_s, last_N = 0.0, before_N = 0.0;
+  double x = kCellStart_m, v = kCellSpeed_m_s, last_N = 0.0;
   double put_in_J = 0.0, error2 = 0.0, ideal2 = 0.0, contact2 = 0.0;
   std::size_t inside = 0;
   CellResult result;
@@ -198,8 +197,7 @@ CellResult runCell(const StabilityCell& cell, CellDriver driver, double tissue_s
       std::swap(next_N, pending[oldest]);
       oldest = (oldest + 1) % pending.size();
     }
-    const double earlier_N = std::exchange(before_N, next_N);
-    double held_N = late_parts > 0 ? earlier_N : next_N;
+    double held_N = last_N;
     if (x < 0.0) {
       contact2 += next_N * next_N;
       ++inside;
