@@ -12,6 +12,9 @@ double CapabilityNumber::value(const TrephineCapabilities& of, std::size_t index
 }
 
 std::string impossibleCapability(const TrephineCapabilities& capabilities) {
+  if (capabilities.input_dof != 3 && capabilities.input_dof != 6) {
+    return "'input_dof' of " + std::to_string(capabilities.input_dof) + ", which must be 3 or 6";
+  }
   for (const CapabilityNumber& number : kCapabilityNumbers) {
     for (std::size_t i = 0; i < number.count; ++i) {
       const double value = number.value(capabilities, i);

@@ -27,19 +27,17 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
     {{"peak_force_N", kPeakForce_N, Given::always,
       "the clamp: no more is sent, whatever the scene says"},
      offsetof(TrephineCapabilities, peak_force_N)},
-    {{"continuous_force_N", kPeakForce_N, Given::always, "reported; nothing here reads it"},
+    {{"continuous_force_N", kPeakForce_N, Given::always,
+      "what is sent for good: the limit falls to it as the motors warm"},
      offsetof(TrephineCapabilities, continuous_force_N)},
+    {{"thermal_s", kThermal_s, Given::always,
+      "the time constant with which they warm; 0: the arm looks after itself"},
+     offsetof(TrephineCapabilities, thermal_s)},
     {{"apparent_mass_kg", kApparentMass_kg, Given::always, "what `bounded` goes by"},
      offsetof(TrephineCapabilities, apparent_mass_kg)},
     {{"rate_hz", kDeviceRate_hz, Given::always,
-      "the highest rate of its samples; a scene that asks for more is refused"},
+      "of its samples; a scene that asks for more is refused"},
      offsetof(TrephineCapabilities, rate_hz)},
-    {{"max_stiffness_N_per_m", kMaxStiffness_N_per_m, Given::always,
-      "the maker's; reported; nothing here reads it, below"},
-     offsetof(TrephineCapabilities, max_stiffness_N_per_m)},
-    {{"max_damping_Ns_per_m", kMaxDamping_Ns_per_m, Given::always,
-      "the maker's; reported; nothing here reads it, below"},
-     offsetof(TrephineCapabilities, max_damping_Ns_per_m)},
     {{"encoder_step_m", kEncoderStep_m, Given::always,
       "what `bounded` goes by; 0: finer than it sees"},
      offsetof(TrephineCapabilities, encoder_step_m)},
@@ -48,6 +46,7 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
      offsetof(TrephineCapabilities, latency_s)},
 };
 
+// `input_dof` beside these: 3 or 6.
 // Empty when an arm can have these capabilities, else which of them is impossible and why.
 std::string impossibleCapability(const TrephineCapabilities& capabilities);
 

@@ -10,8 +10,7 @@ constexpr Range kApparentMass_kg{1e-4, 100, "kg"};
 constexpr Range kEncoderStep_m{0, 0.01, "m"};
 constexpr Range kWorkspace_m{1e-3, 10, "m"};  // full extent along an axis
 constexpr Range kPeakForce_N{1e-3, 1000, "N"};
-constexpr Range kMaxStiffness_N_per_m{1e-3, 1e9, "N/m"};
-constexpr Range kMaxDamping_Ns_per_m{0, 1e9, "N s/m"};
+constexpr Range kThermal_s{0, 3600, "s"};
 constexpr Range kDeviceRate_hz{1, 1e6, "Hz"};
 constexpr Range kLatency_s{0, 0.1, "s"};
 // Of an arm's pose, along an axis from its origin: beyond any arm, and near enough that all that

@@ -158,10 +158,6 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
                                              const std::string& config) {
   const TrephineDeviceApi& api = plugin->api();
   const std::string where = std::string("device '") + api.name + "'";
-  if (api.clock != TREPHINE_CLOCK_HOST) {
-    return badPlugin("The plugin brings its own clock, and this program paces its devices itself",
-                     where);
-  }
   {
     std::lock_guard lock(leftBehind().mutex);
     for (std::uint32_t arm : arms) {
@@ -214,7 +210,7 @@ Status Device::start() {
   for (std::uint32_t arm = 0; started && arm < armCount(); ++arm) {
     started = api.calibrate(handle_, arm) == TREPHINE_OK;
   }
-  started = started && api.start(handle_, nullptr, nullptr) == TREPHINE_OK;
+  started = started && api.start(handle_) == TREPHINE_OK;
   if (!started) {
     return Error{"DEVICE_NOT_STARTED", lastSentence(api, handle_),
                  std::string("device '") + api.name + "'", "Check the arm and start again"};
@@ -258,9 +254,12 @@ bool Device::read(double dt_s, TrephineArmState* states) {
 void Device::write(const TrephineArmCommand* commands) {
   for (std::size_t i = 0; i < armCount(); ++i) {
     std::copy_n(commands[i].force_N, 3, commands_[i].force_N);
-    std::copy_n(commands[i].torque_Nm, 3, commands_[i].torque_Nm);
   }
   refused_ = plugin_->api().write(handle_, commands_.data()) != TREPHINE_OK;
+}
+
+bool Device::wait(double timeout_s) {
+  return plugin_->api().wait(handle_, timeout_s) == TREPHINE_OK;
 }
 
 void Device::setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,

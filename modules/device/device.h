@@ -39,8 +39,7 @@ class DevicePlugin {
 class Device {
  public:
   // `config` is JSON text for the plugin. Errors: NO_DEVICE and BAD_DEVICE_CONFIG with the plugin's
-  // own sentence, DEVICE_STUCK after leaveBehind(), BAD_PLUGIN for capabilities that no arm has and for a plugin that brings its own
-  // clock: the host's loop paces every device.
+  // own sentence, DEVICE_STUCK after leaveBehind(), BAD_PLUGIN for capabilities that no arm has.
   static Result<std::unique_ptr<Device>> open(std::shared_ptr<const DevicePlugin> plugin,
                                               const std::vector<std::uint32_t>& arms,
                                               const std::string& config);
@@ -51,6 +50,8 @@ class Device {
   std::size_t armCount() const { return capabilities_.size(); }
   const TrephineCapabilities& capabilities(std::size_t arm) const { return capabilities_[arm]; }
   bool takesTargets() const { return plugin_->api().set_target != nullptr; }
+  // Its samples come by a clock of its own, at their rate: wait() waits for the next.
+  bool hasClock() const { return plugin_->api().wait != nullptr; }
 
   // Calibrates and starts every arm. Error: DEVICE_NOT_STARTED with the plugin's own sentence.
   Status start();
@@ -67,6 +68,9 @@ class Device {
   // states are then the last good ones, marked TREPHINE_ARM_LOST.
   bool read(double dt_s, TrephineArmState* states);
   void write(const TrephineArmCommand* commands);
+  // Until there is a sample that read() has not given yet; false when none came in time. Only where
+  // hasClock().
+  bool wait(double timeout_s);
   // Haptic thread; nothing happens on arms that are not simulated. Position in device metres.
   void setTarget(std::size_t arm, const Pose& pose_m, double stiffness_N_per_m,
                  double damping_Ns_per_m);

@@ -15,6 +15,10 @@ struct ArmDynamics {
   // From a sample to the moment in which the force that answers it begins to act and to be held
   // for a period: 0 for an arm that takes its force at once.
   double delay_s = 0.0;
+  // What it can be sent for good, and with which time constant its motors warm; 0 s: it looks after
+  // itself (device_rules.h).
+  double continuous_force_N = 3.3;
+  double thermal_s = 0.0;
 };
 
 constexpr int kMaxDelayTicks = 16;  // periods, at any rate
@@ -31,6 +35,11 @@ inline constexpr NumberOf<ArmDynamics> kArmDynamicsNumbers[] = {
      &ArmDynamics::encoder_step_m},
     {{"delay_s", kDelay_s, Given::may_be, "from a sample to the force that answers it"},
      &ArmDynamics::delay_s},
+    {{"continuous_force_N", kPeakForce_N, Given::may_be, "what it can be sent for good"},
+     &ArmDynamics::continuous_force_N},
+    {{"thermal_s", kThermal_s, Given::may_be,
+      "the time constant with which its motors warm; 0: it looks after itself"},
+     &ArmDynamics::thermal_s},
 };
 inline constexpr NumberRow kArmPeakForce{"peak_force_N", kPeakForce_N, Given::always,
                                          "no more is sent"};

@@ -193,7 +193,10 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       forgetForces(false);
       break;
     case CommandKind::clear_faults:
-      for (Arm& arm : arms_) arm.faults = 0;
+      for (Arm& arm : arms_) {
+        arm.faults = 0;
+        arm.errors.clear();
+      }
       lateness_.clear();
       for (Arm& arm : arms_) forgetLaws(arm);
       forgetForces(false);

@@ -9,6 +9,7 @@
 #include "haptics/contact.h"
 #include "haptics/contact_sphere.h"
 #include "haptics/controllers.h"
+#include "haptics/device_rules.h"
 #include "haptics/hand_work.h"
 #include "haptics/haptic_parameters.h"
 #include "haptics/haptic_types.h"
@@ -91,6 +92,8 @@ class HapticCore {
     std::vector<Controller> controllers;  // fresh ones, by kind: made before the first tick
     Controller controller;
     OutputLimiter limiter;
+    ErrorRule errors;
+    WarmthRule warmth;
     std::vector<RemovedVoxel> removed;                   // of this tick
     Index3 removed_low{0, 0, 0}, removed_high{0, 0, 0};  // their bounds
     // Their linear indices, sorted; filled only where another arm may have removed one of them too.
@@ -137,6 +140,7 @@ class HapticCore {
   struct ArmTick;
   void moveArm(std::size_t index, const TickInput& input, ArmRecord& out);
   bool sample(ArmTick& now);
+  void followDevice(ArmTick& now);
   void moveProxy(ArmTick& now);
   void touch(ArmTick& now);
   void demand(ArmTick& now);

@@ -78,6 +78,22 @@ void HapticCore::moveArm(std::size_t index, const TickInput& input, ArmRecord& o
   record(now);
 }
 
+// What the device says of the arm itself.
+void HapticCore::followDevice(ArmTick& now) {
+  Arm& arm = now.arm;
+  const std::uint32_t flags = now.out.flags;
+  if (flags & TREPHINE_ARM_LOST) latch(now.index, kFaultDeviceLost, now.input.tick);
+  const bool was_away = arm.errors.away();
+  arm.errors.tick(flags & TREPHINE_ARM_ERROR, parameters_.period_s);
+  if (arm.errors.kept()) latch(now.index, kFaultDeviceOften, now.input.tick);
+  if (arm.errors.away()) {
+    latch(now.index, kFaultDevice, now.input.tick);
+  } else if (was_away) {
+    arm.faults &= ~std::uint32_t(kFaultDevice);
+    arm.limiter.rampIn();
+  }
+}
+
 // What the device says, and how the arm moved since the tick before. False where it is no pose:
 // then the arm has no force and nothing more is known of it.
 bool HapticCore::sample(ArmTick& now) {
@@ -91,7 +107,7 @@ bool HapticCore::sample(ArmTick& now) {
   out.buttons = sample.buttons;
   out.flags = sample.flags;
   arm.cuts = false;
-  if (sample.flags & TREPHINE_ARM_LOST) latch(now.index, kFaultDeviceLost, now.input.tick);
+  followDevice(now);
   if (!isPose(sample)) {
     ++nonfinite_;
     latch(now.index, kFaultNonFinite, now.input.tick);
@@ -212,7 +228,10 @@ void HapticCore::checkFinite(ArmTick& now) {
 void HapticCore::send(ArmTick& now) {
   Arm& arm = now.arm;
   ArmRecord& out = now.out;
-  out.clamped_N = clampForce(out.bounded_N, now.parameters.max_force_N);
+  const double limit_N = arm.warmth.limit_N(
+      now.parameters.max_force_N, out.flags & TREPHINE_ARM_WARM, glm::length(arm.limiter.sent_N()),
+      now.parameters.dynamics, parameters_.period_s);
+  out.clamped_N = clampForce(out.bounded_N, limit_N);
   const bool open = !paused_ && arm.faults == 0;
   // While voxels come back in slices, tissue may yet fill in around the tool.
   if (arm.clutched) now.in_contact = now.contact.touching;
@@ -253,6 +272,7 @@ void HapticCore::record(ArmTick& now) {
   if (arm.let_go_share > 0.0) out.tool_state |= kToolLetGo;
   if (arm.clutched) out.tool_state |= kToolClutched;
   if (arm.wanted != arm.in_hand) out.tool_state |= kToolToCome;
+  if (arm.warmth.limits()) out.tool_state |= kToolArmWarm;
   out.energy_out_J = arm.energy_out_J;
   out.hand_work_J = arm.work.done_J();
   out.stored_J = arm.work.stored_J();

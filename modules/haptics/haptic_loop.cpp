@@ -109,6 +109,18 @@ bool HapticLoop::step(std::int64_t late_ns) {
   return true;
 }
 
+// A pose that has been the same sample for so long is no pose of now, whatever its plugin says:
+// with the patience that the clock has for a sample, within 20 ms of the last.
+constexpr double kSilent_s = 0.015;
+
+bool HapticLoop::isOld(std::size_t arm, const TrephineArmState& state) {
+  std::uint64_t& ticks = ticks_without_sample_[arm];
+  ticks = state.sequence == last_sequence_[arm] ? ticks + 1 : 0;
+  last_sequence_[arm] = state.sequence;
+  constexpr double kRounding = 1e-9;
+  return double(ticks) * core_.parameters().period_s >= kSilent_s - kRounding;
+}
+
 bool HapticLoop::read(TickInput& input) {
   const std::size_t arm_count = core_.parameters().arms.size();
   const double period_s = core_.parameters().period_s;
@@ -133,6 +145,7 @@ bool HapticLoop::read(TickInput& input) {
         sample.buttons = state.buttons;
       }
       sample.flags = state.flags;
+      if (isOld(d.arms[i], state)) sample.flags |= TREPHINE_ARM_LOST;
     }
   }
   input.arms = last_samples_;
@@ -144,7 +157,7 @@ bool HapticLoop::write(const TickRecord& record) {
     LoopDevice& d = devices_[place];
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       TrephineArmCommand& command = arm_commands_[i];
-      command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}, {}};
+      command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}};
       const Vec3& force_N = record.arms[d.arms[i]].sent_N;
       for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = force_N[axis];
     }
@@ -184,13 +197,24 @@ void HapticLoop::publish(const TickRecord& record) {
 
 bool HapticLoop::run(LoopClock& clock, const std::atomic<bool>& stop, std::uint64_t last_tick) {
   const auto period_ns = std::int64_t(core_.parameters().period_s * 1e9 + 0.5);
-  TickSchedule schedule(period_ns);
+  TickSchedule host(period_ns);
+  SampleSchedule samples(period_ns);
+  std::size_t pacing = 0;
+  while (pacing < devices_.size() && !devices_[pacing].paces) ++pacing;
   running_ = true;
   bool here = true;
+  const auto waitForSample = [&](double seconds) {
+    in_call_ = int(pacing);
+    const bool came = devices_[pacing].device->wait(seconds);
+    here = leaveCall(pacing);
+    return came || !here;
+  };
   while (here && tick_ < last_tick && !stop.load(std::memory_order_relaxed)) {
-    const std::int64_t late_ns = schedule.waitForTick(clock);
-    missed_ = schedule.missed();
-    here = step(late_ns);
+    const bool by_samples = pacing < devices_.size();
+    const std::int64_t late_ns =
+        by_samples ? samples.waitForTick(clock, waitForSample) : host.waitForTick(clock);
+    missed_ = by_samples ? samples.missed() : host.missed();
+    here = here && step(late_ns);
   }
   running_ = false;
   return here;

@@ -45,6 +45,7 @@ class Operator {
 struct LoopDevice {
   std::unique_ptr<Device> device;
   std::vector<std::size_t> arms;  // device arm i is arm arms[i] of the core
+  bool paces = false;             // its samples are the clock of run(): at most one, hasClock()
 };
 
 // What the window shows, renewed every tick.
@@ -83,8 +84,8 @@ class HapticLoop {
   // One tick, `late_ns` after its deadline. False when this thread was left behind in it: nothing
   // more may be done.
   bool step(std::int64_t late_ns);
-  // Steps at every deadline until `stop`, until `last_tick` ticks are done, or until this thread is
-  // left behind, which is a false.
+  // Steps at every deadline, or sample of the device that paces, until `stop`, until `last_tick`
+  // ticks are done, or until this thread is left behind, which is a false.
   bool run(LoopClock& clock, const std::atomic<bool>& stop,
            std::uint64_t last_tick = std::uint64_t(-1));
 
@@ -119,6 +120,7 @@ class HapticLoop {
 
  private:
   bool leaveCall(std::size_t device);
+  bool isOld(std::size_t arm, const TrephineArmState& state);
   // False when this thread was left behind in it.
   bool read(TickInput& input);
   bool write(const TickRecord& record);
@@ -136,6 +138,7 @@ class HapticLoop {
   std::vector<TrephineArmState> arm_states_;      // scratch for one device
   std::vector<TrephineArmCommand> arm_commands_;  // scratch for one device
   std::array<ArmSample, kMaxArms> last_samples_{};
+  std::array<std::uint64_t, kMaxArms> last_sequence_{}, ticks_without_sample_{};
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
   bool stalled_ = false;          // a tick came more than 20 ms late,

@@ -67,14 +67,17 @@ struct Command {
   Quat rotation{1, 0, 0, 0};
 };
 
-// Zero force and no removal while any stands. Each but kFaultLate stays until clear_faults.
+// Zero force and no removal while any stands. Each but kPassingFaults stays until clear_faults.
 enum Fault : std::uint32_t {
-  kFaultNonFinite = 1u << 0,   // velocity or force was not a number, or the pose none of an arm
-  kFaultLate = 1u << 1,        // a tick came more than 20 ms late; goes by itself (LatenessRule)
-  kFaultDeviceLost = 1u << 2,  // the plugin reports the arm gone
-  kFaultStalled = 1u << 3,     // that happened too often or for too long
-  kFaultStuck = 1u << 4,       // a call of the device did not return: its arms were left behind
+  kFaultNonFinite = 1u << 0,    // velocity or force was not a number, or the pose none of an arm
+  kFaultLate = 1u << 1,         // a tick came more than 20 ms late; goes by itself (LatenessRule)
+  kFaultDeviceLost = 1u << 2,   // the plugin reports the arm gone
+  kFaultStalled = 1u << 3,      // that happened too often or for too long
+  kFaultStuck = 1u << 4,        // a call of the device did not return: its arms were left behind
+  kFaultDevice = 1u << 5,       // the arm reports an error; goes by itself (ErrorRule)
+  kFaultDeviceOften = 1u << 6,  // the third of these within 10 s
 };
+constexpr std::uint32_t kPassingFaults = kFaultLate | kFaultDevice;
 
 // What keeps a tool from its arm, or from force.
 enum ToolState : std::uint32_t {
@@ -84,6 +87,7 @@ enum ToolState : std::uint32_t {
   kToolLetGo = 1u << 2,     // was hooked; the force fades, then the tool goes to its arm
   kToolClutched = 1u << 3,  // its arm moves without it
   kToolToCome = 1u << 4,    // another tool is wanted, and comes once this one is out of tissue
+  kToolArmWarm = 1u << 5,   // its arm's motors are warm: they give less than they can
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.

@@ -2,6 +2,7 @@
 // deadlines that every tick waits for.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace trephine {
@@ -15,7 +16,7 @@ class LoopClock {
 
 class HostClock : public LoopClock {
  public:
-  std::int64_t now_ns() override;                   // CLOCK_MONOTONIC
+  std::int64_t now_ns() override;  // CLOCK_MONOTONIC
   void sleepUntil(std::int64_t time_ns) override;
 };
 
@@ -36,6 +37,46 @@ class TickSchedule {
   std::int64_t deadline_ns_ = 0;
   bool started_ = false;
   bool lost_ = false;  // the last reading told nothing
+  std::uint64_t missed_ = 0;
+};
+
+// Ticks by the samples of an arm that has a clock of its own: each is due a period after the one
+// before. One that does not come is waited for 4 ms longer, less than what takes force away; from
+// then on the host's clock takes its place, until samples come again.
+class SampleSchedule {
+ public:
+  static constexpr std::int64_t kPatience_ns = 4'000'000;
+  explicit SampleSchedule(std::int64_t period_ns) : period_ns_(period_ns) {}
+
+  // Waits with `wait(seconds)`, which answers whether a sample came, and returns how late the tick
+  // starts [ns], 0 or more. Samples sooner than half a period after the last tick wait until then.
+  template <class Wait>
+  std::int64_t waitForTick(LoopClock& clock, Wait wait) {
+    const std::int64_t before_ns = clock.now_ns();
+    if (!started_) last_ns_ = before_ns;
+    started_ = true;
+    const std::int64_t due_ns = last_ns_ + period_ns_;
+    const std::int64_t until_ns = due_ns + (replaced_ ? 0 : kPatience_ns);
+    const bool sample = wait(1e-9 * double(std::max<std::int64_t>(0, until_ns - before_ns)));
+    // An arm that answers at once that there is nothing must not make the loop spin, nor one whose
+    // samples come in a heap.
+    const std::int64_t earliest_ns = sample ? last_ns_ + period_ns_ / 2 : until_ns;
+    if (clock.now_ns() < earliest_ns) clock.sleepUntil(earliest_ns);
+    const std::int64_t now_ns = clock.now_ns();
+    const std::int64_t late_ns = std::max<std::int64_t>(0, now_ns - due_ns);
+    if (late_ns > period_ns_ / 2) ++missed_;
+    replaced_ = !sample;
+    last_ns_ = sample || late_ns >= period_ns_ ? now_ns : due_ns;
+    return late_ns;
+  }
+
+  std::uint64_t missed() const { return missed_; }  // as TickSchedule's
+  bool replaced() const { return replaced_; }       // the last tick came without a sample
+
+ private:
+  std::int64_t period_ns_;
+  std::int64_t last_ns_ = 0;
+  bool started_ = false, replaced_ = false;
   std::uint64_t missed_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "session/arm_devices.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -18,6 +19,25 @@ Result<std::string> readDeviceFile(const std::string& file) {
   Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   return json->dump();
+}
+
+// The first whose samples come at the scene's rate is the clock: a sample of it is never old. Where
+// there is none, the host's is.
+void choosePace(const Scene& scene, std::vector<LoopDevice>& devices) {
+  constexpr double kSameRate = 1e-3;
+  for (LoopDevice& of : devices) {
+    const double rate_hz = of.device->capabilities(0).rate_hz;
+    if (!of.device->hasClock() || std::abs(rate_hz / scene.rate_hz - 1.0) > kSameRate) continue;
+    of.paces = true;
+    return;
+  }
+}
+
+// From a sample to the force that answers it. One by another clock than the loop's may be a period
+// of its own old before it is looked at.
+double delayOf(const LoopDevice& of, const TrephineCapabilities& able) {
+  const bool waits_for_loop = of.device->hasClock() && !of.paces;
+  return able.latency_s + (waits_for_loop ? 1.0 / able.rate_hz : 0.0);
 }
 
 }  // namespace
@@ -58,21 +78,28 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                          plainNumber(capabilities[arms[i]].rate_hz) + " Hz",
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
-      if (capabilities[arms[i]].latency_s * scene.rate_hz > kMaxDelayTicks) {
-        return Error{"BAD_SCENE",
-                     "The " + scene.arms[arms[i]].name + " arm's device '" + name + "' answers " +
-                         plainNumber(1e3 * capabilities[arms[i]].latency_s) +
-                         " ms late, more than " + std::to_string(kMaxDelayTicks) +
-                         " periods of the scene's " + plainNumber(scene.rate_hz) + " Hz",
-                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
-      }
-      double& limit_N = scene.arms[arms[i]].max_force_N;
-      limit_N = std::min(limit_N, capabilities[arms[i]].peak_force_N);
-      scene.arms[arms[i]].dynamics =
-          ArmDynamics{capabilities[arms[i]].apparent_mass_kg, capabilities[arms[i]].encoder_step_m,
-                      limit_N, capabilities[arms[i]].latency_s};
     }
     devices.push_back({*std::move(device), arms});
+  }
+  choosePace(scene, devices);
+  for (const LoopDevice& of : devices) {
+    for (std::size_t i = 0; i < of.arms.size(); ++i) {
+      SceneArm& arm = scene.arms[of.arms[i]];
+      const TrephineCapabilities& able = capabilities[of.arms[i]];
+      const double delay_s = delayOf(of, able);
+      if (delay_s * scene.rate_hz > kMaxDelayTicks) {
+        return Error{"BAD_SCENE",
+                     "The " + arm.name + " arm's device '" + arm.plugin + "' answers " +
+                         plainNumber(1e3 * delay_s) + " ms late, more than " +
+                         std::to_string(kMaxDelayTicks) + " periods of the scene's " +
+                         plainNumber(scene.rate_hz) + " Hz",
+                     "rate_hz", "Lower the scene's rate_hz, or use another device"};
+      }
+      arm.max_force_N = std::min(arm.max_force_N, able.peak_force_N);
+      arm.dynamics =
+          ArmDynamics{able.apparent_mass_kg,   able.encoder_step_m, arm.max_force_N, delay_s,
+                      able.continuous_force_N, able.thermal_s};
+    }
   }
   return {};
 }

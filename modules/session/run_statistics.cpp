@@ -28,6 +28,9 @@ constexpr FaultName kFaultNames[] = {
     {kFaultDeviceLost, "lost", "the arm did not answer: no force from then on"},
     {kFaultStalled, "stalled",
      "the third such stall within 30 s, or one of over 2 s: no force from then on"},
+    {kFaultDevice, "device_error",
+     "the arm reported an error that passes: no force until a second after it"},
+    {kFaultDeviceOften, "device_errors", "the third such error within 10 s: no force from then on"},
     {kFaultStuck, "stuck", "the arm stopped answering for good and was left behind"},
 };
 

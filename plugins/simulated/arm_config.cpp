@@ -13,6 +13,8 @@ using Json = nlohmann::json;
 constexpr int kVersion = 1;
 constexpr int kMaxDepth = 64;  // printing a value recurses, so nesting has to end
 constexpr double kMinEncoderStep_m = 1e-9;
+// What files of before say of an arm; the host computes its own bound.
+constexpr const char* kNoLongerRead[] = {"max_stiffness_N_per_m", "max_damping_Ns_per_m"};
 
 // Caught in parseConfig: nothing leaves this file by exception.
 struct Refused : std::runtime_error {
@@ -90,6 +92,7 @@ const Json& sourced(const Json& arm, const char* key, const std::string& parent)
 
 void readNumber(const Json& arm, const ArmNumber& number, const std::string& parent,
                 ArmConfig& config) {
+  if (number.optional && !arm.contains(number.key)) return;
   const Json& value = sourced(arm, number.key, parent);
   const std::string field = joined(parent, number.key) + ".value";
   const Range range{number.low, number.high};
@@ -110,13 +113,13 @@ void readNumber(const Json& arm, const ArmNumber& number, const std::string& par
 ArmConfig parseArm(const Json& arm, const std::string& field) {
   std::vector<std::string_view> keys;
   for (const ArmNumber& number : kArmNumbers) keys.push_back(number.key);
+  for (const char* key : kNoLongerRead) keys.push_back(key);
   checkObject(arm, field, keys);
   ArmConfig config;
   TrephineCapabilities& c = config.capabilities;
   c.size = sizeof(TrephineCapabilities);
   c.version = TREPHINE_DEVICE_ABI;
   c.input_dof = 6;
-  c.output_dof = 3;
   for (const ArmNumber& number : kArmNumbers) readNumber(arm, number, field, config);
   if (c.encoder_step_m > 0.0 && c.encoder_step_m < kMinEncoderStep_m) {
     refuse(joined(field, "encoder_step_m.value"), "the value " + shown(c.encoder_step_m) +
@@ -147,9 +150,9 @@ void checkFormat(const Json& root) {
 }
 
 DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
-  checkObject(root, "",
-              {"format", "version", "model", "arm", "arms", "vanish_after_s", "block_after_s",
-               "block_for_s"});
+  std::vector<std::string_view> keys{"format", "version", "model", "arm", "arms"};
+  for (const TroubleNumber& trouble : kTroubleNumbers) keys.push_back(trouble.key);
+  checkObject(root, "", keys);
   checkFormat(root);
   checkText(root, "model", "");
   if (root.contains("arm") == root.contains("arms")) {
@@ -169,15 +172,12 @@ DeviceConfig parseRoot(const Json& root, std::size_t n_arms) {
       config.arms.push_back(parseArm(arms[i], "arms[" + std::to_string(i) + "]"));
     }
   }
-  if (root.contains("vanish_after_s")) {
-    config.vanish_after_s = checkNumber(root["vanish_after_s"], "vanish_after_s", {0.0, 1e6});
-  }
-  if (root.contains("block_after_s") != root.contains("block_for_s")) {
-    refuse("block_after_s", "'block_after_s' and 'block_for_s' go together.");
-  }
-  if (root.contains("block_after_s")) {
-    config.block_after_s = checkNumber(root["block_after_s"], "block_after_s", {0.0, 1e6});
-    config.block_for_s = checkNumber(root["block_for_s"], "block_for_s", {0.0, 1e6});
+  for (const TroubleNumber& trouble : kTroubleNumbers) {
+    if (!root.contains(trouble.key)) continue;
+    if (trouble.together && !root.contains(trouble.together)) {
+      refuse(trouble.key, "it goes together with '" + std::string(trouble.together) + "'.");
+    }
+    config.troubles.*trouble.member = checkNumber(root[trouble.key], trouble.key, {0.0, 1e6});
   }
   return config;
 }

@@ -25,6 +25,7 @@ struct ArmNumber {
   std::size_t count;  // 3: along x, y and z
   void (*set)(ArmConfig& arm, const double* values);
   const char* meaning;
+  bool optional = false;  // without it: 0
 };
 
 inline constexpr ArmNumber kArmNumbers[] = {
@@ -55,23 +56,53 @@ inline constexpr ArmNumber kArmNumbers[] = {
      "a longer force is shortened to it"},
     {"continuous_force_N", "N", 1e-3, 1000.0, 1,
      [](ArmConfig& arm, const double* v) { arm.capabilities.continuous_force_N = *v; },
-     "at most the peak; reported, not enforced"},
-    {"max_stiffness_N_per_m", "N/m", 1e-3, 1e9, 1,
-     [](ArmConfig& arm, const double* v) { arm.capabilities.max_stiffness_N_per_m = *v; },
-     "reported, not enforced"},
-    {"max_damping_Ns_per_m", "N s/m", 0.0, 1e9, 1,
-     [](ArmConfig& arm, const double* v) { arm.capabilities.max_damping_Ns_per_m = *v; },
-     "reported, not enforced"},
+     "at most the peak; stated to the host"},
+    {"thermal_s", "s", 0.0, 3600.0, 1,
+     [](ArmConfig& arm, const double* v) { arm.capabilities.thermal_s = *v; },
+     "stated to the host; this arm itself stays cool", true},
+    {"latency_s", "s", 0.0, 0.1, 1,
+     [](ArmConfig& arm, const double* v) { arm.capabilities.latency_s = *v; },
+     "stated to the host; this arm itself takes its force at once", true},
     {"rate_hz", "Hz", 1.0, 1e6, 1,
      [](ArmConfig& arm, const double* v) { arm.capabilities.rate_hz = *v; },
      "a scene that asks for more is refused"},
 };
 
-struct DeviceConfig {
-  std::vector<ArmConfig> arms;   // one an opened arm
-  double vanish_after_s = -1.0;  // simulated time at which the device goes away; negative: never
-  double block_after_s = -1.0;   // simulated time at which a reading blocks once; negative: never
+// What an arm in trouble does, for tests: from when on [s], in simulated time; negative: never.
+struct Troubles {
+  double vanish_after_s = -1.0;     // the device goes away
+  double silent_after_s = -1.0;     // no new sample comes
+  double error_after_s = -1.0;      // an error that passes is reported,
+  double error_for_s = 0.0;         // for so long
+  double warm_after_s = -1.0;       // the motors say that they are warm
+  double no_number_after_s = -1.0;  // a pose is not a number
+  double block_after_s = -1.0;      // a reading blocks once,
   double block_for_s = 0.0;      // for so long, of the host's time
+};
+
+struct TroubleNumber {
+  const char* key;
+  double Troubles::*member;
+  const char* together;  // with this one, or null
+  const char* meaning;
+};
+
+inline constexpr TroubleNumber kTroubleNumbers[] = {
+    {"vanish_after_s", &Troubles::vanish_after_s, nullptr,
+     "`read` and `write` then answer `TREPHINE_ERROR_NO_DEVICE` and every state is `LOST`"},
+    {"silent_after_s", &Troubles::silent_after_s, nullptr,
+     "no new sample comes: `sequence` and pose stay"},
+    {"error_after_s", &Troubles::error_after_s, "error_for_s", "every state is marked `ERROR`"},
+    {"error_for_s", &Troubles::error_for_s, "error_after_s", "for so long"},
+    {"warm_after_s", &Troubles::warm_after_s, nullptr, "every state is marked `WARM`"},
+    {"no_number_after_s", &Troubles::no_number_after_s, nullptr, "every position is NaN"},
+    {"block_after_s", &Troubles::block_after_s, "block_for_s", "one `read` does not return"},
+    {"block_for_s", &Troubles::block_for_s, "block_after_s", "for so long, of the host's clock"},
+};
+
+struct DeviceConfig {
+  std::vector<ArmConfig> arms;  // one an opened arm
+  Troubles troubles;
 };
 
 // Reads `text` for `n_arms` opened arms. False with one sentence in `error` that names the field

@@ -54,8 +54,7 @@ struct TrephineDevice {
   std::uint32_t answered = 0;
   std::uint64_t sequence = 0;
   std::int64_t time_ns = 0;
-  double vanish_after_s = -1.0;
-  double block_after_s = -1.0, block_for_s = 0.0;
+  trephine::simulated::Troubles troubles;
   std::string config_error;
   const char* error = "";  // a literal or config_error: set without allocation
 };
@@ -139,9 +138,7 @@ int configure(TrephineDevice* device, const char* json) {
       return fail(device, TREPHINE_ERROR_ARGUMENT, device->config_error.c_str());
     }
     for (std::size_t i = 0; i < device->arms.size(); ++i) device->arms[i].config = config.arms[i];
-    device->vanish_after_s = config.vanish_after_s;
-    device->block_after_s = config.block_after_s;
-    device->block_for_s = config.block_for_s;
+    device->troubles = config.troubles;
     device->configured = true;
     return TREPHINE_OK;
   } catch (const std::bad_alloc&) {
@@ -172,11 +169,8 @@ int calibrate(TrephineDevice* device, std::uint32_t arm) {
   return TREPHINE_OK;  // a simulated arm always knows where it is
 }
 
-int start(TrephineDevice* device, TrephineServo servo, void*) {
+int start(TrephineDevice* device) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (servo) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The host paces the simulated arms: no servo.");
-  }
   if (!device->configured || device->running) {
     return fail(
         device, TREPHINE_ERROR_STATE,
@@ -197,12 +191,10 @@ void report(const TrephineDevice& device, const Arm& arm, TrephineArmState& stat
   const Vector position = encoderReading(arm.config.parameters, arm.motion.position_m);
   for (int axis = 0; axis < 3; ++axis) {
     state.position_m[axis] = position[std::size_t(axis)];
-    state.velocity_m_s[axis] = 0.0;
   }
   for (int i = 0; i < 4; ++i) state.orientation[i] = arm.orientation[i];
   state.buttons = 0;
   state.flags = TREPHINE_ARM_CALIBRATED;
-  if (arm.motion.saturated) state.flags |= TREPHINE_ARM_SATURATED;
   if (arm.motion.at_limit) state.flags |= TREPHINE_ARM_AT_LIMIT;
 }
 
@@ -230,7 +222,7 @@ bool commandsNothing(const TrephineDevice& device, const TrephineArmCommand* com
   for (std::size_t i = 0; i < device.arms.size(); ++i) {
     const TrephineArmCommand& command = *element(commands, i);
     for (int axis = 0; axis < 3; ++axis) {
-      if (command.force_N[axis] != 0.0 || command.torque_Nm[axis] != 0.0) return false;
+      if (command.force_N[axis] != 0.0) return false;
     }
   }
   return true;
@@ -252,21 +244,36 @@ int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
                 "The time step must be above 0 and at most 0.1 s.");
   }
   device->time_ns += std::int64_t(dt_s * 1e9 + 0.5);
-  if (device->vanish_after_s >= 0.0 && double(device->time_ns) > device->vanish_after_s * 1e9) {
+  const trephine::simulated::Troubles& troubles = device->troubles;
+  const auto since = [device](double after_s) {
+    return after_s >= 0.0 && double(device->time_ns) > after_s * 1e9;
+  };
+  if (since(troubles.vanish_after_s)) {
     device->vanished = true;
     return lose(device, states, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
   }
-  if (device->block_after_s >= 0.0 && double(device->time_ns) > device->block_after_s * 1e9) {
-    device->block_after_s = -1.0;  // once
-    block(device->block_for_s);
+  if (since(troubles.block_after_s)) {
+    device->troubles.block_after_s = -1.0;  // once
+    block(troubles.block_for_s);
   }
+  if (since(troubles.silent_after_s)) return TREPHINE_OK;  // as it was
   ++device->sequence;
+  std::uint32_t said = 0;
+  if (since(troubles.error_after_s) && !since(troubles.error_after_s + troubles.error_for_s)) {
+    said |= TREPHINE_ARM_ERROR;
+  }
+  if (since(troubles.warm_after_s)) said |= TREPHINE_ARM_WARM;
   const bool silenced = device->silences.load() != device->answered;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = device->arms[i];
     arm.motion = advance(arm.config.parameters, arm.hand, arm.motion,
                          silenced ? Vector{} : arm.force_N, dt_s);
-    report(*device, arm, *element(states, i));
+    TrephineArmState& state = *element(states, i);
+    report(*device, arm, state);
+    state.flags |= said;
+    if (since(troubles.no_number_after_s)) {
+      for (double& along : state.position_m) along = std::nan("");
+    }
   }
   return TREPHINE_OK;
 }
@@ -287,7 +294,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     const TrephineArmCommand& command = *element(commands, i);
-    const bool usable = finite(command.force_N, 3) && finite(command.torque_Nm, 3);
+    const bool usable = finite(command.force_N, 3);
     Vector& force_N = device->arms[i].force_N;
     force_N = {};
     if (usable) force_N = {command.force_N[0], command.force_N[1], command.force_N[2]};
@@ -357,7 +364,6 @@ const TrephineDeviceApi kApi = {
     sizeof(TrephineDeviceApi),
     TREPHINE_DEVICE_ABI,
     "simulated",
-    TREPHINE_CLOCK_HOST,
     enumerate,
     open,
     configure,
@@ -366,6 +372,7 @@ const TrephineDeviceApi kApi = {
     start,
     read,
     write,
+    nullptr,  // the host paces them
     setTarget,
     stop,
     safeStop,

@@ -31,7 +31,7 @@ ArmMotion advance(const ArmParameters& arm, const Hand& hand, const ArmMotion& m
                   const Vector& force_N, double dt_s) {
   ArmMotion next = motion;
   next.at_limit = false;
-  const Vector force = limitedForce(force_N, arm.peak_force_N, next.saturated);
+  const Vector force = limitedForce(force_N, arm.peak_force_N);
   const int n = substeps(dt_s);
   const double h = dt_s / n;
   const double m = arm.mass_kg;
@@ -79,8 +79,7 @@ Vector insideWorkspace(const ArmParameters& arm, const Vector& position_m) {
   return inside;
 }
 
-Vector limitedForce(const Vector& force_N, double peak_N, bool& limited) {
-  limited = false;
+Vector limitedForce(const Vector& force_N, double peak_N) {
   double largest = 0.0;
   for (double f : force_N) largest = std::max(largest, f < 0.0 ? -f : f);
   if (largest == 0.0) return force_N;
@@ -93,7 +92,6 @@ Vector limitedForce(const Vector& force_N, double peak_N, bool& limited) {
   }
   const double length = std::sqrt(sum);  // of `direction`, between 1 and sqrt(3)
   if (length <= peak_N / largest * kPeakTolerance) return force_N;
-  limited = true;
   for (double& d : direction) d *= peak_N / length;
   return direction;
 }

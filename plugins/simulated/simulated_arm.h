@@ -31,8 +31,7 @@ struct Hand {
 struct ArmMotion {
   Vector position_m{};
   Vector velocity_m_s{};
-  bool at_limit = false;   // touched the workspace's edge during the last step
-  bool saturated = false;  // the last force was longer than the peak
+  bool at_limit = false;  // touched the workspace's edge during the last step
 };
 
 // The motion after `dt_s` > 0 under a finite force. Integrated in substeps of at most dt/20 and 50
@@ -50,6 +49,6 @@ Vector encoderReading(const ArmParameters& arm, const Vector& position_m);
 Vector insideWorkspace(const ArmParameters& arm, const Vector& position_m);
 
 // `force_N` shortened to `peak_N` where it is longer, its direction kept.
-Vector limitedForce(const Vector& force_N, double peak_N, bool& limited);
+Vector limitedForce(const Vector& force_N, double peak_N);
 
 }  // namespace trephine::simulated

@@ -96,6 +96,8 @@ MAY_USE = {
     "app": {"qt", "cli11"},
 }
 FOR_ALL = {"threads"}
+# What a plugin may use beside JSON, threads and libraries opened at run time.
+PLUGIN_USES = {"woodenhaptics": {"hidapi"}}
 
 # The headers each library brings. A room that needs one only through another room's header (Vec3
 # through base/math.h) includes that room's header.
@@ -119,6 +121,7 @@ HEADERS = {
     "zlib": r"zlib\.h",
     "threads": r"pthread\.h|semaphore\.h",
     "dl": r"dlfcn\.h",
+    "hidapi": r"hidapi/hidapi\.h",
 }
 STANDARD = set("""
 algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono
@@ -272,7 +275,8 @@ def check_plugins(report):
             if quoted:
                 if header != DEVICE_ABI and not (path.parent / header).is_file():
                     report.add(path, line, f'a plugin may include "{DEVICE_ABI}", not "{header}"')
-            elif header not in STANDARD and not provided_by({"json", "threads", "dl"}, header):
+            elif header not in STANDARD and not provided_by(
+                    {"json", "threads", "dl"} | PLUGIN_USES.get(path.parent.name, set()), header):
                 report.add(path, line, f"a plugin may not include <{header}>")
 
 
@@ -376,6 +380,8 @@ VIOLATIONS = [
      "does not exist"),
     ("a plugin that knows a room", "plugins/planted/planted.cpp", '#include "base/json.h"\n',
      "a plugin may include"),
+    ("a plugin with hidapi that has no HID device", "plugins/planted/planted.cpp",
+     "#include <hidapi/hidapi.h>\n", "a plugin may not include"),
     ("a plugin with Qt", "plugins/planted/planted.cpp", "#include <QString>\n",
      "a plugin may not include"),
     ("a source of no room", "modules/planted/planted.cpp", "\n", "belongs to no declared room"),

@@ -40,10 +40,11 @@ class OtherCases(LabTest):
             else:
                 self.assertIn(OTHER, said, name)
 
+    # One exercise of each anatomy: the case decides here, and each reads it anew.
     @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
     def test_no_scan_is_a_dead_end_be_it_of_a_few_slices(self):
         for case in ("abdomen-ct-totalsegmentator/example_ct_dicom", "head-ct-gantry-tilt"):
-            for name in ALL:
+            for name in ("cranium", "liver"):
                 said = self.warnings(name, data_folder() / case)
                 self.assertLessEqual(said, {OTHER, "NO_VAULT", "NO_LANDMARK", "STARTS_IN_TISSUE",
                                             "LACKS_STRUCTURE"}, f"{name} on {case}")

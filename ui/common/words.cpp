@@ -165,12 +165,14 @@ QString controllerMeaning(ControllerKind kind) {
 QString forceChangeWords(const ArmRecord& arm, bool paused) {
   if (paused) return tr("off: paused");
   if (arm.faults == kFaultLate) return tr("off until the computer keeps up");
+  if (arm.faults == kFaultDevice) return tr("off until the arm's error has passed");
   if (arm.faults != 0) return tr("off until asked for");
   if (arm.tool_state & kToolWaits) return tr("off until the tool is drawn out");
   QStringList words;
   for (const PartWords& part : kPartWords) {
     if (arm.controller_parts & part.part) words << tr(part.words);
   }
+  if (arm.tool_state & kToolArmWarm) words << tr("less, as the motors are warm");
   return words.isEmpty() ? tr("as the tissue demands") : words.join(", ");
 }
 
@@ -196,6 +198,13 @@ QString faultWords(std::uint32_t faults) {
     words << tr(
         "The computer was too busy three times within 30 s, or once for over 2 s. The force "
         "stays off until you ask for it.");
+  }
+  if (faults & kFaultDeviceOften) {
+    words << tr(
+        "The arm reported an error three times within 10 s. The force stays off until you ask "
+        "for it.");
+  } else if (faults & kFaultDevice) {
+    words << tr("The arm reports an error. The force comes back by itself a second after it.");
   }
   if (faults == kFaultLate) {
     words << tr(

@@ -80,7 +80,7 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   }
   if (faults & kFaultDeviceLost) {
     out.mend = StateNotice::tr("Try again");
-  } else if (faults & ~std::uint32_t(kFaultLate)) {
+  } else if (faults & ~kPassingFaults) {
     out.mend = StateNotice::tr("Force on");
   }
   return out;

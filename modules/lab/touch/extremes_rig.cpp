@@ -59,7 +59,6 @@ const TrephineDeviceApi kApi = [] {
   api.size = sizeof(api);
   api.version = TREPHINE_DEVICE_ABI;
   api.name = "scripted";
-  api.clock = TREPHINE_CLOCK_HOST;
   api.enumerate = [](TrephineArmInfo*, std::uint32_t) { return std::uint32_t(1); };
   api.open = [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) -> int {
     *device = reinterpret_cast<TrephineDevice*>(to_open);
@@ -71,7 +70,7 @@ const TrephineDeviceApi kApi = [] {
     return TREPHINE_OK;
   };
   api.calibrate = [](TrephineDevice* device, std::uint32_t) { return answer(device); };
-  api.start = [](TrephineDevice* device, TrephineServo, void*) { return answer(device); };
+  api.start = [](TrephineDevice* device) { return answer(device); };
   api.read = read;
   api.write = write;
   api.stop = answer;
@@ -223,13 +222,10 @@ TrephineCapabilities armCapabilities() {
   c.size = sizeof(c);
   c.version = TREPHINE_DEVICE_ABI;
   c.input_dof = 6;
-  c.output_dof = 3;
   const double workspace_m[] = {0.16, 0.12, 0.07};
   std::copy_n(workspace_m, 3, c.workspace_m);
   c.peak_force_N = 3.3;
   c.continuous_force_N = 0.88;
-  c.max_stiffness_N_per_m = 700.0;
-  c.max_damping_Ns_per_m = 5.0;
   c.apparent_mass_kg = 0.045;
   c.encoder_step_m = 0.055e-3;
   c.rate_hz = 1000.0;

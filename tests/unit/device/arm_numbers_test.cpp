@@ -14,6 +14,7 @@ const std::filesystem::path kRoot = resourceFolder().parent_path();
 
 TEST(ArmNumbers, TheHostRefusesEachThatIsOutOfItsRangeByName) {
   TrephineCapabilities possible{};
+  possible.input_dof = 6;
   for (const CapabilityNumber& number : kCapabilityNumbers) {
     for (std::size_t i = 0; i < number.count; ++i) {
       std::memcpy(reinterpret_cast<char*>(&possible) + number.offset + 8 * i,
@@ -21,6 +22,11 @@ TEST(ArmNumbers, TheHostRefusesEachThatIsOutOfItsRangeByName) {
     }
   }
   EXPECT_EQ(impossibleCapability(possible), "");
+  for (std::uint32_t dof : {0u, 1u, 4u, 7u}) {
+    TrephineCapabilities wrong = possible;
+    wrong.input_dof = dof;
+    EXPECT_NE(impossibleCapability(wrong).find("input_dof"), std::string::npos) << dof;
+  }
   for (const CapabilityNumber& number : kCapabilityNumbers) {
     TrephineCapabilities wrong = possible;
     const double beyond = 2.0 * number.row.range.high;
@@ -45,17 +51,25 @@ TEST(ArmNumbers, ASimulatedArmMayBeWhatTheHostTakes) {
       EXPECT_EQ(own.count, host.count) << own.key;
     }
   }
-  EXPECT_EQ(shared, int(std::size(kCapabilityNumbers)) - 1) << "it takes a force at once";
+  EXPECT_EQ(shared, int(std::size(kCapabilityNumbers)));
 }
 
 TEST(ArmNumbers, ThePagesAreAsTheRowsAre) {
   test::expectNumbers(kRoot / "modules" / "device" / "README.md", "capabilities", capabilityPage());
   std::string page = schemaHead();
   for (const simulated::ArmNumber& n : simulated::kArmNumbers) {
-    const NumberRow row{n.key, {n.low, n.high, n.unit}, Given::always, n.meaning};
-    page += schemaLine("arm", row, n.count == 3 ? "three numbers" : "number", "");
+    const NumberRow row{
+        n.key, {n.low, n.high, n.unit}, n.optional ? Given::may_be : Given::always, n.meaning};
+    page +=
+        schemaLine("arm", row, n.count == 3 ? "three numbers" : "number", n.optional ? "0" : "");
   }
   test::expectNumbers(kRoot / "plugins" / "simulated" / "README.md", "simulated arm", page);
+  std::string troubles = schemaHead();
+  for (const simulated::TroubleNumber& n : simulated::kTroubleNumbers) {
+    const NumberRow row{n.key, {0.0, 1e6, "s"}, Given::may_be, n.meaning};
+    troubles += schemaLine("device", row, "number", "never");
+  }
+  test::expectNumbers(kRoot / "plugins" / "simulated" / "README.md", "troubles", troubles);
 }
 
 }  // namespace

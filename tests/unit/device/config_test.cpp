@@ -43,11 +43,30 @@ TEST(DeviceConfig, TheOmniHasTheCapabilitiesOfItsFile) {
     EXPECT_EQ(c.workspace_m[2], 0.070);
     EXPECT_EQ(c.peak_force_N, 3.3);
     EXPECT_EQ(c.continuous_force_N, 0.88);
-    EXPECT_EQ(c.max_stiffness_N_per_m, 700.0);
-    EXPECT_EQ(c.max_damping_Ns_per_m, 5.0);
     EXPECT_EQ(c.input_dof, 6u);
-    EXPECT_EQ(c.output_dof, 3u);
   }
+}
+
+TEST(DeviceConfig, WarmthAndLatencyMayBeStatedAndAreNothingElse) {
+  test::Bench usual(omni());
+  ASSERT_TRUE(usual.device);
+  EXPECT_EQ(usual.device->capabilities(0).thermal_s, 0.0);
+  EXPECT_EQ(usual.device->capabilities(0).latency_s, 0.0);
+  Json json = omni();
+  json["arm"]["thermal_s"] = {{"value", 40.0}, {"source", "this test"}, {"verified", true}};
+  json["arm"]["latency_s"] = {{"value", 0.0012}, {"source", "this test"}, {"verified", true}};
+  test::Bench bench(json);
+  ASSERT_TRUE(bench.device);
+  EXPECT_EQ(bench.device->capabilities(0).thermal_s, 40.0);
+  EXPECT_EQ(bench.device->capabilities(0).latency_s, 0.0012);
+}
+
+TEST(DeviceConfig, AFileOfBeforeMayHoldTheMakersStiffnessAndDamping) {
+  Json json = omni();
+  for (const char* key : {"max_stiffness_N_per_m", "max_damping_Ns_per_m"}) {
+    json["arm"][key] = {{"value", 700.0}, {"source", "a maker"}, {"verified", false}};
+  }
+  EXPECT_TRUE(test::Bench(json).device);
 }
 
 TEST(DeviceConfig, EveryNumberOfTheOmniSaysWhereItComesFrom) {
@@ -98,19 +117,22 @@ TEST(DeviceConfig, ImpossibleNumbersAreRefusedWithFieldAndValue) {
       {"encoder_step_m", 1e-12},
       {"peak_force_N", 0.0},
       {"continuous_force_N", 4.0},
-      {"max_stiffness_N_per_m", -1.0},
-      {"max_damping_Ns_per_m", -0.5},
+      {"thermal_s", -1.0},
+      {"latency_s", 0.2},
       {"rate_hz", 0.0},
       {"apparent_mass_kg", 1e-300},
       {"peak_force_N", 1e-308},
       {"peak_force_N", 1e300},
       {"plant_damping_Ns_per_m", 1e300},
-      {"max_stiffness_N_per_m", 1e300},
   };
   for (const auto& [key, value] : wrong) {
     const char* const field = key;
     const double number = value;
-    expectRefused(refusalAfter([&](Json& json) { json["arm"][field]["value"] = number; }),
+    expectRefused(refusalAfter([&](Json& json) {
+                    Json& of = json["arm"][field];
+                    if (of.is_null()) of = {{"source", "this test"}, {"verified", true}};
+                    of["value"] = number;
+                  }),
                   std::string("arm.") + field + ".value", Json(number).dump());
   }
   expectRefused(refusalAfter([](Json& json) { json["arm"]["workspace_m"]["value"][1] = -0.12; }),

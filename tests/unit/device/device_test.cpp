@@ -61,14 +61,6 @@ TEST(Device, TakesTargetsOnlyWhereArmsAreSimulated) {
   (*real)->setTarget(0, Pose{}, 1.0, 1.0);  // and asking all the same does nothing
 }
 
-TEST(Device, APluginWithItsOwnClockIsRefused) {
-  auto plugin = DevicePlugin::load("own_clock", TREPHINE_TEST_ODD_PLUGIN_DIR);
-  ASSERT_TRUE(plugin) << plugin.error().sentence();
-  auto device = Device::open(*plugin, {0}, "");
-  ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().code, "BAD_PLUGIN");
-}
-
 TEST(Device, CapabilitiesThatNoArmHasAreRefused) {
   auto plugin = DevicePlugin::load("impossible", TREPHINE_TEST_ODD_PLUGIN_DIR);
   ASSERT_TRUE(plugin) << plugin.error().sentence();
@@ -196,7 +188,7 @@ TEST(Device, ArmsStepByTheSizeOfTheHostsStructs) {
   TrephineDevice* handle = nullptr;
   ASSERT_EQ(api.open(arms, 2, &handle), TREPHINE_OK);
   ASSERT_EQ(api.configure(handle, exactOmni().dump().c_str()), TREPHINE_OK);
-  ASSERT_EQ(api.start(handle, nullptr, nullptr), TREPHINE_OK);
+  ASSERT_EQ(api.start(handle), TREPHINE_OK);
   WideState states[2] = {};
   WideCommand commands[2] = {};
   for (int i = 0; i < 2; ++i) {

@@ -28,7 +28,8 @@ int configure(TrephineDevice*, const char*) {
 }
 int capabilities(TrephineDevice*, uint32_t, TrephineCapabilities* c) {
   for (double& extent : c->workspace_m) extent = 0.1;
-  c->peak_force_N = c->continuous_force_N = c->max_stiffness_N_per_m = 1.0;
+  c->input_dof = 6;
+  c->peak_force_N = c->continuous_force_N = 1.0;
   c->apparent_mass_kg = c->rate_hz = 1.0;
 #ifdef ODD_IMPOSSIBLE
   c->peak_force_N = std::nan("");
@@ -38,7 +39,7 @@ int capabilities(TrephineDevice*, uint32_t, TrephineCapabilities* c) {
 int calibrate(TrephineDevice*, uint32_t) {
   return TREPHINE_OK;
 }
-int start(TrephineDevice*, TrephineServo, void*) {
+int start(TrephineDevice*) {
   return TREPHINE_OK;
 }
 int write(TrephineDevice*, const TrephineArmCommand*) {
@@ -74,11 +75,6 @@ void close(TrephineDevice*) {}
     TREPHINE_DEVICE_ABI,
 #endif
     "odd",
-#ifdef ODD_OWN_CLOCK
-    TREPHINE_CLOCK_DEVICE,
-#else
-    TREPHINE_CLOCK_HOST,
-#endif
     enumerate,
     open,
     configure,
@@ -87,6 +83,7 @@ void close(TrephineDevice*) {}
     start,
     read,
     write,
+    nullptr,
     nullptr,
 #ifdef ODD_HOLE
     nullptr,

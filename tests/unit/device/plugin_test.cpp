@@ -31,7 +31,7 @@ TEST(DevicePlugin, LoadsByNameFromItsFolder) {
   auto plugin = DevicePlugin::load("simulated", TREPHINE_TEST_PLUGIN_DIR);
   ASSERT_TRUE(plugin) << plugin.error().sentence();
   EXPECT_STREQ((*plugin)->api().name, "simulated");
-  EXPECT_EQ((*plugin)->api().clock, std::uint32_t(TREPHINE_CLOCK_HOST));
+  EXPECT_FALSE((*plugin)->api().wait) << "the host paces them";
 }
 
 TEST(DevicePlugin, EnumeratesTwoSimulatedArmsToldApartByTheirBusPath) {

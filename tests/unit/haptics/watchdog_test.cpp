@@ -41,6 +41,7 @@ struct Watched {
     waiting = 1;
     while (held) std::this_thread::sleep_for(1ms);
     waiting = 0;
+    states->sequence = std::uint64_t(reads);
     states->position_m[2] = -0.004 - 1e-5 * (reads % 2);  // in bone, moving
     return TREPHINE_OK;
   }
@@ -54,7 +55,7 @@ struct Watched {
   static int capabilities(TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
     for (double& extent : c->workspace_m) extent = 0.1;
     c->peak_force_N = c->continuous_force_N = 3.3;
-    c->max_stiffness_N_per_m = 1000.0;
+    c->input_dof = 6;
     c->apparent_mass_kg = 0.045;
     c->rate_hz = 1000.0;
     return TREPHINE_OK;
@@ -64,7 +65,6 @@ struct Watched {
         sizeof(TrephineDeviceApi),
         TREPHINE_DEVICE_ABI,
         "held",
-        TREPHINE_CLOCK_HOST,
         [](TrephineArmInfo*, std::uint32_t) { return 1u; },
         [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
           static int any;
@@ -74,9 +74,10 @@ struct Watched {
         [](TrephineDevice*, const char*) { return int(TREPHINE_OK); },
         capabilities,
         [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); },
-        [](TrephineDevice*, TrephineServo, void*) { return int(TREPHINE_OK); },
+        [](TrephineDevice*) { return int(TREPHINE_OK); },
         read,
         write,
+        nullptr,
         nullptr,
         [](TrephineDevice*) { return int(TREPHINE_OK); },
         [](TrephineDevice*) {

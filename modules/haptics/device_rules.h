@@ -1,0 +1,47 @@
+// What an arm says of itself and what that does to its force: errors that pass, and warm motors.
+// Functions of recorded inputs alone, so that a replay does the same.
+#pragma once
+
+#include "haptics/arm_dynamics.h"
+
+namespace trephine {
+
+// An error that passes (TREPHINE_ARM_ERROR) takes an arm's force away while it is said and for 1 s
+// more. The third that begins within 10 s takes it away until clear().
+class ErrorRule {
+ public:
+  // Before the force of a tick.
+  void tick(bool error, double period_s);
+  // A person asks for the force: it need not wait.
+  void clear() { *this = ErrorRule(); }
+
+  bool away() const { return away_ || kept_; }
+  bool kept() const { return kept_; }
+
+ private:
+  bool said_ = false, away_ = false, kept_ = false;
+  double since_said_s_ = 0.0;
+  double last_begin_s_ = 1e9;    // s since one began
+  double begin_before_s_ = 1e9;  // s since the one before
+};
+
+// The most that an arm is sent for now. Motors that say they are warm (TREPHINE_ARM_WARM): the
+// limit falls to half over 2 s, and returns as slowly. Motors that do not look after themselves are
+// counted as warm as the square of the force makes them, with their time constant tau,
+//   dh/dt = ((F / F_c)^2 - h) / tau,
+// where h = 1 is what the continuous force F_c holds them at: from h = 0.8 to 1 the limit falls
+// from the peak to F_c.
+class WarmthRule {
+ public:
+  // Before the force of a tick: the limit [N]. `sent_N`: the force held since the last one.
+  double limit_N(double most_N, bool warm, double sent_N, const ArmDynamics& arm, double period_s);
+  // The last limit was below the most.
+  bool limits() const { return limits_; }
+
+ private:
+  double share_ = 1.0;   // of the most, by the motors' own word
+  double warmth_ = 0.0;  // h
+  bool limits_ = false;
+};
+
+}  // namespace trephine

@@ -1,0 +1,375 @@
+// Phantom and Touch arms behind the C ABI: arguments, states, configuration. The maker's library is
+// hd.h, what goes on in its scheduler arms.h.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "arms.h"
+#include "trephine_device.h"
+
+using namespace trephine::openhaptics;
+
+namespace {
+
+struct Config {
+  std::vector<std::string> names;
+  double rate_hz = 1000.0;
+  // As the maker's sheet of the Phantom Omni has them, as remembered; the library does not say.
+  double apparent_mass_kg = 0.045, encoder_step_m = 5.5e-5;
+  // The answer goes out in the frame of its sample, and the arm's bus takes a millisecond.
+  double latency_s = 0.0015;
+};
+
+// The maker's scheduler is one a process.
+std::atomic<bool> in_use{false};
+thread_local std::string open_error;
+
+}  // namespace
+
+struct TrephineDevice {
+  std::uint32_t arm_count = 0;
+  const Library* hd = nullptr;
+  Config config;
+  std::unique_ptr<Arms> arms;  // once it is configured
+  bool running = false;
+  std::array<std::array<double, 3>, kMostArms> centre_m{};  // of the workspace
+  std::uint64_t given = 0;                                  // number of the last sample read
+  std::atomic<std::uint32_t> silences{0};
+  std::uint32_t answered = 0;
+  std::string said;
+  const char* error = "";
+};
+
+namespace {
+
+int fail(TrephineDevice* device, int code, const char* sentence) {
+  device->error = sentence;
+  return code;
+}
+
+int failWith(TrephineDevice* device, int code, std::string sentence) {
+  device->said = std::move(sentence);
+  return fail(device, code, device->said.c_str());
+}
+
+// Element i of an array whose elements have the size that the host wrote into the first.
+template <class T>
+T* element(T* first, std::size_t i) {
+  using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
+  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
+}
+
+// The library finds no arms by itself: these are places for the names that a configuration gives.
+uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
+  std::string why;
+  if (!loadLibrary(why)) return 0;
+  for (std::uint32_t i = 0; infos && i < std::min<std::uint32_t>(capacity, kMostArms); ++i) {
+    TrephineArmInfo* info = element(infos, i);
+    if (infos->size < sizeof(TrephineArmInfo)) break;
+    std::snprintf(info->bus_path, sizeof(info->bus_path), "openhaptics-%u", i);
+    std::snprintf(info->model, sizeof(info->model), "Phantom or Touch");
+  }
+  return kMostArms;
+} catch (const std::exception&) {
+  return 0;
+}
+
+int open(const uint32_t* places, uint32_t n_arms, TrephineDevice** out) try {
+  if (!out) return TREPHINE_ERROR_ARGUMENT;
+  *out = nullptr;
+  if (!places || n_arms == 0 || n_arms > kMostArms) {
+    open_error = "OpenHaptics opens one or two arms.";
+    return TREPHINE_ERROR_ARGUMENT;
+  }
+  for (std::uint32_t i = 0; i < n_arms; ++i) {
+    if (places[i] >= kMostArms || std::count(places, places + i, places[i]) > 0) {
+      open_error = "OpenHaptics arm " + std::to_string(places[i]) +
+                   " is none, or is asked for twice: the arms are 0 and 1.";
+      return TREPHINE_ERROR_NO_DEVICE;
+    }
+  }
+  const Library* hd = loadLibrary(open_error);
+  if (!hd) return TREPHINE_ERROR_NO_DEVICE;
+  if (in_use.exchange(true)) {
+    open_error = "The OpenHaptics arms are in use already: stop the exercise that has them.";
+    return TREPHINE_ERROR_STATE;
+  }
+  auto* device = new TrephineDevice;
+  device->arm_count = n_arms;
+  device->hd = hd;
+  *out = device;
+  return TREPHINE_OK;
+} catch (const std::exception& e) {
+  open_error = e.what();
+  return TREPHINE_ERROR_DEVICE;
+}
+
+struct ConfigNumber {
+  const char* key;
+  double low, high;
+  double Config::*member;
+};
+constexpr ConfigNumber kConfigNumbers[] = {
+    {"rate_hz", 500.0, 1600.0, &Config::rate_hz},
+    {"apparent_mass_kg", 1e-4, 100.0, &Config::apparent_mass_kg},
+    {"encoder_step_m", 0.0, 0.01, &Config::encoder_step_m},
+    {"latency_s", 0.0, 0.1, &Config::latency_s},
+};
+
+// Empty, or what is wrong: README.md has the fields.
+std::string parse(const char* text, std::uint32_t arms, Config& into) {
+  const auto root = nlohmann::json::parse(text, nullptr, false);
+  if (!root.is_object()) return "The text is no JSON object.";
+  for (const auto& [key, value] : root.items()) {
+    const bool number = std::any_of(std::begin(kConfigNumbers), std::end(kConfigNumbers),
+                                    [&key = key](const ConfigNumber& n) { return key == n.key; });
+    if (!number && key != "format" && key != "version" && key != "model" && key != "names") {
+      return "Field '" + key + "': unknown; remove it or correct its name.";
+    }
+  }
+  if (root.value("format", nlohmann::json()) != "trephine.device") {
+    return "Field 'format': it must be 'trephine.device'.";
+  }
+  if (root.value("version", nlohmann::json()) != 1) return "Field 'version': this plugin reads 1.";
+  for (const ConfigNumber& number : kConfigNumbers) {
+    if (!root.contains(number.key)) continue;
+    const auto& value = root[number.key];
+    if (!value.is_number() || !(value >= number.low && value <= number.high)) {
+      return "Field '" + std::string(number.key) + "': expected a number from " +
+             nlohmann::json(number.low).dump() + " to " + nlohmann::json(number.high).dump() + ".";
+    }
+    into.*number.member = value;
+  }
+  if (into.rate_hz != 500.0 && into.rate_hz != 1000.0 && into.rate_hz != 1600.0) {
+    return "Field 'rate_hz': the maker's scheduler has 500, 1000 or 1600.";
+  }
+  const auto names = root.value("names", nlohmann::json::array({""}));
+  bool words = names.is_array();
+  for (const auto& each : names) words = words && each.is_string();
+  if (!words || names.size() < arms) {
+    return "Field 'names': expected the names of " + std::to_string(arms) +
+           " arms, as the maker's set-up has them.";
+  }
+  for (std::uint32_t i = 0; i < arms; ++i) into.names.push_back(names[i]);
+  return {};
+}
+
+int configure(TrephineDevice* device, const char* json) try {
+  if (!device || !json) return TREPHINE_ERROR_ARGUMENT;
+  if (device->running) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms are running: stop them to configure them.");
+  }
+  Config config;
+  std::string wrong = parse(json, device->arm_count, config);
+  if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_ARGUMENT, std::move(wrong));
+  device->arms.reset();  // an arm is initialised once
+  auto arms = std::make_unique<Arms>(*device->hd);
+  wrong = arms->open(config.names);
+  if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_NO_DEVICE, std::move(wrong));
+  device->arms = std::move(arms);
+  device->config = std::move(config);
+  return TREPHINE_OK;
+} catch (const std::exception& e) {
+  return failWith(device, TREPHINE_ERROR_ARGUMENT, e.what());
+}
+
+int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out) {
+  if (!device || !out || out->size < sizeof(TrephineCapabilities)) return TREPHINE_ERROR_ARGUMENT;
+  if (arm >= device->arm_count) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
+  }
+  if (!device->arms) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
+  }
+  Arms& arms = *device->arms;
+  out->input_dof = arms.integer(arm, kInputDof) >= 6 ? 6 : 3;
+  const std::array<double, 6> box_mm = arms.workspace_mm(arm);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out->workspace_m[axis] = 1e-3 * (box_mm[axis + 3] - box_mm[axis]);
+    device->centre_m[arm][axis] = 0.5e-3 * (box_mm[axis + 3] + box_mm[axis]);
+  }
+  out->peak_force_N = arms.number(arm, kNominalMaxForce);
+  out->continuous_force_N =
+      std::min(out->peak_force_N, arms.number(arm, kNominalMaxContinuousForce));
+  out->thermal_s = 0.0;  // its driver watches its motors and says so
+  out->apparent_mass_kg = device->config.apparent_mass_kg;
+  out->encoder_step_m = device->config.encoder_step_m;
+  out->rate_hz = device->config.rate_hz;
+  out->latency_s = device->config.latency_s;
+  return TREPHINE_OK;
+}
+
+int calibrate(TrephineDevice* device, uint32_t arm) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (arm >= device->arm_count) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
+  }
+  if (!device->arms) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
+  }
+  std::string why = device->arms->calibrate(arm);
+  return why.empty() ? TREPHINE_OK : failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
+}
+
+int start(TrephineDevice* device) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (!device->arms || device->running) {
+    return fail(
+        device, TREPHINE_ERROR_STATE,
+        device->running ? "The arms are already running." : "The arms have no configuration yet.");
+  }
+  device->answered = device->silences.load();
+  device->given = 0;
+  std::string why = device->arms->start(device->config.rate_hz);
+  if (!why.empty()) return failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
+  device->running = true;
+  return TREPHINE_OK;
+}
+
+// A rotation as a unit quaternion: the largest part first, so that nothing is divided by almost
+// zero.
+void turnOf(const double* m, double out[4]) {
+  const double r[3][3] = {{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}};
+  const double squares[4] = {1.0 + r[0][0] + r[1][1] + r[2][2], 1.0 + r[0][0] - r[1][1] - r[2][2],
+                             1.0 - r[0][0] + r[1][1] - r[2][2], 1.0 - r[0][0] - r[1][1] + r[2][2]};
+  const int most = int(std::max_element(squares, squares + 4) - squares);
+  const double q = std::sqrt(squares[most]), s = 0.5 / q;
+  const double off[3] = {r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]};
+  out[most] = 0.5 * q;
+  if (most == 0) {
+    for (int i = 0; i < 3; ++i) out[i + 1] = off[i] * s;
+    return;
+  }
+  const int i = most - 1, j = (i + 1) % 3, k = (i + 2) % 3;
+  out[0] = off[i] * s;
+  out[j + 1] = (r[j][i] + r[i][j]) * s;
+  out[k + 1] = (r[k][i] + r[i][k]) * s;
+}
+
+int read(TrephineDevice* device, double, TrephineArmState* states) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (!states || states->size < sizeof(TrephineArmState)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
+  }
+  if (!device->running) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
+  }
+  Arms& arms = *device->arms;
+  std::array<Sample, kMostArms> samples;
+  std::int64_t time_ns = 0;
+  device->given = arms.latest(samples, time_ns);
+  for (std::size_t i = 0; i < device->arm_count; ++i) {
+    TrephineArmState& state = *element(states, i);
+    const double* m = samples[i].transform;
+    state.sequence = device->given;
+    state.time_ns = time_ns;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      state.position_m[axis] = 1e-3 * m[12 + axis] - device->centre_m[i][axis];
+    }
+    turnOf(m, state.orientation);
+    state.buttons = std::uint32_t(samples[i].buttons);
+    state.flags = TREPHINE_ARM_CALIBRATED;
+    if (arms.warm(i)) state.flags |= TREPHINE_ARM_WARM;
+    if (arms.hadError(i)) state.flags |= TREPHINE_ARM_ERROR;
+    if (!arms.lost(i)) continue;
+    state.flags |= TREPHINE_ARM_LOST;
+    device->error = "An OpenHaptics arm reports a fault: check its cable and power, and try again.";
+  }
+  return TREPHINE_OK;
+}
+
+int write(TrephineDevice* device, const TrephineArmCommand* commands) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  // What was commanded before a safe_stop is no answer to it.
+  const std::uint32_t seen = device->silences.load();
+  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
+  }
+  if (!device->running) {
+    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
+  }
+  std::array<std::array<double, 3>, kMostArms> forces_N{};
+  bool refused = false, nothing = true;
+  for (std::size_t i = 0; i < device->arm_count; ++i) {
+    const double* force_N = element(commands, i)->force_N;
+    const bool usable =
+        std::isfinite(force_N[0]) && std::isfinite(force_N[1]) && std::isfinite(force_N[2]);
+    refused = refused || !usable;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      nothing = nothing && force_N[axis] == 0.0;
+      if (usable) forces_N[i][axis] = force_N[axis];
+    }
+  }
+  device->arms->command(forces_N);
+  if (nothing && seen != device->answered) {
+    device->answered = seen;
+    device->arms->listen();
+    // One that came in between is not answered.
+    if (device->silences.load() != seen) device->arms->silence();
+  }
+  if (!refused) return TREPHINE_OK;
+  return fail(device, TREPHINE_ERROR_ARGUMENT,
+              "A commanded force was not finite: that arm got none.");
+}
+
+int wait(TrephineDevice* device, double timeout_s) {
+  if (!device || !device->running || !(timeout_s >= 0.0)) return TREPHINE_ERROR_ARGUMENT;
+  return device->arms->waitForOther(device->given, std::min(timeout_s, 1.0))
+             ? TREPHINE_OK
+             : TREPHINE_ERROR_TIMEOUT;
+}
+
+int stop(TrephineDevice* device) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  device->running = false;
+  if (device->arms) device->arms->stop();
+  return TREPHINE_OK;
+}
+
+void safeStop(TrephineDevice* device) {
+  if (!device) return;
+  device->silences.fetch_add(1);
+  if (device->arms) device->arms->silence();
+}
+
+const char* lastError(TrephineDevice* device) {
+  return device ? device->error : open_error.c_str();
+}
+
+void close(TrephineDevice* device) {
+  if (!device) return;
+  stop(device);
+  delete device;
+  in_use = false;
+}
+
+const TrephineDeviceApi kApi = {sizeof(TrephineDeviceApi),
+                                TREPHINE_DEVICE_ABI,
+                                "openhaptics",
+                                enumerate,
+                                open,
+                                configure,
+                                capabilities,
+                                calibrate,
+                                start,
+                                read,
+                                write,
+                                wait,
+                                nullptr,  // no simulated hand
+                                stop,
+                                safeStop,
+                                lastError,
+                                close};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const TrephineDeviceApi* trephine_device_plugin(
+    std::uint32_t host_abi) {
+  return host_abi == TREPHINE_DEVICE_ABI ? &kApi : nullptr;
+}

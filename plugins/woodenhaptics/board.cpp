@@ -1,0 +1,218 @@
+#include "board.h"
+
+#include <hidapi/hidapi.h>
+#include <pthread.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+namespace trephine::woodenhaptics {
+
+namespace {
+
+constexpr unsigned short kVendor = 0x1234, kProduct = 0x0006, kUsagePage = 0xFFAB, kUsage = 0x0200;
+constexpr int kLook_ms = 20;                     // how often the reader looks whether it is to end
+constexpr std::int64_t kFirst_ns = 500'000'000;  // for the first report
+// Without a command for so long the motors get nothing: the host stands still, and its own watchdog
+// may too. The firmware's takes 0.5 s.
+constexpr std::int64_t kSilentHost_ns = 50'000'000;
+
+std::int64_t now_ns() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+}
+
+timespec at(std::int64_t ns) {
+  return {time_t(ns / 1'000'000'000), long(ns % 1'000'000'000)};
+}
+
+// The USB port of /dev/hidrawN: the folder above the interface ("1-2.3:1.0") that holds it.
+std::string portOf(const std::string& node) {
+  std::error_code ec;
+  const auto device = std::filesystem::canonical(
+      "/sys/class/hidraw/" + node.substr(node.rfind('/') + 1) + "/device", ec);
+  for (auto folder = device; !ec && folder.has_relative_path(); folder = folder.parent_path()) {
+    const std::string name = folder.filename().string();
+    const auto colon = name.find(':');
+    if (colon != std::string::npos && name.find('-') < colon &&
+        name.find('.', colon) != std::string::npos) {
+      return name.substr(0, colon);
+    }
+  }
+  return node;
+}
+
+std::string narrow(const wchar_t* text) {
+  std::string out;
+  for (; text && *text && out.size() < 60; ++text) out += *text < 128 ? char(*text) : '?';
+  return out;
+}
+
+// A thread that answers a board must not wait behind the window. Where the system does not allow
+// it, it does with what it gets.
+void hurry(std::thread& thread) {
+  sched_param priority{};
+  priority.sched_priority = 70;
+  pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &priority);
+}
+
+std::uint64_t pack(const std::array<std::int16_t, 3>& three) {
+  std::uint64_t packed = 0;
+  std::memcpy(&packed, three.data(), 6);
+  return packed;
+}
+
+}  // namespace
+
+std::vector<Found> findBoards() {
+  std::vector<Found> boards;
+  hid_device_info* list = hid_enumerate(kVendor, kProduct);
+  for (const hid_device_info* of = list; of; of = of->next) {
+    if (of->usage_page != kUsagePage || of->usage != kUsage) continue;
+    boards.push_back({of->path, portOf(of->path), narrow(of->serial_number)});
+  }
+  hid_free_enumeration(list);
+  std::sort(boards.begin(), boards.end(),
+            [](const Found& a, const Found& b) { return a.port < b.port; });
+  return boards;
+}
+
+Board::Board() {
+  sem_init(&came_, 0, 0);
+  sem_init(&due_, 0, 0);
+}
+
+Board::~Board() {
+  stop();
+  if (in_) hid_close(in_);
+  if (out_) hid_close(out_);
+  sem_destroy(&came_);
+  sem_destroy(&due_);
+}
+
+std::string Board::open(const Found& board) {
+  found_ = board;
+  in_ = hid_open_path(board.node.c_str());
+  out_ = in_ ? hid_open_path(board.node.c_str()) : nullptr;
+  if (out_) return {};
+  return "The arm on USB port " + board.port + " cannot be opened (" + narrow(hid_error(nullptr)) +
+         "): unplug it and plug it in again, or install Trephine's udev rules.";
+}
+
+std::string Board::start() {
+  if (lost_) return "The arm on USB port " + found_.port + " went away: plug it in and try again.";
+  wanted_mA_ = 0;
+  silenced_ = false;
+  begun_ = number_ = 0;
+  ending_ = false;
+  while (sem_trywait(&came_) == 0) {
+  }
+  reader_ = std::thread([this] { readReports(); });
+  writer_ = std::thread([this] { writeReports(); });
+  hurry(reader_);
+  hurry(writer_);
+  const std::int64_t until_ns = now_ns() + kFirst_ns;
+  while (!waitForOther(0, 0.02) && !lost_ && now_ns() < until_ns) {
+  }
+  if (latest().number != 0) return {};
+  stop();
+  return "The arm on USB port " + found_.port + " sends no reports: is it switched on?";
+}
+
+void Board::stop() {
+  if (!reader_.joinable()) return;
+  silence();
+  ending_ = true;
+  sem_post(&due_);
+  reader_.join();
+  writer_.join();
+}
+
+// As it is told by two equal numbers around what was read.
+Report Board::latest() const {
+  for (;;) {
+    Report out;
+    out.number = number_.load(std::memory_order_acquire);
+    const std::uint64_t packed = report_.load(std::memory_order_acquire);
+    out.time_ns = time_ns_.load(std::memory_order_acquire);
+    std::memcpy(out.counts.data(), &packed, 6);
+    if (begun_.load(std::memory_order_acquire) == out.number) return out;
+  }
+}
+
+bool Board::waitForOther(std::uint64_t given, double timeout_s) {
+  const timespec until = at(now_ns() + std::int64_t(timeout_s * 1e9));
+  while (number_.load(std::memory_order_acquire) == given) {
+    if (lost_) return false;
+    if (sem_clockwait(&came_, CLOCK_MONOTONIC, &until) != 0 && errno == ETIMEDOUT) return false;
+  }
+  return true;
+}
+
+void Board::command(const std::array<std::int16_t, 3>& milliamps) {
+  wanted_mA_ = pack(milliamps);
+  sem_post(&due_);
+}
+
+void Board::silence() {
+  silenced_ = true;
+  sem_post(&due_);
+}
+
+// Its own running number says how many reports did not arrive.
+void Board::take(const std::uint8_t* report) {
+  std::uint64_t packed = 0;
+  for (std::size_t i = 0; i < kReportBytes; ++i) packed |= std::uint64_t(report[i]) << (8 * i);
+  const std::uint64_t before = number_;
+  std::uint16_t step = 1;
+  if (before != 0) step = std::uint16_t(std::uint16_t(packed >> 48) - std::uint16_t(report_ >> 48));
+  if (step == 0) return;  // the same one again
+  if (before != 0) gaps_ += std::uint64_t(step) - 1;
+  begun_.store(before + step, std::memory_order_release);
+  report_.store(packed, std::memory_order_release);
+  time_ns_.store(now_ns(), std::memory_order_release);
+  number_.store(before + step, std::memory_order_release);
+  sem_post(&came_);
+}
+
+void Board::readReports() {
+  std::uint8_t report[kReportBytes];
+  while (!ending_) {
+    const int bytes = hid_read_timeout(in_, report, sizeof(report), kLook_ms);
+    if (bytes < 0) {
+      lost_ = true;
+      sem_post(&came_);
+      return;
+    }
+    if (bytes == int(kReportBytes)) {
+      take(report);
+    } else if (bytes > 0) {
+      ++broken_;
+    }
+  }
+}
+
+void Board::writeReports() {
+  for (bool goes_on = true; goes_on;) {
+    const timespec until = at(now_ns() + kSilentHost_ns);
+    const bool commanded = sem_clockwait(&due_, CLOCK_MONOTONIC, &until) == 0;
+    while (sem_trywait(&due_) == 0) {  // the newest counts
+    }
+    goes_on = !ending_;
+    // A report id, which this board has none of, then the currents and two bytes that it ignores.
+    std::uint8_t report[1 + kReportBytes] = {};
+    const std::uint64_t milliamps = wanted_mA_;
+    if (goes_on && commanded && !silenced_) {
+      for (std::size_t i = 0; i < 6; ++i) report[1 + i] = std::uint8_t(milliamps >> (8 * i));
+    }
+    if (lost_) continue;
+    if (hid_write(out_, report, sizeof(report)) < 0) lost_ = true;
+  }
+}
+
+}  // namespace trephine::woodenhaptics

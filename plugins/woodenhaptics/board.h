@@ -1,0 +1,82 @@
+// One arm's board over USB HID: 8-byte reports in with its encoders and a running number, 8 bytes
+// out with its motor currents. Two threads of its own talk to it, since a write to a HID device
+// takes as long as the bus does: what the haptic thread calls here neither waits nor allocates.
+#pragma once
+
+#include <semaphore.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+struct hid_device_;
+
+namespace trephine::woodenhaptics {
+
+constexpr std::size_t kReportBytes = 8;
+
+struct Found {
+  std::string node;  // of the system, now
+  std::string port;  // of USB, e.g. "1-2.3": the same for the same socket
+  std::string serial;
+};
+// The boards that are plugged in, by their ports.
+std::vector<Found> findBoards();
+
+struct Report {
+  std::array<std::int16_t, 3> counts{};
+  std::uint64_t number = 0;  // of reports since start, those that were lost counted too
+  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when it was here
+};
+
+class Board {
+ public:
+  Board();
+  ~Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  // Empty, or why not.
+  std::string open(const Found& board);
+  // Until a first report has come: empty, or why not.
+  std::string start();
+  void stop();
+
+  // ---- Haptic thread.
+  Report latest() const;
+  bool lost() const { return lost_; }
+  // Until there is a report of another number than `given`; false after timeout_s, or when it is
+  // lost.
+  bool waitForOther(std::uint64_t given, double timeout_s);
+  // Motor currents [mA], sent at once; `silent` says whether those or none are sent.
+  void command(const std::array<std::int16_t, 3>& milliamps);
+
+  // ---- Any thread.
+  // No current from now on, whatever is commanded, until `listen`.
+  void silence();
+  void listen() { silenced_ = false; }
+  const std::string& port() const { return found_.port; }
+  std::uint64_t gaps() const { return gaps_; }      // reports that the running number tells of
+  std::uint64_t broken() const { return broken_; }  // of another length
+
+ private:
+  void readReports();
+  void writeReports();
+  void take(const std::uint8_t* report);
+
+  Found found_;
+  hid_device_ *in_ = nullptr, *out_ = nullptr;  // apart: hidapi keeps its error in the handle
+  std::thread reader_, writer_;
+  std::atomic<bool> ending_{false}, lost_{false}, silenced_{false};
+  // The newest report and its number twice: a reader that finds two numbers looks again.
+  std::atomic<std::uint64_t> begun_{0}, report_{0}, number_{0};
+  std::atomic<std::int64_t> time_ns_{0};
+  std::atomic<std::uint64_t> wanted_mA_{0};  // three int16, packed
+  std::atomic<std::uint64_t> gaps_{0}, broken_{0};
+  sem_t came_, due_;
+};
+
+}  // namespace trephine::woodenhaptics

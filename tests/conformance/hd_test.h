@@ -1,0 +1,45 @@
+// What the tests ask of their own libHD: two arms, troubles, and the forces that arrived.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace trephine::test {
+
+struct HdArm {
+  std::atomic<std::uint32_t> error{0};   // reported in each frame; 0: none
+  std::atomic<std::uint32_t> errors{0};  // how many frames more it is reported in
+  std::atomic<std::uint32_t> calibration{0x5000};
+  std::atomic<bool> there{true};
+  std::array<std::atomic<double>, 3> force_N{};  // since the last frame's end
+  std::atomic<bool> enabled{false};
+  std::atomic<std::uint64_t> error_frame{0};       // in which it was reported last
+  std::array<std::atomic<double>, 8192> sent_N{};  // by frame, around and around
+};
+
+struct HdTest {
+  std::array<HdArm, 2> arms;
+  std::atomic<bool> silent{false};      // the scheduler calls nobody
+  std::atomic<bool> no_numbers{false};  // of positions
+  std::atomic<double> block_s{0.0};     // the next end of a frame takes so long
+  std::atomic<double> swing_mm{0.0};    // of both arms along z, once a second
+  std::atomic<std::uint64_t> frames{0};
+  std::atomic<int> misuses{0};  // calls outside of a frame or an initialised device
+  void reset() {
+    for (HdArm& arm : arms) {
+      arm.error = arm.errors = 0;
+      arm.calibration = 0x5000;
+      arm.there = true;
+    }
+    silent = no_numbers = false;
+    block_s = swing_mm = 0.0;
+    misuses = 0;
+  }
+};
+
+// Exported by the test's libHD.so under this name.
+using HdTestEntry = HdTest* (*)();
+constexpr const char* kHdTestEntry = "trephine_hd_test";
+
+}  // namespace trephine::test
