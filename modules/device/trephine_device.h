@@ -14,7 +14,7 @@
  *
  * Threads: `read`, `write`, `wait` and `set_target` are called on the haptic thread: none but
  * `wait` blocks, and none allocates, logs or throws. `safe_stop` comes from any thread at any time.
- * Everything else is called on one other thread while none of those three runs. A tick reads,
+ * Everything else is called on one other thread while none of those four runs. A tick reads,
  * computes, writes at once, and then waits for the next.
  * Functions return TREPHINE_OK or a TREPHINE_ERROR_*; `last_error` then has one sentence, which
  * stays until the next call.
@@ -32,7 +32,7 @@
 extern "C" {
 #endif
 
-#define TREPHINE_DEVICE_ABI 2u
+#define TREPHINE_DEVICE_ABI 3u
 #define TREPHINE_DEVICE_ENTRY "trephine_device_plugin"
 
 enum {
@@ -67,7 +67,8 @@ typedef struct TrephineCapabilities {
   double workspace_m[3]; /* full extent of x, y, z around the origin */
   double peak_force_N;
   /* What it can be sent for good, and the time constant [s] with which its motors warm: the host
-   * lets the force fall to the former as they do. 0 s: the arm looks after itself. */
+   * lets the force fall to the former as they do. 0 s: the arm looks after itself, or nothing is
+   * known of it. */
   double continuous_force_N, thermal_s;
   double apparent_mass_kg;
   double encoder_step_m;
@@ -109,7 +110,8 @@ typedef struct TrephineDeviceApi {
   /* Every arm's newest sample. Simulated arms first move on by dt_s under the force that was
    * written last, none since start; others take no notice of dt_s. */
   int (*read)(TrephineDevice* device, double dt_s, TrephineArmState* states);
-  /* Gives every arm its force, at once: it holds until the next. A force that is not finite: that
+  /* Gives every arm its force, at once: it holds until the next, or until the plugin has heard
+   * nothing for 50 ms or more and lets it go. A force that is not finite: that
    * arm gets none, and the answer is TREPHINE_ERROR_ARGUMENT. */
   int (*write)(TrephineDevice* device, const TrephineArmCommand* commands);
   /* NULL for arms that the host paces. Else returns when there is a sample that `read` has not

@@ -71,7 +71,6 @@ class SampleSchedule {
   }
 
   std::uint64_t missed() const { return missed_; }  // as TickSchedule's
-  bool replaced() const { return replaced_; }       // the last tick came without a sample
 
  private:
   std::int64_t period_ns_;

@@ -9,13 +9,13 @@ namespace trephine::openhaptics {
 
 namespace {
 
-// For the host's answer within a frame: half of it, so that the next frame is on time.
-constexpr std::int64_t kAnswer_ns = 500'000;
 // Without a command for so long the arms get nothing: the host stands still.
 constexpr std::int64_t kSilentHost_ns = 50'000'000;
 // An arm that is warm says so frame by frame.
 constexpr std::int64_t kWarm_ns = 200'000'000;
-constexpr int kMostErrors = 16;  // taken in a frame
+constexpr int kLastFrames_ms = 20;  // for them when it stops
+constexpr int kMostErrors = 16;     // taken in a frame
+constexpr int kAttempts = 100;      // to read what another thread writes
 
 std::int64_t now_ns() {
   timespec time{};
@@ -34,16 +34,22 @@ bool waitUntil(sem_t& semaphore, std::int64_t ns) {
 
 }  // namespace
 
-Arms::Arms(const Library& hd) : hd_(hd) {
+Arms::Arms(const Library& hd, const Silence& silence) : hd_(hd), silence_(silence) {
   sem_init(&came_, 0, 0);
   sem_init(&answered_, 0, 0);
 }
 
 Arms::~Arms() {
   stop();
-  for (HHD handle : handles_) hd_.disableDevice(handle);
+  close();
   sem_destroy(&came_);
   sem_destroy(&answered_);
+}
+
+void Arms::close() {
+  for (HHD handle : handles_) hd_.disableDevice(handle);
+  handles_.clear();
+  names_.clear();
 }
 
 std::string Arms::name(std::size_t arm) const {
@@ -57,6 +63,7 @@ std::string Arms::why(const std::string& what) const {
 }
 
 std::string Arms::open(const std::vector<std::string>& names) {
+  close();
   for (const std::string& each : names) {
     names_.push_back(each);
     const HHD handle = hd_.initDevice(each.empty() ? nullptr : each.c_str());
@@ -73,8 +80,11 @@ std::string Arms::open(const std::vector<std::string>& names) {
 std::string Arms::calibrate(std::size_t arm) {
   hd_.makeCurrentDevice(handles_[arm]);
   HDenum state = hd_.checkCalibration();
-  if (state == kCalibrationNeedsUpdate) {
-    hd_.updateCalibration(HDenum(integer(arm, kCalibrationStyle)));
+  // What the arm does by itself, or with its stylus in the inkwell. A reset of its encoders would
+  // take the place where it happens to be for its middle.
+  const int styles = integer(arm, kCalibrationStyle);
+  if (state == kCalibrationNeedsUpdate && (styles & (kStyleAuto | kStyleInkwell))) {
+    hd_.updateCalibration(HDenum(styles & kStyleAuto ? kStyleAuto : kStyleInkwell));
     state = hd_.checkCalibration();
   }
   if (state == kCalibrationOk) return {};
@@ -114,12 +124,19 @@ std::string Arms::start(double rate_hz) {
     hd_.makeCurrentDevice(handles_[arm]);
     hd_.enable(kForceOutput);
   }
-  silenced_ = false;
   commanded_ns_ = 0;
-  number_ = 0;
+  number_ = ended_ = 0;
+  told_ = Samples{};
+  taken_N_ = {};
+  answer_ns_ = std::int64_t(0.5e9 / rate_hz);
   while (sem_trywait(&came_) == 0) {
   }
   hd_.setSchedulerRate((unsigned long)rate_hz);
+  if (const HDErrorInfo error = hd_.getError(); error.code != 0) {
+    const char* words = hd_.getErrorString(error.code);
+    return "The maker's scheduler does not take its rate (" + std::string(words ? words : "") +
+           "): give 'rate_hz' as 500, 1000 or 1600, as the arm can.";
+  }
   scheduled_ = hd_.scheduleAsynchronous(&servo, this, kPriority);
   hd_.startScheduler();
   running_ = true;
@@ -131,7 +148,13 @@ std::string Arms::start(double rate_hz) {
 void Arms::stop() {
   if (!running_) return;
   running_ = false;
-  silence();
+  // Two more frames, without a command: the last has sent zero.
+  commanded_ns_ = 0;
+  const std::uint64_t until = ended_ + 2;
+  for (int i = 0; i < kLastFrames_ms && ended_ < until; ++i) {
+    const timespec millisecond{0, 1'000'000};
+    nanosleep(&millisecond, nullptr);
+  }
   hd_.stopScheduler();
   hd_.unschedule(scheduled_);
   for (HHD handle : handles_) {
@@ -140,20 +163,24 @@ void Arms::stop() {
   }
 }
 
-std::uint64_t Arms::latest(std::array<Sample, kMostArms>& samples, std::int64_t& time_ns) const {
-  for (;;) {
+const Arms::Samples& Arms::latest() {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    Samples out;
     const std::uint64_t before = version_.load(std::memory_order_acquire);
     for (std::size_t arm = 0; arm < count(); ++arm) {
       for (std::size_t i = 0; i < 16; ++i) {
-        samples[arm].transform[i] = transforms_[arm][i].load(std::memory_order_relaxed);
+        out.of[arm].transform[i] = transforms_[arm][i].load(std::memory_order_relaxed);
       }
-      samples[arm].buttons = buttons_[arm].load(std::memory_order_relaxed);
+      out.of[arm].buttons = buttons_[arm].load(std::memory_order_relaxed);
     }
-    time_ns = time_ns_.load(std::memory_order_relaxed);
-    const std::uint64_t number = number_.load(std::memory_order_relaxed);
+    out.time_ns = time_ns_.load(std::memory_order_relaxed);
+    out.number = number_.load(std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_acquire);
-    if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return number;
+    if (before % 2 != 0 || version_.load(std::memory_order_relaxed) != before) continue;
+    told_ = out;
+    break;
   }
+  return told_;
 }
 
 bool Arms::waitForOther(std::uint64_t given, double timeout_s) {
@@ -165,11 +192,33 @@ bool Arms::waitForOther(std::uint64_t given, double timeout_s) {
 }
 
 void Arms::command(const std::array<std::array<double, 3>, kMostArms>& forces_N) {
+  forces_version_.fetch_add(1, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);
   for (std::size_t arm = 0; arm < count(); ++arm) {
-    for (std::size_t axis = 0; axis < 3; ++axis) forces_N_[arm][axis] = forces_N[arm][axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      forces_N_[arm][axis].store(forces_N[arm][axis], std::memory_order_relaxed);
+    }
   }
+  forces_version_.fetch_add(1, std::memory_order_release);
   commanded_ns_ = now_ns();
   sem_post(&answered_);
+}
+
+// The newest command into taken_N_, all of it or none.
+void Arms::takeForces() {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::array<std::array<double, 3>, kMostArms> out{};
+    const std::uint64_t before = forces_version_.load(std::memory_order_acquire);
+    for (std::size_t arm = 0; arm < count(); ++arm) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out[arm][axis] = forces_N_[arm][axis].load(std::memory_order_relaxed);
+      }
+    }
+    std::atomic_thread_fence(std::memory_order_acquire);
+    if (before % 2 != 0 || forces_version_.load(std::memory_order_relaxed) != before) continue;
+    taken_N_ = out;
+    return;
+  }
 }
 
 bool Arms::warm(std::size_t arm) const {
@@ -186,12 +235,16 @@ void Arms::takeErrors() {
   for (int i = 0; i < kMostErrors; ++i) {
     const HDErrorInfo error = hd_.getError();
     if (error.code == 0) return;
+    const bool scheduler = error.code >= kFirstScheduler && error.code <= kLastScheduler;
+    const bool fault = scheduler || (error.code >= kFirstLost && error.code <= kLastLost);
+    const bool of_one = std::find(handles_.begin(), handles_.end(), error.device) != handles_.end();
     for (std::size_t arm = 0; arm < count(); ++arm) {
-      const bool scheduler = error.code >= kFirstScheduler && error.code <= kLastScheduler;
-      if (handles_[arm] != error.device && !scheduler) continue;
+      // A fault of nobody's is everybody's.
+      const bool concerned = handles_[arm] == error.device || scheduler || (fault && !of_one);
+      if (!concerned) continue;
       if (error.code == kWarmMotors) warm_ns_[arm] = now_ns();
       if (error.code >= kFirstPassing && error.code <= kLastPassing) errors_[arm] = true;
-      if (scheduler || (error.code >= kFirstLost && error.code <= kLastLost)) lost_[arm] = true;
+      if (fault) lost_[arm] = true;
     }
   }
 }
@@ -205,7 +258,8 @@ void Arms::frame() {
   }
   takeErrors();
   const std::int64_t sampled_ns = now_ns();
-  version_.fetch_add(1, std::memory_order_acq_rel);
+  version_.fetch_add(1, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);
   for (std::size_t arm = 0; arm < count(); ++arm) {
     for (std::size_t i = 0; i < 16; ++i) {
       transforms_[arm][i].store(samples[arm].transform[i], std::memory_order_relaxed);
@@ -213,22 +267,22 @@ void Arms::frame() {
     buttons_[arm].store(samples[arm].buttons, std::memory_order_relaxed);
   }
   time_ns_.store(sampled_ns, std::memory_order_relaxed);
-  number_.fetch_add(1, std::memory_order_relaxed);
+  number_.fetch_add(1, std::memory_order_release);
   version_.fetch_add(1, std::memory_order_release);
   while (sem_trywait(&answered_) == 0) {  // to samples of before
   }
   sem_post(&came_);
-  waitUntil(answered_, sampled_ns + kAnswer_ns);
-  const bool silent = silenced_ || now_ns() - commanded_ns_ > kSilentHost_ns;
+  waitUntil(answered_, sampled_ns + answer_ns_);
+  // Silence is looked at first: it ends only once zero is what is commanded.
+  const bool silent = silence_.holds() || now_ns() - commanded_ns_ > kSilentHost_ns;
+  takeForces();
   for (std::size_t arm = 0; arm < count(); ++arm) {
-    double force_N[3] = {};
-    for (std::size_t axis = 0; !silent && !lost_[arm] && axis < 3; ++axis) {
-      force_N[axis] = forces_N_[arm][axis];
-    }
+    const double none[3] = {};
     hd_.makeCurrentDevice(handles_[arm]);
-    hd_.setDoublev(kCurrentForce, force_N);
+    hd_.setDoublev(kCurrentForce, silent || lost_[arm] ? none : taken_N_[arm].data());
   }
   for (std::size_t arm = count(); arm-- > 0;) hd_.endFrame(handles_[arm]);
+  ++ended_;
   takeErrors();
 }
 

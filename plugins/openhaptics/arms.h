@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hd.h"
+#include "silence.h"
 
 namespace trephine::openhaptics {
 
@@ -24,12 +25,14 @@ struct Sample {
 
 class Arms {
  public:
-  explicit Arms(const Library& hd);
+  // `silence` outlives them.
+  Arms(const Library& hd, const Silence& silence);
   ~Arms();
   Arms(const Arms&) = delete;
   Arms& operator=(const Arms&) = delete;
 
-  // By their configured names; an empty one is the default device. Empty, or why not.
+  // By their configured names, an empty one is the default device; those of before are closed.
+  // Empty, or why not.
   std::string open(const std::vector<std::string>& names);
   // Empty, or why it does not know where it is.
   std::string calibrate(std::size_t arm);
@@ -42,8 +45,13 @@ class Arms {
   std::array<double, 6> workspace_mm(std::size_t arm);
 
   // ---- Haptic thread.
-  // The newest samples, and their number and time.
-  std::uint64_t latest(std::array<Sample, kMostArms>& samples, std::int64_t& time_ns) const;
+  // The newest samples, those before where the callback is just writing others.
+  struct Samples {
+    std::array<Sample, kMostArms> of{};
+    std::uint64_t number = 0;
+    std::int64_t time_ns = 0;
+  };
+  const Samples& latest();
   bool waitForOther(std::uint64_t given, double timeout_s);
   void command(const std::array<std::array<double, 3>, kMostArms>& forces_N);
   // What the arm has reported since this was asked last.
@@ -51,33 +59,35 @@ class Arms {
   bool warm(std::size_t arm) const;
   bool lost(std::size_t arm) const { return lost_[arm]; }
 
-  // ---- Any thread: no force, whatever is commanded, until `listen`.
-  void silence() { silenced_ = true; }
-  void listen() { silenced_ = false; }
-
  private:
   static std::uint32_t servo(void* self);
   void frame();
   void takeErrors();
+  void takeForces();
+  void close();
   std::string why(const std::string& what) const;  // with the library's own last error
   std::string name(std::size_t arm) const;
 
   const Library& hd_;
+  const Silence& silence_;
   std::vector<std::string> names_;
   std::vector<HHD> handles_;
   unsigned long scheduled_ = 0;
   bool running_ = false;
-  // Written by the callback: odd while it writes.
-  std::atomic<std::uint64_t> version_{0}, number_{0};
+  std::int64_t answer_ns_ = 0;  // for the host's answer in a frame
+  // Written by the callback: the version is odd meanwhile.
+  std::atomic<std::uint64_t> version_{0}, number_{0}, ended_{0};
   std::atomic<std::int64_t> time_ns_{0};
   std::array<std::array<std::atomic<double>, 16>, kMostArms> transforms_{};
   std::array<std::atomic<int>, kMostArms> buttons_{};
-  // Written by the host: which sample the forces answer.
-  std::array<std::array<std::atomic<double>, 3>, kMostArms> forces_N_{};
-  std::atomic<std::int64_t> commanded_ns_{0};
   std::array<std::atomic<bool>, kMostArms> errors_{}, lost_{};
   std::array<std::atomic<std::int64_t>, kMostArms> warm_ns_{};
-  std::atomic<bool> silenced_{false};
+  Samples told_;
+  // Written by the host, likewise.
+  std::atomic<std::uint64_t> forces_version_{0};
+  std::array<std::array<std::atomic<double>, 3>, kMostArms> forces_N_{};
+  std::atomic<std::int64_t> commanded_ns_{0};
+  std::array<std::array<double, 3>, kMostArms> taken_N_{};  // the callback's, whole
   sem_t came_, answered_;
 };
 

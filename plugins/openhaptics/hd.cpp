@@ -43,7 +43,6 @@ const Library* loadLibrary(std::string& why) {
       {"hdGetIntegerv", reinterpret_cast<void**>(&hd.getIntegerv)},
       {"hdGetDoublev", reinterpret_cast<void**>(&hd.getDoublev)},
       {"hdSetDoublev", reinterpret_cast<void**>(&hd.setDoublev)},
-      {"hdGetString", reinterpret_cast<void**>(&hd.getString)},
       {"hdGetError", reinterpret_cast<void**>(&hd.getError)},
       {"hdGetErrorString", reinterpret_cast<void**>(&hd.getErrorString)},
       {"hdCheckCalibration", reinterpret_cast<void**>(&hd.checkCalibration)},

@@ -25,8 +25,7 @@ constexpr std::uint16_t kPriority = 0x7FFF;  // the usual one
 enum : HDenum {
   kCurrentButtons = 0x2000,
   kCurrentTransform = 0x2052,  // 16 doubles, column by column, mm
-  kModel = 0x2501,
-  kUsableWorkspace = 0x2551,  // 6 doubles, mm: low, high
+  kUsableWorkspace = 0x2551,   // 6 doubles, mm: low, high
   kInputDof = 0x2553,
   kCalibrationStyle = 0x2555,
   kNominalMaxForce = 0x2603,
@@ -34,9 +33,11 @@ enum : HDenum {
   kCurrentForce = 0x2700,
   kForceOutput = 0x4000,
   kCalibrationOk = 0x5000,
-  kCalibrationNeedsUpdate = 0x5001,
-  kCalibrationNeedsManual = 0x5002
+  kCalibrationNeedsUpdate = 0x5001
 };
+
+// Bits of kCalibrationStyle: how an arm can be calibrated.
+constexpr int kStyleAuto = 1 << 1, kStyleInkwell = 1 << 2;
 
 enum : HDErrorCode {
   kWarmMotors = 0x0200,
@@ -59,7 +60,6 @@ struct Library {
   void (*getIntegerv)(HDenum, int*) = nullptr;
   void (*getDoublev)(HDenum, double*) = nullptr;
   void (*setDoublev)(HDenum, const double*) = nullptr;
-  const char* (*getString)(HDenum) = nullptr;
   HDErrorInfo (*getError)() = nullptr;
   const char* (*getErrorString)(HDErrorCode) = nullptr;
   HDenum (*checkCalibration)() = nullptr;

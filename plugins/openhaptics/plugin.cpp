@@ -33,15 +33,14 @@ thread_local std::string open_error;
 }  // namespace
 
 struct TrephineDevice {
-  std::uint32_t arm_count = 0;
-  const Library* hd = nullptr;
+  explicit TrephineDevice(const Library& hd) : arms(hd, silence) {}
+  std::vector<std::uint32_t> places;  // of its arms among the configured names
+  Silence silence;
+  Arms arms;
   Config config;
-  std::unique_ptr<Arms> arms;  // once it is configured
-  bool running = false;
+  bool configured = false, running = false;
   std::array<std::array<double, 3>, kMostArms> centre_m{};  // of the workspace
   std::uint64_t given = 0;                                  // number of the last sample read
-  std::atomic<std::uint32_t> silences{0};
-  std::uint32_t answered = 0;
   std::string said;
   const char* error = "";
 };
@@ -100,10 +99,14 @@ int open(const uint32_t* places, uint32_t n_arms, TrephineDevice** out) try {
     open_error = "The OpenHaptics arms are in use already: stop the exercise that has them.";
     return TREPHINE_ERROR_STATE;
   }
-  auto* device = new TrephineDevice;
-  device->arm_count = n_arms;
-  device->hd = hd;
-  *out = device;
+  try {
+    auto device = std::make_unique<TrephineDevice>(*hd);
+    device->places.assign(places, places + n_arms);
+    *out = device.release();
+  } catch (...) {
+    in_use = false;
+    throw;
+  }
   return TREPHINE_OK;
 } catch (const std::exception& e) {
   open_error = e.what();
@@ -123,7 +126,7 @@ constexpr ConfigNumber kConfigNumbers[] = {
 };
 
 // Empty, or what is wrong: README.md has the fields.
-std::string parse(const char* text, std::uint32_t arms, Config& into) {
+std::string parse(const char* text, const std::vector<std::uint32_t>& places, Config& into) {
   const auto root = nlohmann::json::parse(text, nullptr, false);
   if (!root.is_object()) return "The text is no JSON object.";
   for (const auto& [key, value] : root.items()) {
@@ -150,13 +153,14 @@ std::string parse(const char* text, std::uint32_t arms, Config& into) {
     return "Field 'rate_hz': the maker's scheduler has 500, 1000 or 1600.";
   }
   const auto names = root.value("names", nlohmann::json::array({""}));
+  const std::uint32_t most = *std::max_element(places.begin(), places.end());
   bool words = names.is_array();
   for (const auto& each : names) words = words && each.is_string();
-  if (!words || names.size() < arms) {
-    return "Field 'names': expected the names of " + std::to_string(arms) +
+  if (!words || names.size() <= most) {
+    return "Field 'names': expected the names of " + std::to_string(most + 1) +
            " arms, as the maker's set-up has them.";
   }
-  for (std::uint32_t i = 0; i < arms; ++i) into.names.push_back(names[i]);
+  for (std::uint32_t place : places) into.names.push_back(names[place]);
   return {};
 }
 
@@ -166,14 +170,19 @@ int configure(TrephineDevice* device, const char* json) try {
     return fail(device, TREPHINE_ERROR_STATE, "The arms are running: stop them to configure them.");
   }
   Config config;
-  std::string wrong = parse(json, device->arm_count, config);
+  std::string wrong = parse(json, device->places, config);
   if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_ARGUMENT, std::move(wrong));
-  device->arms.reset();  // an arm is initialised once
-  auto arms = std::make_unique<Arms>(*device->hd);
-  wrong = arms->open(config.names);
+  device->configured = false;
+  wrong = device->arms.open(config.names);
   if (!wrong.empty()) return failWith(device, TREPHINE_ERROR_NO_DEVICE, std::move(wrong));
-  device->arms = std::move(arms);
+  for (std::size_t arm = 0; arm < device->places.size(); ++arm) {
+    const std::array<double, 6> box_mm = device->arms.workspace_mm(arm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      device->centre_m[arm][axis] = 0.5e-3 * (box_mm[axis + 3] + box_mm[axis]);
+    }
+  }
   device->config = std::move(config);
+  device->configured = true;
   return TREPHINE_OK;
 } catch (const std::exception& e) {
   return failWith(device, TREPHINE_ERROR_ARGUMENT, e.what());
@@ -181,18 +190,17 @@ int configure(TrephineDevice* device, const char* json) try {
 
 int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out) {
   if (!device || !out || out->size < sizeof(TrephineCapabilities)) return TREPHINE_ERROR_ARGUMENT;
-  if (arm >= device->arm_count) {
+  if (arm >= device->places.size()) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
   }
-  if (!device->arms) {
+  if (!device->configured) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
   }
-  Arms& arms = *device->arms;
+  Arms& arms = device->arms;
   out->input_dof = arms.integer(arm, kInputDof) >= 6 ? 6 : 3;
   const std::array<double, 6> box_mm = arms.workspace_mm(arm);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out->workspace_m[axis] = 1e-3 * (box_mm[axis + 3] - box_mm[axis]);
-    device->centre_m[arm][axis] = 0.5e-3 * (box_mm[axis + 3] + box_mm[axis]);
   }
   out->peak_force_N = arms.number(arm, kNominalMaxForce);
   out->continuous_force_N =
@@ -205,31 +213,35 @@ int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out
   return TREPHINE_OK;
 }
 
-int calibrate(TrephineDevice* device, uint32_t arm) {
+int calibrate(TrephineDevice* device, uint32_t arm) try {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (arm >= device->arm_count) {
+  if (arm >= device->places.size()) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "There is no opened arm of that number.");
   }
-  if (!device->arms) {
+  if (!device->configured) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms have no configuration yet.");
   }
-  std::string why = device->arms->calibrate(arm);
+  std::string why = device->arms.calibrate(arm);
   return why.empty() ? TREPHINE_OK : failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
+} catch (const std::exception&) {
+  return fail(device, TREPHINE_ERROR_DEVICE, "There is no memory for the arms.");
 }
 
-int start(TrephineDevice* device) {
+int start(TrephineDevice* device) try {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!device->arms || device->running) {
+  if (!device->configured || device->running) {
     return fail(
         device, TREPHINE_ERROR_STATE,
         device->running ? "The arms are already running." : "The arms have no configuration yet.");
   }
-  device->answered = device->silences.load();
+  device->silence.answer(device->silence.asked());
   device->given = 0;
-  std::string why = device->arms->start(device->config.rate_hz);
+  std::string why = device->arms.start(device->config.rate_hz);
   if (!why.empty()) return failWith(device, TREPHINE_ERROR_DEVICE, std::move(why));
   device->running = true;
   return TREPHINE_OK;
+} catch (const std::exception&) {
+  return fail(device, TREPHINE_ERROR_DEVICE, "There is no memory for the arms.");
 }
 
 // A rotation as a unit quaternion: the largest part first, so that nothing is divided by almost
@@ -260,20 +272,19 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
   if (!device->running) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
   }
-  Arms& arms = *device->arms;
-  std::array<Sample, kMostArms> samples;
-  std::int64_t time_ns = 0;
-  device->given = arms.latest(samples, time_ns);
-  for (std::size_t i = 0; i < device->arm_count; ++i) {
+  Arms& arms = device->arms;
+  const Arms::Samples& samples = arms.latest();
+  device->given = samples.number;
+  for (std::size_t i = 0; i < device->places.size(); ++i) {
     TrephineArmState& state = *element(states, i);
-    const double* m = samples[i].transform;
+    const double* m = samples.of[i].transform;
     state.sequence = device->given;
-    state.time_ns = time_ns;
+    state.time_ns = samples.time_ns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       state.position_m[axis] = 1e-3 * m[12 + axis] - device->centre_m[i][axis];
     }
     turnOf(m, state.orientation);
-    state.buttons = std::uint32_t(samples[i].buttons);
+    state.buttons = std::uint32_t(samples.of[i].buttons);
     state.flags = TREPHINE_ARM_CALIBRATED;
     if (arms.warm(i)) state.flags |= TREPHINE_ARM_WARM;
     if (arms.hadError(i)) state.flags |= TREPHINE_ARM_ERROR;
@@ -287,7 +298,7 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
   // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silences.load();
+  const std::uint32_t seen = device->silence.asked();
   if (!commands || commands->size < sizeof(TrephineArmCommand)) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
   }
@@ -296,7 +307,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   }
   std::array<std::array<double, 3>, kMostArms> forces_N{};
   bool refused = false, nothing = true;
-  for (std::size_t i = 0; i < device->arm_count; ++i) {
+  for (std::size_t i = 0; i < device->places.size(); ++i) {
     const double* force_N = element(commands, i)->force_N;
     const bool usable =
         std::isfinite(force_N[0]) && std::isfinite(force_N[1]) && std::isfinite(force_N[2]);
@@ -306,13 +317,8 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
       if (usable) forces_N[i][axis] = force_N[axis];
     }
   }
-  device->arms->command(forces_N);
-  if (nothing && seen != device->answered) {
-    device->answered = seen;
-    device->arms->listen();
-    // One that came in between is not answered.
-    if (device->silences.load() != seen) device->arms->silence();
-  }
+  device->arms.command(forces_N);
+  if (nothing) device->silence.answer(seen);
   if (!refused) return TREPHINE_OK;
   return fail(device, TREPHINE_ERROR_ARGUMENT,
               "A commanded force was not finite: that arm got none.");
@@ -320,7 +326,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
 
 int wait(TrephineDevice* device, double timeout_s) {
   if (!device || !device->running || !(timeout_s >= 0.0)) return TREPHINE_ERROR_ARGUMENT;
-  return device->arms->waitForOther(device->given, std::min(timeout_s, 1.0))
+  return device->arms.waitForOther(device->given, std::min(timeout_s, 1.0))
              ? TREPHINE_OK
              : TREPHINE_ERROR_TIMEOUT;
 }
@@ -328,14 +334,13 @@ int wait(TrephineDevice* device, double timeout_s) {
 int stop(TrephineDevice* device) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
   device->running = false;
-  if (device->arms) device->arms->stop();
+  device->arms.stop();
   return TREPHINE_OK;
 }
 
+// The next frame sends zero.
 void safeStop(TrephineDevice* device) {
-  if (!device) return;
-  device->silences.fetch_add(1);
-  if (device->arms) device->arms->silence();
+  if (device) device->silence.ask();
 }
 
 const char* lastError(TrephineDevice* device) {

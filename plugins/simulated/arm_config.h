@@ -77,7 +77,7 @@ struct Troubles {
   double warm_after_s = -1.0;       // the motors say that they are warm
   double no_number_after_s = -1.0;  // a pose is not a number
   double block_after_s = -1.0;      // a reading blocks once,
-  double block_for_s = 0.0;      // for so long, of the host's time
+  double block_for_s = 0.0;         // for so long, of the host's time
 };
 
 struct TroubleNumber {

@@ -2,6 +2,7 @@
 
 #include <hidapi/hidapi.h>
 #include <pthread.h>
+#include <signal.h>
 #include <time.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@ namespace {
 
 constexpr unsigned short kVendor = 0x1234, kProduct = 0x0006, kUsagePage = 0xFFAB, kUsage = 0x0200;
 constexpr int kLook_ms = 20;                     // how often the reader looks whether it is to end
+constexpr int kMostWaiting = 64;                 // reports that the system keeps
+constexpr int kAttempts = 100;                   // to read what another thread writes
 constexpr std::int64_t kFirst_ns = 500'000'000;  // for the first report
 // Without a command for so long the motors get nothing: the host stands still, and its own watchdog
 // may too. The firmware's takes 0.5 s.
@@ -53,12 +56,26 @@ std::string narrow(const wchar_t* text) {
   return out;
 }
 
-// A thread that answers a board must not wait behind the window. Where the system does not allow
-// it, it does with what it gets.
-void hurry(std::thread& thread) {
+// A thread that answers a board takes a few microseconds each time, and goes before the haptic one,
+// which waits for it. Where the system does not allow it, it does with what it gets. No signal is
+// handled on it: one would look like a board that went away.
+template <class Work>
+std::thread inFront(Work work) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread;
+  try {
+    thread = std::thread(work);
+  } catch (...) {
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    throw;
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   sched_param priority{};
-  priority.sched_priority = 70;
+  priority.sched_priority = 85;
   pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &priority);
+  return thread;
 }
 
 std::uint64_t pack(const std::array<std::int16_t, 3>& three) {
@@ -82,7 +99,7 @@ std::vector<Found> findBoards() {
   return boards;
 }
 
-Board::Board() {
+Board::Board(const Silence& silence) : silence_(silence) {
   sem_init(&came_, 0, 0);
   sem_init(&due_, 0, 0);
 }
@@ -107,15 +124,17 @@ std::string Board::open(const Found& board) {
 std::string Board::start() {
   if (lost_) return "The arm on USB port " + found_.port + " went away: plug it in and try again.";
   wanted_mA_ = 0;
-  silenced_ = false;
   begun_ = number_ = 0;
+  last_ = Report{};
   ending_ = false;
+  // What has waited since it was opened is old, however new it would look.
+  std::uint8_t old[kReportBytes];
+  for (int i = 0; i < kMostWaiting && hid_read_timeout(in_, old, sizeof(old), 0) > 0; ++i) {
+  }
   while (sem_trywait(&came_) == 0) {
   }
-  reader_ = std::thread([this] { readReports(); });
-  writer_ = std::thread([this] { writeReports(); });
-  hurry(reader_);
-  hurry(writer_);
+  reader_ = inFront([this] { readReports(); });
+  writer_ = inFront([this] { writeReports(); });
   const std::int64_t until_ns = now_ns() + kFirst_ns;
   while (!waitForOther(0, 0.02) && !lost_ && now_ns() < until_ns) {
   }
@@ -125,24 +144,23 @@ std::string Board::start() {
 }
 
 void Board::stop() {
-  if (!reader_.joinable()) return;
-  silence();
   ending_ = true;
   sem_post(&due_);
-  reader_.join();
-  writer_.join();
+  if (reader_.joinable()) reader_.join();
+  if (writer_.joinable()) writer_.join();
 }
 
 // As it is told by two equal numbers around what was read.
-Report Board::latest() const {
-  for (;;) {
+Report Board::latest() {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
     Report out;
     out.number = number_.load(std::memory_order_acquire);
     const std::uint64_t packed = report_.load(std::memory_order_acquire);
     out.time_ns = time_ns_.load(std::memory_order_acquire);
     std::memcpy(out.counts.data(), &packed, 6);
-    if (begun_.load(std::memory_order_acquire) == out.number) return out;
+    if (begun_.load(std::memory_order_acquire) == out.number) return last_ = out;
   }
+  return last_;
 }
 
 bool Board::waitForOther(std::uint64_t given, double timeout_s) {
@@ -159,8 +177,7 @@ void Board::command(const std::array<std::int16_t, 3>& milliamps) {
   sem_post(&due_);
 }
 
-void Board::silence() {
-  silenced_ = true;
+void Board::sendNow() {
   sem_post(&due_);
 }
 
@@ -172,7 +189,6 @@ void Board::take(const std::uint8_t* report) {
   std::uint16_t step = 1;
   if (before != 0) step = std::uint16_t(std::uint16_t(packed >> 48) - std::uint16_t(report_ >> 48));
   if (step == 0) return;  // the same one again
-  if (before != 0) gaps_ += std::uint64_t(step) - 1;
   begun_.store(before + step, std::memory_order_release);
   report_.store(packed, std::memory_order_release);
   time_ns_.store(now_ns(), std::memory_order_release);
@@ -189,11 +205,7 @@ void Board::readReports() {
       sem_post(&came_);
       return;
     }
-    if (bytes == int(kReportBytes)) {
-      take(report);
-    } else if (bytes > 0) {
-      ++broken_;
-    }
+    if (bytes == int(kReportBytes)) take(report);  // one of another length is none
   }
 }
 
@@ -206,11 +218,13 @@ void Board::writeReports() {
     goes_on = !ending_;
     // A report id, which this board has none of, then the currents and two bytes that it ignores.
     std::uint8_t report[1 + kReportBytes] = {};
+    // Silence is looked at first: it ends only once zero is what is wanted.
+    const bool silent = silence_.holds();
     const std::uint64_t milliamps = wanted_mA_;
-    if (goes_on && commanded && !silenced_) {
+    if (goes_on && commanded && !silent && !lost_) {
       for (std::size_t i = 0; i < 6; ++i) report[1 + i] = std::uint8_t(milliamps >> (8 * i));
     }
-    if (lost_) continue;
+    // To one that is lost too: should it hear, its motors get nothing.
     if (hid_write(out_, report, sizeof(report)) < 0) lost_ = true;
   }
 }

@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "silence.h"
+
 struct hid_device_;
 
 namespace trephine::woodenhaptics {
@@ -34,7 +36,8 @@ struct Report {
 
 class Board {
  public:
-  Board();
+  // `silence` outlives it.
+  explicit Board(const Silence& silence);
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
@@ -46,36 +49,32 @@ class Board {
   void stop();
 
   // ---- Haptic thread.
-  Report latest() const;
+  Report latest();  // the one before where the reader is just taking another in
   bool lost() const { return lost_; }
   // Until there is a report of another number than `given`; false after timeout_s, or when it is
   // lost.
   bool waitForOther(std::uint64_t given, double timeout_s);
-  // Motor currents [mA], sent at once; `silent` says whether those or none are sent.
+  // Motor currents [mA], sent at once unless there is silence.
   void command(const std::array<std::int16_t, 3>& milliamps);
 
-  // ---- Any thread.
-  // No current from now on, whatever is commanded, until `listen`.
-  void silence();
-  void listen() { silenced_ = false; }
-  const std::string& port() const { return found_.port; }
-  std::uint64_t gaps() const { return gaps_; }      // reports that the running number tells of
-  std::uint64_t broken() const { return broken_; }  // of another length
+  // ---- Any thread: what there is to send is sent now, such as the zero of a silence that begins.
+  void sendNow();
 
  private:
   void readReports();
   void writeReports();
   void take(const std::uint8_t* report);
 
+  const Silence& silence_;
   Found found_;
   hid_device_ *in_ = nullptr, *out_ = nullptr;  // apart: hidapi keeps its error in the handle
   std::thread reader_, writer_;
-  std::atomic<bool> ending_{false}, lost_{false}, silenced_{false};
+  std::atomic<bool> ending_{false}, lost_{false};
   // The newest report and its number twice: a reader that finds two numbers looks again.
   std::atomic<std::uint64_t> begun_{0}, report_{0}, number_{0};
   std::atomic<std::int64_t> time_ns_{0};
   std::atomic<std::uint64_t> wanted_mA_{0};  // three int16, packed
-  std::atomic<std::uint64_t> gaps_{0}, broken_{0};
+  Report last_;                              // that was told
   sem_t came_, due_;
 };
 

@@ -21,31 +21,27 @@ constexpr double kPeak_N = 5.0;
 // For gravity: masses of links b and c, and how far their centres are along them.
 constexpr double kMassB_kg = 0.170, kMassC_kg = 0.110, kCentreB_m = 0.051, kCentreC_m = 0.091;
 constexpr double kGravity_m_s2 = 9.82;
+// The way a joint turns with its counts, and a motor with its joint's torque.
+constexpr Vector kCountSign{-1.0, -1.0, -1.0};
+constexpr Vector kTorqueSign{1.0, -1.0, -1.0};
 
 // Angles of the joints [rad] at encoder counts, all counts zero where the arm was switched on:
 // link b upright, link c level.
 Vector jointAngles(const Vector& counts);
-Vector countsAt(const Vector& angles);
 
 // The tip from the origin [m].
 Vector tip(const Vector& angles);
-// The angles of that tip, the elbow as the arm is built. False where it cannot reach.
-bool anglesAt(const Vector& tip_m, Vector& angles);
 // d tip / d angles [m/rad].
 Matrix jacobian(const Vector& angles);
 
 // Torques of the joints [Nm] that make `force_N` at the tip: J^T F.
 Vector jointTorques(const Vector& angles, const Vector& force_N);
-// The force at the tip of those torques; zero where the arm is stretched.
-Vector forceOf(const Vector& angles, const Vector& torques_Nm);
 // What holds the links up: the gradient of their potential
 //   U = g (m_b l_b cos tB + m_c (L_b cos tB - l_c cos tC)).
 Vector gravityTorques(const Vector& angles);
-double potential_J(const Vector& angles);
 
 // Motor currents [A] that make these torques, all shortened alike where one is above the most, so
 // that the force keeps its direction.
 Vector currents(const Vector& torques_Nm);
-Vector torquesOf(const Vector& currents_A);
 
 }  // namespace trephine::woodenhaptics

@@ -1,7 +1,8 @@
 // WoodenHaptics behind the C ABI: arguments, states, and what is counts there and metres here. The
 // board is board.h, the arm kinematics.h.
+#include <time.h>
+
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -21,8 +22,11 @@ namespace {
 constexpr std::uint32_t kMostArms = 4;
 // USB carries a report a millisecond each way; the rest is two threads that take over.
 constexpr double kLatency_s = 0.0022;
+// Where a link is by a report older than this, nobody knows: it is not carried.
+constexpr std::int64_t kFresh_ns = 15'000'000;
 
 struct Arm {
+  explicit Arm(const Silence& silence) : board(silence) {}
   Board board;
   Report last;
   Vector angles{};
@@ -33,13 +37,11 @@ thread_local std::string open_error;
 }  // namespace
 
 struct TrephineDevice {
+  Silence silence;
   std::vector<std::unique_ptr<Arm>> arms;
   bool configured = false, running = false;
   bool gravity = false;
   double latency_s = kLatency_s;
-  // Calls of safe_stop, from any thread, and how many of them the host has answered.
-  std::atomic<std::uint32_t> silences{0};
-  std::uint32_t answered = 0;
   std::string said;        // of calls beside the haptic thread
   const char* error = "";  // a literal or `said`: set without allocation
 };
@@ -104,7 +106,7 @@ int open(const uint32_t* places, uint32_t n_arms, TrephineDevice** out) try {
       open_error = "WoodenHaptics arm " + std::to_string(places[i]) + " is asked for twice.";
       return TREPHINE_ERROR_ARGUMENT;
     }
-    device->arms.push_back(std::make_unique<Arm>());
+    device->arms.push_back(std::make_unique<Arm>(device->silence));
     std::string why = device->arms.back()->board.open(boards[places[i]]);
     if (!why.empty()) {
       open_error = std::move(why);
@@ -197,7 +199,7 @@ int start(TrephineDevice* device) try {
         device, TREPHINE_ERROR_STATE,
         device->running ? "The arms are already running." : "The arms have no configuration yet.");
   }
-  device->answered = device->silences.load();
+  device->silence.answer(device->silence.asked());
   for (const auto& arm : device->arms) {
     std::string why = arm->board.start();
     if (why.empty()) continue;
@@ -250,25 +252,20 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
   // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silences.load();
+  const std::uint32_t seen = device->silence.asked();
   if (!commands || commands->size < sizeof(TrephineArmCommand)) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
   }
   if (!device->running) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
   }
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const std::int64_t now_ns = std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
   bool refused = false, nothing = true;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     const double* force_N = element(commands, i)->force_N;
     for (int axis = 0; axis < 3; ++axis) nothing = nothing && force_N[axis] == 0.0;
-  }
-  if (nothing && seen != device->answered) {
-    device->answered = seen;
-    for (const auto& arm : device->arms) arm->board.listen();
-    // One that came in between is not answered.
-    if (device->silences.load() != seen) {
-      for (const auto& arm : device->arms) arm->board.silence();
-    }
   }
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = *device->arms[i];
@@ -279,7 +276,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     std::array<std::int16_t, 3> milliamps{};
     if (usable) {
       Vector torques = jointTorques(arm.angles, toArm(force_N));
-      if (device->gravity) {
+      if (device->gravity && now_ns - arm.last.time_ns < kFresh_ns) {
         const Vector up = gravityTorques(arm.angles);
         for (std::size_t joint = 0; joint < 3; ++joint) torques[joint] += up[joint];
       }
@@ -290,6 +287,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     }
     arm.board.command(milliamps);
   }
+  if (nothing) device->silence.answer(seen);
   if (!refused) return TREPHINE_OK;
   return fail(device, TREPHINE_ERROR_ARGUMENT,
               "A commanded force was not finite: that arm got none.");
@@ -308,8 +306,8 @@ int wait(TrephineDevice* device, double timeout_s) {
 
 void safeStop(TrephineDevice* device) {
   if (!device) return;
-  device->silences.fetch_add(1);
-  for (const auto& arm : device->arms) arm->board.silence();
+  device->silence.ask();
+  for (const auto& arm : device->arms) arm->board.sendNow();
 }
 
 const char* lastError(TrephineDevice* device) {

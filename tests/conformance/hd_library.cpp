@@ -108,13 +108,12 @@ HD_EXPORT void hdEndFrame(std::uint32_t device) {
 HD_EXPORT void hdEnable(std::uint32_t what) {
   if (what == 0x4000 && known(current)) test.arms[current].enabled = true;
 }
+// What the motors have stays until the next frame.
 HD_EXPORT void hdDisable(std::uint32_t what) {
-  if (what != 0x4000 || !known(current)) return;
-  test.arms[current].enabled = false;
-  for (auto& along : test.arms[current].force_N) along = 0.0;
+  if (what == 0x4000 && known(current)) test.arms[current].enabled = false;
 }
 HD_EXPORT void hdGetIntegerv(std::uint32_t what, int* out) {
-  *out = what == 0x2553 ? 6 : what == 0x2555 ? 1 : 0;
+  *out = what == 0x2553 ? 6 : what == 0x2555 ? test.styles.load() : 0;
 }
 HD_EXPORT void hdGetDoublev(std::uint32_t what, double* out) {
   const double turn = 0.3;
@@ -149,9 +148,6 @@ HD_EXPORT void hdSetDoublev(std::uint32_t what, const double* in) {
   }
   std::memcpy(pending_N[current].data(), in, sizeof(pending_N[current]));
 }
-HD_EXPORT const char* hdGetString(std::uint32_t) {
-  return "test";
-}
 HD_EXPORT ErrorInfo hdGetError() {
   if (errors.empty()) return {0, 0, 0xFFFFFFFF};
   const ErrorInfo first = errors.front();
@@ -164,7 +160,8 @@ HD_EXPORT const char* hdGetErrorString(std::uint32_t code) {
 HD_EXPORT std::uint32_t hdCheckCalibration() {
   return known(current) ? test.arms[current].calibration.load() : 0x5002;
 }
-HD_EXPORT void hdUpdateCalibration(std::uint32_t) {
+HD_EXPORT void hdUpdateCalibration(std::uint32_t style) {
+  test.style_used = int(style);
   if (known(current) && test.arms[current].calibration == 0x5001) {
     test.arms[current].calibration = 0x5000;
   }

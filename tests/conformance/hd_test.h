@@ -20,10 +20,11 @@ struct HdArm {
 
 struct HdTest {
   std::array<HdArm, 2> arms;
-  std::atomic<bool> silent{false};      // the scheduler calls nobody
-  std::atomic<bool> no_numbers{false};  // of positions
-  std::atomic<double> block_s{0.0};     // the next end of a frame takes so long
-  std::atomic<double> swing_mm{0.0};    // of both arms along z, once a second
+  std::atomic<bool> silent{false};                // the scheduler calls nobody
+  std::atomic<bool> no_numbers{false};            // of positions
+  std::atomic<double> block_s{0.0};               // the next end of a frame takes so long
+  std::atomic<double> swing_mm{0.0};              // of both arms along z, once a second
+  std::atomic<int> styles{0b110}, style_used{0};  // bits of calibration: automatic, inkwell
   std::atomic<std::uint64_t> frames{0};
   std::atomic<int> misuses{0};  // calls outside of a frame or an initialised device
   void reset() {
@@ -34,7 +35,8 @@ struct HdTest {
     }
     silent = no_numbers = false;
     block_s = swing_mm = 0.0;
-    misuses = 0;
+    misuses = style_used = 0;
+    styles = 0b110;
   }
 };
 

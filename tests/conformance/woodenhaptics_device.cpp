@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "test_device.h"
+#include "wooden_arm.h"
 #include "wooden_firmware.h"
-#include "woodenhaptics/kinematics.h"
 
 namespace trephine::conformance {
 namespace {
@@ -18,8 +18,8 @@ class WoodenDevice : public TestDevice {
  public:
   WoodenDevice() {
     wooden::Vector angles{};
-    wooden::anglesAt({0.0, 0.0, 0.0}, angles);
-    const wooden::Vector counts = wooden::countsAt(angles);
+    test::anglesAt({0.0, 0.0, 0.0}, angles);
+    const wooden::Vector counts = test::countsAt(angles);
     for (std::size_t i = 0; i < 3; ++i) counts_[i] = std::int16_t(std::lround(counts[i]));
     angles_ = wooden::jointAngles({double(counts_[0]), double(counts_[1]), double(counts_[2])});
   }
@@ -50,7 +50,7 @@ class WoodenDevice : public TestDevice {
     const auto milliamps = firmware_[arm]->milliamps();
     wooden::Vector amps{};
     for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
-    const wooden::Vector f = wooden::forceOf(angles_, wooden::torquesOf(amps));
+    const wooden::Vector f = test::forceOf(angles_, test::torquesOf(amps));
     return {f[1], f[2], f[0]};
   }
   double tolerance_N() const override { return 0.005; }  // of whole milliamperes

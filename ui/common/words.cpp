@@ -164,9 +164,9 @@ QString controllerMeaning(ControllerKind kind) {
 
 QString forceChangeWords(const ArmRecord& arm, bool paused) {
   if (paused) return tr("off: paused");
-  if (arm.faults == kFaultLate) return tr("off until the computer keeps up");
-  if (arm.faults == kFaultDevice) return tr("off until the arm's error has passed");
-  if (arm.faults != 0) return tr("off until asked for");
+  if (arm.faults & ~kPassingFaults) return tr("off until asked for");
+  if (arm.faults & kFaultDevice) return tr("off until the arm's error has passed");
+  if (arm.faults != 0) return tr("off until the computer keeps up");
   if (arm.tool_state & kToolWaits) return tr("off until the tool is drawn out");
   QStringList words;
   for (const PartWords& part : kPartWords) {
@@ -203,10 +203,12 @@ QString faultWords(std::uint32_t faults) {
     words << tr(
         "The arm reported an error three times within 10 s. The force stays off until you ask "
         "for it.");
-  } else if (faults & kFaultDevice) {
+  }
+  if (faults & ~kPassingFaults) return words.join('\n');
+  if (faults & kFaultDevice) {
     words << tr("The arm reports an error. The force comes back by itself a second after it.");
   }
-  if (faults == kFaultLate) {
+  if (faults & kFaultLate) {
     words << tr(
         "The computer was too busy: a step came more than 20 ms late. The force comes back "
         "by itself.");

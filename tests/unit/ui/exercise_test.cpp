@@ -51,13 +51,16 @@ TEST(ExerciseAnswer, HoldsWhatRunPrintsAndTheWindowsFigures) {
 
 TEST(Words, EveryFaultIsSaidInASentence) {
   EXPECT_TRUE(faultWords(0).isEmpty());
-  for (std::uint32_t fault :
-       {kFaultNonFinite, kFaultLate, kFaultDeviceLost, kFaultStalled, kFaultStuck}) {
+  for (std::uint32_t fault : {kFaultNonFinite, kFaultLate, kFaultDeviceLost, kFaultStalled,
+                              kFaultStuck, kFaultDevice, kFaultDeviceOften}) {
     EXPECT_TRUE(faultWords(fault).endsWith('.')) << fault;
   }
   EXPECT_EQ(faultWords(kFaultNonFinite | kFaultDeviceLost).split('\n').size(), 2);
   EXPECT_EQ(faultWords(kFaultLate | kFaultStalled), faultWords(kFaultStalled))
       << "no promise that the force comes back by itself";
+  EXPECT_EQ(faultWords(kFaultDevice | kFaultDeviceOften), faultWords(kFaultDeviceOften));
+  EXPECT_EQ(faultWords(kFaultDevice | kFaultDeviceLost), faultWords(kFaultDeviceLost));
+  EXPECT_EQ(faultWords(kFaultLate | kFaultDevice).split('\n').size(), 2);
 }
 
 TEST(Words, AFindingSaysWhatWasSeenAndWhatWasDone) {

@@ -556,6 +556,11 @@ TEST_F(PanelTest, WhatIsChangedInTheForceIsSaidByWhatItIs) {
   EXPECT_EQ(forceChangeWords(arm, false), "off until the computer keeps up");
   arm.faults = kFaultLate | kFaultStalled;
   EXPECT_EQ(forceChangeWords(arm, false), "off until asked for");
+  arm.faults = kFaultLate | kFaultDevice;
+  EXPECT_EQ(forceChangeWords(arm, false), "off until the arm's error has passed");
+  arm.faults = 0;
+  arm.tool_state = kToolArmWarm;
+  EXPECT_EQ(forceChangeWords(arm, false), "rising slowly, less, as the motors are warm");
 }
 
 TEST_F(PanelTest, EachOfTheseWordsIsExplainedBesideIt) {
