@@ -7,6 +7,8 @@ from lab_support import SCENES, LabTest, data_folder, lab
 
 ALL = sorted(file.stem for file in SCENES.glob("*.json"))
 CRANIAL = [name for name in ALL if json.loads((SCENES / f"{name}.json").read_text())["anatomy"] == "cranium"]
+# Those of the seed paper are placed as the others are: they differ in laws, tools and card.
+PLACED = [name for name in ALL if not name.startswith("seed-")]
 OTHER = "OTHER_ANATOMY"
 
 
@@ -26,14 +28,14 @@ class OtherCases(LabTest):
 
     @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
     def test_every_exercise_runs_on_a_real_abdomen(self):
-        for name in ALL:
+        for name in PLACED:
             said = self.warnings(name, data_folder() / "abdomen-ct-totalsegmentator" / "example_ct.nii.gz")
             self.assertLessEqual(said, {OTHER, "NO_LANDMARK", "STARTS_IN_TISSUE", "LACKS_STRUCTURE"}, name)
             self.assertEqual(OTHER in said, name in CRANIAL, name)
 
     @unittest.skipUnless(data_folder(), "TREPHINE_TEST_DATA is not set")
     def test_every_exercise_runs_on_a_real_skull_and_those_for_it_without_a_word(self):
-        for name in ALL:
+        for name in PLACED:
             said = self.warnings(name, data_folder() / "head-ct-plastic-skull")
             if name in CRANIAL:
                 self.assertEqual(said, set(), name)
