@@ -7,6 +7,8 @@
 
 namespace trephine::openhaptics {
 
+using plugin::now_ns;
+
 namespace {
 
 // Without a command for so long the arms get nothing: the host stands still.
@@ -16,12 +18,6 @@ constexpr std::int64_t kWarm_ns = 200'000'000;
 constexpr int kLastFrames_ms = 20;  // for them when it stops
 constexpr int kMostErrors = 16;     // taken in a frame
 constexpr int kAttempts = 100;      // to read what another thread writes
-
-std::int64_t now_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
-}
 
 bool waitUntil(sem_t& semaphore, std::int64_t ns) {
   const timespec until{time_t(ns / 1'000'000'000), long(ns % 1'000'000'000)};
@@ -34,7 +30,7 @@ bool waitUntil(sem_t& semaphore, std::int64_t ns) {
 
 }  // namespace
 
-Arms::Arms(const Library& hd, const Silence& silence) : hd_(hd), silence_(silence) {
+Arms::Arms(const Library& hd, const plugin::Silence& silence) : hd_(hd), silence_(silence) {
   sem_init(&came_, 0, 0);
   sem_init(&answered_, 0, 0);
 }
@@ -117,6 +113,12 @@ std::array<double, 6> Arms::workspace_mm(std::size_t arm) {
 std::string Arms::start(double rate_hz) {
   for (int i = 0; i < kMostErrors && hd_.getError().code != 0; ++i) {
   }
+  hd_.setSchedulerRate((unsigned long)rate_hz);
+  if (const HDErrorInfo error = hd_.getError(); error.code != 0) {
+    const char* words = hd_.getErrorString(error.code);
+    return "The maker's scheduler does not take its rate (" + std::string(words ? words : "") +
+           "): give 'rate_hz' as 500, 1000 or 1600, as the arm can.";
+  }
   for (std::size_t arm = 0; arm < count(); ++arm) {
     errors_[arm] = lost_[arm] = false;
     warm_ns_[arm] = 0;
@@ -130,12 +132,6 @@ std::string Arms::start(double rate_hz) {
   taken_N_ = {};
   answer_ns_ = std::int64_t(0.5e9 / rate_hz);
   while (sem_trywait(&came_) == 0) {
-  }
-  hd_.setSchedulerRate((unsigned long)rate_hz);
-  if (const HDErrorInfo error = hd_.getError(); error.code != 0) {
-    const char* words = hd_.getErrorString(error.code);
-    return "The maker's scheduler does not take its rate (" + std::string(words ? words : "") +
-           "): give 'rate_hz' as 500, 1000 or 1600, as the arm can.";
   }
   scheduled_ = hd_.scheduleAsynchronous(&servo, this, kPriority);
   hd_.startScheduler();

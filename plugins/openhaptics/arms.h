@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "../common/plugin.h"
 #include "hd.h"
-#include "silence.h"
 
 namespace trephine::openhaptics {
 
@@ -26,7 +26,7 @@ struct Sample {
 class Arms {
  public:
   // `silence` outlives them.
-  Arms(const Library& hd, const Silence& silence);
+  Arms(const Library& hd, const plugin::Silence& silence);
   ~Arms();
   Arms(const Arms&) = delete;
   Arms& operator=(const Arms&) = delete;
@@ -69,7 +69,7 @@ class Arms {
   std::string name(std::size_t arm) const;
 
   const Library& hd_;
-  const Silence& silence_;
+  const plugin::Silence& silence_;
   std::vector<std::string> names_;
   std::vector<HHD> handles_;
   unsigned long scheduled_ = 0;

@@ -1,5 +1,7 @@
 // Phantom and Touch arms behind the C ABI: arguments, states, configuration. The maker's library is
 // hd.h, what goes on in its scheduler arms.h.
+#include "../common/plugin.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -7,13 +9,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "arms.h"
 #include "trephine_device.h"
 
 using namespace trephine::openhaptics;
+using namespace trephine::plugin;
 
 namespace {
 
@@ -55,13 +57,6 @@ int fail(TrephineDevice* device, int code, const char* sentence) {
 int failWith(TrephineDevice* device, int code, std::string sentence) {
   device->said = std::move(sentence);
   return fail(device, code, device->said.c_str());
-}
-
-// Element i of an array whose elements have the size that the host wrote into the first.
-template <class T>
-T* element(T* first, std::size_t i) {
-  using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
-  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
 }
 
 // The library finds no arms by itself: these are places for the names that a configuration gives.
@@ -306,19 +301,17 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
   }
   std::array<std::array<double, 3>, kMostArms> forces_N{};
-  bool refused = false, nothing = true;
+  bool refused = false;
   for (std::size_t i = 0; i < device->places.size(); ++i) {
     const double* force_N = element(commands, i)->force_N;
-    const bool usable =
-        std::isfinite(force_N[0]) && std::isfinite(force_N[1]) && std::isfinite(force_N[2]);
-    refused = refused || !usable;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      nothing = nothing && force_N[axis] == 0.0;
-      if (usable) forces_N[i][axis] = force_N[axis];
+    if (finite(force_N, 3)) {
+      std::copy_n(force_N, 3, forces_N[i].begin());
+    } else {
+      refused = true;
     }
   }
   device->arms.command(forces_N);
-  if (nothing) device->silence.answer(seen);
+  if (commandsNothing(commands, device->places.size())) device->silence.answer(seen);
   if (!refused) return TREPHINE_OK;
   return fail(device, TREPHINE_ERROR_ARGUMENT,
               "A commanded force was not finite: that arm got none.");

@@ -1,15 +1,15 @@
 // The simulated arms behind the C ABI: arguments, states and flags; the motion is simulated_arm.h.
+#include "../common/plugin.h"
+
 #include <time.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <new>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "arm_config.h"
@@ -21,6 +21,7 @@ using trephine::simulated::ArmMotion;
 using trephine::simulated::DeviceConfig;
 using trephine::simulated::Hand;
 using trephine::simulated::Vector;
+using namespace trephine::plugin;
 
 namespace {
 
@@ -48,10 +49,7 @@ struct TrephineDevice {
   bool configured = false;
   bool running = false;
   bool vanished = false;
-  // Calls of safe_stop, from any thread, and how many of them the host has answered with zero
-  // force.
-  std::atomic<std::uint32_t> silences{0};
-  std::uint32_t answered = 0;
+  Silence silence;
   std::uint64_t sequence = 0;
   std::int64_t time_ns = 0;
   trephine::simulated::Troubles troubles;
@@ -64,20 +62,6 @@ namespace {
 int fail(TrephineDevice* device, int code, const char* sentence) {
   device->error = sentence;
   return code;
-}
-
-// Element i of an array whose elements have the size that the host wrote into the first.
-template <class T>
-T* element(T* first, std::size_t i) {
-  using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
-  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
-}
-
-bool finite(const double* values, int count) {
-  for (int i = 0; i < count; ++i) {
-    if (!std::isfinite(values[i])) return false;
-  }
-  return true;
 }
 
 void copyText(char* to, std::size_t room, const char* text) {
@@ -179,7 +163,7 @@ int start(TrephineDevice* device) {
   if (device->vanished) {
     return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away, as configured.");
   }
-  device->answered = device->silences.load();
+  device->silence.answer(device->silence.asked());
   for (Arm& arm : device->arms) arm.force_N = {};
   device->running = true;
   return TREPHINE_OK;
@@ -218,16 +202,6 @@ void block(double seconds) {
   }
 }
 
-bool commandsNothing(const TrephineDevice& device, const TrephineArmCommand* commands) {
-  for (std::size_t i = 0; i < device.arms.size(); ++i) {
-    const TrephineArmCommand& command = *element(commands, i);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (command.force_N[axis] != 0.0) return false;
-    }
-  }
-  return true;
-}
-
 int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
   if (!states || states->size < sizeof(TrephineArmState)) {
@@ -263,7 +237,7 @@ int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
     said |= TREPHINE_ARM_ERROR;
   }
   if (since(troubles.warm_after_s)) said |= TREPHINE_ARM_WARM;
-  const bool silenced = device->silences.load() != device->answered;
+  const bool silenced = device->silence.holds();
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = device->arms[i];
     arm.motion = advance(arm.config.parameters, arm.hand, arm.motion,
@@ -281,7 +255,7 @@ int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   if (!device) return TREPHINE_ERROR_ARGUMENT;
   // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silences.load();
+  const std::uint32_t seen = device->silence.asked();
   if (!commands || commands->size < sizeof(TrephineArmCommand)) {
     return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
   }
@@ -300,7 +274,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     if (usable) force_N = {command.force_N[0], command.force_N[1], command.force_N[2]};
     refused = refused || !usable;
   }
-  if (seen != device->answered && commandsNothing(*device, commands)) device->answered = seen;
+  if (commandsNothing(commands, device->arms.size())) device->silence.answer(seen);
   if (refused) {
     return fail(device, TREPHINE_ERROR_ARGUMENT,
                 "A commanded force was not finite: that arm got none.");
@@ -349,7 +323,7 @@ int stop(TrephineDevice* device) {
 }
 
 void safeStop(TrephineDevice* device) {
-  if (device) device->silences.fetch_add(1);
+  if (device) device->silence.ask();
 }
 
 const char* lastError(TrephineDevice* device) {

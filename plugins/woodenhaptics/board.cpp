@@ -13,6 +13,8 @@
 
 namespace trephine::woodenhaptics {
 
+using plugin::now_ns;
+
 namespace {
 
 constexpr unsigned short kVendor = 0x1234, kProduct = 0x0006, kUsagePage = 0xFFAB, kUsage = 0x0200;
@@ -23,12 +25,6 @@ constexpr std::int64_t kFirst_ns = 500'000'000;  // for the first report
 // Without a command for so long the motors get nothing: the host stands still, and its own watchdog
 // may too. The firmware's takes 0.5 s.
 constexpr std::int64_t kSilentHost_ns = 50'000'000;
-
-std::int64_t now_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
-}
 
 timespec at(std::int64_t ns) {
   return {time_t(ns / 1'000'000'000), long(ns % 1'000'000'000)};
@@ -99,7 +95,7 @@ std::vector<Found> findBoards() {
   return boards;
 }
 
-Board::Board(const Silence& silence) : silence_(silence) {
+Board::Board(const plugin::Silence& silence) : silence_(silence) {
   sem_init(&came_, 0, 0);
   sem_init(&due_, 0, 0);
 }

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "silence.h"
+#include "../common/plugin.h"
 
 struct hid_device_;
 
@@ -37,7 +37,7 @@ struct Report {
 class Board {
  public:
   // `silence` outlives it.
-  explicit Board(const Silence& silence);
+  explicit Board(const plugin::Silence& silence);
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
@@ -65,7 +65,7 @@ class Board {
   void writeReports();
   void take(const std::uint8_t* report);
 
-  const Silence& silence_;
+  const plugin::Silence& silence_;
   Found found_;
   hid_device_ *in_ = nullptr, *out_ = nullptr;  // apart: hidapi keeps its error in the handle
   std::thread reader_, writer_;

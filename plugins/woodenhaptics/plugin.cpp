@@ -1,6 +1,6 @@
 // WoodenHaptics behind the C ABI: arguments, states, and what is counts there and metres here. The
 // board is board.h, the arm kinematics.h.
-#include <time.h>
+#include "../common/plugin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "board.h"
@@ -16,6 +15,7 @@
 #include "trephine_device.h"
 
 using namespace trephine::woodenhaptics;
+using namespace trephine::plugin;
 
 namespace {
 
@@ -56,13 +56,6 @@ int fail(TrephineDevice* device, int code, const char* sentence) {
 int failWith(TrephineDevice* device, int code, std::string sentence) {
   device->said = std::move(sentence);
   return fail(device, code, device->said.c_str());
-}
-
-// Element i of an array whose elements have the size that the host wrote into the first.
-template <class T>
-T* element(T* first, std::size_t i) {
-  using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
-  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
 }
 
 // The arm's x towards the user, y right, z up; the host's x right, y up, z towards the user.
@@ -259,24 +252,16 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
   if (!device->running) {
     return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
   }
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  const std::int64_t now_ns = std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
-  bool refused = false, nothing = true;
-  for (std::size_t i = 0; i < device->arms.size(); ++i) {
-    const double* force_N = element(commands, i)->force_N;
-    for (int axis = 0; axis < 3; ++axis) nothing = nothing && force_N[axis] == 0.0;
-  }
+  bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = *device->arms[i];
     const double* force_N = element(commands, i)->force_N;
-    const bool usable =
-        std::isfinite(force_N[0]) && std::isfinite(force_N[1]) && std::isfinite(force_N[2]);
+    const bool usable = finite(force_N, 3);
     refused = refused || !usable;
     std::array<std::int16_t, 3> milliamps{};
     if (usable) {
       Vector torques = jointTorques(arm.angles, toArm(force_N));
-      if (device->gravity && now_ns - arm.last.time_ns < kFresh_ns) {
+      if (device->gravity && now_ns() - arm.last.time_ns < kFresh_ns) {
         const Vector up = gravityTorques(arm.angles);
         for (std::size_t joint = 0; joint < 3; ++joint) torques[joint] += up[joint];
       }
@@ -287,7 +272,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     }
     arm.board.command(milliamps);
   }
-  if (nothing) device->silence.answer(seen);
+  if (commandsNothing(commands, device->arms.size())) device->silence.answer(seen);
   if (!refused) return TREPHINE_OK;
   return fail(device, TREPHINE_ERROR_ARGUMENT,
               "A commanded force was not finite: that arm got none.");
