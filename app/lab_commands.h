@@ -16,6 +16,7 @@ struct RunArguments {
   std::string case_source;  // empty: the scene's own
   std::string labels;       // empty: the scene's own
   std::string operator_file;  // empty: the scene's default
+  std::string arms_file;      // empty: the scene's own devices
   std::optional<double> seconds;  // empty: as long as the script
   std::optional<double> rate_hz;
   std::string controller;  // empty: the scene's

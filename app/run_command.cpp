@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "lab/exercise/exercise_picture.h"
+#include "scene/arms_file.h"
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
 #include "session/case.h"
@@ -42,6 +43,11 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
   if (arguments.rate_hz) scene.rate_hz = *arguments.rate_hz;
   if (!(scene.rate_hz >= 100.0 && scene.rate_hz <= 20000.0)) {
     return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
+  }
+  if (!arguments.arms_file.empty()) {
+    Result<std::vector<ArmDevice>> arms = readArmsFile(arguments.arms_file);
+    if (!arms) return arms.error();
+    if (Status used = useArms(scene, *arms, arguments.arms_file); !used) return used;
   }
   if (arguments.controller.empty()) return {};
   if (const auto kind = kindOf(kControllerNames, arguments.controller)) {

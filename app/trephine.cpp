@@ -34,7 +34,7 @@ int exercise(const ExerciseOptions& options, bool json) {
 
 int run(int argc, char** argv) {
   const Policy policy = policyAtStart();
-  std::string path, scene, out;
+  std::string path, scene, out, arms;
   double seconds = 0.0;
   bool json = false;
   CLI::App cli("Trephine: practise cutting on a CT, with both hands. " +
@@ -44,6 +44,9 @@ int run(int argc, char** argv) {
       cli.add_option("--exercise", scene, "Play this scene's script in the window, then end");
   cli.add_option("--seconds", seconds, "How long; as long as the script where absent")
       ->check(CLI::Range(0.001, kLongest_s))
+      ->needs(exercise_option);
+  cli.add_option("--arms", arms,
+                 "Which devices move its arms, a file (resources/schemas/arms.md)")
       ->needs(exercise_option);
   cli.add_option("--out", out, "Folder for its recording and picture")->needs(exercise_option);
   cli.add_flag("--json", json, "Answer in JSON")->needs(exercise_option);
@@ -75,7 +78,7 @@ int run(int argc, char** argv) {
       read(settings::kTheme) == "light" ? colours::Theme::light : colours::Theme::dark;
   colours::applyTheme(*application, theme, readWithin(settings::kTextScale, 80, 200));
   if (!scene.empty()) {
-    ExerciseOptions options{scene, {}, out, policy};
+    ExerciseOptions options{scene, arms, {}, out, policy};
     if (seconds > 0.0) options.seconds = seconds;
     if (out.empty()) {
       const Result<std::filesystem::path> temporary = temporaryFolder();

@@ -65,6 +65,8 @@ int run(int argc, char** argv) {
                           "A folder of CT, a volume file, phantom:cranium or phantom:abdomen");
   run_command->add_option("--labels", arguments.labels, "The case's label map, a volume file");
   run_command->add_option("--operator", arguments.operator_file, "An operator script");
+  run_command->add_option("--arms", arguments.arms_file,
+                          "Which devices move its arms, a file (resources/schemas/arms.md)");
   run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
   run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
   run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");

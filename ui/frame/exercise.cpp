@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/file.h"
+#include "scene/arms_file.h"
 #include "ui/common/stall_meter.h"
 #include "ui/frame/main_window.h"
 #include "ui/frame/start_up.h"
@@ -37,6 +38,13 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
   if (!script) return script.error();
   if (Status may = checkLocks(*script, locksOf(options.policy, *scene)); !may) return may.error();
+  std::vector<ArmDevice> arms;
+  if (!options.arms.empty()) {
+    Result<std::vector<ArmDevice>> read = readArmsFile(options.arms);
+    if (!read) return read.error();
+    if (Status used = useArms(*scene, *read, options.arms); !used) return used.error();
+    arms = *std::move(read);
+  }
   if (Status made = makeFolder(options.out); !made) return made.error();
   const double seconds = options.seconds.value_or(script->duration_s());
 
@@ -49,6 +57,7 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   window.views().setLayout({ViewLayout::Kind::one_large, 0});
   window.show(Place::train);
   Workstation& workstation = window.workstation();
+  workstation.setArms(std::move(arms));
   enum class Step { opening, starting, running, ending } step = Step::opening;
 
   QObject::connect(&window, &MainWindow::failed, &loop, [&](const Error& error) {

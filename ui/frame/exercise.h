@@ -14,6 +14,7 @@ namespace trephine {
 
 struct ExerciseOptions {
   std::filesystem::path scene;
+  std::filesystem::path arms{};   // a file (scene/arms_file.h); empty: the scene's own devices
   std::optional<double> seconds;  // absent: as long as the scene's script
   std::filesystem::path out;      // recording and picture go there
   Policy policy{};                // what the workstation locks

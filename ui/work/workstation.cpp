@@ -68,6 +68,12 @@ void Workstation::begin(const std::filesystem::path& recordings,
   if (phase_ != Phase::ready || isOpening()) return;
   // It may have come in while it was unlocked.
   if (Status may = mayPractise(*scene_, scene_file_); !may) return fail(may.error());
+  Scene practised = *scene_;
+  if (!arms_) {
+    practised = withArmsOfThisPlace(std::move(practised));
+  } else if (Status used = useArms(practised, *arms_, {}); !used) {
+    return fail(used.error());
+  }
   setPhase(Phase::starting);
   // The name is the time: nothing of the patient, nothing of the folder.
   const std::string stem =
@@ -77,7 +83,7 @@ void Workstation::begin(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = withArmsOfThisPlace(*scene_), of = *case_, again, recordings, stem, poke,
+      [scene = std::move(practised), of = *case_, again, recordings, stem, poke,
        script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();

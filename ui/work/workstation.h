@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "scene/arms_file.h"
 #include "scene/policy.h"
 #include "scene/scene_edits.h"
 #include "session/session.h"
@@ -89,6 +90,10 @@ class Workstation : public QObject {
   Status mayPractise(const Scene& scene, const std::filesystem::path& file) const {
     return unlocked_ ? Status() : checkScene(policy_, scene, file);
   }
+
+  // From the next exercise on these devices move its arms, and the settings say nothing of them: for
+  // an exercise that nobody watches.
+  void setArms(std::vector<ArmDevice> arms) { arms_ = std::move(arms); }
 
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }
@@ -256,6 +261,7 @@ class Workstation : public QObject {
   Status notLocked(Lock lock, const char* what) const;
 
   Policy policy_;
+  std::optional<std::vector<ArmDevice>> arms_;
   bool unlocked_ = false;
   Phase phase_ = Phase::empty;
   std::optional<Scene> scene_;

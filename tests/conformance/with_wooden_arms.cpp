@@ -1,0 +1,121 @@
+// usage: umockdev-wrapper with_wooden_arms REPORT.json COMMAND ARGUMENTS...
+// Plugs in two emulated WoodenHaptics boards in hands that swing them, runs the command, and writes
+// what the boards saw: reports that were sent and answered, and how long an answer took. Ends as the
+// command did.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <thread>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "wooden_arm.h"
+#include "wooden_firmware.h"
+
+namespace trephine {
+namespace {
+
+using test::WoodenFirmware;
+using woodenhaptics::Vector;
+
+// A point mass in a hand that leads it to and fro along the arm's x, under the motors' force.
+struct Swung {
+  Vector at_m{}, speed_m_s{}, angles{};
+
+  void step(const Vector& force_N, double time_s) {
+    constexpr double kMass_kg = 0.15, kHand_N_per_m = 400.0, kHand_Ns_per_m = 6.0, kT_s = 1e-3;
+    const Vector hand{0.025 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s), 0.0, 0.0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double pull = force_N[axis] + kHand_N_per_m * (hand[axis] - at_m[axis]) -
+                          kHand_Ns_per_m * speed_m_s[axis];
+      speed_m_s[axis] += kT_s * pull / kMass_kg;
+      at_m[axis] += kT_s * speed_m_s[axis];
+    }
+  }
+};
+
+class Arm {
+ public:
+  Arm(test::HidTestbed& bed, const char* port) : fd_(bed.plugIn(test::woodenBoard(), port)) {
+    if (fd_ >= 0) firmware_ = std::make_unique<WoodenFirmware>(fd_);
+  }
+  bool isThere() const { return firmware_ != nullptr; }
+  void end() { firmware_->end(); }
+  void step(double time_s) {
+    Vector amps{};
+    const auto milliamps = firmware_->milliamps();
+    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
+    const Vector force_N = test::forceOf(swung_.angles, test::torquesOf(amps));
+    most_N_ = std::max(most_N_, std::hypot(force_N[0], force_N[1], force_N[2]));
+    swung_.step(force_N, time_s);
+    if (!test::anglesAt(swung_.at_m, swung_.angles)) return;
+    const Vector counts = test::countsAt(swung_.angles);
+    firmware_->setCounts({std::int16_t(std::lround(counts[0])), std::int16_t(std::lround(counts[1])),
+                          std::int16_t(std::lround(counts[2]))});
+  }
+  Json report() const {
+    std::vector<double> us = firmware_->answers_us();
+    std::sort(us.begin(), us.end());
+    const auto at = [&](double share) {
+      return us.empty() ? 0.0 : us[std::min(us.size() - 1, std::size_t(share * double(us.size())))];
+    };
+    return {{"reports", firmware_->sent()},
+            {"answered", us.size()},
+            {"answer_ms",
+             {{"median", 1e-3 * at(0.5)}, {"p99", 1e-3 * at(0.99)}, {"max", 1e-3 * at(1.0)}}},
+            {"most_N", most_N_}};
+  }
+
+ private:
+  int fd_;
+  std::unique_ptr<WoodenFirmware> firmware_;
+  Swung swung_;
+  double most_N_ = 0.0;
+};
+
+int run(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: with_wooden_arms REPORT.json COMMAND ARGUMENTS...\n");
+    return 2;
+  }
+  test::HidTestbed bed;
+  Arm left(bed, "1-1"), right(bed, "1-2");
+  if (!left.isThere() || !right.isThere()) {
+    std::fprintf(stderr, "no board can be emulated: %s\n", bed.why().c_str());
+    return 2;
+  }
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execvp(argv[2], argv + 2);
+    std::perror(argv[2]);
+    ::_exit(127);
+  }
+  int status = 0;
+  auto due = WoodenFirmware::Clock::now();
+  for (double time_s = 0.0; ::waitpid(child, &status, WNOHANG) == 0; time_s += 1e-3) {
+    due += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(due);
+    left.step(time_s);
+    right.step(time_s);
+  }
+  left.end();
+  right.end();
+  const Json report{{"left", left.report()}, {"right", right.report()}};
+  if (Status written = writeTextFile(argv[1], report.dump(1) + "\n"); !written) {
+    std::fprintf(stderr, "%s\n", written.error().sentence().c_str());
+    return 2;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+}  // namespace trephine
+
+int main(int argc, char** argv) {
+  return trephine::run(argc, argv);
+}
