@@ -8,6 +8,7 @@
 #include "base/system.h"
 #include "imaging/dicom/ct_writer.h"
 #include "lab/exercise/explain.h"
+#include "lab/devices/device_measurement.h"
 #include "lab/import/import_measurement.h"
 #include "lab/import/read_floor.h"
 #include "lab/machine/jitter_measurement.h"
@@ -322,6 +323,21 @@ int measureReadCommand(const std::string& path, bool json, const Progress& progr
     std::printf("%d files of %.1f MB: read in %.4f s, kept in memory in %.4f s\n", floor->files,
                 double(floor->bytes) / 1048576.0, floor->seconds, floor->kept_seconds);
   }
+  return 0;
+}
+
+int measureDevicesCommand(const DeviceArguments& arguments, const std::string& out, bool json,
+                          const Progress& progress) {
+  constexpr const char* kName = "measure.devices";
+  DeviceOptions options{{}, arguments.seconds, arguments.trials};
+  for (const std::string& library : arguments.benches) {
+    const Result<DeviceBench*> bench = loadDeviceBench(library);
+    if (!bench) return printError(kName, bench.error(), json);
+    options.benches.push_back(*bench);
+  }
+  Result<DeviceMeasurement> measured = measureDevices(options, out, progress);
+  if (!measured) return printError(kName, measured.error(), json);
+  printMeasured(kName, *measured, json);
   return 0;
 }
 

@@ -33,6 +33,12 @@ struct StabilityArguments {
   std::string out;
 };
 
+struct DeviceArguments {
+  double seconds = 60.0;
+  int trials = 20;
+  std::vector<std::string> benches;  // libraries; empty: what is plugged in
+};
+
 struct ImportArguments {
   std::string path;
   std::string series;                // empty: the CT series with most slices
@@ -105,6 +111,8 @@ constexpr const char* kOtherPrograms =
 int measureImportCommand(const ImportOptions& options, const std::string& out, bool json,
                          const Progress&);
 int measureReadCommand(const std::string& path, bool json, const Progress&);
+int measureDevicesCommand(const DeviceArguments& arguments, const std::string& out, bool json,
+                          const Progress&);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

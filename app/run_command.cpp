@@ -45,7 +45,7 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
     return Error{"BAD_ARGUMENT", "The rate must lie between 100 and 20000 Hz", "--rate", ""};
   }
   if (!arguments.arms_file.empty()) {
-    Result<std::vector<ArmDevice>> arms = readArmsFile(arguments.arms_file);
+    Result<std::vector<NamedDevice>> arms = readArmsFile(arguments.arms_file);
     if (!arms) return arms.error();
     if (Status used = useArms(scene, *arms, arguments.arms_file); !used) return used;
   }
@@ -153,6 +153,11 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   Result<Scene> scene = readScene(arguments.scene);
   if (!scene) return scene.error();
   if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
+  if (scene->names_devices) {
+    spdlog::warn("{}: it names devices, as exercises did before; they are used where --arms names "
+                 "no others",
+                 arguments.scene);
+  }
   if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();
   SessionOptions options;
   const std::string script_file =

@@ -234,6 +234,16 @@ int run(int argc, char** argv) {
   auto* read_command = with_json(
       measure_command->add_subcommand("read", "Read every byte of a folder's files, and no more"));
   read_command->add_option("path", file, "A folder")->required();
+  auto* devices_command = with_json(measure_command->add_subcommand(
+      "devices", "Arms that are plugged in, or emulated, in a closed loop and in trouble"));
+  DeviceArguments devices;
+  devices_command->add_option("--seconds", devices.seconds, "Of the closed loop")
+      ->capture_default_str();
+  devices_command->add_option("--bench", devices.benches,
+                              "A library that emulates devices, and can take them out");
+  devices_command->add_option("--trials", devices.trials, "Of each trouble, with a bench")
+      ->capture_default_str();
+  devices_command->add_option("--out", out, "Folder for the table")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -293,6 +303,7 @@ int run(int argc, char** argv) {
     return measureImportCommand(import_options, out, json, progress);
   }
   if (*read_command) return measureReadCommand(file, json, progress);
+  if (*devices_command) return measureDevicesCommand(devices, out, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

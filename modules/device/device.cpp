@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxSentence = 1000;
 
-// A name comes from a scene: it must not lead out of the plugin folder.
+// A name may come from a file: it must not lead out of the plugin folder.
 bool isPluginName(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -153,6 +153,11 @@ std::vector<TrephineArmInfo> DevicePlugin::enumerate() const {
   return infos;
 }
 
+std::string DevicePlugin::whyNone() const {
+  const char* text = api_->last_error(nullptr);
+  return text && *text ? lastSentence(*api_, nullptr) : std::string();
+}
+
 Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin> plugin,
                                              const std::vector<std::uint32_t>& arms,
                                              const std::string& config) {
@@ -172,11 +177,11 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
       !device->handle_) {
     return Error{"NO_DEVICE", lastSentence(api, nullptr), where,
-                 "Connect the arm and switch it on, or choose another device in the scene"};
+                 "Connect the arm and switch it on, or choose another device"};
   }
   if (api.configure(device->handle_, config.c_str()) != TREPHINE_OK) {
     return Error{"BAD_DEVICE_CONFIG", lastSentence(api, device->handle_),
-                 "configuration of " + where, "Correct the device file that the scene names"};
+                 "configuration of " + where, "Correct that file"};
   }
   for (std::uint32_t arm = 0; arm < arms.size(); ++arm) {
     auto capabilities = sized<TrephineCapabilities>();

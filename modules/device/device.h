@@ -28,6 +28,8 @@ class DevicePlugin {
 
   const TrephineDeviceApi& api() const { return *api_; }
   std::vector<TrephineArmInfo> enumerate() const;
+  // After that: why there can be none, empty where the plugin does not say.
+  std::string whyNone() const;
 
  private:
   DevicePlugin() = default;

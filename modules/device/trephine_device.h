@@ -48,6 +48,9 @@ enum {
 enum {
   TREPHINE_ARM_CALIBRATED = 1u << 0, /* it knows where it is [shown] */
   TREPHINE_ARM_WARM = 1u << 1,     /* motors near their thermal limit [half the force, over 2 s] */
+  TREPHINE_ARM_NO_HAND = 1u << 2,  /* it rests in its holder, or nobody holds it [no force while
+                                      that is so; an arm that cannot tell is taken to be held once
+                                      it was moved or a button was pressed] */
   TREPHINE_ARM_LOST = 1u << 3,     /* it is gone, or its pose is old [no force until asked for] */
   TREPHINE_ARM_AT_LIMIT = 1u << 4, /* at the edge of its workspace [shown] */
   TREPHINE_ARM_ERROR = 1u << 6 /* an error that passes [no force until 1 s without; the third in 10
@@ -63,7 +66,9 @@ typedef struct TrephineArmInfo {
 
 typedef struct TrephineCapabilities {
   uint32_t size, version;
-  uint32_t input_dof;    /* 6, or 3 where it does not say how it is turned */
+  /* 6; 3 where it does not say how it is turned; or 0 for a pedal, which has buttons alone: the
+   * fields below but rate_hz are not looked at, and what it is sent it drops. */
+  uint32_t input_dof;
   double workspace_m[3]; /* full extent of x, y, z around the origin */
   double peak_force_N;
   /* What it can be sent for good, and the time constant [s] with which its motors warm: the host
@@ -97,12 +102,13 @@ typedef struct TrephineDeviceApi {
   uint32_t size, version;
   const char* name;
 
-  /* Arms present now. Writes at most `capacity` infos and returns how many there are. */
+  /* Arms present now. Writes at most `capacity` infos and returns how many there are. Where none
+   * can be (a library that is not installed), last_error(NULL) then has the sentence, else "". */
   uint32_t (*enumerate)(TrephineArmInfo* infos, uint32_t capacity);
   /* Opens `n_arms` arms by their place in the enumeration. `*device` is NULL on failure; then
    * last_error(NULL) has the sentence. */
   int (*open)(const uint32_t* arms, uint32_t n_arms, TrephineDevice** device);
-  /* JSON text, as the scene gives it; before start. */
+  /* JSON text, as its file has it; before start. */
   int (*configure)(TrephineDevice* device, const char* json);
   int (*capabilities)(TrephineDevice* device, uint32_t arm, TrephineCapabilities* capabilities);
   int (*calibrate)(TrephineDevice* device, uint32_t arm);

@@ -1,6 +1,5 @@
 // An exercise becomes a folder.
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "base/file.h"
@@ -110,12 +109,8 @@ class Exporter {
       case NamedFile::mesh:
         name = own("tools/", id, ".stl");
         return to_.copyMesh(file, name.get<std::string>());
-      case NamedFile::device: {
-        const auto [known, is_new] = devices_.try_emplace(file, "");
-        if (is_new) known->second = own("devices/", "device", ".json");
-        name = known->second;
-        return is_new ? to_.copy(file, known->second) : Status();
-      }
+      case NamedFile::device:
+        return {};  // the workstation's
       case NamedFile::operatorScript: {
         const Result<OperatorScript> script = readOperatorScript(file, scene_);
         if (!script) return script.error();
@@ -150,7 +145,6 @@ class Exporter {
   fs::path from_;
   const Scene& scene_;
   PartFolder& to_;
-  std::map<fs::path, std::string> devices_;
   std::set<std::string> taken_;
 };
 
@@ -224,6 +218,7 @@ Result<ExportedExercise> exportExercise(const fs::path& scene_file, const std::s
   const Result<Scene> scene = parseScene(*json, scene_file);
   if (!scene) return scene.error();
   if (Status free = checkFreeFolder(folder); !free) return free.error();
+  for (Json& arm : (*json)["arms"]) arm.erase("device");
   Result<PartFolder> part = PartFolder::make(folder);
   if (!part) return part.error();
   Exporter exporter(scene_file, *scene, *part);

@@ -1,6 +1,8 @@
 #include "haptics/device_rules.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace trephine {
 
@@ -40,6 +42,20 @@ double WarmthRule::limit_N(double most_N, bool warm, double sent_N, const ArmDyn
   }
   limits_ = limit_N < most_N;
   return limit_N;
+}
+
+bool HandRule::tick(const Pose& pose_m, bool button, bool lost) {
+  constexpr double kMoved_m = 0.005, kTurned_rad = 5.0 * std::numbers::pi / 180.0;
+  if (lost) {
+    *this = HandRule();
+    return false;
+  }
+  if (held_) return true;
+  if (!first_) first_ = pose_m;
+  const double moved_m = glm::length(pose_m.position - first_->position);
+  const double along = std::abs(glm::dot(pose_m.orientation, first_->orientation));
+  held_ = button || moved_m >= kMoved_m || along <= std::cos(0.5 * kTurned_rad);
+  return held_;
 }
 
 }  // namespace trephine

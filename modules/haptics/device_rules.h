@@ -2,6 +2,8 @@
 // Functions of recorded inputs alone, so that a replay does the same.
 #pragma once
 
+#include <optional>
+
 #include "haptics/arm_dynamics.h"
 
 namespace trephine {
@@ -42,6 +44,18 @@ class WarmthRule {
   double share_ = 1.0;   // of the most, by the motors' own word
   double warmth_ = 0.0;  // h
   bool limits_ = false;
+};
+
+// Whether a hand is known to hold an arm: it has a button down, or has been moved 5 mm or turned 5
+// degrees from where it was at first, since it is here.
+class HandRule {
+ public:
+  // True from then on, until the arm is lost.
+  bool tick(const Pose& pose_m, bool button, bool lost);
+
+ private:
+  bool held_ = false;
+  std::optional<Pose> first_;
 };
 
 }  // namespace trephine

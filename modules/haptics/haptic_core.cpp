@@ -229,6 +229,9 @@ void HapticCore::apply(const Command& command, std::uint64_t tick) {
       if (known) arm.wanted = std::size_t(command.value);
       break;
     }
+    case CommandKind::device_lost:
+    case CommandKind::device_back:
+      break;
   }
 }
 

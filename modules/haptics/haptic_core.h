@@ -169,6 +169,7 @@ class HapticCore {
   void touchPoints(ArmTool& tool, const Motion& motion) const;
   void pressOnElastic(const ArmTool& tool, const Motion& motion, LawInput& in) const;
   bool atWork(const Arm& arm) const;
+  static bool motorIsOff(const Arm& arm, std::uint32_t buttons);
   TissueAround tissueAround() const {
     return {writer_.grid(), *bricks_, lookup_, parameters_.tissues};
   }

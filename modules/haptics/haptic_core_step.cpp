@@ -232,7 +232,8 @@ void HapticCore::send(ArmTick& now) {
       now.parameters.max_force_N, out.flags & TREPHINE_ARM_WARM, glm::length(arm.limiter.sent_N()),
       now.parameters.dynamics, parameters_.period_s);
   out.clamped_N = clampForce(out.bounded_N, limit_N);
-  const bool open = !paused_ && arm.faults == 0;
+  const bool held = !(out.flags & TREPHINE_ARM_NO_HAND);
+  const bool open = !paused_ && arm.faults == 0 && held;
   // While voxels come back in slices, tissue may yet fill in around the tool.
   if (arm.clutched) now.in_contact = now.contact.touching;
   const bool in_tissue = (arm.tool().proxy ? arm.waiting : now.in_contact) || journal_.busy();
@@ -244,7 +245,13 @@ void HapticCore::send(ArmTick& now) {
   if (out.clamped_N != out.bounded_N) out.controller_parts |= kPartClamp;
   if (out.sent_N != out.clamped_N) out.controller_parts |= kPartLimiter;
   arm.cuts = open && !arm.clutched && arm.tool().cutting != Cutting::nothing && !journal_.busy() &&
-             !arm.limiter.waitingForAir();
+             !arm.limiter.waitingForAir() && !motorIsOff(arm, out.buttons);
+}
+
+// A tool with a motor, and the pedal up.
+bool HapticCore::motorIsOff(const Arm& arm, std::uint32_t buttons) {
+  const bool there = buttons & kPedalThere, down = buttons & kPedalMiddle;
+  return arm.tool().cutting == Cutting::driven && there && !down;
 }
 
 // The work of this tick that may pay for cutting.
@@ -273,6 +280,8 @@ void HapticCore::record(ArmTick& now) {
   if (arm.clutched) out.tool_state |= kToolClutched;
   if (arm.wanted != arm.in_hand) out.tool_state |= kToolToCome;
   if (arm.warmth.limits()) out.tool_state |= kToolArmWarm;
+  if (out.flags & TREPHINE_ARM_NO_HAND) out.tool_state |= kToolNoHand;
+  if (motorIsOff(arm, out.buttons)) out.tool_state |= kToolOff;
   out.energy_out_J = arm.energy_out_J;
   out.hand_work_J = arm.work.done_J();
   out.stored_J = arm.work.stored_J();

@@ -91,6 +91,7 @@ bool HapticLoop::step(std::int64_t late_ns) {
     const bool commanded =
         core_.acceptsCommands() &&
         (commands_.pop(command) || (operator_ && operator_->command(tick, command)));
+    if (commanded) obey(command);
     if (!read(input)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
@@ -126,6 +127,7 @@ bool HapticLoop::read(TickInput& input) {
   const double period_s = core_.parameters().period_s;
   std::array<OperatorSetPoint, kMaxArms> set_points{};
   if (operator_) operator_->setPoints(input.tick, set_points.data(), arm_count);
+  std::uint32_t pedal = 0;
   for (std::size_t place = 0; place < devices_.size(); ++place) {
     LoopDevice& d = devices_[place];
     in_call_ = int(place);
@@ -135,26 +137,47 @@ bool HapticLoop::read(TickInput& input) {
     }
     d.device->read(period_s, arm_states_.data());
     if (!leaveCall(place)) return false;
-    for (std::size_t i = 0; i < d.arms.size(); ++i) {
-      const TrephineArmState& state = arm_states_[i];
-      ArmSample& sample = last_samples_[d.arms[i]];
-      if (!(state.flags & TREPHINE_ARM_LOST)) {
-        sample.position_m = {state.position_m[0], state.position_m[1], state.position_m[2]};
-        sample.orientation = Quat(state.orientation[0], state.orientation[1], state.orientation[2],
-                                  state.orientation[3]);
-        sample.buttons = state.buttons;
-      }
-      sample.flags = state.flags;
-      if (isOld(d.arms[i], state)) sample.flags |= TREPHINE_ARM_LOST;
-    }
+    for (std::size_t i = 0; i < d.arms.size(); ++i) take(d.arms[i], arm_states_[i], d.real);
+    if (!d.arms.empty()) continue;
+    // A pedal that is gone is up.
+    const bool lost = arm_states_[0].flags & TREPHINE_ARM_LOST;
+    constexpr std::uint32_t kPedals = 7, kFirstBit = 8;
+    pedal = kPedalThere | (lost ? 0 : (arm_states_[0].buttons & kPedals) << kFirstBit);
   }
   input.arms = last_samples_;
+  for (std::size_t i = 0; i < arm_count; ++i) input.arms[i].buttons |= pedal;
   return true;
+}
+
+void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real) {
+  ArmSample& sample = last_samples_[arm];
+  if (!(state.flags & TREPHINE_ARM_LOST)) {
+    sample.position_m = {state.position_m[0], state.position_m[1], state.position_m[2]};
+    sample.orientation = Quat(state.orientation[0], state.orientation[1], state.orientation[2],
+                              state.orientation[3]);
+    sample.buttons = state.buttons & kArmButtons;
+  }
+  sample.flags = state.flags;
+  if (isOld(arm, state) || lost_by_command_[arm]) sample.flags |= TREPHINE_ARM_LOST;
+  if (probe_) probe_->sampled(arm, state);
+  if (!real) return;
+  const bool lost = sample.flags & TREPHINE_ARM_LOST;
+  const bool held = hands_[arm].tick({sample.position_m, sample.orientation}, sample.buttons, lost);
+  if (!held) sample.flags |= TREPHINE_ARM_NO_HAND;
+}
+
+// What a script says of a device.
+void HapticLoop::obey(const Command& command) {
+  const bool lost = command.kind == CommandKind::device_lost;
+  if (!lost && command.kind != CommandKind::device_back) return;
+  if (command.arm < 0 || command.arm >= kMaxArms) return;
+  lost_by_command_[std::size_t(command.arm)] = lost;
 }
 
 bool HapticLoop::write(const TickRecord& record) {
   for (std::size_t place = 0; place < devices_.size(); ++place) {
     LoopDevice& d = devices_[place];
+    if (d.arms.empty()) continue;  // a pedal
     for (std::size_t i = 0; i < d.arms.size(); ++i) {
       TrephineArmCommand& command = arm_commands_[i];
       command = {sizeof(TrephineArmCommand), TREPHINE_DEVICE_ABI, {}};
@@ -164,6 +187,9 @@ bool HapticLoop::write(const TickRecord& record) {
     in_call_ = int(place);
     d.device->write(arm_commands_.data());
     if (!leaveCall(place)) return false;
+    for (std::size_t arm : d.arms) {
+      if (probe_) probe_->sent(arm, record.arms[arm].sent_N);
+    }
   }
   return true;
 }

@@ -15,6 +15,7 @@
 #include "base/rt/event_ring.h"
 #include "base/rt/latest_value.h"
 #include "device/device.h"
+#include "haptics/device_rules.h"
 #include "haptics/duration_histogram.h"
 #include "haptics/haptic_core.h"
 #include "haptics/loop_clock.h"
@@ -41,11 +42,21 @@ class Operator {
   virtual void moved(const TickRecord& /*record*/, const HapticParameters& /*now*/) {}
 };
 
-// An arm of the core and the device that moves it.
+// Arms of the core and the device that moves them; or a pedal, whose buttons all arms get.
 struct LoopDevice {
   std::unique_ptr<Device> device;
-  std::vector<std::size_t> arms;  // device arm i is arm arms[i] of the core
+  std::vector<std::size_t> arms;  // device arm i is arm arms[i] of the core; none: a pedal
   bool paces = false;             // its samples are the clock of run(): at most one, hasClock()
+  bool real = false;              // a hand may not be on its arms (HandRule)
+};
+
+// Looks on, for a measurement. Haptic thread: no allocation, no lock.
+class LoopProbe {
+ public:
+  virtual ~LoopProbe() = default;
+  // What an arm of the core gave, and, once its device has it, the force that it was given.
+  virtual void sampled(std::size_t arm, const TrephineArmState& state) = 0;
+  virtual void sent(std::size_t arm, const Vec3& force_N) = 0;
 };
 
 // What the window shows, renewed every tick.
@@ -75,6 +86,8 @@ class HapticLoop {
   // `core` unless the loop's thread is left behind. Ticks count from `first_tick`.
   HapticLoop(HapticCore& core, std::vector<LoopDevice> devices, Operator* oper,
              std::uint64_t first_tick = 0);
+  // Before the first tick; it outlives the loop's thread.
+  void setProbe(LoopProbe* probe) { probe_ = probe; }
 
   // Errors: those of the core's parameters and of the devices. Nothing moves before.
   Status startDevices();
@@ -121,6 +134,8 @@ class HapticLoop {
  private:
   bool leaveCall(std::size_t device);
   bool isOld(std::size_t arm, const TrephineArmState& state);
+  void take(std::size_t arm, const TrephineArmState& state, bool real);
+  void obey(const Command& command);
   // False when this thread was left behind in it.
   bool read(TickInput& input);
   bool write(const TickRecord& record);
@@ -129,6 +144,7 @@ class HapticLoop {
   HapticCore& core_;
   std::vector<LoopDevice> devices_;
   Operator* operator_;
+  LoopProbe* probe_ = nullptr;
   rt::EventRing<Command> commands_{64};
   rt::EventRing<TickRecord> records_{8192};
   rt::EventRing<CarveRecord> carves_{1 << 18};
@@ -139,6 +155,8 @@ class HapticLoop {
   std::vector<TrephineArmCommand> arm_commands_;  // scratch for one device
   std::array<ArmSample, kMaxArms> last_samples_{};
   std::array<std::uint64_t, kMaxArms> last_sequence_{}, ticks_without_sample_{};
+  std::array<HandRule, kMaxArms> hands_{};
+  std::array<bool, kMaxArms> lost_by_command_{};
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
   bool stalled_ = false;          // a tick came more than 20 ms late,

@@ -53,7 +53,11 @@ enum class CommandKind : std::int32_t {
   recentre,
   // Of one arm: it takes another of its tools, once neither that nor the one in hand would touch
   // tissue and the arm has no force.
-  tool
+  tool,
+  // Of one arm, by a script: its device is as if it were gone, and there again. The loop does it;
+  // the core takes no notice.
+  device_lost,
+  device_back
 };
 
 struct Command {
@@ -63,7 +67,7 @@ struct Command {
   // the scene's, of a hand that goes back by itself; tool: which of the arm's (ArmParameters).
   std::int32_t value = 0;
   TissueTable tissues{};   // tissues: the new table
-  std::int32_t arm = -1;   // clutch_on, clutch_off, recentre, tool
+  std::int32_t arm = -1;   // clutch_on and what comes after it
   Quat rotation{1, 0, 0, 0};
 };
 
@@ -88,6 +92,19 @@ enum ToolState : std::uint32_t {
   kToolClutched = 1u << 3,  // its arm moves without it
   kToolToCome = 1u << 4,    // another tool is wanted, and comes once this one is out of tissue
   kToolArmWarm = 1u << 5,   // its arm's motors are warm: they give less than they can
+  kToolNoHand = 1u << 6,    // nobody is known to hold its arm: no force and no cutting
+  kToolOff = 1u << 7,       // its motor is off: the pedal is up
+};
+
+// Bits of an arm's buttons, in samples and records.
+enum ArmButton : std::uint32_t {
+  kArmButtons = 0xFFu,  // its own, as the plugin numbers them
+  // The pedal's, the same for all arms, and that there is one: a tool with a motor runs while the
+  // middle one is down.
+  kPedalLeft = 1u << 8,
+  kPedalMiddle = 1u << 9,
+  kPedalRight = 1u << 10,
+  kPedalThere = 1u << 15
 };
 
 // What one arm did in one tick. Forces at the device, in device axes, on the arm.

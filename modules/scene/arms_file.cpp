@@ -4,6 +4,8 @@
 #include <set>
 
 #include "base/json.h"
+#include "base/system.h"
+#include "scene/scene_numbers.h"
 
 namespace trephine {
 
@@ -13,11 +15,12 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostArms = std::size_t(kMaxArms);
 
-ArmDevice readArm(JsonReader& item, const fs::path& folder) {
+}  // namespace
+
+ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
   ArmDevice device;
-  device.name = item.text("name");
   device.plugin = item.text("plugin");
-  device.place = std::uint32_t(item.integer("arm", {0, kMaxArmsOfAPlugin - 1}, 0));
+  readNumbers(item, kDeviceNumbers, device);
   const std::string config = item.text("config", "");
   if (config.empty()) return device;
   device.config = (folder / config).lexically_normal().string();
@@ -28,50 +31,79 @@ ArmDevice readArm(JsonReader& item, const fs::path& folder) {
   return device;
 }
 
-}  // namespace
+void addSimulatedDevices(Scene& scene) {
+  const std::string config = (resourceFolder() / "devices" / "omni.json").string();
+  std::uint32_t place = 0;
+  for (SceneArm& arm : scene.arms) {
+    if (!arm.device.plugin.empty()) continue;
+    const auto taken = [&](const SceneArm& other) {
+      return other.device.plugin == kSimulated && other.device.place == place;
+    };
+    while (std::ranges::any_of(scene.arms, taken)) ++place;
+    arm.device = {kSimulated, place, config};
+  }
+}
 
-Result<std::vector<ArmDevice>> readArmsFile(const fs::path& file) {
+Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
   Result<Json> json = readJsonFile(file);
   if (!json) return json.error();
   JsonReader reader(*json, file.string());
   reader.format("trephine.arms", 1);
-  std::vector<ArmDevice> devices;
+  std::vector<NamedDevice> devices;
   std::set<std::string> names;
   for (JsonReader& item : reader.objects("arms", kMostArms)) {
-    devices.push_back(readArm(item, file.parent_path()));
-    if (names.insert(devices.back().name).second) continue;
-    item.fail("name", "The arm '" + devices.back().name + "' stands twice in the list",
+    devices.push_back({item.text("name"), readDevice(item, file.parent_path())});
+    if (names.insert(devices.back().arm).second) continue;
+    item.fail("name", "The arm '" + devices.back().arm + "' stands twice in the list",
               "Name each arm once");
+  }
+  if (reader.has(kPedal)) {
+    JsonReader pedal = reader.object(kPedal);
+    devices.push_back({kPedal, readDevice(pedal, file.parent_path())});
   }
   if (Status whole = reader.finish(); !whole) return whole.error();
   return devices;
 }
 
-Status useArms(Scene& scene, const std::vector<ArmDevice>& devices, const fs::path& file) {
-  for (const ArmDevice& device : devices) {
-    const auto of = std::find_if(scene.arms.begin(), scene.arms.end(),
-                                 [&](const SceneArm& arm) { return arm.name == device.name; });
-    if (of == scene.arms.end()) {
+Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std::string& where) {
+  Scene with = scene;
+  for (SceneArm& arm : with.arms) {
+    if (arm.device.plugin == kSimulated) arm.device = {};
+  }
+  for (const NamedDevice& of : devices) {
+    if (of.arm == kPedal) {
+      with.pedal = of.device;
+      continue;
+    }
+    const auto arm = std::ranges::find(with.arms, of.arm, &SceneArm::name);
+    if (arm == with.arms.end()) {
       std::string names;
-      for (const SceneArm& arm : scene.arms) names += (names.empty() ? "" : ", ") + arm.name;
-      return Error{"NO_SUCH_ARM", "The scene has no arm '" + device.name + "'", file.string(),
+      for (const SceneArm& one : scene.arms) names += (names.empty() ? "" : ", ") + one.name;
+      return Error{"NO_SUCH_ARM", "The scene has no arm '" + of.arm + "'", where,
                    "Its arms are: " + names};
     }
-    of->plugin = device.plugin;
-    of->device_arm = device.place;
-    of->device_config = device.config;
+    arm->device = of.device;
   }
-  for (const SceneArm& one : scene.arms) {
-    for (const SceneArm& other : scene.arms) {
-      if (&one == &other || one.plugin != other.plugin || one.device_arm != other.device_arm) {
-        continue;
-      }
+  // The simulated ones that others need not have, in their places.
+  for (std::size_t i = 0; i < with.arms.size(); ++i) {
+    const auto has = [&](const SceneArm& arm) {
+      return arm.device.plugin == kSimulated && arm.device.place == scene.arms[i].device.place;
+    };
+    if (!with.arms[i].device.plugin.empty()) continue;
+    if (std::ranges::none_of(with.arms, has)) with.arms[i].device = scene.arms[i].device;
+  }
+  addSimulatedDevices(with);
+  for (const SceneArm& one : with.arms) {
+    for (const SceneArm& other : with.arms) {
+      const ArmDevice &a = one.device, &b = other.device;
+      if (&one == &other || a.plugin != b.plugin || a.place != b.place) continue;
       return Error{"BAD_SCENE",
                    "The arms '" + one.name + "' and '" + other.name + "' would have one device, '" +
-                       one.plugin + "' " + std::to_string(one.device_arm),
-                   file.string(), "Give each arm a device of its own"};
+                       a.plugin + "' " + std::to_string(a.place),
+                   where, "Give each arm a device of its own"};
     }
   }
+  scene = std::move(with);
   return {};
 }
 

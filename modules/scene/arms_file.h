@@ -12,20 +12,26 @@
 
 namespace trephine {
 
-struct ArmDevice {
-  std::string name;         // of the scene's arm
-  std::string plugin;       // device plugin
-  std::uint32_t place = 0;  // in the plugin's enumeration
-  std::string config;       // file of the plugin's configuration, empty for none
+inline constexpr const char* kSimulated = "simulated";
+
+// A device as scenes of before and arms files name it; `folder` is the file's.
+ArmDevice readDevice(JsonReader& item, const std::filesystem::path& folder);
+
+// Gives each arm that has no device a simulated one, which no other arm has.
+void addSimulatedDevices(Scene& scene);
+
+struct NamedDevice {
+  std::string arm;  // the scene's name of it, or kPedal
+  ArmDevice device;
 };
+inline constexpr const char* kPedal = "pedal";
 
 // Errors: those of a file and of JSON, BAD_FIELD (file, field and value named).
-Result<std::vector<ArmDevice>> readArmsFile(const std::filesystem::path& file);
+Result<std::vector<NamedDevice>> readArmsFile(const std::filesystem::path& file);
 
-// Gives the scene's arms of those names these devices; the others keep theirs. Errors: NO_SUCH_ARM
-// where the scene has none of a name, BAD_SCENE where two arms would have one device. `file` is
-// named in them.
-Status useArms(Scene& scene, const std::vector<ArmDevice>& devices,
-               const std::filesystem::path& file);
+// Gives the scene's arms of those names these devices; the others keep theirs, but for a simulated
+// one that another has now: they get the next. Errors: NO_SUCH_ARM where the scene has none of a
+// name, BAD_SCENE where two arms would have one device. `where` is named in them.
+Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std::string& where);
 
 }  // namespace trephine

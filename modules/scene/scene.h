@@ -32,11 +32,17 @@ struct SceneMap {
   double force_scale = 1.0;
 };
 
+// What moves an arm: the workstation's, and an exercise says nothing of it.
+struct ArmDevice {
+  std::string plugin;       // "simulated"
+  std::uint32_t place = 0;  // in the plugin's enumeration
+  std::string config;       // file of the plugin's configuration, empty for none
+  bool operator==(const ArmDevice&) const = default;
+};
+
 struct SceneArm {
   std::string name;                   // "left", "right"
-  std::string plugin;                 // device plugin, "simulated"
-  std::uint32_t device_arm = 0;       // its place in the plugin's enumeration
-  std::string device_config;          // file of the plugin's configuration, empty for none
+  ArmDevice device;                   // a simulated one, unless a recording or an older file names it
   std::string tool;                   // a tool's id: in hand at first
   std::vector<std::string> other_tools;  // ids of those that it may be given; kMostTools in all
   SceneMap map;
@@ -63,6 +69,7 @@ struct Scene {
   std::vector<Landmark> landmarks;
   std::vector<SceneTool> tools;
   std::vector<SceneArm> arms;
+  std::optional<ArmDevice> pedal;  // the workstation's
   std::vector<LawKind> laws;
   ForceAt force_at = ForceAt::tip;
   RemovalKind removal = RemovalKind::work;
@@ -73,6 +80,7 @@ struct Scene {
   std::optional<SceneCard> card;        // said before it begins
   std::optional<SceneOutline> outline;  // drawn on the tissue
   Locks locks;                          // what is not changed while it is practised
+  bool names_devices = false;  // by a file from when exercises did: saving leaves them out
 
   const SceneTool* findTool(const std::string& id) const;
   // The tools of an arm by number, as ArmParameters counts them; null beyond the last.
@@ -91,17 +99,17 @@ const CardText* cardFor(const Scene& scene, std::string_view language);
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
-// field and value named), BAD_TISSUE, BAD_SCENE.
+// field and value named), BAD_TISSUE, BAD_SCENE. Arms without a device get simulated ones, one each.
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 
-// Self-contained: tissues inline and none for elsewhere, no file names but the plugin's, no label
-// map, and a case only where it is a phantom (a path could name a patient). What a recording keeps.
+// Self-contained: tissues inline and none for elsewhere, no file names, the plugin that moved each
+// arm, no label map, and a case only where it is a phantom (a path could name a patient). What a
+// recording keeps.
 Json toJson(const Scene& scene);
 
 // As a file that readScene() reads: everything, tissues inline and those for elsewhere beside them,
-// files named from the root. Neither the labels of a case nor what devices say of their arms is a
-// scene's.
+// files named from the root. Neither the labels of a case nor the devices of its arms are a scene's.
 Json sceneFile(const Scene& scene);
 
 // What would be wrong with that file: an edited scene is held to the rules of one that is read. The

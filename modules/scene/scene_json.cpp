@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/arms_file.h"
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
 #include "scene/scene_structures.h"
@@ -34,16 +35,9 @@ SceneMap readMap(JsonReader map) {
 SceneArm readArm(JsonReader& item, const fs::path& folder, int& delay_ticks) {
   SceneArm arm;
   arm.name = item.text("name");
-  JsonReader device = item.object("device");
-  arm.plugin = device.text("plugin");
-  readNumbers(device, kDeviceNumbers, arm);
-  const std::string config = device.text("config", "");
-  if (!config.empty()) {
-    arm.device_config = (folder / config).lexically_normal().string();
-    std::error_code ec;
-    if (!fs::is_regular_file(arm.device_config, ec)) {
-      device.fail("config", "The file '" + config + "' is not there", "Check the name");
-    }
+  if (item.has("device")) {
+    JsonReader device = item.object("device");
+    arm.device = readDevice(device, folder);
   }
   arm.tool = item.text("tool");
   if (item.has("other_tools")) arm.other_tools = item.texts("other_tools", kMostTools - 1);
@@ -161,7 +155,8 @@ void checkReferences(JsonReader& reader, const Scene& scene) {
   checkNamesDiffer(reader, "laws", scene.laws, [](LawKind law) { return nameOf(kLawNames, law); });
   std::set<std::string> devices;
   for (const SceneArm& arm : scene.arms) {
-    if (!devices.insert(arm.plugin + "/" + std::to_string(arm.device_arm)).second) {
+    const ArmDevice& device = arm.device;
+    if (!devices.insert(device.plugin + "/" + std::to_string(device.place)).second) {
       reader.fail("arms", "The arm '" + arm.name + "' uses a device that another arm uses");
     }
     checkToolsOf(reader, scene, arm);
@@ -223,8 +218,11 @@ Result<Scene> parseScene(const Json& json, const fs::path& file) {
   for (JsonReader& item : reader.objects("tools", kMostInAList))
     scene.tools.push_back(readSceneTool(item, folder));
   std::vector<int> delay_ticks;
-  for (JsonReader& item : reader.objects("arms", kMostInAList))
+  for (JsonReader& item : reader.objects("arms", kMostInAList)) {
+    scene.names_devices = scene.names_devices || item.has("device");
     scene.arms.push_back(readArm(item, folder, delay_ticks.emplace_back(0)));
+  }
+  addSimulatedDevices(scene);
   for (const std::string& name : reader.texts("laws", kMostInAList)) {
     if (auto kind = kindOf(kLawNames, name)) {
       scene.laws.push_back(*kind);
@@ -311,9 +309,7 @@ Json sceneFile(const Scene& scene) {
     writeNumbers(tool, kLookNumbers, look);
     tool["axis"] = {look.axis.x, look.axis.y, look.axis.z};
   }
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    name(json["arms"][i]["device"], "config", scene.arms[i].device_config);
-  }
+  for (Json& arm : json["arms"]) arm.erase("device");
   if (scene.view.distance_mm != SceneView{}.distance_mm || !scene.view.landmark.empty()) {
     writeNumbers(json["view"], kViewNumbers, scene.view);
   }
@@ -348,8 +344,7 @@ Json toJson(const Scene& scene) {
   }
   for (const SceneTool& t : scene.tools) tools.push_back(toJson(t));
   for (const SceneArm& a : scene.arms) {
-    Json map, device;
-    device["plugin"] = a.plugin;
+    Json map, device{{"plugin", a.device.plugin}};
     if (a.map.fixed) {
       const Quat& q = a.map.fixed->rotation;
       writeNumbers(map, kWorkspaceMapNumbers, *a.map.fixed);
@@ -358,7 +353,7 @@ Json toJson(const Scene& scene) {
       map["landmark"] = a.map.landmark;
       writeNumbers(map, kSceneMapNumbers, a.map);
     }
-    writeNumbers(device, kDeviceNumbers, a);
+    writeNumbers(device, kDeviceNumbers, a.device);
     Json arm{{"name", a.name}, {"device", device}, {"tool", a.tool}, {"map", map}};
     if (!a.other_tools.empty()) arm["other_tools"] = a.other_tools;
     writeNumbers(arm, kArmNumbers, a);

@@ -49,7 +49,7 @@ std::string sceneNumbersPage() {
          schemaLines<Landmark>("landmark, organ", kBulkNumbers) +
          schemaLines<Landmark>("landmark, place", kPlaceNumbers) +
          schemaLines<Landmark>("landmark", kLandmarkNumbers) +
-         schemaLines<SceneArm>("arm, `device`", kDeviceNumbers) +
+         schemaLines<ArmDevice>("arm, `device`", kDeviceNumbers) +
          schemaLines<SceneArm>("arm", kArmNumbers) +
          schemaLines<SceneMap>("arm, `map`", kSceneMapNumbers) +
          schemaLines<WorkspaceMap>("arm, fixed `map`", kWorkspaceMapNumbers) +

@@ -61,9 +61,9 @@ inline constexpr NumberOf<Landmark> kLandmarkNumbers[] = {
      &Landmark::run_mm},
 };
 
-inline constexpr NumberOf<SceneArm> kDeviceNumbers[] = {
+inline constexpr NumberOf<ArmDevice> kDeviceNumbers[] = {
     {{"arm", {0, kMaxArmsOfAPlugin - 1}, Given::may_be, "place in the plugin's list"},
-     &SceneArm::device_arm},
+     &ArmDevice::place},
 };
 inline constexpr NumberOf<SceneArm> kArmNumbers[] = {
     {{"max_force_N", kPeakForce_N, Given::may_be, "sent at most; never more than the device gives"},

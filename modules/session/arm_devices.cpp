@@ -13,19 +13,12 @@ namespace trephine {
 
 namespace {
 
-// Held to the rules of every JSON file before the plugin sees it.
-Result<std::string> readDeviceFile(const std::string& file) {
-  if (file.empty()) return std::string("{}");
-  Result<Json> json = readJsonFile(file);
-  if (!json) return json.error();
-  return json->dump();
-}
-
 // The first whose samples come at the scene's rate is the clock: a sample of it is never old. Where
 // there is none, the host's is.
 void choosePace(const Scene& scene, std::vector<LoopDevice>& devices) {
   constexpr double kSameRate = 1e-3;
   for (LoopDevice& of : devices) {
+    if (of.arms.empty()) continue;
     const double rate_hz = of.device->capabilities(0).rate_hz;
     if (!of.device->hasClock() || std::abs(rate_hz / scene.rate_hz - 1.0) > kSameRate) continue;
     of.paces = true;
@@ -42,35 +35,50 @@ double delayOf(const LoopDevice& of, const TrephineCapabilities& able) {
 
 }  // namespace
 
+Result<std::string> readDeviceFile(const std::string& file) {
+  if (file.empty()) return std::string("{}");
+  Result<Json> json = readJsonFile(file);
+  if (!json) return json.error();
+  return json->dump();
+}
+
+Result<std::unique_ptr<Device>> openDevice(const std::string& plugin_name,
+                                           const std::vector<std::uint32_t>& places,
+                                           const std::string& config) {
+  Result<std::shared_ptr<const DevicePlugin>> plugin =
+      DevicePlugin::load(plugin_name, pluginFolder());
+  if (!plugin) return plugin.error();
+  Result<std::string> text = readDeviceFile(config);
+  if (!text) return text.error();
+  Result<std::unique_ptr<Device>> device = Device::open(*plugin, places, *text);
+  if (device) return device;
+  Error error = device.error();
+  if (error.code == "BAD_DEVICE_CONFIG" && !config.empty()) error.where = config;
+  return error;
+}
+
 Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities) {
-  std::map<std::string, std::vector<std::size_t>> arms_by_plugin;
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> arms_by_device;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    arms_by_plugin[scene.arms[i].plugin].push_back(i);
+    const ArmDevice& device = scene.arms[i].device;
+    arms_by_device[{device.plugin, device.config}].push_back(i);
   }
   capabilities.resize(scene.arms.size());
-  for (const auto& [name, arms] : arms_by_plugin) {
-    Result<std::shared_ptr<const DevicePlugin>> plugin = DevicePlugin::load(name, pluginFolder());
-    if (!plugin) return plugin.error();
+  for (const auto& [key, arms] : arms_by_device) {
+    const auto& [name, config] = key;
     std::vector<std::uint32_t> device_arms;
-    const std::string& config = scene.arms[arms.front()].device_config;
-    for (std::size_t arm : arms) {
-      device_arms.push_back(scene.arms[arm].device_arm);
-      if (scene.arms[arm].device_config != config) {
-        return Error{"BAD_SCENE", "The arms of the plugin '" + name + "' name different files",
-                     "arms: device.config", "One file configures all arms of a plugin"};
-      }
-    }
-    Result<std::string> text = readDeviceFile(config);
-    if (!text) return text.error();
-    Result<std::unique_ptr<Device>> device = Device::open(*plugin, device_arms, *text);
-    if (!device) {
-      Error error = device.error();
-      if (error.code == "BAD_DEVICE_CONFIG" && !config.empty()) error.where = config;
-      return error;
-    }
+    for (std::size_t arm : arms) device_arms.push_back(scene.arms[arm].device.place);
+    Result<std::unique_ptr<Device>> device = openDevice(name, device_arms, config);
+    if (!device) return device.error();
     for (std::size_t i = 0; i < arms.size(); ++i) {
       capabilities[arms[i]] = (*device)->capabilities(i);
+      if (capabilities[arms[i]].input_dof == 0) {
+        return Error{"NO_DEVICE",
+                     "The " + scene.arms[arms[i]].name + " arm's device '" + name +
+                         "' is a pedal: it has no place",
+                     "", "Choose an arm for it"};
+      }
       if (scene.rate_hz > capabilities[arms[i]].rate_hz) {
         return Error{"BAD_SCENE",
                      "The scene asks for " + plainNumber(scene.rate_hz) + " Hz, and the " +
@@ -79,7 +87,14 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                      "rate_hz", "Lower the scene's rate_hz, or use another device"};
       }
     }
-    devices.push_back({*std::move(device), arms});
+    const bool real = !(*device)->takesTargets();
+    devices.push_back({*std::move(device), arms, false, real});
+  }
+  if (scene.pedal) {
+    const ArmDevice& of = *scene.pedal;
+    Result<std::unique_ptr<Device>> pedal = openDevice(of.plugin, {of.place}, of.config);
+    if (!pedal) return pedal.error();
+    devices.push_back({*std::move(pedal), {}});
   }
   choosePace(scene, devices);
   for (const LoopDevice& of : devices) {
@@ -89,7 +104,7 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
       const double delay_s = delayOf(of, able);
       if (delay_s * scene.rate_hz > kMaxDelayTicks) {
         return Error{"BAD_SCENE",
-                     "The " + arm.name + " arm's device '" + arm.plugin + "' answers " +
+                     "The " + arm.name + " arm's device '" + arm.device.plugin + "' answers " +
                          plainNumber(1e3 * delay_s) + " ms late, more than " +
                          std::to_string(kMaxDelayTicks) + " periods of the scene's " +
                          plainNumber(scene.rate_hz) + " Hz",
@@ -104,18 +119,22 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
   return {};
 }
 
-Result<std::vector<Vec3>> readWorkspaces(Scene scene) {
-  std::vector<LoopDevice> devices;
-  std::vector<TrephineCapabilities> capabilities;
-  if (Status opened = openDevices(scene, devices, capabilities); !opened) return opened.error();
-  std::vector<Vec3> sizes;
-  for (const TrephineCapabilities& of : capabilities) {
-    sizes.push_back(1000.0 * Vec3(of.workspace_m[0], of.workspace_m[1], of.workspace_m[2]));
+Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const FoundArms& here) {
+  for (const FoundArm& found : here.arms) {
+    if (found.isSame(wanted)) return ArmDevice{found.plugin, found.place, deviceFile(found.plugin)};
   }
-  return sizes;
+  const auto of_plugin = [&](const Error& problem) {
+    return problem.where.find("trephine_" + wanted.plugin + ".so") != std::string::npos;
+  };
+  const auto problem = std::ranges::find_if(here.problems, of_plugin);
+  if (problem != here.problems.end()) return *problem;
+  return Error{"NO_DEVICE",
+               "The device of the " + arm + " arm is not there: " +
+                   (wanted.model.empty() ? wanted.plugin : wanted.model) + " at " + wanted.bus_path,
+               "", "Plug it in, or choose another under Devices"};
 }
 
-Status readArmDynamics(Scene& scene) {
+Status readArmDynamics(Scene& scene, std::vector<Vec3>* workspaces_mm) {
   std::vector<LoopDevice> devices;
   std::vector<TrephineCapabilities> capabilities;
   Scene asked = scene;
@@ -123,6 +142,12 @@ Status readArmDynamics(Scene& scene) {
   if (Status opened = openDevices(asked, devices, capabilities); !opened) return opened;
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
     scene.arms[i].dynamics = asked.arms[i].dynamics;
+  }
+  if (!workspaces_mm) return {};
+  workspaces_mm->clear();
+  for (const TrephineCapabilities& of : capabilities) {
+    const Vec3 size_m(of.workspace_m[0], of.workspace_m[1], of.workspace_m[2]);
+    workspaces_mm->push_back(1000.0 * size_m);
   }
   return {};
 }

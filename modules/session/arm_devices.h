@@ -4,12 +4,23 @@
 #include <vector>
 
 #include "base/result.h"
+#include "device/find_arms.h"
 #include "haptics/haptic_loop.h"
 #include "scene/scene.h"
 
 namespace trephine {
 
-// Opens one device a plugin, holding all of the scene's arms that it moves, without starting it.
+// The text of a file that configures a plugin's arms, "{}" for none: held to the rules of every JSON
+// file before the plugin sees it.
+Result<std::string> readDeviceFile(const std::string& file);
+
+// Arms of one plugin, by their places in its enumeration. Errors: those of plugins, files, devices.
+Result<std::unique_ptr<Device>> openDevice(const std::string& plugin,
+                                           const std::vector<std::uint32_t>& places,
+                                           const std::string& config);
+
+// Opens one device for each plugin and file of configuration, holding all of the scene's arms that
+// it moves, without starting it; and the pedal, where there is one.
 // `capabilities` has one an arm afterwards; the arms' dynamics and their force limits [N] are those
 // of the devices. Errors: those of the devices, BAD_SCENE where a device cannot do what the scene
 // asks of it. Any thread that has them alone.
@@ -17,11 +28,12 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
                    std::vector<TrephineCapabilities>& capabilities);
 
 // Asks the plugins of the scene's arms what those arms are, without starting them: fills in the
-// arms' dynamics, with the most that the devices give; what the scene asks for stays. Errors: as
-// above.
-Status readArmDynamics(Scene& scene);
+// arms' dynamics, with the most that the devices give; what the scene asks for stays. And how far
+// each arm reaches: the full extents of its workspace, device axes, mm. Errors: as above.
+Status readArmDynamics(Scene& scene, std::vector<Vec3>* workspaces_mm = nullptr);
 
-// How far each arm reaches: the full extents of its workspace, device axes, mm. Errors: as above.
-Result<std::vector<Vec3>> readWorkspaces(Scene scene);
+// A device that a workstation has chosen for the scene's arm of that name, as it is plugged in now.
+// Errors: NO_DEVICE, or why its plugin cannot be asked.
+Result<ArmDevice> deviceOf(const FoundArm& wanted, const std::string& arm, const FoundArms& here);
 
 }  // namespace trephine

@@ -9,7 +9,7 @@ namespace trephine {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, CommandKind>, 13> kCommandNames{
+constexpr std::array<std::pair<std::string_view, CommandKind>, 15> kCommandNames{
     {{"undo", CommandKind::undo},
      {"redo", CommandKind::redo},
      {"reset", CommandKind::reset},
@@ -22,7 +22,9 @@ constexpr std::array<std::pair<std::string_view, CommandKind>, 13> kCommandNames
      {"clutch_on", CommandKind::clutch_on},
      {"clutch_off", CommandKind::clutch_off},
      {"recentre", CommandKind::recentre},
-     {"tool", CommandKind::tool}}};
+     {"tool", CommandKind::tool},
+     {"device_lost", CommandKind::device_lost},
+     {"device_back", CommandKind::device_back}}};
 
 constexpr std::size_t kMostWaypoints = 100'000;
 constexpr std::size_t kMostCommands = 10'000;

@@ -130,6 +130,7 @@ Status Session::set(const Scene& scene, const Case& of, const SessionOptions& op
   engine_ = std::make_shared<Engine>(*core_, std::move(devices), std::move(script));
   engine_->live_hands.write(hands_);
   loop_ = &engine_->loop;
+  loop_->setProbe(options.probe);
   for (const LoopDevice& d : loop_->devices()) {
     for (std::size_t i : d.arms) simulated_[i] = d.device->takesTargets();
   }
@@ -270,7 +271,7 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
       Error{"DEVICE_STUCK",
             (stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
                                    : "The arm " + names + " stopped answering and was left behind"),
-            "device '" + scene_.arms[stuck.arms.front()].plugin + "'",
+            "device '" + scene_.arms[stuck.arms.front()].device.plugin + "'",
             "What was done until then is recorded. Switch the arm off and on, then "
             "start Trephine again"};
   // A watchdog that a device holds as well still knows the others; they are silent, and close with

@@ -40,6 +40,7 @@ struct SessionOptions {
   bool hands_outside = false;
   // Nothing is cut, whatever the tissues say, and pokes() tells what was felt.
   bool poke = false;
+  LoopProbe* probe = nullptr;  // looks on; it outlives the session
 };
 
 class Session {

@@ -168,6 +168,7 @@ const Arms::Samples& Arms::latest() {
         out.of[arm].transform[i] = transforms_[arm][i].load(std::memory_order_relaxed);
       }
       out.of[arm].buttons = buttons_[arm].load(std::memory_order_relaxed);
+      out.of[arm].in_holder = in_holder_[arm].load(std::memory_order_relaxed);
     }
     out.time_ns = time_ns_.load(std::memory_order_relaxed);
     out.number = number_.load(std::memory_order_relaxed);
@@ -251,6 +252,7 @@ void Arms::frame() {
     hd_.beginFrame(handles_[arm]);
     hd_.getDoublev(kCurrentTransform, samples[arm].transform);
     hd_.getIntegerv(kCurrentButtons, &samples[arm].buttons);
+    hd_.getBooleanv(kCurrentInkwell, &samples[arm].in_holder);
   }
   takeErrors();
   const std::int64_t sampled_ns = now_ns();
@@ -261,6 +263,7 @@ void Arms::frame() {
       transforms_[arm][i].store(samples[arm].transform[i], std::memory_order_relaxed);
     }
     buttons_[arm].store(samples[arm].buttons, std::memory_order_relaxed);
+    in_holder_[arm].store(samples[arm].in_holder, std::memory_order_relaxed);
   }
   time_ns_.store(sampled_ns, std::memory_order_relaxed);
   number_.fetch_add(1, std::memory_order_release);

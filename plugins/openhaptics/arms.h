@@ -21,6 +21,7 @@ constexpr std::size_t kMostArms = 2;
 struct Sample {
   double transform[16] = {};  // mm
   int buttons = 0;
+  std::uint8_t in_holder = 0;  // the stylus
 };
 
 class Arms {
@@ -80,6 +81,7 @@ class Arms {
   std::atomic<std::int64_t> time_ns_{0};
   std::array<std::array<std::atomic<double>, 16>, kMostArms> transforms_{};
   std::array<std::atomic<int>, kMostArms> buttons_{};
+  std::array<std::atomic<std::uint8_t>, kMostArms> in_holder_{};
   std::array<std::atomic<bool>, kMostArms> errors_{}, lost_{};
   std::array<std::atomic<std::int64_t>, kMostArms> warm_ns_{};
   Samples told_;

@@ -41,6 +41,7 @@ const Library* loadLibrary(std::string& why) {
       {"hdEnable", reinterpret_cast<void**>(&hd.enable)},
       {"hdDisable", reinterpret_cast<void**>(&hd.disable)},
       {"hdGetIntegerv", reinterpret_cast<void**>(&hd.getIntegerv)},
+      {"hdGetBooleanv", reinterpret_cast<void**>(&hd.getBooleanv)},
       {"hdGetDoublev", reinterpret_cast<void**>(&hd.getDoublev)},
       {"hdSetDoublev", reinterpret_cast<void**>(&hd.setDoublev)},
       {"hdGetError", reinterpret_cast<void**>(&hd.getError)},

@@ -24,6 +24,7 @@ constexpr std::uint16_t kPriority = 0x7FFF;  // the usual one
 
 enum : HDenum {
   kCurrentButtons = 0x2000,
+  kCurrentInkwell = 0x2002,    // a boolean: the stylus is in its holder
   kCurrentTransform = 0x2052,  // 16 doubles, column by column, mm
   kUsableWorkspace = 0x2551,   // 6 doubles, mm: low, high
   kInputDof = 0x2553,
@@ -58,6 +59,7 @@ struct Library {
   void (*enable)(HDenum) = nullptr;
   void (*disable)(HDenum) = nullptr;
   void (*getIntegerv)(HDenum, int*) = nullptr;
+  void (*getBooleanv)(HDenum, std::uint8_t*) = nullptr;
   void (*getDoublev)(HDenum, double*) = nullptr;
   void (*setDoublev)(HDenum, const double*) = nullptr;
   HDErrorInfo (*getError)() = nullptr;

@@ -61,8 +61,8 @@ int failWith(TrephineDevice* device, int code, std::string sentence) {
 
 // The library finds no arms by itself: these are places for the names that a configuration gives.
 uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
-  std::string why;
-  if (!loadLibrary(why)) return 0;
+  open_error.clear();
+  if (!loadLibrary(open_error)) return 0;
   for (std::uint32_t i = 0; infos && i < std::min<std::uint32_t>(capacity, kMostArms); ++i) {
     TrephineArmInfo* info = element(infos, i);
     if (infos->size < sizeof(TrephineArmInfo)) break;
@@ -281,6 +281,7 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
     turnOf(m, state.orientation);
     state.buttons = std::uint32_t(samples.of[i].buttons);
     state.flags = TREPHINE_ARM_CALIBRATED;
+    if (samples.of[i].in_holder) state.flags |= TREPHINE_ARM_NO_HAND;
     if (arms.warm(i)) state.flags |= TREPHINE_ARM_WARM;
     if (arms.hadError(i)) state.flags |= TREPHINE_ARM_ERROR;
     if (!arms.lost(i)) continue;

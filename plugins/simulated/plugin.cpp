@@ -25,8 +25,8 @@ using namespace trephine::plugin;
 
 namespace {
 
-constexpr const char* kBusPaths[] = {"sim-left", "sim-right"};
-constexpr std::uint32_t kArms = 2;
+constexpr const char* kBusPaths[] = {"sim-0", "sim-1", "sim-2", "sim-3"};
+constexpr std::uint32_t kArms = 4;
 constexpr double kMaxStep_s = 0.1;      // longer steps are refused: they would block
 constexpr double kMaxReach_m = 1000.0;  // of a hand's rest pose
 constexpr double kMaxHandStiffness = 1e9;
@@ -69,6 +69,7 @@ void copyText(char* to, std::size_t room, const char* text) {
 }
 
 std::uint32_t enumerate(TrephineArmInfo* infos, std::uint32_t capacity) {
+  open_error[0] = '\0';
   for (std::uint32_t i = 0; i < kArms && i < capacity; ++i) {
     TrephineArmInfo* info = element(infos, i);
     if (info->size < sizeof(TrephineArmInfo)) return kArms;
@@ -84,21 +85,21 @@ int open(const std::uint32_t* places, std::uint32_t n_arms, TrephineDevice** dev
   *device = nullptr;
   open_error[0] = '\0';
   if (!places || n_arms == 0 || n_arms > kArms) {
-    copyText(open_error, sizeof(open_error), "The simulated plugin opens one or two arms.");
+    copyText(open_error, sizeof(open_error), "The simulated plugin opens one to four arms.");
     return TREPHINE_ERROR_ARGUMENT;
   }
   for (std::uint32_t i = 0; i < n_arms; ++i) {
+    if (std::count(places, places + i, places[i]) > 0) {
+      std::snprintf(open_error, sizeof(open_error), "Simulated arm %u is asked for twice.",
+                    places[i]);
+      return TREPHINE_ERROR_ARGUMENT;
+    }
     if (places[i] >= kArms) {
       std::snprintf(open_error, sizeof(open_error),
-                    "There is no simulated arm %u: the arms are 0 (left) and 1 (right).",
+                    "There is no simulated arm %u: the arms are 0 to 3.",
                     places[i]);
       return TREPHINE_ERROR_NO_DEVICE;
     }
-  }
-  if (n_arms == 2 && places[0] == places[1]) {
-    std::snprintf(open_error, sizeof(open_error), "Simulated arm %u is asked for twice.",
-                  places[0]);
-    return TREPHINE_ERROR_ARGUMENT;
   }
   try {
     auto* opened = new TrephineDevice;

@@ -67,6 +67,7 @@ Vector toArm(const double host[3]) {
 }
 
 uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
+  open_error.clear();
   const std::vector<Found> boards = findBoards();
   for (std::uint32_t i = 0; infos && i < capacity && i < boards.size(); ++i) {
     TrephineArmInfo* info = element(infos, i);

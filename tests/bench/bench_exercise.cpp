@@ -123,7 +123,6 @@ std::filesystem::path repeated(const std::filesystem::path& file, double seconds
   absolute(scene["tissues"]);
   absolute(scene["operator"]);
   for (Json& tool : scene["tools"]) absolute(tool["file"]);
-  for (Json& arm : scene["arms"]) absolute(arm["device"]["config"]);
   Json script = *readJsonFile(scene["operator"].get<std::string>());
   double once_s = 0.0;
   for (const Json& arm : script["arms"]) {

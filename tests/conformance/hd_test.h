@@ -12,10 +12,14 @@ struct HdArm {
   std::atomic<std::uint32_t> errors{0};  // how many frames more it is reported in
   std::atomic<std::uint32_t> calibration{0x5000};
   std::atomic<bool> there{true};
+  std::atomic<double> swing_mm{0.0};  // of this one alone
+  std::atomic<int> buttons{0};
+  std::atomic<bool> in_holder{false};
   std::array<std::atomic<double>, 3> force_N{};  // since the last frame's end
   std::atomic<bool> enabled{false};
   std::atomic<std::uint64_t> error_frame{0};       // in which it was reported last
-  std::array<std::atomic<double>, 8192> sent_N{};  // by frame, around and around
+  static constexpr std::size_t kFrames = 131072;
+  std::array<std::atomic<double>, kFrames> sent_N{};  // by frame, around and around
 };
 
 struct HdTest {
@@ -32,6 +36,9 @@ struct HdTest {
       arm.error = arm.errors = 0;
       arm.calibration = 0x5000;
       arm.there = true;
+      arm.swing_mm = 0.0;
+      arm.buttons = 0;
+      arm.in_holder = false;
     }
     silent = no_numbers = false;
     block_s = swing_mm = 0.0;

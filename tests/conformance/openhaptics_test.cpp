@@ -116,6 +116,23 @@ TEST_F(OpenHaptics, ThePoseIsInMetresFromTheMiddleOfTheWorkspaceAndTurnedAsTheSt
   EXPECT_NEAR(state.orientation[2], std::sin(0.15), 1e-9);
 }
 
+TEST_F(OpenHaptics, AStylusInItsHolderIsInNobodysHand) {
+  auto device = Device::open(openhaptics, {0, 1}, config(kBoth));
+  ASSERT_TRUE(device && (*device)->start().ok());
+  const auto flags = [&](std::size_t arm) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    TrephineArmState states[2]{};
+    (*device)->read(1e-3, states);
+    return states[arm].flags;
+  };
+  EXPECT_FALSE(flags(1) & TREPHINE_ARM_NO_HAND);
+  hd->arms[1].in_holder = true;
+  EXPECT_TRUE(flags(1) & TREPHINE_ARM_NO_HAND);
+  EXPECT_FALSE(flags(0) & TREPHINE_ARM_NO_HAND);
+  hd->arms[1].in_holder = false;
+  EXPECT_FALSE(flags(1) & TREPHINE_ARM_NO_HAND);
+}
+
 TEST_F(OpenHaptics, AnEncoderResetIsNeverDoneByItself) {
   hd->styles = 0b001;
   hd->arms[0].calibration = 0x5001;
@@ -203,7 +220,7 @@ class OpenHapticsCutting : public OpenHaptics {
     double most = 0.0;
     const std::uint64_t now = hd->frames;
     for (std::uint64_t i = 1; i <= std::uint64_t(1000.0 * seconds); ++i) {
-      most = std::max(most, hd->arms[arm].sent_N[(now - i) % 8192].load());
+      most = std::max(most, hd->arms[arm].sent_N[(now - i) % test::HdArm::kFrames].load());
     }
     return most;
   }
@@ -235,7 +252,7 @@ TEST_F(OpenHapticsCutting, AnErrorThatPassesIsNoForceInItsFrameAndComesBackAfter
     pass_s(0.4);
     const std::uint64_t at = hd->arms[0].error_frame;
     for (std::uint64_t i = 1; i < 800; ++i) {
-      ASSERT_EQ(hd->arms[0].sent_N[(at + i) % 8192], 0.0)
+      ASSERT_EQ(hd->arms[0].sent_N[(at + i) % test::HdArm::kFrames], 0.0)
           << std::hex << error << " +" << std::dec << i;
     }
     pass_s(1.2);

@@ -60,6 +60,7 @@ INNER = {
         "import": {"common"},
         "render": {"common", "import"},
         "exercise": {"common", "trades"},
+        "devices": {"common"},
     },
     "ui": {
         "common": set(),
@@ -71,7 +72,8 @@ INNER = {
         "prepare": {"common", "views", "work", "tissue", "structures"},
         "train": {"common", "views", "work"},
         "review": {"common", "work", "views"},
-        "frame": {"common", "views", "work", "cases", "prepare", "train", "review"},
+        "devices": {"common", "work"},
+        "frame": {"common", "views", "work", "cases", "prepare", "train", "review", "devices"},
     },
 }
 

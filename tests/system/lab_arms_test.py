@@ -77,5 +77,45 @@ class WoodenArmsTest(LabTest):
             self.assertLess(board["answer_ms"]["median"], 5.0)
 
 
+class MeasureDevices(LabTest):
+    """`measure devices` on emulated arms: short, for what it says and not for how fast it is."""
+
+    def measure(self, bench, *under, environment=None):
+        out = self.folder / "devices"
+        done = subprocess.run(
+            [*under, LAB, "measure", "devices", "--bench", bench, "--seconds", "4", "--trials", "2", "--out", out,
+             "--json"], capture_output=True, text=True, timeout=280, env={**os.environ, **(environment or {})})
+        self.assertEqual(done.returncode, 0, done.stdout[-800:] + done.stderr[-800:])
+        self.assertIn("plugin,arms,seconds", (out / "devices.csv").read_text())
+        [row] = json.loads(done.stdout)["rows"]
+        print(json.dumps(row, indent=1))
+        self.assertEqual(row["arms"], 2)
+        self.assertEqual(row["ticks"], 4000)
+        self.assertEqual(row["trials"], 4)
+        self.assertEqual(row["replayed"], 4)
+        self.assertLess(row["stop_ms"]["max"], 1000.0)
+        self.assertEqual([delay["order"] for delay in row["delays"]], ["send, then wait", "wait, then send"])
+        first, before = row["delays"]
+        self.assertGreater(first["k_max"], before["k_max"])
+        self.assertGreater(before["delay_ms"]["median"], first["delay_ms"]["median"])
+        return row
+
+    def test_two_boards(self):
+        row = self.measure(os.environ["BENCH_WOODENHAPTICS"], shutil.which("umockdev-wrapper"))
+        self.assertTrue(row["at_the_arm"])
+        self.assertIsNone(row["force_mismatches"])
+
+    def test_two_arms_of_the_makers_library(self):
+        row = self.measure(os.environ["BENCH_OPENHAPTICS"], environment={"LD_LIBRARY_PATH": os.environ["HD_TEST"]})
+        self.assertIsNotNone(row["force_mismatches"])
+
+    def test_without_a_device_it_says_so(self):
+        error = lab("measure", "devices", "--out", self.folder / "none", expect=1)["error"]
+        self.assertEqual(error["code"], "NO_DEVICE")
+        error = lab("measure", "devices", "--bench", self.folder / "no.so", "--out", self.folder / "none",
+                    expect=1)["error"]
+        self.assertEqual(error["code"], "NO_BENCH")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -202,7 +202,6 @@ class StartsInTissue(LabTest):
             scene[part] = str(SCENES.parent / folder / Path(scene[part]).name)
         for tool in scene["tools"]:
             tool["file"] = str((SCENES / tool["file"]).resolve())
-        scene["arms"][0]["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
         (self.folder / "scene.json").write_text(json.dumps(scene))
         rest = {"format": "trephine.operator", "version": 1, "name": "rest",
                 "hand": {"stiffness_N_per_m": 800, "damping_Ns_per_m": 8},
@@ -405,7 +404,6 @@ class BadInput(LabTest):
     def run_scene(self, change, code, *words):
         scene = json.loads((SCENES / "cranium.json").read_text())
         for arm in scene["arms"]:
-            arm["device"].pop("config")
             del arm["other_tools"]
         scene["tissues"] = json.loads((SCENES.parent / "tissues" / "cranium.json").read_text())
         scene["tools"] = [{"id": "blade", "kind": "blade", "length_mm": 16, "points": 16}]

@@ -101,7 +101,6 @@ class RealAbdomen(LabTest):
             tissues["tissues"][0]["label"] = label
         arm = scene["arms"][1]
         del arm["other_tools"]
-        arm["device"]["config"] = str(SCENES / arm["device"]["config"])
         arm["map"] = {"centre_mm": [0, -185, 425], "rotation_wxyz": [1, 0, 0, 0],
                       "motion_scale": 1.5, "force_scale": 1.0}
         way = [[0, [-40, -185, 460]], [2, [-40, -185, 400]], [6, [60, -185, 400]],

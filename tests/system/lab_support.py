@@ -85,7 +85,6 @@ def small_scene(folder, tool=None):
         scene[part] = str(SCENES.parent / where / Path(scene[part]).name)
     arm = scene["arms"][0]
     del arm["other_tools"]
-    arm["device"]["config"] = str(SCENES.parent / "devices" / "omni.json")
     scene["tools"] = [{"id": arm["tool"], **(tool or {"file": str(SCENES.parent / "tools" / "blade.json")})}]
     scene["case"] = str(small_head(folder / "head.nii.gz"))
     (folder / "scene.json").write_text(json.dumps(scene))

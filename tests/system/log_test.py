@@ -105,7 +105,6 @@ class Exercise(PatientsScanTest):
         """A scene of its own beside the scan, with a mesh that cannot be drawn."""
         scene = json.loads((SCENES / "cranium.json").read_text())
         for arm in scene["arms"]:
-            arm["device"]["config"] = str(SCENES / arm["device"]["config"])
             del arm["other_tools"]
         scene["tissues"] = str(SCENES / scene["tissues"])
         scene["operator"] = str(SCENES / scene["operator"])

@@ -145,8 +145,7 @@ class UnderALimit:
         scene = json.loads((SCENES / "cranium.json").read_text())
         scene["case"] = str(self.case)
         for holder, key in [(scene, "tissues"), (scene, "operator"),
-                            *((tool, "file") for tool in scene["tools"]),
-                            *((arm["device"], "config") for arm in scene["arms"])]:
+                            *((tool, "file") for tool in scene["tools"])]:
             holder[key] = str((SCENES / holder[key]).resolve())
         file = self.folder / "scene.json"
         file.write_text(json.dumps(scene))

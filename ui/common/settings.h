@@ -63,7 +63,9 @@ inline const Setting<int> kTextScale{"text_percent", 100};  // 80 to 200
 inline const Setting<QString> kMainHand{"hands/main", "right"};      // that the mouse takes first
 inline const Setting<double> kPushStep_N{"mouse/push_step_N", 0.2};  // a notch of the wheel
 inline const Setting<double> kKeyStep_mm{"keys/step_mm", 1.0};       // an arrow key
-inline const Setting<bool> kArmsSwapped{"arms/swapped", false};  // plugged in the other way round
+// Device of the arm of that name: plugin, bus path, serial, model; empty: a simulated one.
+inline const Setting<QStringList> kLeftArm{"arms/left", {}}, kRightArm{"arms/right", {}};
+inline const Setting<QStringList> kFootPedal{"arms/pedal", {}};  // likewise; empty: none
 inline constexpr double kArmsLeast_N = 0.5, kArmsMost_N = 40.0;
 inline const Setting<double> kArmsLimit_N{"arms/most_N", kArmsMost_N};  // beside the exercise's own
 // Of the window itself.

@@ -167,12 +167,14 @@ QString forceChangeWords(const ArmRecord& arm, bool paused) {
   if (arm.faults & ~kPassingFaults) return tr("off until asked for");
   if (arm.faults & kFaultDevice) return tr("off until the arm's error has passed");
   if (arm.faults != 0) return tr("off until the computer keeps up");
+  if (arm.tool_state & kToolNoHand) return tr("off until a hand moves the arm");
   if (arm.tool_state & kToolWaits) return tr("off until the tool is drawn out");
   QStringList words;
   for (const PartWords& part : kPartWords) {
     if (arm.controller_parts & part.part) words << tr(part.words);
   }
   if (arm.tool_state & kToolArmWarm) words << tr("less, as the motors are warm");
+  if (arm.tool_state & kToolOff) words << tr("the tool's motor is off: the pedal is up");
   return words.isEmpty() ? tr("as the tissue demands") : words.join(", ");
 }
 

@@ -38,9 +38,9 @@ Result<ExerciseOutcome> runExercise(const ExerciseOptions& options, const Progre
   Result<OperatorScript> script = readOperatorScript(scene->operator_file, *scene);
   if (!script) return script.error();
   if (Status may = checkLocks(*script, locksOf(options.policy, *scene)); !may) return may.error();
-  std::vector<ArmDevice> arms;
+  std::vector<NamedDevice> arms;
   if (!options.arms.empty()) {
-    Result<std::vector<ArmDevice>> read = readArmsFile(options.arms);
+    Result<std::vector<NamedDevice>> read = readArmsFile(options.arms);
     if (!read) return read.error();
     if (Status used = useArms(*scene, *read, options.arms); !used) return used.error();
     arms = *std::move(read);

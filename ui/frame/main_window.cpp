@@ -14,6 +14,7 @@
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
+#include "ui/devices/devices_dialog.h"
 #include "ui/frame/settings_dialog.h"
 #include "ui/frame/shortcuts_page.h"
 #include "ui/frame/unlock_dialog.h"
@@ -251,6 +252,17 @@ void MainWindow::showShortcuts() {
 void MainWindow::showSettings() {
   (new SettingsDialog(toQt(bench_.storage()), !workstation().policy().storage.empty(), this))
       ->open();
+}
+
+void MainWindow::showDevices() {
+  if (workstation().phase() != Workstation::Phase::ready &&
+      workstation().phase() != Workstation::Phase::empty) {
+    return bench_.say(tr("An exercise has the arms: stop it first."));
+  }
+  auto* dialog = new DevicesDialog(this);
+  // Once it has let go of them.
+  connect(dialog, &QDialog::finished, this, [this] { workstation().armsChosen(); });
+  dialog->open();
 }
 
 void MainWindow::showLocks() {

@@ -87,6 +87,7 @@ class MainWindow : public QMainWindow {
   void showAbout();
   void showShortcuts();
   void showSettings();
+  void showDevices();
   void showLocks();
   void askForPin();
 
@@ -104,7 +105,7 @@ class MainWindow : public QMainWindow {
   QWidget* views_page_;
   QSplitter* columns_;
   QToolBar* bar_;
-  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
+  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_, *devices_,
       *unlock_;
   QLabel *hint_, *rates_, *locked_, *opening_words_;
   QWidget* opening_box_;

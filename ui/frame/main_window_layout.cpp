@@ -99,6 +99,8 @@ void MainWindow::buildActions() {
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
+  devices_ = makeAction(*this, Symbol::settings, "devices", tr("&Devices\u2026"), {},
+                        tr("The arms that are plugged in: which is the left and which the right"));
   unlock_ =
       makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
                  tr("With an educator's PIN, until it is locked again or Trephine is closed"));
@@ -173,7 +175,7 @@ void MainWindow::buildMenus() {
   file->addSeparator();
   file->addActions({prepare_->saveInCaseAction(), volume_, picture_});
   file->addSeparator();
-  file->addActions({settings_, unlock_});
+  file->addActions({settings_, devices_, unlock_});
   file->addSeparator();
   QAction* quit = file->addAction(tr("&Quit"), QKeySequence::Quit, this, &QWidget::close);
   quit->setObjectName("quit");
@@ -233,6 +235,7 @@ void MainWindow::connectParts() {
   connect(full_screen_, &QAction::toggled, this,
           [this](bool full) { setWindowState(windowState().setFlag(Qt::WindowFullScreen, full)); });
   connect(settings_, &QAction::triggered, this, &MainWindow::showSettings);
+  connect(devices_, &QAction::triggered, this, &MainWindow::showDevices);
   connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
   connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
   showLocks();

@@ -71,9 +71,6 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   arm_limit_->setLimits(settings::kArmsLeast_N, settings::kArmsMost_N);
   arm_limit_->show(
       readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N, settings::kArmsMost_N));
-  swapped_ = new QCheckBox(tr("The arms are plugged in the other wa&y round"));
-  swapped_->setObjectName("armsSwapped");
-  swapped_->setChecked(read(settings::kArmsSwapped));
   later_ = new QLabel(
       tr("Arms: from the next start of an exercise on. Folder, language, theme and text: when "
          "Trephine starts again."));
@@ -92,7 +89,6 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
   form->addRow(tr("&Theme"), theme_);
   add(tr("Size of te&xt"), text_->withReason(), text_);
   add(tr("An arm &gives at most"), arm_limit_->withReason(), arm_limit_);
-  form->addRow(QString(), swapped_);
   form->addRow(tr("The mouse &begins with the"), hand_);
   add(tr("One notch of the &wheel pushes by"), push_->withReason(), push_);
   add(tr("An &arrow key moves by"), step_->withReason(), step_);
@@ -128,7 +124,6 @@ void SettingsDialog::save() {
   write(settings::kTheme, theme_->currentData().toString());
   write(settings::kTextScale, text_->wanted());
   write(settings::kArmsLimit_N, arm_limit_->wanted());
-  write(settings::kArmsSwapped, swapped_->isChecked());
   write(settings::kMainHand, hand_->currentData().toString());
   write(settings::kPushStep_N, push_->wanted());
   write(settings::kKeyStep_mm, step_->wanted());

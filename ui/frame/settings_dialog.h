@@ -28,7 +28,6 @@ class SettingsDialog : public QDialog {
   QComboBox *language_, *theme_, *hand_;
   WholeNumberField* text_;
   DecimalField *push_, *step_, *arm_limit_;
-  QCheckBox* swapped_;
   QLabel* later_;
 };
 

@@ -14,7 +14,6 @@
 #include "lab/trades/trades_measurement.h"
 #include "render/tool_mesh.h"
 #include "render/tool_view.h"
-#include "session/arm_devices.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
 
@@ -44,10 +43,6 @@ ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
       mesh ? tools_->setMesh(file) : bench_.report(mesh.error());
     });
   });
-  connect(tools_, &ToolsPanel::deviceWanted, this, [this] {
-    bench_.askForFile("deviceDialog", tr("A file of the device"), tr("Devices (*.json)"),
-                      [this](const auto& file) { takeDevice(file); });
-  });
   connect(tools_, &ToolsPanel::tradesWanted, this, &ArmsTab::measureTrades);
   showTrades();
   connect(tools_, &ToolsPanel::costsWanted, this, &ArmsTab::measureCosts);
@@ -57,20 +52,9 @@ ArmsTab::ArmsTab(Bench& bench, ToolsPanel& tools)
   connect(&workstation_, &Workstation::editsChanged, this, &ArmsTab::refresh);
   connect(&workstation_, &Workstation::locksChanged, this, &ArmsTab::refresh);
   connect(&workstation_, &Workstation::phaseChanged, this, &ArmsTab::showBoxes);
+  connect(&workstation_, &Workstation::armsAnswered, this, &ArmsTab::showBoxes);
   connect(&workstation_, &Workstation::caseOpened, this, &ArmsTab::showBoxes);
   connect(&workstation_, &Workstation::structuresChanged, this, &ArmsTab::showBoxes);
-}
-
-// Where the arms of the scene can be had with it.
-void ArmsTab::takeDevice(const std::filesystem::path& file) {
-  if (!workstation_.scene()) return;
-  Scene with = *workstation_.scene();
-  const std::size_t chosen = std::min(tools_->chosenArm(), with.arms.size() - 1);
-  for (SceneArm& arm : with.arms) {
-    if (arm.plugin == with.arms[chosen].plugin) arm.device_config = file.string();
-  }
-  const Status arms = readArmDynamics(with);
-  arms ? tools_->setDevice(file) : bench_.report(arms.error());
 }
 
 // A second or two in the background; once more, and it is given up.
@@ -205,15 +189,8 @@ void ArmsTab::showBoxes() {
     }
     return;
   }
-  std::string devices = std::to_string(scene->rate_hz);
-  for (const SceneArm& arm : scene->arms) {
-    devices += '|' + arm.plugin + '|' + std::to_string(arm.device_arm) + '|' + arm.device_config;
-  }
-  if (devices != workspaces_of_) {
-    const Result<std::vector<Vec3>> sizes = readWorkspaces(*scene);
-    workspaces_mm_ = sizes ? *sizes : std::vector<Vec3>(scene->arms.size(), Vec3(100.0));
-    workspaces_of_ = devices;
-  }
+  std::vector<Vec3> workspaces_mm = workstation_.workspaces_mm();
+  workspaces_mm.resize(scene->arms.size(), Vec3(100.0));  // of an arm that is not there
   const Scene placed = withFixedMaps(*scene, of->landmarks);
   std::vector<WorkspaceBox> boxes;
   std::vector<ToolView> tools;
@@ -222,7 +199,7 @@ void ArmsTab::showBoxes() {
     if (!arm.map.fixed) continue;
     const WorkspaceMap& map = *arm.map.fixed;
     const QColor colour = colours::ofArm(arm, i);
-    boxes.push_back({map.centre_mm, map.rotation, map.motion_scale * workspaces_mm_[i], colour,
+    boxes.push_back({map.centre_mm, map.rotation, map.motion_scale * workspaces_mm[i], colour,
                      i == tools_->chosenArm()});
     if (const SceneTool* tool = placed.findTool(arm.tool)) {
       tools.push_back(

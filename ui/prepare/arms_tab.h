@@ -24,7 +24,6 @@ class ArmsTab : public QObject {
  private:
   void refresh();
   void showBoxes();
-  void takeDevice(const std::filesystem::path& file);
   void measureCosts();
   void showTrades();
   void measureTrades();
@@ -36,8 +35,6 @@ class ArmsTab : public QObject {
   ToolsPanel* tools_;
   BackgroundTask costing_;
   bool in_front_ = false;
-  std::vector<Vec3> workspaces_mm_;  // of the arms, device axes
-  std::string workspaces_of_;        // the devices that they were asked of
 };
 
 }  // namespace trephine

@@ -37,7 +37,6 @@ constexpr std::pair<const char*, const char*> kEditWords[] = {
     {"remove tool", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a tool removed")},
     {"arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "an arm")},
     {"workspace", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "where an arm is")},
-    {"device", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "the device of an arm")},
     {"add arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "a new arm")},
     {"remove arm", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "an arm removed")},
     {"laws", QT_TRANSLATE_NOOP("trephine::PrepareWorkspace", "what is felt")},

@@ -22,9 +22,11 @@ void PrepareWorkspace::connectTissues() {
   bench_.setGuard(Bench::Loss::tissues,
                   [this](Bench::Next go_on) { unlessTissuesStay(std::move(go_on)); });
   connect(&workstation_, &Workstation::sceneChanged, this, &PrepareWorkspace::showScene);
-  connect(&workstation_, &Workstation::controllerChanged, this, [this] {
-    if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
-  });
+  for (const auto changed : {&Workstation::controllerChanged, &Workstation::armsAnswered}) {
+    connect(&workstation_, changed, this, [this] {
+      if (workstation_.scene()) showRenderable(workstation_.controllerInForce());
+    });
+  }
   connect(&workstation_, &Workstation::locksChanged, this, [this] {
     tissues_->setLocked(
         workstation_.isLocked(Lock::tissues)
@@ -65,7 +67,7 @@ void PrepareWorkspace::showTab() {
 void PrepareWorkspace::showRenderable(ControllerKind in_force) {
   const Scene& scene = *workstation_.scene();
   tissues_->setRenderable(
-      armsLimit(withArmsOfThisPlace(scene)),
+      armsLimit(withForceLimit(scene)),
       [scene](const Tissue& tissue) { return demandedOf(scene, tissue); }, scene.laws,
       scene.removal, in_force);
 }

@@ -10,6 +10,7 @@
 #include "base/utf8.h"
 #include "haptics/law_input.h"
 #include "render/scene_renderer.h"
+#include "scene/arms_file.h"
 #include "scene/scene_edits.h"
 #include "ui/common/colours.h"
 #include "ui/common/words.h"
@@ -367,7 +368,7 @@ QWidget* ToolsPanel::buildArms() {
     editArm("name", [&](SceneArm& arm) { arm.name = typed; });
   });
   add_arm_ = settingButton("addArm", tr("Add one"),
-                           tr("Another arm, as this one, of the next device"), of_arm);
+                           tr("Another arm, as this one"), of_arm);
   remove_arm_ = settingButton("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
   connect(add_arm_, &QToolButton::clicked, this, &ToolsPanel::addArm);
   connect(remove_arm_, &QToolButton::clicked, this, &ToolsPanel::removeArm);
@@ -379,26 +380,6 @@ QWidget* ToolsPanel::buildArms() {
                                            tr("Left and right are the hands that people "
                                               "have."),
                                            fields));
-  device_numbers_ = std::make_unique<NumberRows<SceneArm>>(
-      std::span<const NumberOf<SceneArm>>(kDeviceNumbers), *arm_form_, fields, "device:");
-  device_numbers_->entered = [this](const SceneArm& entered, const char* key) {
-    editArm(key, [&](SceneArm& arm) { arm = entered; });
-  };
-  auto* device = new QWidget(fields);
-  auto* device_layout = new QGridLayout(device);
-  device_layout->setContentsMargins(0, 0, 0, 0);
-  device_layout->setSpacing(4);
-  device_ = new QLabel(device);
-  device_->setObjectName("armDevice");
-  device_->setWordWrap(true);
-  auto* choose_device =
-      settingButton("chooseDevice", tr("Choose\u2026"), tr("A file of the device"), device);
-  connect(choose_device, &QToolButton::clicked, this, &ToolsPanel::deviceWanted);
-  device_layout->addWidget(device_, 0, 0, 1, 2);
-  device_layout->addWidget(choose_device, 1, 0);
-  device_layout->setColumnStretch(1, 1);
-  arm_form_->addRow(tr("Device"),
-                    withHint(device, tr("What moves it, and the file that says how."), fields));
   arm_tool_ = settingChoice("armTool", tr("Tool of the arm"), fields);
   connect(arm_tool_, &QComboBox::activated, this, [this](int) {
     const std::string id = arm_tool_->currentData().toString().toStdString();
@@ -482,17 +463,6 @@ void ToolsPanel::editArm(const std::string& what, const std::function<void(Scene
             [&](Scene& scene) { edit(scene.arms[index]); });
 }
 
-void ToolsPanel::setDevice(const std::filesystem::path& file) {
-  // One file configures all arms of a plugin.
-  editScene(arm_problem_, "device", [&](Scene& scene) {
-    if (chosenArm() >= scene.arms.size()) return;
-    const std::string plugin = scene.arms[chosenArm()].plugin;
-    for (SceneArm& arm : scene.arms) {
-      if (arm.plugin == plugin) arm.device_config = file.string();
-    }
-  });
-}
-
 void ToolsPanel::addArm() {
   if (chosenArm() >= scene_.arms.size()) return;
   SceneArm more = scene_.arms[chosenArm()];
@@ -501,10 +471,11 @@ void ToolsPanel::addArm() {
   };
   more.name = !named("left") ? "left" : !named("right") ? "right" : "arm-3";
   for (int n = 3; named(more.name); ++n) more.name = "arm-" + std::to_string(n);
-  for (const SceneArm& arm : scene_.arms) {
-    if (arm.plugin == more.plugin) more.device_arm = std::max(more.device_arm, arm.device_arm + 1);
-  }
-  editScene(arm_problem_, "add arm", [&](Scene& scene) { scene.arms.push_back(more); });
+  more.device = {};
+  editScene(arm_problem_, "add arm", [&](Scene& scene) {
+    scene.arms.push_back(more);
+    addSimulatedDevices(scene);
+  });
   arm_->setCurrentIndex(arm_->count() - 1);
   showArm();
   emit armChosen();
@@ -543,12 +514,6 @@ void ToolsPanel::showArm() {
       arm_landmark_->findData(arm.map.fixed ? QString() : toQt(arm.map.landmark)));
   if (!arm_name_->hasFocus() || !arm_name_->isModified()) arm_name_->setText(toQt(arm.name));
   remove_arm_->setEnabled(scene_.arms.size() > 1);
-  device_numbers_->show(arm);
-  device_->setText(
-      arm.device_config.empty()
-          ? toQt(arm.plugin)
-          : tr("%1, %2").arg(toQt(arm.plugin),
-                             toQt(std::filesystem::path(arm.device_config).filename())));
   map_numbers_->setVisible(!arm.map.fixed);
   map_numbers_->show(arm.map);
   fixed_numbers_->setVisible(arm.map.fixed.has_value());

@@ -52,7 +52,6 @@ class ToolsPanel : public QWidget {
   void armChosen();
   void toolFileWanted();  // of an own tool
   void meshWanted();
-  void deviceWanted();  // a file of the chosen arm's
   void costsWanted();
   void tradesWanted();
 
@@ -60,7 +59,6 @@ class ToolsPanel : public QWidget {
   // A tool file becomes one of the scene's.
   void addTool(const std::filesystem::path& file);
   void setMesh(const std::filesystem::path& file);
-  void setDevice(const std::filesystem::path& file);
 
  private:
   QWidget* buildTools();
@@ -99,8 +97,6 @@ class ToolsPanel : public QWidget {
   QListWidget* other_tools_;
   QLineEdit* arm_name_;
   QToolButton *add_arm_, *remove_arm_;
-  QLabel* device_;
-  std::unique_ptr<NumberRows<SceneArm>> device_numbers_;
   QFormLayout* arm_form_;
   std::unique_ptr<NumberRows<SceneMap>> map_numbers_;
   std::unique_ptr<NumberRows<WorkspaceMap>> fixed_numbers_;

@@ -47,6 +47,10 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
     const ArmRecord& arm = state.record.arms[i];
     QStringList of_arm;
     if (arm.faults != 0) of_arm << faultWords(arm.faults);
+    if (arm.faults == 0 && (arm.tool_state & kToolNoHand)) {
+      of_arm << StateNotice::tr(
+          "Take the arm in hand: its force comes once it was moved, or its button is pressed.");
+    }
     if (!state.paused && (arm.tool_state & kToolWaits)) {
       of_arm << StateNotice::tr(
           "The tool is in tissue that it did not come into. Draw it out to feel and to cut; the "
@@ -77,6 +81,9 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
     if (r > 0) out.why += '\n';
     if (reasons.size() > 1) out.why += whoWords(with_it[std::size_t(r)], scene) + ": ";
     out.why += reasons[r];
+  }
+  if ((faults & kFaultDeviceLost) && all.size() < scene.arms.size()) {
+    out.why += '\n' + StateNotice::tr("The other hand goes on, and so does the recording.");
   }
   if (faults & kFaultDeviceLost) {
     out.mend = StateNotice::tr("Try again");

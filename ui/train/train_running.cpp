@@ -17,6 +17,7 @@ namespace {
 constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kRemovedEvery_ms = 500;
+constexpr std::uint32_t kPedalBack_s = 5;
 constexpr double kBehind_s = 1.0;  // a kill loses less than this of a recording that keeps up
 
 QString handName(const SceneArm& arm) {
@@ -46,6 +47,7 @@ void TrainWorkspace::tick() {
   const LoopState& state = session->state();
   views_->pullChanges(session->grid());
   showTools(toolViews(session->scene(), state));
+  followPedal(state);
   hands_->follow();
   arms_->follow(state);
   if (panel_clock_.elapsed() >= kPanelEvery_ms) {
@@ -55,6 +57,19 @@ void TrainWorkspace::tick() {
   if (rate_clock_.elapsed() >= kRatesEvery_ms) showRates();
   workstation_.checkRecording();
   if (session->finished()) workstation_.stop();
+}
+
+// The middle one is the loop's: the tools' motors.
+void TrainWorkspace::followPedal(const LoopState& state) {
+  const std::uint32_t now = state.record.arms[0].buttons & (kPedalLeft | kPedalRight);
+  const std::uint32_t changed = now ^ std::exchange(pedal_, now);
+  if (changed & kPedalRight) {
+    clutch_->setChecked(now & kPedalRight);
+    clutch();
+  }
+  if ((changed & now & kPedalLeft) && !state.busy && !workstation_.session()->isPoke()) {
+    rewind(state.seconds - std::min(state.seconds, kPedalBack_s));
+  }
 }
 
 void TrainWorkspace::showTools(const std::vector<ToolView>& tools) {

@@ -75,6 +75,7 @@ class TrainWorkspace : public Workspace {
   void sessionStarted();
   void sessionEnded(Session& session);
   void tick();
+  void followPedal(const LoopState& state);
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);
   void showRates();
@@ -127,6 +128,7 @@ class TrainWorkspace : public Workspace {
     std::uint64_t asked_tick;
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
+  std::uint32_t pedal_ = 0;              // buttons, as they were looked at last
   std::optional<LoopState> undoing_;     // what was there when it was asked for
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;

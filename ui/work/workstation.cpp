@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/rt/thread.h"
+#include "session/arm_devices.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "volume/case_memory.h"
@@ -41,18 +42,6 @@ void Workstation::fail(const Error& error) {
 
 // --- The exercise ---
 
-Scene withArmsOfThisPlace(Scene scene) {
-  const double most_N =
-      readWithin(settings::kArmsLimit_N, settings::kArmsLeast_N, settings::kArmsMost_N);
-  for (SceneArm& arm : scene.arms) arm.max_force_N = std::min(arm.max_force_N, most_N);
-  if (read(settings::kArmsSwapped) && scene.arms.size() == 2) {
-    std::swap(scene.arms[0].plugin, scene.arms[1].plugin);
-    std::swap(scene.arms[0].device_arm, scene.arms[1].device_arm);
-    std::swap(scene.arms[0].device_config, scene.arms[1].device_config);
-  }
-  return scene;
-}
-
 void Workstation::start(const std::filesystem::path& recordings,
                         std::optional<OperatorScript> script, double seconds) {
   begin(recordings, std::move(script), seconds, false);
@@ -69,8 +58,10 @@ void Workstation::begin(const std::filesystem::path& recordings,
   // It may have come in while it was unlocked.
   if (Status may = mayPractise(*scene_, scene_file_); !may) return fail(may.error());
   Scene practised = *scene_;
+  ArmsOfPlace chosen;
   if (!arms_) {
-    practised = withArmsOfThisPlace(std::move(practised));
+    practised = withForceLimit(std::move(practised));
+    chosen = armsOfThisPlace();
   } else if (Status used = useArms(practised, *arms_, {}); !used) {
     return fail(used.error());
   }
@@ -83,9 +74,11 @@ void Workstation::begin(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = std::move(practised), of = *case_, again, recordings, stem, poke,
+      [scene = std::move(practised), chosen, opens = opens_arms_, of = *case_, again, recordings, stem, poke,
        script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
+        const std::lock_guard lock(*opens);
+        if (Status used = useArms(scene, chosen); !used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
         if (!placed) return placed.error();
@@ -97,18 +90,36 @@ void Workstation::begin(const std::filesystem::path& recordings,
         case_->landmarks = (*created)->landmarks();
         case_->misfit.reset();
         placed_with_ = tissues;
-        started(*std::move(created), seconds);
+        startArms(*std::move(created), seconds);
       });
 }
 
-void Workstation::started(std::unique_ptr<Session> session, double seconds) {
+// Devices may take their time over it.
+void Workstation::startArms(std::unique_ptr<Session> session, double seconds) {
   // What was changed while the session was made is the first thing that it is told.
-  Status told = session->setTissues(scene_->tissues);
-  if (session->scene().controller != scene_->controller) {
-    (void)session->setController(scene_->controller);  // nothing else waits yet
+  if (Status told = tell(*session); !told) return notStarted(told.error());
+  running_.run(
+      [session = std::move(session),
+       seconds](const Progress&) mutable -> Result<std::unique_ptr<Session>> {
+        if (Status started = session->start(seconds); !started) return started.error();
+        return std::move(session);
+      },
+      [this](Result<std::unique_ptr<Session>> started) {
+        if (!started) return notStarted(started.error());
+        if (Status told = tell(**started); !told) return notStarted(told.error());
+        this->started(*std::move(started));
+      });
+}
+
+// Tissues and controller as they are by now.
+Status Workstation::tell(Session& session) const {
+  if (session.scene().controller != scene_->controller) {
+    (void)session.setController(scene_->controller);  // nothing else waits yet
   }
-  Status started = told ? session->start(seconds) : told;
-  if (!started) return notStarted(started.error());
+  return session.setTissues(scene_->tissues);
+}
+
+void Workstation::started(std::unique_ptr<Session> session) {
   session_ = std::move(session);
   recording_failure_.reset();
   setPhase(Phase::running);
@@ -128,6 +139,48 @@ void Workstation::tellGivenBack() {
   const std::size_t voxels = case_->volume->geometry.voxelCount();
   import_.setGivenBack(voxelsMb(voxels) * (carved_ ? 2.0 : 1.0) + shownMb(voxels) +
                        (rt::LockedMemory::wasHeld() ? kHeld_mb : 0.0));
+}
+
+void Workstation::armsChosen() {
+  if (scene_) readArms();
+}
+
+// As simulated, at once, and then as chosen. An arm that is not there now may be when the exercise
+// starts, which then says so.
+void Workstation::readArms() {
+  if (!readArmDynamics(*scene_, &workspaces_mm_)) workspaces_mm_.clear();
+  emit armsAnswered();
+  askArms();
+}
+
+void Workstation::askArms() {
+  const ArmsOfPlace chosen = arms_ ? ArmsOfPlace() : armsOfThisPlace();
+  if (chosen.empty() || !scene_ || phase_ == Phase::running) return;
+  if (asking_.busy()) {
+    ask_again_ = true;
+    return;
+  }
+  asking_.run(
+      [scene = *scene_, chosen, opens = opens_arms_](const Progress&) mutable
+      -> Result<std::pair<Scene, std::vector<Vec3>>> {
+        const std::lock_guard lock(*opens);
+        if (Status used = useArms(scene, chosen); !used) return used.error();
+        std::vector<Vec3> workspaces_mm;
+        if (Status asked = readArmDynamics(scene, &workspaces_mm); !asked) return asked.error();
+        return std::pair(std::move(scene), std::move(workspaces_mm));
+      },
+      [this](Result<std::pair<Scene, std::vector<Vec3>>> asked) {
+        if (std::exchange(ask_again_, false)) return askArms();
+        const auto name = &SceneArm::name;
+        if (!asked || !scene_ || !std::ranges::equal(asked->first.arms, scene_->arms, {}, name, name)) {
+          return;
+        }
+        for (std::size_t i = 0; i < scene_->arms.size(); ++i) {
+          scene_->arms[i].dynamics = asked->first.arms[i].dynamics;
+        }
+        workspaces_mm_ = std::move(asked->second);
+        emit armsAnswered();
+      });
 }
 
 void Workstation::checkRecording() {

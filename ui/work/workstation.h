@@ -5,6 +5,7 @@
 
 #include <QObject>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 #include "scene/arms_file.h"
@@ -12,13 +13,10 @@
 #include "scene/scene_edits.h"
 #include "session/session.h"
 #include "ui/common/background_task.h"
+#include "ui/work/arms_of_place.h"
 #include "ui/work/import_task.h"
 
 namespace trephine {
-
-// The scene with what the settings say of the arms of this place: which is which, and how much
-// force they may give at most.
-Scene withArmsOfThisPlace(Scene scene);
 
 class Workstation : public QObject {
   Q_OBJECT
@@ -93,7 +91,11 @@ class Workstation : public QObject {
 
   // From the next exercise on these devices move its arms, and the settings say nothing of them: for
   // an exercise that nobody watches.
-  void setArms(std::vector<ArmDevice> arms) { arms_ = std::move(arms); }
+  void setArms(std::vector<NamedDevice> arms) { arms_ = std::move(arms); }
+  // Another device was chosen for an arm of this place: what it can show is asked in the background.
+  void armsChosen();
+  // How far each arm of scene() reaches, device axes, mm; empty where an arm is not there.
+  const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }
 
   Phase phase() const { return phase_; }
   const std::optional<Scene>& scene() const { return scene_; }
@@ -217,9 +219,11 @@ class Workstation : public QObject {
   void exerciseReported(const trephine::RunReport& report);
   void controllerChanged();  // controllerInForce()
   void editsChanged();       // edits()
+  void armsAnswered();       // what the arms of scene() can show is another
   void savingProgressed(double fraction, const QString& step);
   void savingEnded();
   void saved(const QString& what);
+  void noticed(const QString& what);  // to know, and nothing to do
   void failed(const trephine::Error& error);
 
  private:
@@ -240,7 +244,11 @@ class Workstation : public QObject {
   void opened(Result<Opened> outcome);
   void begin(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
              double seconds, bool poke);
-  void started(std::unique_ptr<Session> session, double seconds);
+  void startArms(std::unique_ptr<Session> session, double seconds);
+  Status tell(Session& session) const;
+  void started(std::unique_ptr<Session> session);
+  void readArms();
+  void askArms();
   void notStarted(const Error& error);
   void tellGivenBack();
   void saveOnceStill(const std::filesystem::path& file, std::function<void()> then);
@@ -261,7 +269,8 @@ class Workstation : public QObject {
   Status notLocked(Lock lock, const char* what) const;
 
   Policy policy_;
-  std::optional<std::vector<ArmDevice>> arms_;
+  std::optional<std::vector<NamedDevice>> arms_;
+  std::vector<Vec3> workspaces_mm_;
   bool unlocked_ = false;
   Phase phase_ = Phase::empty;
   std::optional<Scene> scene_;
@@ -285,9 +294,12 @@ class Workstation : public QObject {
   bool placing_ = false;                    // structures alone are being opened
   bool place_again_ = false;                // an edit waits for that
   bool placing_edit_ = false;               // and goes back where that fails
+  bool ask_again_ = false;                  // once the arms have answered
+  // An arm is opened by one at a time.
+  const std::shared_ptr<std::mutex> opens_arms_ = std::make_shared<std::mutex>();
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
-  BackgroundTask opening_, running_, saving_;
+  BackgroundTask opening_, running_, saving_, asking_;
 };
 
 // The scene that fits a case of this anatomy, among the product's own.

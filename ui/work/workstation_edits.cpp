@@ -52,8 +52,7 @@ bool sameFiles(const Scene& a, const Scene& b) {
   return a.operator_file == b.operator_file &&
          std::ranges::equal(
              a.tools, b.tools, {}, [](const SceneTool& t) { return t.look.mesh; },
-             [](const SceneTool& t) { return t.look.mesh; }) &&
-         std::ranges::equal(a.arms, b.arms, {}, &SceneArm::device_config, &SceneArm::device_config);
+             [](const SceneTool& t) { return t.look.mesh; });
 }
 
 bool sameElsewhere(const Scene& a, const Scene& b) {
@@ -62,10 +61,10 @@ bool sameElsewhere(const Scene& a, const Scene& b) {
 }
 
 bool sameDevices(const Scene& a, const Scene& b) {
-  return std::ranges::equal(a.arms, b.arms, [](const SceneArm& one, const SceneArm& other) {
-    return one.plugin == other.plugin && one.device_arm == other.device_arm &&
-           one.device_config == other.device_config;
-  });
+  return a.rate_hz == b.rate_hz &&
+         std::ranges::equal(a.arms, b.arms, [](const SceneArm& one, const SceneArm& other) {
+           return one.name == other.name && one.device == other.device;
+         });
 }
 
 }  // namespace
@@ -147,7 +146,7 @@ bool Workstation::take(Scene wanted) {
   const ControllerKind controller = wanted.controller;
   scene_ = std::move(wanted);
   history_.settle(*scene_);
-  if (!devices_stay) (void)readArmDynamics(*scene_);
+  if (!devices_stay) readArms();
   if (new_set) applyTissues(scene_->tissues);
   if (new_controller) {
     applyController(controller);
@@ -263,9 +262,7 @@ void Workstation::exerciseSaved(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < scene_->tools.size() && i < saved->tools.size(); ++i) {
     scene_->tools[i].look.mesh = saved->tools[i].look.mesh;
   }
-  for (std::size_t i = 0; i < scene_->arms.size() && i < saved->arms.size(); ++i) {
-    scene_->arms[i].device_config = saved->arms[i].device_config;
-  }
+  scene_->names_devices = false;
   opened_scene_ = *scene_;
   declared_tissues_ = scene_->tissues;
   replaced ? history_.begin(*scene_) : history_.settle(*scene_);

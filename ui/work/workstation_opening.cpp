@@ -409,6 +409,12 @@ void Workstation::opened(Result<Opened> outcome) {
   if (outcome->no_structures) fail(*outcome->no_structures);
   if (outcome->no_tissues && may_edit) fail(*outcome->no_tissues);
   if (case_->misfit) fail(*case_->misfit);
+  if (scene_->names_devices) {
+    emit noticed(
+        tr("This exercise names devices, as exercises did before: it is run on them where nothing "
+           "else is chosen under Devices, and saving it leaves them out."));
+  }
+  readArms();
 }
 
 std::optional<LandmarkFrame> Workstation::viewLandmark() const {

@@ -204,7 +204,7 @@ Result<Json> explainScene(Scene scene, const Progress& progress) {
     const Renderable most = renderableOn(arm, scene.rate_hz);
     arms.push_back(
         {{"name", arm.name},
-         {"plugin", arm.plugin},
+         {"plugin", arm.device.plugin},
          {"tool", arm.tool},
          {"other_tools", arm.other_tools},
          {"points", tool.points_m.size()},

@@ -254,22 +254,11 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("addArm")->click();
     QCOMPARE(scene().arms.size(), std::size_t(3));
     QCOMPARE(scene().arms[2].name, std::string("left"));
-    QCOMPARE(scene().arms[2].device_arm, 2u);
+    QCOMPARE(scene().arms[2].device.place, 2u);
     QVERIFY2(!find<QLabel>("armProblem")->isVisible(),
              qPrintable(find<QLabel>("armProblem")->text()));
     find<QToolButton>("removeArm")->click();
     QCOMPARE(scene().arms.size(), std::size_t(2));
-    // Two arms of one device are none.
-    choose("armChoice", QString("right"));
-    enter("device:arm", "0");
-    QVERIFY(find<QLabel>("armProblem")->text().contains("another arm uses"));
-    QCOMPARE(scene().arms[1].device_arm, 1u);
-    const auto device = toPath(temporary_.filePath("mine.json"));
-    std::filesystem::copy_file(resourceFolder() / "devices" / "omni.json", device,
-                               std::filesystem::copy_options::overwrite_existing);
-    find<QToolButton>("chooseDevice")->click();
-    give("deviceDialog", toQt(device));
-    for (const SceneArm& arm : scene().arms) QCOMPARE(arm.device_config, device.string());
 
     showTab(PrepareWorkspace::kExerciseTab);
     find<QToolButton>("addLandmark")->click();
@@ -339,7 +328,7 @@ class ExerciseGuiTest : public test::WindowTest {
     // By an edge of it as well.
     const WorkspaceMap map =
         *withFixedMaps(scene(), workstation().currentCase()->landmarks).arms[0].map.fixed;
-    const double half_mm = 500.0 * (*readWorkspaces(scene()))[0].z * 1e-3;
+    const double half_mm = 500.0 * workstation().workspaces_mm()[0].z * 1e-3;
     const Vec3 edge_mm = map.centre_mm - map.rotation * Vec3(0.0, 0.0, half_mm);
     const QPoint at = coronal.fromPatient(edge_mm).toPoint();
     QTest::mousePress(&coronal, Qt::LeftButton, {}, at);

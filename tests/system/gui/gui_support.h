@@ -48,7 +48,6 @@ inline std::filesystem::path sceneOn(const Volume& volume, const std::filesystem
   makeAbsolute(scene["tissues"]);
   makeAbsolute(scene["operator"]);
   for (Json& tool : scene["tools"]) makeAbsolute(tool["file"]);
-  for (Json& arm : scene["arms"]) makeAbsolute(arm["device"]["config"]);
   const std::filesystem::path file = folder / (name + ".json");
   if (!writeVolume(volume, of) || !writeTextFile(file, scene.dump())) {
     qFatal("%s cannot be written", file.c_str());

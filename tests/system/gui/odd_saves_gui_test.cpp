@@ -304,12 +304,14 @@ class OddSavesGuiTest : public test::WindowTest {
     const std::filesystem::path folder = toPath(temporary_.path());
     const std::filesystem::path file = test::sceneOn(test::coarseCranium(2), folder, "vanishing");
     Json scene = *readJsonFile(file);
-    Json& config = scene["arms"][0]["device"]["config"];
-    Json device = *readJsonFile(config.get<std::string>());
+    Json device = *readJsonFile(resourceFolder() / "devices" / "omni.json");
     device["vanish_after_s"] = 1.5;
     QVERIFY(writeTextFile(folder / "vanishing-arm.json", device.dump()));
-    for (Json& arm : scene["arms"])
-      arm["device"]["config"] = (folder / "vanishing-arm.json").string();
+    for (std::size_t i = 0; i < 2; ++i) {
+      scene["arms"][i]["device"] = {{"plugin", "simulated"},
+                                    {"arm", i},
+                                    {"config", (folder / "vanishing-arm.json").string()}};
+    }
     QVERIFY(writeTextFile(file, scene.dump()));
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
     window_->open(file);

@@ -424,13 +424,6 @@ class TrainGuiTest : public test::TrainTest {
     const Scene& scene = *workstation().scene();
     QCOMPARE(scene.arms[0].max_force_N, 3.3);  // the exercise itself is as it was
     write(settings::kArmsLimit_N, settings::kArmsMost_N);
-    write(settings::kArmsSwapped, true);
-    startTraining();
-    const Scene& swapped = workstation().session()->scene();
-    QCOMPARE(swapped.arms[0].device_arm, scene.arms[1].device_arm);
-    QCOMPARE(swapped.arms[1].device_arm, scene.arms[0].device_arm);
-    stop();
-    write(settings::kArmsSwapped, false);
   }
 
   void whatIsLockedStaysAndThePinUnlocksIt() {

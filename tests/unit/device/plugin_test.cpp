@@ -34,12 +34,12 @@ TEST(DevicePlugin, LoadsByNameFromItsFolder) {
   EXPECT_FALSE((*plugin)->api().wait) << "the host paces them";
 }
 
-TEST(DevicePlugin, EnumeratesTwoSimulatedArmsToldApartByTheirBusPath) {
+TEST(DevicePlugin, EnumeratesFourSimulatedArmsToldApartByTheirBusPath) {
   auto plugin = test::simulatedPlugin();
   ASSERT_TRUE(plugin);
   const auto infos = plugin->enumerate();
-  ASSERT_EQ(infos.size(), 2u);
-  EXPECT_STREQ(infos[0].bus_path, "sim-left");
+  ASSERT_EQ(infos.size(), 4u);
+  EXPECT_STREQ(infos[0].bus_path, "sim-0");
   EXPECT_STREQ(infos[1].bus_path, "sim-right");
   EXPECT_STREQ(infos[0].model, "Simulated arm");
 }
@@ -49,8 +49,8 @@ TEST(DevicePlugin, WritesNoMoreInfosThanThereIsRoomFor) {
   ASSERT_TRUE(plugin);
   TrephineArmInfo infos[2] = {};
   infos[0].size = infos[1].size = sizeof(TrephineArmInfo);
-  EXPECT_EQ(plugin->api().enumerate(infos, 1), 2u);
-  EXPECT_STREQ(infos[0].bus_path, "sim-left");
+  EXPECT_EQ(plugin->api().enumerate(infos, 1), 4u);
+  EXPECT_STREQ(infos[0].bus_path, "sim-0");
   EXPECT_STREQ(infos[1].bus_path, "");
 }
 

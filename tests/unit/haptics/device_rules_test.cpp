@@ -180,5 +180,52 @@ TEST(HapticCore, WarmMotorsAreSentHalfAndItIsRecorded) {
   EXPECT_EQ(bench.record.arms[0].faults, 0u);
 }
 
+TEST(HandRule, AHandIsKnownByAButtonAMotionOrATurn) {
+  const Pose at{Vec3(0.01, 0.02, 0.03), Quat(1, 0, 0, 0)};
+  const auto turned = [&](double degrees) {
+    return Pose{at.position, glm::angleAxis(degrees * 3.14159265 / 180.0, Vec3(0, 1, 0))};
+  };
+  HandRule rests, moves, turns, presses;
+  for (int i = 0; i < 1000; ++i) {
+    Pose trembles = at;
+    trembles.position.x += 0.004 * (i % 2);
+    ASSERT_FALSE(rests.tick(trembles, false, false)) << i;
+  }
+  moves.tick(at, false, false);
+  Pose moved = at;
+  moved.position.y += 0.006;
+  EXPECT_TRUE(moves.tick(moved, false, false));
+  EXPECT_TRUE(moves.tick(at, false, false)) << "from then on";
+  turns.tick(at, false, false);
+  EXPECT_FALSE(turns.tick(turned(4.0), false, false));
+  EXPECT_TRUE(turns.tick(turned(6.0), false, false));
+  EXPECT_TRUE(presses.tick(at, true, false));
+  EXPECT_TRUE(presses.tick(at, false, false));
+}
+
+TEST(HandRule, AnArmThatWasLostHasToBeTakenAgain) {
+  const Pose at{Vec3(0.0), Quat(1, 0, 0, 0)};
+  HandRule rule;
+  ASSERT_TRUE(rule.tick(at, true, false));
+  EXPECT_FALSE(rule.tick(at, false, true));
+  EXPECT_FALSE(rule.tick(at, false, false));
+  EXPECT_TRUE(rule.tick(at, true, false));
+}
+
+TEST(HapticCore, AnArmThatNobodyHoldsHasNoForceAndGetsItByTheRamp) {
+  Pressed arm;
+  double before_N = 0.0;
+  for (int i = 0; i < 300; ++i) before_N = arm.say(0);
+  ASSERT_GT(before_N, 0.5);
+  EXPECT_EQ(arm.say(TREPHINE_ARM_NO_HAND), 0.0);
+  EXPECT_TRUE(arm.bench.record.arms[0].tool_state & kToolNoHand);
+  EXPECT_EQ(arm.faults(), 0u) << "nothing to be asked for";
+  for (int i = 0; i < 50; ++i) arm.say(TREPHINE_ARM_NO_HAND);
+  EXPECT_LT(arm.say(0), 0.1 * before_N) << "not at once";
+  double most_N = 0.0;
+  for (int i = 0; i < 300; ++i) most_N = std::max(most_N, arm.say(0));
+  EXPECT_GT(most_N, 0.5);
+}
+
 }  // namespace
 }  // namespace trephine

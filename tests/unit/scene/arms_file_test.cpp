@@ -12,7 +12,7 @@
 namespace trephine {
 namespace {
 
-Scene cranium() {
+Scene twoArmedScene() {
   return *readScene(resourceFolder() / "scenes" / "cranium.json");
 }
 
@@ -25,7 +25,7 @@ Json twoArms() {
 }
 
 struct ArmsFile : ::testing::Test {
-  Result<std::vector<ArmDevice>> read(const Json& json) {
+  Result<std::vector<NamedDevice>> read(const Json& json) {
     EXPECT_TRUE(writeTextFile(folder / "arms.json", json.dump()));
     EXPECT_TRUE(writeTextFile(folder / "open.json", "{}"));
     return readArmsFile(folder / "arms.json");
@@ -43,24 +43,55 @@ struct ArmsFile : ::testing::Test {
 TEST_F(ArmsFile, GivesTheArmsOfItsNamesTheirDevicesAndTheOthersKeepTheirs) {
   const auto devices = read(twoArms());
   ASSERT_TRUE(devices) << devices.error().sentence();
-  Scene scene = cranium();
+  Scene scene = twoArmedScene();
   const Scene before = scene;
   ASSERT_TRUE(useArms(scene, *devices, "arms.json").ok());
-  EXPECT_EQ(scene.arms[0].plugin, "woodenhaptics");
-  EXPECT_EQ(scene.arms[0].device_arm, 1u);
-  EXPECT_EQ(scene.arms[0].device_config, (folder / "open.json").string());
-  EXPECT_EQ(scene.arms[1].plugin, "simulated");
-  EXPECT_EQ(scene.arms[1].device_arm, 0u);
-  EXPECT_EQ(scene.arms[1].device_config, "");
+  EXPECT_EQ(scene.arms[0].device.plugin, "woodenhaptics");
+  EXPECT_EQ(scene.arms[0].device.place, 1u);
+  EXPECT_EQ(scene.arms[0].device.config, (folder / "open.json").string());
+  EXPECT_EQ(scene.arms[1].device.plugin, "simulated");
+  EXPECT_EQ(scene.arms[1].device.place, 0u);
+  EXPECT_EQ(scene.arms[1].device.config, "");
   scene = before;
   ASSERT_TRUE(useArms(scene, {(*devices)[0]}, "arms.json").ok());
-  EXPECT_EQ(scene.arms[1].plugin, before.arms[1].plugin);
-  EXPECT_EQ(scene.arms[1].device_config, before.arms[1].device_config);
+  EXPECT_EQ(scene.arms[1].device, before.arms[1].device);
+}
+
+TEST_F(ArmsFile, ASimulatedArmThatIsTakenIsMadeUpForByTheNext) {
+  Scene scene = twoArmedScene();
+  ASSERT_EQ(scene.arms[1].device.place, 1u);
+  ASSERT_TRUE(useArms(scene, {{"left", {"simulated", 1, "mine.json"}}}, "arms.json").ok());
+  EXPECT_EQ(scene.arms[0].device, (ArmDevice{"simulated", 1, "mine.json"}));
+  EXPECT_EQ(scene.arms[1].device.plugin, "simulated");
+  EXPECT_EQ(scene.arms[1].device.place, 0u);
+}
+
+TEST(SceneDevices, EachArmOfAnExerciseHasASimulatedOneUntilTheWorkstationNamesAnother) {
+  const Scene scene = twoArmedScene();
+  const std::string omni = (resourceFolder() / "devices" / "omni.json").string();
+  EXPECT_FALSE(scene.names_devices);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(scene.arms[i].device, (ArmDevice{"simulated", i, omni}));
+  }
+  Json json = sceneFile(scene);
+  for (const Json& arm : json["arms"]) EXPECT_FALSE(arm.contains("device"));
+}
+
+TEST(SceneDevices, ADeviceInAnOlderExerciseIsItsArmsDefaultAndSavingLeavesItOut) {
+  Json json = sceneFile(twoArmedScene());
+  json["arms"][0]["device"] = {{"plugin", "simulated"}, {"arm", 1}};
+  const Result<Scene> scene = parseScene(json, "older.json");
+  ASSERT_TRUE(scene) << scene.error().sentence();
+  EXPECT_TRUE(scene->names_devices);
+  EXPECT_EQ(scene->arms[0].device, (ArmDevice{"simulated", 1, ""}));
+  EXPECT_EQ(scene->arms[1].device.place, 0u) << "the next that nobody has";
+  EXPECT_FALSE(sceneFile(*scene)["arms"][0].contains("device"));
+  EXPECT_EQ(toJson(*scene)["arms"][0]["device"]["arm"], 1) << "a recording says what moved it";
 }
 
 TEST_F(ArmsFile, AnArmThatTheSceneDoesNotHaveIsNamedWithThoseThatItHas) {
-  Scene scene = cranium();
-  const Status used = useArms(scene, {{"middle", "simulated", 0, ""}}, "arms.json");
+  Scene scene = twoArmedScene();
+  const Status used = useArms(scene, {{"middle", {"simulated", 0, ""}}}, "arms.json");
   ASSERT_FALSE(used);
   EXPECT_EQ(used.error().code, "NO_SUCH_ARM");
   for (const char* part : {"'middle'", "left, right", "arms.json"}) {
@@ -69,9 +100,9 @@ TEST_F(ArmsFile, AnArmThatTheSceneDoesNotHaveIsNamedWithThoseThatItHas) {
 }
 
 TEST_F(ArmsFile, TwoArmsCannotHaveOneDevice) {
-  Scene scene = cranium();
+  Scene scene = twoArmedScene();
   const Status used = useArms(
-      scene, {{"left", "openhaptics", 0, ""}, {"right", "openhaptics", 0, ""}}, "arms.json");
+      scene, {{"left", {"openhaptics", 0, ""}}, {"right", {"openhaptics", 0, ""}}}, "arms.json");
   ASSERT_FALSE(used);
   EXPECT_NE(used.error().what.find("one device, 'openhaptics' 0"), std::string::npos);
 }

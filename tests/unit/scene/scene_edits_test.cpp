@@ -142,7 +142,7 @@ TEST(SceneFile, AnEditIsHeldToTheRulesOfAFile) {
   EXPECT_NE(wrong([](Scene& s) { s.view.landmark = "moon"; }).find("moon"), std::string::npos);
   EXPECT_NE(wrong([](Scene& s) { s.card->en.goal = ""; }).find("goal"), std::string::npos);
   Scene edited = scene;
-  edited.arms[1].device_arm = edited.arms[0].device_arm;
+  edited.arms[1].name = edited.arms[0].name;
   const Error error = checkEdited(edited).error();
   EXPECT_EQ(error.next.find("schema"), std::string::npos) << "nobody wrote a file: " << error.next;
 }

@@ -131,7 +131,9 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
        "arms[0].other_tools", "7"},
       {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale",
        "-1"},
-      {"same device", [](Json& s) { s["arms"][1]["device"]["arm"] = 0; }, "arms", "right"},
+      {"same device",
+       [](Json& s) { s["arms"][0]["device"] = s["arms"][1]["device"] = {{"plugin", "touch"}}; },
+       "arms", "right"},
       {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm",
        "1000"},
       {"no points", [](Json& s) { s["tools"][0]["points"] = 0; }, "tools[0].points", "0"},
@@ -181,8 +183,9 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
        "arms[0].map.rotation_wxyz", "0.5"},
       {"no force", [](Json& s) { s["arms"][0]["map"]["force_scale"] = 1e-308; },
        "arms[0].map.force_scale", "1e-308"},
-      {"no device arm", [](Json& s) { s["arms"][0]["device"]["arm"] = -3; }, "arms[0].device.arm",
-       "-3"},
+      {"no device arm",
+       [](Json& s) { s["arms"][0]["device"] = {{"plugin", "touch"}, {"arm", -3}}; },
+       "arms[0].device.arm", "-3"},
       {"strong arm", [](Json& s) { s["arms"][0]["max_force_N"] = 1e300; }, "arms[0].max_force_N",
        "1e+300"},
       {"outward",
@@ -218,7 +221,11 @@ TEST(Scene, AFileNameThatCannotBeIsAnErrorLikeAMissingFile) {
   const std::string name = std::string(300, 'x') + ".json";
   const Bad cases[] = {
       {"operator", [](Json&) {}, "operator", ""},
-      {"device", [](Json& s) { s["arms"][0]["device"]["config"] = s["operator"]; }, "config", ""},
+      {"device",
+       [](Json& s) {
+         s["arms"][0]["device"] = {{"plugin", "touch"}, {"config", s["operator"]}};
+       },
+       "config", ""},
       {"mesh",
        [](Json& s) {
          s["tools"][0] = {{"id", "blade"}, {"kind", "blade"}, {"length_mm", 16}, {"points", 16}};
@@ -326,10 +333,7 @@ class ToolFile : public testing::Test {
     scene_["tools"] = Json::array({{{"id", "blade"}, {"file", "tool.json"}}});
     scene_["operator"] = "";
     scene_["tissues"] = (resourceFolder() / "tissues" / "cranium.json").string();
-    for (Json& arm : scene_["arms"]) {
-      arm["device"].erase("config");
-      arm.erase("other_tools");
-    }
+    for (Json& arm : scene_["arms"]) arm.erase("other_tools");
     tool_ = *readJsonFile(resourceFolder() / "tools" / "blade.json");
     tool_["mesh"] = (resourceFolder() / "tools" / "blade.stl").string();
   }
@@ -382,7 +386,6 @@ TEST(Scene, FindsItsCaseBesideItselfAndABuiltInOneByName) {
   EXPECT_EQ(parseScene(scene, resourceFolder() / "scenes" / "scene.json")->case_source,
             "phantom:cranium");
   scene["case"] = "../ct";
-  for (Json& arm : scene["arms"]) arm["device"].erase("config");
   scene["tissues"] = (resourceFolder() / "tissues" / "cranium.json").string();
   const std::filesystem::path beside = resourceFolder() / "scenes" / "scene.json";
   EXPECT_EQ(parseScene(scene, beside)->case_source, (resourceFolder() / "ct").string());

@@ -21,7 +21,7 @@ Error errorWithDeviceFile(const std::function<void(Json&)>& change, double rate_
   change(device);
   EXPECT_TRUE(writeTextFile(folder / "device.json", device.dump()));
   Scene scene = *readScene(resourceFolder() / "scenes" / "cranium-one-arm.json");
-  scene.arms[0].device_config = (folder / "device.json").string();
+  scene.arms[0].device.config = (folder / "device.json").string();
   scene.rate_hz = rate_hz;
   const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
   return session ? Error{} : session.error();
@@ -44,7 +44,7 @@ TEST(Session, RefusesADeviceFileNestedWithoutEndAndOneThatIsAPipe) {
                                                       std::string(depth, ']') + "}"));
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   for (const char* name : {"deep.json", "pipe.json"}) {
-    scene.arms[0].device_config = (folder / name).string();
+    scene.arms[0].device.config = (folder / name).string();
     const auto session = Session::create(scene, test::placed(scene, smallHead()), {});
     ASSERT_FALSE(session.ok()) << name;
     EXPECT_NE(session.error().where.find(name), std::string::npos) << session.error().sentence();
@@ -63,7 +63,7 @@ TEST(Session, RefusesARateThatTheDeviceCannotKeep) {
 
 TEST(Session, SaysWhenAPluginIsMissing) {
   Scene scene = cranium();
-  scene.arms[0].plugin = scene.arms[1].plugin = "nosuch";
+  scene.arms[0].device.plugin = scene.arms[1].device.plugin = "nosuch";
   auto session = Session::create(scene, test::placed(scene, smallHead()), {});
   ASSERT_FALSE(session.ok());
   EXPECT_EQ(session.error().code, "NO_PLUGIN");

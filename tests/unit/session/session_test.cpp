@@ -402,7 +402,7 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
   for (SceneArm& arm : scene.arms) {
-    arm.device_config = arms(folder.path(), {{"vanish_after_s", 0.3}});
+    arm.device.config = arms(folder.path(), {{"vanish_after_s", 0.3}});
   }
   auto session =
       *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));
@@ -421,6 +421,42 @@ TEST(Session, NamesTheArmsThatWereLostInItsReport) {
   ASSERT_TRUE(sound->freewheel(0.5).ok());
   EXPECT_TRUE(sound->report().faults.empty());
   EXPECT_EQ(toJson(sound->report())["faults"], Json::array());
+}
+
+// As a script commands it.
+TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
+  test::TemporaryFolder folder;
+  const Scene scene = cranium();
+  SessionOptions options = scripted(folder / "s.h5");
+  const auto at = [](double time_s, CommandKind kind, int arm) {
+    ScriptCommand command;
+    command.time_s = time_s;
+    command.command.kind = kind;
+    command.command.arm = arm;
+    return command;
+  };
+  options.script->commands = {at(0.3, CommandKind::device_lost, 0),
+                              at(0.6, CommandKind::clear_faults, -1),
+                              at(0.8, CommandKind::device_back, 0),
+                              at(0.9, CommandKind::clear_faults, -1)};
+  const Case of = test::placed(scene, smallHead());
+  auto session = *Session::create(scene, of, options);
+  ASSERT_TRUE(session->freewheel(1.2).ok());
+  const RunReport report = session->report();
+  ASSERT_EQ(report.faults.size(), 2u) << "once more after the first clearing";
+  EXPECT_EQ(report.faults[0].tick, 300u);
+  session.reset();
+  const auto reader = *SessionReader::open(folder / "s.h5");
+  const std::vector<TickRecord> ticks = *reader->ticks(0, 1200);
+  for (const TickRecord& tick : ticks) {
+    const bool gone = (tick.tick >= 300 && tick.tick < 900);
+    EXPECT_EQ(tick.arms[0].faults, gone ? kFaultDeviceLost : 0u) << tick.tick;
+    if (gone) { ASSERT_EQ(glm::length(tick.arms[0].sent_N), 0.0) << tick.tick; }
+    EXPECT_EQ(tick.arms[1].faults, 0u) << tick.tick;
+  }
+  const Result<ReplayResult> again = replay(*reader, *of.volume, of.labels.get());
+  ASSERT_TRUE(again) << again.error().sentence();
+  EXPECT_TRUE(again->identical);
 }
 
 TEST(Session, StandsStillWhileItsVoxelsAreReadAndGoesOnAfterwards) {
@@ -508,7 +544,7 @@ TEST(Session, AStallIsAFaultInTheReportAndReplaysIdentically) {
   test::TemporaryFolder folder;
   Scene scene = cranium();
   for (SceneArm& arm : scene.arms) {
-    arm.device_config = arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
+    arm.device.config = arms(folder.path(), {{"block_after_s", 0.3}, {"block_for_s", 0.1}});
   }
   auto session =
       *Session::create(scene, test::placed(scene, smallHead()), scripted(folder / "s.h5"));

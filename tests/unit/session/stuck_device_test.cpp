@@ -26,7 +26,7 @@ Scene scene(const std::filesystem::path& folder, double block_s) {
   Json json = *readJsonFile(resourceFolder() / "devices" / "omni.json");
   json.update({{"block_after_s", 0.3}, {"block_for_s", block_s}});
   std::ofstream(folder / "arms.json") << json.dump();
-  for (SceneArm& arm : scene.arms) arm.device_config = (folder / "arms.json").string();
+  for (SceneArm& arm : scene.arms) arm.device.config = (folder / "arms.json").string();
   return scene;
 }
 

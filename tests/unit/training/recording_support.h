@@ -39,7 +39,7 @@ inline Scene sceneWithOneArm() {
   scene.tools.push_back({"blade", makeBlade(0.008, 17), {}});
   SceneArm arm;
   arm.name = "right";
-  arm.plugin = "simulated";
+  arm.device.plugin = "simulated";
   arm.tool = "blade";
   arm.map.fixed = WorkspaceMap{};
   scene.arms.push_back(arm);

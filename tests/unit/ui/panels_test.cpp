@@ -520,14 +520,14 @@ TEST_F(PanelTest, ANameThatIsShownHasNoMarksOfDirectionAndCanBeBroken) {
 TEST_F(PanelTest, ASettingThatIsNeitherYesNorNoIsAsWithoutIt) {
   QSettings settings = windowSettings();
   for (const char* word : {"banana", "2", ""}) {
-    settings.setValue(settings::kArmsSwapped.key, QString(word));
+    settings.setValue(settings::kLeftPanel.key, QString(word));
     settings.sync();
-    EXPECT_FALSE(read(settings::kArmsSwapped)) << word;
+    EXPECT_TRUE(read(settings::kLeftPanel)) << word;
   }
-  settings.setValue(settings::kArmsSwapped.key, true);
+  settings.setValue(settings::kLeftPanel.key, false);
   settings.sync();
-  EXPECT_TRUE(read(settings::kArmsSwapped));
-  settings.remove(settings::kArmsSwapped.key);
+  EXPECT_FALSE(read(settings::kLeftPanel));
+  settings.remove(settings::kLeftPanel.key);
 }
 
 TEST_F(PanelTest, TheBarOfTheHandSaysThatAPushIsTheMostAndThatAToolInTissueRests) {

@@ -255,7 +255,6 @@ TEST_F(PlacedTest, ASceneThatNamesNoCaseIsPlacedInTheOneThatIsOpen) {
   scene["landmarks"][0]["from"] = {0.5, 0.5, -0.2};  // from below
   std::vector<Json*> names{&scene["tissues"], &scene["operator"]};
   for (Json& tool : scene["tools"]) names.push_back(&tool["file"]);
-  for (Json& arm : scene["arms"]) names.push_back(&arm["device"]["config"]);
   for (Json* name : names) {
     *name = (resourceFolder() / "scenes" / name->get<std::string>()).lexically_normal().string();
   }
@@ -450,10 +449,6 @@ TEST_F(WorkstationTest, ASceneThatIsEditedUnderneathBringsNothingThatIsLocked) {
   for (const char* key : {"tissues", "operator"})
     scene[key] = scenes / scene[key].get<std::string>();
   for (Json& tool : scene["tools"]) tool["file"] = scenes / tool["file"].get<std::string>();
-  for (Json& arm : scene["arms"]) {
-    Json& config = arm["device"]["config"];
-    config = scenes / config.get<std::string>();
-  }
   scene["case"] = "";
   ASSERT_TRUE(writeTextFile(file, scene.dump()));
   locked.openPath(file);

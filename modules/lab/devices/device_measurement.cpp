@@ -1,0 +1,490 @@
+#include "lab/devices/device_measurement.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <locale>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "base/file.h"
+#include "base/system.h"
+#include "lab/common/quantile.h"
+#include "lab/devices/loop_watch.h"
+#include "scene/arms_file.h"
+#include "session/arm_devices.h"
+#include "session/session.h"
+#include "training/replay.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr double kRate_hz = 1000.0;
+constexpr double kDelay_s = 10.0;  // of each order of the loop's calls
+constexpr double kFelt_N = 0.05;   // an arm has force
+const char* kSides[] = {"right", "left"};
+
+Error cancelled() {
+  return {"CANCELLED", "The measurement was cancelled", "measure devices", ""};
+}
+
+// What is measured at once: the arms of one plugin, plugged in or emulated.
+struct Subject {
+  std::string plugin;
+  DeviceBench* bench = nullptr;
+  std::vector<FoundArm> arms;
+};
+
+std::vector<FoundArm> armsOf(const std::string& plugin) {
+  std::vector<FoundArm> arms = findArms(pluginFolder()).arms;
+  std::erase_if(arms, [&](const FoundArm& arm) { return arm.plugin != plugin; });
+  if (arms.size() > 2) arms.resize(2);
+  return arms;
+}
+
+std::vector<Subject> pluggedIn() {
+  std::vector<Subject> subjects;
+  for (const FoundArm& arm : findArms(pluginFolder()).arms) {
+    if (arm.plugin == kSimulated) continue;
+    if (subjects.empty() || subjects.back().plugin != arm.plugin) {
+      subjects.push_back({arm.plugin, nullptr, armsOf(arm.plugin)});
+    }
+  }
+  return subjects;
+}
+
+Status plugIn(Subject& subject) {
+  if (subject.bench && !subject.bench->plugIn()) {
+    return Error{"NO_DEVICE", "The bench cannot emulate '" + subject.plugin + "' here", "",
+                 "Run it as its README says"};
+  }
+  subject.arms = armsOf(subject.plugin);
+  if (!subject.arms.empty()) return {};
+  return Error{"NO_DEVICE", "No arm of '" + subject.plugin + "' is found", "",
+               "Plug it in, or give a bench that emulates it"};
+}
+
+// The first moves the right arm.
+Status moveBy(Scene& scene, const std::vector<FoundArm>& arms) {
+  std::vector<NamedDevice> devices;
+  for (std::size_t i = 0; i < arms.size() && i < scene.arms.size(); ++i) {
+    const std::string side = scene.arms.size() > 1 ? kSides[i] : scene.arms[0].name;
+    devices.push_back({side, {arms[i].plugin, arms[i].place, deviceFile(arms[i].plugin)}});
+  }
+  return useArms(scene, devices, "the arms");
+}
+
+Result<Scene> sceneOn(const std::vector<FoundArm>& arms) {
+  const char* name = arms.size() > 1 ? "cranium.json" : "cranium-one-arm.json";
+  Result<Scene> scene = readScene(resourceFolder() / "scenes" / name);
+  if (!scene) return scene;
+  if (Status moved = moveBy(*scene, arms); !moved) return moved.error();
+  return scene;
+}
+
+std::int64_t hostTime_ns() {
+  return HostClock().now_ns();
+}
+
+// ---- The closed loop
+
+std::uint64_t reportsLost(const LoopWatch& watch, std::size_t arm) {
+  std::uint64_t lost = 0;
+  for (std::size_t i = 1; i < watch.ticks(arm); ++i) {
+    const std::uint64_t before = watch.tick(arm, i - 1).sequence;
+    const std::uint64_t now = watch.tick(arm, i).sequence;
+    if (before > 0 && now > before + 1) lost += now - before - 1;
+  }
+  return lost;
+}
+
+// Ticks whose force the arm did not get with the sample that it answers, nor with the next.
+std::uint64_t mismatches(const LoopWatch& watch, std::size_t arm,
+                         const std::vector<double>& received_N) {
+  const auto same = [&](std::int64_t at, double force_N) {
+    return at >= 0 && std::size_t(at) < received_N.size() &&
+           std::abs(received_N[std::size_t(at)] - force_N) < 1e-9;
+  };
+  const auto wrong = [&](std::int64_t offset, std::size_t most) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < most; ++i) {
+      const LoopWatch::Tick& tick = watch.tick(arm, i);
+      if (tick.lost) continue;
+      const std::int64_t at = std::int64_t(tick.sequence) + offset;
+      count += !same(at, tick.force_N) && !same(at + 1, tick.force_N);
+    }
+    return count;
+  };
+  // Both count samples, from different ones on: where the first force of any size arrived.
+  const std::size_t ticks = watch.ticks(arm);
+  std::size_t first = 0;
+  while (first < ticks && watch.tick(arm, first).force_N < kFelt_N) ++first;
+  if (first == ticks) return 0;
+  std::uint64_t least = ticks;
+  for (std::size_t at = 0; at < received_N.size(); ++at) {
+    if (!same(std::int64_t(at), watch.tick(arm, first).force_N)) continue;
+    const auto offset = std::int64_t(at) - std::int64_t(watch.tick(arm, first).sequence);
+    least = std::min(least, wrong(offset, ticks));
+    if (least == 0) break;
+  }
+  return least;
+}
+
+Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
+                     const Progress& progress) {
+  Result<Scene> scene = sceneOn(subject.arms);
+  if (!scene) return scene.error();
+  const Result<Case> of = openCase(*scene);
+  if (!of) return of.error();
+  LoopWatch watch(std::size_t((seconds + 10.0) * kRate_hz));
+  SessionOptions options;
+  options.probe = &watch;
+  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, options);
+  if (!session) return session.error();
+  if (Status started = (*session)->start(seconds); !started) return started;
+  const std::int64_t begin_ns = hostTime_ns();
+  while (!(*session)->finished() && 1e-9 * double(hostTime_ns() - begin_ns) < seconds + 10.0) {
+    const double part = 1e-9 * double(hostTime_ns() - begin_ns) / seconds;
+    progress.at(std::min(1.0, part), subject.plugin + ", closed loop");
+    if (progress.cancelled()) {
+      (void)(*session)->stop();
+      return cancelled();
+    }
+    std::this_thread::sleep_for(50ms);
+  }
+  if (Status stopped = (*session)->stop(); !stopped) return stopped;
+  const RunReport report = (*session)->report();
+  row.ticks = report.ticks;
+  row.missed = report.missed_deadlines;
+  row.faults = report.faults.size();
+  row.page_faults = watch.pageFaults();
+  std::vector<double> age_ms, answer_ms;
+  for (std::size_t arm = 0; arm < subject.arms.size(); ++arm) {
+    row.reports_lost += reportsLost(watch, arm);
+    for (std::size_t i = 0; i < watch.ticks(arm); ++i) {
+      const LoopWatch::Tick& tick = watch.tick(arm, i);
+      if (tick.sampled_ns == 0 || tick.lost) continue;
+      age_ms.push_back(1e-6 * double(tick.read_ns - tick.sampled_ns));
+      answer_ms.push_back(1e-6 * double(tick.sent_ns - tick.sampled_ns));
+    }
+  }
+  row.report_age_ms = spreadOf(std::move(age_ms));
+  std::vector<double> at_arm_ms = subject.bench ? subject.bench->answers_ms() : answer_ms;
+  row.at_the_arm = subject.bench && !at_arm_ms.empty();
+  row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(at_arm_ms) : std::move(answer_ms));
+  for (std::size_t arm = 0; subject.bench && arm < subject.arms.size(); ++arm) {
+    const std::size_t of_bench = subject.arms[arm].place;
+    const std::vector<double> received_N = subject.bench->received_N(std::uint32_t(of_bench));
+    if (received_N.empty()) continue;
+    row.force_mismatches = row.force_mismatches.value_or(0) + mismatches(watch, arm, received_N);
+  }
+  return {};
+}
+
+// ---- The order of the loop's calls
+
+// From each sample to the return of the write of the force that answers it, by an arm that the host
+// or its own samples pace.
+Result<std::vector<double>> answersTo(const Subject& subject, bool send_first, double seconds,
+                                      ArmDynamics& dynamics, const Progress& progress) {
+  std::vector<std::uint32_t> places;
+  for (const FoundArm& arm : subject.arms) places.push_back(arm.place);
+  Result<std::unique_ptr<Device>> device =
+      openDevice(subject.plugin, places, deviceFile(subject.plugin));
+  if (!device) return device.error();
+  const TrephineCapabilities& able = (*device)->capabilities(0);
+  dynamics = {able.apparent_mass_kg, able.encoder_step_m, able.peak_force_N, 0.0};
+  if (Status started = (*device)->start(); !started) return started.error();
+  std::vector<TrephineArmState> states(places.size());
+  std::vector<TrephineArmCommand> commands(places.size());
+  std::vector<double> answers_ms;
+  HostClock clock;
+  TickSchedule schedule(std::int64_t(1e9 / kRate_hz));
+  std::uint64_t answered = 0;
+  std::int64_t computed_from_ns = 0;
+  for (std::size_t tick = 0; double(tick) < seconds * kRate_hz; ++tick) {
+    if (progress.cancelled()) return cancelled();
+    const auto write = [&] {
+      (*device)->write(commands.data());
+      if (computed_from_ns == 0) return;
+      answers_ms.push_back(1e-6 * double(clock.now_ns() - computed_from_ns));
+      computed_from_ns = 0;
+    };
+    if (send_first && (*device)->hasClock()) {
+      (*device)->wait(0.005);
+    } else {
+      schedule.waitForTick(clock);
+    }
+    if (!send_first) write();
+    (*device)->read(1.0 / kRate_hz, states.data());
+    if (states[0].sequence != answered && states[0].time_ns > 0) {
+      answered = states[0].sequence;
+      computed_from_ns = states[0].time_ns;
+    }
+    if (send_first) write();
+  }
+  (*device)->stop();
+  return answers_ms;
+}
+
+Status measureOrders(Subject& subject, DeviceRow& row, const Progress& progress) {
+  double beyond_ms = 0.0;  // from the plugin to the arm, as the bench sees it
+  for (const bool send_first : {true, false}) {
+    progress.at(0.0, subject.plugin + (send_first ? ", send, then wait" : ", wait, then send"));
+    if (Status there = plugIn(subject); !there) return there;
+    DelayRow delay;
+    delay.order = send_first ? "send, then wait" : "wait, then send";
+    ArmDynamics dynamics;
+    Result<std::vector<double>> answers_ms =
+        answersTo(subject, send_first, kDelay_s, dynamics, progress);
+    if (!answers_ms) return answers_ms.error();
+    const double to_plugin_ms = spreadOf(*answers_ms).median;
+    const std::vector<double> seen_ms =
+        subject.bench && send_first ? subject.bench->answers_ms() : std::vector<double>();
+    if (!seen_ms.empty()) beyond_ms = std::max(0.0, spreadOf(seen_ms).median - to_plugin_ms);
+    for (double& ms : *answers_ms) ms += beyond_ms;
+    delay.delay_ms = spreadOf(std::move(*answers_ms));
+    dynamics.delay_s = 1e-3 * delay.delay_ms.p99;
+    delay.delay_samples = dynamics.delay_s * kRate_hz;
+    delay.most = renderable(dynamics, kRate_hz, delay.delay_samples, WorkspaceMap{});
+    row.delays.push_back(delay);
+  }
+  return {};
+}
+
+// ---- Troubles
+
+struct Trial {
+  double zero_ms = 0.0, stop_ms = 0.0;
+  bool replayed = false;
+};
+
+// In mid-cut, at a moment that nobody knows, with force on the first arm.
+Result<Trial> runTrial(const Subject& subject, const Scene& scene, const Case& of, bool unplug,
+                       double wait_s, LoopWatch& watch, const fs::path& recording) {
+  watch.begin();
+  SessionOptions options;
+  options.probe = &watch;
+  options.recording = recording;
+  Result<std::unique_ptr<Session>> session = Session::create(scene, of, options);
+  if (!session) return session.error();
+  if (Status started = (*session)->start(30.0); !started) return started.error();
+  std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
+  const std::uint32_t arm = subject.arms[0].place;
+  const std::size_t index = std::size_t(
+      std::ranges::find(scene.arms, std::string(kSides[0]), &SceneArm::name) - scene.arms.begin());
+  const std::size_t of_scene = index < scene.arms.size() ? index : 0;
+  const auto force_N = [&] {
+    const std::size_t ticks = watch.ticks(of_scene);
+    return ticks == 0 ? 0.0 : watch.tick(of_scene, ticks - 1).force_N;
+  };
+  const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
+  while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
+  const std::int64_t at_ns = hostTime_ns();
+  unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
+  std::int64_t last_ns = at_ns;
+  // An arm that was taken out has no force but what was sent; one that does not answer has what it
+  // had.
+  while (hostTime_ns() < at_ns + 300'000'000) {
+    if (!unplug && subject.bench->force_N(arm) > 1e-6) last_ns = hostTime_ns();
+    std::this_thread::sleep_for(200us);
+  }
+  if (unplug) {
+    for (std::size_t i = watch.ticks(of_scene); i-- > 0;) {
+      const LoopWatch::Tick& tick = watch.tick(of_scene, i);
+      if (tick.sent_ns < at_ns) break;
+      if (tick.force_N <= 0.0) continue;
+      last_ns = tick.sent_ns;
+      break;
+    }
+  }
+  Trial trial;
+  trial.zero_ms = 1e-6 * double(last_ns - at_ns);
+  const std::int64_t stop_ns = hostTime_ns();
+  (void)(*session)->stop();
+  trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
+  session->reset();
+  const auto reader = SessionReader::open(recording);
+  if (!reader) return trial;
+  const Result<ReplayResult> again =
+      replay(**reader, *of.volume, of.labels.get(), Progress(), of.sha256);
+  trial.replayed = again && again->identical && !again->cut_short;
+  return trial;
+}
+
+Status runTrials(Subject& subject, int count, const fs::path& out, DeviceRow& row,
+                 const Progress& progress) {
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> wait_s(0.7, 1.7);
+  LoopWatch watch(std::size_t(40.0 * kRate_hz));
+  std::vector<double> unplug_ms, block_ms, stop_ms;
+  Result<Scene> scene = sceneOn(subject.arms);
+  if (!scene) return scene.error();
+  const Result<Case> of = openCase(*scene);
+  if (!of) return of.error();
+  for (int n = 0; n < 2 * count; ++n) {
+    const bool unplug = n < count;
+    progress.at(double(n) / (2.0 * count), subject.plugin + (unplug ? ", unplugged" : ", blocked"));
+    if (progress.cancelled()) return cancelled();
+    if (Status there = plugIn(subject); !there) return there;
+    if (Status moved = moveBy(*scene, subject.arms); !moved) return moved;
+    const fs::path recording = out / (subject.plugin + (unplug ? "-unplugged-" : "-blocked-") +
+                                      std::to_string(n % std::max(1, count)) + ".h5");
+    const Result<Trial> trial =
+        runTrial(subject, *scene, *of, unplug, wait_s(random), watch, recording);
+    if (!trial) return trial.error();
+    (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);
+    stop_ms.push_back(trial->stop_ms);
+    ++(unplug ? row.unplugged : row.blocked);
+    row.replayed += trial->replayed;
+    std::error_code ec;
+    if (trial->replayed) fs::remove(recording, ec);
+  }
+  row.unplug_to_zero_ms = spreadOf(std::move(unplug_ms));
+  row.block_to_zero_ms = spreadOf(std::move(block_ms));
+  row.stop_ms = spreadOf(std::move(stop_ms));
+  return {};
+}
+
+// ---- What is said of it
+
+Json spread(const Spread& of) {
+  if (of.count == 0) return nullptr;
+  return {{"median", of.median}, {"p99", of.p99}, {"max", of.max}, {"count", of.count}};
+}
+
+std::string toCsv(const DeviceMeasurement& measurement) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << "plugin,arms,seconds,ticks,missed,reports_lost,report_age_median_ms,report_age_p99_ms,"
+          "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,page_faults,"
+          "unplug_to_zero_max_ms,block_to_zero_max_ms,stop_max_ms,replayed,trials\n";
+  for (const DeviceRow& row : measurement.rows) {
+    text << row.plugin << ',' << row.arms << ',' << row.seconds << ',' << row.ticks << ','
+         << row.missed << ',' << row.reports_lost << ',' << row.report_age_ms.median << ','
+         << row.report_age_ms.p99 << ',' << row.sample_to_force_ms.median << ','
+         << row.sample_to_force_ms.p99 << ',';
+    if (row.force_mismatches) text << *row.force_mismatches;
+    text << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max << ','
+         << row.block_to_zero_ms.max << ',' << row.stop_ms.max << ',' << row.replayed << ','
+         << row.unplugged + row.blocked << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace
+
+Spread spreadOf(std::vector<double> figures) {
+  std::sort(figures.begin(), figures.end());
+  return {quantile(figures, 500), quantile(figures, 990), quantile(figures, 1000), figures.size()};
+}
+
+Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs::path& out,
+                                         const Progress& progress) {
+  if (!(options.seconds >= 1.0 && options.seconds <= 600.0) || options.trials < 0 ||
+      options.trials > 1000) {
+    return Error{"BAD_ARGUMENT", "The time must lie between 1 and 600 s, the trials from 0 to 1000",
+                 "--seconds, --trials", ""};
+  }
+  if (Status made = makeFolder(out); !made) return made.error();
+  std::vector<Subject> subjects;
+  for (DeviceBench* bench : options.benches) subjects.push_back({bench->plugin(), bench, {}});
+  if (options.benches.empty()) subjects = pluggedIn();
+  if (subjects.empty()) {
+    return Error{"NO_DEVICE", "No arm is plugged in", "",
+                 "Plug one in, or give a bench that emulates one (--bench)"};
+  }
+  DeviceMeasurement measurement;
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    Subject& subject = subjects[i];
+    const double from = double(i) / double(subjects.size()), share = 1.0 / double(subjects.size());
+    if (Status there = plugIn(subject); !there) return there.error();
+    DeviceRow row;
+    row.plugin = subject.plugin;
+    row.arms = subject.arms.size();
+    row.seconds = options.seconds;
+    const Progress loop(progress, from, from + 0.4 * share);
+    if (Status ran = runClosedLoop(subject, options.seconds, row, loop); !ran) return ran.error();
+    const Progress orders(progress, from + 0.4 * share, from + 0.5 * share);
+    if (Status ran = measureOrders(subject, row, orders); !ran) return ran.error();
+    const Progress trials(progress, from + 0.5 * share, from + share);
+    if (subject.bench) {
+      Status ran = runTrials(subject, options.trials, out, row, trials);
+      if (!ran) return ran.error();
+    }
+    measurement.rows.push_back(std::move(row));
+  }
+  if (Status written = writeTextFile(out / "devices.csv", toCsv(measurement)); !written) {
+    return written.error();
+  }
+  return measurement;
+}
+
+Json toJson(const DeviceMeasurement& measurement) {
+  Json rows = Json::array();
+  for (const DeviceRow& row : measurement.rows) {
+    Json delays = Json::array();
+    for (const DelayRow& delay : row.delays) {
+      delays.push_back({{"order", delay.order},
+                        {"delay_ms", spread(delay.delay_ms)},
+                        {"delay_samples", delay.delay_samples},
+                        {"b_max", delay.most.b_max},
+                        {"k_max", delay.most.k_max}});
+    }
+    rows.push_back({{"plugin", row.plugin},
+                    {"arms", row.arms},
+                    {"seconds", row.seconds},
+                    {"ticks", row.ticks},
+                    {"missed", row.missed},
+                    {"faults", row.faults},
+                    {"reports_lost", row.reports_lost},
+                    {"report_age_ms", spread(row.report_age_ms)},
+                    {"sample_to_force_ms", spread(row.sample_to_force_ms)},
+                    {"at_the_arm", row.at_the_arm},
+                    {"force_mismatches",
+                     row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
+                    {"page_faults", row.page_faults},
+                    {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
+                    {"block_to_zero_ms", spread(row.block_to_zero_ms)},
+                    {"stop_ms", spread(row.stop_ms)},
+                    {"trials", row.unplugged + row.blocked},
+                    {"replayed", row.replayed},
+                    {"delays", delays}});
+  }
+  return {{"rows", rows}};
+}
+
+std::string toText(const DeviceMeasurement& measurement) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(2);
+  for (const DeviceRow& row : measurement.rows) {
+    text << row.plugin << ", " << row.arms << " arms, " << std::setprecision(0) << row.seconds
+         << " s: " << std::setprecision(2) << row.ticks << " ticks, " << row.missed << " late, "
+         << row.reports_lost << " reports lost, " << row.page_faults << " page faults\n"
+         << "  a report is " << row.report_age_ms.median << " ms old, p99 " << row.report_age_ms.p99
+         << "; from it to the force " << (row.at_the_arm ? "at the arm " : "") << "in "
+         << row.sample_to_force_ms.median << " ms, p99 " << row.sample_to_force_ms.p99 << "\n";
+    if (row.force_mismatches) text << "  forces that did not arrive: " << *row.force_mismatches << "\n";
+    for (const DelayRow& delay : row.delays) {
+      text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
+           << delay.delay_ms.p99 << "; shows " << delay.most.b_max << " N s/m and "
+           << std::setprecision(0) << delay.most.k_max << std::setprecision(2) << " N/m\n";
+    }
+    if (row.unplugged + row.blocked == 0) continue;
+    text << "  no force after an unplug within " << row.unplug_to_zero_ms.median << " ms, at most "
+         << row.unplug_to_zero_ms.max << "; after a call that blocks " << row.block_to_zero_ms.median
+         << ", at most " << row.block_to_zero_ms.max << "; Stop within " << row.stop_ms.max
+         << " ms; " << row.replayed << " of " << row.unplugged + row.blocked
+         << " recordings replay\n";
+  }
+  return text.str();
+}
+
+}  // namespace trephine

@@ -1,0 +1,74 @@
+// Real arms, or emulated ones, in a real exercise: what is lost between a sample and the force that
+// answers it, and how soon the force goes when a device does.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "device/device_bench.h"
+#include "haptics/arm_dynamics.h"
+
+namespace trephine {
+
+struct DeviceOptions {
+  std::vector<DeviceBench*> benches;  // none: what is plugged in
+  double seconds = 60.0;              // of the closed loop, 1 to 600
+  int trials = 20;                    // of each trouble, 0 to 1000; with a bench alone
+};
+
+// Of figures that were not measured: nothing, said as null.
+struct Spread {
+  double median = 0.0, p99 = 0.0, max = 0.0;
+  std::size_t count = 0;
+};
+Spread spreadOf(std::vector<double> figures);
+
+// One order of the loop's calls on the arms, without tissue: from a sample at the arm to the force
+// that answers it there, and what the arm may then show (renderable()).
+struct DelayRow {
+  std::string order;  // "send, then wait"; "wait, then send", as before
+  Spread delay_ms;
+  double delay_samples = 0.0;  // at p99
+  Renderable most;
+};
+
+struct DeviceRow {
+  std::string plugin;
+  std::size_t arms = 0;
+  double seconds = 0.0;
+  std::uint64_t ticks = 0, missed = 0, faults = 0;
+  std::uint64_t reports_lost = 0;  // numbers of samples that the loop never saw
+  Spread report_age_ms;            // when it was looked at
+  Spread sample_to_force_ms;       // at the arm where a bench tells, else to the plugin
+  bool at_the_arm = false;
+  std::optional<std::uint64_t> force_mismatches;
+  long page_faults = 0;
+  int unplugged = 0, blocked = 0, replayed = 0;  // trials; recordings that replay bit for bit
+  Spread unplug_to_zero_ms, block_to_zero_ms, stop_ms;
+  std::vector<DelayRow> delays;
+};
+
+struct DeviceMeasurement {
+  std::vector<DeviceRow> rows;
+};
+
+// Writes devices.csv into `out`, and the recordings of trials that fail. Errors: NO_DEVICE,
+// BAD_ARGUMENT, CANCELLED, CANNOT_WRITE, those of sessions.
+Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
+                                         const std::filesystem::path& out,
+                                         const Progress& progress = Progress());
+
+// {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, report_age_ms: {median, p99,
+//  max}, sample_to_force_ms: {median, p99, max, at_the_arm}, force_mismatches (null: not told),
+//  page_faults, unplug_to_zero_ms: {median, max, trials}, block_to_zero_ms, stop_ms: {median, max},
+//  replayed, delays: [{order, delay_ms: {median, p99}, delay_samples, b_max, k_max}]}]}
+Json toJson(const DeviceMeasurement& measurement);
+std::string toText(const DeviceMeasurement& measurement);
+
+}  // namespace trephine

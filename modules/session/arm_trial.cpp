@@ -1,0 +1,194 @@
+#include "session/arm_trial.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+
+#include "base/rt/thread.h"
+#include "haptics/loop_clock.h"
+#include "session/arm_devices.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr auto kEndPatience = std::chrono::milliseconds(300);
+
+}  // namespace
+
+// Owned by the trial and its thread together: a device may keep the thread for ever.
+struct ArmTrial::Engine {
+  struct Opened {
+    std::unique_ptr<Device> device;
+    std::vector<std::size_t> arms;  // of the trial
+  };
+  std::vector<Opened> devices;
+  std::vector<TrephineCapabilities> capabilities;
+  std::vector<ForceTest> tests;
+  std::array<Vec3, kMaxArms> first_m{};
+  TriedArms arms{};
+  rt::LatestValue<TriedArms> seen;
+  std::atomic<double> asked_N[kMaxArms]{};  // for the next test of each; 0: none
+  std::atomic<bool> end_force{false}, stop{false};
+  std::atomic<int> in_call{-1};
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ended = false;
+
+  std::vector<std::optional<Error>> problems;
+
+  Status open(const std::vector<FoundArm>& arms, const std::vector<std::size_t>& which);
+  void take(std::size_t i, const TrephineArmState& state);
+  void tick();
+  void run();
+};
+
+void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
+  TriedArm& arm = arms[i];
+  const double* p = state.position_m;
+  const double* q = state.orientation;
+  arm.pose_m = {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3])};
+  arm.buttons = state.buttons;
+  arm.flags = state.flags;
+  if (arm.samples++ == 0) first_m[i] = arm.pose_m.position;
+  arm.moved_m = std::max(arm.moved_m, glm::length(arm.pose_m.position - first_m[i]));
+}
+
+void ArmTrial::Engine::tick() {
+  const bool end = end_force.exchange(false);
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    const Opened& of = devices[d];
+    std::array<TrephineArmState, kMaxArms> states{};
+    std::array<TrephineArmCommand, kMaxArms> commands{};
+    in_call = int(d);
+    of.device->read(kPeriod_s, states.data());
+    in_call = -1;
+    for (std::size_t n = 0; n < of.arms.size(); ++n) {
+      const std::size_t i = of.arms[n];
+      take(i, states[n]);
+      if (const double most_N = asked_N[i].exchange(0.0); most_N > 0.0) tests[i].ask(most_N);
+      if (end) tests[i].end();
+      TriedArm& arm = arms[i];
+      const bool passing = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
+      arm.force_N = tests[i].tick(arm.pose_m.position, arm.buttons != 0, passing, kPeriod_s);
+      arm.test = tests[i].phase();
+      commands[n].size = sizeof(TrephineArmCommand);
+      commands[n].force_N[1] = arm.force_N;
+    }
+    in_call = int(d);
+    of.device->write(commands.data());
+    in_call = -1;
+  }
+  seen.write(arms);
+}
+
+void ArmTrial::Engine::run() {
+  rt::nameThread("arm trial");
+  HostClock clock;
+  TickSchedule schedule(std::int64_t(kPeriod_s * 1e9));
+  while (!stop) {
+    schedule.waitForTick(clock);
+    tick();
+  }
+  for (const Opened& of : devices) of.device->stop();
+  std::lock_guard lock(mutex);
+  ended = true;
+  changed.notify_all();
+}
+
+// These arms of one plugin as one device.
+Status ArmTrial::Engine::open(const std::vector<FoundArm>& arms,
+                              const std::vector<std::size_t>& which) {
+  const std::string& name = arms[which.front()].plugin;
+  std::vector<std::uint32_t> places;
+  for (std::size_t i : which) places.push_back(arms[i].place);
+  Result<std::unique_ptr<Device>> device = openDevice(name, places, deviceFile(name));
+  if (!device) return device.error();
+  for (std::size_t n = 0; n < which.size(); ++n) {
+    capabilities[which[n]] = (*device)->capabilities(n);
+  }
+  if (Status started = (*device)->start(); !started) return started;
+  devices.push_back({*std::move(device), which});
+  return {};
+}
+
+std::unique_ptr<ArmTrial> ArmTrial::start(const std::vector<FoundArm>& arms) {
+  auto engine = std::make_shared<Engine>();
+  std::map<std::string, std::vector<std::size_t>> by_plugin;
+  const std::size_t count = std::min(arms.size(), std::size_t(kMaxArms));
+  for (std::size_t i = 0; i < count; ++i) by_plugin[arms[i].plugin].push_back(i);
+  engine->capabilities.resize(count);
+  engine->tests.resize(count);
+  engine->problems.resize(count);
+  for (const auto& [name, of] : by_plugin) {
+    if (engine->open(arms, of)) continue;
+    // Each alone, for who it is that cannot be had; then those that can together.
+    std::vector<std::size_t> good;
+    for (std::size_t i : of) {
+      if (Status alone = engine->open(arms, {i}); !alone) {
+        engine->problems[i] = alone.error();
+        continue;
+      }
+      engine->devices.pop_back();
+      good.push_back(i);
+    }
+    if (good.empty()) continue;
+    const Status together = engine->open(arms, good);
+    for (std::size_t i : good) {
+      if (!together) engine->problems[i] = together.error();
+    }
+  }
+  std::unique_ptr<ArmTrial> trial(new ArmTrial);
+  trial->engine_ = engine;
+  trial->thread_ = std::thread([engine] { engine->run(); });
+  return trial;
+}
+
+ArmTrial::~ArmTrial() {
+  if (!thread_.joinable()) return;
+  engine_->stop = true;
+  std::unique_lock lock(engine_->mutex);
+  if (engine_->changed.wait_for(lock, kEndPatience, [this] { return engine_->ended; })) {
+    lock.unlock();
+    thread_.join();
+    return;
+  }
+  // Silencing a device may wait for the call that keeps it.
+  const int called = engine_->in_call;
+  if (called >= 0) engine_->devices[std::size_t(called)].device->leaveBehind();
+  std::thread([engine = engine_] {
+    for (const Engine::Opened& of : engine->devices) of.device->safeStop();
+  }).detach();
+  thread_.detach();
+}
+
+std::size_t ArmTrial::size() const {
+  return engine_->capabilities.size();
+}
+
+const std::optional<Error>& ArmTrial::problem(std::size_t arm) const {
+  return engine_->problems[arm];
+}
+
+const TrephineCapabilities& ArmTrial::capabilities(std::size_t arm) const {
+  return engine_->capabilities[arm];
+}
+
+const TriedArms& ArmTrial::state() {
+  engine_->seen.refresh();
+  return engine_->seen.value();
+}
+
+void ArmTrial::askForForce(std::size_t arm, double most_N) {
+  engine_->asked_N[arm] =
+      std::min({most_N, engine_->capabilities[arm].continuous_force_N,
+                engine_->capabilities[arm].peak_force_N});
+}
+
+void ArmTrial::endForce() {
+  engine_->end_force = true;
+}
+
+}  // namespace trephine

@@ -1,0 +1,57 @@
+// Arms that a person tries, outside of any exercise: where each is, its buttons, and a force to
+// tell by that it works. No tissue, no controller.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "base/math.h"
+#include "base/result.h"
+#include "base/rt/latest_value.h"
+#include "device/device.h"
+#include "device/find_arms.h"
+#include "haptics/haptic_types.h"
+#include "session/force_test.h"
+
+namespace trephine {
+
+struct TriedArm {
+  Pose pose_m;  // device frame
+  std::uint32_t buttons = 0, flags = 0;
+  double moved_m = 0.0;  // the farthest it has been from where it was first
+  double force_N = 0.0;  // upward, as sent
+  ForceTest::Phase test = ForceTest::Phase::off;
+  std::uint64_t samples = 0;
+};
+using TriedArms = std::array<TriedArm, kMaxArms>;
+
+class ArmTrial {
+ public:
+  // Opens, calibrates and starts them, at most kMaxArms; not on a window's thread. What one plugin
+  // has is opened together, without an arm that cannot be had: that says why in problem().
+  static std::unique_ptr<ArmTrial> start(const std::vector<FoundArm>& arms);
+  // Zero force first. Waits for the arms at most 0.3 s; the device whose call does not return by
+  // then is left behind.
+  ~ArmTrial();
+
+  std::size_t size() const;
+  const std::optional<Error>& problem(std::size_t arm) const;
+  const TrephineCapabilities& capabilities(std::size_t arm) const;
+  // The newest; one thread.
+  const TriedArms& state();
+  // Of the arm of this number: a force within what it can be sent for good, or `most_N`.
+  void askForForce(std::size_t arm, double most_N);
+  void endForce();  // at once
+
+ private:
+  struct Engine;
+  ArmTrial() = default;
+  std::shared_ptr<Engine> engine_;
+  std::thread thread_;
+};
+
+}  // namespace trephine

@@ -1,0 +1,58 @@
+#include "session/force_test.h"
+
+#include <algorithm>
+
+namespace trephine {
+
+namespace {
+
+constexpr double kRise_s = 3.0, kHold_s = 2.0, kFall_s = 1.0;
+constexpr double kMoved_m = 0.005;
+constexpr double kTooFast_m_s = 0.5;
+constexpr double kSpeedOver_s = 0.01;
+
+}  // namespace
+
+void ForceTest::ask(double most_N) {
+  *this = ForceTest();
+  most_N_ = most_N;
+  phase_ = Phase::waiting;
+}
+
+double ForceTest::tick(const Vec3& position_m, bool button, bool lost, double period_s) {
+  if (phase_ == Phase::off || phase_ == Phase::done || phase_ == Phase::lost) return 0.0;
+  if (lost) {
+    phase_ = Phase::lost;
+    return 0.0;
+  }
+  if (!placed_) asked_at_m_ = last_m_ = position_m;
+  placed_ = true;
+  const double share = period_s / (period_s + kSpeedOver_s);
+  speed_m_s_ += share * (glm::length(position_m - last_m_) / period_s - speed_m_s_);
+  last_m_ = position_m;
+  if (phase_ == Phase::waiting) {
+    if (!button && glm::length(position_m - asked_at_m_) < kMoved_m) return 0.0;
+    by_button_ = button;
+    phase_ = Phase::rising;
+    since_s_ = 0.0;
+    return 0.0;
+  }
+  if (speed_m_s_ > kTooFast_m_s) {
+    phase_ = Phase::lost;
+    return 0.0;
+  }
+  if (by_button_ && !button) {
+    phase_ = Phase::done;
+    return 0.0;
+  }
+  since_s_ += period_s;
+  const double falling_s = since_s_ - kRise_s - kHold_s;
+  if (falling_s >= kFall_s) {
+    phase_ = Phase::done;
+    return 0.0;
+  }
+  phase_ = since_s_ < kRise_s ? Phase::rising : falling_s < 0.0 ? Phase::holding : Phase::falling;
+  return most_N_ * std::min({1.0, since_s_ / kRise_s, 1.0 - std::max(0.0, falling_s) / kFall_s});
+}
+
+}  // namespace trephine

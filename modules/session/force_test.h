@@ -1,0 +1,35 @@
+// A force by which a person can tell that an arm works: upward, slowly rising to a known size, felt
+// by a hand that is known to hold the arm. Pure.
+#pragma once
+
+#include "base/math.h"
+
+namespace trephine {
+
+// Up to `most_N` over 3 s, held for 2 s, and gone over 1 s.
+//
+// It begins with a hand on the arm: a button that is held, and then lasts while that is; or, where
+// the arm is moved 5 mm from where it was when the test was asked for, without. Whoever lets go of
+// the button has no force in that tick. A hand that goes faster than 0.5 m/s has lost the arm: the
+// test ends.
+class ForceTest {
+ public:
+  enum class Phase { off, waiting, rising, holding, falling, done, lost };
+
+  void ask(double most_N);
+  void end() { phase_ = Phase::off; }
+  // The force [N] along the device's y for this sample.
+  double tick(const Vec3& position_m, bool button, bool lost, double period_s);
+
+  Phase phase() const { return phase_; }
+  bool gives() const { return phase_ >= Phase::rising && phase_ <= Phase::falling; }
+
+ private:
+  Phase phase_ = Phase::off;
+  double most_N_ = 0.0, since_s_ = 0.0;
+  bool placed_ = false, by_button_ = false;
+  Vec3 asked_at_m_{0.0}, last_m_{0.0};
+  double speed_m_s_ = 0.0;  // over 10 ms
+};
+
+}  // namespace trephine

@@ -1,0 +1,65 @@
+// A bench for `trephine-lab measure devices`: the two arms of our own libHD.so, which the program has
+// to find (LD_LIBRARY_PATH).
+#include <dlfcn.h>
+
+#include <cmath>
+
+#include "device/device_bench.h"
+#include "hd_test.h"
+
+namespace trephine {
+namespace {
+
+using test::HdTest;
+
+class HdBench : public DeviceBench {
+ public:
+  const char* plugin() const override { return "openhaptics"; }
+
+  bool plugIn() override {
+    if (!library_) library_ = ::dlopen("libHD.so", RTLD_NOW | RTLD_LOCAL);
+    const auto entry =
+        library_ ? reinterpret_cast<test::HdTestEntry>(::dlsym(library_, test::kHdTestEntry)) : nullptr;
+    hd_ = entry ? entry() : nullptr;
+    if (!hd_) return false;
+    hd_->reset();
+    hd_->swing_mm = 25.0;
+    first_ = hd_->frames;
+    return true;
+  }
+  void unplug(std::uint32_t arm) override {
+    HdTest& hd = *hd_;
+    constexpr std::uint32_t kCommunication = 0x0302;
+    hd.arms[arm].error = kCommunication;
+    hd.arms[arm].there = false;
+    hd.arms[arm].errors = 1'000'000'000;
+  }
+  void block(double seconds) override { hd_->block_s = seconds; }
+  double force_N(std::uint32_t arm) override {
+    const test::HdArm& of = hd_->arms[arm];
+    if (!of.enabled) return 0.0;
+    return std::sqrt(of.force_N[0] * of.force_N[0] + of.force_N[1] * of.force_N[1] +
+                     of.force_N[2] * of.force_N[2]);
+  }
+  std::vector<double> received_N(std::uint32_t arm) override {
+    const std::uint64_t frames = hd_->frames;
+    std::vector<double> forces;
+    for (std::uint64_t f = first_; f < frames; ++f) {
+      forces.push_back(hd_->arms[arm].sent_N[f % test::HdArm::kFrames]);
+    }
+    return forces;
+  }
+
+ private:
+  void* library_ = nullptr;
+  HdTest* hd_ = nullptr;
+  std::uint64_t first_ = 0;
+};
+
+}  // namespace
+}  // namespace trephine
+
+extern "C" __attribute__((visibility("default"))) trephine::DeviceBench* trephine_device_bench() {
+  static trephine::HdBench bench;
+  return &bench;
+}

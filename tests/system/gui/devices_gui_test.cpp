@@ -1,0 +1,197 @@
+// The dialog of devices and an exercise on what it chose, with the real plugin for Phantom and Touch on
+// our own libHD.so: two arms that the test moves.
+#include <dlfcn.h>
+
+#include <QComboBox>
+#include <QDialog>
+#include <QFrame>
+#include <QListWidget>
+#include <QMenu>
+#include <QtTest>
+
+#include "conformance/hd_test.h"
+#include "train_support.h"
+#include "ui/common/settings.h"
+
+using namespace trephine;
+
+namespace {
+
+constexpr int kSoon_ms = 20000;
+
+class DevicesGuiTest : public test::TrainTest {
+  Q_OBJECT
+
+  test::HdTest* hd_ = nullptr;
+
+  double force_N(std::size_t arm) const {
+    const test::HdArm& of = hd_->arms[arm];
+    return of.enabled ? std::sqrt(of.force_N[0] * of.force_N[0] + of.force_N[1] * of.force_N[1] +
+                                  of.force_N[2] * of.force_N[2])
+                      : 0.0;
+  }
+  QDialog* openDialog() {
+    find<QAction>("devices")->trigger();
+    auto* dialog = find<QDialog>("devicesDialog");
+    if (!QTest::qWaitFor([&] { return find<QListWidget>("deviceList")->count() == 2; }, kSoon_ms)) {
+      qFatal("the arms are not found");
+    }
+    return dialog;
+  }
+  void closeDialog() {
+    find<QDialog>("devicesDialog")->reject();
+    QTRY_VERIFY(!window_->findChild<QDialog*>("devicesDialog"));
+  }
+  void picture(const char* name) {
+    QVERIFY(find<QDialog>("devicesDialog")->grab().save(QString(TREPHINE_ARTEFACTS "/%1.png").arg(name)));
+  }
+  void choose(const char* box, int index) {
+    auto* of = find<QComboBox>(box);
+    of->setCurrentIndex(index);
+    emit of->activated(index);
+  }
+
+ private slots:
+  void initTestCase() {
+    QApplication::setApplicationName("trephine-test-devices");
+    QVERIFY(QDir().mkpath(TREPHINE_ARTEFACTS));
+    void* library = ::dlopen("libHD.so", RTLD_NOW);
+    QVERIFY2(library, "the test's libHD.so is not in LD_LIBRARY_PATH");
+    hd_ = reinterpret_cast<test::HdTestEntry>(::dlsym(library, test::kHdTestEntry))();
+  }
+  void init() {
+    hd_->reset();
+    open();
+  }
+  void cleanup() { closeWindow(); }
+
+  void theArmThatIsMovedIsShownAndIsMadeTheLeft() {
+    openDialog();
+    auto* list = find<QListWidget>("deviceList");
+    QTRY_VERIFY(!find<QLabel>("deviceAble")->text().isEmpty());
+    QVERIFY(find<QLabel>("deviceAble")->text().contains("160"));
+    QVERIFY(find<QLabel>("deviceNow")->text().contains("Move it"));
+    QCOMPARE(list->currentRow(), 0);
+    hd_->arms[1].swing_mm = 30.0;
+    QTRY_COMPARE(list->currentRow(), 1);
+    QTRY_VERIFY(find<QLabel>("deviceNow")->text().contains("Moved by"));
+    choose("leftArm", 2);
+    QCOMPARE(list->item(1)->text().section('\n', 1), QString("left hand"));
+    QCOMPARE(read(settings::kLeftArm).value(1), QString("openhaptics-1"));
+    picture("devices-left");
+    // One device, one hand.
+    choose("rightArm", 2);
+    QCOMPARE(find<QComboBox>("leftArm")->currentIndex(), 0);
+    QVERIFY(read(settings::kLeftArm).isEmpty());
+    QCOMPARE(force_N(0) + force_N(1), 0.0);
+    closeDialog();
+  }
+
+  void aForceTestPullsUpWhileAButtonIsHeldAndIsGoneWithIt() {
+    openDialog();
+    auto* test = find<QPushButton>("testForce");
+    QTRY_VERIFY(test->isEnabled());
+    test->click();
+    QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("Hold the arm"));
+    QTest::qWait(1500);
+    QCOMPARE(force_N(0), 0.0);
+    hd_->arms[0].buttons = 1;
+    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.3, 5000);
+    QVERIFY(hd_->arms[0].force_N[1] > 0.3);
+    QTRY_VERIFY(find<QLabel>("forceTest")->text().contains("It pulls up"));
+    picture("devices-force");
+    hd_->arms[0].buttons = 0;
+    QTest::qWait(20);
+    QCOMPARE(force_N(0), 0.0);
+    QTRY_VERIFY(find<QPushButton>("forceFelt")->isEnabled());
+    find<QPushButton>("forceFelt")->click();
+    QVERIFY(find<QLabel>("forceTest")->text().contains("works"));
+    closeDialog();
+  }
+
+  void closingInTheMiddleOfATestTakesTheForceAway() {
+    openDialog();
+    auto* test = find<QPushButton>("testForce");
+    QTRY_VERIFY(test->isEnabled());
+    test->click();
+    hd_->arms[0].buttons = 1;
+    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.2, 5000);
+    QElapsedTimer clock;
+    clock.start();
+    closeDialog();
+    QVERIFY2(clock.elapsed() < 1000, qPrintable(QString::number(clock.elapsed())));
+    QCOMPARE(force_N(0), 0.0);
+  }
+
+  void anArmThatDoesNotKnowWhereItIsSaysWhatToDo() {
+    hd_->arms[0].calibration = 0x5002;
+    hd_->styles = 0b100;
+    openDialog();
+    QTRY_VERIFY(!find<QLabel>("deviceNow")->text().isEmpty());
+    const QString words = find<QLabel>("deviceNow")->text();
+    QVERIFY2(words.contains("inkwell") || words.contains("holder"), qPrintable(words));
+    QVERIFY(!find<QPushButton>("testForce")->isEnabled());
+    picture("devices-holder");
+    closeDialog();
+  }
+
+  // One arm real, the other the mouse's; nobody's hand, a hand, a device that goes.
+  void anExerciseRunsOnWhatWasChosenAndTheOtherHandGoesOnWithoutIt() {
+    openDialog();
+    choose("leftArm", 1);
+    closeDialog();
+    openScene(resourceFolder() / "scenes" / "cranium.json");
+    startTraining();
+    QVERIFY(!workstation().session()->isSimulated(0));
+    QVERIFY(workstation().session()->isSimulated(1));
+    auto* notice = find<QFrame>("forceNotice");
+    QTRY_VERIFY(notice->isVisible());
+    QTRY_VERIFY(arm(0).tool_state & kToolNoHand);
+    QVERIFY(!(arm(1).tool_state & kToolNoHand));
+    hd_->arms[0].swing_mm = 20.0;
+    QTRY_VERIFY(!(arm(0).tool_state & kToolNoHand));
+    QTRY_VERIFY(glm::length(arm(0).device_position_m) > 0.0);
+
+    hd_->arms[0].error = 0x0302;
+    hd_->arms[0].errors = 1000000;
+    QTRY_VERIFY(arm(0).faults & kFaultDeviceLost);
+    QCOMPARE(arm(1).faults, 0u);
+    QTRY_VERIFY(notice->isVisible());
+    const auto labels = notice->findChildren<QLabel*>();
+    QVERIFY(std::any_of(labels.begin(), labels.end(), [](const QLabel* label) {
+      return label->text().contains("The other hand goes on");
+    }));
+    const std::uint64_t ticks = workstation().session()->state().ticks;
+    QTRY_VERIFY(workstation().session()->state().ticks > ticks + 200);
+    stop();
+  }
+
+  void aChosenArmThatIsNotThereIsSaidWhenAnExerciseBegins() {
+    write(settings::kRightArm, QStringList{"woodenhaptics", "usb-9-9", "1", "WoodenHaptics"});
+    openScene(resourceFolder() / "scenes" / "cranium.json");
+    QSignalSpy failed(&workstation(), &Workstation::failed);
+    window_->startExercise();
+    QVERIFY(failed.count() == 1 || failed.wait(kSoon_ms));
+    const Error error = failed[0][0].value<Error>();
+    QCOMPARE(error.code, std::string("NO_DEVICE"));
+    for (const char* part : {"right", "WoodenHaptics", "usb-9-9"}) {
+      QVERIFY2(error.what.find(part) != std::string::npos, error.what.c_str());
+    }
+    if (auto* box = window_->findChild<QDialog*>("errorDialog")) box->reject();
+    find<QAction>("devices")->trigger();
+    auto* right = find<QComboBox>("rightArm");
+    QTRY_VERIFY(right->currentText().contains("not plugged in"));
+    choose("rightArm", 0);
+    closeDialog();
+    startTraining();
+    stop();
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return test::runInWindow<DevicesGuiTest>(argc, argv);
+}
+
+#include "devices_gui_test.moc"

@@ -1,0 +1,378 @@
+#include "ui/devices/devices_dialog.h"
+
+#include <QDialogButtonBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include "base/system.h"
+#include "scene/arms_file.h"
+#include "ui/common/words.h"
+#include "ui/work/arms_of_place.h"
+
+namespace trephine {
+
+namespace {
+
+constexpr int kShown_ms = 33;
+constexpr int kSettle_ms = 700;  // until what was plugged in has its nodes
+constexpr double kMoved_m = 0.02;  // the arm that a person means
+constexpr double kTest_N = 1.0;
+
+QString nameOf(const FoundArm& arm) {
+  const QString model = toQt(arm.model.empty() ? arm.plugin : arm.model);
+  return DevicesDialog::tr("%1 at %2").arg(model, toQt(arm.bus_path));
+}
+
+QLabel* wordsLabel(const char* name) {
+  auto* label = new QLabel;
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  return label;
+}
+
+}  // namespace
+
+DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
+  setObjectName("devicesDialog");
+  setAttribute(Qt::WA_DeleteOnClose);
+  setWindowTitle(tr("Devices"));
+  list_ = new QListWidget;
+  list_->setObjectName("deviceList");
+  list_->setAccessibleName(tr("Arms that are plugged in"));
+  problems_ = wordsLabel("deviceProblems");
+  problems_->setProperty("quiet", true);
+  again_ = new QPushButton(tr("L&ook again"));
+  again_->setObjectName("lookAgain");
+  name_ = wordsLabel("deviceName");
+  able_ = wordsLabel("deviceAble");
+  able_->setProperty("quiet", true);
+  picture_ = new ArmPicture;
+  now_ = wordsLabel("deviceNow");
+  test_ = wordsLabel("forceTest");
+  force_ = new QPushButton(tr("&Test the force"));
+  force_->setObjectName("testForce");
+  felt_ = new QPushButton(tr("It pulled &up"));
+  felt_->setObjectName("forceFelt");
+  not_felt_ = new QPushButton(tr("It did &not"));
+  not_felt_->setObjectName("forceNotFelt");
+  left_ = new QComboBox;
+  left_->setObjectName("leftArm");
+  right_ = new QComboBox;
+  right_->setObjectName("rightArm");
+  pedal_ = new QComboBox;
+  pedal_->setObjectName("pedal");
+  for (QPushButton* each : {again_, force_, felt_, not_felt_}) each->setAutoDefault(false);
+
+  auto* found = new QVBoxLayout;
+  found->addWidget(list_, 1);
+  found->addWidget(problems_);
+  found->addWidget(again_, 0, Qt::AlignLeft);
+  auto* answers = new QHBoxLayout;
+  for (QPushButton* each : {force_, felt_, not_felt_}) answers->addWidget(each);
+  answers->addStretch(1);
+  auto* chosen = new QVBoxLayout;
+  chosen->addWidget(name_);
+  chosen->addWidget(able_);
+  chosen->addWidget(picture_, 1);
+  chosen->addWidget(now_);
+  chosen->addWidget(test_);
+  chosen->addLayout(answers);
+  auto* columns = new QHBoxLayout;
+  columns->addLayout(found, 2);
+  columns->addLayout(chosen, 3);
+  auto* sides = new QFormLayout;
+  sides->addRow(tr("&Left hand"), left_);
+  sides->addRow(tr("&Right hand"), right_);
+  sides->addRow(tr("&Pedal"), pedal_);
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+  auto* layout = new QVBoxLayout(this);
+  layout->addLayout(columns, 1);
+  layout->addLayout(sides);
+  layout->addWidget(buttons);
+  resize(720, 520);
+
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  connect(again_, &QPushButton::clicked, this, &DevicesDialog::look);
+  connect(list_, &QListWidget::currentRowChanged, this, [this] { showArm(); });
+  connect(force_, &QPushButton::clicked, this, &DevicesDialog::askForForce);
+  connect(felt_, &QPushButton::clicked, this,
+          [this] { test_->setText(tr("The force of this arm works.")); });
+  connect(not_felt_, &QPushButton::clicked, this, [this] {
+    test_->setText(tr("Then no exercise can be felt with this arm: check that it is switched on "
+                      "and that its emergency stop is out, and test it again."));
+  });
+  connect(left_, &QComboBox::activated, this, [this](int index) { choose("left", index); });
+  connect(right_, &QComboBox::activated, this, [this](int index) { choose("right", index); });
+  connect(pedal_, &QComboBox::activated, this, [this](int index) { choose(kPedal, index); });
+  connect(&show_timer_, &QTimer::timeout, this, &DevicesDialog::showNow);
+  show_timer_.start(kShown_ms);
+  plug_timer_.setSingleShot(true);
+  plug_timer_.setInterval(kSettle_ms);
+  connect(&plug_timer_, &QTimer::timeout, this, &DevicesDialog::look);
+  plugs_.addPath("/dev");
+  connect(&plugs_, &QFileSystemWatcher::directoryChanged, this, [this] { plug_timer_.start(); });
+  connect(this, &QDialog::finished, this, &DevicesDialog::endTrial);
+  showList();
+  look();
+}
+
+DevicesDialog::~DevicesDialog() = default;
+
+void DevicesDialog::endTrial() {
+  trial_.reset();
+}
+
+void DevicesDialog::look() {
+  if (looking_.busy()) {
+    look_again_ = true;
+    return;
+  }
+  again_->setEnabled(false);
+  struct Found {
+    FoundArms here;
+    std::shared_ptr<ArmTrial> trial;
+  };
+  // A person may be in the middle of a test: its force goes as the arms are asked anew.
+  looking_.run(
+      [before = std::exchange(trial_, nullptr)](const Progress&) mutable -> Result<Found> {
+        before.reset();
+        Found out{findArms(pluginFolder()), nullptr};
+        std::erase_if(out.here.arms, [](const FoundArm& arm) { return arm.plugin == kSimulated; });
+        if (!out.here.arms.empty()) out.trial = ArmTrial::start(out.here.arms);
+        return out;
+      },
+      [this](Result<Found> out) {
+        again_->setEnabled(true);
+        if (std::exchange(look_again_, false)) {
+          if (out) trial_ = out->trial;
+          return look();
+        }
+        if (!out) {
+          problems_->setText(toQt(out.error().sentence()));
+          return;
+        }
+        trial_ = std::move(out->trial);
+        found(out->here);
+      });
+}
+
+void DevicesDialog::found(const FoundArms& here) {
+  arms_ = here.arms;
+  moved_m_.assign(arms_.size(), 0.0);
+  QStringList lines;
+  for (const Error& problem : here.problems) lines << toQt(problem.sentence());
+  if (arms_.empty()) {
+    lines << tr("No arm is plugged in. Without one the mouse and the keys move the hands.");
+  }
+  problems_->setText(lines.join("\n"));
+  problems_->setVisible(!lines.isEmpty());
+  showList();
+}
+
+QString DevicesDialog::sideOf(const FoundArm& arm) const {
+  for (const auto& [side, of] : armsOfThisPlace()) {
+    if (!of.isSame(arm)) continue;
+    return side == kPedal ? tr("pedal") : side == "left" ? tr("left hand") : tr("right hand");
+  }
+  return {};
+}
+
+void DevicesDialog::showList() {
+  const int row = std::max(0, shown());
+  const QSignalBlocker blocked(list_);
+  list_->clear();
+  for (const FoundArm& arm : arms_) {
+    const QString side = sideOf(arm);
+    list_->addItem(side.isEmpty() ? nameOf(arm) : tr("%1\n%2").arg(nameOf(arm), side));
+  }
+  list_->setCurrentRow(std::min(row, int(arms_.size()) - 1));
+  showSides();
+  showArm();
+}
+
+// What is chosen and not there stays, and says so.
+void DevicesDialog::showSides() {
+  const ArmsOfPlace chosen = armsOfThisPlace();
+  for (const auto& [side, box] :
+       {std::pair("left", left_), std::pair("right", right_), std::pair(kPedal, pedal_)}) {
+    const QSignalBlocker blocked(box);
+    const bool wants_pedal = box == pedal_;
+    box->clear();
+    box->addItem(wants_pedal ? tr("None") : tr("None: mouse and keys move it"), -1);
+    const auto of = chosen.find(side);
+    bool here = of == chosen.end();
+    for (std::size_t i = 0; i < arms_.size(); ++i) {
+      if (isPedal(i) != wants_pedal) continue;
+      box->addItem(nameOf(arms_[i]), int(i));
+      if (of == chosen.end() || !arms_[i].isSame(of->second)) continue;
+      here = true;
+      box->setCurrentIndex(box->count() - 1);
+    }
+    if (here) continue;
+    box->addItem(tr("%1, not plugged in").arg(nameOf(of->second)), int(arms_.size()));
+    box->setCurrentIndex(box->count() - 1);
+  }
+}
+
+bool DevicesDialog::isPedal(std::size_t arm) const {
+  return trial_ && arm < trial_->size() && !trial_->problem(arm) &&
+         trial_->capabilities(arm).input_dof == 0;
+}
+
+// A device has one hand: the other loses it.
+void DevicesDialog::choose(const std::string& side, int index) {
+  const QComboBox* box = side == kPedal ? pedal_ : side == "left" ? left_ : right_;
+  const int arm = box->itemData(index).toInt();
+  if (arm >= int(arms_.size())) return;  // the one that is not there
+  if (arm < 0) {
+    chooseArm(side, {});
+  } else {
+    const FoundArm& device = arms_[std::size_t(arm)];
+    for (const auto& [other, has] : armsOfThisPlace()) {
+      if (other != side && has.isSame(device)) chooseArm(other, {});
+    }
+    chooseArm(side, device);
+    list_->setCurrentRow(arm);
+  }
+  showList();
+}
+
+void DevicesDialog::showArm() {
+  const int row = shown();
+  const bool any = row >= 0 && row < int(arms_.size());
+  for (QPushButton* each : {felt_, not_felt_}) each->setEnabled(false);
+  test_->clear();
+  if (!any) {
+    name_->clear();
+    able_->clear();
+    now_->clear();
+    picture_->clear();
+    force_->setEnabled(false);
+    return;
+  }
+  const FoundArm& arm = arms_[std::size_t(row)];
+  name_->setText(nameOf(arm));
+  able_->clear();
+  if (trial_ && std::size_t(row) < trial_->size() && !trial_->problem(std::size_t(row))) {
+    const TrephineCapabilities& able = trial_->capabilities(std::size_t(row));
+    QStringList lines;
+    if (able.input_dof == 0) {
+      lines << tr("A pedal");
+    } else {
+      lines << tr("reaches %1 \u00d7 %2 \u00d7 %3 mm")
+                   .arg(1e3 * able.workspace_m[0], 0, 'f', 0)
+                   .arg(1e3 * able.workspace_m[1], 0, 'f', 0)
+                   .arg(1e3 * able.workspace_m[2], 0, 'f', 0)
+            << tr("gives %1 N, for good %2 N")
+                   .arg(able.peak_force_N, 0, 'f', 1)
+                   .arg(able.continuous_force_N, 0, 'f', 1)
+            << tr("%1 samples a second").arg(able.rate_hz, 0, 'f', 0);
+      if (able.latency_s > 0.0) {
+        lines << tr("answers within %1 ms").arg(1e3 * able.latency_s, 0, 'f', 1);
+      }
+      if (able.input_dof == 3) lines << tr("does not say how it is turned");
+    }
+    if (!arm.serial.empty()) lines << tr("serial %1").arg(toQt(arm.serial));
+    able_->setText(lines.join(" \u00b7 "));
+  }
+  showNow();
+}
+
+// The arm that a person moves is the one that is meant.
+void DevicesDialog::showNow() {
+  const int row = shown();
+  if (!trial_ || row < 0 || row >= int(trial_->size())) {
+    force_->setEnabled(false);
+    return;
+  }
+  const TriedArms& arms = trial_->state();
+  for (std::size_t i = 0; i < trial_->size() && i < moved_m_.size(); ++i) {
+    const double before_m = std::exchange(moved_m_[i], arms[i].moved_m);
+    if (before_m < kMoved_m && moved_m_[i] >= kMoved_m && int(i) != row) {
+      return list_->setCurrentRow(int(i));
+    }
+  }
+  const std::size_t i = std::size_t(row);
+  if (const std::optional<Error>& problem = trial_->problem(i)) {
+    now_->setText(toQt(problem->sentence()));
+    picture_->showHolder();
+    force_->setEnabled(false);
+    return;
+  }
+  const TriedArm& arm = arms[i];
+  const TrephineCapabilities& able = trial_->capabilities(i);
+  const bool lost = arm.flags & TREPHINE_ARM_LOST;
+  const bool placed = arm.flags & TREPHINE_ARM_CALIBRATED;
+  if (able.input_dof == 0) {
+    picture_->clear();
+  } else if (!placed && !lost) {
+    picture_->showHolder();
+  } else {
+    const double* reach_m = able.workspace_m;
+    picture_->showTip(arm.pose_m.position, {reach_m[0], reach_m[1], reach_m[2]}, arm.force_N);
+  }
+  QStringList now;
+  if (lost) {
+    now << tr("It does not answer: check its plug, then look again.");
+  } else if (able.input_dof != 0 && !placed) {
+    now << tr("It does not know where it is: put the stylus into its holder and take it out again.");
+  } else {
+    if (able.input_dof != 0) {
+      now << (arm.moved_m < kMoved_m ? tr("Move it to see that this is the one.")
+                                     : tr("Moved by %1 mm.").arg(1e3 * arm.moved_m, 0, 'f', 0));
+    }
+    for (int bit = 0; bit < 8; ++bit) {
+      if (arm.buttons & (1u << bit)) now << tr("Button %1 is pressed.").arg(bit + 1);
+    }
+    if (arm.flags & TREPHINE_ARM_WARM) now << tr("Its motors are warm.");
+    if (arm.flags & TREPHINE_ARM_ERROR) now << tr("It reports an error.");
+  }
+  now_->setText(now.join(' '));
+  using Phase = ForceTest::Phase;
+  const bool runs = arm.test >= Phase::waiting && arm.test <= Phase::falling;
+  force_->setEnabled(able.input_dof != 0 && able.peak_force_N > 0.0 && placed && !lost);
+  force_->setText(runs ? tr("&Stop the force") : tr("&Test the force"));
+  switch (arm.test) {
+    case Phase::waiting:
+      test_->setText(tr("Hold the arm: press its button and keep it pressed, or move it a little "
+                        "where it has none. Then it will pull up, slowly, to %1 N.")
+                         .arg(std::min(kTest_N, able.continuous_force_N), 0, 'f', 1));
+      break;
+    case Phase::rising:
+    case Phase::holding:
+    case Phase::falling:
+      test_->setText(tr("It pulls up with %1 N.").arg(arm.force_N, 0, 'f', 1));
+      break;
+    case Phase::lost:
+      test_->setText(tr("The force was taken away: the arm was lost from the hand."));
+      break;
+    case Phase::done:
+      if (asked_) test_->setText(tr("Did it pull up?"));
+      break;
+    case Phase::off:
+      break;
+  }
+  if (arm.test == Phase::done && std::exchange(asked_, false)) {
+    felt_->setEnabled(true);
+    not_felt_->setEnabled(true);
+    felt_->setFocus();
+  }
+}
+
+void DevicesDialog::askForForce() {
+  if (!trial_ || shown() < 0) return;
+  const std::size_t arm = std::size_t(shown());
+  using Phase = ForceTest::Phase;
+  const Phase phase = trial_->state()[arm].test;
+  for (QPushButton* each : {felt_, not_felt_}) each->setEnabled(false);
+  if (phase >= Phase::waiting && phase <= Phase::falling) {
+    trial_->endForce();
+    test_->setText(tr("The force is off."));
+    return;
+  }
+  asked_ = true;
+  trial_->askForForce(arm, kTest_N);
+}
+
+}  // namespace trephine
