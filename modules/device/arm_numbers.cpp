@@ -1,6 +1,7 @@
 #include "device/arm_numbers.h"
 
 #include <cstring>
+#include <string_view>
 
 namespace trephine {
 
@@ -12,10 +13,12 @@ double CapabilityNumber::value(const TrephineCapabilities& of, std::size_t index
 }
 
 std::string impossibleCapability(const TrephineCapabilities& capabilities) {
-  if (capabilities.input_dof != 3 && capabilities.input_dof != 6) {
-    return "'input_dof' of " + std::to_string(capabilities.input_dof) + ", which must be 3 or 6";
+  const std::uint32_t dof = capabilities.input_dof;
+  if (dof != 0 && dof != 3 && dof != 6) {
+    return "'input_dof' of " + std::to_string(dof) + ", which must be 0, 3 or 6";
   }
   for (const CapabilityNumber& number : kCapabilityNumbers) {
+    if (dof == 0 && std::string_view(number.row.key) != "rate_hz") continue;
     for (std::size_t i = 0; i < number.count; ++i) {
       const double value = number.value(capabilities, i);
       if (number.row.range.holds(value)) continue;

@@ -46,7 +46,7 @@ inline constexpr CapabilityNumber kCapabilityNumbers[] = {
      offsetof(TrephineCapabilities, latency_s)},
 };
 
-// `input_dof` beside these: 3 or 6.
+// `input_dof` beside these: 6, 3, or 0 for a pedal, which has a rate alone.
 // Empty when an arm can have these capabilities, else which of them is impossible and why.
 std::string impossibleCapability(const TrephineCapabilities& capabilities);
 

@@ -63,7 +63,9 @@ typedef struct TrephineArmInfo {
 
 typedef struct TrephineCapabilities {
   uint32_t size, version;
-  uint32_t input_dof;    /* 6, or 3 where it does not say how it is turned */
+  /* 6; 3 where it does not say how it is turned; or 0 for a pedal, which has buttons alone: the
+   * fields below but rate_hz are not looked at, and what it is sent it drops. */
+  uint32_t input_dof;
   double workspace_m[3]; /* full extent of x, y, z around the origin */
   double peak_force_N;
   /* What it can be sent for good, and the time constant [s] with which its motors warm: the host

@@ -22,7 +22,11 @@ TEST(ArmNumbers, TheHostRefusesEachThatIsOutOfItsRangeByName) {
     }
   }
   EXPECT_EQ(impossibleCapability(possible), "");
-  for (std::uint32_t dof : {0u, 1u, 4u, 7u}) {
+  TrephineCapabilities pedal{};
+  EXPECT_NE(impossibleCapability(pedal).find("rate_hz"), std::string::npos);
+  pedal.rate_hz = 100.0;
+  EXPECT_EQ(impossibleCapability(pedal), "") << "it has buttons alone";
+  for (std::uint32_t dof : {1u, 2u, 4u, 7u}) {
     TrephineCapabilities wrong = possible;
     wrong.input_dof = dof;
     EXPECT_NE(impossibleCapability(wrong).find("input_dof"), std::string::npos) << dof;
