@@ -123,8 +123,8 @@ class Pedal : public ::testing::Test {
     EXPECT_GE(fd, 0) << "it cannot be emulated: " << bed.why();
     return fd;
   }
-  CapFirmware& plugInCap(const std::string& port, bool wireless = false) {
-    fds.push_back(plugIn(test::spaceMouse(wireless), port));
+  CapFirmware& plugInCap(const std::string& port, bool wireless = false, int interface_number = 0) {
+    fds.push_back(plugIn(test::spaceMouse(wireless), port, interface_number));
     caps.push_back(std::make_unique<CapFirmware>(fds.back(), wireless));
     return *caps.back();
   }
@@ -184,6 +184,7 @@ class Pedal : public ::testing::Test {
 TEST_F(Pedal, ItsThreeSwitchesAreSeenWithin20msPressedAndReleased) {
   const int fd = plugIn(test::footSwitch(), "1-4");
   ASSERT_NO_FATAL_FAILURE(start({0}));
+  push({1.0, 0, 0});  // which it drops
   pass_s(0.05);
   EXPECT_EQ(states[0].buttons, 0u);
   for (std::uint8_t switches : {1, 0, 2, 0, 4, 0, 1, 3, 7, 4, 0}) {
@@ -305,6 +306,10 @@ TEST_F(Pedal, AHandStaysInTheWorkspaceAndItsTurnAUnitQuaternion) {
   EXPECT_LT(glm::distance(at(), kHalfWorkspace_m), 1e-3);
   EXPECT_TRUE(states[0].flags & TREPHINE_ARM_AT_LIMIT);
   EXPECT_FALSE(lost());
+  push({-1.2, 0, 0});
+  pass_s(0.3);
+  EXPECT_NEAR(at().x, kHalfWorkspace_m.x - 1.2 / kHand_N_per_m, kStep_m)
+      << "the hand is at the edge too, not beyond";
   cap.hold({-350, 0, 0, 0, 0, 0});
   pass_s(0.1);
   EXPECT_LT(at().x, 0.07) << "and it comes back at once";
@@ -393,22 +398,22 @@ TEST_F(Pedal, GarbageMovesNoCap) {
 }
 
 TEST_F(Pedal, PedalsAndSpaceMiceAreToldApartAndListedOnceEach) {
-  plugInCap("1-3", true);
-  plugIn(test::footSwitch(), "1-2.4");
-  // Beside its cap, a keyboard of its own; and others' devices.
-  test::HidDescription keys = test::spaceMouse(true);
-  keys.report_descriptor = test::plainDescriptor(0x0001, 0x0006, 8, 1);
-  plugIn(keys, "1-3", 1);
+  // A cap that is the second of three interfaces, the first a keyboard; and others' devices.
+  test::HidDescription other = test::spaceMouse(true);
+  other.report_descriptor = test::plainDescriptor(0x0001, 0x0006, 8, 1);
+  plugIn(other, "1-3", 0);
+  CapFirmware& cap = plugInCap("1-3", true, 1);
   plugIn(test::spaceMouse(true), "1-3", 2);
-  test::HidDescription mouse = test::spaceMouse(false);
-  mouse.vendor = 0x046D;
-  mouse.product = 0xC077;
-  mouse.report_descriptor = test::plainDescriptor(0x0001, 0x0002, 8, 0);
-  plugIn(mouse, "1-5");
-  mouse.product = 0xC626;
-  mouse.name = "SpaceNavigator";
-  mouse.report_descriptor = test::spaceMouse(false).report_descriptor;
-  plugIn(mouse, "1-1");
+  plugIn(test::footSwitch(), "1-2.4");
+  other = test::spaceMouse(false);
+  other.vendor = 0x046D;
+  other.product = 0xC216;
+  plugIn(other, "1-5");
+  other.product = 0xC626;
+  other.name = "SpaceNavigator";
+  plugIn(other, "1-1");
+  other.report_descriptor = test::plainDescriptor(0x0001, 0x0002, 8, 0);
+  plugIn(other, "1-6");
   const std::vector<TrephineArmInfo> infos = plugin->enumerate();
   std::vector<std::string> found;
   for (const TrephineArmInfo& info : infos) {
@@ -417,6 +422,19 @@ TEST_F(Pedal, PedalsAndSpaceMiceAreToldApartAndListedOnceEach) {
   EXPECT_EQ(found,
             (std::vector<std::string>{"usb-1-2.4 VEC USB Footpedal ", "usb-1-1 SpaceNavigator ",
                                       "usb-1-3 SpaceMouse Wireless W1"}));
+  ASSERT_NO_FATAL_FAILURE(start({2}));
+  cap.hold({350, 0, 0, 0, 0, 0});
+  pass_s(0.1);
+  EXPECT_GT(at().x, 0.002) << "it is the cap's interface that is opened";
+}
+
+TEST_F(Pedal, ASpaceMouseWithoutSixAxesIsRefusedInOneSentence) {
+  test::HidDescription of = test::spaceMouse(false);
+  of.report_descriptor = test::plainDescriptor(0x0001, 0x0008, 8, 0);
+  plugIn(of, "1-1");
+  const auto opened = Device::open(plugin, {0}, config());
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().what.find("six axes"), std::string::npos) << opened.error().what;
 }
 
 TEST_F(Pedal, APedalGoesOnBesideASpaceMouseThatIsUnplugged) {
