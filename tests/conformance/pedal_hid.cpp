@@ -1,6 +1,7 @@
 #include "pedal_hid.h"
 
 #include <poll.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,6 +46,7 @@ void CapFirmware::send(const std::vector<std::uint8_t>& bytes) {
 }
 
 void CapFirmware::run() {
+  inRealTime(60);
   std::minstd_rand random(1);
   while (!ending_) {
     std::this_thread::sleep_for(std::chrono::milliseconds(8));
@@ -73,6 +75,12 @@ void CapFirmware::run() {
     }
     send(report);
   }
+}
+
+void inRealTime(int of) {
+  sched_param priority{};
+  priority.sched_priority = of;
+  pthread_setschedparam(pthread_self(), of > 0 ? SCHED_FIFO : SCHED_OTHER, &priority);
 }
 
 bool isOpen(int fd) {

@@ -58,6 +58,9 @@ class CapFirmware {
   std::thread thread_;
 };
 
+// This thread runs with that priority, where the system allows it; 0: as any other.
+void inRealTime(int priority);
+
 // Whether a program has the node open whose firmware's end this is.
 bool isOpen(int fd);
 
