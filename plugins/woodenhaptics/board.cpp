@@ -1,19 +1,21 @@
 #include "board.h"
 
 #include <hidapi/hidapi.h>
-#include <pthread.h>
-#include <signal.h>
 #include <time.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
+
+#include "../common/hid.h"
 
 namespace trephine::woodenhaptics {
 
+using plugin::inFront;
+using plugin::narrow;
 using plugin::now_ns;
+using plugin::usbPort;
 
 namespace {
 
@@ -30,50 +32,6 @@ timespec at(std::int64_t ns) {
   return {time_t(ns / 1'000'000'000), long(ns % 1'000'000'000)};
 }
 
-// The USB port of /dev/hidrawN: the folder above the interface ("1-2.3:1.0") that holds it.
-std::string portOf(const std::string& node) {
-  std::error_code ec;
-  const auto device = std::filesystem::canonical(
-      "/sys/class/hidraw/" + node.substr(node.rfind('/') + 1) + "/device", ec);
-  for (auto folder = device; !ec && folder.has_relative_path(); folder = folder.parent_path()) {
-    const std::string name = folder.filename().string();
-    const auto colon = name.find(':');
-    if (colon != std::string::npos && name.find('-') < colon &&
-        name.find('.', colon) != std::string::npos) {
-      return name.substr(0, colon);
-    }
-  }
-  return node;
-}
-
-std::string narrow(const wchar_t* text) {
-  std::string out;
-  for (; text && *text && out.size() < 60; ++text) out += *text < 128 ? char(*text) : '?';
-  return out;
-}
-
-// A thread that answers a board takes a few microseconds each time, and goes before the haptic one,
-// which waits for it. Where the system does not allow it, it does with what it gets. No signal is
-// handled on it: one would look like a board that went away.
-template <class Work>
-std::thread inFront(Work work) {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread thread;
-  try {
-    thread = std::thread(work);
-  } catch (...) {
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    throw;
-  }
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  sched_param priority{};
-  priority.sched_priority = 85;
-  pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &priority);
-  return thread;
-}
-
 std::uint64_t pack(const std::array<std::int16_t, 3>& three) {
   std::uint64_t packed = 0;
   std::memcpy(&packed, three.data(), 6);
@@ -87,7 +45,7 @@ std::vector<Found> findBoards() {
   hid_device_info* list = hid_enumerate(kVendor, kProduct);
   for (const hid_device_info* of = list; of; of = of->next) {
     if (of->usage_page != kUsagePage || of->usage != kUsage) continue;
-    boards.push_back({of->path, portOf(of->path), narrow(of->serial_number)});
+    boards.push_back({of->path, usbPort(of->path), narrow(of->serial_number)});
   }
   hid_free_enumeration(list);
   std::sort(boards.begin(), boards.end(),

@@ -68,10 +68,10 @@ HidTestbed::Plugged* HidTestbed::find(int fd) {
   return nullptr;
 }
 
-int HidTestbed::plugIn(const HidDescription& of, const std::string& port) {
+int HidTestbed::plugIn(const HidDescription& of, const std::string& port, int interface_number) {
   const int number = next_++;  // umockdev takes a number once
   const std::string usb = "/devices/pci0000:00/0000:00:14.0/usb1/" + port;
-  const std::string interface = usb + "/" + port + ":1.0";
+  const std::string interface = usb + "/" + port + ":1." + std::to_string(interface_number);
   const std::string folder =
       "0003:" + four(of.vendor) + ":" + four(of.product) + "." + four(unsigned(number) + 1);
   const std::string hid = interface + "/" + folder;
@@ -80,12 +80,14 @@ int HidTestbed::plugIn(const HidDescription& of, const std::string& port) {
   const std::string id = "0003:0000" + four(of.vendor) + ":0000" + four(of.product);
   const std::string event =
       "HID_ID=" + id + "\nHID_NAME=" + of.name + "\nHID_UNIQ=" + of.serial + "\n";
-  if (!add("P: " + usb + "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nA: idVendor=" +
-           four(of.vendor) + "\\n\nA: idProduct=" + four(of.product) +
-           "\\n\nA: manufacturer=Test\\n\nA: product=" + of.name + "\\n\nA: serial=" + of.serial +
-           "\\n\nA: bcdDevice=0100\\n\n") ||
+  const bool first = interface_number == 0;
+  if ((first && !add("P: " + usb + "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nA: idVendor=" +
+                     four(of.vendor) + "\\n\nA: idProduct=" + four(of.product) +
+                     "\\n\nA: manufacturer=Test\\n\nA: product=" + of.name +
+                     "\\n\nA: serial=" + of.serial + "\\n\nA: bcdDevice=0100\\n\n")) ||
       !add("P: " + interface +
-           "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\\n\n") ||
+           "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=0" +
+           std::to_string(interface_number) + "\\n\n") ||
       !add("P: " + hid + "\nE: SUBSYSTEM=hid\nE: HID_ID=" + id + "\nE: HID_NAME=" + of.name +
            "\nE: HID_UNIQ=" + of.serial + "\n")) {
     return -1;
@@ -121,21 +123,25 @@ int HidTestbed::plugIn(const HidDescription& of, const std::string& port) {
     return -1;
   }
   const int fd = umockdev_testbed_get_dev_fd(bed_, node.c_str());
-  plugged_.push_back(
-      {number, fd, -1, {"/sys" + raw, "/sys" + hid, "/sys" + interface, "/sys" + usb}});
+  plugged_.push_back({number, fd, -1, {"/sys" + raw, "/sys" + hid, "/sys" + interface}});
+  if (first) plugged_.back().folders.push_back("/sys" + usb);
   return fd;
 }
 
-void HidTestbed::unplug(int fd) {
-  Plugged* const of = find(fd);
-  if (!of) return;
-  block(fd, false);
-  ::close(of->fd);
-  umockdev_testbed_uevent(bed_, of->folders.front().c_str(), "remove");
-  for (const std::string& folder : of->folders) {
-    umockdev_testbed_remove_device(bed_, folder.c_str());
+void HidTestbed::unplug(const std::vector<int>& fds) {
+  for (int fd : fds) {
+    block(fd, false);
+    if (find(fd)) ::close(fd);
   }
-  plugged_.erase(plugged_.begin() + (of - plugged_.data()));
+  for (int fd : fds) {
+    Plugged* const of = find(fd);
+    if (!of) continue;
+    umockdev_testbed_uevent(bed_, of->folders.front().c_str(), "remove");
+    for (const std::string& folder : of->folders) {
+      umockdev_testbed_remove_device(bed_, folder.c_str());
+    }
+    plugged_.erase(plugged_.begin() + (of - plugged_.data()));
+  }
 }
 
 void HidTestbed::block(int fd, bool blocked) {

@@ -29,9 +29,12 @@ class HidTestbed {
 
   // Plugs one into `port`, such as "1-2". The end of the firmware: bytes that it writes are reports
   // in, those that it reads are reports out, after their id. -1 and why() where that did not work.
-  int plugIn(const HidDescription& of, const std::string& port);
-  // Takes the one with that end out: reading and writing then fail, and the end is closed.
-  void unplug(int fd);
+  // A further interface of what is plugged in there already: its number.
+  int plugIn(const HidDescription& of, const std::string& port, int interface_number = 0);
+  // Takes those with these ends out: reading and writing then fail, and the ends are closed. At
+  // once, though umockdev needs some 50 ms for each.
+  void unplug(const std::vector<int>& fds);
+  void unplug(int fd) { unplug(std::vector<int>{fd}); }
   // Writes to it do not return until they may again.
   void block(int fd, bool blocked);
   const std::string& why() const { return why_; }

@@ -28,6 +28,8 @@ class TestDevice {
   // such a device cannot have it, and whyNot. Before the plugin opens them.
   virtual bool prepare(Trouble trouble, double after_s) = 0;
   virtual std::string whyNot(Trouble) const { return {}; }
+  // Of a device without a clock of its own (`wait`): whether the host's has to go as time does.
+  virtual bool inRealTime() const { return false; }
   // Text for `configure`, as prepared.
   virtual std::string config() const = 0;
   // Where it can be told in another way than by the states: the force that an arm has now [N].

@@ -99,7 +99,7 @@ MAY_USE = {
 }
 FOR_ALL = {"threads"}
 # What a plugin may use beside JSON, threads and libraries opened at run time.
-PLUGIN_USES = {"woodenhaptics": {"hidapi"}}
+PLUGIN_USES = {"pedal": {"hidapi"}, "woodenhaptics": {"hidapi"}}
 
 # The headers each library brings. A room that needs one only through another room's header (Vec3
 # through base/math.h) includes that room's header.
