@@ -7,8 +7,8 @@
 #include "base/log.h"
 #include "base/system.h"
 #include "imaging/dicom/ct_writer.h"
-#include "lab/exercise/explain.h"
 #include "lab/devices/device_measurement.h"
+#include "lab/exercise/explain.h"
 #include "lab/import/import_measurement.h"
 #include "lab/import/read_floor.h"
 #include "lab/machine/jitter_measurement.h"
@@ -329,12 +329,16 @@ int measureReadCommand(const std::string& path, bool json, const Progress& progr
 int measureDevicesCommand(const DeviceArguments& arguments, const std::string& out, bool json,
                           const Progress& progress) {
   constexpr const char* kName = "measure.devices";
-  DeviceOptions options{{}, arguments.seconds, arguments.trials};
-  for (const std::string& library : arguments.benches) {
-    const Result<DeviceBench*> bench = loadDeviceBench(library);
-    if (!bench) return printError(kName, bench.error(), json);
-    options.benches.push_back(*bench);
+  if (!arguments.one.empty() && arguments.benches.size() == 1) {
+    const Result<DeviceTrial> trial =
+        tryDevice({arguments.benches[0], arguments.one == "unplugged", arguments.wait_s},
+                  arguments.recording);
+    if (!trial) return printError(kName, trial.error(), true);
+    printAnswer(kName, toJson(*trial));
+    return 0;
   }
+  DeviceOptions options{{}, arguments.seconds, arguments.trials};
+  for (const std::string& library : arguments.benches) options.benches.emplace_back(library);
   Result<DeviceMeasurement> measured = measureDevices(options, out, progress);
   if (!measured) return printError(kName, measured.error(), json);
   printMeasured(kName, *measured, json);

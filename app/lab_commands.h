@@ -37,6 +37,10 @@ struct DeviceArguments {
   double seconds = 60.0;
   int trials = 20;
   std::vector<std::string> benches;  // libraries; empty: what is plugged in
+  // One trial alone, which this program asks of itself.
+  std::string one;  // "unplugged", "blocked", or empty
+  double wait_s = 1.0;
+  std::string recording;
 };
 
 struct ImportArguments {

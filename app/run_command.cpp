@@ -154,9 +154,10 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   if (!scene) return scene.error();
   if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
   if (scene->names_devices) {
-    spdlog::warn("{}: it names devices, as exercises did before; they are used where --arms names "
-                 "no others",
-                 arguments.scene);
+    spdlog::warn(
+        "{}: it names devices, as exercises did before; they are used where --arms names "
+        "no others",
+        arguments.scene);
   }
   if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();
   SessionOptions options;

@@ -45,8 +45,7 @@ int run(int argc, char** argv) {
   cli.add_option("--seconds", seconds, "How long; as long as the script where absent")
       ->check(CLI::Range(0.001, kLongest_s))
       ->needs(exercise_option);
-  cli.add_option("--arms", arms,
-                 "Which devices move its arms, a file (resources/schemas/arms.md)")
+  cli.add_option("--arms", arms, "Which devices move its arms, a file (resources/schemas/arms.md)")
       ->needs(exercise_option);
   cli.add_option("--out", out, "Folder for its recording and picture")->needs(exercise_option);
   cli.add_flag("--json", json, "Answer in JSON")->needs(exercise_option);

@@ -244,6 +244,10 @@ int run(int argc, char** argv) {
   devices_command->add_option("--trials", devices.trials, "Of each trouble, with a bench")
       ->capture_default_str();
   devices_command->add_option("--out", out, "Folder for the table")->required();
+  constexpr const char* kHidden = "";  // not in the help
+  devices_command->add_option("--one", devices.one)->group(kHidden);
+  devices_command->add_option("--wait", devices.wait_s)->group(kHidden);
+  devices_command->add_option("--recording", devices.recording)->group(kHidden);
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;

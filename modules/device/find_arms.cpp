@@ -47,10 +47,9 @@ FoundArms findArms(const fs::path& plugin_folder) {
     }
     for (const TrephineArmInfo& info : infos) {
       const FoundArm arm{name, info.bus_path, info.serial, info.model, place++};
-      const auto other =
-          std::ranges::find_if(found.arms, [&](const FoundArm& has) {
-            return has.plugin != name && has.bus_path == arm.bus_path && has.serial == arm.serial;
-          });
+      const auto other = std::ranges::find_if(found.arms, [&](const FoundArm& has) {
+        return has.plugin != name && has.bus_path == arm.bus_path && has.serial == arm.serial;
+      });
       if (other == found.arms.end()) {
         found.arms.push_back(arm);
         continue;

@@ -31,8 +31,8 @@ struct FoundArms {
 // cannot be asked is a problem, and the rest is found.
 FoundArms findArms(const std::filesystem::path& plugin_folder);
 
-// The file that configures a plugin's arms here: the hospital's, /etc/trephine/devices/<plugin>.json,
-// or the product's; empty where there is neither.
+// The file that configures a plugin's arms here: the hospital's,
+// /etc/trephine/devices/<plugin>.json, or the product's; empty where there is neither.
 std::string deviceFile(const std::string& plugin);
 
 }  // namespace trephine

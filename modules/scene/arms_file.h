@@ -1,5 +1,5 @@
-// Which devices move a scene's arms, in place of those that it would have: a file of the workstation
-// that it runs on. JSON, resources/schemas/arms.md.
+// Which devices move a scene's arms, in place of those that it would have: a file of the
+// workstation that it runs on. JSON, resources/schemas/arms.md.
 #pragma once
 
 #include <cstdint>

@@ -42,7 +42,7 @@ struct ArmDevice {
 
 struct SceneArm {
   std::string name;                   // "left", "right"
-  ArmDevice device;                   // a simulated one, unless a recording or an older file names it
+  ArmDevice device;  // a simulated one, unless a recording or an older file names it
   std::string tool;                   // a tool's id: in hand at first
   std::vector<std::string> other_tools;  // ids of those that it may be given; kMostTools in all
   SceneMap map;
@@ -80,7 +80,7 @@ struct Scene {
   std::optional<SceneCard> card;        // said before it begins
   std::optional<SceneOutline> outline;  // drawn on the tissue
   Locks locks;                          // what is not changed while it is practised
-  bool names_devices = false;  // by a file from when exercises did: saving leaves them out
+  bool names_devices = false;           // by a file from when exercises did: saving leaves them out
 
   const SceneTool* findTool(const std::string& id) const;
   // The tools of an arm by number, as ArmParameters counts them; null beyond the last.
@@ -99,7 +99,8 @@ const CardText* cardFor(const Scene& scene, std::string_view language);
 void useCase(Scene& scene, const std::string& case_source);
 
 // Files that a scene names are found beside it. Errors: MISSING_FILE, BAD_JSON, BAD_FIELD (file,
-// field and value named), BAD_TISSUE, BAD_SCENE. Arms without a device get simulated ones, one each.
+// field and value named), BAD_TISSUE, BAD_SCENE. Arms without a device get simulated ones, one
+// each.
 Result<Scene> readScene(const std::filesystem::path& file);
 Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 
@@ -109,7 +110,8 @@ Result<Scene> parseScene(const Json& json, const std::filesystem::path& file);
 Json toJson(const Scene& scene);
 
 // As a file that readScene() reads: everything, tissues inline and those for elsewhere beside them,
-// files named from the root. Neither the labels of a case nor the devices of its arms are a scene's.
+// files named from the root. Neither the labels of a case nor the devices of its arms are a
+// scene's.
 Json sceneFile(const Scene& scene);
 
 // What would be wrong with that file: an edited scene is held to the rules of one that is read. The

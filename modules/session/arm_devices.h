@@ -10,8 +10,8 @@
 
 namespace trephine {
 
-// The text of a file that configures a plugin's arms, "{}" for none: held to the rules of every JSON
-// file before the plugin sees it.
+// The text of a file that configures a plugin's arms, "{}" for none: held to the rules of every
+// JSON file before the plugin sees it.
 Result<std::string> readDeviceFile(const std::string& file);
 
 // Arms of one plugin, by their places in its enumeration. Errors: those of plugins, files, devices.

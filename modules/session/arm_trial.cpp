@@ -182,9 +182,8 @@ const TriedArms& ArmTrial::state() {
 }
 
 void ArmTrial::askForForce(std::size_t arm, double most_N) {
-  engine_->asked_N[arm] =
-      std::min({most_N, engine_->capabilities[arm].continuous_force_N,
-                engine_->capabilities[arm].peak_force_N});
+  engine_->asked_N[arm] = std::min({most_N, engine_->capabilities[arm].continuous_force_N,
+                                    engine_->capabilities[arm].peak_force_N});
 }
 
 void ArmTrial::endForce() {

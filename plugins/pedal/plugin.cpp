@@ -57,6 +57,7 @@ int failWith(TrephineDevice* device, int code, std::string sentence) {
 }
 
 uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
+  open_error.clear();
   const std::vector<Found> inputs = findInputs();
   for (std::uint32_t i = 0; infos && i < capacity && i < inputs.size(); ++i) {
     TrephineArmInfo* info = element(infos, i);

@@ -96,8 +96,7 @@ int open(const std::uint32_t* places, std::uint32_t n_arms, TrephineDevice** dev
     }
     if (places[i] >= kArms) {
       std::snprintf(open_error, sizeof(open_error),
-                    "There is no simulated arm %u: the arms are 0 to 3.",
-                    places[i]);
+                    "There is no simulated arm %u: the arms are 0 to 3.", places[i]);
       return TREPHINE_ERROR_NO_DEVICE;
     }
   }

@@ -1,5 +1,5 @@
-// A bench for `trephine-lab measure devices`: the two arms of our own libHD.so, which the program has
-// to find (LD_LIBRARY_PATH).
+// A bench for `trephine-lab measure devices`: the two arms of our own libHD.so, which the program
+// has to find (LD_LIBRARY_PATH).
 #include <dlfcn.h>
 
 #include <cmath>
@@ -19,7 +19,8 @@ class HdBench : public DeviceBench {
   bool plugIn() override {
     if (!library_) library_ = ::dlopen("libHD.so", RTLD_NOW | RTLD_LOCAL);
     const auto entry =
-        library_ ? reinterpret_cast<test::HdTestEntry>(::dlsym(library_, test::kHdTestEntry)) : nullptr;
+        library_ ? reinterpret_cast<test::HdTestEntry>(::dlsym(library_, test::kHdTestEntry))
+                 : nullptr;
     hd_ = entry ? entry() : nullptr;
     if (!hd_) return false;
     hd_->reset();

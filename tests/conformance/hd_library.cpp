@@ -29,8 +29,15 @@ std::array<std::array<double, 3>, 2> pending_N{};
 std::vector<ErrorInfo> errors;  // of the thread that has the frame
 std::uint32_t (*callback)(void*) = nullptr;
 void* user = nullptr;
-std::thread scheduler;
 std::atomic<bool> running{false};
+// A program may end with it at work.
+struct Scheduler {
+  std::thread thread;
+  ~Scheduler() {
+    running = false;
+    if (thread.joinable()) thread.detach();
+  }
+} scheduler;
 
 bool known(std::uint32_t device) {
   const bool is = device < 2 && initialised[device];
@@ -102,7 +109,8 @@ HD_EXPORT void hdEndFrame(std::uint32_t device) {
     test.arms[device].force_N[axis] = test.arms[device].enabled ? pending_N[device][axis] : 0.0;
   }
   const auto& f = test.arms[device].force_N;
-  test.arms[device].sent_N[test.frames % trephine::test::HdArm::kFrames] = std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  test.arms[device].sent_N[test.frames % trephine::test::HdArm::kFrames] =
+      std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
   if (device == 0) ++test.frames;
 }
 HD_EXPORT void hdEnable(std::uint32_t what) {
@@ -113,7 +121,10 @@ HD_EXPORT void hdDisable(std::uint32_t what) {
   if (what == 0x4000 && known(current)) test.arms[current].enabled = false;
 }
 HD_EXPORT void hdGetIntegerv(std::uint32_t what, int* out) {
-  *out = what == 0x2000 && current < 2 ? test.arms[current].buttons.load() : what == 0x2553 ? 6 : what == 0x2555 ? test.styles.load() : 0;
+  *out = what == 0x2000 && current < 2 ? test.arms[current].buttons.load()
+         : what == 0x2553              ? 6
+         : what == 0x2555              ? test.styles.load()
+                                       : 0;
 }
 HD_EXPORT void hdGetBooleanv(std::uint32_t what, std::uint8_t* out) {
   *out = what == 0x2002 && current < 2 && test.arms[current].in_holder;
@@ -127,8 +138,8 @@ HD_EXPORT void hdGetDoublev(std::uint32_t what, double* out) {
     case 0x2052:
       if (!known(current) || !in_frame[current]) ++test.misuses;
       std::memcpy(out, transform, sizeof(transform));
-      out[14] +=
-          (test.swing_mm + (current < 2 ? test.arms[current].swing_mm.load() : 0.0)) * std::sin(2.0 * 3.14159265358979 * double(test.frames % 1000) / 1000.0);
+      out[14] += (test.swing_mm + (current < 2 ? test.arms[current].swing_mm.load() : 0.0)) *
+                 std::sin(2.0 * 3.14159265358979 * double(test.frames % 1000) / 1000.0);
       if (test.no_numbers) out[12] = std::nan("");
       break;
     case 0x2551:
@@ -172,11 +183,11 @@ HD_EXPORT void hdUpdateCalibration(std::uint32_t style) {
 HD_EXPORT void hdSetSchedulerRate(unsigned long) {}
 HD_EXPORT void hdStartScheduler() {
   running = true;
-  scheduler = std::thread(schedule);
+  scheduler.thread = std::thread(schedule);
 }
 HD_EXPORT void hdStopScheduler() {
   running = false;
-  if (scheduler.joinable()) scheduler.join();
+  if (scheduler.thread.joinable()) scheduler.thread.join();
 }
 #ifndef HD_LACKS_SCHEDULE
 HD_EXPORT unsigned long hdScheduleAsynchronous(std::uint32_t (*called)(void*), void* with,

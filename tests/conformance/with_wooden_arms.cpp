@@ -1,7 +1,7 @@
 // usage: umockdev-wrapper with_wooden_arms REPORT.json COMMAND ARGUMENTS...
 // Plugs in two emulated WoodenHaptics boards in hands that swing them, runs the command, and writes
-// what the boards saw: reports that were sent and answered, and how long an answer took. Ends as the
-// command did.
+// what the boards saw: reports that were sent and answered, and how long an answer took. Ends as
+// the command did.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,7 +55,8 @@ class Arm {
     swung_.step(force_N, time_s);
     if (!test::anglesAt(swung_.at_m, swung_.angles)) return;
     const Vector counts = test::countsAt(swung_.angles);
-    firmware_->setCounts({std::int16_t(std::lround(counts[0])), std::int16_t(std::lround(counts[1])),
+    firmware_->setCounts({std::int16_t(std::lround(counts[0])),
+                          std::int16_t(std::lround(counts[1])),
                           std::int16_t(std::lround(counts[2]))});
   }
   Json report() const {

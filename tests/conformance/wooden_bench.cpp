@@ -38,6 +38,7 @@ class WoodenBench : public DeviceBench {
 
   bool plugIn() override {
     end();
+    bed_.reset();  // one at a time: it is an entry in the environment
     bed_ = std::make_unique<test::HidTestbed>();
     for (std::size_t i = 0; i < 2; ++i) {
       Arm& arm = arms_[i];
@@ -60,8 +61,8 @@ class WoodenBench : public DeviceBench {
   }
   void block(double seconds) override {
     for (Arm& arm : arms_) bed_->block(arm.fd, true);
-    blocked_until_ = WoodenFirmware::Clock::now() +
-                     std::chrono::milliseconds(std::lround(1000.0 * seconds));
+    blocked_until_ =
+        WoodenFirmware::Clock::now() + std::chrono::milliseconds(std::lround(1000.0 * seconds));
     blocked_ = true;
   }
   double force_N(std::uint32_t arm) override {

@@ -103,7 +103,8 @@ void runWith(const Files& files, Kind kind) {
   Json scene = *readJsonFile(files.scene("burr-hole.json"));
   if (kind == kTool) scene["tools"][0]["file"] = "../tools/input.json";
   if (kind == kTissues) scene["tissues"] = "../tissues/input.json";
-  if (kind == kDevice) scene["arms"][0]["device"] = {{"plugin", "simulated"}, {"config", "../devices/input.json"}};
+  if (kind == kDevice)
+    scene["arms"][0]["device"] = {{"plugin", "simulated"}, {"config", "../devices/input.json"}};
   runScene(parseScene(scene, files.scene("burr-hole.json")));
 }
 

@@ -49,7 +49,7 @@ void ArmPicture::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   const QRectF all = QRectF(rect()).adjusted(kMargin, kMargin, -kMargin, -kMargin);
-  const QColor line = palette().color(QPalette::Mid), strong = palette().color(QPalette::Text),
+  const QColor line = palette().color(QPalette::PlaceholderText), strong = palette().color(QPalette::Text),
                accent = palette().color(QPalette::Highlight);
   painter.setPen(QPen(line, 1.0));
   if (shows_ == Shows::holder) {
@@ -77,6 +77,13 @@ void ArmPicture::paintEvent(QPaintEvent*) {
                    QPointF(front.center().x(), front.bottom()));
   painter.drawLine(QPointF(front.left(), front.center().y()),
                    QPointF(front.right(), front.center().y()));
+  const auto say = [&](const QRectF& in, int where, const QString& words) {
+    painter.drawText(in.adjusted(4, 2, -4, -2), where, words);
+  };
+  say(front, Qt::AlignTop | Qt::AlignLeft, tr("from the front"));
+  const QRectF beside(front.right() - 60.0, front.top(), 60.0, front.height());
+  say(beside, Qt::AlignTop | Qt::AlignRight, tr("far"));
+  say(beside, Qt::AlignBottom | Qt::AlignRight, tr("near"));
   if (shows_ != Shows::tip) return;
   const auto part = [&](int axis) {
     return std::clamp(tip_m_[axis] / std::max(1e-3, reach_m_[axis]), -0.5, 0.5);

@@ -9,6 +9,7 @@
 namespace trephine {
 
 class ArmPicture : public QWidget {
+  Q_OBJECT
  public:
   explicit ArmPicture(QWidget* parent = nullptr);
 

@@ -15,7 +15,7 @@ namespace trephine {
 namespace {
 
 constexpr int kShown_ms = 33;
-constexpr int kSettle_ms = 700;  // until what was plugged in has its nodes
+constexpr int kSettle_ms = 700;    // until what was plugged in has its nodes
 constexpr double kMoved_m = 0.02;  // the arm that a person means
 constexpr double kTest_N = 1.0;
 
@@ -50,6 +50,10 @@ DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
   picture_ = new ArmPicture;
   now_ = wordsLabel("deviceNow");
   test_ = wordsLabel("forceTest");
+  for (QLabel* words : {now_, test_}) {  // what is said changes, and nothing moves with it
+    words->setAlignment(Qt::AlignTop);
+    words->setFixedHeight(3 * words->fontMetrics().lineSpacing());
+  }
   force_ = new QPushButton(tr("&Test the force"));
   force_->setObjectName("testForce");
   felt_ = new QPushButton(tr("It pulled &up"));
@@ -99,8 +103,9 @@ DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
   connect(felt_, &QPushButton::clicked, this,
           [this] { test_->setText(tr("The force of this arm works.")); });
   connect(not_felt_, &QPushButton::clicked, this, [this] {
-    test_->setText(tr("Then no exercise can be felt with this arm: check that it is switched on "
-                      "and that its emergency stop is out, and test it again."));
+    test_->setText(
+        tr("Then no exercise can be felt with this arm: check that it is switched on "
+           "and that its emergency stop is out, and test it again."));
   });
   connect(left_, &QComboBox::activated, this, [this](int index) { choose("left", index); });
   connect(right_, &QComboBox::activated, this, [this](int index) { choose("right", index); });
@@ -295,8 +300,10 @@ void DevicesDialog::showNow() {
   }
   const std::size_t i = std::size_t(row);
   if (const std::optional<Error>& problem = trial_->problem(i)) {
-    now_->setText(toQt(problem->sentence()));
-    picture_->showHolder();
+    const bool calibration = problem->code == "DEVICE_NOT_STARTED";
+    now_->setText(calibration ? tr("%1. Then look again.").arg(toQt(problem->what))
+                              : toQt(problem->sentence()));
+    calibration ? picture_->showHolder() : picture_->clear();
     force_->setEnabled(false);
     return;
   }
@@ -316,7 +323,8 @@ void DevicesDialog::showNow() {
   if (lost) {
     now << tr("It does not answer: check its plug, then look again.");
   } else if (able.input_dof != 0 && !placed) {
-    now << tr("It does not know where it is: put the stylus into its holder and take it out again.");
+    now << tr(
+        "It does not know where it is: put the stylus into its holder and take it out again.");
   } else {
     if (able.input_dof != 0) {
       now << (arm.moved_m < kMoved_m ? tr("Move it to see that this is the one.")

@@ -105,8 +105,8 @@ class MainWindow : public QMainWindow {
   QWidget* views_page_;
   QSplitter* columns_;
   QToolBar* bar_;
-  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_, *devices_,
-      *unlock_;
+  QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
+      *devices_, *unlock_;
   QLabel *hint_, *rates_, *locked_, *opening_words_;
   QWidget* opening_box_;
   QProgressBar* opening_;

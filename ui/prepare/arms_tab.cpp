@@ -8,7 +8,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
-#include "lab/import/child_process.h"
+#include "lab/common/child_process.h"
 #include "lab/touch/law_costs.h"
 #include "lab/trades/recommended.h"
 #include "lab/trades/trades_measurement.h"

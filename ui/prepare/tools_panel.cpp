@@ -367,8 +367,7 @@ QWidget* ToolsPanel::buildArms() {
     if (typed.empty()) return showArm();
     editArm("name", [&](SceneArm& arm) { arm.name = typed; });
   });
-  add_arm_ = settingButton("addArm", tr("Add one"),
-                           tr("Another arm, as this one"), of_arm);
+  add_arm_ = settingButton("addArm", tr("Add one"), tr("Another arm, as this one"), of_arm);
   remove_arm_ = settingButton("removeArm", tr("Remove it"), tr("One arm stays"), of_arm);
   connect(add_arm_, &QToolButton::clicked, this, &ToolsPanel::addArm);
   connect(remove_arm_, &QToolButton::clicked, this, &ToolsPanel::removeArm);

@@ -74,8 +74,8 @@ void Workstation::begin(const std::filesystem::path& recordings,
   const TissueTable tissues = tissueTable(scene_->tissues);
   const bool again = case_->misfit || !(placed_with_ == tissues);
   running_.run(
-      [scene = std::move(practised), chosen, opens = opens_arms_, of = *case_, again, recordings, stem, poke,
-       script = std::move(script)](
+      [scene = std::move(practised), chosen, opens = opens_arms_, of = *case_, again, recordings,
+       stem, poke, script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
         const std::lock_guard lock(*opens);
         if (Status used = useArms(scene, chosen); !used) return used.error();
@@ -161,8 +161,8 @@ void Workstation::askArms() {
     return;
   }
   asking_.run(
-      [scene = *scene_, chosen, opens = opens_arms_](const Progress&) mutable
-      -> Result<std::pair<Scene, std::vector<Vec3>>> {
+      [scene = *scene_, chosen, opens = opens_arms_](
+          const Progress&) mutable -> Result<std::pair<Scene, std::vector<Vec3>>> {
         const std::lock_guard lock(*opens);
         if (Status used = useArms(scene, chosen); !used) return used.error();
         std::vector<Vec3> workspaces_mm;
@@ -172,7 +172,8 @@ void Workstation::askArms() {
       [this](Result<std::pair<Scene, std::vector<Vec3>>> asked) {
         if (std::exchange(ask_again_, false)) return askArms();
         const auto name = &SceneArm::name;
-        if (!asked || !scene_ || !std::ranges::equal(asked->first.arms, scene_->arms, {}, name, name)) {
+        if (!asked || !scene_ ||
+            !std::ranges::equal(asked->first.arms, scene_->arms, {}, name, name)) {
           return;
         }
         for (std::size_t i = 0; i < scene_->arms.size(); ++i) {

@@ -89,10 +89,11 @@ class Workstation : public QObject {
     return unlocked_ ? Status() : checkScene(policy_, scene, file);
   }
 
-  // From the next exercise on these devices move its arms, and the settings say nothing of them: for
-  // an exercise that nobody watches.
+  // From the next exercise on these devices move its arms, and the settings say nothing of them:
+  // for an exercise that nobody watches.
   void setArms(std::vector<NamedDevice> arms) { arms_ = std::move(arms); }
-  // Another device was chosen for an arm of this place: what it can show is asked in the background.
+  // Another device was chosen for an arm of this place: what it can show is asked in the
+  // background.
   void armsChosen();
   // How far each arm of scene() reaches, device axes, mm; empty where an arm is not there.
   const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }

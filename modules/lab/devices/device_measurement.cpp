@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/system.h"
+#include "lab/common/child_process.h"
 #include "lab/common/quantile.h"
 #include "lab/devices/loop_watch.h"
 #include "scene/arms_file.h"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr double kRate_hz = 1000.0;
-constexpr double kDelay_s = 10.0;  // of each order of the loop's calls
+constexpr double kDelay_s = 10.0;  // of each order of the loop's calls, at most
 constexpr double kFelt_N = 0.05;   // an arm has force
 const char* kSides[] = {"right", "left"};
 
@@ -233,7 +234,7 @@ Result<std::vector<double>> answersTo(const Subject& subject, bool send_first, d
   return answers_ms;
 }
 
-Status measureOrders(Subject& subject, DeviceRow& row, const Progress& progress) {
+Status measureOrders(Subject& subject, double seconds, DeviceRow& row, const Progress& progress) {
   double beyond_ms = 0.0;  // from the plugin to the arm, as the bench sees it
   for (const bool send_first : {true, false}) {
     progress.at(0.0, subject.plugin + (send_first ? ", send, then wait" : ", wait, then send"));
@@ -242,7 +243,7 @@ Status measureOrders(Subject& subject, DeviceRow& row, const Progress& progress)
     delay.order = send_first ? "send, then wait" : "wait, then send";
     ArmDynamics dynamics;
     Result<std::vector<double>> answers_ms =
-        answersTo(subject, send_first, kDelay_s, dynamics, progress);
+        answersTo(subject, send_first, seconds, dynamics, progress);
     if (!answers_ms) return answers_ms.error();
     const double to_plugin_ms = spreadOf(*answers_ms).median;
     const std::vector<double> seen_ms =
@@ -260,84 +261,44 @@ Status measureOrders(Subject& subject, DeviceRow& row, const Progress& progress)
 
 // ---- Troubles
 
-struct Trial {
-  double zero_ms = 0.0, stop_ms = 0.0;
-  bool replayed = false;
-};
-
-// In mid-cut, at a moment that nobody knows, with force on the first arm.
-Result<Trial> runTrial(const Subject& subject, const Scene& scene, const Case& of, bool unplug,
-                       double wait_s, LoopWatch& watch, const fs::path& recording) {
-  watch.begin();
-  SessionOptions options;
-  options.probe = &watch;
-  options.recording = recording;
-  Result<std::unique_ptr<Session>> session = Session::create(scene, of, options);
-  if (!session) return session.error();
-  if (Status started = (*session)->start(30.0); !started) return started.error();
-  std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
-  const std::uint32_t arm = subject.arms[0].place;
-  const std::size_t index = std::size_t(
-      std::ranges::find(scene.arms, std::string(kSides[0]), &SceneArm::name) - scene.arms.begin());
-  const std::size_t of_scene = index < scene.arms.size() ? index : 0;
-  const auto force_N = [&] {
-    const std::size_t ticks = watch.ticks(of_scene);
-    return ticks == 0 ? 0.0 : watch.tick(of_scene, ticks - 1).force_N;
-  };
-  const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
-  while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
-  const std::int64_t at_ns = hostTime_ns();
-  unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
-  std::int64_t last_ns = at_ns;
-  // An arm that was taken out has no force but what was sent; one that does not answer has what it
-  // had.
-  while (hostTime_ns() < at_ns + 300'000'000) {
-    if (!unplug && subject.bench->force_N(arm) > 1e-6) last_ns = hostTime_ns();
-    std::this_thread::sleep_for(200us);
+// The same program, which tells what came of it.
+Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
+                            const fs::path& recording, const Progress& progress) {
+  std::error_code ec;
+  constexpr double kLongest_s = 60.0;
+  const fs::path answer = out / "trial.json";
+  const Result<ChildRun> run =
+      runChild({{fs::read_symlink("/proc/self/exe", ec).string(), "measure", "devices", "--json",
+                 "--bench", options.bench.string(), "--out", out.string(), "--one",
+                 options.unplug ? "unplugged" : "blocked", "--wait", plainNumber(options.wait_s),
+                 "--recording", recording.string()},
+                answer,
+                out,
+                kLongest_s},
+               progress);
+  if (!run) return run.error();
+  Result<Json> json = readJsonFile(answer);
+  if (!json) return json.error();
+  if (run->exit_code != 0 || !json->contains("zero_ms")) {
+    return Error{"NOT_MEASURED", "A trial did not come to its end: " + json->dump(), "", ""};
   }
-  if (unplug) {
-    for (std::size_t i = watch.ticks(of_scene); i-- > 0;) {
-      const LoopWatch::Tick& tick = watch.tick(of_scene, i);
-      if (tick.sent_ns < at_ns) break;
-      if (tick.force_N <= 0.0) continue;
-      last_ns = tick.sent_ns;
-      break;
-    }
-  }
-  Trial trial;
-  trial.zero_ms = 1e-6 * double(last_ns - at_ns);
-  const std::int64_t stop_ns = hostTime_ns();
-  (void)(*session)->stop();
-  trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
-  session->reset();
-  const auto reader = SessionReader::open(recording);
-  if (!reader) return trial;
-  const Result<ReplayResult> again =
-      replay(**reader, *of.volume, of.labels.get(), Progress(), of.sha256);
-  trial.replayed = again && again->identical && !again->cut_short;
-  return trial;
+  fs::remove(answer, ec);
+  return DeviceTrial{json->at("zero_ms"), json->at("stop_ms"), json->at("replayed")};
 }
 
-Status runTrials(Subject& subject, int count, const fs::path& out, DeviceRow& row,
+Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRow& row,
                  const Progress& progress) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> wait_s(0.7, 1.7);
-  LoopWatch watch(std::size_t(40.0 * kRate_hz));
   std::vector<double> unplug_ms, block_ms, stop_ms;
-  Result<Scene> scene = sceneOn(subject.arms);
-  if (!scene) return scene.error();
-  const Result<Case> of = openCase(*scene);
-  if (!of) return of.error();
   for (int n = 0; n < 2 * count; ++n) {
     const bool unplug = n < count;
-    progress.at(double(n) / (2.0 * count), subject.plugin + (unplug ? ", unplugged" : ", blocked"));
-    if (progress.cancelled()) return cancelled();
-    if (Status there = plugIn(subject); !there) return there;
-    if (Status moved = moveBy(*scene, subject.arms); !moved) return moved;
-    const fs::path recording = out / (subject.plugin + (unplug ? "-unplugged-" : "-blocked-") +
-                                      std::to_string(n % std::max(1, count)) + ".h5");
-    const Result<Trial> trial =
-        runTrial(subject, *scene, *of, unplug, wait_s(random), watch, recording);
+    const std::string name = unplug ? "-unplugged-" : "-blocked-";
+    progress.at(double(n) / (2.0 * count), row.plugin + (unplug ? ", unplugged" : ", blocked"));
+    const fs::path recording =
+        out / (row.plugin + name + std::to_string(n % std::max(1, count)) + ".h5");
+    const Result<DeviceTrial> trial =
+        trialOf({bench, unplug, wait_s(random)}, out, recording, progress);
     if (!trial) return trial.error();
     (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);
     stop_ms.push_back(trial->stop_ms);
@@ -359,7 +320,7 @@ Json spread(const Spread& of) {
   return {{"median", of.median}, {"p99", of.p99}, {"max", of.max}, {"count", of.count}};
 }
 
-std::string toCsv(const DeviceMeasurement& measurement) {
+std::string devicesCsv(const DeviceMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << "plugin,arms,seconds,ticks,missed,reports_lost,report_age_median_ms,report_age_p99_ms,"
@@ -385,6 +346,66 @@ Spread spreadOf(std::vector<double> figures) {
   return {quantile(figures, 500), quantile(figures, 990), quantile(figures, 1000), figures.size()};
 }
 
+Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recording) {
+  const Result<DeviceBench*> bench = loadDeviceBench(options.bench);
+  if (!bench) return bench.error();
+  Subject subject{(*bench)->plugin(), *bench, {}};
+  if (Status there = plugIn(subject); !there) return there.error();
+  Result<Scene> scene = sceneOn(subject.arms);
+  if (!scene) return scene.error();
+  const Result<Case> of = openCase(*scene);
+  if (!of) return of.error();
+  LoopWatch watch(std::size_t(40.0 * kRate_hz));
+  SessionOptions session_options;
+  session_options.probe = &watch;
+  session_options.recording = recording;
+  Result<std::unique_ptr<Session>> session = Session::create(*scene, *of, session_options);
+  if (!session) return session.error();
+  if (Status started = (*session)->start(30.0); !started) return started.error();
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.wait_s));
+  const std::uint32_t arm = subject.arms[0].place;
+  const auto named = std::ranges::find(scene->arms, std::string(kSides[0]), &SceneArm::name);
+  const std::size_t of_scene = named == scene->arms.end() ? 0 : std::size_t(named - scene->arms.begin());
+  const auto force_N = [&] {
+    const std::size_t ticks = watch.ticks(of_scene);
+    return ticks == 0 ? 0.0 : watch.tick(of_scene, ticks - 1).force_N;
+  };
+  const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
+  while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
+  const std::int64_t at_ns = hostTime_ns();
+  options.unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
+  std::int64_t last_ns = at_ns;
+  // An arm that was taken out has no force but what was sent; one that does not answer has what it
+  // had.
+  while (hostTime_ns() < at_ns + 300'000'000) {
+    if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_ns = hostTime_ns();
+    std::this_thread::sleep_for(200us);
+  }
+  for (std::size_t i = watch.ticks(of_scene); options.unplug && i-- > 0;) {
+    const LoopWatch::Tick& tick = watch.tick(of_scene, i);
+    if (tick.sent_ns < at_ns) break;
+    if (tick.force_N <= 0.0) continue;
+    last_ns = tick.sent_ns;
+    break;
+  }
+  DeviceTrial trial;
+  trial.zero_ms = 1e-6 * double(last_ns - at_ns);
+  const std::int64_t stop_ns = hostTime_ns();
+  (void)(*session)->stop();
+  trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
+  session->reset();
+  const auto reader = SessionReader::open(recording);
+  if (!reader) return trial;
+  const Result<ReplayResult> again =
+      replay(**reader, *of->volume, of->labels.get(), Progress(), of->sha256);
+  trial.replayed = again && again->identical && !again->cut_short;
+  return trial;
+}
+
+Json toJson(const DeviceTrial& trial) {
+  return {{"zero_ms", trial.zero_ms}, {"stop_ms", trial.stop_ms}, {"replayed", trial.replayed}};
+}
+
 Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs::path& out,
                                          const Progress& progress) {
   if (!(options.seconds >= 1.0 && options.seconds <= 600.0) || options.trials < 0 ||
@@ -394,7 +415,11 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs:
   }
   if (Status made = makeFolder(out); !made) return made.error();
   std::vector<Subject> subjects;
-  for (DeviceBench* bench : options.benches) subjects.push_back({bench->plugin(), bench, {}});
+  for (const fs::path& library : options.benches) {
+    const Result<DeviceBench*> bench = loadDeviceBench(library);
+    if (!bench) return bench.error();
+    subjects.push_back({(*bench)->plugin(), *bench, {}});
+  }
   if (options.benches.empty()) subjects = pluggedIn();
   if (subjects.empty()) {
     return Error{"NO_DEVICE", "No arm is plugged in", "",
@@ -412,15 +437,15 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs:
     const Progress loop(progress, from, from + 0.4 * share);
     if (Status ran = runClosedLoop(subject, options.seconds, row, loop); !ran) return ran.error();
     const Progress orders(progress, from + 0.4 * share, from + 0.5 * share);
-    if (Status ran = measureOrders(subject, row, orders); !ran) return ran.error();
+    if (Status ran = measureOrders(subject, std::min(kDelay_s, options.seconds), row, orders); !ran) return ran.error();
     const Progress trials(progress, from + 0.5 * share, from + share);
     if (subject.bench) {
-      Status ran = runTrials(subject, options.trials, out, row, trials);
+      const Status ran = runTrials(options.benches[i], options.trials, out, row, trials);
       if (!ran) return ran.error();
     }
     measurement.rows.push_back(std::move(row));
   }
-  if (Status written = writeTextFile(out / "devices.csv", toCsv(measurement)); !written) {
+  if (Status written = writeTextFile(out / "devices.csv", devicesCsv(measurement)); !written) {
     return written.error();
   }
   return measurement;
@@ -437,25 +462,25 @@ Json toJson(const DeviceMeasurement& measurement) {
                         {"b_max", delay.most.b_max},
                         {"k_max", delay.most.k_max}});
     }
-    rows.push_back({{"plugin", row.plugin},
-                    {"arms", row.arms},
-                    {"seconds", row.seconds},
-                    {"ticks", row.ticks},
-                    {"missed", row.missed},
-                    {"faults", row.faults},
-                    {"reports_lost", row.reports_lost},
-                    {"report_age_ms", spread(row.report_age_ms)},
-                    {"sample_to_force_ms", spread(row.sample_to_force_ms)},
-                    {"at_the_arm", row.at_the_arm},
-                    {"force_mismatches",
-                     row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
-                    {"page_faults", row.page_faults},
-                    {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
-                    {"block_to_zero_ms", spread(row.block_to_zero_ms)},
-                    {"stop_ms", spread(row.stop_ms)},
-                    {"trials", row.unplugged + row.blocked},
-                    {"replayed", row.replayed},
-                    {"delays", delays}});
+    rows.push_back(
+        {{"plugin", row.plugin},
+         {"arms", row.arms},
+         {"seconds", row.seconds},
+         {"ticks", row.ticks},
+         {"missed", row.missed},
+         {"faults", row.faults},
+         {"reports_lost", row.reports_lost},
+         {"report_age_ms", spread(row.report_age_ms)},
+         {"sample_to_force_ms", spread(row.sample_to_force_ms)},
+         {"at_the_arm", row.at_the_arm},
+         {"force_mismatches", row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
+         {"page_faults", row.page_faults},
+         {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
+         {"block_to_zero_ms", spread(row.block_to_zero_ms)},
+         {"stop_ms", spread(row.stop_ms)},
+         {"trials", row.unplugged + row.blocked},
+         {"replayed", row.replayed},
+         {"delays", delays}});
   }
   return {{"rows", rows}};
 }
@@ -471,7 +496,8 @@ std::string toText(const DeviceMeasurement& measurement) {
          << "  a report is " << row.report_age_ms.median << " ms old, p99 " << row.report_age_ms.p99
          << "; from it to the force " << (row.at_the_arm ? "at the arm " : "") << "in "
          << row.sample_to_force_ms.median << " ms, p99 " << row.sample_to_force_ms.p99 << "\n";
-    if (row.force_mismatches) text << "  forces that did not arrive: " << *row.force_mismatches << "\n";
+    if (row.force_mismatches)
+      text << "  forces that did not arrive: " << *row.force_mismatches << "\n";
     for (const DelayRow& delay : row.delays) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
            << delay.delay_ms.p99 << "; shows " << delay.most.b_max << " N s/m and "
@@ -479,10 +505,10 @@ std::string toText(const DeviceMeasurement& measurement) {
     }
     if (row.unplugged + row.blocked == 0) continue;
     text << "  no force after an unplug within " << row.unplug_to_zero_ms.median << " ms, at most "
-         << row.unplug_to_zero_ms.max << "; after a call that blocks " << row.block_to_zero_ms.median
-         << ", at most " << row.block_to_zero_ms.max << "; Stop within " << row.stop_ms.max
-         << " ms; " << row.replayed << " of " << row.unplugged + row.blocked
-         << " recordings replay\n";
+         << row.unplug_to_zero_ms.max << "; after a call that blocks "
+         << row.block_to_zero_ms.median << ", at most " << row.block_to_zero_ms.max
+         << "; Stop within " << row.stop_ms.max << " ms; " << row.replayed << " of "
+         << row.unplugged + row.blocked << " recordings replay\n";
   }
   return text.str();
 }

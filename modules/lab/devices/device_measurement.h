@@ -17,7 +17,7 @@
 namespace trephine {
 
 struct DeviceOptions {
-  std::vector<DeviceBench*> benches;  // none: what is plugged in
+  std::vector<std::filesystem::path> benches;  // libraries; none: what is plugged in
   double seconds = 60.0;              // of the closed loop, 1 to 600
   int trials = 20;                    // of each trouble, 0 to 1000; with a bench alone
 };
@@ -58,7 +58,23 @@ struct DeviceMeasurement {
   std::vector<DeviceRow> rows;
 };
 
-// Writes devices.csv into `out`, and the recordings of trials that fail. Errors: NO_DEVICE,
+// One trouble in mid-cut, at a moment that nobody knows, with force on the first arm: how long until
+// there is none, how long Stop takes, and whether the recording replays bit for bit.
+struct DeviceTrial {
+  double zero_ms = 0.0, stop_ms = 0.0;
+  bool replayed = false;
+};
+struct TrialOptions {
+  std::filesystem::path bench;
+  bool unplug = true;   // or a call that blocks for a second
+  double wait_s = 1.0;  // from the exercise's start
+};
+// In a program of its own, since a device that blocked is left behind. Errors: NO_BENCH, NO_DEVICE,
+// those of sessions.
+Result<DeviceTrial> tryDevice(const TrialOptions& options, const std::filesystem::path& recording);
+Json toJson(const DeviceTrial& trial);
+
+// Each trial is this program once more. Writes devices.csv into `out`, and the recordings of trials that fail. Errors: NO_DEVICE,
 // BAD_ARGUMENT, CANCELLED, CANNOT_WRITE, those of sessions.
 Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
                                          const std::filesystem::path& out,

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/json.h"
-#include "lab/import/child_process.h"
+#include "lab/common/child_process.h"
 
 namespace trephine {
 

@@ -58,7 +58,7 @@ const char* priorityName(bool real_time) {
   return real_time ? "fifo" : "normal";
 }
 
-std::string toCsv(const JitterMeasurement& measurement) {
+std::string jitterCsv(const JitterMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << "rate_hz,priority,median_us,p99_us,p999_us,max_us,missed,ticks\n" << std::fixed;
@@ -158,7 +158,7 @@ Result<JitterMeasurement> measureJitter(const JitterOptions& options,
     }
   }
   if (!out.empty()) {
-    if (Status written = writeTextFile(out / "jitter.csv", toCsv(result)); !written) {
+    if (Status written = writeTextFile(out / "jitter.csv", jitterCsv(result)); !written) {
       return written.error();
     }
   }

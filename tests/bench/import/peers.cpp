@@ -9,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-#include "lab/import/child_process.h"
+#include "lab/common/child_process.h"
 #include "volume/volume_files.h"
 
 namespace trephine::bench {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "lab/import/child_process.h"
+#include "lab/common/child_process.h"
 #include "support.h"
 #include "unit/lab/import_fixture.h"
 #include "volume/volume_files.h"

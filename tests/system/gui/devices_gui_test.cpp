@@ -1,5 +1,5 @@
-// The dialog of devices and an exercise on what it chose, with the real plugin for Phantom and Touch on
-// our own libHD.so: two arms that the test moves.
+// The dialog of devices and an exercise on what it chose, with the real plugin for Phantom and
+// Touch on our own libHD.so: two arms that the test moves.
 #include <dlfcn.h>
 
 #include <QComboBox>
@@ -43,7 +43,9 @@ class DevicesGuiTest : public test::TrainTest {
     QTRY_VERIFY(!window_->findChild<QDialog*>("devicesDialog"));
   }
   void picture(const char* name) {
-    QVERIFY(find<QDialog>("devicesDialog")->grab().save(QString(TREPHINE_ARTEFACTS "/%1.png").arg(name)));
+    QVERIFY(find<QDialog>("devicesDialog")
+                ->grab()
+                .save(QString(TREPHINE_ARTEFACTS "/%1.png").arg(name)));
   }
   void choose(const char* box, int index) {
     auto* of = find<QComboBox>(box);

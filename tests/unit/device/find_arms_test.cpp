@@ -15,7 +15,9 @@ namespace fs = std::filesystem;
 
 struct FindArms : ::testing::Test {
   void add(const fs::path& from, const char* as) { fs::copy_file(from, folder / as); }
-  static fs::path simulated() { return fs::path(TREPHINE_TEST_PLUGIN_DIR) / "trephine_simulated.so"; }
+  static fs::path simulated() {
+    return fs::path(TREPHINE_TEST_PLUGIN_DIR) / "trephine_simulated.so";
+  }
 
   test::TemporaryFolder folder;
 };
@@ -51,9 +53,8 @@ TEST_F(FindArms, OfTwoPluginsWithOneDeviceTheFirstHasItAndBothAreNamed) {
   add(simulated(), "trephine_twin.so");
   const FoundArms found = findArms(folder.path());
   EXPECT_EQ(found.arms.size(), 4u);
-  EXPECT_TRUE(std::ranges::all_of(found.arms, [](const FoundArm& arm) {
-    return arm.plugin == "simulated";
-  }));
+  EXPECT_TRUE(std::ranges::all_of(found.arms,
+                                  [](const FoundArm& arm) { return arm.plugin == "simulated"; }));
   ASSERT_EQ(found.problems.size(), 4u) << "one a device";
   const std::string sentence = found.problems[0].sentence();
   for (const char* part : {"'simulated'", "'twin'", "sim-0"}) {

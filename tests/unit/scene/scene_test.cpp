@@ -132,7 +132,9 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
       {"bad scale", [](Json& s) { s["arms"][0]["map"]["motion_scale"] = -1; }, "motion_scale",
        "-1"},
       {"same device",
-       [](Json& s) { s["arms"][0]["device"] = s["arms"][1]["device"] = {{"plugin", "touch"}}; },
+       [](Json& s) {
+         s["arms"][0]["device"] = s["arms"][1]["device"] = {{"plugin", "touch"}};
+       },
        "arms", "right"},
       {"long tool", [](Json& s) { s["tools"][0]["length_mm"] = 2000; }, "tools[0].length_mm",
        "1000"},
@@ -184,7 +186,9 @@ TEST(Scene, NamesFileFieldAndValueOfWhatIsWrong) {
       {"no force", [](Json& s) { s["arms"][0]["map"]["force_scale"] = 1e-308; },
        "arms[0].map.force_scale", "1e-308"},
       {"no device arm",
-       [](Json& s) { s["arms"][0]["device"] = {{"plugin", "touch"}, {"arm", -3}}; },
+       [](Json& s) {
+         s["arms"][0]["device"] = {{"plugin", "touch"}, {"arm", -3}};
+       },
        "arms[0].device.arm", "-3"},
       {"strong arm", [](Json& s) { s["arms"][0]["max_force_N"] = 1e300; }, "arms[0].max_force_N",
        "1e+300"},

@@ -58,8 +58,12 @@ TEST(ForceTest, RisesOverThreeSecondsHoldsForTwoAndIsGone) {
     most_step_N = std::max(most_step_N, std::abs(now_N - last_N));
     ASSERT_GE(now_N, 0.0);
     ASSERT_LE(now_N, 1.5);
-    if (i == 1500) { EXPECT_NEAR(now_N, 0.75, 1e-3); }
-    if (i == 4000) { EXPECT_EQ(now_N, 1.5); }
+    if (i == 1500) {
+      EXPECT_NEAR(now_N, 0.75, 1e-3);
+    }
+    if (i == 4000) {
+      EXPECT_EQ(now_N, 1.5);
+    }
     last_N = now_N;
   }
   EXPECT_LT(most_step_N, 2e-3) << "never at once";

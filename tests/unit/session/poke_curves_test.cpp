@@ -8,7 +8,7 @@ namespace {
 constexpr double kRate_hz = 1000.0;
 
 // A tool that points down, its tip `depth_mm` below a surface at z = 0 that pushes back.
-TickRecord at(double depth_mm, double N_per_mm, std::int32_t tissue = 2) {
+TickRecord pressedTo(double depth_mm, double N_per_mm, std::int32_t tissue = 2) {
   TickRecord record;
   ArmRecord& arm = record.arms[0];
   arm.patient_position_mm = Vec3(0.0, 0.0, -depth_mm);
@@ -21,9 +21,9 @@ TickRecord at(double depth_mm, double N_per_mm, std::int32_t tissue = 2) {
 
 // Down to a depth and out again, then in the air for 0.2 s.
 void poke(PokeCurves& curves, double to_mm, double N_per_mm, std::int32_t tissue = 2) {
-  for (double d = -0.5; d < to_mm; d += 0.01) curves.add(at(d, N_per_mm, tissue));
-  for (double d = to_mm; d > -0.5; d -= 0.01) curves.add(at(d, N_per_mm, tissue));
-  for (int n = 0; n < 200; ++n) curves.add(at(-0.5, N_per_mm, tissue));
+  for (double d = -0.5; d < to_mm; d += 0.01) curves.add(pressedTo(d, N_per_mm, tissue));
+  for (double d = to_mm; d > -0.5; d -= 0.01) curves.add(pressedTo(d, N_per_mm, tissue));
+  for (int n = 0; n < 200; ++n) curves.add(pressedTo(-0.5, N_per_mm, tissue));
 }
 
 TEST(PokeCurves, HoldForceAgainstDepthAlongTheTool) {
@@ -45,7 +45,7 @@ TEST(PokeCurves, HoldForceAgainstDepthAlongTheTool) {
 TEST(PokeCurves, ThreeThatHaveEndedAreKeptAndTheOneThatGoesOn) {
   PokeCurves curves(1, kRate_hz);
   for (int tissue = 0; tissue < 5; ++tissue) poke(curves, 2.0, 0.5, tissue);
-  for (double d = -0.5; d < 1.0; d += 0.01) curves.add(at(d, 0.5, 7));
+  for (double d = -0.5; d < 1.0; d += 0.01) curves.add(pressedTo(d, 0.5, 7));
   ASSERT_EQ(curves.curves().size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_TRUE(curves.curves()[i].ended);
@@ -57,7 +57,7 @@ TEST(PokeCurves, ThreeThatHaveEndedAreKeptAndTheOneThatGoesOn) {
 TEST(PokeCurves, NamesTheTissueWhereItPushedBackMost) {
   PokeCurves curves(1, kRate_hz);
   const auto through = [](double depth_mm) {
-    return at(depth_mm, depth_mm < 1.0 ? 0.1 : 1.0, depth_mm < 1.0 ? 0 : 3);
+    return pressedTo(depth_mm, depth_mm < 1.0 ? 0.1 : 1.0, depth_mm < 1.0 ? 0 : 3);
   };
   for (double d = -0.5; d < 2.0; d += 0.01) curves.add(through(d));
   for (double d = 2.0; d > -0.5; d -= 0.01) curves.add(through(d));
@@ -71,7 +71,7 @@ TEST(PokeCurves, AGrazeIsNoPokeAndAToolThatWaitsBeginsNone) {
   poke(curves, 0.1, 0.5);
   EXPECT_TRUE(curves.curves().empty());
   for (int n = 0; n < 100; ++n) {
-    TickRecord record = at(2.0, 0.5);
+    TickRecord record = pressedTo(2.0, 0.5);
     record.arms[0].tool_state = kToolWaits;
     curves.add(record);
   }
@@ -80,7 +80,7 @@ TEST(PokeCurves, AGrazeIsNoPokeAndAToolThatWaitsBeginsNone) {
 
 TEST(PokeCurves, AnHourInTissueKeepsItsBounds) {
   PokeCurves curves(1, kRate_hz);
-  for (int n = 0; n < 100'000; ++n) curves.add(at(n % 2 == 0 ? 1.0 : 3.0, 0.5));
+  for (int n = 0; n < 100'000; ++n) curves.add(pressedTo(n % 2 == 0 ? 1.0 : 3.0, 0.5));
   ASSERT_EQ(curves.curves().size(), 1u);
   EXPECT_LE(curves.curves()[0].points.size(), PokeCurves::kMostPoints);
   EXPECT_GT(curves.curves()[0].points.size(), PokeCurves::kMostPoints / 4);
@@ -89,8 +89,8 @@ TEST(PokeCurves, AnHourInTissueKeepsItsBounds) {
 TEST(PokeCurves, EachArmHasItsOwnAndWhatIsNoNumberIsNoPoint) {
   PokeCurves curves(2, kRate_hz);
   for (double d = -0.5; d < 2.0; d += 0.01) {
-    TickRecord record = at(d, 0.5);
-    record.arms[1] = at(2.0 * d, 0.25, 1).arms[0];
+    TickRecord record = pressedTo(d, 0.5);
+    record.arms[1] = pressedTo(2.0 * d, 0.25, 1).arms[0];
     if (d > 1.0) record.arms[1].patient_position_mm.x = std::nan("");
     curves.add(record);
   }

@@ -435,10 +435,9 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
     command.command.arm = arm;
     return command;
   };
-  options.script->commands = {at(0.3, CommandKind::device_lost, 0),
-                              at(0.6, CommandKind::clear_faults, -1),
-                              at(0.8, CommandKind::device_back, 0),
-                              at(0.9, CommandKind::clear_faults, -1)};
+  options.script->commands = {
+      at(0.3, CommandKind::device_lost, 0), at(0.6, CommandKind::clear_faults, -1),
+      at(0.8, CommandKind::device_back, 0), at(0.9, CommandKind::clear_faults, -1)};
   const Case of = test::placed(scene, smallHead());
   auto session = *Session::create(scene, of, options);
   ASSERT_TRUE(session->freewheel(1.2).ok());
@@ -451,7 +450,9 @@ TEST(Session, OneArmsDeviceIsLostTheOtherGoesOnAndTheRecordingReplays) {
   for (const TickRecord& tick : ticks) {
     const bool gone = (tick.tick >= 300 && tick.tick < 900);
     EXPECT_EQ(tick.arms[0].faults, gone ? kFaultDeviceLost : 0u) << tick.tick;
-    if (gone) { ASSERT_EQ(glm::length(tick.arms[0].sent_N), 0.0) << tick.tick; }
+    if (gone) {
+      ASSERT_EQ(glm::length(tick.arms[0].sent_N), 0.0) << tick.tick;
+    }
     EXPECT_EQ(tick.arms[1].faults, 0u) << tick.tick;
   }
   const Result<ReplayResult> again = replay(*reader, *of.volume, of.labels.get());

@@ -1,4 +1,4 @@
-#include "lab/import/child_process.h"
+#include "lab/common/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
