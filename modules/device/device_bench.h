@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/result.h"
@@ -25,10 +25,11 @@ class DeviceBench {
   // From each sample at the arms to the force that answered it there, since they were plugged in
   // [ms]; empty where it does not tell.
   virtual std::vector<double> answers_ms() { return {}; }
-  // The size of the force that an arm got, sample by sample since it was plugged in, and how many
-  // samples there have been so far; empty where it does not tell.
+  // The size of the force that an arm got, sample by sample since it was plugged in; empty where it
+  // does not tell.
   virtual std::vector<double> received_N(std::uint32_t) { return {}; }
-  virtual std::uint64_t samples() { return 0; }
+  // Samples that found no room on their way, since they were plugged in.
+  virtual std::optional<std::uint64_t> lost() { return {}; }
 };
 
 // Of a library that exports `DeviceBench* trephine_device_bench()`; it stays loaded. Error:

@@ -23,6 +23,7 @@ constexpr unsigned short kVendor = 0x1234, kProduct = 0x0006, kUsagePage = 0xFFA
 constexpr int kLook_ms = 20;                     // how often the reader looks whether it is to end
 constexpr int kMostWaiting = 64;                 // reports that the system keeps
 constexpr int kAttempts = 100;                   // to read what another thread writes
+constexpr std::int64_t kStuck_ns = 15'000'000;   // a report takes a millisecond
 constexpr std::int64_t kFirst_ns = 500'000'000;  // for the first report
 // Without a command for so long the motors get nothing: the host stands still, and its own watchdog
 // may too. The firmware's takes 0.5 s.
@@ -117,6 +118,11 @@ Report Board::latest() {
   return last_;
 }
 
+bool Board::lost() const {
+  const std::int64_t since_ns = writing_ns_;
+  return lost_ || (since_ns != 0 && now_ns() - since_ns > kStuck_ns);
+}
+
 bool Board::waitForOther(std::uint64_t given, double timeout_s) {
   const timespec until = at(now_ns() + std::int64_t(timeout_s * 1e9));
   while (number_.load(std::memory_order_acquire) == given) {
@@ -179,7 +185,9 @@ void Board::writeReports() {
       for (std::size_t i = 0; i < 6; ++i) report[1 + i] = std::uint8_t(milliamps >> (8 * i));
     }
     // To one that is lost too: should it hear, its motors get nothing.
+    writing_ns_ = now_ns();
     if (hid_write(out_, report, sizeof(report)) < 0) lost_ = true;
+    writing_ns_ = 0;
   }
 }
 

@@ -50,7 +50,9 @@ class Board {
 
   // ---- Haptic thread.
   Report latest();  // the one before where the reader is just taking another in
-  bool lost() const { return lost_; }
+  // Gone, or it takes no report any more: then its motors have what they had, until it hears again
+  // or has heard nothing for half a second.
+  bool lost() const;
   // Until there is a report of another number than `given`; false after timeout_s, or when it is
   // lost.
   bool waitForOther(std::uint64_t given, double timeout_s);
@@ -70,6 +72,7 @@ class Board {
   hid_device_ *in_ = nullptr, *out_ = nullptr;  // apart: hidapi keeps its error in the handle
   std::thread reader_, writer_;
   std::atomic<bool> ending_{false}, lost_{false};
+  std::atomic<std::int64_t> writing_ns_{0};  // since when, 0: not
   // The newest report and its number twice: a reader that finds two numbers looks again.
   std::atomic<std::uint64_t> begun_{0}, report_{0}, number_{0};
   std::atomic<std::int64_t> time_ns_{0};

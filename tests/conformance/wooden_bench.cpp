@@ -70,6 +70,11 @@ class WoodenBench : public DeviceBench {
     const Vector f = forceAt(arms_[arm]);
     return std::hypot(f[0], f[1], f[2]);
   }
+  std::optional<std::uint64_t> lost() override {
+    std::uint64_t lost = 0;
+    for (const Arm& arm : arms_) lost += arm.firmware ? arm.firmware->lost() : 0;
+    return lost;
+  }
   std::vector<double> answers_ms() override {
     std::vector<double> all;
     for (Arm& arm : arms_) {

@@ -1,5 +1,6 @@
 #include "wooden_firmware.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <unistd.h>
@@ -27,6 +28,11 @@ void WoodenFirmware::take(const std::uint8_t* report) {
     answers_us_.push_back(std::chrono::duration<double, std::micro>(now - *unanswered_).count());
     unanswered_.reset();
   }
+}
+
+int WoodenFirmware::neverWaits(int fd) {
+  ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
+  return fd;
 }
 
 void WoodenFirmware::run() {
@@ -66,7 +72,14 @@ void WoodenFirmware::run() {
     std::memcpy(report + 6, &number, 2);
     if (state_ == State::silent) continue;
     const std::size_t bytes = state_ == State::garbage ? 3 : sizeof(report);
-    if (::write(fd_, report, bytes) == ssize_t(bytes)) ++sent_;
+    // Where nobody reads, it is full in half a second. What went in by half goes on there.
+    if (rest_.empty())
+      rest_.assign(report, report + bytes);
+    else
+      ++lost_;
+    const ssize_t written = ::write(fd_, rest_.data(), rest_.size());
+    if (written > 0) rest_.erase(rest_.begin(), rest_.begin() + written);
+    if (rest_.empty()) ++sent_;
   }
 }
 

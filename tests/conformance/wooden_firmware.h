@@ -26,7 +26,7 @@ class WoodenFirmware {
   enum class State { runs, silent, garbage };
 
   // On the firmware's end of a node; ends before that is closed.
-  explicit WoodenFirmware(int fd) : fd_(fd), thread_([this] { run(); }) {}
+  explicit WoodenFirmware(int fd) : fd_(neverWaits(fd)), thread_([this] { run(); }) {}
   ~WoodenFirmware() { end(); }
   void end() {
     ending_ = true;
@@ -49,6 +49,7 @@ class WoodenFirmware {
     return first_out_ ? std::chrono::duration<double>(Clock::now() - *first_out_).count() : -1.0;
   }
   std::uint64_t sent() const { return sent_; }
+  std::uint64_t lost() const { return lost_; }  // found no room
   // From each report in to the first report out that came after it [us].
   std::vector<double> answers_us() const {
     std::lock_guard lock(mutex_);
@@ -56,6 +57,7 @@ class WoodenFirmware {
   }
 
  private:
+  static int neverWaits(int fd);
   void run();
   void take(const std::uint8_t* report);
 
@@ -64,10 +66,11 @@ class WoodenFirmware {
   std::array<std::int16_t, 3> counts_{}, milliamps_{};
   std::optional<Clock::time_point> first_out_, last_out_, unanswered_;
   std::vector<double> answers_us_;
-  std::vector<std::uint8_t> out_;  // bytes of reports out: the node does not keep them apart
+  std::vector<std::uint8_t> rest_;  // of a report in
+  std::vector<std::uint8_t> out_;   // bytes of reports out: the node does not keep them apart
   std::atomic<State> state_{State::runs};
   std::atomic<bool> ending_{false};
-  std::atomic<std::uint64_t> sent_{0};
+  std::atomic<std::uint64_t> sent_{0}, lost_{0};
   std::thread thread_;
 };
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr double kRate_hz = 1000.0;
-constexpr double kDelay_s = 10.0;  // of each order of the loop's calls, at most
+constexpr double kOrder_s = 10.0;  // of each order of the loop's calls, at most
 constexpr double kFelt_N = 0.05;   // an arm has force
 const char* kSides[] = {"right", "left"};
 
@@ -95,14 +95,15 @@ std::int64_t hostTime_ns() {
 
 // ---- The closed loop
 
-std::uint64_t reportsLost(const LoopWatch& watch, std::size_t arm) {
-  std::uint64_t lost = 0;
-  for (std::size_t i = 1; i < watch.ticks(arm); ++i) {
+std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
+  std::uint64_t count = 0;
+  constexpr std::size_t kSettled = 500;  // ticks: what waited before anybody listened
+  for (std::size_t i = kSettled; i < watch.ticks(arm); ++i) {
     const std::uint64_t before = watch.tick(arm, i - 1).sequence;
     const std::uint64_t now = watch.tick(arm, i).sequence;
-    if (before > 0 && now > before + 1) lost += now - before - 1;
+    if (before > 0 && now > before + 1) count += now - before - 1;
   }
-  return lost;
+  return count;
 }
 
 // Ticks whose force the arm did not get with the sample that it answers, nor with the next.
@@ -150,6 +151,7 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   if (!session) return session.error();
   if (Status started = (*session)->start(seconds); !started) return started;
   const std::int64_t begin_ns = hostTime_ns();
+  std::optional<std::uint64_t> lost_before;
   while (!(*session)->finished() && 1e-9 * double(hostTime_ns() - begin_ns) < seconds + 10.0) {
     const double part = 1e-9 * double(hostTime_ns() - begin_ns) / seconds;
     progress.at(std::min(1.0, part), subject.plugin + ", closed loop");
@@ -157,8 +159,13 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
       (void)(*session)->stop();
       return cancelled();
     }
+    constexpr double kSettled_s = 0.5;  // what waited before anybody listened is not lost
+    if (subject.bench && !lost_before && part * seconds > kSettled_s) {
+      lost_before = subject.bench->lost();
+    }
     std::this_thread::sleep_for(50ms);
   }
+  if (lost_before) row.reports_lost = *subject.bench->lost() - *lost_before;
   if (Status stopped = (*session)->stop(); !stopped) return stopped;
   const RunReport report = (*session)->report();
   row.ticks = report.ticks;
@@ -167,7 +174,7 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   row.page_faults = watch.pageFaults();
   std::vector<double> age_ms, answer_ms;
   for (std::size_t arm = 0; arm < subject.arms.size(); ++arm) {
-    row.reports_lost += reportsLost(watch, arm);
+    row.reports_skipped += skipped(watch, arm);
     for (std::size_t i = 0; i < watch.ticks(arm); ++i) {
       const LoopWatch::Tick& tick = watch.tick(arm, i);
       if (tick.sampled_ns == 0 || tick.lost) continue;
@@ -180,8 +187,8 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   row.at_the_arm = subject.bench && !at_arm_ms.empty();
   row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(at_arm_ms) : std::move(answer_ms));
   for (std::size_t arm = 0; subject.bench && arm < subject.arms.size(); ++arm) {
-    const std::size_t of_bench = subject.arms[arm].place;
-    const std::vector<double> received_N = subject.bench->received_N(std::uint32_t(of_bench));
+    const std::uint32_t of_bench = scene->arms[arm].device.place;
+    const std::vector<double> received_N = subject.bench->received_N(of_bench);
     if (received_N.empty()) continue;
     row.force_mismatches = row.force_mismatches.value_or(0) + mismatches(watch, arm, received_N);
   }
@@ -283,14 +290,15 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
     return Error{"NOT_MEASURED", "A trial did not come to its end: " + json->dump(), "", ""};
   }
   fs::remove(answer, ec);
-  return DeviceTrial{json->at("zero_ms"), json->at("stop_ms"), json->at("replayed")};
+  return DeviceTrial{json->at("zero_ms"), json->at("at_arm_ms"), json->at("stop_ms"),
+                     json->at("replayed")};
 }
 
 Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRow& row,
                  const Progress& progress) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> wait_s(0.7, 1.7);
-  std::vector<double> unplug_ms, block_ms, stop_ms;
+  std::vector<double> unplug_ms, block_ms, at_arm_ms, stop_ms;
   for (int n = 0; n < 2 * count; ++n) {
     const bool unplug = n < count;
     const std::string name = unplug ? "-unplugged-" : "-blocked-";
@@ -301,6 +309,7 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
         trialOf({bench, unplug, wait_s(random)}, out, recording, progress);
     if (!trial) return trial.error();
     (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);
+    if (!unplug) at_arm_ms.push_back(trial->at_arm_ms);
     stop_ms.push_back(trial->stop_ms);
     ++(unplug ? row.unplugged : row.blocked);
     row.replayed += trial->replayed;
@@ -309,6 +318,7 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
   }
   row.unplug_to_zero_ms = spreadOf(std::move(unplug_ms));
   row.block_to_zero_ms = spreadOf(std::move(block_ms));
+  row.block_at_arm_ms = spreadOf(std::move(at_arm_ms));
   row.stop_ms = spreadOf(std::move(stop_ms));
   return {};
 }
@@ -323,18 +333,22 @@ Json spread(const Spread& of) {
 std::string devicesCsv(const DeviceMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text << "plugin,arms,seconds,ticks,missed,reports_lost,report_age_median_ms,report_age_p99_ms,"
+  text << "plugin,arms,seconds,ticks,missed,reports_lost,reports_skipped,report_age_median_ms,"
+          "report_age_p99_ms,"
           "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,page_faults,"
-          "unplug_to_zero_max_ms,block_to_zero_max_ms,stop_max_ms,replayed,trials\n";
+          "unplug_to_zero_max_ms,block_to_zero_max_ms,block_at_arm_max_ms,stop_max_ms,replayed,"
+          "trials\n";
   for (const DeviceRow& row : measurement.rows) {
     text << row.plugin << ',' << row.arms << ',' << row.seconds << ',' << row.ticks << ','
-         << row.missed << ',' << row.reports_lost << ',' << row.report_age_ms.median << ','
+         << row.missed << ',';
+    if (row.reports_lost) text << *row.reports_lost;
+    text << ',' << row.reports_skipped << ',' << row.report_age_ms.median << ','
          << row.report_age_ms.p99 << ',' << row.sample_to_force_ms.median << ','
          << row.sample_to_force_ms.p99 << ',';
     if (row.force_mismatches) text << *row.force_mismatches;
     text << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max << ','
-         << row.block_to_zero_ms.max << ',' << row.stop_ms.max << ',' << row.replayed << ','
-         << row.unplugged + row.blocked << '\n';
+         << row.block_to_zero_ms.max << ',' << row.block_at_arm_ms.max << ',' << row.stop_ms.max
+         << ',' << row.replayed << ',' << row.unplugged + row.blocked << '\n';
   }
   return text.str();
 }
@@ -365,7 +379,8 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   std::this_thread::sleep_for(std::chrono::duration<double>(options.wait_s));
   const std::uint32_t arm = subject.arms[0].place;
   const auto named = std::ranges::find(scene->arms, std::string(kSides[0]), &SceneArm::name);
-  const std::size_t of_scene = named == scene->arms.end() ? 0 : std::size_t(named - scene->arms.begin());
+  const std::size_t of_scene =
+      named == scene->arms.end() ? 0 : std::size_t(named - scene->arms.begin());
   const auto force_N = [&] {
     const std::size_t ticks = watch.ticks(of_scene);
     return ticks == 0 ? 0.0 : watch.tick(of_scene, ticks - 1).force_N;
@@ -374,14 +389,12 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
   const std::int64_t at_ns = hostTime_ns();
   options.unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
-  std::int64_t last_ns = at_ns;
-  // An arm that was taken out has no force but what was sent; one that does not answer has what it
-  // had.
-  while (hostTime_ns() < at_ns + 300'000'000) {
-    if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_ns = hostTime_ns();
+  std::int64_t last_ns = at_ns, last_at_arm_ns = at_ns;
+  while (hostTime_ns() < at_ns + 700'000'000) {
+    if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
     std::this_thread::sleep_for(200us);
   }
-  for (std::size_t i = watch.ticks(of_scene); options.unplug && i-- > 0;) {
+  for (std::size_t i = watch.ticks(of_scene); i-- > 0;) {
     const LoopWatch::Tick& tick = watch.tick(of_scene, i);
     if (tick.sent_ns < at_ns) break;
     if (tick.force_N <= 0.0) continue;
@@ -390,6 +403,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   }
   DeviceTrial trial;
   trial.zero_ms = 1e-6 * double(last_ns - at_ns);
+  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
   const std::int64_t stop_ns = hostTime_ns();
   (void)(*session)->stop();
   trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
@@ -403,7 +417,10 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
 }
 
 Json toJson(const DeviceTrial& trial) {
-  return {{"zero_ms", trial.zero_ms}, {"stop_ms", trial.stop_ms}, {"replayed", trial.replayed}};
+  return {{"zero_ms", trial.zero_ms},
+          {"at_arm_ms", trial.at_arm_ms},
+          {"stop_ms", trial.stop_ms},
+          {"replayed", trial.replayed}};
 }
 
 Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs::path& out,
@@ -437,7 +454,8 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options, const fs:
     const Progress loop(progress, from, from + 0.4 * share);
     if (Status ran = runClosedLoop(subject, options.seconds, row, loop); !ran) return ran.error();
     const Progress orders(progress, from + 0.4 * share, from + 0.5 * share);
-    if (Status ran = measureOrders(subject, std::min(kDelay_s, options.seconds), row, orders); !ran) return ran.error();
+    if (Status ran = measureOrders(subject, std::min(kOrder_s, options.seconds), row, orders); !ran)
+      return ran.error();
     const Progress trials(progress, from + 0.5 * share, from + share);
     if (subject.bench) {
       const Status ran = runTrials(options.benches[i], options.trials, out, row, trials);
@@ -469,7 +487,8 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"ticks", row.ticks},
          {"missed", row.missed},
          {"faults", row.faults},
-         {"reports_lost", row.reports_lost},
+         {"reports_lost", row.reports_lost ? Json(*row.reports_lost) : Json(nullptr)},
+         {"reports_skipped", row.reports_skipped},
          {"report_age_ms", spread(row.report_age_ms)},
          {"sample_to_force_ms", spread(row.sample_to_force_ms)},
          {"at_the_arm", row.at_the_arm},
@@ -477,6 +496,7 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"page_faults", row.page_faults},
          {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
          {"block_to_zero_ms", spread(row.block_to_zero_ms)},
+         {"block_at_arm_ms", spread(row.block_at_arm_ms)},
          {"stop_ms", spread(row.stop_ms)},
          {"trials", row.unplugged + row.blocked},
          {"replayed", row.replayed},
@@ -492,7 +512,9 @@ std::string toText(const DeviceMeasurement& measurement) {
   for (const DeviceRow& row : measurement.rows) {
     text << row.plugin << ", " << row.arms << " arms, " << std::setprecision(0) << row.seconds
          << " s: " << std::setprecision(2) << row.ticks << " ticks, " << row.missed << " late, "
-         << row.reports_lost << " reports lost, " << row.page_faults << " page faults\n"
+         << (row.reports_lost ? std::to_string(*row.reports_lost) : std::string("?"))
+         << " reports lost, " << row.reports_skipped << " that no tick looked at, "
+         << row.page_faults << " page faults\n"
          << "  a report is " << row.report_age_ms.median << " ms old, p99 " << row.report_age_ms.p99
          << "; from it to the force " << (row.at_the_arm ? "at the arm " : "") << "in "
          << row.sample_to_force_ms.median << " ms, p99 " << row.sample_to_force_ms.p99 << "\n";
@@ -507,6 +529,7 @@ std::string toText(const DeviceMeasurement& measurement) {
     text << "  no force after an unplug within " << row.unplug_to_zero_ms.median << " ms, at most "
          << row.unplug_to_zero_ms.max << "; after a call that blocks "
          << row.block_to_zero_ms.median << ", at most " << row.block_to_zero_ms.max
+         << " (at the arm itself " << row.block_at_arm_ms.max << ")"
          << "; Stop within " << row.stop_ms.max << " ms; " << row.replayed << " of "
          << row.unplugged + row.blocked << " recordings replay\n";
   }

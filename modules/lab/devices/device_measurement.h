@@ -18,8 +18,8 @@ namespace trephine {
 
 struct DeviceOptions {
   std::vector<std::filesystem::path> benches;  // libraries; none: what is plugged in
-  double seconds = 60.0;              // of the closed loop, 1 to 600
-  int trials = 20;                    // of each trouble, 0 to 1000; with a bench alone
+  double seconds = 60.0;                       // of the closed loop, 1 to 600
+  int trials = 20;                             // of each trouble, 0 to 1000; with a bench alone
 };
 
 // Of figures that were not measured: nothing, said as null.
@@ -43,14 +43,17 @@ struct DeviceRow {
   std::size_t arms = 0;
   double seconds = 0.0;
   std::uint64_t ticks = 0, missed = 0, faults = 0;
-  std::uint64_t reports_lost = 0;  // numbers of samples that the loop never saw
-  Spread report_age_ms;            // when it was looked at
-  Spread sample_to_force_ms;       // at the arm where a bench tells, else to the plugin
+  std::optional<std::uint64_t> reports_lost;  // on their way, as a bench tells
+  std::uint64_t reports_skipped = 0;  // that no tick looked at: of two clocks, or a late tick
+  Spread report_age_ms;               // when it was looked at
+  Spread sample_to_force_ms;          // at the arm where a bench tells, else to the plugin
   bool at_the_arm = false;
   std::optional<std::uint64_t> force_mismatches;
   long page_faults = 0;
   int unplugged = 0, blocked = 0, replayed = 0;  // trials; recordings that replay bit for bit
-  Spread unplug_to_zero_ms, block_to_zero_ms, stop_ms;
+  Spread unplug_to_zero_ms, block_to_zero_ms;    // until the loop sends none
+  Spread block_at_arm_ms;                        // until the arm itself has none
+  Spread stop_ms;
   std::vector<DelayRow> delays;
 };
 
@@ -58,10 +61,10 @@ struct DeviceMeasurement {
   std::vector<DeviceRow> rows;
 };
 
-// One trouble in mid-cut, at a moment that nobody knows, with force on the first arm: how long until
-// there is none, how long Stop takes, and whether the recording replays bit for bit.
+// One trouble in mid-cut, at a moment that nobody knows, with force on the first arm: how long
+// until there is none, how long Stop takes, and whether the recording replays bit for bit.
 struct DeviceTrial {
-  double zero_ms = 0.0, stop_ms = 0.0;
+  double zero_ms = 0.0, at_arm_ms = 0.0, stop_ms = 0.0;
   bool replayed = false;
 };
 struct TrialOptions {
@@ -74,16 +77,16 @@ struct TrialOptions {
 Result<DeviceTrial> tryDevice(const TrialOptions& options, const std::filesystem::path& recording);
 Json toJson(const DeviceTrial& trial);
 
-// Each trial is this program once more. Writes devices.csv into `out`, and the recordings of trials that fail. Errors: NO_DEVICE,
-// BAD_ARGUMENT, CANCELLED, CANNOT_WRITE, those of sessions.
+// Each trial is this program once more. Writes devices.csv into `out`, and the recordings of trials
+// that fail. Errors: NO_DEVICE, BAD_ARGUMENT, CANCELLED, CANNOT_WRITE, those of sessions.
 Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
                                          const std::filesystem::path& out,
                                          const Progress& progress = Progress());
 
 // {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, report_age_ms: {median, p99,
 //  max}, sample_to_force_ms: {median, p99, max, at_the_arm}, force_mismatches (null: not told),
-//  page_faults, unplug_to_zero_ms: {median, max, trials}, block_to_zero_ms, stop_ms: {median, max},
-//  replayed, delays: [{order, delay_ms: {median, p99}, delay_samples, b_max, k_max}]}]}
+//  page_faults, unplug_to_zero_ms: {median, max}, block_to_zero_ms, block_at_arm_ms, stop_ms,
+//  trials, replayed, delays: [{order, delay_ms: {median, p99}, delay_samples, b_max, k_max}]}]}
 Json toJson(const DeviceMeasurement& measurement);
 std::string toText(const DeviceMeasurement& measurement);
 
