@@ -179,7 +179,12 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
     return Error{"NO_DEVICE", lastSentence(api, nullptr), where,
                  "Connect the arm and switch it on, or choose another device"};
   }
-  if (api.configure(device->handle_, config.c_str()) != TREPHINE_OK) {
+  const int configured = api.configure(device->handle_, config.c_str());
+  if (configured == TREPHINE_ERROR_NO_DEVICE) {
+    return Error{"NO_DEVICE", lastSentence(api, device->handle_), where,
+                 "Connect the arm and switch it on, or choose another device"};
+  }
+  if (configured != TREPHINE_OK) {
     return Error{"BAD_DEVICE_CONFIG", lastSentence(api, device->handle_),
                  "configuration of " + where, "Correct that file"};
   }

@@ -67,9 +67,7 @@ Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
 
 Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std::string& where) {
   Scene with = scene;
-  for (SceneArm& arm : with.arms) {
-    if (arm.device.plugin == kSimulated) arm.device = {};
-  }
+  for (SceneArm& arm : with.arms) arm.device = {};
   for (const NamedDevice& of : devices) {
     if (of.arm == kPedal) {
       with.pedal = of.device;
@@ -89,7 +87,8 @@ Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std:
     const auto has = [&](const SceneArm& arm) {
       return arm.device.plugin == kSimulated && arm.device.place == scene.arms[i].device.place;
     };
-    if (!with.arms[i].device.plugin.empty()) continue;
+    const bool was_simulated = scene.arms[i].device.plugin == kSimulated;
+    if (!with.arms[i].device.plugin.empty() || !was_simulated) continue;
     if (std::ranges::none_of(with.arms, has)) with.arms[i].device = scene.arms[i].device;
   }
   addSimulatedDevices(with);
@@ -102,6 +101,14 @@ Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std:
                        a.plugin + "' " + std::to_string(a.place),
                    where, "Give each arm a device of its own"};
     }
+  }
+  for (const SceneArm& arm : with.arms) {
+    if (!with.pedal || arm.device.plugin != with.pedal->plugin ||
+        arm.device.place != with.pedal->place) {
+      continue;
+    }
+    return Error{"BAD_SCENE", "The arm '" + arm.name + "' and the pedal would have one device",
+                 where, "Give each a device of its own"};
   }
   scene = std::move(with);
   return {};

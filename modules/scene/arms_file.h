@@ -29,8 +29,8 @@ inline constexpr const char* kPedal = "pedal";
 // Errors: those of a file and of JSON, BAD_FIELD (file, field and value named).
 Result<std::vector<NamedDevice>> readArmsFile(const std::filesystem::path& file);
 
-// Gives the scene's arms of those names these devices; the others keep theirs, but for a simulated
-// one that another has now: they get the next. Errors: NO_SUCH_ARM where the scene has none of a
+// Gives the scene's arms of those names these devices; the others are simulated, as they were or by
+// the next that nobody has. Errors: NO_SUCH_ARM where the scene has none of a
 // name, BAD_SCENE where two arms would have one device. `where` is named in them.
 Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std::string& where);
 

@@ -94,6 +94,10 @@ Status openDevices(Scene& scene, std::vector<LoopDevice>& devices,
     const ArmDevice& of = *scene.pedal;
     Result<std::unique_ptr<Device>> pedal = openDevice(of.plugin, {of.place}, of.config);
     if (!pedal) return pedal.error();
+    if ((*pedal)->capabilities(0).input_dof != 0) {
+      return Error{"NO_DEVICE", "The pedal's device '" + of.plugin + "' is an arm", "",
+                   "Choose a pedal for it"};
+    }
     devices.push_back({*std::move(pedal), {}});
   }
   choosePace(scene, devices);

@@ -27,12 +27,15 @@ struct ArmTrial::Engine {
   std::vector<Opened> devices;
   std::vector<TrephineCapabilities> capabilities;
   std::vector<ForceTest> tests;
-  std::array<Vec3, kMaxArms> first_m{};
+  std::array<Vec3, kMostTried> first_m{};
+  std::array<std::uint64_t, kMostTried> sequence{}, ticks_without_sample{};
   TriedArms arms{};
   rt::LatestValue<TriedArms> seen;
-  std::atomic<double> asked_N[kMaxArms]{};  // for the next test of each; 0: none
+  std::atomic<double> asked_N[kMostTried]{};  // for the next test of each; 0: none
   std::atomic<bool> end_force{false}, stop{false};
-  std::atomic<int> in_call{-1};
+  // The device that the thread is calling, or one of these, as HapticLoop has it.
+  static constexpr int kNoCall = -1, kLeftBehind = -2;
+  std::atomic<int> in_call{kNoCall};
   std::mutex mutex;
   std::condition_variable changed;
   bool ended = false;
@@ -41,9 +44,16 @@ struct ArmTrial::Engine {
 
   Status open(const std::vector<FoundArm>& arms, const std::vector<std::size_t>& which);
   void take(std::size_t i, const TrephineArmState& state);
-  void tick();
+  bool leaveCall(std::size_t device);
+  bool tick();
   void run();
 };
+
+// Ends a call, begun by setting in_call; false where the thread was left behind in it.
+bool ArmTrial::Engine::leaveCall(std::size_t device) {
+  int expected = int(device);
+  return in_call.compare_exchange_strong(expected, kNoCall);
+}
 
 void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
   TriedArm& arm = arms[i];
@@ -56,43 +66,55 @@ void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
   arm.moved_m = std::max(arm.moved_m, glm::length(arm.pose_m.position - first_m[i]));
 }
 
-void ArmTrial::Engine::tick() {
+bool ArmTrial::Engine::tick() {
+  constexpr std::uint64_t kSilent_ticks = 15;  // a sample that stays for so long is none of now
   const bool end = end_force.exchange(false);
   for (std::size_t d = 0; d < devices.size(); ++d) {
     const Opened& of = devices[d];
-    std::array<TrephineArmState, kMaxArms> states{};
-    std::array<TrephineArmCommand, kMaxArms> commands{};
+    std::array<TrephineArmState, kMostTried> states{};
+    std::array<TrephineArmCommand, kMostTried> commands{};
     in_call = int(d);
     of.device->read(kPeriod_s, states.data());
-    in_call = -1;
+    if (!leaveCall(d)) return false;
     for (std::size_t n = 0; n < of.arms.size(); ++n) {
       const std::size_t i = of.arms[n];
       take(i, states[n]);
       if (const double most_N = asked_N[i].exchange(0.0); most_N > 0.0) tests[i].ask(most_N);
       if (end) tests[i].end();
       TriedArm& arm = arms[i];
-      const bool passing = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
-      arm.force_N = tests[i].tick(arm.pose_m.position, arm.buttons != 0, passing, kPeriod_s);
+      ticks_without_sample[i] = states[n].sequence == sequence[i] ? ticks_without_sample[i] + 1 : 0;
+      sequence[i] = states[n].sequence;
+      if (ticks_without_sample[i] >= kSilent_ticks) arm.flags |= TREPHINE_ARM_LOST;
+      const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
+      const bool no_hand = arm.flags & TREPHINE_ARM_NO_HAND;
+      arm.force_N =
+          tests[i].tick({arm.pose_m.position, arm.buttons != 0, no_hand, away}, kPeriod_s);
       arm.test = tests[i].phase();
       commands[n].size = sizeof(TrephineArmCommand);
       commands[n].force_N[1] = arm.force_N;
     }
     in_call = int(d);
     of.device->write(commands.data());
-    in_call = -1;
+    if (!leaveCall(d)) return false;
   }
   seen.write(arms);
+  return true;
 }
 
 void ArmTrial::Engine::run() {
   rt::nameThread("arm trial");
   HostClock clock;
   TickSchedule schedule(std::int64_t(kPeriod_s * 1e9));
-  while (!stop) {
+  bool here = true;
+  while (here && !stop) {
     schedule.waitForTick(clock);
-    tick();
+    here = tick();
   }
-  for (const Opened& of : devices) of.device->stop();
+  for (std::size_t d = 0; here && d < devices.size(); ++d) {
+    in_call = int(d);
+    devices[d].device->stop();
+    here = leaveCall(d);
+  }
   std::lock_guard lock(mutex);
   ended = true;
   changed.notify_all();
@@ -117,7 +139,7 @@ Status ArmTrial::Engine::open(const std::vector<FoundArm>& arms,
 std::unique_ptr<ArmTrial> ArmTrial::start(const std::vector<FoundArm>& arms) {
   auto engine = std::make_shared<Engine>();
   std::map<std::string, std::vector<std::size_t>> by_plugin;
-  const std::size_t count = std::min(arms.size(), std::size_t(kMaxArms));
+  const std::size_t count = std::min(arms.size(), kMostTried);
   for (std::size_t i = 0; i < count; ++i) by_plugin[arms[i].plugin].push_back(i);
   engine->capabilities.resize(count);
   engine->tests.resize(count);
@@ -155,11 +177,22 @@ ArmTrial::~ArmTrial() {
     thread_.join();
     return;
   }
-  // Silencing a device may wait for the call that keeps it.
-  const int called = engine_->in_call;
-  if (called >= 0) engine_->devices[std::size_t(called)].device->leaveBehind();
-  std::thread([engine = engine_] {
-    for (const Engine::Opened& of : engine->devices) of.device->safeStop();
+  int called = engine_->in_call;
+  const bool held =
+      called >= 0 && engine_->in_call.compare_exchange_strong(called, Engine::kLeftBehind);
+  if (!held) {  // it is on its way: no device keeps it
+    engine_->changed.wait(lock, [this] { return engine_->ended; });
+    lock.unlock();
+    thread_.join();
+    return;
+  }
+  engine_->devices[std::size_t(called)].device->leaveBehind();
+  // Silencing that one may wait for the call, so it comes last.
+  std::thread([engine = engine_, called] {
+    for (std::size_t d = 0; d < engine->devices.size(); ++d) {
+      if (int(d) != called) engine->devices[d].device->safeStop();
+    }
+    engine->devices[std::size_t(called)].device->safeStop();
   }).detach();
   thread_.detach();
 }

@@ -27,11 +27,12 @@ struct TriedArm {
   ForceTest::Phase test = ForceTest::Phase::off;
   std::uint64_t samples = 0;
 };
-using TriedArms = std::array<TriedArm, kMaxArms>;
+constexpr std::size_t kMostTried = 8;
+using TriedArms = std::array<TriedArm, kMostTried>;
 
 class ArmTrial {
  public:
-  // Opens, calibrates and starts them, at most kMaxArms; not on a window's thread. What one plugin
+  // Opens, calibrates and starts the first kMostTried; not on a window's thread. What one plugin
   // has is opened together, without an arm that cannot be had: that says why in problem().
   static std::unique_ptr<ArmTrial> start(const std::vector<FoundArm>& arms);
   // Zero force first. Waits for the arms at most 0.3 s; the device whose call does not return by

@@ -10,16 +10,22 @@ namespace trephine {
 //
 // It begins with a hand on the arm: a button that is held, and then lasts while that is; or, where
 // the arm is moved 5 mm from where it was when the test was asked for, without. Whoever lets go of
-// the button has no force in that tick. A hand that goes faster than 0.5 m/s has lost the arm: the
-// test ends.
+// the button, or puts the arm back into its holder, has no force in that tick. A hand that goes
+// faster than 0.5 m/s has lost the arm: the test ends. So does one that nobody takes within 30 s.
 class ForceTest {
  public:
   enum class Phase { off, waiting, rising, holding, falling, done, lost };
 
   void ask(double most_N);
   void end() { phase_ = Phase::off; }
+  // What an arm says in a sample. `away`: it is lost, its sample is old, or it reports an error;
+  // `no_hand`: it knows that nobody holds it.
+  struct Sample {
+    Vec3 position_m{0.0};
+    bool button = false, no_hand = false, away = false;
+  };
   // The force [N] along the device's y for this sample.
-  double tick(const Vec3& position_m, bool button, bool lost, double period_s);
+  double tick(const Sample& sample, double period_s);
 
   Phase phase() const { return phase_; }
   bool gives() const { return phase_ >= Phase::rising && phase_ <= Phase::falling; }

@@ -267,13 +267,17 @@ void Session::leaveBehind(std::size_t held, bool watchdog_ended) {
     add({tick, EventKind::fault, std::int32_t(arm), kFaultStuck, {}});
     names += (names.empty() ? "'" : " and '") + scene_.arms[arm].name + "'";
   }
-  left_behind_ =
-      Error{"DEVICE_STUCK",
-            (stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
-                                   : "The arm " + names + " stopped answering and was left behind"),
-            "device '" + scene_.arms[stuck.arms.front()].device.plugin + "'",
-            "What was done until then is recorded. Switch the arm off and on, then "
-            "start Trephine again"};
+  const bool pedal = stuck.arms.empty();
+  const std::string plugin =
+      pedal ? scene_.pedal->plugin : scene_.arms[stuck.arms.front()].device.plugin;
+  left_behind_ = Error{
+      "DEVICE_STUCK",
+      (pedal                   ? "The pedal stopped answering and was left behind"
+       : stuck.arms.size() > 1 ? "The arms " + names + " stopped answering and were left behind"
+                               : "The arm " + names + " stopped answering and was left behind"),
+      "device '" + plugin + "'",
+      "What was done until then is recorded. Switch the arm off and on, then "
+      "start Trephine again"};
   // A watchdog that a device holds as well still knows the others; they are silent, and close with
   // the engine.
   if (watchdog_ended) loop_->closeOthers(held);

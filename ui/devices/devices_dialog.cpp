@@ -33,9 +33,9 @@ QLabel* wordsLabel(const char* name) {
 
 }  // namespace
 
-DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
+DevicesDialog::DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* parent)
+    : QDialog(parent), opens_arms_(std::move(opens_arms)) {
   setObjectName("devicesDialog");
-  setAttribute(Qt::WA_DeleteOnClose);
   setWindowTitle(tr("Devices"));
   list_ = new QListWidget;
   list_->setObjectName("deviceList");
@@ -98,7 +98,11 @@ DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
 
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
   connect(again_, &QPushButton::clicked, this, &DevicesDialog::look);
-  connect(list_, &QListWidget::currentRowChanged, this, [this] { showArm(); });
+  connect(list_, &QListWidget::currentRowChanged, this, [this] {
+    asked_ = false;
+    if (trial_) trial_->endForce();  // of the arm before
+    showArm();
+  });
   connect(force_, &QPushButton::clicked, this, &DevicesDialog::askForForce);
   connect(felt_, &QPushButton::clicked, this,
           [this] { test_->setText(tr("The force of this arm works.")); });
@@ -117,15 +121,26 @@ DevicesDialog::DevicesDialog(QWidget* parent) : QDialog(parent) {
   connect(&plug_timer_, &QTimer::timeout, this, &DevicesDialog::look);
   plugs_.addPath("/dev");
   connect(&plugs_, &QFileSystemWatcher::directoryChanged, this, [this] { plug_timer_.start(); });
-  connect(this, &QDialog::finished, this, &DevicesDialog::endTrial);
+  connect(this, &QDialog::finished, this, &DevicesDialog::close);
   showList();
   look();
 }
 
 DevicesDialog::~DevicesDialog() = default;
 
-void DevicesDialog::endTrial() {
+// What is being opened is waited for elsewhere.
+void DevicesDialog::close() {
+  show_timer_.stop();
+  plug_timer_.stop();
   trial_.reset();
+  look_again_ = false;
+  const auto go = [this] {
+    trial_.reset();
+    emit letGo();
+    deleteLater();
+  };
+  if (!looking_.busy()) return go();
+  connect(&looking_, &BackgroundTask::ended, this, go, Qt::QueuedConnection);
 }
 
 void DevicesDialog::look() {
@@ -134,13 +149,17 @@ void DevicesDialog::look() {
     return;
   }
   again_->setEnabled(false);
+  for (QComboBox* box : {left_, right_, pedal_}) box->setEnabled(false);
+  asked_ = false;
   struct Found {
     FoundArms here;
     std::shared_ptr<ArmTrial> trial;
   };
   // A person may be in the middle of a test: its force goes as the arms are asked anew.
   looking_.run(
-      [before = std::exchange(trial_, nullptr)](const Progress&) mutable -> Result<Found> {
+      [before = std::exchange(trial_, nullptr),
+       opens = opens_arms_](const Progress&) mutable -> Result<Found> {
+        const std::lock_guard lock(*opens);
         before.reset();
         Found out{findArms(pluginFolder()), nullptr};
         std::erase_if(out.here.arms, [](const FoundArm& arm) { return arm.plugin == kSimulated; });
@@ -149,6 +168,7 @@ void DevicesDialog::look() {
       },
       [this](Result<Found> out) {
         again_->setEnabled(true);
+        for (QComboBox* box : {left_, right_, pedal_}) box->setEnabled(true);
         if (std::exchange(look_again_, false)) {
           if (out) trial_ = out->trial;
           return look();
@@ -208,7 +228,8 @@ void DevicesDialog::showSides() {
     const auto of = chosen.find(side);
     bool here = of == chosen.end();
     for (std::size_t i = 0; i < arms_.size(); ++i) {
-      if (isPedal(i) != wants_pedal) continue;
+      const bool tried = trial_ && i < trial_->size() && !trial_->problem(i);
+      if (tried && isPedal(i) != wants_pedal) continue;  // of what cannot be opened nobody knows
       box->addItem(nameOf(arms_[i]), int(i));
       if (of == chosen.end() || !arms_[i].isSame(of->second)) continue;
       here = true;
@@ -287,7 +308,13 @@ void DevicesDialog::showArm() {
 // The arm that a person moves is the one that is meant.
 void DevicesDialog::showNow() {
   const int row = shown();
-  if (!trial_ || row < 0 || row >= int(trial_->size())) {
+  if (!trial_ || row < 0) {
+    force_->setEnabled(false);
+    return;
+  }
+  if (row >= int(trial_->size())) {
+    now_->setText(tr("At most %1 are tried at once: unplug another.").arg(trial_->size()));
+    picture_->clear();
     force_->setEnabled(false);
     return;
   }
@@ -300,7 +327,8 @@ void DevicesDialog::showNow() {
   }
   const std::size_t i = std::size_t(row);
   if (const std::optional<Error>& problem = trial_->problem(i)) {
-    const bool calibration = problem->code == "DEVICE_NOT_STARTED";
+    const bool calibration = problem->code == "DEVICE_NOT_STARTED" &&
+                             problem->what.find("calibrated") != std::string::npos;
     now_->setText(calibration ? tr("%1. Then look again.").arg(toQt(problem->what))
                               : toQt(problem->sentence()));
     calibration ? picture_->showHolder() : picture_->clear();
@@ -343,6 +371,7 @@ void DevicesDialog::showNow() {
   force_->setText(runs ? tr("&Stop the force") : tr("&Test the force"));
   switch (arm.test) {
     case Phase::waiting:
+      waited_ = true;
       test_->setText(tr("Hold the arm: press its button and keep it pressed, or move it a little "
                         "where it has none. Then it will pull up, slowly, to %1 N.")
                          .arg(std::min(kTest_N, able.continuous_force_N), 0, 'f', 1));
@@ -359,6 +388,9 @@ void DevicesDialog::showNow() {
       if (asked_) test_->setText(tr("Did it pull up?"));
       break;
     case Phase::off:
+      if (std::exchange(waited_, false) && std::exchange(asked_, false)) {
+        test_->setText(tr("No hand took it. Test it again."));
+      }
       break;
   }
   if (arm.test == Phase::done && std::exchange(asked_, false)) {
@@ -376,10 +408,12 @@ void DevicesDialog::askForForce() {
   for (QPushButton* each : {felt_, not_felt_}) each->setEnabled(false);
   if (phase >= Phase::waiting && phase <= Phase::falling) {
     trial_->endForce();
+    asked_ = false;
     test_->setText(tr("The force is off."));
     return;
   }
   asked_ = true;
+  waited_ = false;
   trial_->askForForce(arm, kTest_N);
 }
 

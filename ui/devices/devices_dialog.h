@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QTimer>
 #include <memory>
+#include <mutex>
 
 #include "session/arm_trial.h"
 #include "ui/common/background_task.h"
@@ -21,11 +22,15 @@ namespace trephine {
 class DevicesDialog : public QDialog {
   Q_OBJECT
  public:
-  explicit DevicesDialog(QWidget* parent = nullptr);
+  // `opens_arms` is held while arms are opened here.
+  DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* parent);
   ~DevicesDialog() override;
 
   // Again what is plugged in: also when something is plugged in or out.
   void look();
+
+ signals:
+  void letGo();  // it was closed, and has no arm any more; it goes by itself
 
  private:
   void found(const FoundArms& here);
@@ -35,14 +40,15 @@ class DevicesDialog : public QDialog {
   void showNow();
   void choose(const std::string& side, int index);
   void askForForce();
-  void endTrial();
+  void close();
   QString sideOf(const FoundArm& arm) const;
   bool isPedal(std::size_t arm) const;
   int shown() const { return list_->currentRow(); }
 
+  std::shared_ptr<std::mutex> opens_arms_;
   std::vector<FoundArm> arms_;  // real ones
   std::shared_ptr<ArmTrial> trial_;
-  bool look_again_ = false, asked_ = false;
+  bool look_again_ = false, asked_ = false, waited_ = false;
   std::vector<double> moved_m_;  // by then, of each arm
 
   QListWidget* list_;

@@ -259,9 +259,9 @@ void MainWindow::showDevices() {
       workstation().phase() != Workstation::Phase::empty) {
     return bench_.say(tr("An exercise has the arms: stop it first."));
   }
-  auto* dialog = new DevicesDialog(this);
-  // Once it has let go of them.
-  connect(dialog, &QDialog::finished, this, [this] { workstation().armsChosen(); });
+  workstation().lendArms(true);
+  auto* dialog = new DevicesDialog(workstation().opensArms(), this);
+  connect(dialog, &DevicesDialog::letGo, this, [this] { workstation().lendArms(false); });
   dialog->open();
 }
 

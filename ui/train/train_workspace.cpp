@@ -271,6 +271,7 @@ void TrainWorkspace::reset() {
 }
 
 void TrainWorkspace::sessionStarted() {
+  pedal_ = 0;
   bench_.say({});  // of the exercise before
   Session& session = *workstation_.session();
   limits_N_.clear();

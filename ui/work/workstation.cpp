@@ -97,24 +97,26 @@ void Workstation::begin(const std::filesystem::path& recordings,
 // Devices may take their time over it.
 void Workstation::startArms(std::unique_ptr<Session> session, double seconds) {
   // What was changed while the session was made is the first thing that it is told.
-  if (Status told = tell(*session); !told) return notStarted(told.error());
+  ControllerKind told_of = session->scene().controller;
+  if (Status told = tell(*session, told_of); !told) return notStarted(told.error());
   running_.run(
       [session = std::move(session),
        seconds](const Progress&) mutable -> Result<std::unique_ptr<Session>> {
         if (Status started = session->start(seconds); !started) return started.error();
         return std::move(session);
       },
-      [this](Result<std::unique_ptr<Session>> started) {
+      [this, told_of](Result<std::unique_ptr<Session>> started) mutable {
         if (!started) return notStarted(started.error());
-        if (Status told = tell(**started); !told) return notStarted(told.error());
+        if (Status told = tell(**started, told_of); !told) return notStarted(told.error());
         this->started(*std::move(started));
       });
 }
 
-// Tissues and controller as they are by now.
-Status Workstation::tell(Session& session) const {
-  if (session.scene().controller != scene_->controller) {
+// Tissues and controller as they are by now; `told_of`: the controller that it knows of.
+Status Workstation::tell(Session& session, ControllerKind& told_of) const {
+  if (told_of != scene_->controller) {
     (void)session.setController(scene_->controller);  // nothing else waits yet
+    told_of = scene_->controller;
   }
   return session.setTissues(scene_->tissues);
 }
@@ -141,21 +143,33 @@ void Workstation::tellGivenBack() {
                        (rt::LockedMemory::wasHeld() ? kHeld_mb : 0.0));
 }
 
-void Workstation::armsChosen() {
-  if (scene_) readArms();
+void Workstation::lendArms(bool lent) {
+  lent_ = lent;
+  if (!lent && scene_) readArms();
 }
 
 // As simulated, at once, and then as chosen. An arm that is not there now may be when the exercise
 // starts, which then says so.
 void Workstation::readArms() {
-  if (!readArmDynamics(*scene_, &workspaces_mm_)) workspaces_mm_.clear();
+  Scene simulated = *scene_;
+  for (SceneArm& arm : simulated.arms) {
+    if (arm.device.plugin != kSimulated) arm.device = {};
+  }
+  addSimulatedDevices(simulated);
+  if (!readArmDynamics(simulated, &workspaces_mm_)) workspaces_mm_.clear();
+  for (std::size_t i = 0; i < scene_->arms.size(); ++i) {
+    scene_->arms[i].dynamics = simulated.arms[i].dynamics;
+  }
   emit armsAnswered();
   askArms();
 }
 
 void Workstation::askArms() {
   const ArmsOfPlace chosen = arms_ ? ArmsOfPlace() : armsOfThisPlace();
-  if (chosen.empty() || !scene_ || phase_ == Phase::running) return;
+  const bool free = phase_ == Phase::ready || phase_ == Phase::empty;
+  if (!scene_ || !free || lent_) return;
+  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
+  if (chosen.empty() && std::ranges::none_of(scene_->arms, is_real)) return;
   if (asking_.busy()) {
     ask_again_ = true;
     return;

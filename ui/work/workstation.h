@@ -92,9 +92,11 @@ class Workstation : public QObject {
   // From the next exercise on these devices move its arms, and the settings say nothing of them:
   // for an exercise that nobody watches.
   void setArms(std::vector<NamedDevice> arms) { arms_ = std::move(arms); }
-  // Another device was chosen for an arm of this place: what it can show is asked in the
-  // background.
-  void armsChosen();
+  // Somebody else has the arms of this place: they are not asked for. Back again, what they can
+  // show is asked in the background, as another may have been chosen.
+  void lendArms(bool lent);
+  // Held while arms are opened.
+  const std::shared_ptr<std::mutex>& opensArms() const { return opens_arms_; }
   // How far each arm of scene() reaches, device axes, mm; empty where an arm is not there.
   const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }
 
@@ -246,7 +248,7 @@ class Workstation : public QObject {
   void begin(const std::filesystem::path& recordings, std::optional<OperatorScript> script,
              double seconds, bool poke);
   void startArms(std::unique_ptr<Session> session, double seconds);
-  Status tell(Session& session) const;
+  Status tell(Session& session, ControllerKind& told_of) const;
   void started(std::unique_ptr<Session> session);
   void readArms();
   void askArms();
@@ -296,6 +298,7 @@ class Workstation : public QObject {
   bool place_again_ = false;                // an edit waits for that
   bool placing_edit_ = false;               // and goes back where that fails
   bool ask_again_ = false;                  // once the arms have answered
+  bool lent_ = false;                       // the arms are
   // An arm is opened by one at a time.
   const std::shared_ptr<std::mutex> opens_arms_ = std::make_shared<std::mutex>();
   // Last, so that they are joined before what they work on goes.

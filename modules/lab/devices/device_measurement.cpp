@@ -127,7 +127,7 @@ std::uint64_t mismatches(const LoopWatch& watch, std::size_t arm,
   const std::size_t ticks = watch.ticks(arm);
   std::size_t first = 0;
   while (first < ticks && watch.tick(arm, first).force_N < kFelt_N) ++first;
-  if (first == ticks) return 0;
+  if (first == ticks) return ticks;  // nothing is known of any
   std::uint64_t least = ticks;
   for (std::size_t at = 0; at < received_N.size(); ++at) {
     if (!same(std::int64_t(at), watch.tick(arm, first).force_N)) continue;
@@ -387,6 +387,10 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   };
   const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
   while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
+  if (force_N() < kFelt_N) {
+    (void)(*session)->stop();
+    return Error{"NOT_MEASURED", "The arm was given no force within 10 s", "", ""};
+  }
   const std::int64_t at_ns = hostTime_ns();
   options.unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
   std::int64_t last_ns = at_ns, last_at_arm_ns = at_ns;

@@ -16,12 +16,12 @@ constexpr double kTick_s = 1e-3;
 struct Held {
   ForceTest test;
   Vec3 at_m{0.0};
-  bool button = false, lost = false;
+  bool button = false, no_hand = false, lost = false;
 
   double run(double seconds) {
     double force_N = 0.0;
     for (int i = 0; i < int(seconds / kTick_s + 0.5); ++i) {
-      force_N = test.tick(at_m, button, lost, kTick_s);
+      force_N = test.tick({at_m, button, no_hand, lost}, kTick_s);
     }
     return force_N;
   }
@@ -38,7 +38,7 @@ TEST(ForceTest, GivesNothingUntilItIsAskedForAndAHandIsThere) {
   arm.moveSlowly(0.02);
   EXPECT_EQ(arm.run(1.0), 0.0);
   arm.test.ask(1.0);
-  EXPECT_EQ(arm.run(30.0), 0.0);
+  EXPECT_EQ(arm.run(20.0), 0.0);
   EXPECT_EQ(arm.test.phase(), Phase::waiting);
   arm.moveSlowly(0.004);
   EXPECT_EQ(arm.run(1.0), 0.0) << "a tremble is no hand";
@@ -102,6 +102,29 @@ TEST(ForceTest, AnArmThatFliesAwayOrIsLostHasNone) {
   ASSERT_GT(other.run(2.0), 0.5);
   other.lost = true;
   EXPECT_EQ(other.run(kTick_s), 0.0);
+}
+
+TEST(ForceTest, AnArmInItsHolderHasNoneAndOneThatNobodyTakesIsGivenUp) {
+  Held arm;
+  arm.test.ask(1.0);
+  arm.no_hand = true;
+  arm.moveSlowly(0.02);
+  EXPECT_EQ(arm.run(1.0), 0.0) << "whatever its place says";
+  EXPECT_EQ(arm.test.phase(), Phase::waiting);
+  arm.no_hand = false;
+  EXPECT_EQ(arm.run(1.0), 0.0) << "from where it was taken";
+  arm.moveSlowly(0.006);
+  ASSERT_GT(arm.run(2.0), 0.5);
+  arm.no_hand = true;
+  EXPECT_EQ(arm.run(kTick_s), 0.0);
+  EXPECT_EQ(arm.test.phase(), Phase::done);
+
+  Held nobody;
+  nobody.test.ask(1.0);
+  nobody.run(31.0);
+  nobody.button = true;
+  EXPECT_EQ(nobody.run(2.0), 0.0);
+  EXPECT_EQ(nobody.test.phase(), Phase::off);
 }
 
 TEST(ForceTest, CanBeEndedAtAnyTime) {
