@@ -163,7 +163,10 @@ class Stuck(EndingTest):
         arms.write_text(json.dumps(json.loads(arms.read_text()) | device))
         scene = resources / "scenes" / "cranium.json"
         head = small_head(scene.parent / "head.nii.gz")
-        scene.write_text(json.dumps(json.loads(scene.read_text()) | {"case": head.name}))
+        text = json.loads(scene.read_text()) | {"case": head.name}
+        for place, arm in enumerate(text["arms"]):
+            arm["device"] = {"plugin": "simulated", "arm": place, "config": str(arms)}
+        scene.write_text(json.dumps(text))
         return scene
 
     def test_a_run_lists_the_faults_and_exits_4(self):

@@ -394,6 +394,7 @@ class Explain(LabTest):
 
         # Without the resource there is nothing to say; a broken one is an error.
         bare = {**os.environ, "TREPHINE_RESOURCES": str(self.folder)}
+        shutil.copytree(SOURCE / "resources" / "devices", self.folder / "devices")
         self.assertNotIn("settings", lab("explain", scene, environment=bare))
         (self.folder / "recommended.json").write_text('{"format": "trephine.recommended"}')
         answer = lab("explain", scene, environment=bare, expect=1)

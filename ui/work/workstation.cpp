@@ -114,11 +114,12 @@ void Workstation::startArms(std::unique_ptr<Session> session, double seconds) {
 
 // Tissues and controller as they are by now; `told_of`: the controller that it knows of.
 Status Workstation::tell(Session& session, ControllerKind& told_of) const {
+  if (Status told = session.setTissues(scene_->tissues); !told) return told;
   if (told_of != scene_->controller) {
     (void)session.setController(scene_->controller);  // nothing else waits yet
     told_of = scene_->controller;
   }
-  return session.setTissues(scene_->tissues);
+  return {};
 }
 
 void Workstation::started(std::unique_ptr<Session> session) {

@@ -40,7 +40,7 @@ TEST(DevicePlugin, EnumeratesFourSimulatedArmsToldApartByTheirBusPath) {
   const auto infos = plugin->enumerate();
   ASSERT_EQ(infos.size(), 4u);
   EXPECT_STREQ(infos[0].bus_path, "sim-0");
-  EXPECT_STREQ(infos[1].bus_path, "sim-right");
+  EXPECT_STREQ(infos[1].bus_path, "sim-1");
   EXPECT_STREQ(infos[0].model, "Simulated arm");
 }
 
