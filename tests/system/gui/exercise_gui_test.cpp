@@ -404,7 +404,7 @@ class ExerciseGuiTest : public test::WindowTest {
     QCOMPARE(scene().controller, ControllerKind::off);
   }
 
-  void whatIsNoScriptDeviceOrMeshIsSaidAndNotTaken() {
+  void whatIsNoScriptSetOrMeshIsSaidAndNotTaken() {
     const QString text = temporary_.filePath("shopping.json");
     QVERIFY(writeTextFile(toPath(text), "{\"milk\": 2}").ok());
     const Scene before = scene();
@@ -423,7 +423,6 @@ class ExerciseGuiTest : public test::WindowTest {
     };
     refused(PrepareWorkspace::kExerciseTab, "chooseOperator", "operatorDialog", text);
     refused(PrepareWorkspace::kExerciseTab, "chooseElsewhere", "elsewhereDialog", text);
-    refused(PrepareWorkspace::kToolTab, "chooseDevice", "deviceDialog", text);
     find<QListWidget>("toolList")->setCurrentRow(0);
     refused(PrepareWorkspace::kToolTab, "chooseMesh", "meshDialog", text);
     QVERIFY(sameScene(scene(), before));
@@ -439,7 +438,9 @@ class ExerciseGuiTest : public test::WindowTest {
     find<QToolButton>("chooseMesh")->click();
     give("meshDialog", toQt(resourceFolder() / "tools" / "burr4.stl"));
     QCOMPARE(opensIn("chooseMesh", "meshDialog"), toQt(resourceFolder() / "tools"));
-    QCOMPARE(opensIn("chooseDevice", "deviceDialog"), QFileInfo(text).absolutePath());
+    showTab(PrepareWorkspace::kExerciseTab);
+    QCOMPARE(opensIn("chooseOperator", "operatorDialog"), QFileInfo(text).absolutePath());
+    showTab(PrepareWorkspace::kToolTab);
   }
 
   void costsAreMeasuredHereAndTradesStandBesideTheirSettings() {
