@@ -155,8 +155,7 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   if (Status may = checkScene(policy, *scene, arguments.scene); !may) return may.error();
   if (scene->names_devices) {
     spdlog::warn(
-        "{}: it names devices, as exercises did before; they are used where --arms names "
-        "no others",
+        "{}: it names devices, as exercises did before; they are used unless --arms is given",
         arguments.scene);
   }
   if (Status chosen = applyChoices(arguments, policy, *scene); !chosen) return chosen.error();

@@ -174,16 +174,16 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   std::unique_ptr<Device> device(new Device);
   device->plugin_ = plugin;
   device->places_ = arms;
+  const auto notThere = [&](TrephineDevice* handle) {
+    return Error{"NO_DEVICE", lastSentence(api, handle), where,
+                 "Connect the arm and switch it on, or choose another device"};
+  };
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
       !device->handle_) {
-    return Error{"NO_DEVICE", lastSentence(api, nullptr), where,
-                 "Connect the arm and switch it on, or choose another device"};
+    return notThere(nullptr);
   }
   const int configured = api.configure(device->handle_, config.c_str());
-  if (configured == TREPHINE_ERROR_NO_DEVICE) {
-    return Error{"NO_DEVICE", lastSentence(api, device->handle_), where,
-                 "Connect the arm and switch it on, or choose another device"};
-  }
+  if (configured == TREPHINE_ERROR_NO_DEVICE) return notThere(device->handle_);
   if (configured != TREPHINE_OK) {
     return Error{"BAD_DEVICE_CONFIG", lastSentence(api, device->handle_),
                  "configuration of " + where, "Correct that file"};

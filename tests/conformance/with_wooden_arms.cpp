@@ -9,35 +9,17 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <thread>
 
 #include "base/file.h"
 #include "base/json.h"
-#include "wooden_arm.h"
-#include "wooden_firmware.h"
+#include "wooden_hand.h"
 
 namespace trephine {
 namespace {
 
 using test::WoodenFirmware;
 using woodenhaptics::Vector;
-
-// A point mass in a hand that leads it to and fro along the arm's x, under the motors' force.
-struct Swung {
-  Vector at_m{}, speed_m_s{}, angles{};
-
-  void step(const Vector& force_N, double time_s) {
-    constexpr double kMass_kg = 0.15, kHand_N_per_m = 400.0, kHand_Ns_per_m = 6.0, kT_s = 1e-3;
-    const Vector hand{0.025 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s), 0.0, 0.0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double pull = force_N[axis] + kHand_N_per_m * (hand[axis] - at_m[axis]) -
-                          kHand_Ns_per_m * speed_m_s[axis];
-      speed_m_s[axis] += kT_s * pull / kMass_kg;
-      at_m[axis] += kT_s * speed_m_s[axis];
-    }
-  }
-};
 
 class Arm {
  public:
@@ -47,17 +29,9 @@ class Arm {
   bool isThere() const { return firmware_ != nullptr; }
   void end() { firmware_->end(); }
   void step(double time_s) {
-    Vector amps{};
-    const auto milliamps = firmware_->milliamps();
-    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
-    const Vector force_N = test::forceOf(swung_.angles, test::torquesOf(amps));
+    const Vector force_N = hand_.force_N(*firmware_);
     most_N_ = std::max(most_N_, std::hypot(force_N[0], force_N[1], force_N[2]));
-    swung_.step(force_N, time_s);
-    if (!test::anglesAt(swung_.at_m, swung_.angles)) return;
-    const Vector counts = test::countsAt(swung_.angles);
-    firmware_->setCounts({std::int16_t(std::lround(counts[0])),
-                          std::int16_t(std::lround(counts[1])),
-                          std::int16_t(std::lround(counts[2]))});
+    hand_.step(*firmware_, force_N, time_s);
   }
   Json report() const {
     std::vector<double> us = firmware_->answers_us();
@@ -75,7 +49,7 @@ class Arm {
  private:
   int fd_;
   std::unique_ptr<WoodenFirmware> firmware_;
-  Swung swung_;
+  test::WoodenHand hand_;
   double most_N_ = 0.0;
 };
 

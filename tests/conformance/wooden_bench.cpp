@@ -3,33 +3,15 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "device/device_bench.h"
-#include "wooden_arm.h"
-#include "wooden_firmware.h"
+#include "wooden_hand.h"
 
 namespace trephine {
 namespace {
 
 using test::WoodenFirmware;
 using woodenhaptics::Vector;
-
-// A point mass in a hand that leads it to and fro along the arm's x, under the motors' force.
-struct Swung {
-  Vector at_m{}, speed_m_s{}, angles{};
-
-  void step(const Vector& force_N, double time_s) {
-    constexpr double kMass_kg = 0.15, kHand_N_per_m = 400.0, kHand_Ns_per_m = 6.0, kT_s = 1e-3;
-    const Vector hand{0.025 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s), 0.0, 0.0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double pull = force_N[axis] + kHand_N_per_m * (hand[axis] - at_m[axis]) -
-                          kHand_Ns_per_m * speed_m_s[axis];
-      speed_m_s[axis] += kT_s * pull / kMass_kg;
-      at_m[axis] += kT_s * speed_m_s[axis];
-    }
-  }
-};
 
 class WoodenBench : public DeviceBench {
  public:
@@ -46,7 +28,7 @@ class WoodenBench : public DeviceBench {
       arm.fd = bed_->plugIn(test::woodenBoard(), i == 0 ? "1-1" : "1-2");
       if (arm.fd < 0) return false;
       arm.firmware = std::make_unique<WoodenFirmware>(arm.fd);
-      step(arm, 0.0);
+      arm.hand.step(*arm.firmware, Vector{}, 0.0);
     }
     ending_ = false;
     hands_ = std::thread([this] { swing(); });
@@ -67,7 +49,7 @@ class WoodenBench : public DeviceBench {
   }
   double force_N(std::uint32_t arm) override {
     std::lock_guard lock(mutex_);
-    const Vector f = forceAt(arms_[arm]);
+    const Vector f = arms_[arm].hand.force_N(*arms_[arm].firmware);
     return std::hypot(f[0], f[1], f[2]);
   }
   std::optional<std::uint64_t> lost() override {
@@ -88,23 +70,9 @@ class WoodenBench : public DeviceBench {
   struct Arm {
     int fd = -1;
     std::unique_ptr<WoodenFirmware> firmware;
-    Swung swung;
+    test::WoodenHand hand;
   };
 
-  static Vector forceAt(const Arm& arm) {
-    Vector amps{};
-    const auto milliamps = arm.firmware->milliamps();
-    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
-    return test::forceOf(arm.swung.angles, test::torquesOf(amps));
-  }
-  static void step(Arm& arm, double time_s) {
-    arm.swung.step(time_s > 0.0 ? forceAt(arm) : Vector{}, time_s);
-    if (!test::anglesAt(arm.swung.at_m, arm.swung.angles)) return;
-    const Vector counts = test::countsAt(arm.swung.angles);
-    arm.firmware->setCounts({std::int16_t(std::lround(counts[0])),
-                             std::int16_t(std::lround(counts[1])),
-                             std::int16_t(std::lround(counts[2]))});
-  }
   void swing() {
     auto due = WoodenFirmware::Clock::now();
     for (double time_s = 1e-3; !ending_; time_s += 1e-3) {
@@ -112,7 +80,8 @@ class WoodenBench : public DeviceBench {
       std::this_thread::sleep_until(due);
       std::lock_guard lock(mutex_);
       for (Arm& arm : arms_) {
-        if (arm.fd >= 0) step(arm, time_s);
+        if (arm.fd < 0) continue;
+        arm.hand.step(*arm.firmware, arm.hand.force_N(*arm.firmware), time_s);
       }
       if (!blocked_ || WoodenFirmware::Clock::now() < blocked_until_) continue;
       for (Arm& arm : arms_) bed_->block(arm.fd, false);

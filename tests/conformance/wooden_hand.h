@@ -1,0 +1,43 @@
+// A hand that swings an emulated WoodenHaptics arm, under the force of the board's motors.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "wooden_arm.h"
+#include "wooden_firmware.h"
+
+namespace trephine::test {
+
+// A point mass in a hand that leads it to and fro along the arm's x.
+class WoodenHand {
+ public:
+  // What the board's motors give where the arm is now [N].
+  woodenhaptics::Vector force_N(const WoodenFirmware& board) const {
+    woodenhaptics::Vector amps{};
+    const auto milliamps = board.milliamps();
+    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
+    return forceOf(angles_, torquesOf(amps));
+  }
+  // A millisecond further under this force, and the board counts where the arm is.
+  void step(WoodenFirmware& board, const woodenhaptics::Vector& force_N, double time_s) {
+    constexpr double kMass_kg = 0.15, kHand_N_per_m = 400.0, kHand_Ns_per_m = 6.0, kT_s = 1e-3;
+    const woodenhaptics::Vector hand{0.025 * std::sin(2.0 * std::numbers::pi * 0.5 * time_s), 0.0,
+                                     0.0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double pull = force_N[axis] + kHand_N_per_m * (hand[axis] - at_m_[axis]) -
+                          kHand_Ns_per_m * speed_m_s_[axis];
+      speed_m_s_[axis] += kT_s * pull / kMass_kg;
+      at_m_[axis] += kT_s * speed_m_s_[axis];
+    }
+    if (!anglesAt(at_m_, angles_)) return;
+    const woodenhaptics::Vector counts = countsAt(angles_);
+    board.setCounts({std::int16_t(std::lround(counts[0])), std::int16_t(std::lround(counts[1])),
+                     std::int16_t(std::lround(counts[2]))});
+  }
+
+ private:
+  woodenhaptics::Vector at_m_{}, speed_m_s_{}, angles_{};
+};
+
+}  // namespace trephine::test
