@@ -38,7 +38,7 @@ void LevelOfDetail::stillFrameTook(double ms) {
   if (!std::isfinite(ms) || ms <= 0.0) return;
   still_frame_ms_ = ms;
   // Rays fall with the square of the step and samples with up to 2 of it.
-  const double ratio = ms / kBudget_ms;
+  const double ratio = ms / budget_ms_;
   pixel_step_ = level(ratio <= 8.0 ? std::cbrt(ratio) : std::sqrt(ratio / 2.0));
   pixel_step_ = unlessTooCoarse(pixel_step_, 0.5 * ms, 1.0);
   frames_ = 0;
@@ -51,17 +51,19 @@ void LevelOfDetail::movingFrameTook(double ms) {
   frames_ = std::min(frames_ + 1, int(last_ms_.size()));
   // One slow frame may be another program's; one quick frame may look where there is little.
   const auto known = last_ms_.begin() + frames_;
-  const double slow_ratio = frames_ > 1 ? std::min(last_ms_[0], last_ms_[1]) / kBudget_ms : 0.0;
-  const double quick_ratio = *std::max_element(last_ms_.begin(), known) / kBudget_ms;
+  const double slow_ratio = frames_ > 1 ? std::min(last_ms_[0], last_ms_[1]) / budget_ms_ : 0.0;
+  const double quick_ratio = *std::max_element(last_ms_.begin(), known) / budget_ms_;
   double step = pixel_step_;
   if (slow_ratio > 1.0) {
-    const double slow_ms = slow_ratio * kBudget_ms;
+    const double slow_ms = slow_ratio * budget_ms_;
     step = unlessTooCoarse(level(pixel_step_ * std::sqrt(slow_ratio)), slow_ms, pixel_step_);
     step = std::max(step, pixel_step_);
   } else if (frames_ == int(last_ms_.size())) {
     // The finest at which it can hardly take longer than it may.
     const auto cost = [](double at) { return 1.0 / (at * at * rayStepAt(at)); };
-    const auto allowed = [](double at) { return at >= kCoarse ? kCoarse_ms / kBudget_ms : 1.0; };
+    const auto allowed = [this](double at) {
+      return at >= kCoarse ? kCoarse_ms / budget_ms_ : 1.0;
+    };
     while (step > 1.0 &&
            quick_ratio * cost(step - 0.25) / cost(pixel_step_) < 0.95 * allowed(step - 0.25)) {
       step -= 0.25;

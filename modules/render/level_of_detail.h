@@ -12,6 +12,8 @@ class LevelOfDetail {
   static constexpr double kBudget_ms = 42.0;
   static constexpr double kCoarsest = 8.0;
 
+  explicit LevelOfDetail(double budget_ms = kBudget_ms) : budget_ms_(budget_ms) {}
+
   // Pixels between two rays, each way; 1 is full quality.
   double pixelStep() const { return pixel_step_; }
   // Factor on the distance between two samples of a ray.
@@ -34,6 +36,7 @@ class LevelOfDetail {
   double stillFrame_ms() const { return still_frame_ms_; }
 
  private:
+  double budget_ms_;
   double pixel_step_ = 1.0;
   double still_frame_ms_ = 0.0;
   std::array<double, 3> last_ms_{};  // of moving frames at this level, the last one first

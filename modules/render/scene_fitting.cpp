@@ -20,7 +20,8 @@ void SceneRenderer::Parts::show() {
   reduction = {1, 1, 1};
   fitted = refused = false;
   refusal = {};
-  pictures.startAnew();
+  panel.pictures.startAnew();
+  eye.pictures.startAnew();
   volume.show(mirror->lent(), mirror->labels(), *mirror, reduction, *renderer);
 }
 
@@ -49,7 +50,7 @@ void SceneRenderer::Parts::labelsChanged(const VoxelBox& box) {
 
 void SceneRenderer::Parts::changed(const VoxelBox& box) {
   volume.changed(reduced ? reduced->update(voxels(), box) : box);
-  cut(box);
+  panel.cut(box);
 }
 
 bool SceneRenderer::Parts::reduceAsNeeded() {
@@ -73,7 +74,7 @@ void SceneRenderer::Parts::fit() {
   constexpr int kMost = 16;  // beyond it there is too little left to see
   for (;;) {
     if (reduction != Index3{1, 1, 1}) showReduced();
-    handToVtk();
+    handToVtk(panel.width, panel.height);
     volume.sendChanges(*renderer);  // takes the first texture unit before VTK does
     if (volume.sendAll(*renderer) && most_edge >= 0) {
       constexpr double kNoEnd_ms = 1e9;

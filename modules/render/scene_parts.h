@@ -17,6 +17,7 @@
 #include "render/carve_volume_mapper.h"
 #include "render/composer.h"
 #include "render/display_volume.h"
+#include "render/level_of_detail.h"
 #include "render/outline_drawing.h"
 #include "render/scene_renderer.h"
 #include "render/tool_drawing.h"
@@ -25,8 +26,64 @@
 
 namespace trephine {
 
+// Of the rays of one eye's picture: two of them in less than two frames of a headset.
+constexpr double kEyeBudget_ms = 7.0;
+
+// What is drawn for one camera: its picture of the volume, and all that is put together over it.
 // VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
-// others that of the outline and that of the tools. The picture is put together from them.
+// others that of the outline and that of the tools.
+struct SceneRenderer::View {
+  explicit View(Parts& shared) : of(shared) {}
+
+  Parts& of;
+  ViewCamera camera;
+  VolumePictures pictures;
+  Canvas scene;       // the volume over the background and the outline, in the view's size
+  Canvas tool_layer;  // the outline alone, then tools alone: colour and depth
+  bool scene_stale = true;
+  bool moving = false;
+  int width = 1;
+  int height = 1;
+
+  // ---- Pictures of the volume, and all that is put together: scene_pictures.cpp.
+  // `spans`: what the picture spans each way, in the view's width and height.
+  void place(vtkRenderer& in, const glm::dvec2& spans);
+  // Into the framebuffer that is bound.
+  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step);
+  VolumePictures::Cast caster();
+  void drawAt(double level);
+  bool work(double budget_ms);
+  // Around the points, in the view's pixels.
+  PixelRect around(const Vec3* points, std::size_t count, int margin) const;
+  void cut(const VoxelBox& box);
+  PixelRect partOf(const VoxelBox& box) const;
+  void sendLabels(double budget_ms);
+  // Of the volume; null before there is one.
+  const Canvas* shownCanvas() const;
+  // With letters and lines of the panel, or without.
+  void compose(unsigned int framebuffer, bool with_cues);
+  // The ray of that picture at a pixel of the view, which may lie beyond it.
+  static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);
+  // The surface in the middle of the picture; the camera's focus where nothing is seen there.
+  Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
+  // What is shown now.
+  Picture read();
+  void resize(int wide, int high);
+  void release();
+
+  // ---- Tools over the picture: scene_tools.cpp.
+  // Of the view; none where they lie beside it.
+  std::vector<PixelRect> partsOfTools() const;
+  PixelRect partOfOutline() const;
+  void drawOutline(const Canvas* shown, const Span& span);  // into `scene`
+  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
+  // What a renderer shows in these parts of the view, where tissue leaves it visible.
+  void drawSolids(vtkRenderer& solids, double opacity, const std::vector<PixelRect>& parts,
+                  unsigned int framebuffer, const Canvas* shown, const Span& span);
+  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const;
+};
+
+// What all views draw, and with what.
 struct SceneRenderer::Parts {
   vtkNew<vtkRenderer> renderer;  // of the volume
   vtkNew<vtkRenderer> outline_renderer;
@@ -57,20 +114,15 @@ struct SceneRenderer::Parts {
   std::vector<ToolView> tool_views;
   ScreenLines lines;
 
-  ViewCamera camera;
-  VolumePictures pictures;
   Composer composer;
-  Canvas scene;       // the volume over the background and the outline, in the window's size
-  Canvas tool_layer;  // the outline alone, then tools alone: colour and depth
-  Canvas frame;       // pictures that are read back
-  bool scene_stale = true;
+  Canvas frame;  // pictures that are read back
   // What has been drawn once in this context, so that OpenGL has its shaders.
   struct Warm {
     bool background = false, volume = false, outline = false, tools = false;
   } warm;
-  bool moving = false;
-  int width = 1;
-  int height = 1;
+  View panel{*this};
+  View eye{*this};  // of two, one after the other
+  LevelOfDetail eye_level{kEyeBudget_ms};
 
   Parts();
   std::array<vtkRenderer*, 3> renderers() { return {renderer, outline_renderer, tool_renderer}; }
@@ -80,8 +132,8 @@ struct SceneRenderer::Parts {
     labels_held = false;  // who moves the camera wants to see it
   }
   void spoilLooks() {
-    pictures.spoil();
-    scene_stale = true;
+    panel.pictures.spoil();
+    panel.scene_stale = true;
   }
 
   const Volume& voxels() const { return mirror->volume(); }
@@ -98,48 +150,14 @@ struct SceneRenderer::Parts {
   void fit();
   bool reduceAsNeeded();  // true where it has to be reduced more than it is
 
-  // ---- Pictures of the volume, and all that is put together: scene_pictures.cpp.
-  // `upwards`: what the picture spans upwards, in the window's height.
-  void place(vtkRenderer& in, double upwards);
+  // ---- scene_pictures.cpp.
   // OpenGL's state was changed behind VTK's back, by us and by the window's toolkit.
-  void handToVtk();
-  // Into the framebuffer that is bound.
-  void cast(const Canvas& into, const Span& span, const PixelRect& part, double ray_step);
-  VolumePictures::Cast caster();
-  void drawAt(double level);
-  bool work(double budget_ms);
-  // Around the points, in the window's pixels.
-  PixelRect around(const Vec3* points, std::size_t count, int margin) const;
-  void cut(const VoxelBox& box);
-  PixelRect partOf(const VoxelBox& box) const;
-  void sendLabels(double budget_ms);
-  // Of the volume; null before there is one.
-  const Canvas* shownCanvas() const {
-    return drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
-  }
-  void compose(unsigned int framebuffer);
-  // The ray of that picture at a pixel of the window, which may lie beyond it.
-  static glm::ivec2 rayAt(const glm::dvec2& pixel, const Canvas& shown, const Span& span);
-  // The surface in the middle of the picture; the camera's focus where nothing is seen there.
-  Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
+  void handToVtk(int width, int height);
   // Draws one thing that is shown for the first time, nowhere to be seen. False: nothing is left.
   bool warmUp();
   bool cold() const { return nextCold() != nullptr; }
   bool Warm::*nextCold() const;
-  // What is shown now.
-  Picture read();
   void release();
-
-  // ---- Tools over the picture: scene_tools.cpp.
-  // Of the window; none where they lie beside it.
-  std::vector<PixelRect> partsOfTools() const;
-  PixelRect partOfOutline() const;
-  void drawOutline(const Canvas* shown, const Span& span);  // into `scene`
-  void drawTools(unsigned int framebuffer, const Canvas* shown, const Span& span);
-  // What a renderer shows in these parts of the window, where tissue leaves it visible.
-  void drawSolids(vtkRenderer& solids, double opacity, const std::vector<PixelRect>& parts,
-                  unsigned int framebuffer, const Canvas* shown, const Span& span);
-  void addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const;
 };
 
 }  // namespace trephine

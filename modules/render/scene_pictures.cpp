@@ -9,6 +9,7 @@
 //
 #include <vtkCamera.h>
 #include <vtkCommand.h>
+#include <vtkMatrix4x4.h>
 #include <vtkOpenGLShaderCache.h>
 #include <vtkOpenGLState.h>
 
@@ -23,6 +24,12 @@
 #include "render/scene_parts.h"
 
 namespace trephine {
+
+namespace {
+
+constexpr double kNearestToAnEye_mm = 10.0;
+
+}  // namespace
 
 SceneRenderer::Parts::Parts() {
   for (vtkRenderer* each : renderers()) {
@@ -41,20 +48,47 @@ SceneRenderer::Parts::Parts() {
   });
 }
 
-void SceneRenderer::Parts::place(vtkRenderer& in, double upwards) {
+void SceneRenderer::View::place(vtkRenderer& in, const glm::dvec2& spans) {
   const Vec3 eye = camera.eye(), focus = camera.focus(), up = camera.up();
   vtkCamera* vtk = in.GetActiveCamera();
   vtk->SetPosition(eye.x, eye.y, eye.z);
   vtk->SetFocalPoint(focus.x, focus.y, focus.z);
   vtk->SetViewUp(up.x, up.y, up.z);
   vtk->SetParallelProjection(camera.parallel());
-  vtk->SetParallelScale(camera.halfHeight_mm() * upwards);
-  const double half = std::tan(glm::radians(ViewCamera::kViewAngle_deg / 2.0)) * upwards;
+  vtk->SetParallelScale(camera.halfHeight_mm() * spans.y);
+  const FieldOfView sees = camera.sees(width, height);
+  // Off the axis, VTK's culling takes this, and the picture the matrix below.
+  const double half = std::max(sees.up, -sees.down) * spans.y;
   vtk->SetViewAngle(2.0 * glm::degrees(std::atan(half)));
+  vtk->SetUseExplicitProjectionTransformMatrix(false);
   in.ResetCameraClippingRange();
+  if (!camera.offAxis()) return;
+  double range[2];
+  vtk->GetClippingRange(range);
+  const double near_mm = std::max(range[0], kNearestToAnEye_mm);
+  const double far_mm = std::max(range[1], near_mm + 100.0);
+  vtk->SetClippingRange(near_mm, far_mm);
+  // About the middle of what is seen, so much wider and higher.
+  const auto wider = [](double low, double high, double times) {
+    const double middle = 0.5 * (low + high), reach = 0.5 * (high - low) * times;
+    return std::pair(middle - reach, middle + reach);
+  };
+  const auto [left, right] = wider(sees.left, sees.right, spans.x);
+  const auto [down, up_to] = wider(sees.down, sees.up, spans.y);
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->Zero();
+  matrix->SetElement(0, 0, 2.0 / (right - left));
+  matrix->SetElement(0, 2, (right + left) / (right - left));
+  matrix->SetElement(1, 1, 2.0 / (up_to - down));
+  matrix->SetElement(1, 2, (up_to + down) / (up_to - down));
+  matrix->SetElement(2, 2, -(far_mm + near_mm) / (far_mm - near_mm));
+  matrix->SetElement(2, 3, -2.0 * far_mm * near_mm / (far_mm - near_mm));
+  matrix->SetElement(3, 2, -1.0);
+  vtk->SetExplicitProjectionTransformMatrix(matrix);
+  vtk->SetUseExplicitProjectionTransformMatrix(true);
 }
 
-void SceneRenderer::Parts::handToVtk() {
+void SceneRenderer::Parts::handToVtk(int width, int height) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);  // rows of a volume lie as close as they can
   window->SetSize(width, height);
   window->GetState()->Reset();
@@ -64,8 +98,8 @@ void SceneRenderer::Parts::handToVtk() {
   window->GetShaderCache()->ReleaseCurrentShader();
 }
 
-void SceneRenderer::Parts::cast(const Canvas& into, const Span& span, const PixelRect& part,
-                                double ray_step) {
+void SceneRenderer::View::cast(const Canvas& into, const Span& span, const PixelRect& part,
+                               double ray_step) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(part.low_x, part.low_y, part.width(), part.height());
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -73,54 +107,55 @@ void SceneRenderer::Parts::cast(const Canvas& into, const Span& span, const Pixe
   glClearBufferfv(GL_COLOR, 0, kNothing);
   glClearBufferfv(GL_COLOR, 1, kNever);
   glClearBufferfv(GL_COLOR, 2, kNothing);
-  handToVtk();
-  renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
-  volume.lookFrom(camera.right(), camera.up(), camera.forward());
-  volume.setQuality(1.0, ray_step);
-  volume.sendChanges(*renderer);
-  volume.setPart(part);
-  place(*renderer, span.pixels.y / height);
-  renderer->Render();
+  of.handToVtk(width, height);
+  of.renderer->SetViewport(0.0, 0.0, double(into.width()) / width, double(into.height()) / height);
+  of.volume.lookFrom(camera.right(), camera.up(), camera.forward());
+  of.volume.setQuality(1.0, ray_step);
+  of.volume.sendChanges(*of.renderer);
+  of.volume.setPart(part);
+  place(*of.renderer, span.pixels / glm::dvec2(width, height));
+  of.renderer->Render();
   glFinish();
 }
 
-VolumePictures::Cast SceneRenderer::Parts::caster() {
+VolumePictures::Cast SceneRenderer::View::caster() {
   return [this](const Canvas& into, const Span& span, const PixelRect& part, double ray_step) {
     cast(into, span, part, ray_step);
   };
 }
 
-void SceneRenderer::Parts::drawAt(double level) {
-  if ((!fitted || may_need_more) && !mirror->empty()) fit();
-  if (drawsVolume() && !volume.labelsSent()) sendLabels(std::numeric_limits<double>::infinity());
-  if (drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
+void SceneRenderer::View::drawAt(double level) {
+  if ((!of.fitted || of.may_need_more) && !of.mirror->empty()) of.fit();
+  if (of.drawsVolume() && !of.volume.labelsSent())
+    sendLabels(std::numeric_limits<double>::infinity());
+  if (of.drawsVolume()) pictures.castAt(level, LevelOfDetail::rayStepAt(level), caster());
   scene_stale = true;
 }
 
-bool SceneRenderer::Parts::work(double budget_ms) {
-  const bool others = !fitted;
-  if ((!fitted || may_need_more) && !mirror->empty()) {
-    fit();
+bool SceneRenderer::View::work(double budget_ms) {
+  const bool others = !of.fitted;
+  if ((!of.fitted || of.may_need_more) && !of.mirror->empty()) {
+    of.fit();
     // Sending a volume takes its time: its first picture is the next call's.
     const bool limited = budget_ms < std::numeric_limits<double>::infinity();
-    if (others && drawsVolume() && limited) return false;
+    if (others && of.drawsVolume() && limited) return false;
   }
-  if (!drawsVolume()) return scene_stale;
-  if (!volume.labelsSent()) {
+  if (!of.drawsVolume()) return scene_stale;
+  if (!of.volume.labelsSent()) {
     const auto begun = std::chrono::steady_clock::now();
     sendLabels(budget_ms);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begun;
     // The picture of them is the next call's, where they took this one's time.
     const bool spent = !moving && took.count() > 0.5 * budget_ms;
-    const bool held = labels_held && !volume.labelsSent();
+    const bool held = of.labels_held && !of.volume.labelsSent();
     if ((held || spent) && pictures.pixelStep() > 0.0) return false;
   }
   const bool changed = pictures.work(budget_ms, moving, caster());
   scene_stale |= changed;
-  const std::string& shader = composer.failure();
-  if (refusal && (!pictures.allocated() || !shader.empty())) {
-    refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
-                    "Make the window smaller, or update the graphics driver"};
+  const std::string& shader = of.composer.failure();
+  if (of.refusal && (!pictures.allocated() || !shader.empty())) {
+    of.refusal = Error{"NO_OPENGL", "The graphics card refused to draw a picture", "3-D view",
+                       "Make the window smaller, or update the graphics driver"};
     spdlog::warn("No picture could be made: {}", shader.empty() ? "no memory" : shader);
   }
   return changed;
@@ -128,25 +163,26 @@ bool SceneRenderer::Parts::work(double budget_ms) {
 
 // Where labels have changed the picture is made again: of the part that they lie in, or, where that
 // is much of it, coarse first.
-void SceneRenderer::Parts::sendLabels(double budget_ms) {
-  constexpr double kMuch = 0.15;  // of the window
-  handToVtk();
-  for (const VoxelBox& box : volume.sendLabels(*renderer, budget_ms)) {
-    VoxelBox of = box;  // of the mirror's voxels
+void SceneRenderer::View::sendLabels(double budget_ms) {
+  constexpr double kMuch = 0.15;  // of the view
+  of.handToVtk(width, height);
+  for (const VoxelBox& box : of.volume.sendLabels(*of.renderer, budget_ms)) {
+    VoxelBox whole = box;  // of the mirror's voxels
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      of.low[axis] *= reduction[axis];
-      of.high[axis] = std::min(of.high[axis] * reduction[axis], voxels().geometry.size[axis]);
+      whole.low[axis] *= of.reduction[axis];
+      whole.high[axis] =
+          std::min(whole.high[axis] * of.reduction[axis], of.voxels().geometry.size[axis]);
     }
-    const PixelRect part = partOf(of);
+    const PixelRect part = partOf(whole);
     if (part.pixels() > kMuch * width * height) {
-      spoilLooks();
+      of.spoilLooks();
     } else {
       pictures.cut(part);
     }
   }
 }
 
-PixelRect SceneRenderer::Parts::around(const Vec3* points, std::size_t count, int margin) const {
+PixelRect SceneRenderer::View::around(const Vec3* points, std::size_t count, int margin) const {
   PixelRect rect;
   for (std::size_t i = 0; i < count; ++i) {
     const std::optional<glm::dvec2> at = camera.pixelOf(points[i], width, height);
@@ -161,12 +197,12 @@ PixelRect SceneRenderer::Parts::around(const Vec3* points, std::size_t count, in
           std::min(rect.high_y, height)};
 }
 
-void SceneRenderer::Parts::cut(const VoxelBox& box) {
-  labels_held = false;
+void SceneRenderer::View::cut(const VoxelBox& box) {
+  of.labels_held = false;
   pictures.cut(partOf(box));
 }
 
-PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
+PixelRect SceneRenderer::View::partOf(const VoxelBox& box) const {
   // Shading and ambient light look this far from a sample.
   constexpr double kReach_voxels = 4.0;
   Vec3 corners[8];
@@ -176,7 +212,7 @@ PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
       corners[corner][axis] =
           corner & (1 << axis) ? box.high[a] - 1 + kReach_voxels : box.low[a] - kReach_voxels;
     }
-    corners[corner] = voxels().geometry.toPatient_mm(corners[corner]);
+    corners[corner] = of.voxels().geometry.toPatient_mm(corners[corner]);
   }
   return around(corners, 8, 1);
 }
@@ -185,35 +221,36 @@ PixelRect SceneRenderer::Parts::partOf(const VoxelBox& box) const {
 bool SceneRenderer::Parts::Warm::*SceneRenderer::Parts::nextCold() const {
   if (!warm.background) return &Warm::background;
   if (!mirror->empty() && !fitted) return nullptr;
-  if (drawsVolume() && (!warm.volume || pictures.cold())) return &Warm::volume;
-  if (!warm.outline && !partOfOutline().empty()) return &Warm::outline;
-  if (!warm.tools && !partsOfTools().empty()) return &Warm::tools;
+  if (drawsVolume() && (!warm.volume || panel.pictures.cold())) return &Warm::volume;
+  if (!warm.outline && !panel.partOfOutline().empty()) return &Warm::outline;
+  if (!warm.tools && !panel.partsOfTools().empty()) return &Warm::tools;
   return nullptr;
 }
 
 bool SceneRenderer::Parts::warmUp() {
   bool Warm::*const next = nextCold();
   if (!next) return false;
-  const Canvas* shown = shownCanvas();
-  const Span span = shown ? pictures.span() : Span{};
-  scene_stale = true;  // it is drawn into
-  if (next == &Warm::volume && pictures.cold()) {
-    pictures.warmUp(caster());
+  const Canvas* shown = panel.shownCanvas();
+  const Span span = shown ? panel.pictures.span() : Span{};
+  panel.scene_stale = true;  // it is drawn into
+  if (next == &Warm::volume && panel.pictures.cold()) {
+    panel.pictures.warmUp(panel.caster());
     return true;
   }
-  scene.bind(width, height, {Canvas::Image::colour});
+  const int width = panel.width, height = panel.height;
+  panel.scene.bind(width, height, {Canvas::Image::colour});
   if (next == &Warm::background) {
     composer.drawVolume(nullptr, {}, width, height);
     composer.drawLines({{{0.0, 0.0}, {1.0, 1.0}, Vec3(0.0), 1.0}}, width, height);
   } else if (next == &Warm::volume) {
-    composer.drawVolume(shown ? shown : &pictures.warmUpCanvas(), span, width, height);
+    composer.drawVolume(shown ? shown : &panel.pictures.warmUpCanvas(), span, width, height);
   } else if (next == &Warm::outline) {
-    drawOutline(shown, span);
+    panel.drawOutline(shown, span);
   } else {  // with the marks of contact
     std::vector<ToolView> touching = tool_views;
     for (ToolView& tool : touching) tool.contact = true;
     tools.show(touching, *tool_renderer);
-    drawTools(scene.framebuffer(), shown, span);
+    panel.drawTools(panel.scene.framebuffer(), shown, span);
     tools.show(tool_views, *tool_renderer);
   }
   glFinish();
@@ -221,10 +258,14 @@ bool SceneRenderer::Parts::warmUp() {
   return true;
 }
 
-void SceneRenderer::Parts::compose(unsigned int framebuffer) {
+const Canvas* SceneRenderer::View::shownCanvas() const {
+  return of.drawsVolume() && pictures.pixelStep() > 0.0 ? &pictures.canvas() : nullptr;
+}
+
+void SceneRenderer::View::compose(unsigned int framebuffer, bool with_cues) {
   const Canvas* shown = shownCanvas();
   const Span span = shown ? pictures.span() : Span{};
-  if (!warm.background) {
+  if (!of.warm.background) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     constexpr float kDark[4] = {0.14F, 0.145F, 0.155F, 1.0F};
     glClearBufferfv(GL_COLOR, 0, kDark);
@@ -232,12 +273,13 @@ void SceneRenderer::Parts::compose(unsigned int framebuffer) {
   }
   if (scene_stale || scene.width() != width || scene.height() != height) {
     scene.bind(width, height, {Canvas::Image::colour});
-    composer.drawVolume(shown, span, width, height);
-    if (warm.outline) drawOutline(shown, span);
+    of.composer.drawVolume(shown, span, width, height);
+    if (of.warm.outline) drawOutline(shown, span);
     scene_stale = false;
   }
   scene.copyTo(framebuffer);
-  if (warm.tools) drawTools(framebuffer, shown, span);
+  if (of.warm.tools) drawTools(framebuffer, shown, span);
+  if (!with_cues) return;
   ScreenLines all;
   if (shown) {
     addOrientationCue(camera, width, height, all);
@@ -245,17 +287,17 @@ void SceneRenderer::Parts::compose(unsigned int framebuffer) {
     if (std::min(width, height) >= kRoomForCues) addGuides(*shown, span, all);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   }
-  all.insert(all.end(), lines.begin(), lines.end());
-  composer.drawLines(all, width, height);
+  all.insert(all.end(), of.lines.begin(), of.lines.end());
+  of.composer.drawLines(all, width, height);
 }
 
-glm::ivec2 SceneRenderer::Parts::rayAt(const glm::dvec2& pixel, const Canvas& shown,
-                                       const Span& span) {
+glm::ivec2 SceneRenderer::View::rayAt(const glm::dvec2& pixel, const Canvas& shown,
+                                      const Span& span) {
   const glm::dvec2 step = span.pixels / glm::dvec2(shown.width(), shown.height());
   return glm::floor((pixel + span.beyond) / step);
 }
 
-Vec3 SceneRenderer::Parts::inTheMiddle(const Canvas& shown, const Span& span) const {
+Vec3 SceneRenderer::View::inTheMiddle(const Canvas& shown, const Span& span) const {
   if (camera.parallel()) return camera.focus();
   const glm::ivec2 ray = rayAt(0.5 * glm::dvec2(width, height), shown, span);
   const std::vector<float> depth_mm = shown.readDepth_mm({ray.x, ray.y, ray.x + 1, ray.y + 1});
@@ -264,13 +306,13 @@ Vec3 SceneRenderer::Parts::inTheMiddle(const Canvas& shown, const Span& span) co
   return camera.eye() + camera.forward() * double(depth_mm[0]);
 }
 
-Picture SceneRenderer::Parts::read() {
+Picture SceneRenderer::View::read() {
   Picture picture;
-  while (warmUp()) {
+  while (of.warmUp()) {
   }
-  if (!frame.bind(width, height, {Canvas::Image::colour})) return picture;
-  compose(frame.framebuffer());
-  frame.bind();
+  if (!of.frame.bind(width, height, {Canvas::Image::colour})) return picture;
+  compose(of.frame.framebuffer(), true);
+  of.frame.bind();
   const std::size_t row = std::size_t(width) * 3;
   std::vector<std::uint8_t> up(row * std::size_t(height));
   while (glGetError() != GL_NO_ERROR) {  // of before
@@ -288,15 +330,30 @@ Picture SceneRenderer::Parts::read() {
   return picture;
 }
 
+void SceneRenderer::View::resize(int wide, int high) {
+  wide = std::max(1, wide);
+  high = std::max(1, high);
+  if (wide == width && high == height) return;
+  width = wide;
+  height = high;
+  pictures.resize(width, height);
+  scene_stale = true;
+}
+
+void SceneRenderer::View::release() {
+  pictures.release();
+  scene.release();
+  tool_layer.release();
+  scene_stale = true;
+}
+
 void SceneRenderer::Parts::release() {
   if (!window) return;
   window->MakeCurrent();
-  pictures.release();
+  panel.release();
+  eye.release();
   composer.release();
-  scene.release();
-  tool_layer.release();
   frame.release();
-  scene_stale = true;
   warm = {};
   fitted = refused = false;
   volume.releaseGraphics(*renderer);

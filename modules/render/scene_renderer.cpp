@@ -53,7 +53,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::offscreen(int width, int h
   if (!p.window) return no_opengl;
   p.window->SetOffScreenRendering(1);
   p.window->SetMultiSamples(0);
-  p.window->SetSize(p.width, p.height);
+  p.window->SetSize(p.panel.width, p.panel.height);
   for (vtkRenderer* each : p.renderers()) p.window->AddRenderer(each);
   p.window->Initialize();
   p.window->MakeCurrent();
@@ -74,7 +74,7 @@ Status SceneRenderer::attach(RenderHost host) {
   window->SetMultiSamples(0);
   window->SetFrameBlitModeToNoBlit();
   window->SetReadyForRendering(true);
-  window->SetSize(p.width, p.height);
+  window->SetSize(p.panel.width, p.panel.height);
   window->OpenGLInit();
   p.window = window;
   if (openGlVersion() < kOpenGlNeeded) {
@@ -156,7 +156,7 @@ void SceneRenderer::setTissues(const TissueSet& tissues, const TissueLooks& look
     if (tissue.opacity > 0.0) visible.push_back(tissue.id);
   }
   const bool others = std::exchange(p.visible, visible) != visible;
-  if (std::exchange(p.looks, looks) != looks || others) p.pictures.startAnew();
+  if (std::exchange(p.looks, looks) != looks || others) p.panel.pictures.startAnew();
   p.volume.setTissues(seen, looks);
   p.labels_held |= !p.volume.labelsSent();
 }
@@ -199,20 +199,15 @@ void SceneRenderer::setTools(const std::vector<ToolView>& tools) {
 
 void SceneRenderer::setOutline(const std::vector<Vec3>& points_mm, bool closed, double width_mm) {
   parts_->outline.show(points_mm, closed, width_mm, *parts_->outline_renderer);
-  parts_->scene_stale = true;
+  parts_->panel.scene_stale = true;
 }
 
 void SceneRenderer::resize(int width, int height) {
-  Parts& p = *parts_;
-  if (width == p.width && height == p.height) return;
-  p.width = std::max(1, width);
-  p.height = std::max(1, height);
-  p.pictures.resize(p.width, p.height);
-  p.scene_stale = true;
+  parts_->panel.resize(width, height);
 }
 
 void SceneRenderer::setMoving(bool moving) {
-  parts_->moving = moving;
+  parts_->panel.moving = moving;
 }
 
 bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
@@ -220,26 +215,44 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   if (!p.window) return true;
   takeChanges();
   p.window->MakeCurrent();
-  p.work(budget_ms);
+  p.panel.work(budget_ms);
   // Who has no frames to wait for waits here.
   const bool limited = budget_ms < std::numeric_limits<double>::infinity();
   while ((!p.hosted || !limited) && p.warmUp()) {
   }
   if (p.hosted) {
-    p.compose(framebuffer);
+    p.panel.compose(framebuffer, true);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  } else if (p.frame.bind(p.width, p.height, {Canvas::Image::colour})) {
-    p.compose(p.frame.framebuffer());
+  } else if (p.frame.bind(p.panel.width, p.panel.height, {Canvas::Image::colour})) {
+    p.panel.compose(p.frame.framebuffer(), true);
     glFinish();
   }
-  return p.moving || complete();
+  return p.panel.moving || complete();
+}
+
+void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
+                             bool in_full) {
+  Parts& p = *parts_;
+  if (!p.window) return;
+  takeChanges();
+  p.window->MakeCurrent();
+  View& eye = p.eye;
+  eye.resize(width, height);
+  eye.camera.lookThrough(eye_mm);
+  const Clock::time_point begun = Clock::now();
+  eye.drawAt(in_full ? 1.0 : p.eye_level.pixelStep());
+  if (!in_full && p.drawsVolume()) p.eye_level.movingFrameTook(msSince(begun));
+  while (p.warmUp()) {  // once: then it is warm for both
+  }
+  eye.compose(framebuffer, false);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
 bool SceneRenderer::refine(double budget_ms) {
   Parts& p = *parts_;
   if (!p.window) return false;
   p.window->MakeCurrent();
-  return p.work(budget_ms);
+  return p.panel.work(budget_ms);
 }
 
 bool SceneRenderer::cold() const {
@@ -255,11 +268,11 @@ bool SceneRenderer::warmUp() {
 
 bool SceneRenderer::complete() const {
   const Parts& p = *parts_;
-  return !p.drawsVolume() || (p.pictures.complete() && p.volume.labelsSent());
+  return !p.drawsVolume() || (p.panel.pictures.complete() && p.volume.labelsSent());
 }
 
 bool SceneRenderer::stale() const {
-  return parts_->drawsVolume() && parts_->pictures.stale();
+  return parts_->drawsVolume() && parts_->panel.pictures.stale();
 }
 
 Index3 SceneRenderer::reduction() const {
@@ -271,7 +284,7 @@ Status SceneRenderer::refusal() const {
 }
 
 double SceneRenderer::shareOfRays() const {
-  const double step = parts_->pictures.pixelStep();
+  const double step = parts_->panel.pictures.pixelStep();
   return parts_->drawsVolume() && step > 0.0 ? 1.0 / (step * step) : 0.0;
 }
 
@@ -280,44 +293,44 @@ Picture SceneRenderer::picture() {
   if (!p.window) return {};
   takeChanges();
   p.window->MakeCurrent();
-  const bool moving = std::exchange(p.moving, false);
-  p.work(std::numeric_limits<double>::infinity());
-  p.moving = moving;
-  return p.read();
+  const bool moving = std::exchange(p.panel.moving, false);
+  p.panel.work(std::numeric_limits<double>::infinity());
+  p.panel.moving = moving;
+  return p.panel.read();
 }
 
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
   Parts& p = *parts_;
   if (!hasVolume()) return;
-  p.camera.fit(p.voxels().geometry, direction, up, p.width, p.height);
+  p.panel.camera.fit(p.voxels().geometry, direction, up, p.panel.width, p.panel.height);
   p.spoil();
 }
 
 void SceneRenderer::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up,
                            double distance_mm) {
-  parts_->camera.lookAt(focus_mm, direction, up, distance_mm);
+  parts_->panel.camera.lookAt(focus_mm, direction, up, distance_mm);
   parts_->spoil();
 }
 
 void SceneRenderer::orbit(double azimuth_deg, double elevation_deg) {
-  parts_->camera.orbit(azimuth_deg, elevation_deg);
+  parts_->panel.camera.orbit(azimuth_deg, elevation_deg);
   parts_->spoil();
 }
 
 void SceneRenderer::zoom(double factor) {
   Parts& p = *parts_;
-  p.camera.zoom(factor, hasVolume() ? 20.0 * p.voxels().geometry.diagonal_mm() : 1e5);
+  p.panel.camera.zoom(factor, hasVolume() ? 20.0 * p.voxels().geometry.diagonal_mm() : 1e5);
   p.spoil();
 }
 
 void SceneRenderer::pan(double dx_pixels, double dy_pixels) {
   Parts& p = *parts_;
-  p.camera.pan(dx_pixels, dy_pixels, p.height);
+  p.panel.camera.pan(dx_pixels, dy_pixels, p.panel.height);
   p.spoil();
 }
 
 void SceneRenderer::lookFrom(StandardView side) {
-  ViewCamera& camera = parts_->camera;
+  ViewCamera& camera = parts_->panel.camera;
   const Vec3 forward = camera.forward(), up = camera.up();
   camera.lookFrom(side);
   parts_->spoil();
@@ -325,13 +338,13 @@ void SceneRenderer::lookFrom(StandardView side) {
 }
 
 void SceneRenderer::setParallel(bool parallel) {
-  if (parallel == parts_->camera.parallel()) return;
-  parts_->camera.setParallel(parallel);
+  if (parallel == parts_->panel.camera.parallel()) return;
+  parts_->panel.camera.setParallel(parallel);
   parts_->spoil();
 }
 
 const ViewCamera& SceneRenderer::camera() const {
-  return parts_->camera;
+  return parts_->panel.camera;
 }
 
 void SceneRenderer::setLines(const ScreenLines& lines) {
@@ -339,17 +352,17 @@ void SceneRenderer::setLines(const ScreenLines& lines) {
 }
 
 Vec3 SceneRenderer::viewRight() const {
-  return parts_->camera.right();
+  return parts_->panel.camera.right();
 }
 Vec3 SceneRenderer::viewUp() const {
-  return parts_->camera.up();
+  return parts_->panel.camera.up();
 }
 Vec3 SceneRenderer::viewForward() const {
-  return parts_->camera.forward();
+  return parts_->panel.camera.forward();
 }
 
 double SceneRenderer::mmPerPixelAt(const Vec3& patient_mm) const {
-  return parts_->camera.mmPerPixelAt(patient_mm, parts_->height);
+  return parts_->panel.camera.mmPerPixelAt(patient_mm, parts_->panel.height);
 }
 
 double UploadProbe::fullUpload_ms(SceneRenderer& renderer) {
@@ -399,7 +412,7 @@ void UploadProbe::setNormalsAsColour(SceneRenderer& renderer, bool on) {
 }
 
 double UploadProbe::level(const SceneRenderer& renderer) {
-  return renderer.parts_->pictures.pixelStep();
+  return renderer.parts_->panel.pictures.pixelStep();
 }
 
 Picture UploadProbe::pictureAt(SceneRenderer& renderer, double level) {
@@ -407,14 +420,14 @@ Picture UploadProbe::pictureAt(SceneRenderer& renderer, double level) {
   if (!p.window) return {};
   renderer.takeChanges();
   p.window->MakeCurrent();
-  p.drawAt(level);
-  return p.read();
+  p.panel.drawAt(level);
+  return p.panel.read();
 }
 
 Picture UploadProbe::painted(SceneRenderer& renderer) {
   if (!renderer.parts_->window) return {};
   renderer.parts_->window->MakeCurrent();
-  return renderer.parts_->read();
+  return renderer.parts_->panel.read();
 }
 
 }  // namespace trephine

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/eye_view.h"
 #include "base/math.h"
 #include "base/result.h"
 #include "render/clip_plane.h"
@@ -116,6 +117,10 @@ class SceneRenderer {
   // where nobody sees it, one thing a call. False: nothing was left.
   bool cold() const;
   bool warmUp();
+  // What one eye of two sees, without letters and lines, into a framebuffer object of this size. As
+  // coarse as it has to be for pictures of a moving head, or in full.
+  void paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
+                bool in_full = false);
   // Works for about so long on a finer picture, where nothing of it is cold. True when there is
   // another to paint.
   bool refine(double budget_ms);
@@ -154,6 +159,7 @@ class SceneRenderer {
  private:
   friend struct UploadProbe;
   struct Parts;
+  struct View;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -25,35 +25,35 @@ constexpr double kOutlineOpacity = 0.65;
 
 }  // namespace
 
-std::vector<PixelRect> SceneRenderer::Parts::partsOfTools() const {
+std::vector<PixelRect> SceneRenderer::View::partsOfTools() const {
   std::vector<PixelRect> parts;
-  for (const auto& box : tools.boxes()) {
+  for (const auto& box : of.tools.boxes()) {
     const PixelRect part = around(box.data(), box.size(), 2);
     if (!part.empty()) parts.push_back(part);
   }
   return parts;
 }
 
-PixelRect SceneRenderer::Parts::partOfOutline() const {
-  const auto box = outline.box();
+PixelRect SceneRenderer::View::partOfOutline() const {
+  const auto box = of.outline.box();
   return box ? around(box->data(), box->size(), 2) : PixelRect{};
 }
 
-void SceneRenderer::Parts::drawTools(unsigned int framebuffer, const Canvas* shown,
-                                     const Span& span) {
-  drawSolids(*tool_renderer, 1.0, partsOfTools(), framebuffer, shown, span);
+void SceneRenderer::View::drawTools(unsigned int framebuffer, const Canvas* shown,
+                                    const Span& span) {
+  drawSolids(*of.tool_renderer, 1.0, partsOfTools(), framebuffer, shown, span);
 }
 
-void SceneRenderer::Parts::drawOutline(const Canvas* shown, const Span& span) {
-  if (!outline.box()) return;
-  outline.lift(camera);
-  drawSolids(*outline_renderer, kOutlineOpacity, {partOfOutline()}, scene.framebuffer(), shown,
+void SceneRenderer::View::drawOutline(const Canvas* shown, const Span& span) {
+  if (!of.outline.box()) return;
+  of.outline.lift(camera);
+  drawSolids(*of.outline_renderer, kOutlineOpacity, {partOfOutline()}, scene.framebuffer(), shown,
              span);
 }
 
-void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,
-                                      const std::vector<PixelRect>& parts, unsigned int framebuffer,
-                                      const Canvas* shown, const Span& span) {
+void SceneRenderer::View::drawSolids(vtkRenderer& solids, double opacity,
+                                     const std::vector<PixelRect>& parts, unsigned int framebuffer,
+                                     const Canvas* shown, const Span& span) {
   if (std::ranges::all_of(parts, &PixelRect::empty)) return;
   tool_layer.bind(width, height, {Canvas::Image::colour, Canvas::Image::hidden_part});
   glEnable(GL_SCISSOR_TEST);
@@ -64,8 +64,8 @@ void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,
     glClearBufferfv(GL_COLOR, 0, kNothing);
     glClearBufferfv(GL_DEPTH, 0, &kFar);
   }
-  handToVtk();
-  place(solids, 1.0);
+  of.handToVtk(width, height);
+  place(solids, glm::dvec2(1.0));
   solids.Render();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   DepthRange range;
@@ -74,12 +74,12 @@ void SceneRenderer::Parts::drawSolids(vtkRenderer& solids, double opacity,
   // A part that lies in another would be drawn twice, which changes nothing: what is read is not
   // what is written.
   for (const PixelRect& part : parts) {
-    composer.drawTools(tool_layer, opacity, range, shown, span, part);
+    of.composer.drawTools(tool_layer, opacity, range, shown, span, part);
   }
 }
 
-void SceneRenderer::Parts::addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
-  for (const ToolView& tool : tool_views) {
+void SceneRenderer::View::addGuides(const Canvas& shown, const Span& span, ScreenLines& to) const {
+  for (const ToolView& tool : of.tool_views) {
     const PixelRect reach = guideReach(tool, camera, width, height);
     std::optional<double> ahead_mm;
     if (!tool.contact && !reach.empty()) {
@@ -95,7 +95,7 @@ void SceneRenderer::Parts::addGuides(const Canvas& shown, const Span& span, Scre
         ahead_mm = surfaceAhead_mm(tool, patch, camera, width, height);
       }
     }
-    const bool first_of_more = tool_views.size() > 1 && &tool == &tool_views.front();
+    const bool first_of_more = of.tool_views.size() > 1 && &tool == &of.tool_views.front();
     addGuide(tool, ahead_mm, camera, width, height, first_of_more, to);
   }
 }

@@ -17,6 +17,7 @@ void ViewCamera::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3&
       glm::length(direction) == 0.0 || distance_mm <= 0.0) {
     return;
   }
+  off_axis_.reset();
   focus_mm_ = focus_mm;
   forward_ = glm::normalize(direction);
   distance_mm_ = distance_mm;
@@ -25,6 +26,24 @@ void ViewCamera::lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3&
     side = glm::cross(forward_, std::abs(forward_.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, -1, 0));
   }
   up_ = glm::normalize(glm::cross(side, forward_));
+}
+
+void ViewCamera::lookThrough(const EyeView& eye_mm) {
+  constexpr double kAhead_mm = 500.0;  // of a focus, which nothing in such a picture depends on
+  const FieldOfView& sees = eye_mm.sees;
+  if (!isFinite(eye_mm.pose) || !(sees.left < sees.right) || !(sees.down < sees.up)) return;
+  const Quat& turn = eye_mm.pose.orientation;
+  const Vec3 forward = turn * Vec3(0.0, 0.0, -1.0);
+  lookAt(eye_mm.pose.position + kAhead_mm * forward, forward, turn * Vec3(0.0, 1.0, 0.0),
+         kAhead_mm);
+  parallel_ = false;
+  off_axis_ = sees;
+}
+
+FieldOfView ViewCamera::sees(int width, int height) const {
+  if (off_axis_) return *off_axis_;
+  const double aside = kTan * double(width) / double(std::max(1, height));
+  return {-aside, aside, -kTan, kTan};
 }
 
 void ViewCamera::lookFrom(StandardView side) {
@@ -85,18 +104,31 @@ double ViewCamera::halfHeight_mm() const {
 double ViewCamera::mmPerPixelAt(const Vec3& patient_mm, int height) const {
   if (parallel_) return 2.0 * halfHeight_mm() / double(std::max(1, height));
   const double depth_mm = std::max(1e-3, glm::dot(patient_mm - eye(), forward_));
+  if (off_axis_) return depth_mm * (off_axis_->up - off_axis_->down) / double(std::max(1, height));
   return 2.0 * depth_mm * kTan / double(std::max(1, height));
 }
 
 std::optional<glm::dvec2> ViewCamera::pixelOf(const Vec3& patient_mm, int width, int height) const {
   const Vec3 at = patient_mm - eye();
   if (!isFinite(at) || (!parallel_ && glm::dot(at, forward_) < 1e-3)) return std::nullopt;
+  if (off_axis_) {
+    const FieldOfView& of = *off_axis_;
+    const double depth = glm::dot(at, forward_);
+    return glm::dvec2(width * (glm::dot(at, right()) / depth - of.left) / (of.right - of.left),
+                      height * (glm::dot(at, up_) / depth - of.down) / (of.up - of.down));
+  }
   const double mm = mmPerPixelAt(patient_mm, height);
   return glm::dvec2(0.5 * width + glm::dot(at, right()) / mm,
                     0.5 * height + glm::dot(at, up_) / mm);
 }
 
 ViewCamera::Ray ViewCamera::rayThrough(const glm::dvec2& pixel, int width, int height) const {
+  if (off_axis_) {
+    const FieldOfView& of = *off_axis_;
+    const double aside = of.left + pixel.x / std::max(1, width) * (of.right - of.left);
+    const double above = of.down + pixel.y / std::max(1, height) * (of.up - of.down);
+    return {eye(), glm::normalize(forward_ + right() * aside + up_ * above)};
+  }
   const double mm = 2.0 * halfHeight_mm() / double(std::max(1, height));
   const Vec3 beside =
       right() * ((pixel.x - 0.5 * width) * mm) + up_ * ((pixel.y - 0.5 * height) * mm);

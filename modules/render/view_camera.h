@@ -1,8 +1,10 @@
-// The eye in the patient frame: in perspective, or orthographic. Pure.
+// The eye in the patient frame: in perspective, or orthographic, or one eye of two, which looks
+// past the middle of its picture. Pure.
 #pragma once
 
 #include <optional>
 
+#include "base/eye_view.h"
 #include "base/math.h"
 #include "volume/volume.h"
 
@@ -18,6 +20,11 @@ class ViewCamera {
   // `direction` points from the eye to the focus. What is not finite or has no length is ignored;
   // an `up` along the direction is replaced.
   void lookAt(const Vec3& focus_mm, const Vec3& direction, const Vec3& up, double distance_mm);
+  // As one eye of two, until it is told where to look otherwise. Patient frame, mm.
+  void lookThrough(const EyeView& eye_mm);
+  bool offAxis() const { return off_axis_.has_value(); }
+  // In a picture of this shape, in perspective.
+  FieldOfView sees(int width, int height) const;
   // From this side at the same focus, as near as before; the patient upright, seen from above and
   // below with the face up.
   void lookFrom(StandardView side);
@@ -64,6 +71,7 @@ class ViewCamera {
   Vec3 up_{0.0, 0.0, 1.0};
   double distance_mm_ = 500.0;
   bool parallel_ = false;
+  std::optional<FieldOfView> off_axis_;
 };
 
 // A scale bar's length: 1, 2 or 5 times a power of ten, in mm, as long as `most_pixels` allow; none
