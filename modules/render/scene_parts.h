@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "render/canvas.h"
+#include "render/card_drawing.h"
 #include "render/carve_volume_mapper.h"
 #include "render/composer.h"
 #include "render/display_volume.h"
@@ -115,6 +116,7 @@ struct SceneRenderer::Parts {
   ScreenLines lines;
 
   Composer composer;
+  CardDrawing cards;  // of eyes alone
   Canvas frame;  // pictures that are read back
   // What has been drawn once in this context, so that OpenGL has its shaders.
   struct Warm {

@@ -279,7 +279,10 @@ void SceneRenderer::View::compose(unsigned int framebuffer, bool with_cues) {
   }
   scene.copyTo(framebuffer);
   if (of.warm.tools) drawTools(framebuffer, shown, span);
-  if (!with_cues) return;
+  if (!with_cues) {
+    of.cards.draw(camera, width, height, shown, span);
+    return;
+  }
   ScreenLines all;
   if (shown) {
     addOrientationCue(camera, width, height, all);
@@ -353,6 +356,7 @@ void SceneRenderer::Parts::release() {
   panel.release();
   eye.release();
   composer.release();
+  cards.release();
   frame.release();
   warm = {};
   fitted = refused = false;

@@ -248,6 +248,10 @@ void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, in
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
+void SceneRenderer::setCards(std::vector<Card> cards) {
+  parts_->cards.show(std::move(cards));
+}
+
 bool SceneRenderer::refine(double budget_ms) {
   Parts& p = *parts_;
   if (!p.window) return false;

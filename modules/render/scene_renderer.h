@@ -13,6 +13,7 @@
 #include "base/eye_view.h"
 #include "base/math.h"
 #include "base/result.h"
+#include "render/card.h"
 #include "render/clip_plane.h"
 #include "render/picture.h"
 #include "render/screen_lines.h"
@@ -121,6 +122,8 @@ class SceneRenderer {
   // coarse as it has to be for pictures of a moving head, or in full.
   void paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
                 bool in_full = false);
+  // What stands in such pictures to be read.
+  void setCards(std::vector<Card> cards);
   // Works for about so long on a finer picture, where nothing of it is cold. True when there is
   // another to paint.
   bool refine(double budget_ms);
