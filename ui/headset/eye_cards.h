@@ -1,0 +1,39 @@
+// What a trainee in a headset reads: drawn here, placed in the room by who shows it. Letters are so high
+// that a headset of 15 pixels a degree shows them.
+#pragma once
+
+#include <QImage>
+#include <QString>
+#include <QStringList>
+#include <string>
+#include <vector>
+
+#include "render/card.h"
+
+namespace trephine {
+
+// At arm's length from the eyes: how far to the right of what is looked at, above it, and how wide.
+struct EyeCard {
+  std::string name;
+  QImage image;
+  double right_m = 0.0, up_m = 0.0, width_m = 0.3;
+};
+
+// A card's pixels stand for so many a degree, seen from where it is read.
+constexpr double kCardDistance_m = 0.9;
+constexpr double kPixelsPerDegree = 30.0;
+// The height of small letters such as x, in degrees: 9 pixels of a headset of 15 a degree.
+constexpr double kLetters_deg = 0.6;
+
+struct HandForce {
+  QString name;
+  QColor colour;
+  double sent_N = 0.0, demanded_N = 0.0, limit_N = 1.0;
+  QString why;  // it is without force; empty: it has it
+};
+
+EyeCard forceCard(const std::vector<HandForce>& hands);
+// The exercise's name and its time, and what it asks for.
+EyeCard exerciseCard(const QString& title, const QString& time, const QString& goal);
+
+}  // namespace trephine
