@@ -83,13 +83,13 @@ void HeadsetView::serve() {
   sayState(state);
   if (!placed_ && state.fresh + state.repeated == 0 && state.seen) place();
   ViewWidget& view = bench_.view();
-  view.withGraphics([&](SceneRenderer& renderer, const PicturePainter::Panel& panel) {
+  view.withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
     painter_.serve(
         headset_->pictures(),
         [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
           renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
         },
-        panel);
+        {shown, wide, high});
   });
 }
 
@@ -107,7 +107,7 @@ void HeadsetView::sayState(const HeadsetState& state) {
 }
 
 void HeadsetView::ended(const HeadsetEnd& how) {
-  bench_.view().withGraphics([&](SceneRenderer&, const PicturePainter::Panel&) {
+  bench_.view().withGraphics([&](SceneRenderer&, unsigned int, int, int) {
     painter_.release(headset_->pictures());
   });
   bench_.view().showInstead(0, 0, 0);

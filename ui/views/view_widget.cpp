@@ -3,6 +3,7 @@
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QOpenGLContext>
+#include <QOpenGLExtraFunctions>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
@@ -215,6 +216,41 @@ void ViewWidget::addWorkspaces(int wide, int high, ScreenLines& to) const {
   }
 }
 
+void ViewWidget::withGraphics(const WithGraphics& work) {
+  if (!context() || !drawing_) return;
+  makeCurrent();
+  work(renderer_, defaultFramebufferObject(), int(std::lround(width() * devicePixelRatioF())),
+       int(std::lround(height() * devicePixelRatioF())));
+  doneCurrent();
+}
+
+void ViewWidget::showInstead(unsigned int texture, int wide, int high) {
+  if (texture == 0 && instead_.texture == 0) return;
+  instead_ = {texture, wide, high};
+  update();
+}
+
+// As large as it fits, in the middle.
+void ViewWidget::paintInstead(int wide, int high) {
+  QOpenGLExtraFunctions& gl = *context()->extraFunctions();
+  const double by = std::min(double(wide) / instead_.width, double(high) / instead_.height);
+  const int shown_wide = int(instead_.width * by), shown_high = int(instead_.height * by);
+  const int x = (wide - shown_wide) / 2, y = (high - shown_high) / 2;
+  unsigned int from = 0;
+  gl.glGenFramebuffers(1, &from);
+  gl.glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
+  gl.glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                            instead_.texture, 0);
+  gl.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, defaultFramebufferObject());
+  gl.glDisable(GL_SCISSOR_TEST);
+  gl.glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+  gl.glClear(GL_COLOR_BUFFER_BIT);
+  gl.glBlitFramebuffer(0, 0, instead_.width, instead_.height, x, y, x + shown_wide, y + shown_high,
+                       GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  gl.glDeleteFramebuffers(1, &from);
+  gl.glBindFramebuffer(GL_FRAMEBUFFER, defaultFramebufferObject());
+}
+
 void ViewWidget::paintGL() {
   if (resizing_) return;
   worked_ = true;
@@ -224,6 +260,7 @@ void ViewWidget::paintGL() {
   ScreenLines lines;
   const int wide = int(std::lround(width() * devicePixelRatioF()));
   const int high = int(std::lround(height() * devicePixelRatioF()));
+  if (instead_.texture != 0) return paintInstead(wide, high);
   clip_.addLines(renderer_.camera(), wide, high, lines);
   addWorkspaces(wide, high, lines);
   if (moving_light_) {  // on a half sphere that is seen from the eye

@@ -15,6 +15,7 @@
 #include <QOpenGLWidget>
 #include <QTimer>
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "base/result.h"
@@ -80,6 +81,16 @@ class ViewWidget : public QOpenGLWidget {
   Result<Picture> picture();
   std::string openGlDescription() const { return gl_description_; }
 
+  // ---- For pictures that are seen elsewhere.
+  // With the view's OpenGL current: its renderer, and what is on the screen as a framebuffer object
+  // of this size. Nothing where the view cannot draw.
+  using WithGraphics =
+      std::function<void(SceneRenderer&, unsigned int framebuffer, int width, int height)>;
+  void withGraphics(const WithGraphics& work);
+  // The view shows this texture of its context instead of its own picture; 0: its own again.
+  void showInstead(unsigned int texture, int width, int height);
+  void setCards(std::vector<Card> cards) { renderer_.setCards(std::move(cards)); }
+
  signals:
   // While an exercise runs.
   void pointed(const QPointF& place);
@@ -137,6 +148,7 @@ class ViewWidget : public QOpenGLWidget {
   glm::dvec2 pixelAt(const QPointF& place) const;  // of the renderer, from the lower left corner
   void addWorkspaces(int wide, int high, ScreenLines& to) const;
   void fitRenderer();
+  void paintInstead(int wide, int high);
 
   SceneRenderer renderer_;
   std::shared_ptr<const VolumeMirror> mirror_ = std::make_shared<VolumeMirror>();
@@ -169,6 +181,10 @@ class ViewWidget : public QOpenGLWidget {
   bool put_off_ = false;  // what is to be warmed
   bool moving_ = false;
   bool refusal_said_ = false;
+  struct Instead {
+    unsigned int texture = 0;
+    int width = 0, height = 0;
+  } instead_;
 };
 
 }  // namespace trephine
