@@ -71,10 +71,12 @@ INNER = {
         "work": {"common", "views"},
         "cases": {"common", "views", "work"},
         "prepare": {"common", "views", "work", "tissue", "structures"},
-        "train": {"common", "views", "work"},
+        "headset": {"common", "views", "work"},
+        "train": {"common", "views", "work", "headset"},
         "review": {"common", "work", "views"},
         "devices": {"common", "work"},
-        "frame": {"common", "views", "work", "cases", "prepare", "train", "review", "devices"},
+        "frame": {"common", "views", "work", "cases", "prepare", "train", "review", "devices",
+                  "headset"},
     },
 }
 

@@ -14,6 +14,7 @@
 #include "ui/cases/cases_workspace.h"
 #include "ui/common/slip_guard.h"
 #include "ui/frame/rail.h"
+#include "ui/headset/headset_view.h"
 #include "ui/prepare/prepare_workspace.h"
 #include "ui/review/review_workspace.h"
 #include "ui/train/train_workspace.h"
@@ -97,6 +98,7 @@ class MainWindow : public QMainWindow {
   PrepareWorkspace* prepare_;
   TrainWorkspace* train_;
   ReviewWorkspace* review_;
+  HeadsetView* headset_;
   std::array<Room, 4> rooms_;  // by place
   Place place_ = Place::cases;
   Rail* rail_;

@@ -36,6 +36,7 @@ void MainWindow::buildWorkspaces() {
   prepare_ = new PrepareWorkspace(bench_);
   train_ = new TrainWorkspace(bench_);
   review_ = new ReviewWorkspace(bench_);
+  headset_ = new HeadsetView(bench_, *this);
   rooms_ = {Room{Place::cases, "cases", cases_, {}, {}},
             Room{Place::prepare, "prepare", prepare_, {ViewLayout::Kind::four, 0}, {}},
             Room{Place::train, "train", train_, {ViewLayout::Kind::one_large, 0}, {}},
@@ -197,6 +198,8 @@ void MainWindow::buildMenus() {
   view->addSeparator();
   for (QAction* tool : this->view().tools().all())
     tool ? view->addAction(tool) : void(view->addSeparator());
+  view->addSeparator();
+  view->addActions({headset_->onAction(), headset_->recentreAction(), headset_->mirrorAction()});
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   QAction* keys =
       help->addAction(tr("&Keys"), QKeySequence(Qt::Key_F1), this, &MainWindow::showShortcuts);
@@ -205,6 +208,10 @@ void MainWindow::buildMenus() {
 }
 
 void MainWindow::connectParts() {
+  connect(headset_, &HeadsetView::changed, this,
+          [this] { train_->setCardsWanted(headset_->isOn()); });
+  connect(train_, &TrainWorkspace::cardsChanged, headset_, &HeadsetView::setCards);
+  connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);
   connect(rail_, &Rail::chosen, this, qOverload<Place>(&MainWindow::show));
   connect(&bench_, &Bench::placeWanted, this, qOverload<Place>(&MainWindow::show));
   connect(&bench_, &Bench::failed, this, &MainWindow::failed);

@@ -63,6 +63,10 @@ void TrainWorkspace::tick() {
 void TrainWorkspace::followPedal(const LoopState& state) {
   const std::uint32_t now = state.record.arms[0].buttons & (kPedalLeft | kPedalRight);
   const std::uint32_t changed = now ^ std::exchange(pedal_, now);
+  if (now == (kPedalLeft | kPedalRight)) {
+    if (changed != 0) emit recentreWanted();
+    return;
+  }
   if (changed & kPedalRight) {
     clutch_->setChecked(now & kPedalRight);
     clutch();
@@ -97,6 +101,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     }
     touched_ = touched_ || hands_->taken();
     notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
+    if (cards_wanted_) tellCards(session, shown);
     if (!session.isPoke()) exercise_->showTime(double(state.seconds));
     exercise_->showTools(session.scene(), state.tools);
     if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
@@ -107,6 +112,29 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
       showRewind(state);
     }
   }
+}
+
+void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
+  const Scene& scene = session.scene();
+  std::vector<HandForce> hands;
+  for (std::size_t i = 0; i < scene.arms.size() && i < limits_N_.size(); ++i) {
+    const ArmRecord& arm = state.record.arms[i];
+    HandForce hand;
+    hand.name = handName(scene.arms[i]);
+    hand.colour = colours::ofArm(scene.arms[i], i);
+    hand.sent_N = glm::length(arm.sent_N);
+    hand.demanded_N = glm::length(arm.demanded_N);
+    hand.limit_N = limits_N_[i];
+    if (arm.faults != 0) hand.why = faultWords(arm.faults);
+    hands.push_back(hand);
+  }
+  QString goal;
+  if (const CardText* card = cardFor(scene, read(settings::kLanguage).toStdString())) {
+    goal = toQt(card->goal);
+  }
+  QString time = timeWords(double(state.seconds));
+  if (state.paused) time = tr("%1, paused").arg(time);
+  emit cardsChanged({forceCard(hands), exerciseCard(toQt(scene.name), time, goal)});
 }
 
 // Of the tissues as the session counts them, of the structures as the views' copy shows them.

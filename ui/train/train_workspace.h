@@ -8,6 +8,7 @@
 #include <QTimer>
 #include <optional>
 
+#include "ui/headset/eye_cards.h"
 #include "ui/train/arms_panel.h"
 #include "ui/train/exercise_panel.h"
 #include "ui/train/hand_bar.h"
@@ -49,11 +50,15 @@ class TrainWorkspace : public Workspace {
   // A scene that is about to open may not be in the list.
   void chooseNothing() { scenes_->setCurrentIndex(-1); }
   void showInUse();  // in the list of exercises
+  // Somebody reads the state as cards (cardsChanged).
+  void setCardsWanted(bool wanted) { cards_wanted_ = wanted; }
 
  signals:
   void ratesChanged(const QString& words);
   void structureWanted();  // that the exercise needs and the case lacks
   void replayWanted();     // of the exercise that ended last
+  void cardsChanged(const std::vector<trephine::EyeCard>& cards);
+  void recentreWanted();  // by both outer switches of a pedal at once
 
  private:
   void buildActions();
@@ -79,6 +84,7 @@ class TrainWorkspace : public Workspace {
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);
   void showRates();
+  void tellCards(const Session& session, const LoopState& state);
   void command(CommandKind kind);
   void undo(CommandKind which);
   void rewind(std::uint32_t second);
@@ -128,6 +134,7 @@ class TrainWorkspace : public Workspace {
     std::uint64_t asked_tick;
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
+  bool cards_wanted_ = false;
   std::uint32_t pedal_ = 0;              // buttons, as they were looked at last
   std::optional<LoopState> undoing_;     // what was there when it was asked for
   int frames_ = 0;                       // since the rates were shown
