@@ -132,7 +132,7 @@ void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
   if (const CardText* card = cardFor(scene, read(settings::kLanguage).toStdString())) {
     goal = toQt(card->goal);
   }
-  QString time = timeWords(double(state.seconds));
+  QString time = timeWords(state.seconds);
   if (state.paused) time = tr("%1, paused").arg(time);
   emit cardsChanged({forceCard(hands), exerciseCard(toQt(scene.name), time, goal)});
 }
