@@ -26,8 +26,9 @@ constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_S
 constexpr std::int64_t kSrgb8 = 0x8C43, kRgba8 = 0x8058;
 constexpr GLenum kFramebufferSrgb = 0x8DB9;
 constexpr XrDuration kImagePatience_ns = 100'000'000;
-constexpr auto kExitPatience = 2s;   // for the runtime to end a session that is to end
-constexpr double kTryEvery_s = 0.5;  // a pair of eyes, while the flat screen stands there
+constexpr auto kExitPatience = 2s;      // for the runtime to end a session that is to end
+constexpr double kTryEvery_s = 0.5;     // a pair of eyes, while the flat screen stands there
+constexpr double kPanelEvery_s = 0.03;  // its picture, on that screen
 constexpr int kScreenWidth = 1280, kScreenHeight = 800;  // pixels
 
 std::int64_t now_ns() {
@@ -133,7 +134,7 @@ class OpenXrSession {
   PictureRequest pair_shown_;
   int repeats_ = 0;  // of the shown pair
   Pose screen_pose_m_;
-  double screen_height_m_ = 1.0, last_try_s_ = 0.0;
+  double screen_height_m_ = 1.0, last_try_s_ = 0.0, last_panel_s_ = 0.0;
 };
 
 // An abandoned thread ends with the process: nothing that it knew is there any more.
@@ -492,13 +493,14 @@ void OpenXrSession::showEyes(bool stopping) {
 void OpenXrSession::showFlat() {
   const double now_s = 1e-9 * double(now_ns());
   const bool tries = now_s - last_try_s_ > kTryEvery_s;
-  const std::uint64_t number = ++number_;
-  const auto kind = tries ? PictureRequest::Of::eyes : PictureRequest::Of::panel;
-  if (tries) last_try_s_ = now_s;
-  shared_.pictures.ask({number, kind, now_m_, state_.width, state_.height, now_ns()});
-  shared_.wake();
+  if (tries || now_s - last_panel_s_ > kPanelEvery_s) {
+    const auto kind = tries ? PictureRequest::Of::eyes : PictureRequest::Of::panel;
+    (tries ? last_try_s_ : last_panel_s_) = now_s;
+    shared_.pictures.ask({++number_, kind, now_m_, state_.width, state_.height, now_ns()});
+    shared_.wake();
+  }
   if (SharedPicture* tried = shared_.pictures.take(PictureRequest::Of::eyes, 0, 0us)) {
-    pace_.tried(1e-9 * double(now_ns() - tried->request.asked_ns));
+    pace_.tried(1e-9 * double(tried->finished_ns - tried->request.asked_ns));
     gl_.glDeleteSync(static_cast<GLsync>(tried->drawn));
     tried->drawn = nullptr;
     shared_.pictures.giveBack(*tried);

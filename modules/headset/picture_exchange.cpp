@@ -67,6 +67,9 @@ void PictureExchange::finish(SharedPicture& picture, const PictureRequest& reque
   }
   picture.request = request;
   picture.drawn = drawn;
+  picture.finished_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                            std::chrono::steady_clock::now().time_since_epoch())
+                            .count();
   stateOf(picture) = State::ready;
   drawn_.notify_all();
 }

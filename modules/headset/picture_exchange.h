@@ -28,9 +28,10 @@ struct PictureRequest {
 struct SharedPicture {
   PictureRequest request;
   std::array<unsigned int, 2> textures{};
-  int width = 0, height = 0;  // of the textures
-  void* drawn = nullptr;      // GLsync of the window, for the headset to wait for and delete
-  void* read = nullptr;       // GLsync of the headset, likewise for the window
+  int width = 0, height = 0;     // of the textures
+  std::int64_t finished_ns = 0;  // monotonic clock
+  void* drawn = nullptr;         // GLsync of the window, for the headset to wait for and delete
+  void* read = nullptr;          // GLsync of the headset, likewise for the window
 };
 
 class PictureExchange {

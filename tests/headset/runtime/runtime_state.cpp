@@ -27,10 +27,6 @@ Pose poseOf(const XrPosef& of) {
   return {{of.position.x, of.position.y, of.position.z}, Quat(q.w, q.x, q.y, q.z)};
 }
 
-bool isTurn(const XrQuaternionf& q) {
-  return std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0F) < 0.01F;
-}
-
 }  // namespace
 
 RuntimeState& theRuntime() {
