@@ -68,7 +68,7 @@ struct SceneRenderer::View {
   // The surface in the middle of the picture; the camera's focus where nothing is seen there.
   Vec3 inTheMiddle(const Canvas& shown, const Span& span) const;
   // What is shown now.
-  Picture read();
+  Picture read(bool with_cues);
   void resize(int wide, int high);
   void release();
 

@@ -309,12 +309,12 @@ Vec3 SceneRenderer::View::inTheMiddle(const Canvas& shown, const Span& span) con
   return camera.eye() + camera.forward() * double(depth_mm[0]);
 }
 
-Picture SceneRenderer::View::read() {
+Picture SceneRenderer::View::read(bool with_cues) {
   Picture picture;
   while (of.warmUp()) {
   }
   if (!of.frame.bind(width, height, {Canvas::Image::colour})) return picture;
-  compose(of.frame.framebuffer(), true);
+  compose(of.frame.framebuffer(), with_cues);
   of.frame.bind();
   const std::size_t row = std::size_t(width) * 3;
   std::vector<std::uint8_t> up(row * std::size_t(height));

@@ -248,6 +248,17 @@ void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, in
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
+Picture SceneRenderer::eyePicture(const EyeView& eye_mm, int width, int height) {
+  Parts& p = *parts_;
+  if (!p.window) return {};
+  takeChanges();
+  p.window->MakeCurrent();
+  p.eye.resize(width, height);
+  p.eye.camera.lookThrough(eye_mm);
+  p.eye.drawAt(1.0);
+  return p.eye.read(false);
+}
+
 void SceneRenderer::setCards(std::vector<Card> cards) {
   parts_->cards.show(std::move(cards));
 }
@@ -300,7 +311,7 @@ Picture SceneRenderer::picture() {
   const bool moving = std::exchange(p.panel.moving, false);
   p.panel.work(std::numeric_limits<double>::infinity());
   p.panel.moving = moving;
-  return p.panel.read();
+  return p.panel.read(true);
 }
 
 void SceneRenderer::resetCamera(const Vec3& direction, const Vec3& up) {
@@ -425,13 +436,13 @@ Picture UploadProbe::pictureAt(SceneRenderer& renderer, double level) {
   renderer.takeChanges();
   p.window->MakeCurrent();
   p.panel.drawAt(level);
-  return p.panel.read();
+  return p.panel.read(true);
 }
 
 Picture UploadProbe::painted(SceneRenderer& renderer) {
   if (!renderer.parts_->window) return {};
   renderer.parts_->window->MakeCurrent();
-  return renderer.parts_->panel.read();
+  return renderer.parts_->panel.read(true);
 }
 
 }  // namespace trephine

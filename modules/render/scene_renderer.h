@@ -122,6 +122,8 @@ class SceneRenderer {
   // coarse as it has to be for pictures of a moving head, or in full.
   void paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
                 bool in_full = false);
+  // The same at full quality, read back.
+  Picture eyePicture(const EyeView& eye_mm, int width, int height);
   // What stands in such pictures to be read.
   void setCards(std::vector<Card> cards);
   // Works for about so long on a finer picture, where nothing of it is cold. True when there is
