@@ -46,6 +46,17 @@ class WarmthRule {
   bool limits_ = false;
 };
 
+// Whether an arm has been silent: a pose that has been the same sample for 15 ms is no pose of now,
+// whatever its plugin says. With the patience that the clock has for a sample, within 20 ms of the
+// last.
+class SilenceRule {
+ public:
+  bool tick(std::uint64_t sequence, double period_s);
+
+ private:
+  std::uint64_t last_ = 0, ticks_ = 0;
+};
+
 // Whether a hand is known to hold an arm: it has a button down, or has been moved 5 mm or turned 5
 // degrees from where it was at first, since it is here.
 class HandRule {

@@ -6,6 +6,8 @@
 #include <mutex>
 
 #include "base/rt/thread.h"
+#include "haptics/device_calls.h"
+#include "haptics/device_rules.h"
 #include "haptics/loop_clock.h"
 #include "session/arm_devices.h"
 
@@ -28,32 +30,23 @@ struct ArmTrial::Engine {
   std::vector<TrephineCapabilities> capabilities;
   std::vector<ForceTest> tests;
   std::array<Vec3, kMostTried> first_m{};
-  std::array<std::uint64_t, kMostTried> sequence{}, ticks_without_sample{};
+  std::array<SilenceRule, kMostTried> silences{};
   TriedArms arms{};
   rt::LatestValue<TriedArms> seen;
   std::atomic<double> asked_N[kMostTried]{};  // for the next test of each; 0: none
   std::atomic<bool> end_force{false}, stop{false};
-  // The device that the thread is calling, or one of these, as HapticLoop has it.
-  static constexpr int kNoCall = -1, kLeftBehind = -2;
-  std::atomic<int> in_call{kNoCall};
+  DeviceCalls calls;  // those of the thread
   std::mutex mutex;
   std::condition_variable changed;
   bool ended = false;
 
   std::vector<std::optional<Error>> problems;
 
-  Status open(const std::vector<FoundArm>& arms, const std::vector<std::size_t>& which);
+  Status open(const std::vector<FoundArm>& found, const std::vector<std::size_t>& which);
   void take(std::size_t i, const TrephineArmState& state);
-  bool leaveCall(std::size_t device);
   bool tick();
   void run();
 };
-
-// Ends a call, begun by setting in_call; false where the thread was left behind in it.
-bool ArmTrial::Engine::leaveCall(std::size_t device) {
-  int expected = int(device);
-  return in_call.compare_exchange_strong(expected, kNoCall);
-}
 
 void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
   TriedArm& arm = arms[i];
@@ -67,24 +60,19 @@ void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
 }
 
 bool ArmTrial::Engine::tick() {
-  constexpr std::uint64_t kSilent_ticks = 15;  // a sample that stays for so long is none of now
   const bool end = end_force.exchange(false);
   for (std::size_t d = 0; d < devices.size(); ++d) {
     const Opened& of = devices[d];
     std::array<TrephineArmState, kMostTried> states{};
     std::array<TrephineArmCommand, kMostTried> commands{};
-    in_call = int(d);
-    of.device->read(kPeriod_s, states.data());
-    if (!leaveCall(d)) return false;
+    if (!calls.make(d, [&] { of.device->read(kPeriod_s, states.data()); })) return false;
     for (std::size_t n = 0; n < of.arms.size(); ++n) {
       const std::size_t i = of.arms[n];
       take(i, states[n]);
       if (const double most_N = asked_N[i].exchange(0.0); most_N > 0.0) tests[i].ask(most_N);
       if (end) tests[i].end();
       TriedArm& arm = arms[i];
-      ticks_without_sample[i] = states[n].sequence == sequence[i] ? ticks_without_sample[i] + 1 : 0;
-      sequence[i] = states[n].sequence;
-      if (ticks_without_sample[i] >= kSilent_ticks) arm.flags |= TREPHINE_ARM_LOST;
+      if (silences[i].tick(states[n].sequence, kPeriod_s)) arm.flags |= TREPHINE_ARM_LOST;
       const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
       const bool no_hand = arm.flags & TREPHINE_ARM_NO_HAND;
       arm.force_N =
@@ -93,9 +81,7 @@ bool ArmTrial::Engine::tick() {
       commands[n].size = sizeof(TrephineArmCommand);
       commands[n].force_N[1] = arm.force_N;
     }
-    in_call = int(d);
-    of.device->write(commands.data());
-    if (!leaveCall(d)) return false;
+    if (!calls.make(d, [&] { of.device->write(commands.data()); })) return false;
   }
   seen.write(arms);
   return true;
@@ -111,9 +97,7 @@ void ArmTrial::Engine::run() {
     here = tick();
   }
   for (std::size_t d = 0; here && d < devices.size(); ++d) {
-    in_call = int(d);
-    devices[d].device->stop();
-    here = leaveCall(d);
+    here = calls.make(d, [&] { devices[d].device->stop(); });
   }
   std::lock_guard lock(mutex);
   ended = true;
@@ -121,11 +105,11 @@ void ArmTrial::Engine::run() {
 }
 
 // These arms of one plugin as one device.
-Status ArmTrial::Engine::open(const std::vector<FoundArm>& arms,
+Status ArmTrial::Engine::open(const std::vector<FoundArm>& found,
                               const std::vector<std::size_t>& which) {
-  const std::string& name = arms[which.front()].plugin;
+  const std::string& name = found[which.front()].plugin;
   std::vector<std::uint32_t> places;
-  for (std::size_t i : which) places.push_back(arms[i].place);
+  for (std::size_t i : which) places.push_back(found[i].place);
   Result<std::unique_ptr<Device>> device = openDevice(name, places, deviceFile(name));
   if (!device) return device.error();
   for (std::size_t n = 0; n < which.size(); ++n) {
@@ -177,22 +161,20 @@ ArmTrial::~ArmTrial() {
     thread_.join();
     return;
   }
-  int called = engine_->in_call;
-  const bool held =
-      called >= 0 && engine_->in_call.compare_exchange_strong(called, Engine::kLeftBehind);
-  if (!held) {  // it is on its way: no device keeps it
+  const std::optional<std::size_t> called = engine_->calls.leaveBehind();
+  if (!called) {  // it is on its way: no device keeps it
     engine_->changed.wait(lock, [this] { return engine_->ended; });
     lock.unlock();
     thread_.join();
     return;
   }
-  engine_->devices[std::size_t(called)].device->leaveBehind();
+  engine_->devices[*called].device->leaveBehind();
   // Silencing that one may wait for the call, so it comes last.
-  std::thread([engine = engine_, called] {
+  std::thread([engine = engine_, called = *called] {
     for (std::size_t d = 0; d < engine->devices.size(); ++d) {
-      if (int(d) != called) engine->devices[d].device->safeStop();
+      if (d != called) engine->devices[d].device->safeStop();
     }
-    engine->devices[std::size_t(called)].device->safeStop();
+    engine->devices[called].device->safeStop();
   }).detach();
   thread_.detach();
 }

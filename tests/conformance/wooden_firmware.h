@@ -49,7 +49,7 @@ class WoodenFirmware {
     return first_out_ ? std::chrono::duration<double>(Clock::now() - *first_out_).count() : -1.0;
   }
   std::uint64_t sent() const { return sent_; }
-  std::uint64_t lost() const { return lost_; }  // found no room
+  std::uint64_t lost() const { return lost_; }  // found no room in a node that is open
   // From each report in to the first report out that came after it [us].
   std::vector<double> answers_us() const {
     std::lock_guard lock(mutex_);
@@ -60,6 +60,7 @@ class WoodenFirmware {
   static int neverWaits(int fd);
   void run();
   void take(const std::uint8_t* report);
+  bool hasRoom(Clock::time_point now) const;
 
   int fd_;
   mutable std::mutex mutex_;

@@ -174,7 +174,10 @@ QString forceChangeWords(const ArmRecord& arm, bool paused) {
     if (arm.controller_parts & part.part) words << tr(part.words);
   }
   if (arm.tool_state & kToolArmWarm) words << tr("less, as the motors are warm");
-  if (arm.tool_state & kToolOff) words << tr("the tool's motor is off: the pedal is up");
+  if (arm.tool_state & kToolOff) {
+    words << (arm.buttons & kPedalLost ? tr("the tool's motor is off: the pedal does not answer")
+                                       : tr("the tool's motor is off: the pedal is up"));
+  }
   return words.isEmpty() ? tr("as the tissue demands") : words.join(", ");
 }
 

@@ -97,8 +97,7 @@ std::int64_t hostTime_ns() {
 
 std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
   std::uint64_t count = 0;
-  constexpr std::size_t kSettled = 500;  // ticks: what waited before anybody listened
-  for (std::size_t i = kSettled; i < watch.ticks(arm); ++i) {
+  for (std::size_t i = 1; i < watch.ticks(arm); ++i) {
     const std::uint64_t before = watch.tick(arm, i - 1).sequence;
     const std::uint64_t now = watch.tick(arm, i).sequence;
     if (before > 0 && now > before + 1) count += now - before - 1;
@@ -151,17 +150,14 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   if (!session) return session.error();
   if (Status started = (*session)->start(seconds); !started) return started;
   const std::int64_t begin_ns = hostTime_ns();
-  std::optional<std::uint64_t> lost_before;
+  // What found no room before anybody listened is not lost.
+  const auto lost_before = subject.bench ? subject.bench->lost() : std::nullopt;
   while (!(*session)->finished() && 1e-9 * double(hostTime_ns() - begin_ns) < seconds + 10.0) {
     const double part = 1e-9 * double(hostTime_ns() - begin_ns) / seconds;
     progress.at(std::min(1.0, part), subject.plugin + ", closed loop");
     if (progress.cancelled()) {
       (void)(*session)->stop();
       return cancelled();
-    }
-    constexpr double kSettled_s = 0.5;  // what waited before anybody listened is not lost
-    if (subject.bench && !lost_before && part * seconds > kSettled_s) {
-      lost_before = subject.bench->lost();
     }
     std::this_thread::sleep_for(50ms);
   }

@@ -180,6 +180,18 @@ TEST(HapticCore, WarmMotorsAreSentHalfAndItIsRecorded) {
   EXPECT_EQ(bench.record.arms[0].faults, 0u);
 }
 
+TEST(SilenceRule, AnArmThatGivesTheSameSampleForFifteenMillisecondsIsSilentUntilAnother) {
+  for (const double period_s : {kTick_s, 0.5 * kTick_s}) {
+    SilenceRule rule;
+    EXPECT_FALSE(rule.tick(7, period_s));
+    const int ticks = int(0.015 / period_s + 0.5);
+    for (int i = 1; i < ticks; ++i) ASSERT_FALSE(rule.tick(7, period_s)) << i;
+    EXPECT_TRUE(rule.tick(7, period_s));
+    EXPECT_TRUE(rule.tick(7, period_s));
+    EXPECT_FALSE(rule.tick(8, period_s));
+  }
+}
+
 TEST(HandRule, AHandIsKnownByAButtonAMotionOrATurn) {
   const Pose at{Vec3(0.01, 0.02, 0.03), Quat(1, 0, 0, 0)};
   const auto turned = [&](double degrees) {
