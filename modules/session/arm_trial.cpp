@@ -16,7 +16,7 @@ namespace trephine {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-constexpr auto kEndPatience = std::chrono::milliseconds(300);
+constexpr auto kEndPatience = std::chrono::milliseconds(200);
 
 }  // namespace
 

@@ -35,7 +35,7 @@ class ArmTrial {
   // Opens, calibrates and starts the first kMostTried; not on a window's thread. What one plugin
   // has is opened together, without an arm that cannot be had: that says why in problem().
   static std::unique_ptr<ArmTrial> start(const std::vector<FoundArm>& arms);
-  // Zero force first. Waits for the arms at most 0.3 s; the device whose call does not return by
+  // Zero force first. Waits for the arms at most 0.2 s; the device whose call does not return by
   // then is left behind.
   ~ArmTrial();
 

@@ -105,36 +105,50 @@ std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
   return count;
 }
 
-// Ticks whose force the arm did not get with the sample that it answers, nor with the next.
-std::uint64_t mismatches(const LoopWatch& watch, std::size_t arm,
-                         const std::vector<double>& received_N) {
-  const auto same = [&](std::int64_t at, double force_N) {
-    return at >= 0 && std::size_t(at) < received_N.size() &&
-           std::abs(received_N[std::size_t(at)] - force_N) < 1e-9;
-  };
-  const auto wrong = [&](std::int64_t offset, std::size_t most) {
-    std::uint64_t count = 0;
-    for (std::size_t i = 0; i < most; ++i) {
-      const LoopWatch::Tick& tick = watch.tick(arm, i);
-      if (tick.lost) continue;
-      const std::int64_t at = std::int64_t(tick.sequence) + offset;
-      count += !same(at, tick.force_N) && !same(at + 1, tick.force_N);
+// Forces that the arm never got, or got, by a late tick, after the sample that follows the one that
+// they answer.
+struct Arrivals {
+  std::uint64_t missing = 0, late = 0;
+};
+
+// Both count samples, from different ones on: the arm's is `offset` ahead.
+Arrivals arrivals(const LoopWatch& watch, std::size_t arm, const std::vector<double>& received_N,
+                  std::int64_t offset) {
+  constexpr std::int64_t kLatest = 100;  // samples: beyond it the loop has taken the force away
+  Arrivals found;
+  std::int64_t last = 0;  // they come in the order in which they were sent
+  for (std::size_t i = 0; i < watch.ticks(arm); ++i) {
+    const LoopWatch::Tick& tick = watch.tick(arm, i);
+    if (tick.lost) continue;
+    const std::int64_t due = std::int64_t(tick.sequence) + offset;
+    std::int64_t at = std::max({due, last, std::int64_t(0)});
+    const auto end = std::min(due + kLatest, std::int64_t(received_N.size()));
+    while (at < end && std::abs(received_N[std::size_t(at)] - tick.force_N) >= 1e-9) ++at;
+    if (at >= end) {
+      ++found.missing;
+      continue;
     }
-    return count;
-  };
-  // Both count samples, from different ones on: where the first force of any size arrived.
+    found.late += at > due + 1;
+    last = at;
+  }
+  return found;
+}
+
+Arrivals arrivals(const LoopWatch& watch, std::size_t arm, const std::vector<double>& received_N) {
+  // Where the first force of any size arrived.
   const std::size_t ticks = watch.ticks(arm);
   std::size_t first = 0;
   while (first < ticks && watch.tick(arm, first).force_N < kFelt_N) ++first;
-  if (first == ticks) return ticks;  // nothing is known of any
-  std::uint64_t least = ticks;
-  for (std::size_t at = 0; at < received_N.size(); ++at) {
-    if (!same(std::int64_t(at), watch.tick(arm, first).force_N)) continue;
-    const auto offset = std::int64_t(at) - std::int64_t(watch.tick(arm, first).sequence);
-    least = std::min(least, wrong(offset, ticks));
-    if (least == 0) break;
+  Arrivals best{ticks, 0};  // nothing is known of any
+  if (first == ticks) return best;
+  const LoopWatch::Tick& felt = watch.tick(arm, first);
+  for (std::size_t at = 0; at < received_N.size() && best.missing + best.late > 0; ++at) {
+    if (std::abs(received_N[at] - felt.force_N) >= 1e-9) continue;
+    const Arrivals here =
+        arrivals(watch, arm, received_N, std::int64_t(at) - std::int64_t(felt.sequence));
+    if (here.missing + here.late < best.missing + best.late) best = here;
   }
-  return least;
+  return best;
 }
 
 Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
@@ -186,7 +200,9 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
     const std::uint32_t of_bench = scene->arms[arm].device.place;
     const std::vector<double> received_N = subject.bench->received_N(of_bench);
     if (received_N.empty()) continue;
-    row.force_mismatches = row.force_mismatches.value_or(0) + mismatches(watch, arm, received_N);
+    const Arrivals of = arrivals(watch, arm, received_N);
+    row.force_mismatches = row.force_mismatches.value_or(0) + of.missing;
+    row.forces_late += of.late;
   }
   return {};
 }
@@ -331,7 +347,8 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
   text.imbue(std::locale::classic());
   text << "plugin,arms,seconds,ticks,missed,reports_lost,reports_skipped,report_age_median_ms,"
           "report_age_p99_ms,"
-          "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,page_faults,"
+          "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,forces_late,page_"
+          "faults,"
           "unplug_to_zero_max_ms,block_to_zero_max_ms,block_at_arm_max_ms,stop_max_ms,replayed,"
           "trials\n";
   for (const DeviceRow& row : measurement.rows) {
@@ -342,9 +359,9 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
          << row.report_age_ms.p99 << ',' << row.sample_to_force_ms.median << ','
          << row.sample_to_force_ms.p99 << ',';
     if (row.force_mismatches) text << *row.force_mismatches;
-    text << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max << ','
-         << row.block_to_zero_ms.max << ',' << row.block_at_arm_ms.max << ',' << row.stop_ms.max
-         << ',' << row.replayed << ',' << row.unplugged + row.blocked << '\n';
+    text << ',' << row.forces_late << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max
+         << ',' << row.block_to_zero_ms.max << ',' << row.block_at_arm_ms.max << ','
+         << row.stop_ms.max << ',' << row.replayed << ',' << row.unplugged + row.blocked << '\n';
   }
   return text.str();
 }
@@ -493,6 +510,7 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"sample_to_force_ms", spread(row.sample_to_force_ms)},
          {"at_the_arm", row.at_the_arm},
          {"force_mismatches", row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
+         {"forces_late", row.force_mismatches ? Json(row.forces_late) : Json(nullptr)},
          {"page_faults", row.page_faults},
          {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
          {"block_to_zero_ms", spread(row.block_to_zero_ms)},
@@ -519,7 +537,8 @@ std::string toText(const DeviceMeasurement& measurement) {
          << "; from it to the force " << (row.at_the_arm ? "at the arm " : "") << "in "
          << row.sample_to_force_ms.median << " ms, p99 " << row.sample_to_force_ms.p99 << "\n";
     if (row.force_mismatches)
-      text << "  forces that did not arrive: " << *row.force_mismatches << "\n";
+      text << "  forces that did not arrive: " << *row.force_mismatches
+           << "; by a late tick: " << row.forces_late << "\n";
     for (const DelayRow& delay : row.delays) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
            << delay.delay_ms.p99 << "; shows " << delay.most.b_max << " N s/m and "

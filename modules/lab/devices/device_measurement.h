@@ -48,7 +48,8 @@ struct DeviceRow {
   Spread report_age_ms;               // when it was looked at
   Spread sample_to_force_ms;          // at the arm where a bench tells, else to the plugin
   bool at_the_arm = false;
-  std::optional<std::uint64_t> force_mismatches;
+  std::optional<std::uint64_t> force_mismatches;  // forces that the arms never got
+  std::uint64_t forces_late = 0;                  // got after the next sample: by a late tick
   long page_faults = 0;
   int unplugged = 0, blocked = 0, replayed = 0;  // trials; recordings that replay bit for bit
   Spread unplug_to_zero_ms, block_to_zero_ms;    // until the loop sends none
@@ -85,8 +86,9 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
 
 // {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, report_age_ms: {median, p99,
 //  max}, sample_to_force_ms: {median, p99, max, at_the_arm}, force_mismatches (null: not told),
-//  page_faults, unplug_to_zero_ms: {median, max}, block_to_zero_ms, block_at_arm_ms, stop_ms,
-//  trials, replayed, delays: [{order, delay_ms: {median, p99}, delay_samples, b_max, k_max}]}]}
+//  forces_late (likewise), page_faults, unplug_to_zero_ms: {median, max}, block_to_zero_ms,
+//  block_at_arm_ms, stop_ms, trials, replayed, delays: [{order, delay_ms: {median, p99},
+//  delay_samples, b_max, k_max}]}]}
 Json toJson(const DeviceMeasurement& measurement);
 std::string toText(const DeviceMeasurement& measurement);
 
