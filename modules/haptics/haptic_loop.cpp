@@ -78,9 +78,11 @@ bool HapticLoop::step(std::int64_t late_ns) {
         core_.acceptsCommands() &&
         (commands_.pop(command) || (operator_ && operator_->command(tick, command)));
     if (commanded) obey(command);
-    if (!read(input)) return false;
+    if (!read(input, begin_ns)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
+    arms_at_fault_ = std::ranges::any_of(
+        record.arms, [](const ArmRecord& arm) { return (arm.faults & ~kPassingFaults) != 0; });
     if (operator_) operator_->moved(record, core_.parameters());
 
     // The record last: who finds it finds all that belongs to it. Before the force goes out, so
@@ -96,7 +98,7 @@ bool HapticLoop::step(std::int64_t late_ns) {
   return true;
 }
 
-bool HapticLoop::read(TickInput& input) {
+bool HapticLoop::read(TickInput& input, std::int64_t now_ns) {
   const std::size_t arm_count = core_.parameters().arms.size();
   const double period_s = core_.parameters().period_s;
   std::array<OperatorSetPoint, kMaxArms> set_points{};
@@ -109,7 +111,9 @@ bool HapticLoop::read(TickInput& input) {
       d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
     }
     if (!calls_.make(place, [&] { d.device->read(period_s, arm_states_.data()); })) return false;
-    for (std::size_t i = 0; i < d.arms.size(); ++i) take(d.arms[i], arm_states_[i], d.real);
+    for (std::size_t i = 0; i < d.arms.size(); ++i) {
+      take(d.arms[i], arm_states_[i], d.real, now_ns);
+    }
     if (!d.arms.empty()) continue;
     pedal_lost_ = arm_states_[0].flags & TREPHINE_ARM_LOST;
     without_pedal_ = without_pedal_ && pedal_lost_;
@@ -122,7 +126,8 @@ bool HapticLoop::read(TickInput& input) {
   return true;
 }
 
-void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real) {
+void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real,
+                      std::int64_t now_ns) {
   ArmSample& sample = last_samples_[arm];
   if (!(state.flags & TREPHINE_ARM_LOST)) {
     sample.position_m = {state.position_m[0], state.position_m[1], state.position_m[2]};
@@ -131,7 +136,8 @@ void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real)
     sample.buttons = state.buttons & kArmButtons;
   }
   sample.flags = state.flags;
-  const bool silent = silences_[arm].tick(state.sequence, core_.parameters().period_s);
+  const auto by_clock = real ? std::optional<std::int64_t>(now_ns) : std::nullopt;
+  const bool silent = silences_[arm].tick(state.sequence, core_.parameters().period_s, by_clock);
   if (silent || lost_by_command_[arm]) sample.flags |= TREPHINE_ARM_LOST;
   if (probe_) probe_->sampled(arm, state);
   if (!real) return;
@@ -142,7 +148,8 @@ void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real)
 
 // What a person or a script says of a device.
 void HapticLoop::obey(const Command& command) {
-  without_pedal_ = without_pedal_ || (command.kind == CommandKind::clear_faults && pedal_lost_);
+  const bool of_pedal = command.kind == CommandKind::clear_faults && pedal_lost_ && !arms_at_fault_;
+  without_pedal_ = without_pedal_ || of_pedal;
   const bool lost = command.kind == CommandKind::device_lost;
   if (!lost && command.kind != CommandKind::device_back) return;
   if (command.arm < 0 || command.arm >= kMaxArms) return;

@@ -133,10 +133,10 @@ class HapticLoop {
   const DurationHistogram& tickDurations() const { return durations_; }
 
  private:
-  void take(std::size_t arm, const TrephineArmState& state, bool real);
+  void take(std::size_t arm, const TrephineArmState& state, bool real, std::int64_t now_ns);
   void obey(const Command& command);
   // False when this thread was left behind in it.
-  bool read(TickInput& input);
+  bool read(TickInput& input, std::int64_t now_ns);
   bool write(const TickRecord& record);
   void publish(const TickRecord& record);
 
@@ -157,6 +157,7 @@ class HapticLoop {
   std::array<HandRule, kMaxArms> hands_{};
   std::array<bool, kMaxArms> lost_by_command_{};
   bool pedal_lost_ = false, without_pedal_ = false;
+  bool arms_at_fault_ = false;       // in the last tick; what is asked for is theirs first
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
   bool stalled_ = false;          // a tick came more than 20 ms late,

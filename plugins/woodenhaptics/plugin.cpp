@@ -152,7 +152,7 @@ int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out
   out->peak_force_N = out->continuous_force_N = kPeak_N;
   out->thermal_s = 0.0;
   out->apparent_mass_kg = 0.15;
-  out->encoder_step_m = 5.5e-5;
+  out->encoder_step_m = 6.5e-5;  // the coarsest count within the box
   out->rate_hz = 1000.0;
   out->latency_s = device->latency_s;
   return TREPHINE_OK;

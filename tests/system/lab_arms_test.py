@@ -47,19 +47,18 @@ class Arms(LabTest):
 
 
 class WoodenArmsTest(LabTest):
-    """`run --realtime` on two boards whose hands swing them into the vault, through the real hidapi."""
+    """`run` on two boards whose hands swing them into the vault, through the real hidapi."""
 
     def test_a_run_is_paced_by_the_boards_and_each_report_is_answered(self):
-        config = str(DEVICES / "woodenhaptics.json")
         arms = self.folder / "arms.json"
         arms.write_text(json.dumps({"format": "trephine.arms", "version": 1, "arms": [
-            {"name": "left", "plugin": "woodenhaptics", "arm": 0, "config": config},
-            {"name": "right", "plugin": "woodenhaptics", "arm": 1, "config": config}]}))
+            {"name": "left", "plugin": "woodenhaptics", "arm": 0},
+            {"name": "right", "plugin": "woodenhaptics", "arm": 1}]}))
         report = self.folder / "boards.json"
         wrapper = shutil.which("umockdev-wrapper")
         self.assertTrue(wrapper, "umockdev is not installed")
         done = subprocess.run(
-            [wrapper, os.environ["WITH_WOODEN_ARMS"], report, LAB, "run", SCENES / "cranium.json", "--realtime",
+            [wrapper, os.environ["WITH_WOODEN_ARMS"], report, LAB, "run", SCENES / "cranium.json",
              "--seconds", "6", "--arms", arms, "--out", self.folder / "out", "--json"],
             capture_output=True, text=True, timeout=240)
         self.assertIn(done.returncode, (0, 4), done.stdout[-500:] + done.stderr[-500:])

@@ -194,7 +194,10 @@ QString forceChangeMeanings() {
 
 QString faultWords(std::uint32_t faults) {
   QStringList words;
-  if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  if (faults & kFaultDeviceLost)
+    words << tr(
+        "The arm does not answer: check its cable, and that no other program keeps "
+        "this computer busy.");
   if (faults & kFaultStuck) words << tr("The arm's driver does not return: it was left behind.");
   if (faults & kFaultNonFinite) {
     words << tr("A pose or a force was not a number. The force stays off until you ask for it.");

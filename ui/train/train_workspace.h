@@ -79,6 +79,7 @@ class TrainWorkspace : public Workspace {
   void showTools(const std::vector<ToolView>& tools);
   void showState(Session& session, const LoopState& state);
   void showRates();
+  bool pointerHasAHand() const;
   void command(CommandKind kind);
   void undo(CommandKind which);
   void rewind(std::uint32_t second);

@@ -200,9 +200,9 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
     const std::uint32_t of_bench = scene->arms[arm].device.place;
     const std::vector<double> received_N = subject.bench->received_N(of_bench);
     if (received_N.empty()) continue;
-    const Arrivals of = arrivals(watch, arm, received_N);
-    row.force_mismatches = row.force_mismatches.value_or(0) + of.missing;
-    row.forces_late += of.late;
+    const Arrivals found = arrivals(watch, arm, received_N);
+    row.force_mismatches = row.force_mismatches.value_or(0) + found.missing;
+    row.forces_late += found.late;
   }
   return {};
 }
@@ -297,9 +297,9 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
                progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
-  if (!json) return json.error();
-  if (run->exit_code != 0 || !json->contains("zero_ms")) {
-    return Error{"NOT_MEASURED", "A trial did not come to its end: " + json->dump(), "", ""};
+  const std::string said = json ? json->dump() : json.error().sentence();
+  if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
+    return Error{"NOT_MEASURED", "A trial did not come to its end: " + said, "", ""};
   }
   fs::remove(answer, ec);
   return DeviceTrial{json->at("zero_ms"), json->at("at_arm_ms"), json->at("stop_ms"),
@@ -319,7 +319,14 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
         out / (row.plugin + name + std::to_string(n % std::max(1, count)) + ".h5");
     const Result<DeviceTrial> trial =
         trialOf({bench, unplug, wait_s(random)}, out, recording, progress);
-    if (!trial) return trial.error();
+    if (!trial && (progress.cancelled() || trial.error().code != "NOT_MEASURED")) {
+      return trial.error();
+    }
+    if (!trial) {  // the others count all the same
+      ++row.failed;
+      row.failure = trial.error().what;
+      continue;
+    }
     (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);
     if (!unplug) at_arm_ms.push_back(trial->at_arm_ms);
     stop_ms.push_back(trial->stop_ms);
@@ -350,7 +357,7 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
           "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,forces_late,page_"
           "faults,"
           "unplug_to_zero_max_ms,block_to_zero_max_ms,block_at_arm_max_ms,stop_max_ms,replayed,"
-          "trials\n";
+          "trials,failed\n";
   for (const DeviceRow& row : measurement.rows) {
     text << row.plugin << ',' << row.arms << ',' << row.seconds << ',' << row.ticks << ','
          << row.missed << ',';
@@ -358,10 +365,18 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
     text << ',' << row.reports_skipped << ',' << row.report_age_ms.median << ','
          << row.report_age_ms.p99 << ',' << row.sample_to_force_ms.median << ','
          << row.sample_to_force_ms.p99 << ',';
-    if (row.force_mismatches) text << *row.force_mismatches;
-    text << ',' << row.forces_late << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max
-         << ',' << row.block_to_zero_ms.max << ',' << row.block_at_arm_ms.max << ','
-         << row.stop_ms.max << ',' << row.replayed << ',' << row.unplugged + row.blocked << '\n';
+    const auto known = [&](bool is, auto value) {
+      if (is) text << value;
+      text << ',';
+    };
+    known(row.force_mismatches.has_value(), row.force_mismatches.value_or(0));
+    known(row.force_mismatches.has_value(), row.forces_late);
+    text << row.page_faults << ',';
+    known(row.unplug_to_zero_ms.count > 0, row.unplug_to_zero_ms.max);
+    known(row.block_to_zero_ms.count > 0, row.block_to_zero_ms.max);
+    known(row.block_at_arm_ms.count > 0, row.block_at_arm_ms.max);
+    known(row.stop_ms.count > 0, row.stop_ms.max);
+    text << row.replayed << ',' << row.unplugged + row.blocked << ',' << row.failed << '\n';
   }
   return text.str();
 }
@@ -405,13 +420,26 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
     return Error{"NOT_MEASURED", "The arm was given no force within 10 s", "", ""};
   }
   const std::int64_t at_ns = hostTime_ns();
-  options.unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
+  // Stop is asked for while the call blocks; the arm is looked at until after it.
+  constexpr double kBlock_s = 1.5;
+  constexpr std::int64_t kLook_ns = 700'000'000, kLookAtArm_ns = 1'900'000'000;
+  options.unplug ? subject.bench->unplug(arm) : subject.bench->block(kBlock_s);
   std::int64_t last_ns = at_ns, last_at_arm_ns = at_ns;
-  while (hostTime_ns() < at_ns + 700'000'000) {
-    if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
-    std::this_thread::sleep_for(200us);
+  const auto lookUntil = [&](std::int64_t until_ns) {
+    while (hostTime_ns() < until_ns) {
+      if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
+      std::this_thread::sleep_for(200us);
+    }
+  };
+  lookUntil(at_ns + kLook_ns);
+  // A loop that stands still sends nothing, and takes nothing away.
+  const std::size_t ticks = watch.ticks(of_scene);
+  const LoopWatch::Tick& newest = watch.tick(of_scene, ticks - 1);
+  if (newest.sent_ns < at_ns + kLook_ns / 2 || newest.force_N > 0.0) {
+    (void)(*session)->stop();
+    return Error{"NOT_MEASURED", "The loop stood still, or the force stayed", "", ""};
   }
-  for (std::size_t i = watch.ticks(of_scene); i-- > 0;) {
+  for (std::size_t i = ticks; i-- > 0;) {
     const LoopWatch::Tick& tick = watch.tick(of_scene, i);
     if (tick.sent_ns < at_ns) break;
     if (tick.force_N <= 0.0) continue;
@@ -420,10 +448,11 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   }
   DeviceTrial trial;
   trial.zero_ms = 1e-6 * double(last_ns - at_ns);
-  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
   const std::int64_t stop_ns = hostTime_ns();
   (void)(*session)->stop();
   trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
+  if (!options.unplug) lookUntil(at_ns + kLookAtArm_ns);
+  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
   session->reset();
   const auto reader = SessionReader::open(recording);
   if (!reader) return trial;
@@ -517,6 +546,7 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"block_at_arm_ms", spread(row.block_at_arm_ms)},
          {"stop_ms", spread(row.stop_ms)},
          {"trials", row.unplugged + row.blocked},
+         {"failed", row.failed},
          {"replayed", row.replayed},
          {"delays", delays}});
   }
@@ -543,6 +573,10 @@ std::string toText(const DeviceMeasurement& measurement) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
            << delay.delay_ms.p99 << "; shows " << delay.most.b_max << " N s/m and "
            << std::setprecision(0) << delay.most.k_max << std::setprecision(2) << " N/m\n";
+    }
+    if (row.failed > 0) {
+      text << "  " << row.failed << " trials did not come to their end, the last: " << row.failure
+           << "\n";
     }
     if (row.unplugged + row.blocked == 0) continue;
     text << "  no force after an unplug within " << row.unplug_to_zero_ms.median << " ms, at most "

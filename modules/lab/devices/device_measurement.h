@@ -52,6 +52,8 @@ struct DeviceRow {
   std::uint64_t forces_late = 0;                  // got after the next sample: by a late tick
   long page_faults = 0;
   int unplugged = 0, blocked = 0, replayed = 0;  // trials; recordings that replay bit for bit
+  int failed = 0;                                // trials that did not come to their end,
+  std::string failure;                           // the last of them
   Spread unplug_to_zero_ms, block_to_zero_ms;    // until the loop sends none
   Spread block_at_arm_ms;                        // until the arm itself has none
   Spread stop_ms;
@@ -84,11 +86,11 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
                                          const std::filesystem::path& out,
                                          const Progress& progress = Progress());
 
-// {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, report_age_ms: {median, p99,
-//  max}, sample_to_force_ms: {median, p99, max, at_the_arm}, force_mismatches (null: not told),
-//  forces_late (likewise), page_faults, unplug_to_zero_ms: {median, max}, block_to_zero_ms,
-//  block_at_arm_ms, stop_ms, trials, replayed, delays: [{order, delay_ms: {median, p99},
-//  delay_samples, b_max, k_max}]}]}
+// {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, reports_skipped,
+//  report_age_ms: {median, p99, max, count}, sample_to_force_ms: likewise, at_the_arm,
+//  force_mismatches (null: not told), forces_late (likewise), page_faults, unplug_to_zero_ms:
+//  likewise, block_to_zero_ms, block_at_arm_ms, stop_ms, trials, failed, replayed, delays: [{order,
+//  delay_ms, delay_samples, b_max, k_max}]}]}
 Json toJson(const DeviceMeasurement& measurement);
 std::string toText(const DeviceMeasurement& measurement);
 

@@ -51,6 +51,17 @@ TEST(ErrorRule, TheThirdThatBeginsWithinTenSecondsKeepsItAwayUntilAsked) {
   EXPECT_FALSE(lasting.away());
 }
 
+TEST(SilenceRule, TicksThatMakeUpForLateOnesAreNoSilenceOfARealArm) {
+  SilenceRule rule;
+  std::int64_t now_ns = 5'000'000'000;
+  EXPECT_FALSE(rule.tick(7, kTick_s, now_ns));
+  // A hundred ticks in five milliseconds, which a late host makes up for.
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(rule.tick(7, kTick_s, now_ns += 50'000)) << i;
+  EXPECT_FALSE(rule.tick(7, kTick_s, now_ns += 9'000'000));
+  EXPECT_TRUE(rule.tick(7, kTick_s, now_ns += 1'000'000)) << "15 ms by the clock";
+  EXPECT_FALSE(rule.tick(8, kTick_s, now_ns += 1'000'000));
+}
+
 TEST(WarmthRule, WarmMotorsGiveHalfAfterTwoSecondsAndAllOfItAgainTwoSecondsAfter) {
   WarmthRule rule;
   const ArmDynamics arm;

@@ -112,6 +112,15 @@ TEST(LoopDevices, OneGoesOnWithoutALostPedalWhenItIsAskedForAndWithItOnceItIsBac
   EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalMiddle);
   Devices::pedal.flags = TREPHINE_ARM_LOST;
   EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalLost) << "lost again";
+  // What is asked for an arm does not start motors.
+  Devices::arm.flags = TREPHINE_ARM_LOST;
+  EXPECT_TRUE(devices.step(5).faults & kFaultDeviceLost);
+  Devices::arm.flags = 0;
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step(5).faults, 0u);
+  EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalLost);
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step(5).buttons, 0u) << "asked for once more";
 }
 
 TEST(LoopDevices, AScriptTakesADeviceAwayAndGivesItBack) {
