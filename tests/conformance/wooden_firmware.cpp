@@ -23,6 +23,7 @@ void WoodenFirmware::take(const std::uint8_t* report) {
   std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   milliamps_ = asked;
+  told_.push_back({now, asked});
   if (!first_out_) first_out_ = now;
   last_out_ = now;
   if (unanswered_) {
@@ -90,7 +91,10 @@ void WoodenFirmware::run() {
     // What went in by half goes on there.
     const ssize_t written = ::write(fd_, rest_.data(), rest_.size());
     if (written > 0) rest_.erase(rest_.begin(), rest_.begin() + written);
-    if (rest_.empty()) ++sent_;
+    if (!rest_.empty()) continue;
+    ++sent_;
+    std::lock_guard lock(mutex_);
+    reports_.push_back(now);
   }
 }
 

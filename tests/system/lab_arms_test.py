@@ -98,18 +98,21 @@ class MeasureDevices(LabTest):
         self.assertLess(row["block_to_zero_ms"]["median"], 60.0)
         self.assertEqual([delay["order"] for delay in row["delays"]], ["send, then wait", "wait, then send"])
         first, before = row["delays"]
-        self.assertGreater(first["k_max"], before["k_max"])
+        self.assertGreater(first["b_max"], before["b_max"])
+        self.assertGreaterEqual(first["k_max"], before["k_max"])
+        self.assertTrue(row["at_the_arm"] and first["at_the_arm"] and before["at_the_arm"])
+        # What the arms had is what was sent, in size and direction, but for what a busy machine delays.
+        for told in (first["forces_missing"], first["forces_late"]):
+            self.assertLess(told, 0.05 * first["delay_ms"]["count"])
+        self.assertLess(row["force_mismatches"], 0.05 * row["ticks"])
         self.assertGreater(before["delay_ms"]["median"], first["delay_ms"]["median"])
         return row
 
     def test_two_boards(self):
-        row = self.measure(os.environ["BENCH_WOODENHAPTICS"], shutil.which("umockdev-wrapper"))
-        self.assertTrue(row["at_the_arm"])
-        self.assertIsNone(row["force_mismatches"])
+        self.measure(os.environ["BENCH_WOODENHAPTICS"], shutil.which("umockdev-wrapper"))
 
     def test_two_arms_of_the_makers_library(self):
-        row = self.measure(os.environ["BENCH_OPENHAPTICS"], environment={"LD_LIBRARY_PATH": os.environ["HD_TEST"]})
-        self.assertIsNotNone(row["force_mismatches"])
+        self.measure(os.environ["BENCH_OPENHAPTICS"], environment={"LD_LIBRARY_PATH": os.environ["HD_TEST"]})
 
     def test_without_a_device_it_says_so(self):
         error = lab("measure", "devices", "--out", self.folder / "none", expect=1)["error"]
