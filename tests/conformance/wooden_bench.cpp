@@ -67,7 +67,7 @@ class WoodenBench : public DeviceBench {
       while (stood + 1 < of.stood.size() && of.stood[stood + 1].at <= told.at) ++stood;
       if (of.stood.empty()) break;
       // The arm's x towards the user, y to the right, z up.
-      const Vector f = test::WoodenHand::forceOf(told.milliamps, of.stood[stood].angles);
+      const Vector f = test::WoodenHand::forceAt(told.milliamps, of.stood[stood].angles);
       all.push_back({ns(told.at), Vec3(f[1], f[2], f[0])});
     }
     return all;

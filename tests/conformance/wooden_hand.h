@@ -14,14 +14,14 @@ class WoodenHand {
  public:
   // What the board's motors give where the arm is now [N].
   woodenhaptics::Vector force_N(const WoodenFirmware& board) const {
-    return forceOf(board.milliamps(), angles_);
+    return forceAt(board.milliamps(), angles_);
   }
   // What these currents give at an arm that stands so.
-  static woodenhaptics::Vector forceOf(const std::array<std::int16_t, 3>& milliamps,
+  static woodenhaptics::Vector forceAt(const std::array<std::int16_t, 3>& milliamps,
                                        const woodenhaptics::Vector& angles) {
     woodenhaptics::Vector amps{};
     for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
-    return woodenhaptics::forceOf(angles, torquesOf(amps));
+    return test::forceOf(angles, torquesOf(amps));
   }
   const woodenhaptics::Vector& angles() const { return angles_; }
   // A millisecond further under this force, and the board counts where the arm is.
