@@ -50,8 +50,9 @@ class HdBench : public DeviceBench {
     std::vector<Given> all;
     for (std::uint64_t f = from; f < frames; ++f) {
       const std::size_t at = f % test::HdArm::kFrames;
-      const auto& f = of.vector_N[at];
-      all.push_back({of.sent_ns[at].load(), Vec3(f[0].load(), f[1].load(), f[2].load())});
+      const auto& vector = of.vector_N[at];
+      all.push_back(
+          {of.sent_ns[at].load(), Vec3(vector[0].load(), vector[1].load(), vector[2].load())});
     }
     return all;
   }
