@@ -12,6 +12,7 @@
 #include "scene/arms_file.h"
 #include "scene/names.h"
 #include "scene/scene_numbers.h"
+#include "session/arm_devices.h"
 #include "session/case.h"
 #include "session/session.h"
 #include "training/tick_table.h"
@@ -48,6 +49,8 @@ Status applyChoices(const RunArguments& arguments, const Policy& policy, Scene& 
     Result<std::vector<NamedDevice>> arms = readArmsFile(arguments.arms_file);
     if (!arms) return arms.error();
     if (Status used = useArms(scene, *arms, arguments.arms_file); !used) return used;
+    Scene asked = scene;  // what is not there is said before a case is opened
+    if (Status there = readArmDynamics(asked); !there) return there;
   }
   if (arguments.controller.empty()) return {};
   if (const auto kind = kindOf(kControllerNames, arguments.controller)) {
@@ -196,8 +199,13 @@ Result<RunOutcome> runExercise(const RunArguments& arguments, const Policy& poli
   }
   if (!session) return session.error();
 
-  const Status ran = arguments.realtime ? runRealTime(**session, seconds, progress)
-                                        : (*session)->freewheel(seconds, progress);
+  // A real arm keeps the clock's pace, and so does what runs with it.
+  bool realtime = arguments.realtime;
+  for (std::size_t i = 0; i < scene->arms.size(); ++i) {
+    realtime = realtime || !(*session)->isSimulated(i);
+  }
+  const Status ran = realtime ? runRealTime(**session, seconds, progress)
+                              : (*session)->freewheel(seconds, progress);
   RunOutcome outcome{(*session)->report(), {}};
   if (!ran) outcome.failure = ran.error();
   if (!ran && outcome.report.ticks == 0) return ran.error();

@@ -68,7 +68,8 @@ int run(int argc, char** argv) {
   run_command->add_option("--arms", arguments.arms_file,
                           "Which devices move its arms, a file (resources/schemas/arms.md)");
   run_command->add_option("--seconds", arguments.seconds, "How long; the script's length unless given");
-  run_command->add_flag("--realtime", arguments.realtime, "At the clock's pace, on a thread of its own");
+  run_command->add_flag("--realtime", arguments.realtime,
+                        "At the clock's pace, on a thread of its own; with real arms always");
   run_command->add_option("--rate", arguments.rate_hz, "Ticks a second");
   run_command->add_option("--controller", arguments.controller, "off, seed or bounded");
   run_command->add_option("--save-volume", arguments.save_volume, "Save the carved volume")

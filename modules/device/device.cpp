@@ -180,6 +180,7 @@ Result<std::unique_ptr<Device>> Device::open(std::shared_ptr<const DevicePlugin>
   };
   if (api.open(arms.data(), std::uint32_t(arms.size()), &device->handle_) != TREPHINE_OK ||
       !device->handle_) {
+    device->handle_ = nullptr;  // what comes with an error is none
     return notThere(nullptr);
   }
   const int configured = api.configure(device->handle_, config.c_str());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/math.h"
 #include "base/result.h"
 
 namespace trephine {
@@ -22,12 +23,16 @@ class DeviceBench {
   virtual void block(double seconds) = 0;
   // The size of the force that an arm has now [N].
   virtual double force_N(std::uint32_t arm) = 0;
-  // From each sample at the arms to the force that answered it there, since they were plugged in
-  // [ms]; empty where it does not tell.
-  virtual std::vector<double> answers_ms() { return {}; }
-  // The size of the force that an arm got, sample by sample since it was plugged in; empty where it
-  // does not tell.
-  virtual std::vector<double> received_N(std::uint32_t) { return {}; }
+  // What an arm was given and gave since it was plugged in, by the monotonic clock, in order; empty
+  // where the bench does not tell. Forces in the host's frame, as the motors gave them.
+  struct Given {
+    std::int64_t at_ns = 0;
+    Vec3 force_N{0.0};
+  };
+  virtual std::vector<Given> given(std::uint32_t) { return {}; }
+  virtual std::vector<std::int64_t> samples_ns(std::uint32_t) { return {}; }
+  // How far a force may be from what was sent: rounding, and the arm's way meanwhile.
+  virtual double tolerance_N() const { return 1e-9; }
   // Samples that found no room on their way, since they were plugged in.
   virtual std::optional<std::uint64_t> lost() { return {}; }
 };

@@ -44,6 +44,16 @@ double WarmthRule::limit_N(double most_N, bool warm, double sent_N, const ArmDyn
   return limit_N;
 }
 
+bool SilenceRule::tick(std::uint64_t sequence, double period_s,
+                       std::optional<std::int64_t> now_ns) {
+  constexpr double kSilent_s = 0.015, kRounding = 1e-9;
+  if (sequence != last_ && now_ns) last_ns_ = *now_ns;
+  ticks_ = sequence == last_ ? ticks_ + 1 : 0;
+  last_ = sequence;
+  const bool by_ticks = double(ticks_) * period_s >= kSilent_s - kRounding;
+  return by_ticks && (!now_ns || 1e-9 * double(*now_ns - last_ns_) >= kSilent_s);
+}
+
 bool HandRule::tick(const Pose& pose_m, bool button, bool lost) {
   constexpr double kMoved_m = 0.005, kTurned_rad = 5.0 * std::numbers::pi / 180.0;
   if (lost) {

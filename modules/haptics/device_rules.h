@@ -46,6 +46,19 @@ class WarmthRule {
   bool limits_ = false;
 };
 
+// Whether an arm has been silent: a pose that has been the same sample for 15 ms is no pose of now,
+// whatever its plugin says. With the patience that the clock has for a sample, within 20 ms of the
+// last. Ticks that make up for late ones say nothing: a real arm's silence lasts by the clock too.
+class SilenceRule {
+ public:
+  // `now_ns` of that clock; none of a simulated arm, whose time is the ticks'.
+  bool tick(std::uint64_t sequence, double period_s, std::optional<std::int64_t> now_ns = {});
+
+ private:
+  std::uint64_t last_ = 0, ticks_ = 0;
+  std::int64_t last_ns_ = 0;
+};
+
 // Whether a hand is known to hold an arm: it has a button down, or has been moved 5 mm or turned 5
 // degrees from where it was at first, since it is here.
 class HandRule {

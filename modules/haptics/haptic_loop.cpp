@@ -33,32 +33,18 @@ Status HapticLoop::startDevices() {
 
 bool HapticLoop::stopDevices() {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
-    in_call_ = int(i);
-    devices_[i].device->stop();
-    if (!leaveCall(i)) return false;
+    if (!calls_.make(i, [&] { devices_[i].device->stop(); })) return false;
   }
   return true;
 }
 
 // The device that the loop is calling comes last: its safe_stop may wait for that call.
 void HapticLoop::silence() {
-  const int called = in_call_;
+  const std::optional<std::size_t> called = calls_.at();
   for (std::size_t i = 0; i < devices_.size(); ++i) {
-    if (int(i) != called) devices_[i].device->safeStop();
+    if (i != called) devices_[i].device->safeStop();
   }
-  if (called >= 0) devices_[std::size_t(called)].device->safeStop();
-}
-
-// Ends a time, begun by setting in_call_, in which this thread may be left behind; false if it was.
-bool HapticLoop::leaveCall(std::size_t device) {
-  int expected = int(device);
-  return in_call_.compare_exchange_strong(expected, kNoCall);
-}
-
-std::optional<std::size_t> HapticLoop::leaveBehind() {
-  int device = in_call_;
-  if (device < 0 || !in_call_.compare_exchange_strong(device, kLeftBehind)) return {};
-  return std::size_t(device);
+  if (called) devices_[*called].device->safeStop();
 }
 
 void HapticLoop::closeOthers(std::size_t left_behind) {
@@ -92,9 +78,11 @@ bool HapticLoop::step(std::int64_t late_ns) {
         core_.acceptsCommands() &&
         (commands_.pop(command) || (operator_ && operator_->command(tick, command)));
     if (commanded) obey(command);
-    if (!read(input)) return false;
+    if (!read(input, begin_ns)) return false;
     TickRecord record;
     core_.tick(input, &command, commanded ? 1 : 0, record);
+    arms_at_fault_ = std::ranges::any_of(
+        record.arms, [](const ArmRecord& arm) { return (arm.faults & ~kPassingFaults) != 0; });
     if (operator_) operator_->moved(record, core_.parameters());
 
     // The record last: who finds it finds all that belongs to it. Before the force goes out, so
@@ -110,19 +98,7 @@ bool HapticLoop::step(std::int64_t late_ns) {
   return true;
 }
 
-// A pose that has been the same sample for so long is no pose of now, whatever its plugin says:
-// with the patience that the clock has for a sample, within 20 ms of the last.
-constexpr double kSilent_s = 0.015;
-
-bool HapticLoop::isOld(std::size_t arm, const TrephineArmState& state) {
-  std::uint64_t& ticks = ticks_without_sample_[arm];
-  ticks = state.sequence == last_sequence_[arm] ? ticks + 1 : 0;
-  last_sequence_[arm] = state.sequence;
-  constexpr double kRounding = 1e-9;
-  return double(ticks) * core_.parameters().period_s >= kSilent_s - kRounding;
-}
-
-bool HapticLoop::read(TickInput& input) {
+bool HapticLoop::read(TickInput& input, std::int64_t now_ns) {
   const std::size_t arm_count = core_.parameters().arms.size();
   const double period_s = core_.parameters().period_s;
   std::array<OperatorSetPoint, kMaxArms> set_points{};
@@ -130,26 +106,28 @@ bool HapticLoop::read(TickInput& input) {
   std::uint32_t pedal = 0;
   for (std::size_t place = 0; place < devices_.size(); ++place) {
     LoopDevice& d = devices_[place];
-    in_call_ = int(place);
     for (std::size_t i = 0; operator_ && i < d.arms.size(); ++i) {
       const OperatorSetPoint& at = set_points[d.arms[i]];
       d.device->setTarget(i, at.pose_m, at.stiffness_N_per_m, at.damping_Ns_per_m);
     }
-    d.device->read(period_s, arm_states_.data());
-    if (!leaveCall(place)) return false;
-    for (std::size_t i = 0; i < d.arms.size(); ++i) take(d.arms[i], arm_states_[i], d.real);
+    if (!calls_.make(place, [&] { d.device->read(period_s, arm_states_.data()); })) return false;
+    for (std::size_t i = 0; i < d.arms.size(); ++i) {
+      take(d.arms[i], arm_states_[i], d.real, now_ns);
+    }
     if (!d.arms.empty()) continue;
-    // A pedal that is gone is up.
-    const bool lost = arm_states_[0].flags & TREPHINE_ARM_LOST;
+    pedal_lost_ = arm_states_[0].flags & TREPHINE_ARM_LOST;
+    without_pedal_ = without_pedal_ && pedal_lost_;
     constexpr std::uint32_t kPedals = 7, kFirstBit = 8;
-    pedal = kPedalThere | (lost ? 0 : (arm_states_[0].buttons & kPedals) << kFirstBit);
+    const std::uint32_t down = (arm_states_[0].buttons & kPedals) << kFirstBit;
+    if (!without_pedal_) pedal = kPedalThere | (pedal_lost_ ? kPedalLost : down);
   }
   input.arms = last_samples_;
   for (std::size_t i = 0; i < arm_count; ++i) input.arms[i].buttons |= pedal;
   return true;
 }
 
-void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real) {
+void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real,
+                      std::int64_t now_ns) {
   ArmSample& sample = last_samples_[arm];
   if (!(state.flags & TREPHINE_ARM_LOST)) {
     sample.position_m = {state.position_m[0], state.position_m[1], state.position_m[2]};
@@ -158,7 +136,9 @@ void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real)
     sample.buttons = state.buttons & kArmButtons;
   }
   sample.flags = state.flags;
-  if (isOld(arm, state) || lost_by_command_[arm]) sample.flags |= TREPHINE_ARM_LOST;
+  const auto by_clock = real ? std::optional<std::int64_t>(now_ns) : std::nullopt;
+  const bool silent = silences_[arm].tick(state.sequence, core_.parameters().period_s, by_clock);
+  if (silent || lost_by_command_[arm]) sample.flags |= TREPHINE_ARM_LOST;
   if (probe_) probe_->sampled(arm, state);
   if (!real) return;
   const bool lost = sample.flags & TREPHINE_ARM_LOST;
@@ -166,8 +146,10 @@ void HapticLoop::take(std::size_t arm, const TrephineArmState& state, bool real)
   if (!held) sample.flags |= TREPHINE_ARM_NO_HAND;
 }
 
-// What a script says of a device.
+// What a person or a script says of a device.
 void HapticLoop::obey(const Command& command) {
+  const bool of_pedal = command.kind == CommandKind::clear_faults && pedal_lost_ && !arms_at_fault_;
+  without_pedal_ = without_pedal_ || of_pedal;
   const bool lost = command.kind == CommandKind::device_lost;
   if (!lost && command.kind != CommandKind::device_back) return;
   if (command.arm < 0 || command.arm >= kMaxArms) return;
@@ -184,9 +166,7 @@ bool HapticLoop::write(const TickRecord& record) {
       const Vec3& force_N = record.arms[d.arms[i]].sent_N;
       for (int axis = 0; axis < 3; ++axis) command.force_N[axis] = force_N[axis];
     }
-    in_call_ = int(place);
-    d.device->write(arm_commands_.data());
-    if (!leaveCall(place)) return false;
+    if (!calls_.make(place, [&] { d.device->write(arm_commands_.data()); })) return false;
     for (std::size_t arm : d.arms) {
       if (probe_) probe_->sent(arm, record.arms[arm].sent_N);
     }
@@ -230,9 +210,8 @@ bool HapticLoop::run(LoopClock& clock, const std::atomic<bool>& stop, std::uint6
   running_ = true;
   bool here = true;
   const auto waitForSample = [&](double seconds) {
-    in_call_ = int(pacing);
-    const bool came = devices_[pacing].device->wait(seconds);
-    here = leaveCall(pacing);
+    bool came = false;
+    here = calls_.make(pacing, [&] { came = devices_[pacing].device->wait(seconds); });
     return came || !here;
   };
   while (here && tick_ < last_tick && !stop.load(std::memory_order_relaxed)) {

@@ -15,6 +15,7 @@
 #include "base/rt/event_ring.h"
 #include "base/rt/latest_value.h"
 #include "device/device.h"
+#include "haptics/device_calls.h"
 #include "haptics/device_rules.h"
 #include "haptics/duration_histogram.h"
 #include "haptics/haptic_core.h"
@@ -113,7 +114,7 @@ class HapticLoop {
   std::uint64_t ticks() const { return tick_; }
   // Leaves the loop's thread behind if it is in a call of a device: which one. Nothing where it is
   // elsewhere, and will come to its end.
-  std::optional<std::size_t> leaveBehind();
+  std::optional<std::size_t> leaveBehind() { return calls_.leaveBehind(); }
   // After that: stops and closes the other devices.
   void closeOthers(std::size_t left_behind);
   const std::vector<LoopDevice>& devices() const { return devices_; }
@@ -132,12 +133,10 @@ class HapticLoop {
   const DurationHistogram& tickDurations() const { return durations_; }
 
  private:
-  bool leaveCall(std::size_t device);
-  bool isOld(std::size_t arm, const TrephineArmState& state);
-  void take(std::size_t arm, const TrephineArmState& state, bool real);
+  void take(std::size_t arm, const TrephineArmState& state, bool real, std::int64_t now_ns);
   void obey(const Command& command);
   // False when this thread was left behind in it.
-  bool read(TickInput& input);
+  bool read(TickInput& input, std::int64_t now_ns);
   bool write(const TickRecord& record);
   void publish(const TickRecord& record);
 
@@ -154,18 +153,18 @@ class HapticLoop {
   std::vector<TrephineArmState> arm_states_;      // scratch for one device
   std::vector<TrephineArmCommand> arm_commands_;  // scratch for one device
   std::array<ArmSample, kMaxArms> last_samples_{};
-  std::array<std::uint64_t, kMaxArms> last_sequence_{}, ticks_without_sample_{};
+  std::array<SilenceRule, kMaxArms> silences_{};
   std::array<HandRule, kMaxArms> hands_{};
   std::array<bool, kMaxArms> lost_by_command_{};
+  bool pedal_lost_ = false, without_pedal_ = false;
+  bool arms_at_fault_ = false;       // in the last tick; what is asked for is theirs first
   std::atomic<std::uint64_t> tick_;  // only the loop's thread writes it
   std::uint64_t missed_ = 0;
   bool stalled_ = false;          // a tick came more than 20 ms late,
   std::uint64_t last_stall_ = 0;  // last this one
   std::atomic<bool> running_{false};
   std::atomic<std::uint64_t> silenced_at_{0};  // tick + 1; 0: not
-  // The device that the loop's thread is calling, or one of these.
-  static constexpr int kNoCall = -1, kLeftBehind = -2;
-  std::atomic<int> in_call_{kNoCall};
+  DeviceCalls calls_;                          // those of the loop's thread
 };
 
 }  // namespace trephine

@@ -100,10 +100,12 @@ enum ToolState : std::uint32_t {
 enum ArmButton : std::uint32_t {
   kArmButtons = 0xFFu,  // its own, as the plugin numbers them
   // The pedal's, the same for all arms, and that there is one: a tool with a motor runs while the
-  // middle one is down.
+  // middle one is down. One that is lost is up, until somebody goes on without it: clear_faults,
+  // where no arm has one.
   kPedalLeft = 1u << 8,
   kPedalMiddle = 1u << 9,
   kPedalRight = 1u << 10,
+  kPedalLost = 1u << 14,
   kPedalThere = 1u << 15
 };
 

@@ -20,6 +20,9 @@ constexpr std::size_t kMostArms = std::size_t(kMaxArms);
 ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
   ArmDevice device;
   device.plugin = item.text("plugin");
+  if (item.ok() && device.plugin.empty()) {
+    item.fail("plugin", "It names no plugin", "Name one, such as simulated");
+  }
   readNumbers(item, kDeviceNumbers, device);
   const std::string config = item.text("config", "");
   if (config.empty()) return device;
@@ -53,6 +56,9 @@ Result<std::vector<NamedDevice>> readArmsFile(const fs::path& file) {
   std::set<std::string> names;
   for (JsonReader& item : reader.objects("arms", kMostArms)) {
     devices.push_back({item.text("name"), readDevice(item, file.parent_path())});
+    if (devices.back().arm == kPedal) {
+      item.fail("name", "'pedal' is no arm", "Give the pedal beside 'arms', under 'pedal'");
+    }
     if (names.insert(devices.back().arm).second) continue;
     item.fail("name", "The arm '" + devices.back().arm + "' stands twice in the list",
               "Name each arm once");
@@ -81,6 +87,9 @@ Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std:
                    "Its arms are: " + names};
     }
     arm->device = of.device;
+    if (of.device.plugin == kSimulated && of.device.config.empty()) {
+      arm->device.config = (resourceFolder() / "devices" / "omni.json").string();
+    }
   }
   // The simulated ones that others need not have, in their places.
   for (std::size_t i = 0; i < with.arms.size(); ++i) {

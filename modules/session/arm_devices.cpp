@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/range.h"
 #include "base/system.h"
+#include "scene/arms_file.h"
 
 namespace trephine {
 
@@ -48,12 +49,15 @@ Result<std::unique_ptr<Device>> openDevice(const std::string& plugin_name,
   Result<std::shared_ptr<const DevicePlugin>> plugin =
       DevicePlugin::load(plugin_name, pluginFolder());
   if (!plugin) return plugin.error();
-  Result<std::string> text = readDeviceFile(config);
+  // A real one is as this workstation, or Trephine, has it.
+  const std::string file =
+      config.empty() && plugin_name != kSimulated ? deviceFile(plugin_name) : config;
+  Result<std::string> text = readDeviceFile(file);
   if (!text) return text.error();
   Result<std::unique_ptr<Device>> device = Device::open(*plugin, places, *text);
   if (device) return device;
   Error error = device.error();
-  if (error.code == "BAD_DEVICE_CONFIG" && !config.empty()) error.where = config;
+  if (error.code == "BAD_DEVICE_CONFIG" && !file.empty()) error.where = file;
   return error;
 }
 

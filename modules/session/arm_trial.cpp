@@ -6,7 +6,10 @@
 #include <mutex>
 
 #include "base/rt/thread.h"
+#include "haptics/device_calls.h"
+#include "haptics/device_rules.h"
 #include "haptics/loop_clock.h"
+#include "haptics/watchdog.h"
 #include "session/arm_devices.h"
 
 namespace trephine {
@@ -14,11 +17,13 @@ namespace trephine {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-constexpr auto kEndPatience = std::chrono::milliseconds(300);
+constexpr auto kEndPatience = std::chrono::milliseconds(200);
+constexpr auto kLetGoPatience = std::chrono::milliseconds(300);  // with all that comes after it
+constexpr auto kWatchEvery = std::chrono::milliseconds(4);
 
 }  // namespace
 
-// Owned by the trial and its thread together: a device may keep the thread for ever.
+// Owned by the trial and its threads together: a device may keep each of them for ever.
 struct ArmTrial::Engine {
   struct Opened {
     std::unique_ptr<Device> device;
@@ -28,63 +33,111 @@ struct ArmTrial::Engine {
   std::vector<TrephineCapabilities> capabilities;
   std::vector<ForceTest> tests;
   std::array<Vec3, kMostTried> first_m{};
-  std::array<std::uint64_t, kMostTried> sequence{}, ticks_without_sample{};
+  std::array<SilenceRule, kMostTried> silences{};
   TriedArms arms{};
   rt::LatestValue<TriedArms> seen;
   std::atomic<double> asked_N[kMostTried]{};  // for the next test of each; 0: none
   std::atomic<bool> end_force{false}, stop{false};
-  // The device that the thread is calling, or one of these, as HapticLoop has it.
-  static constexpr int kNoCall = -1, kLeftBehind = -2;
-  std::atomic<int> in_call{kNoCall};
+  DeviceCalls calls;  // those of the thread
   std::mutex mutex;
   std::condition_variable changed;
-  bool ended = false;
+  bool ended = false, over = false;
+  std::atomic<std::uint64_t> ticks{0};
+  std::atomic<bool> stands_still{false}, others_silent{false};
 
   std::vector<std::optional<Error>> problems;
 
-  Status open(const std::vector<FoundArm>& arms, const std::vector<std::size_t>& which);
+  Status open(const std::vector<FoundArm>& found, const std::vector<std::size_t>& which);
   void take(std::size_t i, const TrephineArmState& state);
-  bool leaveCall(std::size_t device);
-  bool tick();
+  bool tick(std::int64_t now_ns);
   void run();
+  void silence();
+  void watch();
+  void end(std::thread arms, std::thread watch);
 };
 
-// Ends a call, begun by setting in_call; false where the thread was left behind in it.
-bool ArmTrial::Engine::leaveCall(std::size_t device) {
-  int expected = int(device);
-  return in_call.compare_exchange_strong(expected, kNoCall);
+// One that is in a call comes last: silencing it may wait for that call.
+void ArmTrial::Engine::silence() {
+  const std::optional<std::size_t> called = calls.at();
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    if (d != called) devices[d].device->safeStop();
+  }
+  others_silent = true;
+  if (called) devices[*called].device->safeStop();
+}
+
+// Takes the force away where the arms' thread stands still, and at the end.
+void ArmTrial::Engine::watch() {
+  HostClock clock;
+  Standstill still;
+  while (!stop) {
+    std::this_thread::sleep_for(kWatchEvery);
+    const bool begins = still.begins(ticks, true, clock.now_ns());
+    stands_still = still.since_ns() != 0;
+    if (begins) silence();
+  }
+  silence();
+}
+
+// Waits for both threads, leaves behind the device that keeps one, and closes the others.
+void ArmTrial::Engine::end(std::thread arms_thread, std::thread watch_thread) {
+  std::optional<std::size_t> held;
+  {
+    std::unique_lock lock(mutex);
+    const auto has_ended = [this] { return ended; };
+    bool done = changed.wait_for(lock, kEndPatience, has_ended);
+    // A thread that is in no call comes to its end, or into one.
+    while (!done && !(held = calls.leaveBehind())) {
+      done = changed.wait_for(lock, std::chrono::milliseconds(5), has_ended);
+    }
+  }
+  if (held) {
+    devices[*held].device->leaveBehind();
+    arms_thread.detach();
+    watch_thread.detach();
+    while (!others_silent) std::this_thread::sleep_for(kWatchEvery);
+  } else {
+    arms_thread.join();
+    watch_thread.join();
+  }
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    if (d != held) devices[d].device.reset();
+  }
+  std::lock_guard lock(mutex);
+  over = true;
+  changed.notify_all();
 }
 
 void ArmTrial::Engine::take(std::size_t i, const TrephineArmState& state) {
   TriedArm& arm = arms[i];
   const double* p = state.position_m;
   const double* q = state.orientation;
-  arm.pose_m = {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3])};
+  const Pose pose_m{{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3])};
   arm.buttons = state.buttons;
   arm.flags = state.flags;
+  if (!isFinite(pose_m)) {  // no pose: it is as if the arm were gone
+    arm.flags |= TREPHINE_ARM_LOST;
+    return;
+  }
+  arm.pose_m = pose_m;
   if (arm.samples++ == 0) first_m[i] = arm.pose_m.position;
   arm.moved_m = std::max(arm.moved_m, glm::length(arm.pose_m.position - first_m[i]));
 }
 
-bool ArmTrial::Engine::tick() {
-  constexpr std::uint64_t kSilent_ticks = 15;  // a sample that stays for so long is none of now
+bool ArmTrial::Engine::tick(std::int64_t now_ns) {
   const bool end = end_force.exchange(false);
   for (std::size_t d = 0; d < devices.size(); ++d) {
     const Opened& of = devices[d];
     std::array<TrephineArmState, kMostTried> states{};
     std::array<TrephineArmCommand, kMostTried> commands{};
-    in_call = int(d);
-    of.device->read(kPeriod_s, states.data());
-    if (!leaveCall(d)) return false;
+    if (!calls.make(d, [&] { of.device->read(kPeriod_s, states.data()); })) return false;
     for (std::size_t n = 0; n < of.arms.size(); ++n) {
       const std::size_t i = of.arms[n];
       take(i, states[n]);
       if (const double most_N = asked_N[i].exchange(0.0); most_N > 0.0) tests[i].ask(most_N);
       if (end) tests[i].end();
       TriedArm& arm = arms[i];
-      ticks_without_sample[i] = states[n].sequence == sequence[i] ? ticks_without_sample[i] + 1 : 0;
-      sequence[i] = states[n].sequence;
-      if (ticks_without_sample[i] >= kSilent_ticks) arm.flags |= TREPHINE_ARM_LOST;
+      if (silences[i].tick(states[n].sequence, kPeriod_s, now_ns)) arm.flags |= TREPHINE_ARM_LOST;
       const bool away = arm.flags & (TREPHINE_ARM_LOST | TREPHINE_ARM_ERROR);
       const bool no_hand = arm.flags & TREPHINE_ARM_NO_HAND;
       arm.force_N =
@@ -93,11 +146,10 @@ bool ArmTrial::Engine::tick() {
       commands[n].size = sizeof(TrephineArmCommand);
       commands[n].force_N[1] = arm.force_N;
     }
-    in_call = int(d);
-    of.device->write(commands.data());
-    if (!leaveCall(d)) return false;
+    if (!calls.make(d, [&] { of.device->write(commands.data()); })) return false;
   }
   seen.write(arms);
+  ++ticks;
   return true;
 }
 
@@ -108,12 +160,10 @@ void ArmTrial::Engine::run() {
   bool here = true;
   while (here && !stop) {
     schedule.waitForTick(clock);
-    here = tick();
+    here = tick(clock.now_ns());
   }
   for (std::size_t d = 0; here && d < devices.size(); ++d) {
-    in_call = int(d);
-    devices[d].device->stop();
-    here = leaveCall(d);
+    here = calls.make(d, [&] { devices[d].device->stop(); });
   }
   std::lock_guard lock(mutex);
   ended = true;
@@ -121,11 +171,11 @@ void ArmTrial::Engine::run() {
 }
 
 // These arms of one plugin as one device.
-Status ArmTrial::Engine::open(const std::vector<FoundArm>& arms,
+Status ArmTrial::Engine::open(const std::vector<FoundArm>& found,
                               const std::vector<std::size_t>& which) {
-  const std::string& name = arms[which.front()].plugin;
+  const std::string& name = found[which.front()].plugin;
   std::vector<std::uint32_t> places;
-  for (std::size_t i : which) places.push_back(arms[i].place);
+  for (std::size_t i : which) places.push_back(found[i].place);
   Result<std::unique_ptr<Device>> device = openDevice(name, places, deviceFile(name));
   if (!device) return device.error();
   for (std::size_t n = 0; n < which.size(); ++n) {
@@ -165,36 +215,20 @@ std::unique_ptr<ArmTrial> ArmTrial::start(const std::vector<FoundArm>& arms) {
   std::unique_ptr<ArmTrial> trial(new ArmTrial);
   trial->engine_ = engine;
   trial->thread_ = std::thread([engine] { engine->run(); });
+  trial->watch_thread_ = std::thread([engine] { engine->watch(); });
   return trial;
 }
 
 ArmTrial::~ArmTrial() {
   if (!thread_.joinable()) return;
   engine_->stop = true;
-  std::unique_lock lock(engine_->mutex);
-  if (engine_->changed.wait_for(lock, kEndPatience, [this] { return engine_->ended; })) {
-    lock.unlock();
-    thread_.join();
-    return;
-  }
-  int called = engine_->in_call;
-  const bool held =
-      called >= 0 && engine_->in_call.compare_exchange_strong(called, Engine::kLeftBehind);
-  if (!held) {  // it is on its way: no device keeps it
-    engine_->changed.wait(lock, [this] { return engine_->ended; });
-    lock.unlock();
-    thread_.join();
-    return;
-  }
-  engine_->devices[std::size_t(called)].device->leaveBehind();
-  // Silencing that one may wait for the call, so it comes last.
-  std::thread([engine = engine_, called] {
-    for (std::size_t d = 0; d < engine->devices.size(); ++d) {
-      if (int(d) != called) engine->devices[d].device->safeStop();
-    }
-    engine->devices[std::size_t(called)].device->safeStop();
+  // Whatever a plugin does in these calls, it does not keep this thread.
+  std::thread([engine = engine_, arms = std::move(thread_),
+               watch = std::move(watch_thread_)]() mutable {
+    engine->end(std::move(arms), std::move(watch));
   }).detach();
-  thread_.detach();
+  std::unique_lock lock(engine_->mutex);
+  engine_->changed.wait_for(lock, kLetGoPatience, [this] { return engine_->over; });
 }
 
 std::size_t ArmTrial::size() const {
@@ -211,7 +245,14 @@ const TrephineCapabilities& ArmTrial::capabilities(std::size_t arm) const {
 
 const TriedArms& ArmTrial::state() {
   engine_->seen.refresh();
-  return engine_->seen.value();
+  shown_ = engine_->seen.value();
+  if (!engine_->stands_still) return shown_;
+  for (TriedArm& arm : shown_) {  // what was sent last is not what is sent now
+    arm.flags |= TREPHINE_ARM_LOST;
+    arm.force_N = 0.0;
+    if (arm.test >= ForceTest::Phase::waiting) arm.test = ForceTest::Phase::lost;
+  }
+  return shown_;
 }
 
 void ArmTrial::askForForce(std::size_t arm, double most_N) {

@@ -35,14 +35,15 @@ class ArmTrial {
   // Opens, calibrates and starts the first kMostTried; not on a window's thread. What one plugin
   // has is opened together, without an arm that cannot be had: that says why in problem().
   static std::unique_ptr<ArmTrial> start(const std::vector<FoundArm>& arms);
-  // Zero force first. Waits for the arms at most 0.3 s; the device whose call does not return by
-  // then is left behind.
+  // Zero force first. Waits for the arms at most 0.3 s; the device whose call does not return is
+  // left behind, and what else takes longer goes on by itself.
   ~ArmTrial();
 
   std::size_t size() const;
   const std::optional<Error>& problem(std::size_t arm) const;
   const TrephineCapabilities& capabilities(std::size_t arm) const;
-  // The newest; one thread.
+  // The newest; one thread. While a call of a device does not return, the force is taken away and
+  // all arms are lost.
   const TriedArms& state();
   // Of the arm of this number: a force within what it can be sent for good, or `most_N`.
   void askForForce(std::size_t arm, double most_N);
@@ -52,7 +53,8 @@ class ArmTrial {
   struct Engine;
   ArmTrial() = default;
   std::shared_ptr<Engine> engine_;
-  std::thread thread_;
+  std::thread thread_, watch_thread_;
+  TriedArms shown_{};
 };
 
 }  // namespace trephine

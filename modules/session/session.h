@@ -211,6 +211,7 @@ class Session {
   std::vector<ArmFault> faults_;
   std::vector<Warning> warnings_;
   std::vector<std::string> controllers_;                       // one after the other
+  std::chrono::steady_clock::time_point last_flush_ = std::chrono::steady_clock::now();
   std::uint64_t unflushed_ticks_ = 0, most_behind_ticks_ = 0;  // the recorder's
   std::atomic<std::uint64_t> flushed_ticks_{0};
 

@@ -65,7 +65,10 @@ void Session::drain() {
       if (recorder_) recorder_->abandon(error);
       noteFailure(error);
     }
-    if (unflushed_ticks_ >= slice) flush();
+    // By the clock too: ticks of a device that is slow come seldom.
+    const bool waited = std::chrono::steady_clock::now() - last_flush_ >
+                        std::chrono::duration<double>(2.0 * kFlushEvery_s);
+    if (unflushed_ticks_ >= slice || (unflushed_ticks_ > 0 && waited)) flush();
   }
 }
 
@@ -103,6 +106,7 @@ void Session::note(const Event& event) {
 }
 
 void Session::flush() {
+  last_flush_ = std::chrono::steady_clock::now();
   if (recorder_) {
     const Status status = recorder_->flush();
     // Until here a kill would have lost these.

@@ -1,5 +1,5 @@
 // What every plugin in C++ needs of the interface: arrays of the host's sizes, forces that are
-// numbers, the host's clock, and whether safe_stop has been answered.
+// numbers, the host's clock, whether safe_stop has been answered, and when an exchange is refused.
 #pragma once
 
 #include <time.h>
@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "trephine_device.h"
 
@@ -56,5 +58,44 @@ class Silence {
  private:
   std::atomic<std::uint32_t> asked_{0}, answered_{0};
 };
+
+// What every open device has.
+struct Opened {
+  Silence silence;
+  bool configured = false, running = false;
+  std::string said;        // of calls beside the haptic thread
+  const char* error = "";  // a literal or `said`: set without allocation
+};
+
+inline int fail(Opened* device, int code, const char* sentence) {
+  device->error = sentence;
+  return code;
+}
+
+inline int failWith(Opened* device, int code, std::string sentence) {
+  device->said = std::move(sentence);
+  return fail(device, code, device->said.c_str());
+}
+
+// What a read or a write with this array begins with: TREPHINE_OK, or why it is refused.
+template <class T>
+int beginExchange(Opened* device, const T* first) {
+  if (!device) return TREPHINE_ERROR_ARGUMENT;
+  if (!first || first->size < sizeof(T)) {
+    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states or commands have no valid size.");
+  }
+  if (device->running) return TREPHINE_OK;
+  return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
+}
+
+// What a write ends with: `silences` were asked for when it began, since what was commanded before
+// one is no answer to it.
+inline int endWrite(Opened* device, std::uint32_t silences, const TrephineArmCommand* commands,
+                    std::size_t arms, bool refused) {
+  if (commandsNothing(commands, arms)) device->silence.answer(silences);
+  if (!refused) return TREPHINE_OK;
+  return fail(device, TREPHINE_ERROR_ARGUMENT,
+              "A commanded force was not finite: that arm got none.");
+}
 
 }  // namespace trephine::plugin

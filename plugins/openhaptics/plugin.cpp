@@ -34,30 +34,16 @@ thread_local std::string open_error;
 
 }  // namespace
 
-struct TrephineDevice {
+struct TrephineDevice : trephine::plugin::Opened {
   explicit TrephineDevice(const Library& hd) : arms(hd, silence) {}
   std::vector<std::uint32_t> places;  // of its arms among the configured names
-  Silence silence;
   Arms arms;
   Config config;
-  bool configured = false, running = false;
   std::array<std::array<double, 3>, kMostArms> centre_m{};  // of the workspace
   std::uint64_t given = 0;                                  // number of the last sample read
-  std::string said;
-  const char* error = "";
 };
 
 namespace {
-
-int fail(TrephineDevice* device, int code, const char* sentence) {
-  device->error = sentence;
-  return code;
-}
-
-int failWith(TrephineDevice* device, int code, std::string sentence) {
-  device->said = std::move(sentence);
-  return fail(device, code, device->said.c_str());
-}
 
 // The library finds no arms by itself: these are places for the names that a configuration gives.
 uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
@@ -260,13 +246,7 @@ void turnOf(const double* m, double out[4]) {
 }
 
 int read(TrephineDevice* device, double, TrephineArmState* states) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!states || states->size < sizeof(TrephineArmState)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  if (const int refused = beginExchange(device, states)) return refused;
   Arms& arms = device->arms;
   const Arms::Samples& samples = arms.latest();
   device->given = samples.number;
@@ -292,15 +272,8 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
 }
 
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silence.asked();
-  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  const std::uint32_t silences = device ? device->silence.asked() : 0;
+  if (const int refused = beginExchange(device, commands)) return refused;
   std::array<std::array<double, 3>, kMostArms> forces_N{};
   bool refused = false;
   for (std::size_t i = 0; i < device->places.size(); ++i) {
@@ -312,10 +285,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     }
   }
   device->arms.command(forces_N);
-  if (commandsNothing(commands, device->places.size())) device->silence.answer(seen);
-  if (!refused) return TREPHINE_OK;
-  return fail(device, TREPHINE_ERROR_ARGUMENT,
-              "A commanded force was not finite: that arm got none.");
+  return endWrite(device, silences, commands, device->places.size(), refused);
 }
 
 int wait(TrephineDevice* device, double timeout_s) {

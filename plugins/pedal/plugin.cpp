@@ -35,26 +35,12 @@ thread_local std::string open_error;
 
 }  // namespace
 
-struct TrephineDevice {
-  Silence silence;
+struct TrephineDevice : trephine::plugin::Opened {
   std::vector<std::unique_ptr<Arm>> arms;
-  bool configured = false, running = false;
   HandConfig hand;
-  std::string said;        // of calls beside the haptic thread
-  const char* error = "";  // a literal or `said`: set without allocation
 };
 
 namespace {
-
-int fail(TrephineDevice* device, int code, const char* sentence) {
-  device->error = sentence;
-  return code;
-}
-
-int failWith(TrephineDevice* device, int code, std::string sentence) {
-  device->said = std::move(sentence);
-  return fail(device, code, device->said.c_str());
-}
 
 uint32_t enumerate(TrephineArmInfo* infos, uint32_t capacity) try {
   open_error.clear();
@@ -224,13 +210,7 @@ void report(const Arm& arm, TrephineArmState& state) {
 }
 
 int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!states || states->size < sizeof(TrephineArmState)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  if (const int refused = beginExchange(device, states)) return refused;
   if (!(dt_s > 0.0 && dt_s <= kMaxStep_s)) {
     return fail(device, TREPHINE_ERROR_ARGUMENT,
                 "The time step must be above 0 and at most 0.1 s.");
@@ -261,15 +241,8 @@ int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
 }
 
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silence.asked();
-  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  const std::uint32_t silences = device ? device->silence.asked() : 0;
+  if (const int refused = beginExchange(device, commands)) return refused;
   bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     const double* force_N = element(commands, i)->force_N;
@@ -277,10 +250,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     refused = refused || !usable;
     device->arms[i]->force_N = usable ? Vector{force_N[0], force_N[1], force_N[2]} : Vector{};
   }
-  if (commandsNothing(commands, device->arms.size())) device->silence.answer(seen);
-  if (!refused) return TREPHINE_OK;
-  return fail(device, TREPHINE_ERROR_ARGUMENT,
-              "A commanded force was not finite: that arm got none.");
+  return endWrite(device, silences, commands, device->arms.size(), refused);
 }
 
 int stop(TrephineDevice* device) {

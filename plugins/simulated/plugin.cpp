@@ -44,25 +44,15 @@ thread_local char open_error[160] = "";
 
 }  // namespace
 
-struct TrephineDevice {
+struct TrephineDevice : trephine::plugin::Opened {
   std::vector<Arm> arms;
-  bool configured = false;
-  bool running = false;
   bool vanished = false;
-  Silence silence;
   std::uint64_t sequence = 0;
   std::int64_t time_ns = 0;
   trephine::simulated::Troubles troubles;
-  std::string config_error;
-  const char* error = "";  // a literal or config_error: set without allocation
 };
 
 namespace {
-
-int fail(TrephineDevice* device, int code, const char* sentence) {
-  device->error = sentence;
-  return code;
-}
 
 void copyText(char* to, std::size_t room, const char* text) {
   std::snprintf(to, room, "%s", text);
@@ -118,8 +108,8 @@ int configure(TrephineDevice* device, const char* json) {
   }
   try {
     DeviceConfig config;
-    if (!parseConfig(json, device->arms.size(), config, device->config_error)) {
-      return fail(device, TREPHINE_ERROR_ARGUMENT, device->config_error.c_str());
+    if (!parseConfig(json, device->arms.size(), config, device->said)) {
+      return fail(device, TREPHINE_ERROR_ARGUMENT, device->said.c_str());
     }
     for (std::size_t i = 0; i < device->arms.size(); ++i) device->arms[i].config = config.arms[i];
     device->troubles = config.troubles;
@@ -203,13 +193,7 @@ void block(double seconds) {
 }
 
 int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!states || states->size < sizeof(TrephineArmState)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
-  }
-  if (!device->running) {
-    return lose(device, states, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  if (const int refused = beginExchange(device, states)) return refused;
   if (device->vanished) {
     return lose(device, states, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
   }
@@ -253,15 +237,8 @@ int read(TrephineDevice* device, double dt_s, TrephineArmState* states) {
 }
 
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silence.asked();
-  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  const std::uint32_t silences = device ? device->silence.asked() : 0;
+  if (const int refused = beginExchange(device, commands)) return refused;
   if (device->vanished) {
     return fail(device, TREPHINE_ERROR_NO_DEVICE, "The simulated arms went away.");
   }
@@ -274,12 +251,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     if (usable) force_N = {command.force_N[0], command.force_N[1], command.force_N[2]};
     refused = refused || !usable;
   }
-  if (commandsNothing(commands, device->arms.size())) device->silence.answer(seen);
-  if (refused) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT,
-                "A commanded force was not finite: that arm got none.");
-  }
-  return TREPHINE_OK;
+  return endWrite(device, silences, commands, device->arms.size(), refused);
 }
 
 int setTarget(TrephineDevice* device, std::uint32_t place, const double position_m[3],

@@ -17,7 +17,7 @@ constexpr double kLn_m = 0.080, kLb_m = 0.205, kLc_m = 0.245;  // links
 constexpr Vector kOrigin_m{0.220, 0.0, 0.080};                 // of the workspace
 constexpr double kTorque_Nm_per_A = 0.0259;
 constexpr double kMost_A = 3.0;  // the firmware clamps at it
-constexpr double kPeak_N = 5.0;
+constexpr double kPeak_N = 3.8;  // what 3 A give everywhere in the box, in any direction
 // For gravity: masses of links b and c, and how far their centres are along them.
 constexpr double kMassB_kg = 0.170, kMassC_kg = 0.110, kCentreB_m = 0.051, kCentreC_m = 0.091;
 constexpr double kGravity_m_s2 = 9.82;

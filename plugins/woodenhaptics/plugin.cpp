@@ -36,27 +36,13 @@ thread_local std::string open_error;
 
 }  // namespace
 
-struct TrephineDevice {
-  Silence silence;
+struct TrephineDevice : trephine::plugin::Opened {
   std::vector<std::unique_ptr<Arm>> arms;
-  bool configured = false, running = false;
   bool gravity = false;
   double latency_s = kLatency_s;
-  std::string said;        // of calls beside the haptic thread
-  const char* error = "";  // a literal or `said`: set without allocation
 };
 
 namespace {
-
-int fail(TrephineDevice* device, int code, const char* sentence) {
-  device->error = sentence;
-  return code;
-}
-
-int failWith(TrephineDevice* device, int code, std::string sentence) {
-  device->said = std::move(sentence);
-  return fail(device, code, device->said.c_str());
-}
 
 // The arm's x towards the user, y right, z up; the host's x right, y up, z towards the user.
 Vector toHost(const Vector& arm) {
@@ -166,7 +152,7 @@ int capabilities(TrephineDevice* device, uint32_t arm, TrephineCapabilities* out
   out->peak_force_N = out->continuous_force_N = kPeak_N;
   out->thermal_s = 0.0;
   out->apparent_mass_kg = 0.15;
-  out->encoder_step_m = 5.5e-5;
+  out->encoder_step_m = 6.5e-5;  // the coarsest count within the box
   out->rate_hz = 1000.0;
   out->latency_s = device->latency_s;
   return TREPHINE_OK;
@@ -224,13 +210,7 @@ void report(Arm& arm, TrephineArmState& state) {
 }
 
 int read(TrephineDevice* device, double, TrephineArmState* states) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  if (!states || states->size < sizeof(TrephineArmState)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The states have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  if (const int refused = beginExchange(device, states)) return refused;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = *device->arms[i];
     TrephineArmState& state = *element(states, i);
@@ -244,15 +224,8 @@ int read(TrephineDevice* device, double, TrephineArmState* states) {
 }
 
 int write(TrephineDevice* device, const TrephineArmCommand* commands) {
-  if (!device) return TREPHINE_ERROR_ARGUMENT;
-  // What was commanded before a safe_stop is no answer to it.
-  const std::uint32_t seen = device->silence.asked();
-  if (!commands || commands->size < sizeof(TrephineArmCommand)) {
-    return fail(device, TREPHINE_ERROR_ARGUMENT, "The commands have no valid size.");
-  }
-  if (!device->running) {
-    return fail(device, TREPHINE_ERROR_STATE, "The arms are not running: start them.");
-  }
+  const std::uint32_t silences = device ? device->silence.asked() : 0;
+  if (const int refused = beginExchange(device, commands)) return refused;
   bool refused = false;
   for (std::size_t i = 0; i < device->arms.size(); ++i) {
     Arm& arm = *device->arms[i];
@@ -273,10 +246,7 @@ int write(TrephineDevice* device, const TrephineArmCommand* commands) {
     }
     arm.board.command(milliamps);
   }
-  if (commandsNothing(commands, device->arms.size())) device->silence.answer(seen);
-  if (!refused) return TREPHINE_OK;
-  return fail(device, TREPHINE_ERROR_ARGUMENT,
-              "A commanded force was not finite: that arm got none.");
+  return endWrite(device, silences, commands, device->arms.size(), refused);
 }
 
 int wait(TrephineDevice* device, double timeout_s) {

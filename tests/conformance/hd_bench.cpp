@@ -2,6 +2,7 @@
 // has to find (LD_LIBRARY_PATH).
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "device/device_bench.h"
@@ -42,19 +43,25 @@ class HdBench : public DeviceBench {
     return std::sqrt(of.force_N[0] * of.force_N[0] + of.force_N[1] * of.force_N[1] +
                      of.force_N[2] * of.force_N[2]);
   }
-  std::vector<double> received_N(std::uint32_t arm) override {
+  std::vector<Given> given(std::uint32_t arm) override {
+    const test::HdArm& of = hd_->arms[arm];
     const std::uint64_t frames = hd_->frames;
-    std::vector<double> forces;
-    for (std::uint64_t f = first_; f < frames; ++f) {
-      forces.push_back(hd_->arms[arm].sent_N[f % test::HdArm::kFrames]);
+    const std::uint64_t from = std::max(first_, frames - std::min(frames, kKept));
+    std::vector<Given> all;
+    for (std::uint64_t f = from; f < frames; ++f) {
+      const std::size_t at = f % test::HdArm::kFrames;
+      const auto& vector = of.vector_N[at];
+      all.push_back(
+          {of.sent_ns[at].load(), Vec3(vector[0].load(), vector[1].load(), vector[2].load())});
     }
-    return forces;
+    return all;
   }
 
  private:
   void* library_ = nullptr;
   HdTest* hd_ = nullptr;
   std::uint64_t first_ = 0;
+  static constexpr std::uint64_t kKept = test::HdArm::kFrames - 100;  // none is written meanwhile
 };
 
 }  // namespace

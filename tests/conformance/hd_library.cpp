@@ -109,6 +109,13 @@ HD_EXPORT void hdEndFrame(std::uint32_t device) {
     test.arms[device].force_N[axis] = test.arms[device].enabled ? pending_N[device][axis] : 0.0;
   }
   const auto& f = test.arms[device].force_N;
+  const std::size_t frame = test.frames % trephine::test::HdArm::kFrames;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    test.arms[device].vector_N[frame][axis] = f[axis].load();
+  }
+  test.arms[device].sent_ns[frame] = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                         std::chrono::steady_clock::now().time_since_epoch())
+                                         .count();
   test.arms[device].sent_N[test.frames % trephine::test::HdArm::kFrames] =
       std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
   if (device == 0) ++test.frames;

@@ -17,9 +17,12 @@ struct HdArm {
   std::atomic<bool> in_holder{false};
   std::array<std::atomic<double>, 3> force_N{};  // since the last frame's end
   std::atomic<bool> enabled{false};
-  std::atomic<std::uint64_t> error_frame{0};       // in which it was reported last
+  std::atomic<std::uint64_t> error_frame{0};  // in which it was reported last
   static constexpr std::size_t kFrames = 131072;
-  std::array<std::atomic<double>, kFrames> sent_N{};  // by frame, around and around
+  // By frame, around and around: the size of the force, the force, and when it was given.
+  std::array<std::atomic<double>, kFrames> sent_N{};
+  std::array<std::array<std::atomic<double>, 3>, kFrames> vector_N{};
+  std::array<std::atomic<std::int64_t>, kFrames> sent_ns{};
 };
 
 struct HdTest {

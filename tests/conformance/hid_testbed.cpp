@@ -1,6 +1,8 @@
 #include "hid_testbed.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <umockdev.h>
 #include <unistd.h>
@@ -44,6 +46,21 @@ std::vector<std::uint8_t> plainDescriptor(std::uint16_t usage_page, std::uint16_
   if (out_bytes > 0) put({0x95, out_bytes, 0x09, 0x02, 0x91, 0x02});
   text.push_back(0xC0);
   return text;
+}
+
+bool isOpen(int fd) {
+  pollfd node{fd, POLLIN, 0};
+  return ::poll(&node, 1, 0) >= 0 && !(node.revents & POLLHUP);
+}
+
+std::size_t waitingBytes(int fd) {
+  char path[64];
+  if (::ptsname_r(fd, path, sizeof(path)) != 0) return 0;
+  const int node = ::open(path, O_RDONLY | O_NOCTTY | O_NONBLOCK);
+  int bytes = 0;
+  if (node < 0 || ::ioctl(node, FIONREAD, &bytes) != 0) bytes = 0;
+  if (node >= 0) ::close(node);
+  return std::size_t(bytes);
 }
 
 HidTestbed::HidTestbed() : bed_(umockdev_testbed_new()) {}

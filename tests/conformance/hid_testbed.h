@@ -20,6 +20,11 @@ struct HidDescription {
 std::vector<std::uint8_t> plainDescriptor(std::uint16_t usage_page, std::uint16_t usage,
                                           std::uint8_t in_bytes, std::uint8_t out_bytes);
 
+// Of a node whose firmware's end this is: whether a program has it open, and, then, how many bytes
+// of reports in wait there for it.
+bool isOpen(int fd);
+std::size_t waitingBytes(int fd);
+
 class HidTestbed {
  public:
   HidTestbed();

@@ -83,9 +83,4 @@ void inRealTime(int of) {
   pthread_setschedparam(pthread_self(), of > 0 ? SCHED_FIFO : SCHED_OTHER, &priority);
 }
 
-bool isOpen(int fd) {
-  pollfd node{fd, POLLIN, 0};
-  return ::poll(&node, 1, 0) >= 0 && !(node.revents & POLLHUP);
-}
-
 }  // namespace trephine::test

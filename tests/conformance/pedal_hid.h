@@ -61,7 +61,4 @@ class CapFirmware {
 // This thread runs with that priority, where the system allows it; 0: as any other.
 void inRealTime(int priority);
 
-// Whether a program has the node open whose firmware's end this is.
-bool isOpen(int fd);
-
 }  // namespace trephine::test

@@ -40,6 +40,7 @@ class Arm {
       return us.empty() ? 0.0 : us[std::min(us.size() - 1, std::size_t(share * double(us.size())))];
     };
     return {{"reports", firmware_->sent()},
+            {"lost", firmware_->lost()},
             {"answered", us.size()},
             {"answer_ms",
              {{"median", 1e-3 * at(0.5)}, {"p99", 1e-3 * at(0.99)}, {"max", 1e-3 * at(1.0)}}},

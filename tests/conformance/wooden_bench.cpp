@@ -57,21 +57,44 @@ class WoodenBench : public DeviceBench {
     for (const Arm& arm : arms_) lost += arm.firmware ? arm.firmware->lost() : 0;
     return lost;
   }
-  std::vector<double> answers_ms() override {
-    std::vector<double> all;
-    for (Arm& arm : arms_) {
-      if (!arm.firmware) continue;
-      for (double us : arm.firmware->answers_us()) all.push_back(1e-3 * us);
+  std::vector<Given> given(std::uint32_t arm) override {
+    std::lock_guard lock(mutex_);
+    const Arm& of = arms_[arm];
+    std::vector<Given> all;
+    if (!of.firmware) return all;
+    std::size_t stood = 0;
+    for (const WoodenFirmware::Told& told : of.firmware->told()) {
+      while (stood + 1 < of.stood.size() && of.stood[stood + 1].at <= told.at) ++stood;
+      if (of.stood.empty()) break;
+      // The arm's x towards the user, y to the right, z up.
+      const Vector f = test::WoodenHand::forceAt(told.milliamps, of.stood[stood].angles);
+      all.push_back({ns(told.at), Vec3(f[1], f[2], f[0])});
     }
     return all;
   }
+  std::vector<std::int64_t> samples_ns(std::uint32_t arm) override {
+    std::vector<std::int64_t> all;
+    if (!arms_[arm].firmware) return all;
+    for (const auto at : arms_[arm].firmware->reportsSent()) all.push_back(ns(at));
+    return all;
+  }
+  // Whole milliamperes, and two milliseconds of a hand's way.
+  double tolerance_N() const override { return 0.03; }
 
  private:
   struct Arm {
     int fd = -1;
     std::unique_ptr<WoodenFirmware> firmware;
     test::WoodenHand hand;
+    struct Stood {
+      WoodenFirmware::Clock::time_point at;
+      Vector angles;
+    };
+    std::vector<Stood> stood;  // each millisecond
   };
+  static std::int64_t ns(WoodenFirmware::Clock::time_point at) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(at.time_since_epoch()).count();
+  }
 
   void swing() {
     auto due = WoodenFirmware::Clock::now();
@@ -82,6 +105,7 @@ class WoodenBench : public DeviceBench {
       for (Arm& arm : arms_) {
         if (arm.fd < 0) continue;
         arm.hand.step(*arm.firmware, arm.hand.force_N(*arm.firmware), time_s);
+        arm.stood.push_back({WoodenFirmware::Clock::now(), arm.hand.angles()});
       }
       if (!blocked_ || WoodenFirmware::Clock::now() < blocked_until_) continue;
       for (Arm& arm : arms_) bed_->block(arm.fd, false);

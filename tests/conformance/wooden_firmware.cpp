@@ -12,6 +12,7 @@ namespace trephine::test {
 
 namespace {
 constexpr std::size_t kOut = 9;  // a report id and 8 bytes
+constexpr std::size_t kIn = 8, kKept = 64;
 constexpr std::int16_t kMost_mA = 3000;
 }  // namespace
 
@@ -22,6 +23,7 @@ void WoodenFirmware::take(const std::uint8_t* report) {
   std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   milliamps_ = asked;
+  told_.push_back({now, asked});
   if (!first_out_) first_out_ = now;
   last_out_ = now;
   if (unanswered_) {
@@ -33,6 +35,13 @@ void WoodenFirmware::take(const std::uint8_t* report) {
 int WoodenFirmware::neverWaits(int fd) {
   ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
   return fd;
+}
+
+// A system keeps 64 reports for a program that does not read them; its terminal would keep
+// thousands. A program that reads says something every 50 ms, and then has room.
+bool WoodenFirmware::hasRoom(Clock::time_point now) const {
+  if (last_out_ && now - *last_out_ < std::chrono::milliseconds(100)) return true;
+  return waitingBytes(fd_) < kKept * kIn;
 }
 
 void WoodenFirmware::run() {
@@ -61,25 +70,31 @@ void WoodenFirmware::run() {
     if (now < due) continue;
     due += std::chrono::milliseconds(1);
     if (now - due > std::chrono::milliseconds(20)) due = now;
-    std::uint8_t report[8];
+    std::uint8_t report[kIn];
     {
       std::lock_guard lock(mutex_);
       if (last_out_ && now - *last_out_ > std::chrono::milliseconds(500)) milliamps_ = {};
       std::memcpy(report, counts_.data(), 6);
-      if (!unanswered_) unanswered_ = now;
+      if (first_out_ && !unanswered_) unanswered_ = now;
     }
     ++number;
     std::memcpy(report + 6, &number, 2);
     if (state_ == State::silent) continue;
     const std::size_t bytes = state_ == State::garbage ? 3 : sizeof(report);
-    // Where nobody reads, it is full in half a second. What went in by half goes on there.
-    if (rest_.empty())
-      rest_.assign(report, report + bytes);
-    else
+    if (!isOpen(fd_)) continue;  // for nobody is anything kept
+    if (!rest_.empty() || !hasRoom(now)) {
       ++lost_;
+      if (rest_.empty()) continue;
+    } else {
+      rest_.assign(report, report + bytes);
+    }
+    // What went in by half goes on there.
     const ssize_t written = ::write(fd_, rest_.data(), rest_.size());
     if (written > 0) rest_.erase(rest_.begin(), rest_.begin() + written);
-    if (rest_.empty()) ++sent_;
+    if (!rest_.empty()) continue;
+    ++sent_;
+    std::lock_guard lock(mutex_);
+    reports_.push_back(now);
   }
 }
 

@@ -49,7 +49,20 @@ class WoodenFirmware {
     return first_out_ ? std::chrono::duration<double>(Clock::now() - *first_out_).count() : -1.0;
   }
   std::uint64_t sent() const { return sent_; }
-  std::uint64_t lost() const { return lost_; }  // found no room
+  std::uint64_t lost() const { return lost_; }  // found no room in a node that is open
+  // What the motors were told, and when each report in was sent.
+  struct Told {
+    Clock::time_point at;
+    std::array<std::int16_t, 3> milliamps;
+  };
+  std::vector<Told> told() const {
+    std::lock_guard lock(mutex_);
+    return told_;
+  }
+  std::vector<Clock::time_point> reportsSent() const {
+    std::lock_guard lock(mutex_);
+    return reports_;
+  }
   // From each report in to the first report out that came after it [us].
   std::vector<double> answers_us() const {
     std::lock_guard lock(mutex_);
@@ -60,12 +73,15 @@ class WoodenFirmware {
   static int neverWaits(int fd);
   void run();
   void take(const std::uint8_t* report);
+  bool hasRoom(Clock::time_point now) const;
 
   int fd_;
   mutable std::mutex mutex_;
   std::array<std::int16_t, 3> counts_{}, milliamps_{};
   std::optional<Clock::time_point> first_out_, last_out_, unanswered_;
   std::vector<double> answers_us_;
+  std::vector<Told> told_;
+  std::vector<Clock::time_point> reports_;
   std::vector<std::uint8_t> rest_;  // of a report in
   std::vector<std::uint8_t> out_;   // bytes of reports out: the node does not keep them apart
   std::atomic<State> state_{State::runs};

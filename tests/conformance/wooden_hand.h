@@ -14,11 +14,16 @@ class WoodenHand {
  public:
   // What the board's motors give where the arm is now [N].
   woodenhaptics::Vector force_N(const WoodenFirmware& board) const {
-    woodenhaptics::Vector amps{};
-    const auto milliamps = board.milliamps();
-    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
-    return forceOf(angles_, torquesOf(amps));
+    return forceAt(board.milliamps(), angles_);
   }
+  // What these currents give at an arm that stands so.
+  static woodenhaptics::Vector forceAt(const std::array<std::int16_t, 3>& milliamps,
+                                       const woodenhaptics::Vector& angles) {
+    woodenhaptics::Vector amps{};
+    for (std::size_t i = 0; i < 3; ++i) amps[i] = 1e-3 * milliamps[i];
+    return test::forceOf(angles, torquesOf(amps));
+  }
+  const woodenhaptics::Vector& angles() const { return angles_; }
   // A millisecond further under this force, and the board counts where the arm is.
   void step(WoodenFirmware& board, const woodenhaptics::Vector& force_N, double time_s) {
     constexpr double kMass_kg = 0.15, kHand_N_per_m = 400.0, kHand_Ns_per_m = 6.0, kT_s = 1e-3;

@@ -47,19 +47,18 @@ class Arms(LabTest):
 
 
 class WoodenArmsTest(LabTest):
-    """`run --realtime` on two boards whose hands swing them into the vault, through the real hidapi."""
+    """`run` on two boards whose hands swing them into the vault, through the real hidapi."""
 
     def test_a_run_is_paced_by_the_boards_and_each_report_is_answered(self):
-        config = str(DEVICES / "woodenhaptics.json")
         arms = self.folder / "arms.json"
         arms.write_text(json.dumps({"format": "trephine.arms", "version": 1, "arms": [
-            {"name": "left", "plugin": "woodenhaptics", "arm": 0, "config": config},
-            {"name": "right", "plugin": "woodenhaptics", "arm": 1, "config": config}]}))
+            {"name": "left", "plugin": "woodenhaptics", "arm": 0},
+            {"name": "right", "plugin": "woodenhaptics", "arm": 1}]}))
         report = self.folder / "boards.json"
         wrapper = shutil.which("umockdev-wrapper")
         self.assertTrue(wrapper, "umockdev is not installed")
         done = subprocess.run(
-            [wrapper, os.environ["WITH_WOODEN_ARMS"], report, LAB, "run", SCENES / "cranium.json", "--realtime",
+            [wrapper, os.environ["WITH_WOODEN_ARMS"], report, LAB, "run", SCENES / "cranium.json",
              "--seconds", "6", "--arms", arms, "--out", self.folder / "out", "--json"],
             capture_output=True, text=True, timeout=240)
         self.assertIn(done.returncode, (0, 4), done.stdout[-500:] + done.stderr[-500:])
@@ -99,18 +98,21 @@ class MeasureDevices(LabTest):
         self.assertLess(row["block_to_zero_ms"]["median"], 60.0)
         self.assertEqual([delay["order"] for delay in row["delays"]], ["send, then wait", "wait, then send"])
         first, before = row["delays"]
-        self.assertGreater(first["k_max"], before["k_max"])
+        self.assertGreater(first["b_max"], before["b_max"])
+        self.assertGreaterEqual(first["k_max"], before["k_max"])
+        self.assertTrue(row["at_the_arm"] and first["at_the_arm"] and before["at_the_arm"])
+        # What the arms had is what was sent, in size and direction, but for what a busy machine delays.
+        for told in (first["forces_missing"], first["forces_late"]):
+            self.assertLess(told, 0.05 * first["delay_ms"]["count"])
+        self.assertLess(row["force_mismatches"], 0.05 * row["ticks"])
         self.assertGreater(before["delay_ms"]["median"], first["delay_ms"]["median"])
         return row
 
     def test_two_boards(self):
-        row = self.measure(os.environ["BENCH_WOODENHAPTICS"], shutil.which("umockdev-wrapper"))
-        self.assertTrue(row["at_the_arm"])
-        self.assertIsNone(row["force_mismatches"])
+        self.measure(os.environ["BENCH_WOODENHAPTICS"], shutil.which("umockdev-wrapper"))
 
     def test_two_arms_of_the_makers_library(self):
-        row = self.measure(os.environ["BENCH_OPENHAPTICS"], environment={"LD_LIBRARY_PATH": os.environ["HD_TEST"]})
-        self.assertIsNotNone(row["force_mismatches"])
+        self.measure(os.environ["BENCH_OPENHAPTICS"], environment={"LD_LIBRARY_PATH": os.environ["HD_TEST"]})
 
     def test_without_a_device_it_says_so(self):
         error = lab("measure", "devices", "--out", self.folder / "none", expect=1)["error"]

@@ -100,7 +100,7 @@ QWidget* CasesPage::buildStrip() {
   strip_train_ = namedButton("nextTrain", tr("&Train"), true);
   strip_prepare_ = namedButton("nextPrepare", tr("&Prepare"));
   strip_save_ = namedButton("saveCase", tr("&Save the case"), true);
-  folder_ = namedButton("openFolder", tr("Open &folder of CT\u2026"));
+  folder_ = namedButton("openFolder", tr("Open folder of &CT\u2026"));
   folder_->setIcon(symbolIcon(Symbol::open));
   series_ = namedButton("anotherSeries", tr("Use another se&ries\u2026"));
   auto* words = new QVBoxLayout;

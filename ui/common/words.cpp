@@ -174,7 +174,10 @@ QString forceChangeWords(const ArmRecord& arm, bool paused) {
     if (arm.controller_parts & part.part) words << tr(part.words);
   }
   if (arm.tool_state & kToolArmWarm) words << tr("less, as the motors are warm");
-  if (arm.tool_state & kToolOff) words << tr("the tool's motor is off: the pedal is up");
+  if (arm.tool_state & kToolOff) {
+    words << (arm.buttons & kPedalLost ? tr("the tool's motor is off: the pedal does not answer")
+                                       : tr("the tool's motor is off: the pedal is up"));
+  }
   return words.isEmpty() ? tr("as the tissue demands") : words.join(", ");
 }
 
@@ -191,7 +194,10 @@ QString forceChangeMeanings() {
 
 QString faultWords(std::uint32_t faults) {
   QStringList words;
-  if (faults & kFaultDeviceLost) words << tr("The arm does not answer: check its cable.");
+  if (faults & kFaultDeviceLost)
+    words << tr(
+        "The arm does not answer: check its cable, and that no other program keeps "
+        "this computer busy.");
   if (faults & kFaultStuck) words << tr("The arm's driver does not return: it was left behind.");
   if (faults & kFaultNonFinite) {
     words << tr("A pose or a force was not a number. The force stays off until you ask for it.");

@@ -18,22 +18,29 @@ constexpr int kShown_ms = 33;
 constexpr int kSettle_ms = 700;    // until what was plugged in has its nodes
 constexpr double kMoved_m = 0.02;  // the arm that a person means
 constexpr double kTest_N = 1.0;
+constexpr int kLeastWidth = 720, kLeastHeight = 540;  // nothing in it is cut
 
 QString nameOf(const FoundArm& arm) {
-  const QString model = toQt(arm.model.empty() ? arm.plugin : arm.model);
-  return DevicesDialog::tr("%1 at %2").arg(model, toQt(arm.bus_path));
+  const auto brief = [](const std::string& text) {
+    constexpr int kMost = 40;
+    const QString all = toQt(text).simplified();
+    return all.size() > kMost ? all.left(kMost) + QChar(0x2026) : all;
+  };
+  return DevicesDialog::tr("%1 at %2")
+      .arg(brief(arm.model.empty() ? arm.plugin : arm.model), brief(arm.bus_path));
 }
 
 QLabel* wordsLabel(const char* name) {
   auto* label = new QLabel;
   label->setObjectName(name);
   label->setWordWrap(true);
+  label->setTextFormat(Qt::PlainText);  // what a device says of itself
   return label;
 }
 
 }  // namespace
 
-DevicesDialog::DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* parent)
+DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidget* parent)
     : QDialog(parent), opens_arms_(std::move(opens_arms)) {
   setObjectName("devicesDialog");
   setWindowTitle(tr("Devices"));
@@ -67,8 +74,12 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* pa
   pedal_ = new QComboBox;
   pedal_->setObjectName("pedal");
   for (QPushButton* each : {again_, force_, felt_, not_felt_}) each->setAutoDefault(false);
+  auto* how = wordsLabel("deviceHow");
+  how->setText(tr("Move an arm by hand: it is chosen here."));
+  how->setProperty("quiet", true);
 
   auto* found = new QVBoxLayout;
+  found->addWidget(how);
   found->addWidget(list_, 1);
   found->addWidget(problems_);
   found->addWidget(again_, 0, Qt::AlignLeft);
@@ -90,11 +101,14 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* pa
   sides->addRow(tr("&Right hand"), right_);
   sides->addRow(tr("&Pedal"), pedal_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+  // Return, in a list of hands, is not to close all of it.
+  buttons->button(QDialogButtonBox::Close)->setAutoDefault(false);
   auto* layout = new QVBoxLayout(this);
   layout->addLayout(columns, 1);
   layout->addLayout(sides);
   layout->addWidget(buttons);
-  resize(720, 520);
+  setMinimumSize(kLeastWidth, kLeastHeight);
+  resize(kLeastWidth, kLeastHeight);
 
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
   connect(again_, &QPushButton::clicked, this, &DevicesDialog::look);
@@ -104,13 +118,8 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* pa
     showArm();
   });
   connect(force_, &QPushButton::clicked, this, &DevicesDialog::askForForce);
-  connect(felt_, &QPushButton::clicked, this,
-          [this] { test_->setText(tr("The force of this arm works.")); });
-  connect(not_felt_, &QPushButton::clicked, this, [this] {
-    test_->setText(
-        tr("Then no exercise can be felt with this arm: check that it is switched on "
-           "and that its emergency stop is out, and test it again."));
-  });
+  connect(felt_, &QPushButton::clicked, this, [this] { answer(true); });
+  connect(not_felt_, &QPushButton::clicked, this, [this] { answer(false); });
   connect(left_, &QComboBox::activated, this, [this](int index) { choose("left", index); });
   connect(right_, &QComboBox::activated, this, [this](int index) { choose("right", index); });
   connect(pedal_, &QComboBox::activated, this, [this](int index) { choose(kPedal, index); });
@@ -149,6 +158,8 @@ void DevicesDialog::look() {
     return;
   }
   again_->setEnabled(false);
+  problems_->setText(tr("Looking for arms\u2026"));
+  problems_->show();
   for (QComboBox* box : {left_, right_, pedal_}) box->setEnabled(false);
   asked_ = false;
   struct Found {
@@ -208,8 +219,12 @@ void DevicesDialog::showList() {
   const QSignalBlocker blocked(list_);
   list_->clear();
   for (const FoundArm& arm : arms_) {
-    const QString side = sideOf(arm);
-    list_->addItem(side.isEmpty() ? nameOf(arm) : tr("%1\n%2").arg(nameOf(arm), side));
+    QStringList lines{nameOf(arm)};
+    if (const QString side = sideOf(arm); !side.isEmpty()) lines << side;
+    if (const auto tested = felt_by_place_.find(arm.bus_path); tested != felt_by_place_.end()) {
+      lines << (tested->second ? tr("its force was felt") : tr("NO FORCE was felt"));
+    }
+    list_->addItem(lines.join('\n'));
   }
   list_->setCurrentRow(std::min(row, int(arms_.size()) - 1));
   showSides();
@@ -246,7 +261,27 @@ bool DevicesDialog::isPedal(std::size_t arm) const {
          trial_->capabilities(arm).input_dof == 0;
 }
 
-// A device has one hand: the other loses it.
+// Of the arm that is shown; it stands in the list until the dialog is closed.
+void DevicesDialog::answer(bool felt) {
+  if (shown() < 0 || shown() >= int(arms_.size())) return;
+  felt_by_place_[arms_[std::size_t(shown())].bus_path] = felt;
+  showList();
+  test_->setText(
+      felt ? tr("The force of this arm works.")
+           : tr("Then no exercise can be felt with this arm: check that it is switched on "
+                "and that its emergency stop is out, and test it again."));
+}
+
+// A force that pulls ends first.
+void DevicesDialog::reject() {
+  using Phase = ForceTest::Phase;
+  const bool any = trial_ && shown() >= 0 && shown() < int(trial_->size());
+  const Phase phase = any ? trial_->state()[std::size_t(shown())].test : Phase::off;
+  if (phase >= Phase::waiting && phase <= Phase::falling) return askForForce();
+  QDialog::reject();
+}
+
+// A device has one hand: the other gets what this one had.
 void DevicesDialog::choose(const std::string& side, int index) {
   const QComboBox* box = side == kPedal ? pedal_ : side == "left" ? left_ : right_;
   const int arm = box->itemData(index).toInt();
@@ -255,8 +290,12 @@ void DevicesDialog::choose(const std::string& side, int index) {
     chooseArm(side, {});
   } else {
     const FoundArm& device = arms_[std::size_t(arm)];
-    for (const auto& [other, has] : armsOfThisPlace()) {
-      if (other != side && has.isSame(device)) chooseArm(other, {});
+    const ArmsOfPlace before = armsOfThisPlace();
+    const auto had = before.find(side);
+    for (const auto& [other, has] : before) {
+      if (other == side || !has.isSame(device)) continue;
+      const bool swaps = had != before.end() && side != kPedal && other != kPedal;
+      chooseArm(other, swaps ? std::optional<FoundArm>(had->second) : std::nullopt);
     }
     chooseArm(side, device);
     list_->setCurrentRow(arm);
@@ -290,7 +329,7 @@ void DevicesDialog::showArm() {
                    .arg(1e3 * able.workspace_m[0], 0, 'f', 0)
                    .arg(1e3 * able.workspace_m[1], 0, 'f', 0)
                    .arg(1e3 * able.workspace_m[2], 0, 'f', 0)
-            << tr("gives %1 N, for good %2 N")
+            << tr("gives %1 N at most, %2 N for as long as you like")
                    .arg(able.peak_force_N, 0, 'f', 1)
                    .arg(able.continuous_force_N, 0, 'f', 1)
             << tr("%1 samples a second").arg(able.rate_hz, 0, 'f', 0);
@@ -355,8 +394,9 @@ void DevicesDialog::showNow() {
         "It does not know where it is: put the stylus into its holder and take it out again.");
   } else {
     if (able.input_dof != 0) {
-      now << (arm.moved_m < kMoved_m ? tr("Move it to see that this is the one.")
-                                     : tr("Moved by %1 mm.").arg(1e3 * arm.moved_m, 0, 'f', 0));
+      now << (arm.moved_m < kMoved_m
+                  ? tr("Move it to see that this is the one.")
+                  : tr("It was moved by up to %1 mm.").arg(1e3 * arm.moved_m, 0, 'f', 0));
     }
     for (int bit = 0; bit < 8; ++bit) {
       if (arm.buttons & (1u << bit)) now << tr("Button %1 is pressed.").arg(bit + 1);
@@ -382,7 +422,9 @@ void DevicesDialog::showNow() {
       test_->setText(tr("It pulls up with %1 N.").arg(arm.force_N, 0, 'f', 1));
       break;
     case Phase::lost:
-      test_->setText(tr("The force was taken away: the arm was lost from the hand."));
+      test_->setText(tr(
+          "The force was taken away: the arm left the hand, or did not answer for a moment. Hold "
+          "it and test it again; if it goes on, check its cable."));
       break;
     case Phase::done:
       if (asked_) test_->setText(tr("Did it pull up?"));
@@ -396,7 +438,7 @@ void DevicesDialog::showNow() {
   if (arm.test == Phase::done && std::exchange(asked_, false)) {
     felt_->setEnabled(true);
     not_felt_->setEnabled(true);
-    felt_->setFocus();
+    list_->setFocus();  // neither answer by a careless key
   }
 }
 

@@ -10,8 +10,10 @@
 #include <QListWidget>
 #include <QPushButton>
 #include <QTimer>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include "session/arm_trial.h"
 #include "ui/common/background_task.h"
@@ -23,7 +25,7 @@ class DevicesDialog : public QDialog {
   Q_OBJECT
  public:
   // `opens_arms` is held while arms are opened here.
-  DevicesDialog(std::shared_ptr<std::mutex> opens_arms, QWidget* parent);
+  DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidget* parent);
   ~DevicesDialog() override;
 
   // Again what is plugged in: also when something is plugged in or out.
@@ -31,6 +33,9 @@ class DevicesDialog : public QDialog {
 
  signals:
   void letGo();  // it was closed, and has no arm any more; it goes by itself
+
+ protected:
+  void reject() override;
 
  private:
   void found(const FoundArms& here);
@@ -40,16 +45,18 @@ class DevicesDialog : public QDialog {
   void showNow();
   void choose(const std::string& side, int index);
   void askForForce();
+  void answer(bool felt);
   void close();
   QString sideOf(const FoundArm& arm) const;
   bool isPedal(std::size_t arm) const;
   int shown() const { return list_->currentRow(); }
 
-  std::shared_ptr<std::mutex> opens_arms_;
+  std::shared_ptr<std::timed_mutex> opens_arms_;
   std::vector<FoundArm> arms_;  // real ones
   std::shared_ptr<ArmTrial> trial_;
   bool look_again_ = false, asked_ = false, waited_ = false;
   std::vector<double> moved_m_;  // by then, of each arm
+  std::map<std::string, bool> felt_by_place_;  // a force of it was tested, by its bus path
 
   QListWidget* list_;
   QLabel *problems_, *name_, *able_, *now_, *test_;

@@ -100,7 +100,8 @@ void MainWindow::buildActions() {
   for (QAction* action : {left_panel_, right_panel_, full_screen_}) action->setCheckable(true);
   settings_ = makeAction(*this, Symbol::settings, "settings", tr("Settings\u2026"),
                          QKeySequence(Qt::CTRL | Qt::Key_Comma), tr("How you like to work"));
-  devices_ = makeAction(*this, Symbol::settings, "devices", tr("&Devices\u2026"), {},
+  devices_ = makeAction(*this, Symbol::settings, "devices", tr("&Devices\u2026"),
+                        QKeySequence(Qt::CTRL | Qt::Key_D),
                         tr("The arms that are plugged in: which is the left and which the right"));
   unlock_ =
       makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
@@ -251,6 +252,7 @@ void MainWindow::connectParts() {
   const auto showPhase = [this] {
     const bool any = this->workstation().phase() != Workstation::Phase::empty;
     for (QAction* action : {picture_, volume_, look_}) action->setEnabled(any);
+    devices_->setEnabled(!any || this->workstation().phase() == Workstation::Phase::ready);
   };
   connect(&workstation, &Workstation::phaseChanged, this, showPhase);
   showPhase();

@@ -26,7 +26,7 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
   connect(&view_, &ViewWidget::pointerStepped, this, &PointerHands::step);
   connect(&view_, &ViewWidget::toolTilted, this, &PointerHands::tilt);
   connect(&view_, &ViewWidget::toolStraightened, this, [this] {
-    if (session_) session_->straightenHand(active_);
+    if (session_ && !none_) session_->straightenHand(active_);
   });
   connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
     if (session_ && holds() && notches > 0.0) return;
@@ -62,8 +62,20 @@ void PointerHands::begin(Session* session) {
     const std::vector<SceneArm>& arms = session_->scene().arms;
     const auto found = std::ranges::find(arms, main, &SceneArm::name);
     active_ = found == arms.end() ? arms.size() - 1 : std::size_t(found - arms.begin());
+    none_ = false;
+    if (!session_->isSimulated(active_)) active_ = nextSimulated();
+    none_ = !session_->isSimulated(active_);
   }
   emit changed();
+}
+
+// After the active one, which it is itself where there is no other.
+std::size_t PointerHands::nextSimulated() const {
+  const std::size_t count = session_->scene().arms.size();
+  for (std::size_t i = 1; i < count; ++i) {
+    if (session_->isSimulated((active_ + i) % count)) return (active_ + i) % count;
+  }
+  return active_;
 }
 
 double PointerHands::push_N() const {
@@ -75,7 +87,7 @@ double PointerHands::mostPush_N() const {
 }
 
 void PointerHands::setPush(double push_N) {
-  if (!session_) return;
+  if (!session_ || none_) return;
   if (!place()) step(0, 0);  // keys alone: from the middle of the view
   const double wanted_N = push_N < kLeastPush_N ? 0.0 : std::min(push_N, mostPush_N());
   (void)session_->setPush(active_, wanted_N);
@@ -83,9 +95,9 @@ void PointerHands::setPush(double push_N) {
 }
 
 void PointerHands::takeOther() {
-  if (!session_ || session_->scene().arms.size() < 2) return;
+  if (!session_ || none_ || nextSimulated() == active_) return;
   (void)session_->releaseHand(active_);
-  active_ = (active_ + 1) % session_->scene().arms.size();
+  active_ = nextSimulated();
   stays_ = true;
   emit changed();
 }
@@ -99,7 +111,7 @@ void PointerHands::goneBack() {
 }
 
 void PointerHands::point(const QPointF& to) {
-  if (!session_) return;
+  if (!session_ || none_) return;
   if (place() && holds()) {
     stays_ = true;
     return;
@@ -127,7 +139,7 @@ void PointerHands::step(int right, int up) {
 }
 
 void PointerHands::tilt(int right, int up) {
-  if (!session_) return;
+  if (!session_ || none_) return;
   const ViewCamera& camera = view_.camera();
   if (right != 0) session_->turnHand(active_, camera.up(), kTilt_rad * right);
   if (up != 0) session_->turnHand(active_, camera.right(), -kTilt_rad * up);

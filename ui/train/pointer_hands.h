@@ -1,6 +1,7 @@
 // The mouse and the keys as a hand: the tool goes where the pointer is, the wheel sets how hard it
 // presses, Shift and arrow keys tilt it, Tab takes the other hand: both stay where they are until
-// the pointer moves. Of simulated arms; what it sends is recorded by the session.
+// the pointer moves. Of simulated arms alone: a hand that a real arm holds is never the pointer's;
+// what it sends is recorded by the session.
 #pragma once
 
 #include <QObject>
@@ -31,6 +32,8 @@ class PointerHands : public QObject {
   // Somebody has pointed since the exercise began.
   bool taken() const { return last_.has_value(); }
   void takeOther();
+  // The pointer has no hand: real arms have them all.
+  bool hasNone() const { return session_ && none_; }
   // All hands have gone back to where they began, and stay there until the pointer moves.
   void goneBack();
   void setPush(double push_N);
@@ -40,6 +43,7 @@ class PointerHands : public QObject {
 
  private:
   void letGo();
+  std::size_t nextSimulated() const;
   bool holds();
   void point(const QPointF& to);
   std::optional<QPointF>& place() { return places_[active_]; }
@@ -52,6 +56,7 @@ class PointerHands : public QObject {
   std::size_t active_ = 0;
   std::vector<std::optional<QPointF>> places_{std::nullopt};  // of each hand, in the view
   std::optional<QPointF> last_;                               // of any hand
+  bool none_ = false;
   bool stays_ = false;  // where it is, until the pointer moves
 };
 

@@ -75,8 +75,9 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
       with_it[std::size_t(known)].push_back(i);
     }
   }
-  if (all.empty()) return out;
-  out.title = StateNotice::tr("NO FORCE: %1").arg(whoWords(all, scene));
+  const bool pedal_lost = state.record.arms[0].buttons & kPedalLost;
+  if (all.empty() && pedal_lost) out.title = StateNotice::tr("THE PEDAL DOES NOT ANSWER");
+  if (!all.empty()) out.title = StateNotice::tr("NO FORCE: %1").arg(whoWords(all, scene));
   for (qsizetype r = 0; r < reasons.size(); ++r) {
     if (r > 0) out.why += '\n';
     if (reasons.size() > 1) out.why += whoWords(with_it[std::size_t(r)], scene) + ": ";
@@ -85,10 +86,18 @@ ForceNotice forceNotice(const LoopState& state, const Scene& scene, double still
   if ((faults & kFaultDeviceLost) && all.size() < scene.arms.size()) {
     out.why += '\n' + StateNotice::tr("The other hand goes on, and so does the recording.");
   }
+  if (pedal_lost) {
+    if (!out.why.isEmpty()) out.why += '\n';
+    out.why += StateNotice::tr(
+        "The pedal was unplugged: motors are off. Go on without it, and they run by themselves; or "
+        "stop, plug it in, and start again.");
+  }
   if (faults & kFaultDeviceLost) {
     out.mend = StateNotice::tr("Try again");
   } else if (faults & ~kPassingFaults) {
     out.mend = StateNotice::tr("Force on");
+  } else if (pedal_lost) {
+    out.mend = StateNotice::tr("Go on without it");
   }
   return out;
 }

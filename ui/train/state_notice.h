@@ -14,7 +14,7 @@
 
 namespace trephine {
 
-// Which arms are without force, and why, in words.
+// Which arms are without force, or that the pedal is gone, and why, in words.
 struct ForceNotice {
   QString title, why;  // empty: every arm has its force
   QString mend;        // what the button says; empty: the force comes back without it

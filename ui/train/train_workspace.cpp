@@ -241,6 +241,10 @@ void TrainWorkspace::showPhase() {
         return bench_.hint(tr("Poking: nothing is cut. Mouse: the tool. Wheel up: press. Tab: other "
                               "hand. Right drag: turn."));
       }
+      if (!pointerHasAHand()) {
+        return bench_.hint(
+            tr("Space: pause. The arms move the tools. Right drag: turn. Ctrl+wheel: zoom."));
+      }
       return bench_.hint(
           tr("Space: pause. Mouse: the tool. Wheel up: press. Tab: other hand. Right drag: turn."));
     default:
@@ -248,6 +252,15 @@ void TrainWorkspace::showPhase() {
                   : ready ? tr("Drag: turn. Middle drag: shift. Wheel: zoom. F5: start.")
                           : QString());
   }
+}
+
+bool TrainWorkspace::pointerHasAHand() const {
+  const Session* session = workstation_.session();
+  if (!session) return false;
+  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+    if (session->isSimulated(i)) return true;
+  }
+  return false;
 }
 
 void TrainWorkspace::reset() {

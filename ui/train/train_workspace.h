@@ -85,6 +85,7 @@ class TrainWorkspace : public Workspace {
   void showState(Session& session, const LoopState& state);
   void showRates();
   void tellCards(const Session& session, const LoopState& state);
+  bool pointerHasAHand() const;
   void command(CommandKind kind);
   void undo(CommandKind which);
   void rewind(std::uint32_t second);

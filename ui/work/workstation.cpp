@@ -1,6 +1,8 @@
 #include "ui/work/workstation.h"
 
 #include <QDateTime>
+#include <algorithm>
+#include <chrono>
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -11,6 +13,22 @@
 #include "volume/case_memory.h"
 
 namespace trephine {
+
+namespace {
+
+// Arms are opened by one at a time; who wants none of them need not wait.
+Status armsAreFree(std::unique_lock<std::timed_mutex>& lock, const Scene& scene,
+                   const ArmsOfPlace& chosen) {
+  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
+  if (chosen.empty() && std::ranges::none_of(scene.arms, is_real)) return {};
+  if (lock.try_lock_for(std::chrono::seconds(10))) return {};
+  return Error{
+      "ARMS_BUSY", "Looking for arms has not come to an end: a device does not answer", "",
+      "Unplug it and wait, or start Trephine again; mouse and keys move hands that have no "
+      "arm under Devices"};
+}
+
+}  // namespace
 
 Workstation::Workstation(const Policy& policy, QObject* parent) : QObject(parent), policy_(policy) {
   connect(&opening_, &BackgroundTask::progressed, this, &Workstation::openingProgressed);
@@ -77,7 +95,8 @@ void Workstation::begin(const std::filesystem::path& recordings,
       [scene = std::move(practised), chosen, opens = opens_arms_, of = *case_, again, recordings,
        stem, poke, script = std::move(script)](
           const Progress& progress) mutable -> Result<std::unique_ptr<Session>> {
-        const std::lock_guard lock(*opens);
+        std::unique_lock lock(*opens, std::defer_lock);
+        if (Status had = armsAreFree(lock, scene, chosen); !had) return had.error();
         if (Status used = useArms(scene, chosen); !used) return used.error();
         if (Status made = poke ? Status() : makeFolder(recordings); !made) return made.error();
         const Result<Case> placed = again ? placedIn(scene, of, progress) : of;
@@ -178,7 +197,8 @@ void Workstation::askArms() {
   asking_.run(
       [scene = *scene_, chosen, opens = opens_arms_](
           const Progress&) mutable -> Result<std::pair<Scene, std::vector<Vec3>>> {
-        const std::lock_guard lock(*opens);
+        std::unique_lock lock(*opens, std::defer_lock);
+        if (Status had = armsAreFree(lock, scene, chosen); !had) return had.error();
         if (Status used = useArms(scene, chosen); !used) return used.error();
         std::vector<Vec3> workspaces_mm;
         if (Status asked = readArmDynamics(scene, &workspaces_mm); !asked) return asked.error();

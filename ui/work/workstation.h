@@ -96,7 +96,7 @@ class Workstation : public QObject {
   // show is asked in the background, as another may have been chosen.
   void lendArms(bool lent);
   // Held while arms are opened.
-  const std::shared_ptr<std::mutex>& opensArms() const { return opens_arms_; }
+  const std::shared_ptr<std::timed_mutex>& opensArms() const { return opens_arms_; }
   // How far each arm of scene() reaches, device axes, mm; empty where an arm is not there.
   const std::vector<Vec3>& workspaces_mm() const { return workspaces_mm_; }
 
@@ -300,7 +300,7 @@ class Workstation : public QObject {
   bool ask_again_ = false;                  // once the arms have answered
   bool lent_ = false;                       // the arms are
   // An arm is opened by one at a time.
-  const std::shared_ptr<std::mutex> opens_arms_ = std::make_shared<std::mutex>();
+  const std::shared_ptr<std::timed_mutex> opens_arms_ = std::make_shared<std::timed_mutex>();
   // Last, so that they are joined before what they work on goes.
   ImportTask import_;
   BackgroundTask opening_, running_, saving_, asking_;

@@ -97,8 +97,7 @@ std::int64_t hostTime_ns() {
 
 std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
   std::uint64_t count = 0;
-  constexpr std::size_t kSettled = 500;  // ticks: what waited before anybody listened
-  for (std::size_t i = kSettled; i < watch.ticks(arm); ++i) {
+  for (std::size_t i = 1; i < watch.ticks(arm); ++i) {
     const std::uint64_t before = watch.tick(arm, i - 1).sequence;
     const std::uint64_t now = watch.tick(arm, i).sequence;
     if (before > 0 && now > before + 1) count += now - before - 1;
@@ -106,36 +105,53 @@ std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
   return count;
 }
 
-// Ticks whose force the arm did not get with the sample that it answers, nor with the next.
-std::uint64_t mismatches(const LoopWatch& watch, std::size_t arm,
-                         const std::vector<double>& received_N) {
-  const auto same = [&](std::int64_t at, double force_N) {
-    return at >= 0 && std::size_t(at) < received_N.size() &&
-           std::abs(received_N[std::size_t(at)] - force_N) < 1e-9;
-  };
-  const auto wrong = [&](std::int64_t offset, std::size_t most) {
-    std::uint64_t count = 0;
-    for (std::size_t i = 0; i < most; ++i) {
-      const LoopWatch::Tick& tick = watch.tick(arm, i);
-      if (tick.lost) continue;
-      const std::int64_t at = std::int64_t(tick.sequence) + offset;
-      count += !same(at, tick.force_N) && !same(at + 1, tick.force_N);
+// What came of forces that were sent.
+struct Answers {
+  std::vector<double> ms;     // from a sample at the arm to the force that answers it there
+  std::uint64_t missing = 0;  // what the arm had was sent by no tick,
+  std::uint64_t late = 0;     // or by one whose successor was sent long before
+  std::uint64_t felt = 0;     // forces of any size that were sent by a tick
+};
+
+// Each force that the arm had is to be that of the newest tick that was sent before, in size and
+// direction, or, on its way, of one just before or after.
+void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, std::uint32_t arm,
+                Answers& to) {
+  constexpr std::int64_t kWay_ns = 3'000'000, kAhead_ns = 1'000'000;
+  constexpr std::size_t kOldest = 100;  // ticks: beyond it the loop has taken the force away
+  constexpr double kShare = 0.03;       // of the force, for the arm's way meanwhile
+  const double tolerance_N = bench.tolerance_N();
+  const std::vector<std::int64_t> samples_ns = bench.samples_ns(arm);
+  if (ticks.empty()) return;
+  std::size_t newest = 0, answered = ticks.size();
+  for (const DeviceBench::Given& given : bench.given(arm)) {
+    if (given.at_ns < ticks.front().sent_ns || given.at_ns > ticks.back().sent_ns) continue;
+    while (newest + 1 < ticks.size() && ticks[newest + 1].sent_ns <= given.at_ns) ++newest;
+    const auto is = [&](std::size_t k) {
+      const Vec3& sent_N = ticks[k].force_N;
+      const double share = tolerance_N > 1e-6 ? kShare * glm::length(sent_N) : 0.0;
+      return glm::distance(sent_N, given.force_N) <= tolerance_N + share;
+    };
+    std::optional<std::size_t> found;
+    const std::size_t next = newest + 1;
+    for (std::size_t back = 0; !found && back <= std::min(newest, kOldest); ++back) {
+      if (is(newest - back)) found = newest - back;
+      if (back > 0 || found || next >= ticks.size()) continue;
+      if (ticks[next].sent_ns < given.at_ns + kAhead_ns && is(next)) found = next;
     }
-    return count;
-  };
-  // Both count samples, from different ones on: where the first force of any size arrived.
-  const std::size_t ticks = watch.ticks(arm);
-  std::size_t first = 0;
-  while (first < ticks && watch.tick(arm, first).force_N < kFelt_N) ++first;
-  if (first == ticks) return ticks;  // nothing is known of any
-  std::uint64_t least = ticks;
-  for (std::size_t at = 0; at < received_N.size(); ++at) {
-    if (!same(std::int64_t(at), watch.tick(arm, first).force_N)) continue;
-    const auto offset = std::int64_t(at) - std::int64_t(watch.tick(arm, first).sequence);
-    least = std::min(least, wrong(offset, ticks));
-    if (least == 0) break;
+    if (!found) {
+      ++to.missing;
+      continue;
+    }
+    to.felt += glm::length(given.force_N) > kFelt_N;
+    to.late += *found < newest && ticks[*found + 1].sent_ns < given.at_ns - kWay_ns;
+    if (found == answered || ticks[*found].sampled_ns == 0) continue;
+    answered = *found;
+    std::int64_t sampled_ns = ticks[*found].sampled_ns;
+    const auto after = std::upper_bound(samples_ns.begin(), samples_ns.end(), sampled_ns);
+    if (after != samples_ns.begin()) sampled_ns = *(after - 1);  // as the arm has it
+    to.ms.push_back(1e-6 * double(given.at_ns - sampled_ns));
   }
-  return least;
 }
 
 Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
@@ -151,17 +167,14 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
   if (!session) return session.error();
   if (Status started = (*session)->start(seconds); !started) return started;
   const std::int64_t begin_ns = hostTime_ns();
-  std::optional<std::uint64_t> lost_before;
+  // What found no room before anybody listened is not lost.
+  const auto lost_before = subject.bench ? subject.bench->lost() : std::nullopt;
   while (!(*session)->finished() && 1e-9 * double(hostTime_ns() - begin_ns) < seconds + 10.0) {
     const double part = 1e-9 * double(hostTime_ns() - begin_ns) / seconds;
     progress.at(std::min(1.0, part), subject.plugin + ", closed loop");
     if (progress.cancelled()) {
       (void)(*session)->stop();
       return cancelled();
-    }
-    constexpr double kSettled_s = 0.5;  // what waited before anybody listened is not lost
-    if (subject.bench && !lost_before && part * seconds > kSettled_s) {
-      lost_before = subject.bench->lost();
     }
     std::this_thread::sleep_for(50ms);
   }
@@ -183,46 +196,57 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
     }
   }
   row.report_age_ms = spreadOf(std::move(age_ms));
-  std::vector<double> at_arm_ms = subject.bench ? subject.bench->answers_ms() : answer_ms;
-  row.at_the_arm = subject.bench && !at_arm_ms.empty();
-  row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(at_arm_ms) : std::move(answer_ms));
+  Answers answers;
   for (std::size_t arm = 0; subject.bench && arm < subject.arms.size(); ++arm) {
-    const std::uint32_t of_bench = scene->arms[arm].device.place;
-    const std::vector<double> received_N = subject.bench->received_N(of_bench);
-    if (received_N.empty()) continue;
-    row.force_mismatches = row.force_mismatches.value_or(0) + mismatches(watch, arm, received_N);
+    std::vector<LoopWatch::Tick> ticks;
+    for (std::size_t i = 0; i < watch.ticks(arm); ++i) ticks.push_back(watch.tick(arm, i));
+    addAnswers(ticks, *subject.bench, scene->arms[arm].device.place, answers);
+  }
+  row.at_the_arm = answers.felt > 0;
+  row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(answers.ms) : std::move(answer_ms));
+  if (row.at_the_arm) {
+    row.force_mismatches = answers.missing;
+    row.forces_late = answers.late;
   }
   return {};
 }
 
 // ---- The order of the loop's calls
 
-// From each sample to the return of the write of the force that answers it, by an arm that the host
-// or its own samples pace.
-Result<std::vector<double>> answersTo(const Subject& subject, bool send_first, double seconds,
-                                      ArmDynamics& dynamics, const Progress& progress) {
+// Eight forces in turns, which a look at the arm tells apart.
+Vec3 patternOf(std::size_t tick) {
+  return Vec3(0.1 + 0.08 * double(tick % 8), 0.0, 0.0);
+}
+
+// Ticks of a loop without tissue, by an arm that the host or its own samples pace.
+Result<std::vector<LoopWatch::Tick>> exchange(const Subject& subject, bool send_first,
+                                              double seconds, ArmDynamics& dynamics,
+                                              const Progress& progress) {
   std::vector<std::uint32_t> places;
   for (const FoundArm& arm : subject.arms) places.push_back(arm.place);
   Result<std::unique_ptr<Device>> device =
       openDevice(subject.plugin, places, deviceFile(subject.plugin));
   if (!device) return device.error();
   const TrephineCapabilities& able = (*device)->capabilities(0);
-  dynamics = {able.apparent_mass_kg, able.encoder_step_m, able.peak_force_N, 0.0};
+  dynamics = {able.apparent_mass_kg, able.encoder_step_m, able.peak_force_N, able.latency_s};
   if (Status started = (*device)->start(); !started) return started.error();
   std::vector<TrephineArmState> states(places.size());
   std::vector<TrephineArmCommand> commands(places.size());
-  std::vector<double> answers_ms;
+  for (TrephineArmCommand& each : commands) each.size = sizeof(TrephineArmCommand);
+  std::vector<LoopWatch::Tick> ticks;
   HostClock clock;
   TickSchedule schedule(std::int64_t(1e9 / kRate_hz));
-  std::uint64_t answered = 0;
-  std::int64_t computed_from_ns = 0;
+  LoopWatch::Tick now;
   for (std::size_t tick = 0; double(tick) < seconds * kRate_hz; ++tick) {
-    if (progress.cancelled()) return cancelled();
+    if (progress.cancelled()) {
+      (*device)->stop();
+      return cancelled();
+    }
     const auto write = [&] {
+      for (int axis = 0; axis < 3; ++axis) commands[0].force_N[axis] = now.force_N[axis];
       (*device)->write(commands.data());
-      if (computed_from_ns == 0) return;
-      answers_ms.push_back(1e-6 * double(clock.now_ns() - computed_from_ns));
-      computed_from_ns = 0;
+      now.sent_ns = clock.now_ns();
+      if (now.sampled_ns > 0) ticks.push_back(now);
     };
     if (send_first && (*device)->hasClock()) {
       (*device)->wait(0.005);
@@ -231,36 +255,49 @@ Result<std::vector<double>> answersTo(const Subject& subject, bool send_first, d
     }
     if (!send_first) write();
     (*device)->read(1.0 / kRate_hz, states.data());
-    if (states[0].sequence != answered && states[0].time_ns > 0) {
-      answered = states[0].sequence;
-      computed_from_ns = states[0].time_ns;
-    }
+    now.sequence = states[0].sequence;
+    now.sampled_ns = states[0].time_ns;
+    now.force_N = patternOf(tick);
     if (send_first) write();
   }
   (*device)->stop();
-  return answers_ms;
+  return ticks;
 }
 
 Status measureOrders(Subject& subject, double seconds, DeviceRow& row, const Progress& progress) {
-  double beyond_ms = 0.0;  // from the plugin to the arm, as the bench sees it
   for (const bool send_first : {true, false}) {
     progress.at(0.0, subject.plugin + (send_first ? ", send, then wait" : ", wait, then send"));
     if (Status there = plugIn(subject); !there) return there;
     DelayRow delay;
     delay.order = send_first ? "send, then wait" : "wait, then send";
     ArmDynamics dynamics;
-    Result<std::vector<double>> answers_ms =
-        answersTo(subject, send_first, seconds, dynamics, progress);
-    if (!answers_ms) return answers_ms.error();
-    const double to_plugin_ms = spreadOf(*answers_ms).median;
-    const std::vector<double> seen_ms =
-        subject.bench && send_first ? subject.bench->answers_ms() : std::vector<double>();
-    if (!seen_ms.empty()) beyond_ms = std::max(0.0, spreadOf(seen_ms).median - to_plugin_ms);
-    for (double& ms : *answers_ms) ms += beyond_ms;
-    delay.delay_ms = spreadOf(std::move(*answers_ms));
-    dynamics.delay_s = 1e-3 * delay.delay_ms.p99;
-    delay.delay_samples = dynamics.delay_s * kRate_hz;
-    delay.most = renderable(dynamics, kRate_hz, delay.delay_samples, WorkspaceMap{});
+    const Result<std::vector<LoopWatch::Tick>> ticks =
+        exchange(subject, send_first, seconds, dynamics, progress);
+    if (!ticks) return ticks.error();
+    Answers answers;
+    if (subject.bench) addAnswers(*ticks, *subject.bench, subject.arms[0].place, answers);
+    delay.at_the_arm = answers.felt > 0;
+    if (!delay.at_the_arm) {
+      for (const LoopWatch::Tick& tick : *ticks) {
+        answers.ms.push_back(1e-6 * double(tick.sent_ns - tick.sampled_ns));
+      }
+    }
+    delay.missing = answers.missing;
+    delay.late = answers.late;
+    delay.delay_ms = spreadOf(std::move(answers.ms));
+    const auto mostAt = [&](double delay_s) {
+      dynamics.delay_s = delay_s;
+      return renderable(dynamics, kRate_hz, delay_s * kRate_hz, WorkspaceMap{});
+    };
+    delay.stated_ms = 1e3 * dynamics.delay_s;
+    delay.stated_most = mostAt(dynamics.delay_s);
+    delay.encoder_k_max = mostAt(0.0).k_max;
+    // With the product's own loop, which also computes.
+    const bool worse =
+        send_first && row.at_the_arm && row.sample_to_force_ms.p99 > delay.delay_ms.p99;
+    const double p99_ms = worse ? row.sample_to_force_ms.p99 : delay.delay_ms.p99;
+    delay.delay_samples = 1e-3 * p99_ms * kRate_hz;
+    delay.most = mostAt(1e-3 * p99_ms);
     row.delays.push_back(delay);
   }
   return {};
@@ -285,9 +322,9 @@ Result<DeviceTrial> trialOf(const TrialOptions& options, const fs::path& out,
                progress);
   if (!run) return run.error();
   Result<Json> json = readJsonFile(answer);
-  if (!json) return json.error();
-  if (run->exit_code != 0 || !json->contains("zero_ms")) {
-    return Error{"NOT_MEASURED", "A trial did not come to its end: " + json->dump(), "", ""};
+  const std::string said = json ? json->dump() : json.error().sentence();
+  if (run->exit_code != 0 || !json || !json->contains("zero_ms")) {
+    return Error{"NOT_MEASURED", "A trial did not come to its end: " + said, "", ""};
   }
   fs::remove(answer, ec);
   return DeviceTrial{json->at("zero_ms"), json->at("at_arm_ms"), json->at("stop_ms"),
@@ -307,7 +344,14 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
         out / (row.plugin + name + std::to_string(n % std::max(1, count)) + ".h5");
     const Result<DeviceTrial> trial =
         trialOf({bench, unplug, wait_s(random)}, out, recording, progress);
-    if (!trial) return trial.error();
+    if (!trial && (progress.cancelled() || trial.error().code != "NOT_MEASURED")) {
+      return trial.error();
+    }
+    if (!trial) {  // the others count all the same
+      ++row.failed;
+      row.failure = trial.error().what;
+      continue;
+    }
     (unplug ? unplug_ms : block_ms).push_back(trial->zero_ms);
     if (!unplug) at_arm_ms.push_back(trial->at_arm_ms);
     stop_ms.push_back(trial->stop_ms);
@@ -335,9 +379,10 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
   text.imbue(std::locale::classic());
   text << "plugin,arms,seconds,ticks,missed,reports_lost,reports_skipped,report_age_median_ms,"
           "report_age_p99_ms,"
-          "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,page_faults,"
+          "sample_to_force_median_ms,sample_to_force_p99_ms,force_mismatches,forces_late,page_"
+          "faults,"
           "unplug_to_zero_max_ms,block_to_zero_max_ms,block_at_arm_max_ms,stop_max_ms,replayed,"
-          "trials\n";
+          "trials,failed\n";
   for (const DeviceRow& row : measurement.rows) {
     text << row.plugin << ',' << row.arms << ',' << row.seconds << ',' << row.ticks << ','
          << row.missed << ',';
@@ -345,10 +390,18 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
     text << ',' << row.reports_skipped << ',' << row.report_age_ms.median << ','
          << row.report_age_ms.p99 << ',' << row.sample_to_force_ms.median << ','
          << row.sample_to_force_ms.p99 << ',';
-    if (row.force_mismatches) text << *row.force_mismatches;
-    text << ',' << row.page_faults << ',' << row.unplug_to_zero_ms.max << ','
-         << row.block_to_zero_ms.max << ',' << row.block_at_arm_ms.max << ',' << row.stop_ms.max
-         << ',' << row.replayed << ',' << row.unplugged + row.blocked << '\n';
+    const auto known = [&](bool is, auto value) {
+      if (is) text << value;
+      text << ',';
+    };
+    known(row.force_mismatches.has_value(), row.force_mismatches.value_or(0));
+    known(row.force_mismatches.has_value(), row.forces_late);
+    text << row.page_faults << ',';
+    known(row.unplug_to_zero_ms.count > 0, row.unplug_to_zero_ms.max);
+    known(row.block_to_zero_ms.count > 0, row.block_to_zero_ms.max);
+    known(row.block_at_arm_ms.count > 0, row.block_at_arm_ms.max);
+    known(row.stop_ms.count > 0, row.stop_ms.max);
+    text << row.replayed << ',' << row.unplugged + row.blocked << ',' << row.failed << '\n';
   }
   return text.str();
 }
@@ -383,7 +436,7 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
       named == scene->arms.end() ? 0 : std::size_t(named - scene->arms.begin());
   const auto force_N = [&] {
     const std::size_t ticks = watch.ticks(of_scene);
-    return ticks == 0 ? 0.0 : watch.tick(of_scene, ticks - 1).force_N;
+    return ticks == 0 ? 0.0 : glm::length(watch.tick(of_scene, ticks - 1).force_N);
   };
   const std::int64_t deadline_ns = hostTime_ns() + 10'000'000'000;
   while (force_N() < kFelt_N && hostTime_ns() < deadline_ns) std::this_thread::sleep_for(200us);
@@ -392,25 +445,39 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
     return Error{"NOT_MEASURED", "The arm was given no force within 10 s", "", ""};
   }
   const std::int64_t at_ns = hostTime_ns();
-  options.unplug ? subject.bench->unplug(arm) : subject.bench->block(1.0);
+  // Stop is asked for while the call blocks; the arm is looked at until after it.
+  constexpr double kBlock_s = 1.5;
+  constexpr std::int64_t kLook_ns = 700'000'000, kLookAtArm_ns = 1'900'000'000;
+  options.unplug ? subject.bench->unplug(arm) : subject.bench->block(kBlock_s);
   std::int64_t last_ns = at_ns, last_at_arm_ns = at_ns;
-  while (hostTime_ns() < at_ns + 700'000'000) {
-    if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
-    std::this_thread::sleep_for(200us);
+  const auto lookUntil = [&](std::int64_t until_ns) {
+    while (hostTime_ns() < until_ns) {
+      if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
+      std::this_thread::sleep_for(200us);
+    }
+  };
+  lookUntil(at_ns + kLook_ns);
+  // A loop that stands still sends nothing, and takes nothing away.
+  const std::size_t ticks = watch.ticks(of_scene);
+  const LoopWatch::Tick& newest = watch.tick(of_scene, ticks - 1);
+  if (newest.sent_ns < at_ns + kLook_ns / 2 || glm::length(newest.force_N) > 0.0) {
+    (void)(*session)->stop();
+    return Error{"NOT_MEASURED", "The loop stood still, or the force stayed", "", ""};
   }
-  for (std::size_t i = watch.ticks(of_scene); i-- > 0;) {
+  for (std::size_t i = ticks; i-- > 0;) {
     const LoopWatch::Tick& tick = watch.tick(of_scene, i);
     if (tick.sent_ns < at_ns) break;
-    if (tick.force_N <= 0.0) continue;
+    if (glm::length(tick.force_N) <= 0.0) continue;
     last_ns = tick.sent_ns;
     break;
   }
   DeviceTrial trial;
   trial.zero_ms = 1e-6 * double(last_ns - at_ns);
-  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
   const std::int64_t stop_ns = hostTime_ns();
   (void)(*session)->stop();
   trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
+  if (!options.unplug) lookUntil(at_ns + kLookAtArm_ns);
+  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
   session->reset();
   const auto reader = SessionReader::open(recording);
   if (!reader) return trial;
@@ -481,8 +548,15 @@ Json toJson(const DeviceMeasurement& measurement) {
       delays.push_back({{"order", delay.order},
                         {"delay_ms", spread(delay.delay_ms)},
                         {"delay_samples", delay.delay_samples},
+                        {"at_the_arm", delay.at_the_arm},
+                        {"forces_missing", delay.missing},
+                        {"forces_late", delay.late},
                         {"b_max", delay.most.b_max},
-                        {"k_max", delay.most.k_max}});
+                        {"k_max", delay.most.k_max},
+                        {"encoder_k_max", delay.encoder_k_max},
+                        {"stated_ms", delay.stated_ms},
+                        {"stated_b_max", delay.stated_most.b_max},
+                        {"stated_k_max", delay.stated_most.k_max}});
     }
     rows.push_back(
         {{"plugin", row.plugin},
@@ -497,12 +571,14 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"sample_to_force_ms", spread(row.sample_to_force_ms)},
          {"at_the_arm", row.at_the_arm},
          {"force_mismatches", row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
+         {"forces_late", row.force_mismatches ? Json(row.forces_late) : Json(nullptr)},
          {"page_faults", row.page_faults},
          {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
          {"block_to_zero_ms", spread(row.block_to_zero_ms)},
          {"block_at_arm_ms", spread(row.block_at_arm_ms)},
          {"stop_ms", spread(row.stop_ms)},
          {"trials", row.unplugged + row.blocked},
+         {"failed", row.failed},
          {"replayed", row.replayed},
          {"delays", delays}});
   }
@@ -523,11 +599,25 @@ std::string toText(const DeviceMeasurement& measurement) {
          << "; from it to the force " << (row.at_the_arm ? "at the arm " : "") << "in "
          << row.sample_to_force_ms.median << " ms, p99 " << row.sample_to_force_ms.p99 << "\n";
     if (row.force_mismatches)
-      text << "  forces that did not arrive: " << *row.force_mismatches << "\n";
+      text << "  forces at the arm that no tick sent: " << *row.force_mismatches
+           << "; of an older tick: " << row.forces_late << "\n";
     for (const DelayRow& delay : row.delays) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
-           << delay.delay_ms.p99 << "; shows " << delay.most.b_max << " N s/m and "
-           << std::setprecision(0) << delay.most.k_max << std::setprecision(2) << " N/m\n";
+           << delay.delay_ms.p99 << (delay.at_the_arm ? " at the arm" : " to the plugin");
+      if (delay.at_the_arm && delay.missing + delay.late > 0) {
+        text << " (" << delay.missing << " forces of no tick, " << delay.late << " late)";
+      }
+      text << "; shows " << std::setprecision(0) << delay.most.b_max << " N s/m and "
+           << delay.most.k_max << " N/m"
+           << (delay.most.k_max > 0.999 * delay.encoder_k_max ? ", all that its encoders allow"
+                                                              : "")
+           << "; as stated, " << std::setprecision(2) << delay.stated_ms << " ms, "
+           << std::setprecision(0) << delay.stated_most.b_max << " and " << delay.stated_most.k_max
+           << std::setprecision(2) << "\n";
+    }
+    if (row.failed > 0) {
+      text << "  " << row.failed << " trials did not come to their end, the last: " << row.failure
+           << "\n";
     }
     if (row.unplugged + row.blocked == 0) continue;
     text << "  no force after an unplug within " << row.unplug_to_zero_ms.median << " ms, at most "

@@ -30,12 +30,17 @@ struct Spread {
 Spread spreadOf(std::vector<double> figures);
 
 // One order of the loop's calls on the arms, without tissue: from a sample at the arm to the force
-// that answers it there, and what the arm may then show (renderable()).
+// that answers it there, or, where no bench tells, to the end of the plugin's write; and what the
+// arm may then show (renderable()), beside what it may with the delay that the plugin states.
 struct DelayRow {
   std::string order;  // "send, then wait"; "wait, then send", as before
   Spread delay_ms;
-  double delay_samples = 0.0;  // at p99
-  Renderable most;
+  bool at_the_arm = false;
+  std::uint64_t missing = 0, late = 0;  // forces at the arm that no tick sent, or an older one
+  double delay_samples = 0.0;           // at p99, the product's own loop's where that is longer
+  Renderable most, stated_most;
+  double stated_ms = 0.0;
+  double encoder_k_max = 0.0;  // without any delay
 };
 
 struct DeviceRow {
@@ -48,9 +53,12 @@ struct DeviceRow {
   Spread report_age_ms;               // when it was looked at
   Spread sample_to_force_ms;          // at the arm where a bench tells, else to the plugin
   bool at_the_arm = false;
-  std::optional<std::uint64_t> force_mismatches;
+  std::optional<std::uint64_t> force_mismatches;  // forces at the arms that no tick sent
+  std::uint64_t forces_late = 0;                  // of a tick whose successor was sent 3 ms before
   long page_faults = 0;
   int unplugged = 0, blocked = 0, replayed = 0;  // trials; recordings that replay bit for bit
+  int failed = 0;                                // trials that did not come to their end,
+  std::string failure;                           // the last of them
   Spread unplug_to_zero_ms, block_to_zero_ms;    // until the loop sends none
   Spread block_at_arm_ms;                        // until the arm itself has none
   Spread stop_ms;
@@ -83,10 +91,12 @@ Result<DeviceMeasurement> measureDevices(const DeviceOptions& options,
                                          const std::filesystem::path& out,
                                          const Progress& progress = Progress());
 
-// {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, report_age_ms: {median, p99,
-//  max}, sample_to_force_ms: {median, p99, max, at_the_arm}, force_mismatches (null: not told),
-//  page_faults, unplug_to_zero_ms: {median, max}, block_to_zero_ms, block_at_arm_ms, stop_ms,
-//  trials, replayed, delays: [{order, delay_ms: {median, p99}, delay_samples, b_max, k_max}]}]}
+// {rows: [{plugin, arms, seconds, ticks, missed, faults, reports_lost, reports_skipped,
+//  report_age_ms: {median, p99, max, count}, sample_to_force_ms: likewise, at_the_arm,
+//  force_mismatches (null: not told), forces_late (likewise), page_faults, unplug_to_zero_ms:
+//  likewise, block_to_zero_ms, block_at_arm_ms, stop_ms, trials, failed, replayed, delays: [{order,
+//  delay_ms, delay_samples, at_the_arm, forces_missing, forces_late, b_max, k_max, encoder_k_max,
+//  stated_ms, stated_b_max, stated_k_max}]}]}
 Json toJson(const DeviceMeasurement& measurement);
 std::string toText(const DeviceMeasurement& measurement);
 

@@ -41,7 +41,7 @@ void LoopWatch::sent(std::size_t arm, const Vec3& force_N) {
   if (i >= most_) return;
   Tick& tick = ticks_[arm][i];
   tick.sent_ns = HostClock().now_ns();
-  tick.force_N = glm::length(force_N);
+  tick.force_N = force_N;
   counts_[arm].store(i + 1, std::memory_order_release);
   if (arm != 0) return;
   if (first_ns_ == 0) first_ns_ = tick.sent_ns;

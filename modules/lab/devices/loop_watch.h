@@ -14,7 +14,7 @@ class LoopWatch : public LoopProbe {
   struct Tick {
     std::uint64_t sequence = 0;
     std::int64_t sampled_ns = 0, read_ns = 0, sent_ns = 0;
-    double force_N = 0.0;
+    Vec3 force_N{0.0};  // device axes
     bool lost = false;
   };
 

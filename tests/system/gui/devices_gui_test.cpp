@@ -76,7 +76,7 @@ class DevicesGuiTest : public test::TrainTest {
     QCOMPARE(list->currentRow(), 0);
     hd_->arms[1].swing_mm = 30.0;
     QTRY_COMPARE(list->currentRow(), 1);
-    QTRY_VERIFY(find<QLabel>("deviceNow")->text().contains("Moved by"));
+    QTRY_VERIFY(find<QLabel>("deviceNow")->text().contains("moved by"));
     choose("leftArm", 2);
     QCOMPARE(list->item(1)->text().section('\n', 1), QString("left hand"));
     QCOMPARE(read(settings::kLeftArm).value(1), QString("openhaptics-1"));
@@ -85,6 +85,11 @@ class DevicesGuiTest : public test::TrainTest {
     choose("rightArm", 2);
     QCOMPARE(find<QComboBox>("leftArm")->currentIndex(), 0);
     QVERIFY(read(settings::kLeftArm).isEmpty());
+    // What the other hand had comes in its place.
+    choose("leftArm", 1);
+    choose("leftArm", 2);
+    QCOMPARE(find<QComboBox>("leftArm")->currentIndex(), 2);
+    QCOMPARE(find<QComboBox>("rightArm")->currentIndex(), 1);
     QCOMPARE(force_N(0) + force_N(1), 0.0);
     closeDialog();
   }
@@ -108,6 +113,42 @@ class DevicesGuiTest : public test::TrainTest {
     QTRY_VERIFY(find<QPushButton>("forceFelt")->isEnabled());
     find<QPushButton>("forceFelt")->click();
     QVERIFY(find<QLabel>("forceTest")->text().contains("works"));
+    QVERIFY(find<QListWidget>("deviceList")->item(0)->text().contains("was felt"));
+    closeDialog();
+  }
+
+  void EscapeTakesTheForceOfATestAwayAndThenClosesTheDialog() {
+    auto* dialog = openDialog();
+    auto* test = find<QPushButton>("testForce");
+    QTRY_VERIFY(test->isEnabled());
+    test->click();
+    hd_->arms[0].buttons = 1;
+    QTRY_VERIFY_WITH_TIMEOUT(force_N(0) > 0.2, 5000);
+    QTest::keyClick(dialog, Qt::Key_Escape);
+    QVERIFY(dialog->isVisible());
+    QTRY_COMPARE(force_N(0), 0.0);
+    QTest::keyClick(dialog, Qt::Key_Escape);
+    QTRY_VERIFY(!window_->findChild<QDialog*>("devicesDialog"));
+  }
+
+  void whereArmsHaveBothHandsThePointerHasNone() {
+    openDialog();
+    choose("leftArm", 1);
+    choose("rightArm", 2);
+    closeDialog();
+    openScene(resourceFolder() / "scenes" / "cranium.json");
+    startTraining();
+    QVERIFY(find<QLabel>("hint")->text().contains("The arms move the tools"));
+    QVERIFY(!find<QAction>("devices")->isEnabled());
+    QTest::keyClick(&window_->view(), Qt::Key_Down);
+    QTest::qWait(300);
+    QVERIFY(!find<QWidget>("handBar")->isVisible());
+    stop();
+    QVERIFY(find<QAction>("devices")->isEnabled());
+    find<QAction>("devices")->trigger();
+    QTRY_COMPARE(find<QListWidget>("deviceList")->count(), 2);
+    choose("leftArm", 0);
+    choose("rightArm", 0);
     closeDialog();
   }
 

@@ -51,6 +51,17 @@ TEST(ErrorRule, TheThirdThatBeginsWithinTenSecondsKeepsItAwayUntilAsked) {
   EXPECT_FALSE(lasting.away());
 }
 
+TEST(SilenceRule, TicksThatMakeUpForLateOnesAreNoSilenceOfARealArm) {
+  SilenceRule rule;
+  std::int64_t now_ns = 5'000'000'000;
+  EXPECT_FALSE(rule.tick(7, kTick_s, now_ns));
+  // A hundred ticks in five milliseconds, which a late host makes up for.
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(rule.tick(7, kTick_s, now_ns += 50'000)) << i;
+  EXPECT_FALSE(rule.tick(7, kTick_s, now_ns += 9'000'000));
+  EXPECT_TRUE(rule.tick(7, kTick_s, now_ns += 1'000'000)) << "15 ms by the clock";
+  EXPECT_FALSE(rule.tick(8, kTick_s, now_ns += 1'000'000));
+}
+
 TEST(WarmthRule, WarmMotorsGiveHalfAfterTwoSecondsAndAllOfItAgainTwoSecondsAfter) {
   WarmthRule rule;
   const ArmDynamics arm;
@@ -178,6 +189,18 @@ TEST(HapticCore, WarmMotorsAreSentHalfAndItIsRecorded) {
   EXPECT_NEAR(say(TREPHINE_ARM_WARM), 1.65, 1e-6);
   EXPECT_TRUE(bench.record.arms[0].tool_state & kToolArmWarm);
   EXPECT_EQ(bench.record.arms[0].faults, 0u);
+}
+
+TEST(SilenceRule, AnArmThatGivesTheSameSampleForFifteenMillisecondsIsSilentUntilAnother) {
+  for (const double period_s : {kTick_s, 0.5 * kTick_s}) {
+    SilenceRule rule;
+    EXPECT_FALSE(rule.tick(7, period_s));
+    const int ticks = int(0.015 / period_s + 0.5);
+    for (int i = 1; i < ticks; ++i) ASSERT_FALSE(rule.tick(7, period_s)) << i;
+    EXPECT_TRUE(rule.tick(7, period_s));
+    EXPECT_TRUE(rule.tick(7, period_s));
+    EXPECT_FALSE(rule.tick(8, period_s));
+  }
 }
 
 TEST(HandRule, AHandIsKnownByAButtonAMotionOrATurn) {

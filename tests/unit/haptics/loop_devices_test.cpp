@@ -4,6 +4,7 @@
 
 #include "haptics/haptic_loop.h"
 #include "haptics_support.h"
+#include "unit/plain_api.h"
 
 namespace trephine {
 namespace {
@@ -16,28 +17,13 @@ struct Devices {
   template <bool is_pedal>
   static const TrephineDeviceApi& api() {
     static const TrephineDeviceApi api = [] {
-      TrephineDeviceApi a{};
-      a.size = sizeof(a);
-      a.version = TREPHINE_DEVICE_ABI;
-      a.name = is_pedal ? "a-pedal" : "an-arm";
-      a.enumerate = [](TrephineArmInfo*, std::uint32_t) { return 1u; };
-      a.open = [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
-        static int any;
-        *device = reinterpret_cast<TrephineDevice*>(&any);
-        return int(TREPHINE_OK);
-      };
-      a.configure = [](TrephineDevice*, const char*) { return int(TREPHINE_OK); };
-      a.capabilities = [](TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
-        c->rate_hz = 1000.0;
-        if (is_pedal) return int(TREPHINE_OK);
-        for (double& extent : c->workspace_m) extent = 0.1;
-        c->input_dof = 6;
-        c->peak_force_N = c->continuous_force_N = 3.3;
-        c->apparent_mass_kg = 0.045;
-        return int(TREPHINE_OK);
-      };
-      a.calibrate = [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); };
-      a.start = [](TrephineDevice*) { return int(TREPHINE_OK); };
+      TrephineDeviceApi a = test::plainApi(is_pedal ? "a-pedal" : "an-arm");
+      if (is_pedal) {
+        a.capabilities = [](TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
+          c->rate_hz = 1000.0;
+          return int(TREPHINE_OK);
+        };
+      }
       a.read = [](TrephineDevice*, double, TrephineArmState* states) {
         TrephineArmState& from = is_pedal ? pedal : arm;
         ++from.sequence;
@@ -51,10 +37,6 @@ struct Devices {
         pedal_writes += is_pedal;
         return int(TREPHINE_OK);
       };
-      a.stop = [](TrephineDevice*) { return int(TREPHINE_OK); };
-      a.safe_stop = [](TrephineDevice*) {};
-      a.last_error = [](TrephineDevice*) { return ""; };
-      a.close = [](TrephineDevice*) {};
       return a;
     }();
     return api;
@@ -108,11 +90,37 @@ TEST(LoopDevices, APedalsButtonsStandBesideTheArmsOwnAndItIsNeverSentAForce) {
   Devices::pedal.buttons = 0b110;
   EXPECT_EQ(devices.step().buttons, 3u | kPedalThere | kPedalMiddle | kPedalRight);
   Devices::pedal.flags = TREPHINE_ARM_LOST;
-  EXPECT_EQ(devices.step().buttons, 3u | kPedalThere) << "one that is gone is up";
+  EXPECT_EQ(devices.step().buttons, 3u | kPedalThere | kPedalLost) << "one that is gone is up";
   EXPECT_EQ(Devices::pedal_writes, 0);
 
   Devices without(false);
   EXPECT_EQ(without.step().buttons, 0u);
+}
+
+TEST(LoopDevices, OneGoesOnWithoutALostPedalWhenItIsAskedForAndWithItOnceItIsBack) {
+  Devices devices(true);
+  Devices::pedal.buttons = 0b010;
+  Command go_on;
+  go_on.kind = CommandKind::clear_faults;
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalMiddle) << "it is not lost";
+  Devices::pedal.flags = TREPHINE_ARM_LOST;
+  EXPECT_EQ(devices.step(5).buttons, kPedalThere | kPedalLost) << "nobody has asked since";
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step(5).buttons, 0u);
+  Devices::pedal.flags = 0;
+  EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalMiddle);
+  Devices::pedal.flags = TREPHINE_ARM_LOST;
+  EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalLost) << "lost again";
+  // What is asked for an arm does not start motors.
+  Devices::arm.flags = TREPHINE_ARM_LOST;
+  EXPECT_TRUE(devices.step(5).faults & kFaultDeviceLost);
+  Devices::arm.flags = 0;
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step(5).faults, 0u);
+  EXPECT_EQ(devices.step().buttons, kPedalThere | kPedalLost);
+  devices.loop->commands().push(go_on);
+  EXPECT_EQ(devices.step(5).buttons, 0u) << "asked for once more";
 }
 
 TEST(LoopDevices, AScriptTakesADeviceAwayAndGivesItBack) {

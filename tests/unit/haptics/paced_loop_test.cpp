@@ -4,6 +4,7 @@
 #include "device/device.h"
 #include "haptics/haptic_loop.h"
 #include "haptics_support.h"
+#include "unit/plain_api.h"
 
 namespace trephine {
 namespace {
@@ -98,34 +99,10 @@ struct Paced {
   }
   static const TrephineDeviceApi& api() {
     static const TrephineDeviceApi api = [] {
-      TrephineDeviceApi a{};
-      a.size = sizeof(a);
-      a.version = TREPHINE_DEVICE_ABI;
-      a.name = "paced";
-      a.enumerate = [](TrephineArmInfo*, std::uint32_t) { return 1u; };
-      a.open = [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
-        static int any;
-        *device = reinterpret_cast<TrephineDevice*>(&any);
-        return int(TREPHINE_OK);
-      };
-      a.configure = [](TrephineDevice*, const char*) { return int(TREPHINE_OK); };
-      a.capabilities = [](TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
-        for (double& extent : c->workspace_m) extent = 0.1;
-        c->input_dof = 6;
-        c->peak_force_N = c->continuous_force_N = 3.3;
-        c->apparent_mass_kg = 0.045;
-        c->rate_hz = 1000.0;
-        return int(TREPHINE_OK);
-      };
-      a.calibrate = [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); };
-      a.start = [](TrephineDevice*) { return int(TREPHINE_OK); };
+      TrephineDeviceApi a = test::plainApi("paced");
       a.read = read;
       a.write = write;
       a.wait = wait;
-      a.stop = [](TrephineDevice*) { return int(TREPHINE_OK); };
-      a.safe_stop = [](TrephineDevice*) {};
-      a.last_error = [](TrephineDevice*) { return ""; };
-      a.close = [](TrephineDevice*) {};
       return a;
     }();
     return api;

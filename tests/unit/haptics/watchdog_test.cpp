@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "haptics_support.h"
+#include "unit/plain_api.h"
 
 namespace trephine {
 namespace {
@@ -52,41 +53,17 @@ struct Watched {
     commanded_N = commands->force_N[2];
     return TREPHINE_OK;
   }
-  static int capabilities(TrephineDevice*, std::uint32_t, TrephineCapabilities* c) {
-    for (double& extent : c->workspace_m) extent = 0.1;
-    c->peak_force_N = c->continuous_force_N = 3.3;
-    c->input_dof = 6;
-    c->apparent_mass_kg = 0.045;
-    c->rate_hz = 1000.0;
-    return TREPHINE_OK;
-  }
   static const TrephineDeviceApi& api() {
-    static const TrephineDeviceApi api = {
-        sizeof(TrephineDeviceApi),
-        TREPHINE_DEVICE_ABI,
-        "held",
-        [](TrephineArmInfo*, std::uint32_t) { return 1u; },
-        [](const std::uint32_t*, std::uint32_t, TrephineDevice** device) {
-          static int any;
-          *device = reinterpret_cast<TrephineDevice*>(&any);
-          return int(TREPHINE_OK);
-        },
-        [](TrephineDevice*, const char*) { return int(TREPHINE_OK); },
-        capabilities,
-        [](TrephineDevice*, std::uint32_t) { return int(TREPHINE_OK); },
-        [](TrephineDevice*) { return int(TREPHINE_OK); },
-        read,
-        write,
-        nullptr,
-        nullptr,
-        [](TrephineDevice*) { return int(TREPHINE_OK); },
-        [](TrephineDevice*) {
-          ++silences;
-          while (stops_wait) std::this_thread::sleep_for(1ms);
-        },
-        [](TrephineDevice*) { return ""; },
-        [](TrephineDevice*) {},
-    };
+    static const TrephineDeviceApi api = [] {
+      TrephineDeviceApi a = test::plainApi("held");
+      a.read = read;
+      a.write = write;
+      a.safe_stop = [](TrephineDevice*) {
+        ++silences;
+        while (stops_wait) std::this_thread::sleep_for(1ms);
+      };
+      return a;
+    }();
     return api;
   }
 };

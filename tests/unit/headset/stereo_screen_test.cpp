@@ -25,8 +25,12 @@ TEST(StereoScreen, WhatIsAtTheScreenHasNoParallaxWhatIsBeforeItCrossesWhatIsBehi
         const glm::dvec2 left = seenAt(eyes[0], point), right = seenAt(eyes[1], point);
         EXPECT_NEAR(left.y, right.y, 1e-12) << "nothing up or down";
         EXPECT_NEAR(right.x - left.x, parallaxAt(screen, depth), 1e-9) << depth;
-        if (depth < 600.0) EXPECT_LT(right.x, left.x) << "before the screen";
-        if (depth > 600.0) EXPECT_GT(right.x, left.x) << "behind it";
+        if (depth < 600.0) {
+          EXPECT_LT(right.x, left.x) << "before the screen";
+        }
+        if (depth > 600.0) {
+          EXPECT_GT(right.x, left.x) << "behind it";
+        }
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <QWheelEvent>
 
 #include "qt_support.h"
+#include "ui/common/words.h"
 
 namespace trephine {
 namespace {
@@ -131,6 +132,21 @@ TEST_F(StateNoticeTest, TheArmThatWasLostIsNamed) {
   EXPECT_EQ(title(), "NO FORCE: Left arm");
   EXPECT_NE(why().find("does not answer"), std::string::npos) << why();
   EXPECT_TRUE(find<QPushButton>("forceOn").text().startsWith("Try again"));
+}
+
+TEST_F(StateNoticeTest, APedalThatWasUnpluggedIsSaidWithTheWayToGoOn) {
+  for (ArmRecord& arm : state_.record.arms) arm.buttons = kPedalThere | kPedalLost;
+  show();
+  EXPECT_EQ(title(), "THE PEDAL DOES NOT ANSWER");
+  EXPECT_NE(why().find("motors are off"), std::string::npos) << why();
+  EXPECT_TRUE(find<QPushButton>("forceOn").text().startsWith("Go on without it"));
+  state_.record.arms[0].tool_state = kToolOff;
+  EXPECT_TRUE(forceChangeWords(state_.record.arms[0], false).contains("does not answer"));
+  state_.record.arms[1].faults = kFaultNonFinite;
+  show();
+  EXPECT_EQ(title(), "NO FORCE: Right arm");
+  EXPECT_NE(why().find("The pedal was unplugged"), std::string::npos) << why();
+  EXPECT_TRUE(find<QPushButton>("forceOn").text().startsWith("Force on"));
 }
 
 TEST_F(StateNoticeTest, EachReasonStandsByItsArmAndBothStatesAreSaidAtOnce) {
