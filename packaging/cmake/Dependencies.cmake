@@ -21,8 +21,10 @@ if(TREPHINE_WINDOW)
   find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel CommonExecutionModel
                CommonTransforms FiltersCore FiltersSources ImagingGeneral ImagingMorphological InteractionStyle IOGeometry IOImage
                RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 vtksys)
-  find_package(OpenGL REQUIRED)
+  find_package(OpenGL REQUIRED COMPONENTS OpenGL GLX)
+  find_package(X11 REQUIRED)
+  find_package(OpenXR REQUIRED)
   find_package(GLEW REQUIRED)
   find_package(CLI11 REQUIRED)
-  find_package(Qt6 REQUIRED COMPONENTS Gui Widgets OpenGLWidgets)
+  find_package(Qt6 REQUIRED COMPONENTS Gui OpenGL Widgets OpenGLWidgets)
 endif()

@@ -20,6 +20,9 @@ set(TREPHINE_LIBRARY_vtk-filters VTK::CommonCore VTK::CommonDataModel VTK::Commo
     VTK::FiltersCore VTK::IOGeometry VTK::ImagingGeneral VTK::ImagingMorphological)
 set(TREPHINE_LIBRARY_opengl OpenGL::GL GLEW::GLEW)
 set(TREPHINE_LIBRARY_qt-gui Qt6::Gui)
+set(TREPHINE_LIBRARY_qt-opengl Qt6::Gui Qt6::OpenGL)
+# Headers alone: the loader is opened at run time. It is told of the window's graphics in GLX's words.
+set(TREPHINE_LIBRARY_openxr OpenXR::headers OpenGL::GLX X11::X11)
 set(TREPHINE_LIBRARY_qt Qt6::Widgets Qt6::OpenGLWidgets)
 set(TREPHINE_LIBRARY_cli11 CLI11::CLI11)
 set(TREPHINE_LIBRARY_zlib ZLIB::ZLIB)

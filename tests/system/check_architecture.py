@@ -31,6 +31,7 @@ ROOMS = {
     "structures": {"base", "volume"},
     "render": {"base", "volume", "tissue", "scene"},
     "plot": {"base"},
+    "headset": {"base"},
     "lab": {"base", "volume", "tissue", "imaging", "device", "haptics", "scene", "training",
             "session", "render", "plot"},
 }
@@ -93,6 +94,7 @@ MAY_USE = {
     "structures": {"vtk-filters"},
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
     "plot": {"qt-gui"},
+    "headset": {"qt-opengl", "openxr", "dl"},
     "lab": set(),
     "ui": {"qt"},
     "app": {"qt", "cli11"},
@@ -119,6 +121,9 @@ HEADERS = {
     "qt-gui": r"Q(Buffer|Char|Color|Font\w*|GuiApplication|Image|LineF|List|Painter\w*|Pen|PluginLoader|PointF|PolygonF|"
               r"RectF|SizeF|String)",
     "qt": r"Q\w+|Q\w+/Q?\w+(\.h)?",
+    # A context of OpenGL's and its thread.
+    "qt-opengl": r"Q(GuiApplication|OffscreenSurface|OpenGLContext|OpenGLExtraFunctions|Thread)",
+    "openxr": r"openxr/.+|GL/glx\.h",
     "cli11": r"CLI/.+",
     "zlib": r"zlib\.h",
     "threads": r"pthread\.h|semaphore\.h",

@@ -1,0 +1,138 @@
+#include "headset/room_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trephine {
+
+namespace {
+
+constexpr double kLeastSpread_mm = 20.0;  // of marks across the line that fits them best
+
+// The unit quaternion x that makes x^T N x largest, N symmetric, by Jacobi's rotations.
+Quat largestOf(glm::dmat4 n) {
+  glm::dmat4 vectors(1.0);
+  constexpr int kSweeps = 50;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    double off = 0.0;
+    for (int p = 0; p < 3; ++p) {
+      for (int q = p + 1; q < 4; ++q) off += n[q][p] * n[q][p];
+    }
+    if (off < 1e-30) break;
+    for (int p = 0; p < 3; ++p) {
+      for (int q = p + 1; q < 4; ++q) {
+        if (n[q][p] == 0.0) continue;
+        const double theta = 0.5 * std::atan2(2.0 * n[q][p], n[q][q] - n[p][p]);
+        const double c = std::cos(theta), s = std::sin(theta);
+        glm::dmat4 turn(1.0);
+        turn[p][p] = turn[q][q] = c;
+        turn[q][p] = s;
+        turn[p][q] = -s;
+        n = glm::transpose(turn) * n * turn;
+        vectors = vectors * turn;
+      }
+    }
+  }
+  int best = 0;
+  for (int i = 1; i < 4; ++i) {
+    if (n[i][i] > n[best][best]) best = i;
+  }
+  const glm::dvec4& x = vectors[best];
+  return glm::normalize(Quat(x[0], x[1], x[2], x[3]));
+}
+
+Vec3 meanOf(std::span<const Vec3> points) {
+  Vec3 sum(0.0);
+  for (const Vec3& each : points) sum += each;
+  return sum / double(points.size());
+}
+
+// How far the points lie, at most, off the line through the two that are farthest apart.
+double spread_m(std::span<const Vec3> points) {
+  Vec3 from(0.0), along(0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      const Vec3 way = points[j] - points[i];
+      if (glm::length(way) > glm::length(along)) from = points[i], along = way;
+    }
+  }
+  if (glm::length(along) == 0.0) return 0.0;
+  along = glm::normalize(along);
+  double most = 0.0;
+  for (const Vec3& each : points) {
+    most = std::max(most, glm::length(glm::cross(each - from, along)));
+  }
+  return most;
+}
+
+}  // namespace
+
+EyeView RoomPlace::toPatient_mm(const EyeView& room_m) const {
+  return {{toPatient_mm(room_m.pose.position),
+           glm::normalize(glm::conjugate(turn) * room_m.pose.orientation)},
+          room_m.sees};
+}
+
+RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double above_m,
+                 double scale) {
+  const Vec3 head_m = 0.5 * (eyes_m[0].pose.position + eyes_m[1].pose.position);
+  Vec3 ahead = eyes_m[0].pose.orientation * Vec3(0.0, 0.0, -1.0);
+  ahead.y = 0.0;
+  // Who looks straight down looks ahead where the top of the picture is.
+  if (glm::length(ahead) < 1e-3) {
+    ahead = eyes_m[0].pose.orientation * Vec3(0.0, 1.0, 0.0);
+    ahead.y = 0.0;
+  }
+  ahead = glm::length(ahead) < 1e-3 ? Vec3(0.0, 0.0, -1.0) : glm::normalize(ahead);
+  const Vec3 place_m = head_m + ahead_m * ahead + Vec3(0.0, above_m, 0.0);
+  const Vec3 forward = glm::normalize(place_m - head_m);
+  const Vec3 right = glm::normalize(glm::cross(forward, Vec3(0.0, 1.0, 0.0)));
+  const Vec3 up = glm::cross(right, forward);
+  const Mat3 room(right, up, -forward);
+  const Mat3 patient(glm::cross(what.forward, what.up), what.up, -what.forward);
+  RoomPlace to;
+  to.scale = scale;
+  to.turn = glm::normalize(glm::quat_cast(room * glm::transpose(patient)));
+  to.origin_m = place_m - to.turn * (what.at_mm * (1e-3 * scale));
+  return to;
+}
+
+// Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987.
+Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const Vec3> room_m) {
+  if (device_m.size() < 3 || device_m.size() != room_m.size()) {
+    return Error{"TOO_FEW_MARKS", "Three marks are needed to know where the arm stands",
+                 std::to_string(std::min(device_m.size(), room_m.size())) + " marks",
+                 "Touch all of them with the arm's tip"};
+  }
+  const bool finite = std::ranges::all_of(device_m, [](const Vec3& p) { return isFinite(p); }) &&
+                      std::ranges::all_of(room_m, [](const Vec3& p) { return isFinite(p); });
+  if (!finite || 1e3 * std::min(spread_m(device_m), spread_m(room_m)) < kLeastSpread_mm) {
+    return Error{"BAD_MARKS", "The marks lie on one line, or were touched at one place", "marks",
+                 "Touch them one after the other, each at its place"};
+  }
+  const Vec3 device_mean = meanOf(device_m), room_mean = meanOf(room_m);
+  Mat3 s(0.0);  // s[b][a]: sum of device a times room b
+  for (std::size_t i = 0; i < device_m.size(); ++i) {
+    s += glm::outerProduct(device_m[i] - device_mean, room_m[i] - room_mean);
+  }
+  const double xx = s[0][0], xy = s[1][0], xz = s[2][0], yx = s[0][1], yy = s[1][1], yz = s[2][1],
+               zx = s[0][2], zy = s[1][2], zz = s[2][2];
+  const glm::dmat4 n(xx + yy + zz, yz - zy, zx - xz, xy - yx,   //
+                     yz - zy, xx - yy - zz, xy + yx, zx + xz,   //
+                     zx - xz, xy + yx, -xx + yy - zz, yz + zy,  //
+                     xy - yx, zx + xz, yz + zy, -xx - yy + zz);
+  Registration found;
+  Pose& pose = found.room_from_device_m;
+  pose.orientation = largestOf(n);
+  pose.position = room_mean - pose.orientation * device_mean;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < device_m.size(); ++i) {
+    const Vec3 off = pose.position + pose.orientation * device_m[i] - room_m[i];
+    squares += glm::dot(off, off);
+  }
+  found.error_mm = 1e3 * std::sqrt(squares / double(device_m.size()));
+  return found;
+}
+
+}  // namespace trephine

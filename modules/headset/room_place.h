@@ -1,0 +1,47 @@
+// Where the patient lies in the trainee's room, and where an arm stands in it. The room: metres, y
+// up, as the headset's software counts it. Pure.
+#pragma once
+
+#include <span>
+
+#include "base/eye_view.h"
+#include "base/result.h"
+
+namespace trephine {
+
+struct RoomPlace {
+  Quat turn{1.0, 0.0, 0.0, 0.0};  // patient axes to room axes
+  Vec3 origin_m{0.0};             // of the patient frame, in the room
+  double scale = 1.0;             // of the patient's size; 1: as in life
+
+  Vec3 toRoom_m(const Vec3& patient_mm) const {
+    return origin_m + turn * (patient_mm * (1e-3 * scale));
+  }
+  Vec3 toPatient_mm(const Vec3& room_m) const {
+    return (glm::conjugate(turn) * (room_m - origin_m)) * (1e3 / scale);
+  }
+  // Of an eye in the room: where it is in the patient, in mm.
+  EyeView toPatient_mm(const EyeView& room_m) const;
+};
+
+// What of the patient is looked at, and from where: as the panel's camera has it.
+struct Looked {
+  Vec3 at_mm{0.0};
+  Vec3 forward{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};  // of length 1, at right angles
+};
+
+// Before the trainee: what is looked at stands so far ahead of the eyes and so far above them
+// (negative: below), and is seen from there as the panel's camera sees it, upright. The head's tilt
+// counts for nothing, only which way it is turned.
+RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double above_m,
+                 double scale = 1.0);
+
+// An arm's frame in the room, from marks that its tip has touched.
+struct Registration {
+  Pose room_from_device_m;
+  double error_mm = 0.0;  // of the marks, root of the mean square
+};
+// At least three pairs. Errors: TOO_FEW_MARKS, BAD_MARKS (on one line, or not finite).
+Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const Vec3> room_m);
+
+}  // namespace trephine

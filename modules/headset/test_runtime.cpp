@@ -1,0 +1,24 @@
+#include "headset/test_runtime.h"
+
+#include <dlfcn.h>
+
+namespace trephine {
+
+Result<TestRuntime*> loadTestRuntime(const std::filesystem::path& library) {
+  const auto problem = [&](const std::string& what) {
+    return Error{"NO_RUNTIME", "The test runtime cannot be used: " + what, library.string(),
+                 "Give a runtime of your own (XR_RUNTIME_JSON)"};
+  };
+  std::error_code ec;
+  const std::filesystem::path file = std::filesystem::absolute(library, ec);
+  if (!std::filesystem::is_regular_file(file, ec)) return problem("it is not there");
+  void* handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) return problem(::dlerror());
+  using Entry = TestRuntime* (*)();
+  const auto entry = reinterpret_cast<Entry>(::dlsym(handle, "trephine_xr_test_runtime"));
+  TestRuntime* runtime = entry ? entry() : nullptr;
+  if (!runtime) return problem("it offers none");
+  return runtime;
+}
+
+}  // namespace trephine

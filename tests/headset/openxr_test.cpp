@@ -1,0 +1,323 @@
+// A headset through the real loader, with a runtime that is scripted to fail in every way that one
+// can: what is shown, how it ends, and that nothing is left behind.
+#include <gtest/gtest.h>
+
+#include <QGuiApplication>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <QOpenGLExtraFunctions>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "headset/headset.h"
+#include "headset/picture_painter.h"
+#include "headset/test_runtime.h"
+
+namespace trephine {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+int entriesOf(const char* folder) {
+  int count = 0;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator(folder)) ++count;
+  return count;
+}
+
+TestRuntime& runtime() {
+  static TestRuntime* const loaded = [] {
+    ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
+    ::setenv("XR_LOADER_DEBUG", "none", 1);
+    const auto found = loadTestRuntime(TREPHINE_XR_RUNTIME);
+    return found ? *found : nullptr;
+  }();
+  return *loaded;
+}
+
+QGuiApplication& application() {
+  static int count = 1;
+  static char name[] = "test_openxr";
+  static char* arguments[] = {name, nullptr};
+  static QGuiApplication one(count, arguments);
+  return one;
+}
+
+// A window's thread and context that draws each eye in a colour of its own, and whose panel is
+// grey.
+class OpenXr : public ::testing::Test {
+ protected:
+  OpenXr() {
+    runtime().reset();
+    runtime().setSize(96, 80);
+    QSurfaceFormat format;
+    format.setVersion(3, 2);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    context_.setFormat(format);
+    EXPECT_TRUE(context_.create());
+    surface_.setFormat(context_.format());
+    surface_.create();
+    EXPECT_TRUE(context_.makeCurrent(&surface_));
+    QOpenGLExtraFunctions& f = gl();
+    f.glGenTextures(1, &panel_texture_);
+    f.glBindTexture(GL_TEXTURE_2D, panel_texture_);
+    f.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 40, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    f.glGenFramebuffers(1, &panel_.framebuffer);
+    f.glBindFramebuffer(GL_FRAMEBUFFER, panel_.framebuffer);
+    f.glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, panel_texture_,
+                             0);
+    fill(128, 128, 128);
+    panel_.width = 64;
+    panel_.height = 40;
+    options_.patience_ms = 30;
+  }
+  ~OpenXr() override { finish(); }
+
+  QOpenGLExtraFunctions& gl() { return *context_.extraFunctions(); }
+  void fill(int red, int green, int blue) {
+    gl().glClearColor(float(red) / 255.0F, float(green) / 255.0F, float(blue) / 255.0F, 1.0F);
+    gl().glClear(GL_COLOR_BUFFER_BIT);
+  }
+  void start() {
+    auto started = Headset::start(context_, options_, [this] { woken_ = true; });
+    ASSERT_TRUE(started) << started.error().sentence();
+    headset_ = *std::move(started);
+    over_.reset();
+  }
+  void serve() {
+    if (!headset_ || !woken_.exchange(false)) return;
+    over_ = headset_->end();
+    if (over_) return;
+    const auto paint = [this](const EyeView& eye, unsigned int framebuffer, int, int) {
+      gl().glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+      if (eye_takes_ > 0ms) std::this_thread::sleep_for(eye_takes_);
+      const bool left = eye.sees.left < -0.9;
+      left ? fill(200, 10, 30) : fill(20, 40, 250);
+    };
+    painter_.serve(headset_->pictures(), paint, panel_);
+  }
+  template <class Condition>
+  bool until(Condition condition, double limit_ms = 10000.0) {
+    const auto from = Clock::now();
+    while (!condition()) {
+      if (msSince(from) > limit_ms) return false;
+      serve();
+      std::this_thread::sleep_for(1ms);
+    }
+    return true;
+  }
+  void pass(double ms) {
+    until([] { return false; }, ms);
+  }
+  bool over() {
+    serve();
+    return over_.has_value();
+  }
+  // Until it is over and the window has let go of it.
+  void finish() {
+    if (!headset_) return;
+    if (!over_) {
+      headset_->stop();
+      EXPECT_TRUE(until([this] { return over(); })) << "it does not end";
+    }
+    painter_.release(headset_->pictures());
+    headset_.reset();
+  }
+  void expectNothingLeft(const std::string& after) {
+    EXPECT_FALSE(runtime().alive().any()) << after;
+    for (const std::string& what : runtime().violations()) ADD_FAILURE() << after << ": " << what;
+  }
+  int textures() {
+    int count = 0;
+    for (unsigned int name = 1; name < 2000; ++name) count += gl().glIsTexture(name) ? 1 : 0;
+    return count;
+  }
+
+  QGuiApplication& application_ = application();  // before all of Qt's
+  QOpenGLContext context_;
+  QOffscreenSurface surface_;
+  unsigned int panel_texture_ = 0;
+  PicturePainter::Panel panel_;
+  PicturePainter painter_;
+  HeadsetOptions options_;
+  std::chrono::milliseconds eye_takes_{0};
+  std::unique_ptr<Headset> headset_;
+  std::optional<HeadsetEnd> over_;
+  std::atomic<bool> woken_{false};
+};
+
+TEST_F(OpenXr, EachEyeShowsItsPictureByteForByteWithThePoseThatItWasDrawnFor) {
+  const Pose head{{0.1, 1.2, -0.3}, glm::angleAxis(0.3, glm::normalize(Vec3(1, 2, 0)))};
+  const FieldOfView left{-1.0, 0.7, -0.8, 0.9}, right{-0.7, 1.0, -0.8, 0.9};
+  runtime().setHead(head);
+  runtime().setEyes(0.064, left, right);
+  start();
+  ASSERT_TRUE(until([] { return runtime().framesWithEyes() > 3; }));
+  for (const int eye : {0, 1}) {
+    const TestRuntime::Shown shown = runtime().shown(eye);
+    ASSERT_EQ(shown.rgba.size(), 96u * 80u * 4u);
+    const std::array<int, 3> colour =
+        eye == 0 ? std::array<int, 3>{200, 10, 30} : std::array<int, 3>{20, 40, 250};
+    for (const std::size_t pixel : {0u, 96u * 80u / 2u, 96u * 80u - 1u}) {
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(shown.rgba[4 * pixel + c], colour[c]);
+    }
+    const Vec3 at = head.position + head.orientation * Vec3(eye == 0 ? -0.032 : 0.032, 0, 0);
+    EXPECT_LT(glm::distance(shown.view.pose.position, at), 1e-6);
+    EXPECT_NEAR(shown.view.sees.left, (eye == 0 ? left : right).left, 1e-5);
+    EXPECT_NEAR(shown.view.sees.up, 0.9, 1e-5);
+  }
+  const HeadsetState state = headset_->state();
+  EXPECT_TRUE(state.seen);
+  EXPECT_FALSE(state.flat);
+  EXPECT_GT(state.fresh, 2u);
+  finish();
+  expectNothingLeft("the end");
+}
+
+TEST_F(OpenXr, FiftyTimesOnAndOffLeaveNothing) {
+  start();
+  ASSERT_TRUE(until([] { return runtime().framesWithEyes() > 1; }));
+  finish();
+  const int textures_before = textures(), threads = entriesOf("/proc/self/task"),
+            descriptors = entriesOf("/proc/self/fd");
+  for (int i = 0; i < 50; ++i) {
+    runtime().reset();
+    runtime().setSize(96, 80);
+    start();
+    ASSERT_TRUE(until([] { return runtime().framesWithEyes() > 1; })) << i;
+    finish();
+    ASSERT_TRUE(over_->why.ok()) << over_->why.error().sentence();
+    expectNothingLeft("toggle " + std::to_string(i));
+  }
+  EXPECT_EQ(textures(), textures_before);
+  EXPECT_LE(entriesOf("/proc/self/task"), threads);
+  EXPECT_LE(entriesOf("/proc/self/fd"), descriptors);
+}
+
+TEST_F(OpenXr, ALossIsNoticedAndCleanedUpAndItCanBeTriedAgain) {
+  using Loss = TestRuntime::Loss;
+  for (const Loss loss :
+       {Loss::instance, Loss::session, Loss::pending, Loss::event, Loss::event, Loss::event}) {
+    start();
+    const int before = runtime().framesWithEyes();
+    ASSERT_TRUE(until([&] { return runtime().framesWithEyes() > before + 2; }));
+    const auto at = Clock::now();
+    runtime().lose(loss);
+    ASSERT_TRUE(until([this] { return over(); })) << int(loss);
+    EXPECT_LT(msSince(at), 5000.0) << int(loss);
+    ASSERT_FALSE(over_->why.ok());
+    EXPECT_TRUE(over_->again) << over_->why.error().sentence();
+    EXPECT_NE(over_->why.error().next.find("goes on"), std::string::npos)
+        << over_->why.error().sentence();
+    finish();
+    expectNothingLeft("loss " + std::to_string(int(loss)));
+  }
+}
+
+TEST_F(OpenXr, AFailureInEachCallEndsInWordsOrGoesOnAndLeavesNothing) {
+  options_.patience_ms = 5;
+  for (const std::string& function : runtime().functions()) {
+    for (const int result : {-1, -2, -13, -17}) {
+      for (const int after : {0, 1, 5}) {
+        runtime().reset();
+        runtime().setSize(16, 16);
+        runtime().setReadBack(false);
+        runtime().setPeriod(2.0);
+        runtime().fail(function, result, after, -1);
+        start();
+        until([&] { return over() || runtime().framesWithEyes() > 8; }, 4000.0);
+        finish();
+        const std::string what = function + " " + std::to_string(result);
+        if (!over_->why.ok()) {
+          EXPECT_FALSE(over_->why.error().next.empty()) << what;
+        }
+        runtime().fail("", 0, 0, 0);
+        EXPECT_FALSE(runtime().alive().any()) << what << " after " << after;
+        EXPECT_TRUE(runtime().violations().empty())
+            << what << ": " << runtime().violations().front();
+      }
+    }
+  }
+}
+
+TEST_F(OpenXr, OneThatHangsHoldsUpNobodyAndIsCleanedUpWhenItComesBack) {
+  start();
+  ASSERT_TRUE(until([] { return runtime().framesWithEyes() > 2; }));
+  runtime().hang(2.0);
+  const auto at = Clock::now();
+  ASSERT_TRUE(until([this] { return headset_->stuck_s() > 0.5; }, 3000.0));
+  headset_->stop();
+  EXPECT_LT(msSince(at), 1900.0) << "nobody waits for it";
+  EXPECT_FALSE(over());
+  ASSERT_TRUE(until([this] { return over(); }, 10000.0));
+  finish();
+  expectNothingLeft("the hang");
+}
+
+TEST_F(OpenXr, PicturesThatComeTooSlowlyGiveWayToAScreenThatStandsStillAndComeBack) {
+  eye_takes_ = 30ms;  // for each
+  start();
+  ASSERT_TRUE(until([this] { return headset_->state().flat; }, 15000.0));
+  const auto screen = runtime().screen();
+  ASSERT_TRUE(screen.has_value());
+  EXPECT_NEAR(glm::length(screen->pose_m.position), 2.0, 1e-3) << "two metres off";
+  EXPECT_EQ(int(screen->rgba[0]), 128) << "the panel's picture";
+  EXPECT_NEAR(screen->height_m / screen->width_m, 40.0 / 64.0, 1e-6);
+  // The head moves, the screen does not.
+  for (int i = 0; i < 20; ++i) {
+    runtime().setHead({{0.02 * i, 0.01 * i, 0.0}, glm::angleAxis(0.05 * i, Vec3(0, 1, 0))});
+    pass(20.0);
+    const auto now = runtime().screen();
+    ASSERT_TRUE(now.has_value());
+    EXPECT_EQ(now->pose_m.position, screen->pose_m.position);
+    EXPECT_EQ(now->pose_m.orientation, screen->pose_m.orientation);
+  }
+  runtime().setReadBack(false);
+  const int frames = runtime().frames();
+  pass(500.0);
+  EXPECT_GT(runtime().frames() - frames, 10) << "at the headset's own rate";
+  eye_takes_ = 0ms;
+  EXPECT_TRUE(until([this] { return !headset_->state().flat; }, 15000.0));
+  EXPECT_FALSE(runtime().screen().has_value());
+}
+
+TEST_F(OpenXr, OneThatIsTakenOffSaysSoAndGoesOnWhenItIsPutOnAgain) {
+  start();
+  ASSERT_TRUE(until([this] { return headset_->state().seen; }));
+  runtime().setWorn(false);
+  ASSERT_TRUE(until([this] { return !headset_->state().seen; }));
+  const int before = runtime().framesWithEyes();
+  pass(200.0);
+  EXPECT_EQ(runtime().framesWithEyes(), before) << "nobody sees it";
+  EXPECT_FALSE(over());
+  runtime().setWorn(true);
+  EXPECT_TRUE(until([&] { return runtime().framesWithEyes() > before + 3; }));
+}
+
+TEST_F(OpenXr, WhatIsNotThereIsSaidInWords) {
+  runtime().setPluggedIn(false);
+  start();
+  ASSERT_TRUE(until([this] { return over(); }));
+  EXPECT_EQ(over_->why.error().code, "NO_HEADSET");
+  EXPECT_TRUE(over_->again);
+  finish();
+  runtime().reset();
+  ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
+  start();
+  ASSERT_TRUE(until([this] { return over(); }));
+  EXPECT_EQ(over_->why.error().code, "NO_RUNTIME") << over_->why.error().sentence();
+  finish();
+  ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
+  expectNothingLeft("nothing was there");
+}
+
+}  // namespace
+}  // namespace trephine
