@@ -114,10 +114,10 @@ struct Answers {
 };
 
 // Each force that the arm had is to be that of the newest tick that was sent before, in size and
-// direction, or, on its way, of one just before or after.
+// direction, or of one just before or after, on its way.
 void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, std::uint32_t arm,
                 Answers& to) {
-  constexpr std::int64_t kWay_ns = 3'000'000, kAhead_ns = 1'000'000;
+  constexpr std::int64_t kWay_ns = 3'000'000;
   constexpr std::size_t kOldest = 100;  // ticks: beyond it the loop has taken the force away
   constexpr double kShare = 0.03;       // of the force, for the arm's way meanwhile
   const double tolerance_N = bench.tolerance_N();
@@ -137,7 +137,8 @@ void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, s
     for (std::size_t back = 0; !found && back <= std::min(newest, kOldest); ++back) {
       if (is(newest - back)) found = newest - back;
       if (back > 0 || found || next >= ticks.size()) continue;
-      if (ticks[next].sent_ns < given.at_ns + kAhead_ns && is(next)) found = next;
+      // Its write had not returned yet.
+      if (ticks[next].read_ns <= given.at_ns && is(next)) found = next;
     }
     if (!found) {
       ++to.missing;
@@ -257,6 +258,7 @@ Result<std::vector<LoopWatch::Tick>> exchange(const Subject& subject, bool send_
     (*device)->read(1.0 / kRate_hz, states.data());
     now.sequence = states[0].sequence;
     now.sampled_ns = states[0].time_ns;
+    now.read_ns = clock.now_ns();
     now.force_N = patternOf(tick);
     if (send_first) write();
   }
