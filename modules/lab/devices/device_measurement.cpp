@@ -108,9 +108,10 @@ std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
 // What came of forces that were sent.
 struct Answers {
   std::vector<double> ms;     // from a sample at the arm to the force that answers it there
-  std::uint64_t missing = 0;  // what the arm had was sent by no tick,
-  std::uint64_t late = 0;     // or by one whose successor was sent long before
-  std::uint64_t felt = 0;     // forces of any size that were sent by a tick
+  std::uint64_t told = 0;     // forces that the bench says the arm had: of them
+  std::uint64_t missing = 0;  // sent by no tick,
+  std::uint64_t late = 0;     // sent by one whose successor was sent long before,
+  std::uint64_t felt = 0;     // sent by a tick, and of any size
 };
 
 // Each force that the arm had is to be that of the newest tick that was sent before, in size and
@@ -126,6 +127,7 @@ void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, s
   std::size_t newest = 0, answered = ticks.size();
   for (const DeviceBench::Given& given : bench.given(arm)) {
     if (given.at_ns < ticks.front().sent_ns || given.at_ns > ticks.back().sent_ns) continue;
+    ++to.told;
     while (newest + 1 < ticks.size() && ticks[newest + 1].sent_ns <= given.at_ns) ++newest;
     const auto is = [&](std::size_t k) {
       const Vec3& sent_N = ticks[k].force_N;
@@ -203,9 +205,10 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
     for (std::size_t i = 0; i < watch.ticks(arm); ++i) ticks.push_back(watch.tick(arm, i));
     addAnswers(ticks, *subject.bench, scene->arms[arm].device.place, answers);
   }
+  const bool told = answers.told > 0;
   row.at_the_arm = answers.felt > 0;
   row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(answers.ms) : std::move(answer_ms));
-  if (row.at_the_arm) {
+  if (told) {
     row.force_mismatches = answers.missing;
     row.forces_late = answers.late;
   }
@@ -606,7 +609,7 @@ std::string toText(const DeviceMeasurement& measurement) {
     for (const DelayRow& delay : row.delays) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
            << delay.delay_ms.p99 << (delay.at_the_arm ? " at the arm" : " to the plugin");
-      if (delay.at_the_arm && delay.missing + delay.late > 0) {
+      if (delay.missing + delay.late > 0) {
         text << " (" << delay.missing << " forces of no tick, " << delay.late << " late)";
       }
       text << "; shows " << std::setprecision(0) << delay.most.b_max << " N s/m and "
