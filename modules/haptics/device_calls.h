@@ -25,6 +25,16 @@ class DeviceCalls {
     const int device = at_;
     return device < 0 ? std::nullopt : std::optional<std::size_t>(device);
   }
+  // Visits each of so many devices, the one that is being called last: what is done there may wait
+  // for that call.
+  template <class Visit>
+  void calledLast(std::size_t count, Visit&& visit) const {
+    const std::optional<std::size_t> called = at();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i != called) visit(i);
+    }
+    if (called) visit(*called);
+  }
   // Leaves the other thread behind if it is in a call: of which device. Nothing where it is
   // elsewhere, and will come to its end.
   std::optional<std::size_t> leaveBehind() {

@@ -38,13 +38,8 @@ bool HapticLoop::stopDevices() {
   return true;
 }
 
-// The device that the loop is calling comes last: its safe_stop may wait for that call.
 void HapticLoop::silence() {
-  const std::optional<std::size_t> called = calls_.at();
-  for (std::size_t i = 0; i < devices_.size(); ++i) {
-    if (i != called) devices_[i].device->safeStop();
-  }
-  if (called) devices_[*called].device->safeStop();
+  calls_.calledLast(devices_.size(), [this](std::size_t i) { devices_[i].device->safeStop(); });
 }
 
 void HapticLoop::closeOthers(std::size_t left_behind) {

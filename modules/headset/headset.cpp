@@ -17,12 +17,6 @@ namespace {
 
 constexpr unsigned long kEnd_ms = 500;
 
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 // Owned by the headset and its thread together: a call of OpenXR may never return.
@@ -110,7 +104,7 @@ HeadsetState Headset::state() const {
 
 double Headset::stuck_s() const {
   const std::int64_t since_ns = engine_->in_call_since_ns;
-  return since_ns == 0 ? 0.0 : 1e-9 * double(now_ns() - since_ns);
+  return since_ns == 0 ? 0.0 : 1e-9 * double(monotonic_ns() - since_ns);
 }
 
 PictureExchange& Headset::pictures() {

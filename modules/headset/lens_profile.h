@@ -4,8 +4,8 @@
 
 #include <array>
 #include <filesystem>
-#include <glm/glm.hpp>
 
+#include "base/math.h"
 #include "base/result.h"
 
 namespace trephine {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -30,12 +29,6 @@ constexpr auto kExitPatience = 2s;      // for the runtime to end a session that
 constexpr double kTryEvery_s = 0.5;     // a pair of eyes, while the flat screen stands there
 constexpr double kPanelEvery_s = 0.03;  // its picture, on that screen
 constexpr int kScreenWidth = 1280, kScreenHeight = 800;  // pixels
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 // OpenXR's structures say of themselves what they are.
 template <class T>
@@ -103,7 +96,7 @@ class OpenXrSession {
   void changeState(XrSessionState state);
   void frame();
   bool locate(XrTime at);
-  void showEyes(bool stopping);
+  void showEyes();
   void showFlat();
   void placeScreen();
   void draw(const SharedPicture& picture, std::size_t texture, Chain& into);
@@ -140,7 +133,7 @@ class OpenXrSession {
 // An abandoned thread ends with the process: nothing that it knew is there any more.
 template <class Call>
 XrResult OpenXrSession::call(Call&& function) {
-  shared_.in_call_since_ns = now_ns();
+  shared_.in_call_since_ns = monotonic_ns();
   const XrResult result = function();
   shared_.in_call_since_ns = 0;
   while (shared_.abandoned) ::pause();
@@ -469,12 +462,12 @@ void OpenXrSession::placeScreen() {
                     glm::angleAxis(yaw, Vec3(0.0, 1.0, 0.0))};
 }
 
-void OpenXrSession::showEyes(bool stopping) {
+void OpenXrSession::showEyes() {
   const std::uint64_t number = ++number_;
   shared_.pictures.ask(
-      {number, PictureRequest::Of::eyes, now_m_, state_.width, state_.height, now_ns()});
+      {number, PictureRequest::Of::eyes, now_m_, state_.width, state_.height, monotonic_ns()});
   shared_.wake();
-  const auto patience = std::chrono::milliseconds(stopping ? 0 : shared_.options.patience_ms);
+  const auto patience = std::chrono::milliseconds(shared_.options.patience_ms);
   SharedPicture* fresh = shared_.pictures.take(PictureRequest::Of::eyes, number, patience);
   if (fresh) {
     blitFresh(*fresh, Shows::eyes);
@@ -487,16 +480,16 @@ void OpenXrSession::showEyes(bool stopping) {
     ++state_.repeated;
     if (repeats_ > 1) ++state_.over_repeated;
   }
-  pace_.frame(1e-9 * double(now_ns()), fresh != nullptr);
+  pace_.frame(1e-9 * double(monotonic_ns()), fresh != nullptr);
 }
 
 void OpenXrSession::showFlat() {
-  const double now_s = 1e-9 * double(now_ns());
+  const double now_s = 1e-9 * double(monotonic_ns());
   const bool tries = now_s - last_try_s_ > kTryEvery_s;
   if (tries || now_s - last_panel_s_ > kPanelEvery_s) {
     const auto kind = tries ? PictureRequest::Of::eyes : PictureRequest::Of::panel;
     (tries ? last_try_s_ : last_panel_s_) = now_s;
-    shared_.pictures.ask({++number_, kind, now_m_, state_.width, state_.height, now_ns()});
+    shared_.pictures.ask({++number_, kind, now_m_, state_.width, state_.height, monotonic_ns()});
     shared_.wake();
   }
   if (SharedPicture* tried = shared_.pictures.take(PictureRequest::Of::eyes, 0, 0us)) {
@@ -521,7 +514,7 @@ void OpenXrSession::frame() {
   const bool draws = of.shouldRender && !asked_to_end_ && locate(of.predictedDisplayTime);
   if (draws) {
     const bool flat = pace_.tooSlow();
-    flat ? showFlat() : showEyes(shared_.stop);
+    flat ? showFlat() : showEyes();
   }
   XrCompositionLayerProjectionView views[2] = {};
   auto pair = typed<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
@@ -540,7 +533,7 @@ void OpenXrSession::frame() {
     pair.viewCount = 2;
     pair.views = views;
     layer = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&pair);
-    state_.pose_age_ms = 1e-6 * double(now_ns() - pair_shown_.asked_ns);
+    state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
     state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
   } else if (draws && shows_ == Shows::flat) {
     quad.space = room_;

@@ -67,9 +67,7 @@ void PictureExchange::finish(SharedPicture& picture, const PictureRequest& reque
   }
   picture.request = request;
   picture.drawn = drawn;
-  picture.finished_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                            std::chrono::steady_clock::now().time_since_epoch())
-                            .count();
+  picture.finished_ns = monotonic_ns();
   stateOf(picture) = State::ready;
   drawn_.notify_all();
 }

@@ -15,6 +15,13 @@
 
 namespace trephine {
 
+// Of the monotonic clock, as all times here are.
+inline std::int64_t monotonic_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 struct PictureRequest {
   enum class Of { eyes, panel };
   std::uint64_t number = 0;

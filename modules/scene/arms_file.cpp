@@ -15,6 +15,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostArms = std::size_t(kMaxArms);
 
+// What a simulated arm is like where nobody says otherwise.
+std::string usualArm() {
+  return (resourceFolder() / "devices" / "omni.json").string();
+}
+
 }  // namespace
 
 ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
@@ -35,7 +40,7 @@ ArmDevice readDevice(JsonReader& item, const fs::path& folder) {
 }
 
 void addSimulatedDevices(Scene& scene) {
-  const std::string config = (resourceFolder() / "devices" / "omni.json").string();
+  const std::string config = usualArm();
   std::uint32_t place = 0;
   for (SceneArm& arm : scene.arms) {
     if (!arm.device.plugin.empty()) continue;
@@ -88,7 +93,7 @@ Status useArms(Scene& scene, const std::vector<NamedDevice>& devices, const std:
     }
     arm->device = of.device;
     if (of.device.plugin == kSimulated && of.device.config.empty()) {
-      arm->device.config = (resourceFolder() / "devices" / "omni.json").string();
+      arm->device.config = usualArm();
     }
   }
   // The simulated ones that others need not have, in their places.

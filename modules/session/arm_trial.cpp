@@ -26,8 +26,8 @@ constexpr auto kWatchEvery = std::chrono::milliseconds(4);
 // Owned by the trial and its threads together: a device may keep each of them for ever.
 struct ArmTrial::Engine {
   struct Opened {
-    std::unique_ptr<Device> device;
-    std::vector<std::size_t> arms;  // of the trial
+    std::shared_ptr<Device> device;  // silence() may have it beside; null: closed
+    std::vector<std::size_t> arms;   // of the trial
   };
   std::vector<Opened> devices;
   std::vector<TrephineCapabilities> capabilities;
@@ -43,7 +43,7 @@ struct ArmTrial::Engine {
   std::condition_variable changed;
   bool ended = false, over = false;
   std::atomic<std::uint64_t> ticks{0};
-  std::atomic<bool> stands_still{false}, others_silent{false};
+  std::atomic<bool> stands_still{false};
 
   std::vector<std::optional<Error>> problems;
 
@@ -56,14 +56,17 @@ struct ArmTrial::Engine {
   void end(std::thread arms, std::thread watch);
 };
 
-// One that is in a call comes last: silencing it may wait for that call.
+// Of those that are not closed, and stay open until it has silenced them.
 void ArmTrial::Engine::silence() {
-  const std::optional<std::size_t> called = calls.at();
-  for (std::size_t d = 0; d < devices.size(); ++d) {
-    if (d != called) devices[d].device->safeStop();
+  std::vector<std::shared_ptr<Device>> all;
+  {
+    std::lock_guard lock(mutex);
+    for (const Opened& of : devices) all.push_back(of.device);
   }
-  others_silent = true;
-  if (called) devices[*called].device->safeStop();
+  calls.calledLast(all.size(), [&](std::size_t d) {
+    if (all[d]) all[d]->safeStop();
+    all[d].reset();
+  });
 }
 
 // Takes the force away where the arms' thread stands still, and at the end.
@@ -95,13 +98,15 @@ void ArmTrial::Engine::end(std::thread arms_thread, std::thread watch_thread) {
     devices[*held].device->leaveBehind();
     arms_thread.detach();
     watch_thread.detach();
-    while (!others_silent) std::this_thread::sleep_for(kWatchEvery);
   } else {
     arms_thread.join();
     watch_thread.join();
   }
   for (std::size_t d = 0; d < devices.size(); ++d) {
-    if (d != held) devices[d].device.reset();
+    if (d == held) continue;
+    std::shared_ptr<Device> closing;  // beyond the lock: it may take its time
+    std::lock_guard lock(mutex);
+    closing.swap(devices[d].device);
   }
   std::lock_guard lock(mutex);
   over = true;

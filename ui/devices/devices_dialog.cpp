@@ -3,6 +3,7 @@
 #include <QDialogButtonBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QVBoxLayout>
 
 #include "base/system.h"
@@ -272,13 +273,14 @@ void DevicesDialog::answer(bool felt) {
                 "and that its emergency stop is out, and test it again."));
 }
 
-// A force that pulls ends first.
-void DevicesDialog::reject() {
+// Escape ends a force that pulls, and then the dialog.
+void DevicesDialog::keyPressEvent(QKeyEvent* event) {
   using Phase = ForceTest::Phase;
   const bool any = trial_ && shown() >= 0 && shown() < int(trial_->size());
   const Phase phase = any ? trial_->state()[std::size_t(shown())].test : Phase::off;
-  if (phase >= Phase::waiting && phase <= Phase::falling) return askForForce();
-  QDialog::reject();
+  const bool pulls = phase >= Phase::waiting && phase <= Phase::falling;
+  if (event->key() == Qt::Key_Escape && pulls) return askForForce();
+  QDialog::keyPressEvent(event);
 }
 
 // A device has one hand: the other gets what this one had.

@@ -35,7 +35,7 @@ class DevicesDialog : public QDialog {
   void letGo();  // it was closed, and has no arm any more; it goes by itself
 
  protected:
-  void reject() override;
+  void keyPressEvent(QKeyEvent* event) override;
 
  private:
   void found(const FoundArms& here);

@@ -26,7 +26,7 @@ PointerHands::PointerHands(ViewWidget& view) : QObject(&view), view_(view) {
   connect(&view_, &ViewWidget::pointerStepped, this, &PointerHands::step);
   connect(&view_, &ViewWidget::toolTilted, this, &PointerHands::tilt);
   connect(&view_, &ViewWidget::toolStraightened, this, [this] {
-    if (session_ && !none_) session_->straightenHand(active_);
+    if (hasHand()) session_->straightenHand(active_);
   });
   connect(&view_, &ViewWidget::pushStepped, this, [this](double notches) {
     if (session_ && holds() && notches > 0.0) return;
@@ -62,9 +62,7 @@ void PointerHands::begin(Session* session) {
     const std::vector<SceneArm>& arms = session_->scene().arms;
     const auto found = std::ranges::find(arms, main, &SceneArm::name);
     active_ = found == arms.end() ? arms.size() - 1 : std::size_t(found - arms.begin());
-    none_ = false;
-    if (!session_->isSimulated(active_)) active_ = nextSimulated();
-    none_ = !session_->isSimulated(active_);
+    if (!hasHand()) active_ = nextSimulated();
   }
   emit changed();
 }
@@ -87,7 +85,7 @@ double PointerHands::mostPush_N() const {
 }
 
 void PointerHands::setPush(double push_N) {
-  if (!session_ || none_) return;
+  if (!hasHand()) return;
   if (!place()) step(0, 0);  // keys alone: from the middle of the view
   const double wanted_N = push_N < kLeastPush_N ? 0.0 : std::min(push_N, mostPush_N());
   (void)session_->setPush(active_, wanted_N);
@@ -95,7 +93,7 @@ void PointerHands::setPush(double push_N) {
 }
 
 void PointerHands::takeOther() {
-  if (!session_ || none_ || nextSimulated() == active_) return;
+  if (!hasHand() || nextSimulated() == active_) return;
   (void)session_->releaseHand(active_);
   active_ = nextSimulated();
   stays_ = true;
@@ -111,7 +109,7 @@ void PointerHands::goneBack() {
 }
 
 void PointerHands::point(const QPointF& to) {
-  if (!session_ || none_) return;
+  if (!hasHand()) return;
   if (place() && holds()) {
     stays_ = true;
     return;
@@ -139,7 +137,7 @@ void PointerHands::step(int right, int up) {
 }
 
 void PointerHands::tilt(int right, int up) {
-  if (!session_ || none_) return;
+  if (!hasHand()) return;
   const ViewCamera& camera = view_.camera();
   if (right != 0) session_->turnHand(active_, camera.up(), kTilt_rad * right);
   if (up != 0) session_->turnHand(active_, camera.right(), -kTilt_rad * up);

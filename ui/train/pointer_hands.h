@@ -32,8 +32,6 @@ class PointerHands : public QObject {
   // Somebody has pointed since the exercise began.
   bool taken() const { return last_.has_value(); }
   void takeOther();
-  // The pointer has no hand: real arms have them all.
-  bool hasNone() const { return session_ && none_; }
   // All hands have gone back to where they began, and stay there until the pointer moves.
   void goneBack();
   void setPush(double push_N);
@@ -44,6 +42,8 @@ class PointerHands : public QObject {
  private:
   void letGo();
   std::size_t nextSimulated() const;
+  // False where real arms have all hands.
+  bool hasHand() const { return session_ && session_->isSimulated(active_); }
   bool holds();
   void point(const QPointF& to);
   std::optional<QPointF>& place() { return places_[active_]; }
@@ -56,7 +56,6 @@ class PointerHands : public QObject {
   std::size_t active_ = 0;
   std::vector<std::optional<QPointF>> places_{std::nullopt};  // of each hand, in the view
   std::optional<QPointF> last_;                               // of any hand
-  bool none_ = false;
   bool stays_ = false;  // where it is, until the pointer moves
 };
 

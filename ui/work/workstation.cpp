@@ -16,11 +16,15 @@ namespace trephine {
 
 namespace {
 
+bool wantsRealArms(const Scene& scene, const ArmsOfPlace& chosen) {
+  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
+  return !chosen.empty() || std::ranges::any_of(scene.arms, is_real);
+}
+
 // Arms are opened by one at a time; who wants none of them need not wait.
 Status armsAreFree(std::unique_lock<std::timed_mutex>& lock, const Scene& scene,
                    const ArmsOfPlace& chosen) {
-  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
-  if (chosen.empty() && std::ranges::none_of(scene.arms, is_real)) return {};
+  if (!wantsRealArms(scene, chosen)) return {};
   if (lock.try_lock_for(std::chrono::seconds(10))) return {};
   return Error{
       "ARMS_BUSY", "Looking for arms has not come to an end: a device does not answer", "",
@@ -188,8 +192,7 @@ void Workstation::askArms() {
   const ArmsOfPlace chosen = arms_ ? ArmsOfPlace() : armsOfThisPlace();
   const bool free = phase_ == Phase::ready || phase_ == Phase::empty;
   if (!scene_ || !free || lent_) return;
-  const auto is_real = [](const SceneArm& arm) { return arm.device.plugin != kSimulated; };
-  if (chosen.empty() && std::ranges::none_of(scene_->arms, is_real)) return;
+  if (!wantsRealArms(*scene_, chosen)) return;
   if (asking_.busy()) {
     ask_again_ = true;
     return;

@@ -108,16 +108,17 @@ std::uint64_t skipped(const LoopWatch& watch, std::size_t arm) {
 // What came of forces that were sent.
 struct Answers {
   std::vector<double> ms;     // from a sample at the arm to the force that answers it there
-  std::uint64_t missing = 0;  // what the arm had was sent by no tick,
-  std::uint64_t late = 0;     // or by one whose successor was sent long before
-  std::uint64_t felt = 0;     // forces of any size that were sent by a tick
+  std::uint64_t told = 0;     // forces that the bench says the arm had: of them
+  std::uint64_t missing = 0;  // sent by no tick,
+  std::uint64_t late = 0;     // sent by one whose successor was sent long before,
+  std::uint64_t felt = 0;     // sent by a tick, and of any size
 };
 
 // Each force that the arm had is to be that of the newest tick that was sent before, in size and
-// direction, or, on its way, of one just before or after.
+// direction, or of one just before or after, on its way.
 void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, std::uint32_t arm,
                 Answers& to) {
-  constexpr std::int64_t kWay_ns = 3'000'000, kAhead_ns = 1'000'000;
+  constexpr std::int64_t kWay_ns = 3'000'000;
   constexpr std::size_t kOldest = 100;  // ticks: beyond it the loop has taken the force away
   constexpr double kShare = 0.03;       // of the force, for the arm's way meanwhile
   const double tolerance_N = bench.tolerance_N();
@@ -126,6 +127,7 @@ void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, s
   std::size_t newest = 0, answered = ticks.size();
   for (const DeviceBench::Given& given : bench.given(arm)) {
     if (given.at_ns < ticks.front().sent_ns || given.at_ns > ticks.back().sent_ns) continue;
+    ++to.told;
     while (newest + 1 < ticks.size() && ticks[newest + 1].sent_ns <= given.at_ns) ++newest;
     const auto is = [&](std::size_t k) {
       const Vec3& sent_N = ticks[k].force_N;
@@ -137,7 +139,8 @@ void addAnswers(const std::vector<LoopWatch::Tick>& ticks, DeviceBench& bench, s
     for (std::size_t back = 0; !found && back <= std::min(newest, kOldest); ++back) {
       if (is(newest - back)) found = newest - back;
       if (back > 0 || found || next >= ticks.size()) continue;
-      if (ticks[next].sent_ns < given.at_ns + kAhead_ns && is(next)) found = next;
+      // Its write had not returned yet.
+      if (ticks[next].read_ns <= given.at_ns && is(next)) found = next;
     }
     if (!found) {
       ++to.missing;
@@ -202,9 +205,10 @@ Status runClosedLoop(const Subject& subject, double seconds, DeviceRow& row,
     for (std::size_t i = 0; i < watch.ticks(arm); ++i) ticks.push_back(watch.tick(arm, i));
     addAnswers(ticks, *subject.bench, scene->arms[arm].device.place, answers);
   }
+  const bool told = answers.told > 0;
   row.at_the_arm = answers.felt > 0;
   row.sample_to_force_ms = spreadOf(row.at_the_arm ? std::move(answers.ms) : std::move(answer_ms));
-  if (row.at_the_arm) {
+  if (told) {
     row.force_mismatches = answers.missing;
     row.forces_late = answers.late;
   }
@@ -257,6 +261,7 @@ Result<std::vector<LoopWatch::Tick>> exchange(const Subject& subject, bool send_
     (*device)->read(1.0 / kRate_hz, states.data());
     now.sequence = states[0].sequence;
     now.sampled_ns = states[0].time_ns;
+    now.read_ns = clock.now_ns();
     now.force_N = patternOf(tick);
     if (send_first) write();
   }
@@ -604,7 +609,7 @@ std::string toText(const DeviceMeasurement& measurement) {
     for (const DelayRow& delay : row.delays) {
       text << "  " << delay.order << ": " << delay.delay_ms.median << " ms, p99 "
            << delay.delay_ms.p99 << (delay.at_the_arm ? " at the arm" : " to the plugin");
-      if (delay.at_the_arm && delay.missing + delay.late > 0) {
+      if (delay.missing + delay.late > 0) {
         text << " (" << delay.missing << " forces of no tick, " << delay.late << " late)";
       }
       text << "; shows " << std::setprecision(0) << delay.most.b_max << " N s/m and "

@@ -51,7 +51,8 @@ TEST_F(ArmsFile, GivesTheArmsOfItsNamesTheirDevicesAndTheOthersKeepTheirs) {
   EXPECT_EQ(scene.arms[0].device.config, (folder / "open.json").string());
   EXPECT_EQ(scene.arms[1].device.plugin, "simulated");
   EXPECT_EQ(scene.arms[1].device.place, 0u);
-  EXPECT_EQ(scene.arms[1].device.config, "");
+  EXPECT_EQ(scene.arms[1].device.config, (resourceFolder() / "devices" / "omni.json").string())
+      << "a simulated one without a file is the usual one";
   scene = before;
   ASSERT_TRUE(useArms(scene, {(*devices)[0]}, "arms.json").ok());
   EXPECT_EQ(scene.arms[1].device, before.arms[1].device);
@@ -116,6 +117,8 @@ TEST_F(ArmsFile, WhatIsWrongInItIsNamedWithFieldAndValue) {
   expect(refusal([](Json& j) { j["version"] = 2; }), "2");
   expect(refusal([](Json& j) { j["arms"][1]["name"] = "left"; }), "'left' stands twice");
   expect(refusal([](Json& j) { j["arms"][0].erase("plugin"); }), "plugin");
+  expect(refusal([](Json& j) { j["arms"][0]["plugin"] = ""; }), "no plugin");
+  expect(refusal([](Json& j) { j["arms"][0]["name"] = "pedal"; }), "no arm");
   expect(refusal([](Json& j) { j["arms"][0]["arm"] = 64; }), "64");
   expect(refusal([](Json& j) { j["arms"][0]["config"] = "none.json"; }), "none.json");
   expect(refusal([](Json& j) { j["arms"][0]["colour"] = "red"; }), "colour");
