@@ -9,6 +9,7 @@
 #include "imaging/dicom/ct_writer.h"
 #include "lab/devices/device_measurement.h"
 #include "lab/exercise/explain.h"
+#include "lab/headset/headset_measurement.h"
 #include "lab/import/import_measurement.h"
 #include "lab/import/read_floor.h"
 #include "lab/machine/jitter_measurement.h"
@@ -342,6 +343,16 @@ int measureDevicesCommand(const DeviceArguments& arguments, const std::string& o
   Result<DeviceMeasurement> measured = measureDevices(options, out, progress);
   if (!measured) return printError(kName, measured.error(), json);
   printMeasured(kName, *measured, json);
+  return 0;
+}
+
+int measureHeadsetCommand(const HeadsetArguments& arguments, const std::string& out, bool json,
+                          const Progress& progress) {
+  const HeadsetMeasureOptions options{arguments.seconds, arguments.toggles, arguments.losses,
+                                      !arguments.no_pictures};
+  Result<HeadsetMeasurement> measured = measureHeadset(options, out, progress);
+  if (!measured) return printError("measure.headset", measured.error(), json);
+  printMeasured("measure.headset", *measured, json);
   return 0;
 }
 

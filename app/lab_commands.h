@@ -117,6 +117,13 @@ int measureImportCommand(const ImportOptions& options, const std::string& out, b
 int measureReadCommand(const std::string& path, bool json, const Progress&);
 int measureDevicesCommand(const DeviceArguments& arguments, const std::string& out, bool json,
                           const Progress&);
+struct HeadsetArguments {
+  double seconds = 20.0;
+  int toggles = 50, losses = 20;
+  bool no_pictures = false;
+};
+int measureHeadsetCommand(const HeadsetArguments& arguments, const std::string& out, bool json,
+                          const Progress& progress);
 int measureJitterCommand(double seconds, const std::string& out, bool json, const Progress&);
 
 }  // namespace trephine

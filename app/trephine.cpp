@@ -66,8 +66,6 @@ int run(int argc, char** argv) {
   if (!display) printError("exercise", display.error(), json);
   if (!display && !can_say) return 1;
   std::unique_ptr<QApplication> application;
-  // A view that gets another window keeps its context, whose textures a headset shows.
-  QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
   if (scene.empty()) {
     application = std::make_unique<QApplication>(argc, argv);
   } else {

@@ -249,6 +249,18 @@ int run(int argc, char** argv) {
   devices_command->add_option("--one", devices.one)->group(kHidden);
   devices_command->add_option("--wait", devices.wait_s)->group(kHidden);
   devices_command->add_option("--recording", devices.recording)->group(kHidden);
+  auto* headset_command = with_json(measure_command->add_subcommand(
+      "headset", "Pictures for two eyes beside an exercise, and a headset that goes and comes"));
+  HeadsetArguments headset;
+  headset_command->add_option("--seconds", headset.seconds, "Of the exercise, with and without")
+      ->capture_default_str();
+  headset_command->add_option("--toggles", headset.toggles, "How often it is switched on and off")
+      ->capture_default_str();
+  headset_command->add_option("--losses", headset.losses, "Of each of five kinds")
+      ->capture_default_str();
+  headset_command->add_flag("--no-pictures", headset.no_pictures,
+                            "No pictures of both eyes for each scene");
+  headset_command->add_option("--out", out, "Folder for the recording and pictures")->required();
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;
@@ -309,6 +321,7 @@ int run(int argc, char** argv) {
   }
   if (*read_command) return measureReadCommand(file, json, progress);
   if (*devices_command) return measureDevicesCommand(devices, out, json, progress);
+  if (*headset_command) return measureHeadsetCommand(headset, out, json, progress);
   if (*jitter_command) return measureJitterCommand(seconds, out, json, progress);
   return 1;
 }

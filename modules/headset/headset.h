@@ -34,9 +34,14 @@ struct HeadsetState {
   bool flat = false;  // the flat screen is what is seen
   double pairs_hz = 0.0;
   Eyes eyes_m{};                          // where they were last, in the room
+  bool located = false;                   // it has said so
+  bool keeps_room = false;                // a place in the room has the same numbers the next time
+  int room_changes = 0;                   // another place has these numbers now
   int width = 0, height = 0;              // of an eye's picture
   std::uint64_t fresh = 0, repeated = 0;  // frames with a new pair, and with the one before
-  std::uint64_t over_repeated = 0;        // of these, with one that was repeated already
+  // With one that was repeated already: it stands in the room as two flat pictures, one for each
+  // eye, where the eyes were that it was drawn for.
+  std::uint64_t held = 0;
   double pose_age_ms = 0.0;               // of the last frame: since its eyes were asked for
   double most_pose_age_ms = 0.0;
 };

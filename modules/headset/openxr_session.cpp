@@ -272,12 +272,18 @@ void OpenXrSession::createSession() {
   }
   const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system_};
   check(call([&] { return xr_.createSession(instance_, &info, &session_); }), "xrCreateSession");
-  const XrReferenceSpaceCreateInfo space{XR_TYPE_REFERENCE_SPACE_CREATE_INFO,
-                                         nullptr,
-                                         XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                         {{0.0F, 0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}}};
-  check(call([&] { return xr_.createReferenceSpace(session_, &space, &room_); }),
-        "xrCreateReferenceSpace");
+  // Of the room where the headset knows one, else of where it was put on.
+  XrReferenceSpaceCreateInfo space{XR_TYPE_REFERENCE_SPACE_CREATE_INFO,
+                                   nullptr,
+                                   XR_REFERENCE_SPACE_TYPE_STAGE,
+                                   {{0.0F, 0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}}};
+  XrResult made = call([&] { return xr_.createReferenceSpace(session_, &space, &room_); });
+  state_.keeps_room = XR_SUCCEEDED(made);
+  if (made == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED) {
+    space.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+    made = call([&] { return xr_.createReferenceSpace(session_, &space, &room_); });
+  }
+  check(made, "xrCreateReferenceSpace");
   std::uint32_t count = 0;
   check(call([&] { return xr_.enumerateSwapchainFormats(session_, 0, &count, nullptr); }),
         "xrEnumerateSwapchainFormats");
@@ -363,6 +369,7 @@ bool OpenXrSession::pollEvents() {
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
       check(XR_ERROR_INSTANCE_LOST, "a loss that is announced");
     }
+    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) ++state_.room_changes;
     if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
     changeState(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
   }
@@ -404,6 +411,7 @@ bool OpenXrSession::locate(XrTime at) {
   if ((of.viewStateFlags & kBoth) != kBoth) return false;
   for (std::size_t eye = 0; eye < 2; ++eye) now_m_[eye] = viewOf(views[eye]);
   state_.eyes_m = now_m_;
+  state_.located = true;
   return true;
 }
 
@@ -477,13 +485,16 @@ void OpenXrSession::showEyes() {
     shows_ = Shows::eyes;
   } else if (shows_ == Shows::eyes) {
     ++repeats_;
-    ++state_.repeated;
-    if (repeats_ > 1) ++state_.over_repeated;
+    repeats_ > 1 ? ++state_.held : ++state_.repeated;
   }
   pace_.frame(1e-9 * double(monotonic_ns()), fresh != nullptr);
 }
 
 void OpenXrSession::showFlat() {
+  if (shows_ == Shows::eyes) {  // until there is a picture of the panel
+    ++repeats_;
+    ++state_.held;
+  }
   const double now_s = 1e-9 * double(monotonic_ns());
   const bool tries = now_s - last_try_s_ > kTryEvery_s;
   if (tries || now_s - last_panel_s_ > kPanelEvery_s) {
@@ -518,9 +529,34 @@ void OpenXrSession::frame() {
   }
   XrCompositionLayerProjectionView views[2] = {};
   auto pair = typed<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
-  auto quad = typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD);
-  const XrCompositionLayerBaseHeader* layer = nullptr;
+  XrCompositionLayerQuad quads[2] = {typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD),
+                                     typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD)};
+  const XrCompositionLayerBaseHeader* layers[2] = {};
+  std::uint32_t count = 0;
+  const auto add = [&](auto& layer) {
+    layers[count++] = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
+  };
   if (draws && shows_ == Shows::eyes) {
+    state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
+    state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
+  }
+  if (draws && shows_ == Shows::eyes && repeats_ > 1) {
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      quads[eye].space = room_;
+      quads[eye].eyeVisibility = eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT;
+      quads[eye].subImage = {eyes_[eye].handle, {{0, 0}, {eyes_[eye].width, eyes_[eye].height}}, 0};
+      const EyeView& of_eye = pair_shown_.eyes_m[eye];
+      const FieldOfView& sees = of_eye.sees;
+      const double away_m = shared_.options.screen_m;
+      const Vec3 middle(0.5 * (sees.left + sees.right), 0.5 * (sees.down + sees.up), -1.0);
+      quads[eye].pose =
+          poseOf(Pose{of_eye.pose.position + of_eye.pose.orientation * (away_m * middle),
+                      of_eye.pose.orientation});
+      quads[eye].size = {float(away_m * (sees.right - sees.left)),
+                         float(away_m * (sees.up - sees.down))};
+      add(quads[eye]);
+    }
+  } else if (draws && shows_ == Shows::eyes) {
     for (std::size_t eye = 0; eye < 2; ++eye) {
       // What it was drawn for and not where the eyes are now: the runtime moves the picture.
       const EyeView& of_eye = pair_shown_.eyes_m[eye];
@@ -532,20 +568,19 @@ void OpenXrSession::frame() {
     pair.space = room_;
     pair.viewCount = 2;
     pair.views = views;
-    layer = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&pair);
-    state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
-    state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
+    add(pair);
   } else if (draws && shows_ == Shows::flat) {
+    XrCompositionLayerQuad& quad = quads[0];
     quad.space = room_;
     quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
     quad.subImage = {screen_.handle, {{0, 0}, {screen_.width, screen_.height}}, 0};
     quad.pose = poseOf(screen_pose_m_);
     quad.size = {float(shared_.options.screen_width_m), float(screen_height_m_)};
-    layer = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad);
+    add(quad);
   }
-  const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO,  nullptr,
-                            of.predictedDisplayTime, XR_ENVIRONMENT_BLEND_MODE_OPAQUE,
-                            layer ? 1U : 0U,         layer ? &layer : nullptr};
+  const XrFrameEndInfo info{
+      XR_TYPE_FRAME_END_INFO,           nullptr, of.predictedDisplayTime,
+      XR_ENVIRONMENT_BLEND_MODE_OPAQUE, count,   count > 0 ? layers : nullptr};
   check(call([&] { return xr_.endFrame(session_, &info); }), "xrEndFrame");
   state_.flat = shows_ == Shows::flat;
   state_.pairs_hz = pace_.pairs_hz();

@@ -82,6 +82,7 @@ bool PicturePainter::serve(PictureExchange& exchange, const PaintEye& paint_eye,
     pair_ms_ =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
   }
+  if (eyes) left_ = {picture->textures[0], width, height};
   exchange.finish(*picture, *request, drawn);
   return true;
 }
@@ -98,6 +99,7 @@ void PicturePainter::release(PictureExchange& exchange) {
   }
   if (framebuffer_ != 0) f.glDeleteFramebuffers(1, &framebuffer_);
   framebuffer_ = 0;
+  left_ = {};
 }
 
 }  // namespace trephine

@@ -23,6 +23,12 @@ class PicturePainter {
   bool serve(PictureExchange& exchange, const PaintEye& paint_eye, const Panel& panel);
   // How long the last pair took [ms].
   double pair_ms() const { return pair_ms_; }
+  // The left picture of that pair; it stays until the next is drawn. 0 before there is one.
+  struct Left {
+    unsigned int texture = 0;
+    int width = 0, height = 0;
+  };
+  const Left& left() const { return left_; }
   // Once the headset's thread has ended: all that was made here goes.
   void release(PictureExchange& exchange);
 
@@ -31,6 +37,7 @@ class PicturePainter {
 
   unsigned int framebuffer_ = 0;
   double pair_ms_ = 0.0;
+  Left left_;
 };
 
 }  // namespace trephine

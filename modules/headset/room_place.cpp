@@ -98,6 +98,18 @@ RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double 
   return to;
 }
 
+RoomPlace where(const Pose& room_from_device_m, const ArmInPatient& arm) {
+  RoomPlace to;
+  to.scale = 1.0 / arm.travel;
+  to.turn = glm::normalize(room_from_device_m.orientation * glm::conjugate(arm.turn));
+  to.origin_m = room_from_device_m.position - to.turn * (arm.origin_mm * (1e-3 * to.scale));
+  return to;
+}
+
+double apart_mm(const RoomPlace& place, const Pose& room_from_device_m, const ArmInPatient& arm) {
+  return 1e3 * glm::distance(place.toRoom_m(arm.origin_mm), room_from_device_m.position);
+}
+
 // Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987.
 Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const Vec3> room_m) {
   if (device_m.size() < 3 || device_m.size() != room_m.size()) {

@@ -36,6 +36,18 @@ struct Looked {
 RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double above_m,
                  double scale = 1.0);
 
+// How an exercise maps an arm's frame into the patient: mm of the patient's are 1000 `travel` times
+// the arm's metres, turned, from where the arm's origin lies.
+struct ArmInPatient {
+  Vec3 origin_mm{0.0};
+  Quat turn{1.0, 0.0, 0.0, 0.0};  // arm axes to patient axes
+  double travel = 1.0;            // of the tool, by the arm's
+};
+// Where the patient lies for the tool to be seen where the arm is felt.
+RoomPlace where(const Pose& room_from_device_m, const ArmInPatient& arm);
+// How far, then, this other arm's tool is seen from where that is felt, at its origin [mm].
+double apart_mm(const RoomPlace& place, const Pose& room_from_device_m, const ArmInPatient& arm);
+
 // An arm's frame in the room, from marks that its tip has touched.
 struct Registration {
   Pose room_from_device_m;

@@ -32,6 +32,8 @@ class TestRuntime {
   virtual void setSize(std::uint32_t width, std::uint32_t height) = 0;  // of an eye, recommended
   virtual void setPluggedIn(bool plugged_in) = 0;
   virtual void setReadBack(bool on) = 0;  // of what frames show
+  virtual void setStage(bool known) = 0;  // the room's own frame, or only where it was put on
+  virtual void moveRoom() = 0;            // its frame lies elsewhere from now on
   // Each call of this function ("*": of any) gives this XrResult, `times` of them (negative: for
   // good), after `after` more that go well.
   virtual void fail(const std::string& function, int result, int after, int times) = 0;
@@ -63,6 +65,10 @@ class TestRuntime {
   virtual std::optional<Screen> screen() = 0;  // of the last frame, where it has one
   virtual int frames() = 0;                    // all of them
   virtual int framesWithEyes() = 0;
+  // Of these, the most in a row after the first that showed a pair with the poses of the one before
+  // while the eyes were elsewhere.
+  virtual int mostRepeats() = 0;
+  virtual int framesHeld() = 0;  // with a flat picture in the room for each eye
   virtual int calls(const std::string& function) = 0;
   virtual std::vector<std::string> functions() = 0;  // which it has
 

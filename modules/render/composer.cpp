@@ -26,10 +26,11 @@ uniform bool shown;
 uniform vec2 span;
 uniform vec2 beyond;
 uniform float height;
+uniform bool even;
 out vec4 colour;
 void main()
 {
-  vec3 back = mix(vec3(0.07, 0.075, 0.08), vec3(0.22, 0.225, 0.235), gl_FragCoord.y / height);
+  vec3 back = mix(vec3(0.07, 0.075, 0.08), vec3(0.22, 0.225, 0.235), even ? 0.3 : gl_FragCoord.y / height);
   vec4 front = shown ? texture(volume, (gl_FragCoord.xy + beyond) / span) : vec4(0.0);
   colour = vec4(front.rgb + (1.0 - front.a) * back, 1.0);
 }
@@ -195,7 +196,8 @@ void Composer::quad(const PixelRect& part) {
   glUseProgram(0);
 }
 
-void Composer::drawVolume(const Canvas* volume, const Span& span, int width, int height) {
+void Composer::drawVolume(const Canvas* volume, const Span& span, int width, int height,
+                          Background background) {
   if (!prepare()) return;
   glViewport(0, 0, width, height);
   glUseProgram(volume_);
@@ -204,6 +206,7 @@ void Composer::drawVolume(const Canvas* volume, const Span& span, int width, int
   set(volume_, "span", span.pixels);
   set(volume_, "beyond", span.beyond);
   glUniform1f(glGetUniformLocation(volume_, "height"), float(height));
+  set(volume_, "even", background == Background::even ? 1 : 0);
   quad({0, 0, width, height});
 }
 

@@ -27,8 +27,11 @@ struct DepthRange {
 // Every method needs the context to be current, and changes OpenGL's state behind VTK's back.
 class Composer {
  public:
+  // Lighter above and darker below, or even: what turns with a head cannot be brighter on one side.
+  enum class Background { shaded, even };
   // The volume (null: none) over the background, into the framebuffer that is bound.
-  void drawVolume(const Canvas* volume, const Span& span, int width, int height);
+  void drawVolume(const Canvas* volume, const Span& span, int width, int height,
+                  Background background = Background::shaded);
   // Tools into the picture that is there, inside this part of it. `tools` holds their colour and
   // depth and has the window's size. Tissue in front of a tool hides it, or tints it where it can
   // be seen through. With an opacity below 1 what is behind shines through.

@@ -273,7 +273,9 @@ void SceneRenderer::View::compose(unsigned int framebuffer, bool with_cues) {
   }
   if (scene_stale || scene.width() != width || scene.height() != height) {
     scene.bind(width, height, {Canvas::Image::colour});
-    of.composer.drawVolume(shown, span, width, height);
+    of.composer.drawVolume(
+        shown, span, width, height,
+        camera.offAxis() ? Composer::Background::even : Composer::Background::shaded);
     if (of.warm.outline) drawOutline(shown, span);
     scene_stale = false;
   }

@@ -259,6 +259,14 @@ Picture SceneRenderer::eyePicture(const EyeView& eye_mm, int width, int height) 
   return p.eye.read(false);
 }
 
+void SceneRenderer::releaseEyes() {
+  if (!parts_->window) return;
+  parts_->window->MakeCurrent();
+  parts_->cards.show({});
+  parts_->cards.release();
+  parts_->eye.release();
+}
+
 void SceneRenderer::setCards(std::vector<Card> cards) {
   parts_->cards.show(std::move(cards));
 }

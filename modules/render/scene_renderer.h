@@ -124,6 +124,8 @@ class SceneRenderer {
                 bool in_full = false);
   // The same at full quality, read back.
   Picture eyePicture(const EyeView& eye_mm, int width, int height);
+  // The last was drawn: what they needed goes.
+  void releaseEyes();
   // What stands in such pictures to be read.
   void setCards(std::vector<Card> cards);
   // Works for about so long on a finer picture, where nothing of it is cold. True when there is

@@ -255,7 +255,7 @@ const TriedArms& ArmTrial::state() {
   for (TriedArm& arm : shown_) {  // what was sent last is not what is sent now
     arm.flags |= TREPHINE_ARM_LOST;
     arm.force_N = 0.0;
-    if (arm.test >= ForceTest::Phase::waiting) arm.test = ForceTest::Phase::lost;
+    if (ForceTest::runs(arm.test)) arm.test = ForceTest::Phase::lost;
   }
   return shown_;
 }

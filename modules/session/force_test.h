@@ -27,6 +27,9 @@ class ForceTest {
   // The force [N] along the device's y for this sample.
   double tick(const Sample& sample, double period_s);
 
+  // A person has asked for a force, and it is not over.
+  static bool runs(Phase phase) { return phase >= Phase::waiting && phase <= Phase::falling; }
+
   Phase phase() const { return phase_; }
   bool gives() const { return phase_ >= Phase::rising && phase_ <= Phase::falling; }
 

@@ -14,6 +14,8 @@
 #include <thread>
 
 #include "headset/headset.h"
+#include "headset/lens_profile.h"
+#include "headset/packed_drawing.h"
 #include "headset/picture_painter.h"
 #include "headset/test_runtime.h"
 
@@ -289,6 +291,97 @@ TEST_F(OpenXr, PicturesThatComeTooSlowlyGiveWayToAScreenThatStandsStillAndComeBa
   EXPECT_FALSE(runtime().screen().has_value());
 }
 
+TEST_F(OpenXr, APairThatComesLateIsShownOnceMoreAndThenStandsInTheRoom) {
+  options_.pace.least_hz = 0.0;
+  start();
+  std::atomic<bool> moving{true};
+  std::thread head([&] {
+    for (int i = 0; moving; ++i) {
+      runtime().setHead({{0.0005 * i, 0.0, 0.0}, Quat(1, 0, 0, 0)});
+      std::this_thread::sleep_for(2ms);
+    }
+  });
+  ASSERT_TRUE(until([] { return runtime().framesWithEyes() > 5; }));
+  const int held = runtime().framesHeld();
+  std::this_thread::sleep_for(200ms);  // the window does something else
+  EXPECT_GT(runtime().framesHeld() - held, 8);
+  EXPECT_TRUE(until([&] { return headset_->state().held >= 8; }));
+  const int fresh = runtime().framesWithEyes();
+  EXPECT_TRUE(until([&] { return runtime().framesWithEyes() > fresh + 3; }));
+  moving = false;
+  head.join();
+  EXPECT_LE(runtime().mostRepeats(), 1);
+}
+
+// Each pixel of a ramp says where it was taken from.
+TEST_F(OpenXr, TwoPicturesOnOneScreenLieWhereTheLensPutsThem) {
+  constexpr int kWide = 256, kHigh = 128;
+  std::vector<std::uint8_t> ramp;
+  for (int y = 0; y < kHigh; ++y) {
+    for (int x = 0; x < kWide; ++x) {
+      // Across in red and blue, upwards in green.
+      for (const int value : {x, 2 * y, x, 255}) ramp.push_back(std::uint8_t(value));
+    }
+  }
+  std::array<unsigned int, 3> textures{};
+  gl().glGenTextures(3, textures.data());
+  for (std::size_t i = 0; i < 3; ++i) {
+    gl().glBindTexture(GL_TEXTURE_2D, textures[i]);
+    gl().glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, i == 2 ? 2 * kWide : kWide, kHigh, 0, GL_RGBA,
+                      GL_UNSIGNED_BYTE, i == 2 ? nullptr : ramp.data());
+    gl().glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl().glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  }
+  unsigned int framebuffer = 0;
+  gl().glGenFramebuffers(1, &framebuffer);
+  gl().glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl().glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, textures[2], 0);
+  LensProfile lens;
+  lens.k = {0.15, 0.05, 0.0};
+  lens.colour = {1.02, 1.0, 0.97};
+  lens.axis = 0.1;
+  PackedDrawing drawing;
+  for (const LensProfile& each : {LensProfile{}, lens}) {
+    ASSERT_TRUE(drawing.draw({textures[0], textures[1]}, Packing::full, each, 2 * kWide, kHigh));
+    std::vector<std::uint8_t> seen(std::size_t(2 * kWide) * kHigh * 4);
+    gl().glReadPixels(0, 0, 2 * kWide, kHigh, GL_RGBA, GL_UNSIGNED_BYTE, seen.data());
+    int compared = 0, black = 0;
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      for (int y = 3; y < kHigh; y += 7) {
+        for (int x = 3; x < kWide; x += 7) {
+          const glm::dvec2 at((x + 0.5 - 0.5 * kWide) / (0.5 * kHigh),
+                              (y + 0.5) / (0.5 * kHigh) - 1);
+          for (const int colour : {0, 1, 2}) {
+            const glm::dvec2 from = lensSource(each, eye, colour, at);
+            const double across = (from.x * 0.5 * kHigh) + 0.5 * kWide - 0.5;
+            const double up = (from.y + 1.0) * 0.5 * kHigh - 0.5;
+            const std::size_t pixel = std::size_t(y) * 2 * kWide + eye * kWide + std::size_t(x);
+            const double value = seen[4 * pixel + std::size_t(colour)];
+            const bool inside =
+                across > -0.4 && across < kWide - 0.6 && up > -0.4 && up < kHigh - 0.6;
+            const bool outside =
+                across < -0.6 || across > kWide - 0.4 || up < -0.6 || up > kHigh - 0.4;
+            if (outside) {
+              EXPECT_EQ(value, 0.0);
+              ++black;
+            }
+            if (!inside) continue;
+            const double expected = colour == 1 ? 2.0 * std::clamp(up, 0.0, kHigh - 1.0)
+                                                : std::clamp(across, 0.0, kWide - 1.0);
+            EXPECT_NEAR(value, expected, 1.6) << x << ' ' << y << ' ' << colour;
+            ++compared;
+          }
+        }
+      }
+    }
+    EXPECT_GT(compared, 2000);
+    EXPECT_EQ(black > 0, each.k[0] > 0.0);
+  }
+  drawing.release();
+  gl().glDeleteFramebuffers(1, &framebuffer);
+  gl().glDeleteTextures(3, textures.data());
+}
+
 TEST_F(OpenXr, OneThatIsTakenOffSaysSoAndGoesOnWhenItIsPutOnAgain) {
   start();
   ASSERT_TRUE(until([this] { return headset_->state().seen; }));
@@ -300,6 +393,35 @@ TEST_F(OpenXr, OneThatIsTakenOffSaysSoAndGoesOnWhenItIsPutOnAgain) {
   EXPECT_FALSE(over());
   runtime().setWorn(true);
   EXPECT_TRUE(until([&] { return runtime().framesWithEyes() > before + 3; }));
+}
+
+// What a machine may lack, where the environment takes it away (CMakeLists.txt).
+class Lacks : public ::testing::Test {
+ protected:
+  std::string refusal(const char* wanted) {
+    const char* lacks = std::getenv("TREPHINE_LACKS");
+    if (!lacks || lacks != std::string(wanted)) return "skip";
+    application();
+    QOpenGLContext context;
+    EXPECT_TRUE(context.create());
+    const auto started = Headset::start(context, {}, [] {});
+    EXPECT_FALSE(started);
+    return started ? "" : started.error().code + ": " + started.error().sentence();
+  }
+};
+
+TEST_F(Lacks, Glx) {
+  const std::string said = refusal("glx");
+  if (said == "skip") GTEST_SKIP();
+  EXPECT_EQ(said.find("NO_GLX"), 0u) << said;
+  EXPECT_NE(said.find("QT_QPA_PLATFORM=xcb"), std::string::npos) << said;
+}
+
+TEST_F(Lacks, Loader) {
+  const std::string said = refusal("loader");
+  if (said == "skip") GTEST_SKIP();
+  EXPECT_EQ(said.find("NO_LOADER"), 0u) << said;
+  EXPECT_NE(said.find("libopenxr-loader1"), std::string::npos) << said;
 }
 
 TEST_F(OpenXr, WhatIsNotThereIsSaidInWords) {

@@ -62,6 +62,7 @@ INNER = {
         "render": {"common", "import"},
         "exercise": {"common", "trades"},
         "devices": {"common"},
+        "headset": {"common"},
     },
     "ui": {
         "common": set(),
@@ -97,7 +98,7 @@ MAY_USE = {
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
     "plot": {"qt-gui"},
     "headset": {"qt-opengl", "openxr", "dl"},
-    "lab": set(),
+    "lab": {"qt-opengl"},
     "ui": {"qt"},
     "app": {"qt", "cli11"},
 }

@@ -19,7 +19,7 @@ constexpr int kShown_ms = 33;
 constexpr int kSettle_ms = 700;    // until what was plugged in has its nodes
 constexpr double kMoved_m = 0.02;  // the arm that a person means
 constexpr double kTest_N = 1.0;
-constexpr int kLeastWidth = 720, kLeastHeight = 540;  // nothing in it is cut
+constexpr int kLeastWidth = 720, kLeastHeight = 620;  // nothing in it is cut
 
 QString nameOf(const FoundArm& arm) {
   const auto brief = [](const std::string& text) {
@@ -56,6 +56,7 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidg
   able_ = wordsLabel("deviceAble");
   able_->setProperty("quiet", true);
   picture_ = new ArmPicture;
+  room_ = new RoomPanel;
   now_ = wordsLabel("deviceNow");
   test_ = wordsLabel("forceTest");
   for (QLabel* words : {now_, test_}) {  // what is said changes, and nothing moves with it
@@ -94,6 +95,7 @@ DevicesDialog::DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidg
   chosen->addWidget(now_);
   chosen->addWidget(test_);
   chosen->addLayout(answers);
+  chosen->addWidget(room_);
   auto* columns = new QHBoxLayout;
   columns->addLayout(found, 2);
   columns->addLayout(chosen, 3);
@@ -142,6 +144,7 @@ DevicesDialog::~DevicesDialog() = default;
 void DevicesDialog::close() {
   show_timer_.stop();
   plug_timer_.stop();
+  room_->stop();
   trial_.reset();
   look_again_ = false;
   const auto go = [this] {
@@ -278,8 +281,8 @@ void DevicesDialog::keyPressEvent(QKeyEvent* event) {
   using Phase = ForceTest::Phase;
   const bool any = trial_ && shown() >= 0 && shown() < int(trial_->size());
   const Phase phase = any ? trial_->state()[std::size_t(shown())].test : Phase::off;
-  const bool pulls = phase >= Phase::waiting && phase <= Phase::falling;
-  if (event->key() == Qt::Key_Escape && pulls) return askForForce();
+  if (event->key() == Qt::Key_Escape && ForceTest::runs(phase)) return askForForce();
+  if (event->key() == Qt::Key_Escape && room_->isTouching()) return room_->stop();
   QDialog::keyPressEvent(event);
 }
 
@@ -310,6 +313,9 @@ void DevicesDialog::showArm() {
   const bool any = row >= 0 && row < int(arms_.size());
   for (QPushButton* each : {felt_, not_felt_}) each->setEnabled(false);
   test_->clear();
+  const bool can_stand = any && trial_ && std::size_t(row) < trial_->size() &&
+                         !trial_->problem(std::size_t(row)) && !isPedal(std::size_t(row));
+  room_->showArm(can_stand ? std::optional(arms_[std::size_t(row)]) : std::nullopt);
   if (!any) {
     name_->clear();
     able_->clear();
@@ -362,7 +368,7 @@ void DevicesDialog::showNow() {
   const TriedArms& arms = trial_->state();
   for (std::size_t i = 0; i < trial_->size() && i < moved_m_.size(); ++i) {
     const double before_m = std::exchange(moved_m_[i], arms[i].moved_m);
-    if (before_m < kMoved_m && moved_m_[i] >= kMoved_m && int(i) != row) {
+    if (before_m < kMoved_m && moved_m_[i] >= kMoved_m && int(i) != row && !room_->isTouching()) {
       return list_->setCurrentRow(int(i));
     }
   }
@@ -380,6 +386,7 @@ void DevicesDialog::showNow() {
   const TrephineCapabilities& able = trial_->capabilities(i);
   const bool lost = arm.flags & TREPHINE_ARM_LOST;
   const bool placed = arm.flags & TREPHINE_ARM_CALIBRATED;
+  room_->follow(arm.pose_m.position, arm.buttons, placed && !lost);
   if (able.input_dof == 0) {
     picture_->clear();
   } else if (!placed && !lost) {
@@ -408,7 +415,7 @@ void DevicesDialog::showNow() {
   }
   now_->setText(now.join(' '));
   using Phase = ForceTest::Phase;
-  const bool runs = arm.test >= Phase::waiting && arm.test <= Phase::falling;
+  const bool runs = ForceTest::runs(arm.test);
   force_->setEnabled(able.input_dof != 0 && able.peak_force_N > 0.0 && placed && !lost);
   force_->setText(runs ? tr("&Stop the force") : tr("&Test the force"));
   switch (arm.test) {
@@ -447,10 +454,9 @@ void DevicesDialog::showNow() {
 void DevicesDialog::askForForce() {
   if (!trial_ || shown() < 0) return;
   const std::size_t arm = std::size_t(shown());
-  using Phase = ForceTest::Phase;
-  const Phase phase = trial_->state()[arm].test;
+  const ForceTest::Phase phase = trial_->state()[arm].test;
   for (QPushButton* each : {felt_, not_felt_}) each->setEnabled(false);
-  if (phase >= Phase::waiting && phase <= Phase::falling) {
+  if (ForceTest::runs(phase)) {
     trial_->endForce();
     asked_ = false;
     test_->setText(tr("The force is off."));

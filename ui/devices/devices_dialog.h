@@ -18,6 +18,7 @@
 #include "session/arm_trial.h"
 #include "ui/common/background_task.h"
 #include "ui/devices/arm_picture.h"
+#include "ui/devices/room_panel.h"
 
 namespace trephine {
 
@@ -28,6 +29,8 @@ class DevicesDialog : public QDialog {
   DevicesDialog(std::shared_ptr<std::timed_mutex> opens_arms, QWidget* parent);
   ~DevicesDialog() override;
 
+  // Where an arm stands in a headset's room is found here as well.
+  RoomPanel& room() { return *room_; }
   // Again what is plugged in: also when something is plugged in or out.
   void look();
 
@@ -61,6 +64,7 @@ class DevicesDialog : public QDialog {
   QListWidget* list_;
   QLabel *problems_, *name_, *able_, *now_, *test_;
   ArmPicture* picture_;
+  RoomPanel* room_;
   QPushButton *again_, *force_, *felt_, *not_felt_;
   QComboBox *left_, *right_, *pedal_;
   QTimer show_timer_, plug_timer_;

@@ -4,6 +4,7 @@
 #include <QDragEnterEvent>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QPointer>
 #include <QStatusBar>
 #include <QTimer>
 #include <algorithm>
@@ -18,11 +19,14 @@
 #include "ui/frame/settings_dialog.h"
 #include "ui/frame/shortcuts_page.h"
 #include "ui/frame/unlock_dialog.h"
+#include "ui/headset/headset_dialog.h"
 
 namespace trephine {
 
 // They know the bench, and go before it.
 MainWindow::~MainWindow() {
+  delete stereo_;
+  delete headset_;
   delete review_;
   delete train_;
   delete prepare_;
@@ -262,6 +266,41 @@ void MainWindow::showDevices() {
   workstation().lendArms(true);
   auto* dialog = new DevicesDialog(workstation().opensArms(), this);
   connect(dialog, &DevicesDialog::letGo, this, [this] { workstation().lendArms(false); });
+  RoomPanel& room = dialog->room();
+  const auto tell = [this, &room] { room.setHeadset(headset_->isSeen(), headset_->keepsRoom()); };
+  connect(headset_, &HeadsetView::changed, &room, tell);
+  connect(&room, &RoomPanel::marksWanted, this, [this, &room](bool wanted) {
+    if (wanted) return room.setMarks(headset_->showMarks());
+    headset_->hideMarks();
+  });
+  tell();
+  dialog->open();
+}
+
+// What is read by both eyes, and what the window itself takes.
+void MainWindow::showEyes() {
+  QStringList words{headset_->isOn() ? headset_->words() : stereo_->words()};
+  if (words.front().isEmpty()) {
+    eyes_->hide();
+    return eyes_->clear();
+  }
+  words << tr("window %1 ms").arg(panel_ms_, 0, 'f', 1);
+  eyes_->setText(words.join(QStringLiteral(" \u00b7 ")));
+  eyes_->setVisible(statusBar()->currentMessage().isEmpty());
+}
+
+void MainWindow::showHeadset() {
+  auto* dialog = new HeadsetDialog(this);
+  connect(dialog, &HeadsetDialog::headsetChanged, headset_, &HeadsetView::settingsChanged);
+  connect(dialog, &HeadsetDialog::screenChanged, stereo_, &StereoView::settingsChanged);
+  connect(dialog, &HeadsetDialog::lensWanted, dialog, [this, dialog] {
+    bench_.askForFile("lensDialog", tr("A lens's file"), tr("Lenses (*.json)"),
+                      [this, of = QPointer(dialog)](const std::filesystem::path& file) {
+                        const Result<LensProfile> lens = readLensProfile(file);
+                        if (!lens) return bench_.report(lens.error());
+                        if (of) of->setLens(toQt(file.string()));
+                      });
+  });
   dialog->open();
 }
 

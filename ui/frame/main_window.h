@@ -15,6 +15,7 @@
 #include "ui/common/slip_guard.h"
 #include "ui/frame/rail.h"
 #include "ui/headset/headset_view.h"
+#include "ui/headset/stereo_view.h"
 #include "ui/prepare/prepare_workspace.h"
 #include "ui/review/review_workspace.h"
 #include "ui/train/train_workspace.h"
@@ -89,6 +90,8 @@ class MainWindow : public QMainWindow {
   void showShortcuts();
   void showSettings();
   void showDevices();
+  void showHeadset();
+  void showEyes();
   void showLocks();
   void askForPin();
 
@@ -99,6 +102,7 @@ class MainWindow : public QMainWindow {
   TrainWorkspace* train_;
   ReviewWorkspace* review_;
   HeadsetView* headset_;
+  StereoView* stereo_;
   std::array<Room, 4> rooms_;  // by place
   Place place_ = Place::cases;
   Rail* rail_;
@@ -108,8 +112,9 @@ class MainWindow : public QMainWindow {
   QSplitter* columns_;
   QToolBar* bar_;
   QAction *picture_, *volume_, *look_, *left_panel_, *right_panel_, *full_screen_, *settings_,
-      *devices_, *unlock_;
-  QLabel *hint_, *rates_, *locked_, *opening_words_;
+      *devices_, *headset_settings_, *unlock_;
+  QLabel *hint_, *eyes_, *rates_, *locked_, *opening_words_;
+  double panel_ms_ = 0.0;  // of its last picture
   QWidget* opening_box_;
   QProgressBar* opening_;
   QString hint_words_, help_words_;

@@ -37,6 +37,7 @@ void MainWindow::buildWorkspaces() {
   train_ = new TrainWorkspace(bench_);
   review_ = new ReviewWorkspace(bench_);
   headset_ = new HeadsetView(bench_, *this);
+  stereo_ = new StereoView(bench_, *this);
   rooms_ = {Room{Place::cases, "cases", cases_, {}, {}},
             Room{Place::prepare, "prepare", prepare_, {ViewLayout::Kind::four, 0}, {}},
             Room{Place::train, "train", train_, {ViewLayout::Kind::one_large, 0}, {}},
@@ -103,6 +104,9 @@ void MainWindow::buildActions() {
   devices_ = makeAction(*this, Symbol::settings, "devices", tr("&Devices\u2026"),
                         QKeySequence(Qt::CTRL | Qt::Key_D),
                         tr("The arms that are plugged in: which is the left and which the right"));
+  headset_settings_ =
+      makeAction(*this, Symbol::settings, "headsetSettings", tr("Headset and s&creens\u2026"), {},
+                 tr("Where the patient stands, and how another screen is used"));
   unlock_ =
       makeAction(*this, Symbol::settings, "unlockTeaching", tr("Unlock for &teaching\u2026"), {},
                  tr("With an educator's PIN, until it is locked again or Trephine is closed"));
@@ -154,6 +158,10 @@ void MainWindow::buildBars() {
   opening_row->addWidget(opening_);
   opening_row->addWidget(cancel);
   opening_box_->hide();
+  eyes_ = new ElidedLabel;
+  eyes_->setObjectName("eyes");
+  eyes_->setProperty("quiet", true);
+  eyes_->hide();
   rates_ = new ElidedLabel;
   rates_->setObjectName("rates");
   rates_->setProperty("quiet", true);
@@ -166,6 +174,7 @@ void MainWindow::buildBars() {
   purpose->setContentsMargins(12, 0, 6, 0);
   statusBar()->addWidget(hint_, 1);
   statusBar()->addPermanentWidget(opening_box_);
+  statusBar()->addPermanentWidget(eyes_);
   statusBar()->addPermanentWidget(rates_);
   statusBar()->addPermanentWidget(locked_);
   statusBar()->addPermanentWidget(purpose);
@@ -200,7 +209,8 @@ void MainWindow::buildMenus() {
   for (QAction* tool : this->view().tools().all())
     tool ? view->addAction(tool) : void(view->addSeparator());
   view->addSeparator();
-  view->addActions({headset_->onAction(), headset_->recentreAction(), headset_->mirrorAction()});
+  view->addActions(
+      {headset_->onAction(), headset_->recentreAction(), stereo_->onAction(), headset_settings_});
   QMenu* help = menuBar()->addMenu(tr("&Help"));
   QAction* keys =
       help->addAction(tr("&Keys"), QKeySequence(Qt::Key_F1), this, &MainWindow::showShortcuts);
@@ -209,8 +219,20 @@ void MainWindow::buildMenus() {
 }
 
 void MainWindow::connectParts() {
-  connect(headset_, &HeadsetView::changed, this,
-          [this] { train_->setCardsWanted(headset_->isOn()); });
+  connect(headset_, &HeadsetView::changed, this, [this] {
+    train_->setCardsWanted(headset_->isOn());
+    if (!workstation().session()) headset_->setCards({});
+    showEyes();
+  });
+  connect(stereo_, &StereoView::changed, this, &MainWindow::showEyes);
+  connect(&view(), &ViewWidget::framePainted, this, [this](double ms) { panel_ms_ = ms; });
+  // One pair of pictures at a time.
+  connect(headset_->onAction(), &QAction::toggled, this, [this](bool on) {
+    if (on) stereo_->stop();
+  });
+  connect(stereo_->onAction(), &QAction::toggled, this, [this](bool on) {
+    if (on) headset_->stop();
+  });
   connect(train_, &TrainWorkspace::cardsChanged, headset_, &HeadsetView::setCards);
   connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);
   connect(rail_, &Rail::chosen, this, qOverload<Place>(&MainWindow::show));
@@ -244,6 +266,7 @@ void MainWindow::connectParts() {
           [this](bool full) { setWindowState(windowState().setFlag(Qt::WindowFullScreen, full)); });
   connect(settings_, &QAction::triggered, this, &MainWindow::showSettings);
   connect(devices_, &QAction::triggered, this, &MainWindow::showDevices);
+  connect(headset_settings_, &QAction::triggered, this, &MainWindow::showHeadset);
   connect(unlock_, &QAction::triggered, this, &MainWindow::askForPin);
   connect(&bench_.workstation(), &Workstation::locksChanged, this, &MainWindow::showLocks);
   showLocks();
@@ -267,8 +290,10 @@ void MainWindow::connectParts() {
             opening_->setValue(int(fraction * kProgressSteps));
           });
   // What is said needs the room.
-  connect(statusBar(), &QStatusBar::messageChanged, rates_,
-          [this](const QString& said) { rates_->setVisible(said.isEmpty()); });
+  connect(statusBar(), &QStatusBar::messageChanged, rates_, [this](const QString& said) {
+    rates_->setVisible(said.isEmpty());
+    showEyes();
+  });
   connect(&workstation, &Workstation::openingEnded, opening_box_, &QWidget::hide);
   connect(&workstation, &Workstation::savingProgressed, this,
           [this](double fraction, const QString& step) {

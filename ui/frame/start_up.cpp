@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <QByteArray>
+#include <QCoreApplication>
 #include <QSurfaceFormat>
 #include <fstream>
 #include <sstream>
@@ -33,6 +34,9 @@ Status prepareDisplay() {
   format.setStencilBufferSize(8);
   format.setSamples(0);
   QSurfaceFormat::setDefaultFormat(format);
+  // A view that gets another window keeps its context, whose textures a headset and a second screen
+  // show.
+  QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
   return probeDisplay();
 }
 

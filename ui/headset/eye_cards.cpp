@@ -18,6 +18,7 @@ QString say(const char* text) {
 }
 
 constexpr double kMargin_deg = 0.6, kRadius_deg = 0.5;
+constexpr double kAside_deg = 27.0;  // a card of 17 degrees leaves the middle free
 const QColor kBack(18, 20, 24, 225);
 
 int pixels(double degrees) {
@@ -120,7 +121,7 @@ EyeCard forceCard(const std::vector<HandForce>& hands) {
   card.name = "force";
   card.image = sheet.take();
   card.width_m = metres(kWidth_deg);
-  card.right_m = metres(30.0);
+  card.right_deg = kAside_deg;
   return card;
 }
 
@@ -134,7 +135,46 @@ EyeCard exerciseCard(const QString& title, const QString& time, const QString& g
   card.name = "exercise";
   card.image = sheet.take();
   card.width_m = metres(kWidth_deg);
-  card.right_m = -metres(30.0);
+  card.right_deg = -kAside_deg;
+  return card;
+}
+
+EyeCard noteCard(const QString& words) {
+  constexpr double kWidth_deg = 24.0, kHeight_deg = 3.4;
+  Sheet sheet(kWidth_deg, kHeight_deg);
+  sheet.write(words, lettersOf(kLetters_deg), colours::kCaution);
+  EyeCard card;
+  card.name = "note";
+  card.image = sheet.take();
+  card.width_m = metres(kWidth_deg);
+  card.up_deg = -16.0;
+  return card;
+}
+
+EyeCard markCard(int number) {
+  constexpr int kPixels = 128;
+  constexpr double kWidth_m = 0.04;
+  QImage image(kPixels, kPixels, QImage::Format_RGBA8888);
+  image.fill(Qt::transparent);
+  QPainter painter(&image);
+  painter.setRenderHints(QPainter::Antialiasing | QPainter::TextAntialiasing);
+  const double middle = 0.5 * kPixels;
+  painter.setPen(QPen(Qt::white, 4.0));
+  painter.drawLine(QPointF(middle, 12.0), QPointF(middle, kPixels - 12.0));
+  painter.drawLine(QPointF(12.0, middle), QPointF(kPixels - 12.0, middle));
+  painter.setPen(QPen(colours::kCaution, 3.0));
+  painter.drawEllipse(QPointF(middle, middle), 40.0, 40.0);
+  QFont font;
+  font.setBold(true);
+  font.setPixelSize(34);
+  painter.setFont(font);
+  painter.drawText(QRectF(middle + 6.0, 6.0, middle - 8.0, middle - 10.0), Qt::AlignCenter,
+                   QString::number(number));
+  painter.end();
+  EyeCard card;
+  card.name = "mark" + std::to_string(number);
+  card.image = image;
+  card.width_m = kWidth_m;
   return card;
 }
 

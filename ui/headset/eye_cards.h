@@ -12,11 +12,11 @@
 
 namespace trephine {
 
-// At arm's length from the eyes: how far to the right of what is looked at, above it, and how wide.
+// How far to the right of what is looked at, and above it, and how wide.
 struct EyeCard {
   std::string name;
   QImage image;
-  double right_m = 0.0, up_m = 0.0, width_m = 0.3;
+  double right_deg = 0.0, up_deg = 0.0, width_m = 0.3;
 };
 
 // A card's pixels stand for so many a degree, seen from where it is read.
@@ -35,5 +35,9 @@ struct HandForce {
 EyeCard forceCard(const std::vector<HandForce>& hands);
 // The exercise's name and its time, and what it asks for.
 EyeCard exerciseCard(const QString& title, const QString& time, const QString& goal);
+// What else is to be known, below what is looked at.
+EyeCard noteCard(const QString& words);
+// A place in the room to be touched: its number beside a cross.
+EyeCard markCard(int number);
 
 }  // namespace trephine

@@ -1,99 +1,198 @@
 #include "ui/headset/headset_view.h"
 
-#include <QTimer>
+#include <QPainter>
 #include <algorithm>
 #include <cmath>
 
 #include "ui/common/actions.h"
 #include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "ui/work/arms_in_room.h"
+#include "ui/work/arms_of_place.h"
 
 namespace trephine {
 
 namespace {
 
-// The patient before the trainee, from the eyes.
-constexpr double kAhead_m = 0.55, kAbove_m = -0.25;
+constexpr int kWordsEvery_ms = 1000;
+constexpr double kStuck_s = 0.5;
+constexpr double kMarksAhead_m = 0.45, kMarksApart_m = 0.08;
+
+double scaleOf() {
+  return readWithin(settings::kHeadsetScale, settings::kLeastScale, settings::kMostScale);
+}
+
+// Looks back at the eyes, upright.
+Quat facing(const Vec3& from_eyes) {
+  const Vec3 ahead = glm::normalize(from_eyes);
+  const Vec3 right = glm::normalize(glm::cross(ahead, Vec3(0.0, 1.0, 0.0)));
+  return glm::normalize(glm::quat_cast(Mat3(right, glm::cross(right, ahead), -ahead)));
+}
+
+bool isOne(double scale) {
+  return std::abs(scale - 1.0) < 0.005;
+}
 
 }  // namespace
 
-HeadsetView::HeadsetView(Bench& bench, QWidget& window)
-    : QObject(&window), bench_(bench), woken_(std::make_shared<std::atomic<bool>>(false)) {
+HeadsetView::HeadsetView(Bench& bench, QWidget& window) : QObject(&window), bench_(bench) {
   on_ = makeAction(window, Symbol::view, "headset", tr("&Headset"), QKeySequence(Qt::Key_F9),
                    tr("The 3-D view through a head-mounted display; the exercise goes on"));
   on_->setCheckable(true);
   recentre_ = makeAction(window, Symbol::view, "headsetRecentre", tr("Put the &patient before me"),
                          QKeySequence(Qt::CTRL | Qt::Key_F9),
-                         tr("Where the head looks now, at the set height and distance"));
+                         tr("Where the head looks now, at the set height and distance; with a "
+                            "pedal, both outer switches at once"));
   recentre_->setEnabled(false);
-  mirror_ = makeAction(window, Symbol::view, "headsetMirror", tr("The window shows the left &eye"),
-                       {}, tr("Else it keeps its own view"));
-  mirror_->setCheckable(true);
   connect(on_, &QAction::toggled, this, &HeadsetView::toggle);
   connect(recentre_, &QAction::triggered, this, &HeadsetView::recentre);
-  connect(mirror_, &QAction::toggled, this, [this](bool on) {
-    if (!on) bench_.view().showInstead(0, 0, 0);
+  // Another exercise has its arms elsewhere.
+  connect(&bench_.workstation(), &Workstation::sessionStarted, this, &HeadsetView::placeByArms);
+  connect(&bench_, &Bench::caseShown, this, [this] {
+    if (headset_ && placed_) place();
+  });
+  words_timer_.setInterval(kWordsEvery_ms);
+  connect(&words_timer_, &QTimer::timeout, this, [this] {
+    const bool stuck = headset_->stuck_s() > kStuck_s;
+    if (stuck && !std::exchange(stuck_, stuck)) {
+      bench_.say(tr("The headset's software does not answer: the exercise goes on here."));
+    }
+    stuck_ = stuck;
+    emit changed();
   });
 }
 
 HeadsetView::~HeadsetView() {
-  stop();
+  woken_.reset();
+  if (!headset_) return;
+  headset_->stop();
+  headset_.reset();
 }
 
 void HeadsetView::toggle(bool on) {
-  if (on == isOn()) return;
-  on ? start() : headset_->stop();
+  if (!on) return stop();
+  if (!headset_) return start();
+  const QSignalBlocker quiet(on_);
+  on_->setChecked(false);
+  bench_.say(tr("The headset's software has not come back yet: try again in a moment."));
 }
 
 void HeadsetView::start() {
   ViewWidget& view = bench_.view();
-  placed_ = seen_ = flat_ = false;
-  const auto wake = [this, woken = woken_] {
-    if (woken->exchange(true)) return;
+  placed_ = seen_ = flat_ = stuck_ = by_arms_ = false;
+  room_changes_ = 0;
+  const auto wake = [this, woken = std::weak_ptr(woken_)] {
+    const std::shared_ptr<Woken> here = woken.lock();
+    if (!here || here->is.exchange(true)) return;
     QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
   };
   Result<std::unique_ptr<Headset>> started =
-      Error{"NO_OPENGL", "The 3-D view has no OpenGL yet", "", "Open a case first"};
-  if (view.context()) started = Headset::start(*view.context(), HeadsetOptions{}, wake);
+      Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "", "Open a case first"};
+  if (view.context() && view.canDraw().ok()) {
+    started = Headset::start(*view.context(), HeadsetOptions{}, wake);
+  }
   if (!started) {
+    const QSignalBlocker quiet(on_);
     on_->setChecked(false);
     return bench_.report(started.error());
   }
   headset_ = *std::move(started);
   recentre_->setEnabled(true);
+  words_timer_.start();
   emit changed();
 }
 
+// Before the head; where registered arms are, if the exercise has some.
 void HeadsetView::place() {
   const HeadsetState state = headset_->state();
   const ViewCamera& camera = bench_.view().camera();
-  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, kAhead_m, kAbove_m);
+  const double ahead_m =
+      readWithin(settings::kHeadsetAhead_m, settings::kAheadLeast_m, settings::kAheadMost_m);
+  const double below_m = readWithin(settings::kHeadsetBelow_m, 0.0, settings::kBelowMost_m);
+  head_m_ = 0.5 * (state.eyes_m[0].pose.position + state.eyes_m[1].pose.position);
+  place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, ahead_m, -below_m,
+                  scaleOf());
+  ahead_ = glm::normalize(place_.toRoom_m(camera.focus()) - head_m_);
   placed_ = true;
+  by_arms_ = false;
+  placeByArms();
+  showCards();
+}
+
+void HeadsetView::placeByArms() {
+  Session* session = bench_.workstation().session();
+  if (!session || !headset_ || !placed_) return;
+  const ArmsOfPlace here = armsOfThisPlace();
+  by_arms_ = false;
+  for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
+    const auto device = here.find(session->scene().arms[i].name);
+    if (device == here.end() || session->isSimulated(i)) continue;
+    const std::optional<ArmInRoom> in_room = armInRoom(device->second);
+    if (!in_room) continue;
+    const WorkspaceMap map = session->map(i);
+    const ArmInPatient arm{map.centre_mm, map.rotation, map.motion_scale};
+    if (!by_arms_) {
+      place_ = where(in_room->room_from_device_m, arm);
+      error_mm_ = in_room->error_mm.value_or(0.0);
+      by_arms_ = true;
+    } else {
+      error_mm_ = std::max({error_mm_, in_room->error_mm.value_or(0.0),
+                            apart_mm(place_, in_room->room_from_device_m, arm)});
+    }
+  }
+  if (!by_arms_) return;
+  bench_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
+                "they are felt.")
+                 .arg(error_mm_, 0, 'f', 1));
   showCards();
 }
 
 void HeadsetView::recentre() {
-  if (headset_ && headset_->state().seen) place();
+  if (!headset_ || !headset_->state().seen) return;
+  place();
+  emit changed();
+}
+
+void HeadsetView::settingsChanged() {
+  mirrors_ = read(settings::kHeadsetMirror);
+  if (!headset_) return;
+  if (placed_) place();
+  showMirror();
 }
 
 void HeadsetView::serve() {
-  woken_->store(false);
+  woken_->is = false;
   if (!headset_) return;
   if (const std::optional<HeadsetEnd> how = headset_->end()) return ended(*how);
   const HeadsetState state = headset_->state();
   sayState(state);
-  if (!placed_ && state.fresh + state.repeated == 0 && state.seen) place();
-  ViewWidget& view = bench_.view();
-  view.withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
-    painter_.serve(
-        headset_->pictures(),
-        [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
-          renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
-        },
-        {shown, wide, high});
+  if (!placed_ && state.located) place();
+  if (!placed_) return;
+  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
+    painter_.serve(headset_->pictures(),
+                   [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
+                     renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
+                   },
+                   {shown, wide, high});
   });
+  showMirror();
+}
+
+// The flat screen in the headset shows the panel's own picture.
+void HeadsetView::showMirror() {
+  const PicturePainter::Left& left = painter_.left();
+  const bool mirrors = mirrors_ && seen_ && !flat_ && left.texture != 0;
+  bench_.view().showInstead(mirrors ? left.texture : 0, left.width, left.height);
 }
 
 void HeadsetView::sayState(const HeadsetState& state) {
+  keeps_room_ = state.keeps_room;
+  if (std::exchange(room_changes_, state.room_changes) != state.room_changes) {
+    if (forgetArmsInRoom(true)) {
+      bench_.say(tr("The headset has set its room up anew: register the arms again (Devices)."));
+    }
+    placed_ = false;
+  }
   if (state.seen == seen_ && state.flat == flat_) return;
   if (seen_ && !state.seen) bench_.say(tr("The headset was taken off: the exercise goes on here."));
   if (!flat_ && state.flat) {
@@ -101,26 +200,34 @@ void HeadsetView::sayState(const HeadsetState& state) {
                   "second, and 45 are needed to look around.")
                    .arg(state.pairs_hz, 0, 'f', 0));
   }
+  if (flat_ && !state.flat) bench_.say(tr("Pictures come fast enough: look around."));
   seen_ = state.seen;
   flat_ = state.flat;
   emit changed();
 }
 
 void HeadsetView::ended(const HeadsetEnd& how) {
-  bench_.view().withGraphics([&](SceneRenderer&, unsigned int, int, int) {
-    painter_.release(headset_->pictures());
-  });
   bench_.view().showInstead(0, 0, 0);
+  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+    painter_.release(headset_->pictures());
+    renderer.releaseEyes();
+  });
   headset_.reset();
+  words_timer_.stop();
+  marks_m_.clear();
+  bench_.view().setCards({});
+  forgetArmsInRoom(false);
+  seen_ = flat_ = stuck_ = placed_ = by_arms_ = false;
   recentre_->setEnabled(false);
+  const bool wanted = on_->isChecked();
   {
     const QSignalBlocker quiet(on_);
     on_->setChecked(false);
   }
-  if (!how.why.ok()) {
+  if (wanted && !how.why.ok()) {
     // What went away in an exercise is said beside it, and no dialog holds up the hands.
-    how.again ? bench_.say(QString::fromStdString(how.why.error().sentence()))
-              : bench_.report(how.why.error());
+    bench_.workstation().session() ? bench_.say(toQt(how.why.error().sentence()))
+                                   : bench_.report(how.why.error());
   }
   emit changed();
 }
@@ -128,7 +235,12 @@ void HeadsetView::ended(const HeadsetEnd& how) {
 void HeadsetView::stop() {
   if (!headset_) return;
   headset_->stop();
-  headset_.reset();
+  bench_.view().showInstead(0, 0, 0);
+  emit changed();
+}
+
+std::optional<HeadsetState> HeadsetView::state() const {
+  return headset_ ? std::optional(headset_->state()) : std::nullopt;
 }
 
 void HeadsetView::setCards(std::vector<EyeCard> cards) {
@@ -136,20 +248,24 @@ void HeadsetView::setCards(std::vector<EyeCard> cards) {
   if (headset_ && placed_) showCards();
 }
 
-// Beside what is looked at, facing the head as it was when the patient was placed.
+// At arm's length from where the head was, to both sides of what it looked at, each facing it.
 void HeadsetView::showCards() {
-  const ViewCamera& camera = bench_.view().camera();
-  const Vec3 at_m = place_.toRoom_m(camera.focus());
-  const Quat facing = place_.turn * glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward()));
+  std::vector<EyeCard> all = cards_;
+  const double scale = place_.scale;
+  if (!isOne(scale)) {
+    all.push_back(noteCard(
+        scale > 1.0 ? tr("The patient is shown %1 times as large as in life.").arg(scale, 0, 'f', 2)
+                    : tr("The patient is shown at %1 % of the size in life.")
+                          .arg(100.0 * scale, 0, 'f', 0)));
+  }
   std::vector<Card> shown;
-  for (const EyeCard& each : cards_) {
-    const Vec3 room_m =
-        at_m + facing * Vec3(each.right_m, each.up_m, 0.0);
+  const auto stand = [&](const EyeCard& each, const Vec3& middle_m) {
     Card card;
     card.name = each.name;
-    card.pose_mm.position = place_.toPatient_mm(room_m);
-    card.pose_mm.orientation = glm::normalize(glm::conjugate(place_.turn) * facing);
-    card.width_mm = 1e3 * each.width_m / place_.scale;
+    const Quat turn = facing(middle_m - head_m_);
+    card.pose_mm = {place_.toPatient_mm(middle_m),
+                    glm::normalize(glm::conjugate(place_.turn) * turn)};
+    card.width_mm = 1e3 * each.width_m / scale;
     card.width = each.image.width();
     card.height = each.image.height();
     for (int row = 0; row < card.height; ++row) {
@@ -157,17 +273,55 @@ void HeadsetView::showCards() {
       card.rgba.insert(card.rgba.end(), line, line + 4 * card.width);
     }
     shown.push_back(std::move(card));
+  };
+  const Vec3 right = glm::normalize(glm::cross(ahead_, Vec3(0.0, 1.0, 0.0)));
+  const Vec3 up = glm::cross(right, ahead_);
+  for (const EyeCard& each : all) {
+    const Vec3 way = ahead_ + right * std::tan(glm::radians(each.right_deg)) +
+                     up * std::tan(glm::radians(each.up_deg));
+    stand(each, head_m_ + kCardDistance_m * glm::normalize(way));
   }
+  for (std::size_t i = 0; i < marks_m_.size(); ++i) stand(markCard(int(i) + 1), marks_m_[i]);
   bench_.view().setCards(std::move(shown));
+}
+
+std::vector<Vec3> HeadsetView::showMarks() {
+  marks_m_.clear();
+  if (!headset_ || !headset_->state().seen) return {};
+  const HeadsetState state = headset_->state();
+  const Pose& eye_m = state.eyes_m[0].pose;
+  const Vec3 head_m = 0.5 * (eye_m.position + state.eyes_m[1].pose.position);
+  const Vec3 middle_m = head_m + eye_m.orientation * Vec3(0.0, 0.0, -kMarksAhead_m);
+  // The corners of a triangle of equal sides that lies level.
+  const Vec3 ahead =
+      facing(Vec3(middle_m.x - head_m.x, 0.0, middle_m.z - head_m.z) + Vec3(0.0, 0.0, -1e-6)) *
+      Vec3(0.0, 0.0, -1.0);
+  const Vec3 right = glm::cross(ahead, Vec3(0.0, 1.0, 0.0));
+  const double high_m = 0.5 * std::sqrt(3.0) * kMarksApart_m;
+  marks_m_ = {middle_m - right * (0.5 * kMarksApart_m) - ahead * (high_m / 3.0),
+              middle_m + right * (0.5 * kMarksApart_m) - ahead * (high_m / 3.0),
+              middle_m + ahead * (2.0 * high_m / 3.0)};
+  showCards();
+  return marks_m_;
+}
+
+void HeadsetView::hideMarks() {
+  marks_m_.clear();
+  if (headset_ && placed_) showCards();
 }
 
 QString HeadsetView::words() const {
   if (!headset_) return {};
-  if (headset_->stuck_s() > 0.5) return tr("Headset: its software does not answer");
+  if (headset_->stuck_s() > kStuck_s) return tr("Headset: its software does not answer");
   const HeadsetState state = headset_->state();
   if (!state.seen) return tr("Headset: not worn");
-  if (state.flat) return tr("Headset: flat screen");
-  return tr("Headset: %1 pairs of pictures a second").arg(state.pairs_hz, 0, 'f', 0);
+  QStringList words{
+      state.flat ? tr("Headset: flat screen")
+                 : tr("Headset: %1 pairs of pictures a second").arg(state.pairs_hz, 0, 'f', 0)};
+  words << tr("both eyes %1 ms").arg(painter_.pair_ms(), 0, 'f', 1);
+  if (by_arms_) words << tr("tools within %1 mm of the arms").arg(error_mm_, 0, 'f', 1);
+  if (!isOne(place_.scale)) words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
+  return words.join(QStringLiteral(" \u00b7 "));
 }
 
 }  // namespace trephine

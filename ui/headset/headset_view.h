@@ -1,10 +1,11 @@
-// The 3-D view through a headset: on and off, where the patient stands before the trainee, and that the
-// exercise goes on whatever becomes of it. Between the bench's view and the room `headset`; the
+// The 3-D view through a headset: on and off, where the patient stands before the trainee, and that
+// the exercise goes on whatever becomes of it. Between the bench's view and the room `headset`; the
 // window's thread.
 #pragma once
 
 #include <QAction>
 #include <QObject>
+#include <QTimer>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "headset/headset.h"
 #include "headset/picture_painter.h"
 #include "headset/room_place.h"
+#include "ui/common/settings.h"
 #include "ui/headset/eye_cards.h"
 #include "ui/work/bench.h"
 
@@ -25,14 +27,26 @@ class HeadsetView : public QObject {
 
   QAction* onAction() const { return on_; }
   QAction* recentreAction() const { return recentre_; }
-  QAction* mirrorAction() const { return mirror_; }
   bool isOn() const { return headset_ != nullptr; }
+  // Somebody looks through it.
+  bool isSeen() const { return seen_; }
+  bool keepsRoom() const { return keeps_room_; }
   void recentre();
+  // Height, distance, scale and mirror are others.
+  void settingsChanged();
   // What is read inside, beside the patient. Nothing where no exercise runs.
   void setCards(std::vector<EyeCard> cards);
+  // Three marks where the head looks now, in the room, to be touched with an arm's tip; none where
+  // nobody looks.
+  std::vector<Vec3> showMarks();
+  void hideMarks();
   // How it goes, for the status line; empty while it is off.
   QString words() const;
+  // Switches it off, and returns at once.
   void stop();
+  // How it was drawn and shown, for measurements; empty while it is off.
+  std::optional<HeadsetState> state() const;
+  double pair_ms() const { return painter_.pair_ms(); }
 
  signals:
   void changed();  // on or off, seen or not, words()
@@ -43,19 +57,32 @@ class HeadsetView : public QObject {
   void serve();
   void ended(const HeadsetEnd& how);
   void place();
+  void placeByArms();
   void showCards();
+  void showMirror();
   void sayState(const HeadsetState& state);
 
   Bench& bench_;
-  QAction *on_, *recentre_, *mirror_;
+  QAction *on_, *recentre_;
   std::unique_ptr<Headset> headset_;
   PicturePainter painter_;
   RoomPlace place_;
   bool placed_ = false;
+  bool by_arms_ = false;        // the patient stands where registered arms are
+  double error_mm_ = 0.0;       // of the tools seen against the arms felt, then
+  Vec3 head_m_{0.0};            // as it was when the patient was placed,
+  Vec3 ahead_{0.0, 0.0, -1.0};  // and what was ahead of it, in the room
   std::vector<EyeCard> cards_;
+  std::vector<Vec3> marks_m_;
   // The thread that wakes this may outlive it.
-  std::shared_ptr<std::atomic<bool>> woken_;
-  bool seen_ = false, flat_ = false;
+  struct Woken {
+    std::atomic<bool> is{false};
+  };
+  std::shared_ptr<Woken> woken_ = std::make_shared<Woken>();
+  bool seen_ = false, flat_ = false, stuck_ = false, keeps_room_ = false;
+  bool mirrors_ = read(settings::kHeadsetMirror);
+  int room_changes_ = 0;
+  QTimer words_timer_;
 };
 
 }  // namespace trephine

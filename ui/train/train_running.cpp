@@ -15,6 +15,7 @@ namespace trephine {
 namespace {
 
 constexpr int kPanelEvery_ms = 66;  // numbers that change faster cannot be read
+constexpr int kCardsEvery_ms = 200;  // they are pictures
 constexpr int kRatesEvery_ms = 1000;
 constexpr int kRemovedEvery_ms = 500;
 constexpr std::uint32_t kPedalBack_s = 5;
@@ -101,7 +102,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
     }
     touched_ = touched_ || hands_->taken();
     notice_->showState(state, session.scene(), session.standsStillFor_s(), !touched_);
-    if (cards_wanted_) tellCards(session, shown);
+    if (cards_wanted_ && cards_clock_.elapsed() >= kCardsEvery_ms) tellCards(session, shown);
     if (!session.isPoke()) exercise_->showTime(double(state.seconds));
     exercise_->showTools(session.scene(), state.tools);
     if (removed_clock_.elapsed() >= kRemovedEvery_ms) showRemoved(session, state);
@@ -115,6 +116,7 @@ void TrainWorkspace::showState(Session& session, const LoopState& state) {
 }
 
 void TrainWorkspace::tellCards(const Session& session, const LoopState& state) {
+  cards_clock_.restart();
   const Scene& scene = session.scene();
   std::vector<HandForce> hands;
   for (std::size_t i = 0; i < scene.arms.size() && i < limits_N_.size(); ++i) {

@@ -50,6 +50,7 @@ TrainWorkspace::TrainWorkspace(Bench& bench)
   frame_timer_.setInterval(kFrame_ms);
   rate_clock_.start();
   panel_clock_.start();
+  cards_clock_.start();
   showPhase();
 }
 

@@ -128,7 +128,7 @@ class TrainWorkspace : public Workspace {
   bool aside_ = false;         // card or result, by the person
   std::vector<std::pair<std::filesystem::path, Scene>> listed_;  // the workstation's exercises
   QTimer frame_timer_;
-  QElapsedTimer panel_clock_, rate_clock_, removed_clock_;
+  QElapsedTimer panel_clock_, rate_clock_, removed_clock_, cards_clock_;
   std::vector<double> limits_N_;  // of the running session's arms
   struct GoingBack {
     std::uint32_t second;

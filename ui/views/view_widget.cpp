@@ -225,7 +225,7 @@ void ViewWidget::withGraphics(const WithGraphics& work) {
 }
 
 void ViewWidget::showInstead(unsigned int texture, int wide, int high) {
-  if (texture == 0 && instead_.texture == 0) return;
+  if (texture == 0 && instead_.texture == 0) return;  // else it may hold another picture now
   instead_ = {texture, wide, high};
   update();
 }
@@ -260,7 +260,11 @@ void ViewWidget::paintGL() {
   ScreenLines lines;
   const int wide = int(std::lround(width() * devicePixelRatioF()));
   const int high = int(std::lround(height() * devicePixelRatioF()));
-  if (instead_.texture != 0) return paintInstead(wide, high);
+  if (instead_.texture != 0) {
+    paintInstead(wide, high);
+    emit framePainted(double(timer.nsecsElapsed()) * 1e-6, false);
+    return;
+  }
   clip_.addLines(renderer_.camera(), wide, high, lines);
   addWorkspaces(wide, high, lines);
   if (moving_light_) {  // on a half sphere that is seen from the eye

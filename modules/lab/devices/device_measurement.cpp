@@ -454,19 +454,27 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   constexpr double kBlock_s = 1.5;
   constexpr std::int64_t kLook_ns = 700'000'000, kLookAtArm_ns = 1'900'000'000;
   options.unplug ? subject.bench->unplug(arm) : subject.bench->block(kBlock_s);
-  std::int64_t last_ns = at_ns, last_at_arm_ns = at_ns;
-  const auto lookUntil = [&](std::int64_t until_ns) {
-    while (hostTime_ns() < until_ns) {
-      if (!options.unplug && subject.bench->force_N(arm) > 1e-6) last_at_arm_ns = hostTime_ns();
+  std::int64_t last_ns = at_ns;
+  // For how long, all told: what was on its way when the call blocked is at the arm once it
+  // returns.
+  std::int64_t with_force_ns = 0;
+  std::thread looks([&] {
+    std::int64_t before_ns = at_ns;
+    while (!options.unplug && before_ns < at_ns + kLookAtArm_ns) {
+      const bool has_force = subject.bench->force_N(arm) > 1e-6;
+      const std::int64_t now_ns = hostTime_ns();
+      if (has_force) with_force_ns += now_ns - before_ns;
+      before_ns = now_ns;
       std::this_thread::sleep_for(200us);
     }
-  };
-  lookUntil(at_ns + kLook_ns);
+  });
+  while (hostTime_ns() < at_ns + kLook_ns) std::this_thread::sleep_for(200us);
   // A loop that stands still sends nothing, and takes nothing away.
   const std::size_t ticks = watch.ticks(of_scene);
   const LoopWatch::Tick& newest = watch.tick(of_scene, ticks - 1);
   if (newest.sent_ns < at_ns + kLook_ns / 2 || glm::length(newest.force_N) > 0.0) {
     (void)(*session)->stop();
+    looks.join();
     return Error{"NOT_MEASURED", "The loop stood still, or the force stayed", "", ""};
   }
   for (std::size_t i = ticks; i-- > 0;) {
@@ -481,8 +489,8 @@ Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recor
   const std::int64_t stop_ns = hostTime_ns();
   (void)(*session)->stop();
   trial.stop_ms = 1e-6 * double(hostTime_ns() - stop_ns);
-  if (!options.unplug) lookUntil(at_ns + kLookAtArm_ns);
-  trial.at_arm_ms = 1e-6 * double(last_at_arm_ns - at_ns);
+  looks.join();
+  trial.at_arm_ms = 1e-6 * double(with_force_ns);
   session->reset();
   const auto reader = SessionReader::open(recording);
   if (!reader) return trial;

@@ -60,7 +60,7 @@ struct DeviceRow {
   int failed = 0;                                // trials that did not come to their end,
   std::string failure;                           // the last of them
   Spread unplug_to_zero_ms, block_to_zero_ms;    // until the loop sends none
-  Spread block_at_arm_ms;                        // until the arm itself has none
+  Spread block_at_arm_ms;  // for how long the arm itself still had force, all told
   Spread stop_ms;
   std::vector<DelayRow> delays;
 };

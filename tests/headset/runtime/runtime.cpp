@@ -202,6 +202,9 @@ XrResult XRAPI_CALL endSession(XrSession) {
 
 XrResult XRAPI_CALL createSpace(XrSession, const XrReferenceSpaceCreateInfo* info, XrSpace* space) {
   TREPHINE_ENTER(xrCreateReferenceSpace, true)
+  if (info->referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !runtime.stage) {
+    return XR_ERROR_REFERENCE_SPACE_UNSUPPORTED;
+  }
   runtime.spaces[++runtime.last_handle] = info->referenceSpaceType;
   *space = XrSpace(runtime.last_handle);
   return XR_SUCCESS;

@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -43,11 +44,11 @@ void RuntimeState::reset() {
   period_ms_ = 11.1;
   hang_s_ = 0.0;
   width = height = 512;
-  plugged_in = read_back_ = worn_ = true;
+  plugged_in = stage = read_back_ = worn_ = true;
   failures_.clear();
   calls_.clear();
   violations_.clear();
-  frames_ = frames_with_eyes_ = 0;
+  frames_ = frames_with_eyes_ = frames_held_ = repeats_ = most_repeats_ = 0;
   for (Shown& each : shown_) each = {};
   screen_.reset();
 }
@@ -78,6 +79,16 @@ void RuntimeState::setPluggedIn(bool yes) {
 void RuntimeState::setReadBack(bool on) {
   const auto held = lock();
   read_back_ = on;
+}
+void RuntimeState::setStage(bool known) {
+  const auto held = lock();
+  stage = known;
+}
+void RuntimeState::moveRoom() {
+  const auto held = lock();
+  XrEventDataBuffer event{};
+  event.type = XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING;
+  events.push_back(event);
 }
 void RuntimeState::fail(const std::string& function, int result, int after, int times) {
   const auto held = lock();
@@ -151,6 +162,14 @@ int RuntimeState::frames() {
 int RuntimeState::framesWithEyes() {
   const auto held = lock();
   return frames_with_eyes_;
+}
+int RuntimeState::mostRepeats() {
+  const auto held = lock();
+  return most_repeats_;
+}
+int RuntimeState::framesHeld() {
+  const auto held = lock();
+  return frames_held_;
 }
 int RuntimeState::calls(const std::string& function) {
   const auto held = lock();
@@ -271,6 +290,8 @@ void RuntimeState::take(const XrFrameEndInfo& frame) {
     const XrCompositionLayerBaseHeader& layer = *frame.layers[i];
     if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
       const auto& quad = reinterpret_cast<const XrCompositionLayerQuad&>(layer);
+      if (quad.eyeVisibility == XR_EYE_VISIBILITY_LEFT) ++frames_held_;
+      if (quad.eyeVisibility != XR_EYE_VISIBILITY_BOTH) continue;
       screen_ = Screen{poseOf(quad.pose),
                        quad.size.width,
                        quad.size.height,
@@ -282,6 +303,13 @@ void RuntimeState::take(const XrFrameEndInfo& frame) {
     if (layer.type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) continue;
     ++frames_with_eyes_;
     const auto& eyes = reinterpret_cast<const XrCompositionLayerProjection&>(layer);
+    const auto same = [](const Pose& a, const Pose& b) {
+      return a.position == b.position && a.orientation == b.orientation;
+    };
+    const Pose at = poseOf(eyes.views[0].pose);
+    const bool stale = same(at, shown_[0].view.pose) && !same(at, poseOf(eyePose(0)));
+    repeats_ = stale ? repeats_ + 1 : 0;
+    most_repeats_ = std::max(most_repeats_, repeats_);
     for (std::uint32_t eye = 0; eye < 2; ++eye) {
       const XrCompositionLayerProjectionView& view = eyes.views[eye];
       Shown& of = shown_[eye];

@@ -46,6 +46,8 @@ class RuntimeState : public TestRuntime {
   void setSize(std::uint32_t width, std::uint32_t height) override;
   void setPluggedIn(bool plugged_in) override;
   void setReadBack(bool on) override;
+  void setStage(bool known) override;
+  void moveRoom() override;
   void fail(const std::string& function, int result, int after, int times) override;
   void hang(double seconds) override;
   void lose(Loss loss) override;
@@ -54,6 +56,8 @@ class RuntimeState : public TestRuntime {
   std::optional<Screen> screen() override;
   int frames() override;
   int framesWithEyes() override;
+  int mostRepeats() override;
+  int framesHeld() override;
   int calls(const std::string& function) override;
   std::vector<std::string> functions() override;
   Alive alive() override;
@@ -86,7 +90,7 @@ class RuntimeState : public TestRuntime {
   bool running = false, frame_begun = false, seen = false;
   int frames_waited_for = 0;
   GLXContext context = nullptr;
-  bool plugged_in = true;
+  bool plugged_in = true, stage = true;
   std::uint32_t width = 512, height = 512;
 
  private:
@@ -110,7 +114,7 @@ class RuntimeState : public TestRuntime {
   std::vector<Failure> failures_;
   std::map<std::string, int> calls_;
   std::vector<std::string> violations_;
-  int frames_ = 0, frames_with_eyes_ = 0;
+  int frames_ = 0, frames_with_eyes_ = 0, frames_held_ = 0, repeats_ = 0, most_repeats_ = 0;
   Shown shown_[2];
   std::optional<Screen> screen_;
   std::int64_t last_frame_ns_ = 0;

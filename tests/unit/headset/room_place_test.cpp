@@ -73,6 +73,26 @@ TEST(RoomPlace, AnEyeOfTheRoomLooksTheSameWayInThePatient) {
   EXPECT_EQ(there.sees, eye.sees);
 }
 
+TEST(RoomPlace, WhereAnArmIsRegisteredItsToolIsSeenWhereItIsFelt) {
+  const Pose left{{-0.2, 0.9, -0.4}, glm::normalize(Quat(0.9, 0.1, 0.4, -0.1))};
+  for (const double travel : {1.0, 0.5}) {
+    const ArmInPatient arm{{12.0, -40.0, 80.0}, glm::normalize(Quat(0.7, -0.2, 0.5, 0.3)), travel};
+    const RoomPlace place = where(left, arm);
+    EXPECT_DOUBLE_EQ(place.scale, 1.0 / travel);
+    for (const Vec3& tip_m : {Vec3(0.0), Vec3(0.03, -0.02, 0.05), Vec3(-0.06, 0.04, 0.01)}) {
+      const Vec3 tool_mm = arm.origin_mm + 1000.0 * travel * (arm.turn * tip_m);
+      expectNear(place.toRoom_m(tool_mm), left.position + left.orientation * tip_m, 1e-12, "a tip");
+    }
+    EXPECT_NEAR(apart_mm(place, left, arm), 0.0, 1e-9);
+    // The other arm stands 3 mm from where its tool is seen then.
+    ArmInPatient other = arm;
+    other.origin_mm += Vec3(60.0, 0.0, 0.0);
+    Pose right = left;
+    right.position = place.toRoom_m(other.origin_mm) + Vec3(0.0, 0.003, 0.0);
+    EXPECT_NEAR(apart_mm(place, right, other), 3.0, 1e-9);
+  }
+}
+
 TEST(Registration, FindsWhereAnArmStandsFromThreeMarksAndSaysHowWell) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-1.0, 1.0);

@@ -1,0 +1,191 @@
+#include "ui/headset/stereo_view.h"
+
+#include <QElapsedTimer>
+#include <QGuiApplication>
+#include <QOpenGLContext>
+#include <QOpenGLExtraFunctions>
+#include <QTimer>
+
+#include "ui/common/actions.h"
+#include "ui/common/settings.h"
+#include "ui/common/words.h"
+#include "ui/headset/stereo_window.h"
+
+namespace trephine {
+
+Packing packingOf(const QString& word) {
+  return word == "full"         ? Packing::full
+         : word == "top_bottom" ? Packing::top_bottom
+                                : Packing::half;
+}
+
+namespace {
+
+// The one that a person chose, if it is there; else one that the window is not on.
+QScreen* chosenScreen(const QWidget& window) {
+  const QString name = read(settings::kStereoScreen);
+  const QList<QScreen*> all = QGuiApplication::screens();
+  for (QScreen* each : all) {
+    if (!name.isEmpty() && each->name() == name) return each;
+  }
+  if (!name.isEmpty()) return nullptr;
+  for (QScreen* each : all) {
+    if (each != window.screen()) return each;
+  }
+  return nullptr;
+}
+
+StereoScreen screenBefore(const ViewCamera& camera, double aspect) {
+  const double eyes_mm =
+      readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
+  const double away_mm =
+      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
+  // In the patient, so large that what is looked at lies in the screen's plane.
+  StereoScreen screen;
+  screen.distance = camera.distance_mm();
+  screen.separation = eyes_mm * camera.distance_mm() / away_mm;
+  screen.height = 2.0 * camera.halfHeight_mm();
+  screen.aspect = aspect;
+  return screen;
+}
+
+}  // namespace
+
+StereoView::StereoView(Bench& bench, QWidget& window)
+    : QObject(&window), bench_(bench), window_(window) {
+  on_ = makeAction(window, Symbol::view, "stereo", tr("&Two pictures on another screen"),
+                   QKeySequence(Qt::SHIFT | Qt::Key_F9),
+                   tr("Side by side or above each other, for a 3-D monitor or a projector; Esc "
+                      "there leaves it"));
+  on_->setCheckable(true);
+  connect(on_, &QAction::toggled, this, &StereoView::toggle);
+  // What the window has drawn anew is drawn there, once an event's turn.
+  connect(&bench_.view(), &ViewWidget::framePainted, this, [this] {
+    if (!screen_window_ || std::exchange(due_, true)) return;
+    QTimer::singleShot(0, this, &StereoView::draw);
+  });
+  connect(qGuiApp, &QGuiApplication::screenRemoved, this, &StereoView::screenGone);
+}
+
+StereoView::~StereoView() {
+  release();
+}
+
+void StereoView::toggle(bool on) {
+  if (!on) return stop();
+  if (screen_window_) return;
+  if (const Status started = start(); !started) {
+    const QSignalBlocker quiet(on_);
+    on_->setChecked(false);
+    bench_.report(started.error());
+  }
+}
+
+Status StereoView::start() {
+  if (!bench_.view().context() || !bench_.view().canDraw()) {
+    return Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "", "Open a case first"};
+  }
+  screen_ = chosenScreen(window_);
+  if (!screen_) {
+    const QString name = read(settings::kStereoScreen);
+    return Error{"NO_SCREEN",
+                 name.isEmpty() ? "No other screen is connected"
+                                : "The screen that was chosen is not connected",
+                 name.toStdString(), "Connect it, or choose one under View, Headset and screens"};
+  }
+  lens_ = {};
+  if (const QString file = read(settings::kStereoLens); !file.isEmpty()) {
+    Result<LensProfile> lens = readLensProfile(toPath(file));
+    if (!lens) return lens.error();
+    lens_ = *lens;
+  }
+  screen_window_ = std::make_unique<StereoWindow>(&window_);
+  connect(screen_window_.get(), &StereoWindow::leaveWanted, this, &StereoView::stop,
+          Qt::QueuedConnection);
+  screen_window_->setScreen(screen_);
+  screen_window_->setGeometry(screen_->geometry());
+  screen_window_->showFullScreen();
+  draw();
+  emit changed();
+  return {};
+}
+
+void StereoView::settingsChanged() {
+  if (!screen_window_) return;
+  stop();
+  on_->setChecked(true);
+}
+
+void StereoView::stop() {
+  if (!screen_window_) return;
+  release();
+  const QSignalBlocker quiet(on_);
+  on_->setChecked(false);
+  emit changed();
+}
+
+void StereoView::release() {
+  screen_window_.reset();
+  bench_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
+    QOpenGLExtraFunctions& gl = *QOpenGLContext::currentContext()->extraFunctions();
+    gl.glDeleteTextures(2, textures_.data());
+    gl.glDeleteFramebuffers(2, framebuffers_.data());
+    renderer.releaseEyes();
+  });
+  textures_ = framebuffers_ = {};
+  sizes_ = {};
+}
+
+void StereoView::draw() {
+  due_ = false;
+  if (!screen_window_) return;
+  const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
+  const Packing packing = packingOf(read(settings::kStereoPacking));
+  const ViewCamera& camera = bench_.view().camera();
+  const Pose head_mm{
+      camera.focus() - camera.distance_mm() * camera.forward(),
+      glm::normalize(glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward())))};
+  const Eyes eyes_mm = eyesBefore(screenBefore(camera, aspectOf(packing, wide, high)), head_mm);
+  QElapsedTimer timer;
+  timer.start();
+  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+    QOpenGLExtraFunctions& gl = *QOpenGLContext::currentContext()->extraFunctions();
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      const EyeRect rect = rectOf(eye, packing, wide, high);
+      const QSize size(rect.width, rect.height);
+      if (textures_[eye] == 0) gl.glGenTextures(1, &textures_[eye]);
+      if (framebuffers_[eye] == 0) gl.glGenFramebuffers(1, &framebuffers_[eye]);
+      if (sizes_[eye] != size) {
+        gl.glBindTexture(GL_TEXTURE_2D, textures_[eye]);
+        gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width(), size.height(), 0, GL_RGBA,
+                        GL_UNSIGNED_BYTE, nullptr);
+        gl.glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        gl.glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        gl.glBindTexture(GL_TEXTURE_2D, 0);
+        gl.glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[eye]);
+        gl.glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                                  textures_[eye], 0);
+        sizes_[eye] = size;
+      }
+      renderer.paintEye(eyes_mm[eye], framebuffers_[eye], size.width(), size.height());
+    }
+    gl.glFlush();
+  });
+  pair_ms_ = double(timer.nsecsElapsed()) * 1e-6;
+  screen_window_->show(textures_, packing, lens_);
+}
+
+void StereoView::screenGone(QScreen* screen) {
+  if (!screen_window_ || screen != screen_) return;
+  stop();
+  bench_.say(tr("The screen for both eyes is gone: the exercise goes on here."));
+}
+
+QString StereoView::words() const {
+  if (!screen_window_) return {};
+  return tr("Both eyes on %1: %2 ms")
+      .arg(screen_ ? screen_->name() : QString())
+      .arg(pair_ms_, 0, 'f', 1);
+}
+
+}  // namespace trephine

@@ -1,0 +1,59 @@
+// The 3-D view as two pictures on another screen: a 3-D monitor, a projector, a headset that is a
+// second screen. What is looked at lies in the screen's plane. Between the bench's view and the
+// room `headset`; the window's thread.
+#pragma once
+
+#include <QAction>
+#include <QObject>
+#include <QPointer>
+#include <QScreen>
+#include <array>
+#include <memory>
+
+#include "headset/lens_profile.h"
+#include "headset/packed_drawing.h"
+#include "headset/stereo_screen.h"
+#include "ui/work/bench.h"
+
+namespace trephine {
+
+class StereoWindow;
+
+Packing packingOf(const QString& word);  // of the settings; a word that is none: half
+
+class StereoView : public QObject {
+  Q_OBJECT
+ public:
+  StereoView(Bench& bench, QWidget& window);
+  ~StereoView() override;
+
+  QAction* onAction() const { return on_; }
+  bool isOn() const { return screen_window_ != nullptr; }
+  void stop();
+  void settingsChanged();
+  QString words() const;  // empty while it is off
+  double pair_ms() const { return pair_ms_; }
+
+ signals:
+  void changed();
+
+ private:
+  void toggle(bool on);
+  Status start();
+  void draw();
+  void screenGone(QScreen* screen);
+  void release();
+
+  Bench& bench_;
+  QWidget& window_;
+  QAction* on_;
+  std::unique_ptr<StereoWindow> screen_window_;
+  QPointer<QScreen> screen_;
+  LensProfile lens_;
+  std::array<unsigned int, 2> textures_{}, framebuffers_{};
+  std::array<QSize, 2> sizes_{};
+  double pair_ms_ = 0.0;
+  bool due_ = false;
+};
+
+}  // namespace trephine

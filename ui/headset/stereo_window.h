@@ -1,0 +1,40 @@
+// A screen that two pictures cover, without a frame. Its keys are the main window's.
+#pragma once
+
+#include <QOpenGLWidget>
+#include <array>
+
+#include "headset/lens_profile.h"
+#include "headset/packed_drawing.h"
+#include "headset/stereo_screen.h"
+
+namespace trephine {
+
+class StereoWindow : public QOpenGLWidget {
+  Q_OBJECT
+ public:
+  explicit StereoWindow(QWidget* main_window);
+  ~StereoWindow() override;
+
+  // Textures of the main window's share group, drawn and flushed.
+  void show(const std::array<unsigned int, 2>& textures, Packing packing, const LensProfile& lens);
+  using QOpenGLWidget::show;
+  int pixelWidth() const;
+  int pixelHeight() const;
+
+ signals:
+  void leaveWanted();  // Esc, or a double click
+
+ protected:
+  void paintGL() override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
+
+ private:
+  PackedDrawing drawing_;
+  std::array<unsigned int, 2> textures_{};
+  Packing packing_ = Packing::half;
+  LensProfile lens_;
+};
+
+}  // namespace trephine
