@@ -47,17 +47,18 @@ void main()
 }
 )";
 
-QOpenGLExtraFunctions& gl() {
+QOpenGLExtraFunctions& current() {
   return *QOpenGLContext::currentContext()->extraFunctions();
 }
 
 unsigned int build() {
-  QOpenGLExtraFunctions& f = gl();
+  QOpenGLExtraFunctions& f = current();
   const unsigned int program = f.glCreateProgram();
   for (const auto& [kind, text] :
        {std::pair(GL_VERTEX_SHADER, kCorners), std::pair(GL_FRAGMENT_SHADER, kLens)}) {
     const unsigned int shader = f.glCreateShader(GLenum(kind));
-    f.glShaderSource(shader, 1, &text, nullptr);
+    const char* source = text;
+    f.glShaderSource(shader, 1, &source, nullptr);
     f.glCompileShader(shader);
     f.glAttachShader(program, shader);
     f.glDeleteShader(shader);
@@ -75,7 +76,7 @@ unsigned int build() {
 
 bool PackedDrawing::draw(const std::array<unsigned int, 2>& textures, Packing packing,
                          const LensProfile& lens, int width, int height) {
-  QOpenGLExtraFunctions& f = gl();
+  QOpenGLExtraFunctions& f = current();
   if (program_ == 0) {
     program_ = build();
     f.glGenVertexArrays(1, &array_);
@@ -113,8 +114,8 @@ bool PackedDrawing::draw(const std::array<unsigned int, 2>& textures, Packing pa
 }
 
 void PackedDrawing::release() {
-  if (program_ != 0) gl().glDeleteProgram(program_);
-  if (array_ != 0) gl().glDeleteVertexArrays(1, &array_);
+  if (program_ != 0) current().glDeleteProgram(program_);
+  if (array_ != 0) current().glDeleteVertexArrays(1, &array_);
   program_ = array_ = 0;
 }
 

@@ -293,6 +293,7 @@ TEST_F(OpenXr, PicturesThatComeTooSlowlyGiveWayToAScreenThatStandsStillAndComeBa
 
 TEST_F(OpenXr, APairThatComesLateIsShownOnceMoreAndThenStandsInTheRoom) {
   options_.pace.least_hz = 0.0;
+  options_.patience_ms = 4;
   start();
   std::atomic<bool> moving{true};
   std::thread head([&] {

@@ -71,8 +71,8 @@ inline const Setting<double> kArmsLimit_N{"arms/most_N", kArmsMost_N};  // besid
 // Where the patient stands before the eyes in a headset, and how large.
 inline constexpr double kAheadLeast_m = 0.2, kAheadMost_m = 2.0, kBelowMost_m = 1.0;
 inline constexpr double kLeastScale = 0.25, kMostScale = 8.0;
-inline const Setting<double> kHeadsetAhead_m{"headset/ahead_m", 0.55};
-inline const Setting<double> kHeadsetBelow_m{"headset/below_m", 0.25};
+inline const Setting<double> kHeadsetAhead_m{"headset/ahead_m", 0.4};
+inline const Setting<double> kHeadsetBelow_m{"headset/below_m", 0.2};
 inline const Setting<double> kHeadsetScale{"headset/scale", 1.0};
 inline const Setting<bool> kHeadsetMirror{"headset/mirror",
                                           false};                   // the window shows the left eye

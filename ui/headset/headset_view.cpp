@@ -129,7 +129,8 @@ void HeadsetView::placeByArms() {
     if (device == here.end() || session->isSimulated(i)) continue;
     const std::optional<ArmInRoom> in_room = armInRoom(device->second);
     if (!in_room) continue;
-    const WorkspaceMap map = session->map(i);
+    const LoopState& state = session->state();  // as clutching left them, once there is a tick
+    const WorkspaceMap map = state.ticks > 0 ? state.maps[i] : *session->scene().arms[i].map.fixed;
     const ArmInPatient arm{map.centre_mm, map.rotation, map.motion_scale};
     if (!by_arms_) {
       place_ = where(in_room->room_from_device_m, arm);

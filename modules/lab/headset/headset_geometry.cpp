@@ -13,9 +13,9 @@ constexpr int kEdge = 96;  // voxels
 constexpr double kSpacing_mm = 1.0;
 constexpr double kBall_mm = 30.0;  // a ball of tissue, and in it a small one
 constexpr double kMarker_mm = 3.0;
-const Vec3 kMarkerAt_mm(5.0, 14.0, 4.0);
+const Vec3 kMarkerAt_mm(2.0, 14.0, 1.5);
 // Outside of the box, inside it, and deep inside.
-constexpr double kAway_mm[] = {150.0, 40.0, 12.0};
+constexpr double kAway_mm[] = {150.0, 40.0, 20.0};
 constexpr double kAside_mm = 31.5;
 constexpr int kPixels = 160;
 

@@ -26,7 +26,7 @@ constexpr double kHang_s = 2.0;
 constexpr int kSmall = 256, kLarge = 1024;
 constexpr double kRow_s = 4.0;  // of each row
 
-Error cancelled() {
+Error stopped() {
   return {"CANCELLED", "The measurement was cancelled", "measure headset", ""};
 }
 
@@ -214,7 +214,7 @@ HeadsetRow Measuring::sideBySideRow(int size) {
 Status Measuring::rows(const std::vector<int>& sizes) {
   for (const int size : sizes) {
     progress_.at(0.1, "rows");
-    if (progress_.cancelled()) return cancelled();
+    if (progress_.cancelled()) return stopped();
     Result<HeadsetRow> row = openXrRow(size);
     if (!row) return row.error();
     to_.rows.push_back(*row);
@@ -230,7 +230,7 @@ Status Measuring::exercise(double seconds, std::vector<std::pair<std::uint64_t, 
   for (int turn = 0; turn < 2 * kTurns; ++turn) {
     const bool with = turn % 2 == 1;
     progress_.at(0.2 + 0.2 * turn / (2 * kTurns), "exercise");
-    if (progress_.cancelled()) return cancelled();
+    if (progress_.cancelled()) return stopped();
     if (with) {
       ready(kSmall);
       if (Status begun = begin(kSmall); !begun) return begun;
@@ -265,7 +265,7 @@ Status Measuring::toggles(int count) {
   (void)rig_.takeLongestTurn_ms();
   for (int i = 0; i < count; ++i) {
     progress_.at(0.4 + 0.1 * i / count, "on and off");
-    if (progress_.cancelled()) return cancelled();
+    if (progress_.cancelled()) return stopped();
     ready(96);
     if (Status begun = begin(96); !begun) return begun;
     rig_.stopHeadset();
@@ -283,7 +283,7 @@ Status Measuring::losses(int of_each) {
   (void)rig_.takeLongestTurn_ms();
   for (int i = 0; i < 5 * of_each; ++i) {
     progress_.at(0.5 + 0.3 * i / (5 * of_each), "losses");
-    if (progress_.cancelled()) return cancelled();
+    if (progress_.cancelled()) return stopped();
     ready(96);
     if (Status begun = begin(96); !begun) return begun;
     const int kind = i % 5;
@@ -313,7 +313,7 @@ Status Measuring::failures() {
   for (const std::string& function : runtime_->functions()) {
     for (const int after : {0, 2}) {
       progress_.at(0.8, "failures");
-      if (progress_.cancelled()) return cancelled();
+      if (progress_.cancelled()) return stopped();
       constexpr int kRuntimeFailure = -2;
       ready(32);
       runtime_->setPeriod(3.0);
@@ -338,13 +338,13 @@ Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progre
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
     progress.at(0.95, std::string("pictures, ") + name);
-    if (progress.cancelled()) return cancelled();
+    if (progress.cancelled()) return stopped();
     const fs::path file = resourceFolder() / "scenes" / (std::string(name) + ".json");
     if (Status opened = rig.open(file, {}, Progress()); !opened) return opened;
-    StereoScreen screen;  // as a headset sees it: 80 degrees each way
+    StereoScreen screen;  // the middle of what a headset shows: 50 degrees each way
     screen.distance = 0.6;
     screen.separation = 0.063;
-    screen.height = 2.0 * 0.6 * std::tan(glm::radians(40.0));
+    screen.height = 2.0 * 0.6 * std::tan(glm::radians(25.0));
     screen.aspect = 1.0;
     Eyes eyes = eyesBefore(screen);
     // The head looks at the patient, which stands before it and below.
@@ -376,7 +376,7 @@ Json spreadJson(const HeadsetSpread& of) {
 }
 
 template <class Value>
-Json orNull(const std::optional<Value>& value) {
+Json orNothing(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
@@ -459,30 +459,31 @@ Json toJson(const HeadsetMeasurement& of) {
   }
   // Equal pictures have no noise at all, which is no number.
   const double psnr = std::min(of.psnr_to_crop_db, 999.0);
-  return {{"opengl", of.opengl},
-          {"real_runtime", of.real_runtime},
-          {"rows", rows},
-          {"geometry",
-           {{"disparity_error_px", of.disparity_error_px},
-            {"vertical_error_px", of.vertical_error_px},
-            {"psnr_to_crop_db", psnr}}},
-          {"toggles", of.toggles},
-          {"losses", orNull(of.losses)},
-          {"failures", {{"tried", orNull(of.failures)}, {"ended", orNull(of.failures_ended)}}},
-          {"leaked_textures", of.leaked_textures},
-          {"leaked_fds", of.leaked_fds},
-          {"leaked_threads", of.leaked_threads},
-          {"cleaned_ms", spreadJson(of.cleaned_ms)},
-          {"panel_longest_gap_ms", of.gap_ms},
-          {"panel_longest_gap_lost_ms", of.gap_lost_ms},
-          {"panel_longest_gap_without_ms", of.gap_without_ms},
-          {"haptic_missed",
-           {{"with_percent", of.missed_with_percent},
-            {"without_percent", of.missed_without_percent},
-            {"late_with", of.late_with},
-            {"late_without", of.late_without}}},
-          {"recording_replays", of.recording_replays},
-          {"violations", of.violations}};
+  return {
+      {"opengl", of.opengl},
+      {"real_runtime", of.real_runtime},
+      {"rows", rows},
+      {"geometry",
+       {{"disparity_error_px", of.disparity_error_px},
+        {"vertical_error_px", of.vertical_error_px},
+        {"psnr_to_crop_db", psnr}}},
+      {"toggles", of.toggles},
+      {"losses", orNothing(of.losses)},
+      {"failures", {{"tried", orNothing(of.failures)}, {"ended", orNothing(of.failures_ended)}}},
+      {"leaked_textures", of.leaked_textures},
+      {"leaked_fds", of.leaked_fds},
+      {"leaked_threads", of.leaked_threads},
+      {"cleaned_ms", spreadJson(of.cleaned_ms)},
+      {"panel_longest_gap_ms", of.gap_ms},
+      {"panel_longest_gap_lost_ms", of.gap_lost_ms},
+      {"panel_longest_gap_without_ms", of.gap_without_ms},
+      {"haptic_missed",
+       {{"with_percent", of.missed_with_percent},
+        {"without_percent", of.missed_without_percent},
+        {"late_with", of.late_with},
+        {"late_without", of.late_without}}},
+      {"recording_replays", of.recording_replays},
+      {"violations", of.violations}};
 }
 
 std::string toText(const HeadsetMeasurement& of) {

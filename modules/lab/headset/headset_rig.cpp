@@ -19,7 +19,7 @@ namespace {
 constexpr int kPanelWidth = 960, kPanelHeight = 600;
 constexpr std::int64_t kPanelEvery_ns = 16'666'667;
 constexpr double kFrame_ms = 20.0, kBetween_ms = 10.0;  // as the window in an exercise
-constexpr double kAhead_m = 0.55, kAbove_m = -0.25;
+constexpr double kAhead_m = 0.4, kAbove_m = -0.2;
 
 QGuiApplication* application() {
   static int count = 1;

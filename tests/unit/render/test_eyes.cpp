@@ -149,7 +149,10 @@ TEST(Eyes, ACardStandsInThemAndTissueBeforeItHidesIt) {
   EXPECT_TRUE(red(60.0, 75, 50)) << "beside it";
   EXPECT_FALSE(red(-200.0, 50, 50)) << "behind the eye";
   renderer.setCards({});
-  EXPECT_FALSE(redCentre(renderer.eyePicture(eye, 100, 100)));
+  const Picture without = renderer.eyePicture(eye, 100, 100);
+  for (const std::size_t pixel : {50u * 100u + 75u, 5u * 100u + 5u}) {
+    EXPECT_LT(without.rgb[3 * pixel], 100) << "no card, no red";
+  }
 }
 
 }  // namespace
