@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -98,6 +99,7 @@ class OpenXrSession {
   bool locate(XrTime at);
   void showEyes();
   void showFlat();
+  void dropPanel();
   void placeScreen();
   void draw(const SharedPicture& picture, std::size_t texture, Chain& into);
   void blitFresh(SharedPicture& picture, Shows kind);
@@ -120,6 +122,7 @@ class OpenXrSession {
   std::chrono::steady_clock::time_point end_by_{};
 
   HeadsetState state_;
+  std::optional<XrTime> room_changes_at_;
   Eyes now_m_{};  // where the eyes will be when this frame is seen
   std::uint64_t number_ = 0;
   Shows shows_ = Shows::nothing;
@@ -369,7 +372,12 @@ bool OpenXrSession::pollEvents() {
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
       check(XR_ERROR_INSTANCE_LOST, "a loss that is announced");
     }
-    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) ++state_.room_changes;
+    if (event.type == XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) {
+      const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
+      const XrReferenceSpaceType ours =
+          state_.keeps_room ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
+      if (change.referenceSpaceType == ours) room_changes_at_ = change.changeTime;
+    }
     if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
     changeState(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
   }
@@ -410,6 +418,10 @@ bool OpenXrSession::locate(XrTime at) {
       XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((of.viewStateFlags & kBoth) != kBoth) return false;
   for (std::size_t eye = 0; eye < 2; ++eye) now_m_[eye] = viewOf(views[eye]);
+  if (room_changes_at_ && at >= *room_changes_at_) {  // these are the first of the new room
+    room_changes_at_.reset();
+    ++state_.room_changes;
+  }
   state_.eyes_m = now_m_;
   state_.located = true;
   return true;
@@ -462,7 +474,8 @@ void OpenXrSession::blitFresh(SharedPicture& picture, Shows kind) {
 // Upright before the head, and then it stays there.
 void OpenXrSession::placeScreen() {
   const Vec3 head_m = 0.5 * (now_m_[0].pose.position + now_m_[1].pose.position);
-  Vec3 ahead = now_m_[0].pose.orientation * Vec3(0.0, 0.0, -1.0);
+  Vec3 ahead = 0.5 * (now_m_[0].pose.orientation * Vec3(0.0, 0.0, -1.0) +
+                      now_m_[1].pose.orientation * Vec3(0.0, 0.0, -1.0));
   ahead.y = 0.0;
   ahead = glm::length(ahead) > 1e-3 ? glm::normalize(ahead) : Vec3(0.0, 0.0, -1.0);
   const double yaw = std::atan2(-ahead.x, -ahead.z);
@@ -480,6 +493,7 @@ void OpenXrSession::showEyes() {
   if (fresh) {
     blitFresh(*fresh, Shows::eyes);
     pair_shown_ = fresh->request;
+    dropPanel();
     repeats_ = 0;
     ++state_.fresh;
     shows_ = Shows::eyes;
@@ -488,6 +502,16 @@ void OpenXrSession::showEyes() {
     repeats_ > 1 ? ++state_.held : ++state_.repeated;
   }
   pace_.frame(1e-9 * double(monotonic_ns()), fresh != nullptr);
+}
+
+// What was the flat screen's would keep pairs from being drawn.
+void OpenXrSession::dropPanel() {
+  release(panel_);
+  while (SharedPicture* left = shared_.pictures.take(PictureRequest::Of::panel, 0, 0us)) {
+    gl_.glDeleteSync(static_cast<GLsync>(left->drawn));
+    left->drawn = nullptr;
+    shared_.pictures.giveBack(*left);
+  }
 }
 
 void OpenXrSession::showFlat() {
@@ -523,6 +547,7 @@ void OpenXrSession::frame() {
   check(call([&] { return xr_.waitFrame(session_, nullptr, &of); }), "xrWaitFrame");
   check(call([&] { return xr_.beginFrame(session_, nullptr); }), "xrBeginFrame");
   const bool draws = of.shouldRender && !asked_to_end_ && locate(of.predictedDisplayTime);
+  if (!draws) pace_.pause();
   if (draws) {
     const bool flat = pace_.tooSlow();
     flat ? showFlat() : showEyes();

@@ -19,6 +19,8 @@ class PaceRule {
   explicit PaceRule(const PaceLimits& limits = {}) : limits_(limits) {}
   // At every frame of the headset that shows something; `fresh`: a new pair.
   void frame(double now_s, bool fresh);
+  // Nobody sees anything now: what follows is judged by itself.
+  void pause() { begun_ = false; }
   // While the screen stands there: a pair that was tried took so long.
   void tried(double took_s);
   bool tooSlow() const { return too_slow_; }

@@ -8,6 +8,7 @@ namespace trephine {
 
 namespace {
 
+constexpr double kErrorAt_m = 0.1;
 constexpr double kLeastSpread_mm = 20.0;  // of marks across the line that fits them best
 
 // The unit quaternion x that makes x^T N x largest, N symmetric, by Jacobi's rotations.
@@ -77,11 +78,15 @@ EyeView RoomPlace::toPatient_mm(const EyeView& room_m) const {
 RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double above_m,
                  double scale) {
   const Vec3 head_m = 0.5 * (eyes_m[0].pose.position + eyes_m[1].pose.position);
-  Vec3 ahead = eyes_m[0].pose.orientation * Vec3(0.0, 0.0, -1.0);
+  // Displays of both eyes may be turned outwards.
+  const auto both = [&](const Vec3& axis) {
+    return 0.5 * (eyes_m[0].pose.orientation * axis + eyes_m[1].pose.orientation * axis);
+  };
+  Vec3 ahead = both(Vec3(0.0, 0.0, -1.0));
   ahead.y = 0.0;
   // Who looks straight down looks ahead where the top of the picture is.
   if (glm::length(ahead) < 1e-3) {
-    ahead = eyes_m[0].pose.orientation * Vec3(0.0, 1.0, 0.0);
+    ahead = both(Vec3(0.0, 1.0, 0.0));
     ahead.y = 0.0;
   }
   ahead = glm::length(ahead) < 1e-3 ? Vec3(0.0, 0.0, -1.0) : glm::normalize(ahead);
@@ -107,7 +112,16 @@ RoomPlace where(const Pose& room_from_device_m, const ArmInPatient& arm) {
 }
 
 double apart_mm(const RoomPlace& place, const Pose& room_from_device_m, const ArmInPatient& arm) {
-  return 1e3 * glm::distance(place.toRoom_m(arm.origin_mm), room_from_device_m.position);
+  constexpr double kReach_m = 0.08;
+  double most_m = 0.0;
+  for (const Vec3& way : {Vec3(0.0), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0),
+                          Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+    const Vec3 tip_m = kReach_m * way;
+    const Vec3 felt_m = room_from_device_m.position + room_from_device_m.orientation * tip_m;
+    const Vec3 tool_mm = arm.origin_mm + 1000.0 * arm.travel * (arm.turn * tip_m);
+    most_m = std::max(most_m, glm::distance(place.toRoom_m(tool_mm), felt_m));
+  }
+  return 1e3 * most_m;
 }
 
 // Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987.
@@ -143,7 +157,22 @@ Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const
     const Vec3 off = pose.position + pose.orientation * device_m[i] - room_m[i];
     squares += glm::dot(off, off);
   }
-  found.error_mm = 1e3 * std::sqrt(squares / double(device_m.size()));
+  const double count = double(device_m.size());
+  found.marks_mm = 1e3 * std::sqrt(squares / count);
+  // Fitzpatrick, West and Maurer, "Predicting error in rigid-body point-based registration", 1998:
+  // of marks that are each wrong by e, the fit shows e^2 (1 - 2 / N), and a place at the distance d
+  // is wrong by e^2 / N (1 + sum of d_k^2 / f_k^2 / 3) over the axes k of the marks, from which
+  // these lie f_k and the place d_k; d_k^2 is 2/3 d^2, over all directions. The sum of 1 / f_k^2 is
+  // that of the inverse of the marks' mean square about each axis.
+  Mat3 about(0.0);
+  for (const Vec3& each : room_m) {
+    const Vec3 r = each - room_mean;
+    about += (glm::dot(r, r) * Mat3(1.0) - glm::outerProduct(r, r)) / count;
+  }
+  const Mat3 inverse = glm::inverse(about);
+  const double sum = inverse[0][0] + inverse[1][1] + inverse[2][2];
+  const double fle_mm = found.marks_mm / std::sqrt(1.0 - 2.0 / count);
+  found.error_mm = fle_mm * std::sqrt((1.0 + kErrorAt_m * kErrorAt_m * 2.0 / 9.0 * sum) / count);
   return found;
 }
 

@@ -45,13 +45,15 @@ struct ArmInPatient {
 };
 // Where the patient lies for the tool to be seen where the arm is felt.
 RoomPlace where(const Pose& room_from_device_m, const ArmInPatient& arm);
-// How far, then, this other arm's tool is seen from where that is felt, at its origin [mm].
+// How far, then, an arm's tool is seen from where it is felt, at most, within 8 cm of its origin
+// along its axes [mm].
 double apart_mm(const RoomPlace& place, const Pose& room_from_device_m, const ArmInPatient& arm);
 
 // An arm's frame in the room, from marks that its tip has touched.
 struct Registration {
   Pose room_from_device_m;
-  double error_mm = 0.0;  // of the marks, root of the mean square
+  double marks_mm = 0.0;  // how far the marks are from the fit, root of the mean square
+  double error_mm = 0.0;  // to be expected 10 cm from their middle, likewise
 };
 // At least three pairs. Errors: TOO_FEW_MARKS, BAD_MARKS (on one line, or not finite).
 Result<Registration> registerArm(std::span<const Vec3> device_m, std::span<const Vec3> room_m);

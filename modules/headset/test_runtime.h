@@ -33,7 +33,8 @@ class TestRuntime {
   virtual void setPluggedIn(bool plugged_in) = 0;
   virtual void setReadBack(bool on) = 0;  // of what frames show
   virtual void setStage(bool known) = 0;  // the room's own frame, or only where it was put on
-  virtual void moveRoom() = 0;            // its frame lies elsewhere from now on
+  // Its frame, or that of where it was put on, lies elsewhere from now on.
+  virtual void moveRoom(bool of_stage) = 0;
   // Each call of this function ("*": of any) gives this XrResult, `times` of them (negative: for
   // good), after `after` more that go well.
   virtual void fail(const std::string& function, int result, int after, int times) = 0;

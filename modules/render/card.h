@@ -14,6 +14,7 @@ struct Card {
   std::string name;  // which card it is, from one time to the next
   Pose pose_mm;      // of its middle, patient frame
   double width_mm = 0.0;
+  bool before_all = false;         // tissue does not hide it
   int width = 0, height = 0;       // pixels
   std::vector<std::uint8_t> rgba;  // rows go down; colours are not multiplied by alpha
 };

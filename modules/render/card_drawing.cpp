@@ -111,11 +111,10 @@ void CardDrawing::send(Shown& shown) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, shown.card.width, shown.card.height, 0, GL_RGBA,
                GL_UNSIGNED_BYTE, shown.card.rgba.data());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glGenerateMipmap(GL_TEXTURE_2D);
 }
 
 void CardDrawing::draw(const ViewCamera& camera, int width, int height, const Canvas* volume,
@@ -136,13 +135,13 @@ void CardDrawing::draw(const ViewCamera& camera, int width, int height, const Ca
   glBindTexture(GL_TEXTURE_2D, volume ? volume->texture(1) : 0);
   glUniform1i(glGetUniformLocation(program_, "card"), 0);
   glUniform1i(glGetUniformLocation(program_, "depths"), 1);
-  glUniform1i(glGetUniformLocation(program_, "shown"), volume ? 1 : 0);
   glUniform2f(glGetUniformLocation(program_, "span"), float(span.pixels.x), float(span.pixels.y));
   glUniform2f(glGetUniformLocation(program_, "beyond"), float(span.beyond.x), float(span.beyond.y));
   for (Shown& shown : cards_) {
     const Card& card = shown.card;
     if (card.width <= 0 || card.height <= 0) continue;
     send(shown);
+    glUniform1i(glGetUniformLocation(program_, "shown"), volume && !card.before_all ? 1 : 0);
     const Vec3 right = card.pose_mm.orientation * Vec3(0.5 * card.width_mm, 0.0, 0.0);
     const Vec3 up =
         card.pose_mm.orientation * Vec3(0.0, 0.5 * card.width_mm * card.height / card.width, 0.0);

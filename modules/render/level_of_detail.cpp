@@ -16,13 +16,13 @@ double level(double step) {
   return std::clamp(std::ceil(step * 4.0) / 4.0, 1.0, LevelOfDetail::kCoarsest);
 }
 
-// From here on blocks disturb more than frames that take this long.
-constexpr double kCoarse = 4.0, kCoarse_ms = 50.0;
-double unlessTooCoarse(double step, double ms, double at) {
-  return step > kCoarse ? std::max(kCoarse, level(at * std::sqrt(ms / kCoarse_ms))) : step;
-}
+constexpr double kCoarse = 4.0;
 
 }  // namespace
+
+double LevelOfDetail::unlessTooCoarse(double step, double ms, double at) const {
+  return step > kCoarse ? std::max(kCoarse, level(at * std::sqrt(ms / coarse_ms_))) : step;
+}
 
 double LevelOfDetail::rayStepAt(double pixel_step) {
   return std::min(pixel_step, 2.0);
@@ -62,7 +62,7 @@ void LevelOfDetail::movingFrameTook(double ms) {
     // The finest at which it can hardly take longer than it may.
     const auto cost = [](double at) { return 1.0 / (at * at * rayStepAt(at)); };
     const auto allowed = [this](double at) {
-      return at >= kCoarse ? kCoarse_ms / budget_ms_ : 1.0;
+      return at >= kCoarse ? coarse_ms_ / budget_ms_ : 1.0;
     };
     while (step > 1.0 &&
            quick_ratio * cost(step - 0.25) / cost(pixel_step_) < 0.95 * allowed(step - 0.25)) {

@@ -12,7 +12,13 @@ class LevelOfDetail {
   static constexpr double kBudget_ms = 42.0;
   static constexpr double kCoarsest = 8.0;
 
-  explicit LevelOfDetail(double budget_ms = kBudget_ms) : budget_ms_(budget_ms) {}
+  // From 4 pixels between two rays on blocks disturb more than frames that take this long.
+  static constexpr double kCoarse_ms = 50.0;
+
+  // `first`: pixels between two rays until a frame was timed.
+  explicit LevelOfDetail(double budget_ms = kBudget_ms, double first = 1.0,
+                         double coarse_ms = kCoarse_ms)
+      : budget_ms_(budget_ms), coarse_ms_(coarse_ms), pixel_step_(first) {}
 
   // Pixels between two rays, each way; 1 is full quality.
   double pixelStep() const { return pixel_step_; }
@@ -36,8 +42,10 @@ class LevelOfDetail {
   double stillFrame_ms() const { return still_frame_ms_; }
 
  private:
-  double budget_ms_;
-  double pixel_step_ = 1.0;
+  double unlessTooCoarse(double step, double ms, double at) const;
+
+  double budget_ms_, coarse_ms_;
+  double pixel_step_;
   double still_frame_ms_ = 0.0;
   std::array<double, 3> last_ms_{};  // of moving frames at this level, the last one first
   int frames_ = 0;                   // how many of them there are

@@ -29,6 +29,7 @@ namespace trephine {
 
 // Of the rays of one eye's picture: two of them in less than two frames of a headset.
 constexpr double kEyeBudget_ms = 7.0;
+constexpr double kFirstOfAnEye = 4.0;  // pixels between two rays, before any was timed
 
 // What is drawn for one camera: its picture of the volume, and all that is put together over it.
 // VTK only fills framebuffers of our own: one renderer the volume's, as many rays as asked for, the
@@ -120,11 +121,11 @@ struct SceneRenderer::Parts {
   Canvas frame;  // pictures that are read back
   // What has been drawn once in this context, so that OpenGL has its shaders.
   struct Warm {
-    bool background = false, volume = false, outline = false, tools = false;
+    bool background = false, volume = false, outline = false, tools = false, cards = false;
   } warm;
   View panel{*this};
   View eye{*this};  // of two, one after the other
-  LevelOfDetail eye_level{kEyeBudget_ms};
+  LevelOfDetail eye_level{kEyeBudget_ms, kFirstOfAnEye, kEyeBudget_ms};
 
   Parts();
   std::array<vtkRenderer*, 3> renderers() { return {renderer, outline_renderer, tool_renderer}; }

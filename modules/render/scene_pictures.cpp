@@ -224,6 +224,7 @@ bool SceneRenderer::Parts::Warm::*SceneRenderer::Parts::nextCold() const {
   if (drawsVolume() && (!warm.volume || panel.pictures.cold())) return &Warm::volume;
   if (!warm.outline && !panel.partOfOutline().empty()) return &Warm::outline;
   if (!warm.tools && !panel.partsOfTools().empty()) return &Warm::tools;
+  if (!warm.cards && !cards.empty()) return &Warm::cards;
   return nullptr;
 }
 
@@ -246,6 +247,8 @@ bool SceneRenderer::Parts::warmUp() {
     composer.drawVolume(shown ? shown : &panel.pictures.warmUpCanvas(), span, width, height);
   } else if (next == &Warm::outline) {
     panel.drawOutline(shown, span);
+  } else if (next == &Warm::cards) {
+    cards.draw(eye.camera, width, height, shown, span);
   } else {  // with the marks of contact
     std::vector<ToolView> touching = tool_views;
     for (ToolView& tool : touching) tool.contact = true;
@@ -282,7 +285,7 @@ void SceneRenderer::View::compose(unsigned int framebuffer, bool with_cues) {
   scene.copyTo(framebuffer);
   if (of.warm.tools) drawTools(framebuffer, shown, span);
   if (!with_cues) {
-    of.cards.draw(camera, width, height, shown, span);
+    if (of.warm.cards) of.cards.draw(camera, width, height, shown, span);
     return;
   }
   ScreenLines all;

@@ -230,8 +230,8 @@ bool SceneRenderer::paint(unsigned int framebuffer, double budget_ms) {
   return p.panel.moving || complete();
 }
 
-void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
-                             bool in_full) {
+void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width,
+                             int height) {
   Parts& p = *parts_;
   if (!p.window) return;
   takeChanges();
@@ -240,10 +240,8 @@ void SceneRenderer::paintEye(const EyeView& eye_mm, unsigned int framebuffer, in
   eye.resize(width, height);
   eye.camera.lookThrough(eye_mm);
   const Clock::time_point begun = Clock::now();
-  eye.drawAt(in_full ? 1.0 : p.eye_level.pixelStep());
-  if (!in_full && p.drawsVolume()) p.eye_level.movingFrameTook(msSince(begun));
-  while (p.warmUp()) {  // once: then it is warm for both
-  }
+  eye.drawAt(p.eye_level.pixelStep());
+  if (p.drawsVolume()) p.eye_level.movingFrameTook(msSince(begun));
   eye.compose(framebuffer, false);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }

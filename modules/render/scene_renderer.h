@@ -118,10 +118,9 @@ class SceneRenderer {
   // where nobody sees it, one thing a call. False: nothing was left.
   bool cold() const;
   bool warmUp();
-  // What one eye of two sees, without letters and lines, into a framebuffer object of this size. As
-  // coarse as it has to be for pictures of a moving head, or in full.
-  void paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height,
-                bool in_full = false);
+  // What one eye of two sees, without letters and lines, into a framebuffer object of this size, as
+  // coarse as it has to be for pictures of a moving head. What is cold is left out.
+  void paintEye(const EyeView& eye_mm, unsigned int framebuffer, int width, int height);
   // The same at full quality, read back.
   Picture eyePicture(const EyeView& eye_mm, int width, int height);
   // The last was drawn: what they needed goes.

@@ -25,7 +25,7 @@ constexpr int kHapticPriority = 80;
 constexpr int kWatchdogPriority = 81;  // it must see what the haptic thread does not
 // stop() answers within 0.5 s: so long it waits for the force to go, and then for the thread.
 constexpr auto kSilencePatience = 50ms;
-constexpr auto kStopPatience = 200ms;
+constexpr auto kStopPatience = 100ms;
 // How the mouse holds a simulated arm: a firm but not a rigid hand.
 constexpr double kMouseStiffness_N_per_m = 600.0;
 constexpr double kMouseDamping_Ns_per_m = 4.0;

@@ -59,6 +59,7 @@ RoomPanel::RoomPanel(QWidget* parent) : QWidget(parent) {
 }
 
 void RoomPanel::setHeadset(bool seen, bool keeps_room) {
+  if (seen == headset_ && keeps_room == keeps_room_) return;
   headset_ = seen;
   keeps_room_ = keeps_room;
   if (!seen && touching_) stop();
@@ -190,12 +191,13 @@ void RoomPanel::showWords() {
         tr("Its place in a headset's room was set by hand: how well, nobody "
            "has measured."));
   }
-  words_->setText(*where->error_mm > kPoor_mm
-                      ? tr("In a headset's room it is seen within %1 mm of where it is: touch the "
-                           "marks again, each at its cross.")
-                            .arg(*where->error_mm, 0, 'f', 1)
-                      : tr("In a headset's room it is seen within %1 mm of where it is.")
-                            .arg(*where->error_mm, 0, 'f', 1));
+  words_->setText(
+      *where->error_mm > kPoor_mm
+          ? tr("In a headset's room it is likely to be seen %1 mm from where it is: touch "
+               "the marks again, each at its cross.")
+                .arg(*where->error_mm, 0, 'f', 1)
+          : tr("In a headset's room it is likely to be seen %1 mm from where it is.")
+                .arg(*where->error_mm, 0, 'f', 1));
 }
 
 }  // namespace trephine

@@ -20,6 +20,8 @@
 #include "ui/frame/shortcuts_page.h"
 #include "ui/frame/unlock_dialog.h"
 #include "ui/headset/headset_dialog.h"
+#include "ui/headset/headset_view.h"
+#include "ui/headset/stereo_view.h"
 
 namespace trephine {
 

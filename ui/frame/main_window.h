@@ -14,13 +14,14 @@
 #include "ui/cases/cases_workspace.h"
 #include "ui/common/slip_guard.h"
 #include "ui/frame/rail.h"
-#include "ui/headset/headset_view.h"
-#include "ui/headset/stereo_view.h"
 #include "ui/prepare/prepare_workspace.h"
 #include "ui/review/review_workspace.h"
 #include "ui/train/train_workspace.h"
 
 namespace trephine {
+
+class HeadsetView;
+class StereoView;
 
 class MainWindow : public QMainWindow {
   Q_OBJECT

@@ -10,6 +10,8 @@
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
 #include "ui/frame/main_window.h"
+#include "ui/headset/headset_view.h"
+#include "ui/headset/stereo_view.h"
 #include "ui/views/view_tools.h"
 
 namespace trephine {
@@ -228,10 +230,10 @@ void MainWindow::connectParts() {
   connect(&view(), &ViewWidget::framePainted, this, [this](double ms) { panel_ms_ = ms; });
   // One pair of pictures at a time.
   connect(headset_->onAction(), &QAction::toggled, this, [this](bool on) {
-    if (on) stereo_->stop();
+    if (on && headset_->isOn()) stereo_->stop();
   });
   connect(stereo_->onAction(), &QAction::toggled, this, [this](bool on) {
-    if (on) headset_->stop();
+    if (on && stereo_->isOn()) headset_->onAction()->setChecked(false);
   });
   connect(train_, &TrainWorkspace::cardsChanged, headset_, &HeadsetView::setCards);
   connect(train_, &TrainWorkspace::recentreWanted, headset_, &HeadsetView::recentre);

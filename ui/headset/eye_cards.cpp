@@ -35,7 +35,8 @@ QFont lettersOf(double degrees, bool bold = false) {
   font.setBold(bold);
   font.setPixelSize(100);
   const double share = QFontMetricsF(font).xHeight() / 100.0;
-  font.setPixelSize(std::max(1, int(std::lround(degrees * kPixelsPerDegree / std::max(share, 0.1)))));
+  font.setPixelSize(
+      std::max(1, int(std::lround(degrees * kPixelsPerDegree / std::max(share, 0.1)))));
   return font;
 }
 
@@ -50,8 +51,9 @@ class Sheet {
     painter_.setPen(Qt::NoPen);
     painter_.setBrush(kBack);
     painter_.drawRoundedRect(QRectF(image_.rect()), pixels(kRadius_deg), pixels(kRadius_deg));
-    inside_ = QRectF(image_.rect()).adjusted(pixels(kMargin_deg), pixels(kMargin_deg),
-                                             -pixels(kMargin_deg), -pixels(kMargin_deg));
+    inside_ = QRectF(image_.rect())
+                  .adjusted(pixels(kMargin_deg), pixels(kMargin_deg), -pixels(kMargin_deg),
+                            -pixels(kMargin_deg));
   }
   QPainter& painter() { return painter_; }
   // What is left of the sheet.
@@ -80,16 +82,16 @@ class Sheet {
 
 EyeCard forceCard(const std::vector<HandForce>& hands) {
   constexpr double kWidth_deg = 17.0, kEach_deg = 5.2;
-  Sheet sheet(kWidth_deg, 2.0 * kMargin_deg + kEach_deg * std::max<double>(1, double(hands.size())));
+  Sheet sheet(kWidth_deg,
+              2.0 * kMargin_deg + kEach_deg * std::max<double>(1, double(hands.size())));
   for (const HandForce& hand : hands) {
     const double top = sheet.inside().top();
     const double share = std::clamp(hand.sent_N / std::max(hand.limit_N, 1e-6), 0.0, 1.0);
-    sheet.write(hand.why.isEmpty()
-                    ? say("%1: %2 of %3 N")
-                          .arg(hand.name)
-                          .arg(hand.sent_N, 0, 'f', 1)
-                          .arg(hand.limit_N, 0, 'f', 1)
-                    : say("%1: NO FORCE").arg(hand.name),
+    sheet.write(hand.why.isEmpty() ? say("%1: %2 of %3 N")
+                                         .arg(hand.name)
+                                         .arg(hand.sent_N, 0, 'f', 1)
+                                         .arg(hand.limit_N, 0, 'f', 1)
+                                   : say("%1: NO FORCE").arg(hand.name),
                 lettersOf(kLetters_deg, true), hand.colour);
     const QRectF bar(sheet.inside().left(), sheet.inside().top(), sheet.inside().width(),
                      pixels(0.8));
@@ -102,9 +104,9 @@ EyeCard forceCard(const std::vector<HandForce>& hands) {
                                    : colours::kGood);
     painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * share, bar.height())));
     if (hand.demanded_N > 0.0) {
-      const double at = bar.left() + bar.width() * std::clamp(hand.demanded_N /
-                                                                  std::max(hand.limit_N, 1e-6),
-                                                              0.0, 1.0);
+      const double at =
+          bar.left() +
+          bar.width() * std::clamp(hand.demanded_N / std::max(hand.limit_N, 1e-6), 0.0, 1.0);
       painter.setPen(QPen(Qt::white, pixels(0.12)));
       painter.drawLine(QPointF(at, bar.top()), QPointF(at, bar.bottom()));
     }
@@ -126,8 +128,13 @@ EyeCard forceCard(const std::vector<HandForce>& hands) {
 }
 
 EyeCard exerciseCard(const QString& title, const QString& time, const QString& goal) {
-  constexpr double kWidth_deg = 17.0, kHeight_deg = 11.0;
-  Sheet sheet(kWidth_deg, kHeight_deg);
+  // As high as what it asks for is long.
+  constexpr double kWidth_deg = 17.0, kTop_deg = 5.6, kMost_deg = 24.0;
+  const QRectF room(0.0, 0.0, pixels(kWidth_deg - 2.0 * kMargin_deg), pixels(kMost_deg));
+  const double text = QFontMetricsF(lettersOf(kLetters_deg))
+                          .boundingRect(room, Qt::AlignLeft | Qt::TextWordWrap, goal)
+                          .height();
+  Sheet sheet(kWidth_deg, std::min(kMost_deg, kTop_deg + text / kPixelsPerDegree));
   sheet.write(title, lettersOf(kLetters_deg, true), Qt::white);
   sheet.write(time, lettersOf(1.4 * kLetters_deg, true), Qt::white);
   sheet.write(goal, lettersOf(kLetters_deg), QColor(205, 208, 212));

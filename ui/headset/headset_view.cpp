@@ -70,11 +70,14 @@ HeadsetView::~HeadsetView() {
 }
 
 void HeadsetView::toggle(bool on) {
+  again_ = false;
   if (!on) return stop();
   if (!headset_) return start();
-  const QSignalBlocker quiet(on_);
-  on_->setChecked(false);
-  bench_.say(tr("The headset's software has not come back yet: try again in a moment."));
+  again_ = true;
+  if (headset_->stuck_s() > kStuck_s) {
+    bench_.say(
+        tr("The headset's software has not come back yet: the headset follows once it has."));
+  }
 }
 
 void HeadsetView::start() {
@@ -119,11 +122,12 @@ void HeadsetView::place() {
   showCards();
 }
 
-void HeadsetView::placeByArms() {
+// Of the running exercise's arms, those that are registered in the room.
+std::vector<HeadsetView::Standing> HeadsetView::standing() const {
+  std::vector<Standing> arms;
   Session* session = bench_.workstation().session();
-  if (!session || !headset_ || !placed_) return;
+  if (!session) return arms;
   const ArmsOfPlace here = armsOfThisPlace();
-  by_arms_ = false;
   for (std::size_t i = 0; i < session->scene().arms.size(); ++i) {
     const auto device = here.find(session->scene().arms[i].name);
     if (device == here.end() || session->isSimulated(i)) continue;
@@ -131,21 +135,36 @@ void HeadsetView::placeByArms() {
     if (!in_room) continue;
     const LoopState& state = session->state();  // as clutching left them, once there is a tick
     const WorkspaceMap map = state.ticks > 0 ? state.maps[i] : *session->scene().arms[i].map.fixed;
-    const ArmInPatient arm{map.centre_mm, map.rotation, map.motion_scale};
-    if (!by_arms_) {
-      place_ = where(in_room->room_from_device_m, arm);
-      error_mm_ = in_room->error_mm.value_or(0.0);
-      by_arms_ = true;
-    } else {
-      error_mm_ = std::max({error_mm_, in_room->error_mm.value_or(0.0),
-                            apart_mm(place_, in_room->room_from_device_m, arm)});
-    }
+    arms.push_back({in_room->room_from_device_m,
+                    in_room->error_mm.value_or(0.0),
+                    {map.centre_mm, map.rotation, map.motion_scale}});
   }
-  if (!by_arms_) return;
+  return arms;
+}
+
+void HeadsetView::placeByArms() {
+  if (!headset_ || !placed_) return;
+  const std::vector<Standing> arms = standing();
+  if (arms.empty()) {
+    if (std::exchange(by_arms_, false)) place();
+    return;
+  }
+  place_ = where(arms.front().room_from_device_m, arms.front().in_patient);
+  by_arms_ = true;
   bench_.say(tr("The patient lies where the arms are: the tools are seen within %1 mm of where "
                 "they are felt.")
-                 .arg(error_mm_, 0, 'f', 1));
+                 .arg(toolsApart_mm(), 0, 'f', 1));
   showCards();
+}
+
+// As the arms are mapped now: a clutch moves a tool away from its arm.
+double HeadsetView::toolsApart_mm() const {
+  double most_mm = 0.0;
+  for (const Standing& arm : standing()) {
+    most_mm =
+        std::max(most_mm, arm.error_mm + apart_mm(place_, arm.room_from_device_m, arm.in_patient));
+  }
+  return most_mm;
 }
 
 void HeadsetView::recentre() {
@@ -169,6 +188,15 @@ void HeadsetView::serve() {
   sayState(state);
   if (!placed_ && state.located) place();
   if (!placed_) return;
+  // What is drawn for the first time takes as long as several pictures: one thing an event.
+  bool warms = false;
+  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+    warms = renderer.cold() && renderer.warmUp();
+  });
+  if (warms && !woken_->is.exchange(true)) {
+    QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
+  }
+  if (warms) return;
   bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
     painter_.serve(headset_->pictures(),
                    [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
@@ -220,6 +248,8 @@ void HeadsetView::ended(const HeadsetEnd& how) {
   forgetArmsInRoom(false);
   seen_ = flat_ = stuck_ = placed_ = by_arms_ = false;
   recentre_->setEnabled(false);
+  emit changed();
+  if (std::exchange(again_, false)) return start();
   const bool wanted = on_->isChecked();
   {
     const QSignalBlocker quiet(on_);
@@ -282,7 +312,10 @@ void HeadsetView::showCards() {
                      up * std::tan(glm::radians(each.up_deg));
     stand(each, head_m_ + kCardDistance_m * glm::normalize(way));
   }
-  for (std::size_t i = 0; i < marks_m_.size(); ++i) stand(markCard(int(i) + 1), marks_m_[i]);
+  for (std::size_t i = 0; i < marks_m_.size(); ++i) {
+    stand(markCard(int(i) + 1), marks_m_[i]);
+    shown.back().before_all = true;  // they may lie in the patient
+  }
   bench_.view().setCards(std::move(shown));
 }
 
@@ -290,9 +323,11 @@ std::vector<Vec3> HeadsetView::showMarks() {
   marks_m_.clear();
   if (!headset_ || !headset_->state().seen) return {};
   const HeadsetState state = headset_->state();
-  const Pose& eye_m = state.eyes_m[0].pose;
-  const Vec3 head_m = 0.5 * (eye_m.position + state.eyes_m[1].pose.position);
-  const Vec3 middle_m = head_m + eye_m.orientation * Vec3(0.0, 0.0, -kMarksAhead_m);
+  const Pose &left_m = state.eyes_m[0].pose, &right_m = state.eyes_m[1].pose;
+  const Vec3 head_m = 0.5 * (left_m.position + right_m.position);
+  const Vec3 looks = glm::normalize(left_m.orientation * Vec3(0.0, 0.0, -1.0) +
+                                    right_m.orientation * Vec3(0.0, 0.0, -1.0));
+  const Vec3 middle_m = head_m + kMarksAhead_m * looks;
   // The corners of a triangle of equal sides that lies level.
   const Vec3 ahead =
       facing(Vec3(middle_m.x - head_m.x, 0.0, middle_m.z - head_m.z) + Vec3(0.0, 0.0, -1e-6)) *
@@ -318,9 +353,11 @@ QString HeadsetView::words() const {
   if (!state.seen) return tr("Headset: not worn");
   QStringList words{
       state.flat ? tr("Headset: flat screen")
-                 : tr("Headset: %1 pairs of pictures a second").arg(state.pairs_hz, 0, 'f', 0)};
+      : state.pairs_hz > 0.0
+          ? tr("Headset: %1 pairs of pictures a second").arg(state.pairs_hz, 0, 'f', 0)
+          : tr("Headset")};
   words << tr("both eyes %1 ms").arg(painter_.pair_ms(), 0, 'f', 1);
-  if (by_arms_) words << tr("tools within %1 mm of the arms").arg(error_mm_, 0, 'f', 1);
+  if (by_arms_) words << tr("tools within %1 mm of the arms").arg(toolsApart_mm(), 0, 'f', 1);
   if (!isOne(place_.scale)) words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
   return words.join(QStringLiteral(" \u00b7 "));
 }

@@ -58,6 +58,13 @@ class HeadsetView : public QObject {
   void ended(const HeadsetEnd& how);
   void place();
   void placeByArms();
+  struct Standing {
+    Pose room_from_device_m;
+    double error_mm = 0.0;
+    ArmInPatient in_patient;
+  };
+  std::vector<Standing> standing() const;
+  double toolsApart_mm() const;
   void showCards();
   void showMirror();
   void sayState(const HeadsetState& state);
@@ -69,7 +76,6 @@ class HeadsetView : public QObject {
   RoomPlace place_;
   bool placed_ = false;
   bool by_arms_ = false;        // the patient stands where registered arms are
-  double error_mm_ = 0.0;       // of the tools seen against the arms felt, then
   Vec3 head_m_{0.0};            // as it was when the patient was placed,
   Vec3 ahead_{0.0, 0.0, -1.0};  // and what was ahead of it, in the room
   std::vector<EyeCard> cards_;
@@ -79,6 +85,7 @@ class HeadsetView : public QObject {
     std::atomic<bool> is{false};
   };
   std::shared_ptr<Woken> woken_ = std::make_shared<Woken>();
+  bool again_ = false;  // once the one before has ended
   bool seen_ = false, flat_ = false, stuck_ = false, keeps_room_ = false;
   bool mirrors_ = read(settings::kHeadsetMirror);
   int room_changes_ = 0;

@@ -55,8 +55,8 @@ StereoView::StereoView(Bench& bench, QWidget& window)
     : QObject(&window), bench_(bench), window_(window) {
   on_ = makeAction(window, Symbol::view, "stereo", tr("&Two pictures on another screen"),
                    QKeySequence(Qt::SHIFT | Qt::Key_F9),
-                   tr("Side by side or above each other, for a 3-D monitor or a projector; Esc "
-                      "there leaves it"));
+                   tr("Side by side or above each other, for a 3-D monitor or a projector; a "
+                      "double click there leaves it"));
   on_->setCheckable(true);
   connect(on_, &QAction::toggled, this, &StereoView::toggle);
   // What the window has drawn anew is drawn there, once an event's turn.
@@ -146,6 +146,15 @@ void StereoView::draw() {
       camera.focus() - camera.distance_mm() * camera.forward(),
       glm::normalize(glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward())))};
   const Eyes eyes_mm = eyesBefore(screenBefore(camera, aspectOf(packing, wide, high)), head_mm);
+  // What is drawn for the first time takes as long as several pictures: one thing an event.
+  bool warms = false;
+  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+    warms = renderer.cold() && renderer.warmUp();
+  });
+  if (warms) {
+    due_ = true;
+    return QTimer::singleShot(0, this, &StereoView::draw);
+  }
   QElapsedTimer timer;
   timer.start();
   bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {

@@ -1,6 +1,6 @@
 #include "ui/headset/stereo_window.h"
 
-#include <QKeyEvent>
+#include <QCloseEvent>
 #include <QOpenGLContext>
 #include <QOpenGLExtraFunctions>
 #include <cmath>
@@ -8,7 +8,8 @@
 namespace trephine {
 
 StereoWindow::StereoWindow(QWidget* main_window)
-    : QOpenGLWidget(main_window, Qt::Window | Qt::FramelessWindowHint) {
+    : QOpenGLWidget(main_window,
+                    Qt::Window | Qt::FramelessWindowHint | Qt::WindowDoesNotAcceptFocus) {
   setObjectName("stereoWindow");
   setWindowTitle(tr("Trephine, for both eyes"));
   setAttribute(Qt::WA_ShowWithoutActivating);
@@ -48,9 +49,8 @@ void StereoWindow::paintGL() {
   drawing_.draw(textures_, packing_, lens_, pixelWidth(), pixelHeight());
 }
 
-void StereoWindow::keyPressEvent(QKeyEvent* event) {
-  if (event->key() == Qt::Key_Escape) return emit leaveWanted();
-  QOpenGLWidget::keyPressEvent(event);
+void StereoWindow::closeEvent(QCloseEvent*) {
+  emit leaveWanted();
 }
 
 void StereoWindow::mouseDoubleClickEvent(QMouseEvent*) {

@@ -1,4 +1,4 @@
-// A screen that two pictures cover, without a frame. Its keys are the main window's.
+// A screen that two pictures cover, without a frame. It takes no keys: those are the main window's.
 #pragma once
 
 #include <QOpenGLWidget>
@@ -23,11 +23,11 @@ class StereoWindow : public QOpenGLWidget {
   int pixelHeight() const;
 
  signals:
-  void leaveWanted();  // Esc, or a double click
+  void leaveWanted();  // by a double click, or because it was closed
 
  protected:
   void paintGL() override;
-  void keyPressEvent(QKeyEvent* event) override;
+  void closeEvent(QCloseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
 
  private:

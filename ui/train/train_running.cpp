@@ -64,15 +64,17 @@ void TrainWorkspace::tick() {
 void TrainWorkspace::followPedal(const LoopState& state) {
   const std::uint32_t now = state.record.arms[0].buttons & (kPedalLeft | kPedalRight);
   const std::uint32_t changed = now ^ std::exchange(pedal_, now);
-  if (now == (kPedalLeft | kPedalRight)) {
-    if (changed != 0) emit recentreWanted();
-    return;
-  }
+  // Two feet are never down at once: what the left switch does alone waits until it is up again.
+  const bool both = now == (kPedalLeft | kPedalRight);
+  if (both && changed != 0) emit recentreWanted();
+  const bool were_both = pedal_both_;
+  pedal_both_ = both || (pedal_both_ && now != 0);
   if (changed & kPedalRight) {
     clutch_->setChecked(now & kPedalRight);
     clutch();
   }
-  if ((changed & now & kPedalLeft) && !state.busy && !workstation_.session()->isPoke()) {
+  const bool left_up = changed & ~now & kPedalLeft;
+  if (left_up && !were_both && !state.busy && !workstation_.session()->isPoke()) {
     rewind(state.seconds - std::min(state.seconds, kPedalBack_s));
   }
 }

@@ -136,6 +136,7 @@ class TrainWorkspace : public Workspace {
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
   bool cards_wanted_ = false;
+  bool pedal_both_ = false;              // its outer switches were down together, and one still is
   std::uint32_t pedal_ = 0;              // buttons, as they were looked at last
   std::optional<LoopState> undoing_;     // what was there when it was asked for
   int frames_ = 0;                       // since the rates were shown

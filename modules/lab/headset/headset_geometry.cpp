@@ -58,15 +58,17 @@ EyeView eyeAt(double aside_mm, double away_mm, const FieldOfView& sees) {
 }
 
 std::optional<glm::dvec2> centreOfRed(const Picture& picture) {
+  constexpr double kRed = 60.0;  // more than green and blue, where it is nothing else
   glm::dvec2 sum(0.0);
   double count = 0.0;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const std::uint8_t* p =
           picture.rgb.data() + 3 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x));
-      if (p[0] < std::max(p[1], p[2]) + 40) continue;
-      sum += glm::dvec2(x + 0.5, picture.height - y - 0.5);
-      count += 1.0;
+      // A pixel at its edge counts for a part, and how it is lit for nothing.
+      const double part = std::clamp((double(p[0]) - std::max(p[1], p[2])) / kRed, 0.0, 1.0);
+      sum += part * glm::dvec2(x + 0.5, picture.height - y - 0.5);
+      count += part;
     }
   }
   return count > 0.0 ? std::optional(sum / count) : std::nullopt;

@@ -112,7 +112,10 @@ Status Measuring::begin(int size) {
 }
 
 bool Measuring::finish() {
-  return rig_.until([&] { return rig_.headset() == nullptr; }, kPatience_s);
+  const bool ended = rig_.until([&] { return rig_.headset() == nullptr; }, kPatience_s);
+  if (!runtime_) return ended;
+  for (const std::string& what : runtime_->violations()) to_.violations.push_back(what);
+  return ended;
 }
 
 Result<HeadsetRow> Measuring::openXrRow(int size) {
@@ -299,7 +302,6 @@ Status Measuring::losses(int of_each) {
     if (!finish()) return Error{"HEADSET_STUCK", "A lost headset does not end", "", "Try again"};
     done += !rig_.end()->why.ok() ? 1 : 0;
     cleaned_ms.push_back(1e-6 * double(monotonic_ns() - lost_ns));
-    for (const std::string& what : runtime_->violations()) to_.violations.push_back(what);
   }
   to_.gap_lost_ms = rig_.takeLongestTurn_ms();
   to_.losses = done;
@@ -322,8 +324,13 @@ Status Measuring::failures() {
       rig_.until([&] { return !rig_.headset() || rig_.headset()->state().fresh > 4; }, kPatience_s);
       if (rig_.headset()) rig_.stopHeadset();
       ++tried;
-      ended += finish() && !runtime_->alive().any() ? 1 : 0;
-      for (const std::string& what : runtime_->violations()) to_.violations.push_back(what);
+      const bool over = finish();
+      // It was told, unless the call is one of the end, after which there is nothing to tell.
+      const bool of_the_end = function.starts_with("xrDestroy") || function == "xrEndSession" ||
+                              function == "xrRequestExitSession";
+      const bool told =
+          of_the_end || runtime_->calls(function) <= after || (rig_.end() && !rig_.end()->why.ok());
+      ended += over && told && !runtime_->alive().any() ? 1 : 0;
     }
   }
   ready(96);

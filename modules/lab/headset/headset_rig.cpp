@@ -140,7 +140,7 @@ Status HeadsetRig::open(const std::filesystem::path& file, const std::filesystem
   while (renderer_->warmUp()) {
   }
   renderer_->paint(panel_.framebuffer);
-  last_turn_ns_ = 0;
+  last_turn_ns_ = last_panel_ns_ = 0;
   return recording.empty() ? Status() : session_->start();
 }
 
@@ -163,6 +163,19 @@ void HeadsetRig::turn() {
   }
   last_turn_ns_ = now_ns;
   bool idle = true;
+  if (now_ns >= next_panel_ns_) {  // first: eyes are wanted all the time
+    idle = false;
+    if (last_panel_ns_ != 0) {
+      longest_panel_ms_ = std::max(longest_panel_ms_, 1e-6 * double(now_ns - last_panel_ns_));
+    }
+    last_panel_ns_ = now_ns;
+    next_panel_ns_ = std::max(next_panel_ns_ + kPanelEvery_ns, now_ns);
+    if (session_ && session_->running()) {
+      renderer_->pullChanges(session_->grid());
+      renderer_->setTools(toolsOf(*scene_, session_->state()));
+    }
+    renderer_->paint(panel_.framebuffer, kFrame_ms);
+  }
   if (headset_ && woken_->exchange(false)) {
     idle = false;
     if (std::optional<HeadsetEnd> how = headset_->end()) {
@@ -178,6 +191,8 @@ void HeadsetRig::turn() {
                         kAbove_m);
         placed_ = true;
       }
+      while (renderer_->cold() && renderer_->warmUp()) {
+      }
       const bool drew = painter_.serve(
           headset_->pictures(),
           [this](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
@@ -186,22 +201,15 @@ void HeadsetRig::turn() {
           panel_);
       pairs_ += drew ? 1 : 0;
     }
-  } else if (now_ns >= next_panel_ns_) {
-    idle = false;
-    next_panel_ns_ = std::max(next_panel_ns_ + kPanelEvery_ns, now_ns);
-    if (session_ && session_->running()) {
-      renderer_->pullChanges(session_->grid());
-      renderer_->setTools(toolsOf(*scene_, session_->state()));
-    }
-    renderer_->paint(panel_.framebuffer, kFrame_ms);
-  } else if (!renderer_->complete()) {
+  } else if (idle && !renderer_->complete()) {
     idle = !renderer_->refine(kBetween_ms);
   }
   if (idle) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 double HeadsetRig::takeLongestTurn_ms() {
-  return std::exchange(longest_ms_, 0.0);
+  last_panel_ns_ = 0;
+  return std::max(std::exchange(longest_ms_, 0.0), std::exchange(longest_panel_ms_, 0.0));
 }
 
 Status HeadsetRig::startHeadset(const HeadsetOptions& options) {

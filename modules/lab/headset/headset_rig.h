@@ -54,7 +54,7 @@ class HeadsetRig {
   void pass(double seconds) {
     until([] { return false; }, seconds);
   }
-  // Of a turn, since this was asked last.
+  // Of a turn, or from one picture of the panel to the next, since this was asked last.
   double takeLongestTurn_ms();
 
   Status startHeadset(const HeadsetOptions& options);
@@ -88,7 +88,8 @@ class HeadsetRig {
   bool placed_ = false;
   std::uint64_t pairs_ = 0;
   std::int64_t next_panel_ns_ = 0, last_turn_ns_ = 0;
-  double longest_ms_ = 0.0;
+  std::int64_t last_panel_ns_ = 0;
+  double longest_ms_ = 0.0, longest_panel_ms_ = 0.0;
 };
 
 }  // namespace trephine

@@ -84,11 +84,15 @@ void RuntimeState::setStage(bool known) {
   const auto held = lock();
   stage = known;
 }
-void RuntimeState::moveRoom() {
+void RuntimeState::moveRoom(bool of_stage) {
   const auto held = lock();
-  XrEventDataBuffer event{};
+  XrEventDataBuffer buffer{};
+  auto& event = reinterpret_cast<XrEventDataReferenceSpaceChangePending&>(buffer);
   event.type = XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING;
-  events.push_back(event);
+  event.referenceSpaceType =
+      of_stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
+  event.changeTime = now_ns();
+  events.push_back(buffer);
 }
 void RuntimeState::fail(const std::string& function, int result, int after, int times) {
   const auto held = lock();

@@ -47,7 +47,7 @@ class RuntimeState : public TestRuntime {
   void setPluggedIn(bool plugged_in) override;
   void setReadBack(bool on) override;
   void setStage(bool known) override;
-  void moveRoom() override;
+  void moveRoom(bool of_stage) override;
   void fail(const std::string& function, int result, int after, int times) override;
   void hang(double seconds) override;
   void lose(Loss loss) override;

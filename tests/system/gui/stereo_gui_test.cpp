@@ -95,7 +95,8 @@ class StereoGuiTest : public test::TrainTest {
     QVERIFY(above.save(TREPHINE_ARTEFACTS "/stereo-top-bottom.png"));
     QVERIFY(difference(above, both) > 1000);
     find<QDialog>("headsetDialog")->close();
-    QTest::keyClick(shown(), Qt::Key_Escape);
+    QVERIFY(!shown()->isActiveWindow());
+    QTest::mouseDClick(shown(), Qt::LeftButton);
     QTRY_VERIFY(!shown());
     QVERIFY(!find<QAction>("stereo")->isChecked());
   }
@@ -147,6 +148,18 @@ class StereoGuiTest : public test::TrainTest {
     QVERIFY(!find<QAction>("stereo")->isChecked());
     error()->close();
     QVERIFY(!shown());
+  }
+
+  void whatCannotBeginLeavesTheOther() {
+    key(Qt::Key_F9, Qt::ShiftModifier);
+    QTRY_VERIFY(shown());
+    ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
+    find<QAction>("headset")->trigger();
+    QTRY_VERIFY(error());
+    error()->close();
+    shown()->close();
+    QTRY_VERIFY(!shown());
+    QVERIFY(!find<QAction>("stereo")->isChecked());
   }
 
   // Last: the screen does not come back.

@@ -67,5 +67,15 @@ TEST(PaceRule, WithoutALimitNothingIsTooSlow) {
   EXPECT_LT(run(rule, now_s, 20.0, 1000), 0.0);
 }
 
+TEST(PaceRule, AHeadsetThatWasTakenOffIsJudgedAnew) {
+  PaceRule rule;
+  double now_s = 1000.0;
+  EXPECT_LT(run(rule, now_s, 5.0, 1), 0.0);
+  rule.pause();
+  now_s += 3.0;
+  EXPECT_LT(run(rule, now_s, 5.0, 1), 0.0);
+  EXPECT_NEAR(rule.pairs_hz(), 90.0, 1.0);
+}
+
 }  // namespace
 }  // namespace trephine

@@ -112,9 +112,48 @@ TEST(Registration, FindsWhereAnArmStandsFromThreeMarksAndSaysHowWell) {
     room[1] += turn * (0.006 * glm::normalize(device[1]));  // farther from the first
     const auto less = registerArm(device, room);
     ASSERT_TRUE(less);
-    EXPECT_GT(less->error_mm, 1.5);
-    EXPECT_LT(less->error_mm, 6.0 / std::sqrt(3.0)) << "no fit is worse than leaving it as it was";
+    EXPECT_GT(less->marks_mm, 1.5);
+    EXPECT_LT(less->marks_mm, 6.0 / std::sqrt(3.0)) << "no fit is worse than leaving it as it was";
   }
+}
+
+// As often as a person may touch three marks.
+TEST(Registration, SaysHowWrongAPlaceTenCentimetresOffIsOnTheWhole) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> off_m(0.0, 0.002), any;
+  const std::vector<Vec3> marks{{-0.04, 0.0, 0.023}, {0.04, 0.0, 0.023}, {0.0, 0.0, -0.046}};
+  double said = 0.0, was = 0.0;
+  constexpr int kTrials = 4000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<Vec3> touched;
+    for (const Vec3& mark : marks)
+      touched.push_back(mark + Vec3(off_m(random), off_m(random), off_m(random)));
+    const auto found = registerArm(touched, marks);
+    ASSERT_TRUE(found);
+    const Vec3 place_m = 0.1 * glm::normalize(Vec3(any(random), any(random), any(random)));
+    const Pose& pose = found->room_from_device_m;
+    const double error_mm =
+        1e3 * glm::distance(pose.position + pose.orientation * place_m, place_m);
+    said += found->error_mm * found->error_mm / kTrials;
+    was += error_mm * error_mm / kTrials;
+  }
+  EXPECT_NEAR(std::sqrt(said), std::sqrt(was), 0.1 * std::sqrt(was));
+  EXPECT_GT(std::sqrt(was), 4.0);
+}
+
+TEST(RoomPlace, TheHeadLooksBetweenItsEyes) {
+  Eyes eyes = eyesAt({{0.0, 1.0, 0.0}, Quat(1, 0, 0, 0)});
+  eyes[0].pose.orientation = glm::angleAxis(0.09, Vec3(0, 1, 0));  // displays turned outwards
+  eyes[1].pose.orientation = glm::angleAxis(-0.09, Vec3(0, 1, 0));
+  const RoomPlace place = before(eyes, {}, 0.4, -0.2);
+  EXPECT_NEAR(place.toRoom_m(Vec3(0.0)).x, 0.0, 1e-12);
+}
+
+TEST(RoomPlace, ASecondArmThatIsTurnedIsFoundToBeApart) {
+  const ArmInPatient arm{{12.0, -40.0, 80.0}, Quat(1, 0, 0, 0), 1.0};
+  const RoomPlace place = where({}, arm);
+  EXPECT_NEAR(apart_mm(place, {Vec3(0.0), glm::angleAxis(glm::radians(15.0), Vec3(0, 1, 0))}, arm),
+              2.0 * 80.0 * std::sin(glm::radians(7.5)), 1e-9);
 }
 
 TEST(Registration, RefusesMarksThatSayNothing) {
