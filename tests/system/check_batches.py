@@ -9,13 +9,14 @@ import sys
 
 INCLUDE = re.compile(r'#include "([^"]+)"')
 FUNCTION = re.compile(r"(?:template <.*> ?)?(?:[\w:<>,&*\s\[\]]+?[\s&*>])(\w+)\(")
+TEXT = re.compile(r'R"\(.*?\)"', re.DOTALL)  # such as a shader, whose functions are its own
 NO_FUNCTION = ("return", "static_assert", "using")
 
 
 def functions(source):
     """Names of functions at the left margin within `namespace {`."""
     found, inside = set(), False
-    for line in source.splitlines():
+    for line in TEXT.sub("", source).splitlines():
         if line.startswith("namespace {"):
             inside = True
         elif line.startswith("}  // namespace") and "trephine" not in line:
@@ -43,6 +44,8 @@ def self_test():
     assert clashes({"a": first, "b": other}) == {"twice": ["a", "b"]}
     assert not clashes({"a": first, "b": first.replace("twice", "thrice")})
     assert not clashes({"a": first, "b": elsewhere})
+    shader = first.replace("int twice", 'const char* kShader = R"(\nint twice').replace(";\n}", ';\n})";')
+    assert not clashes({"a": first, "b": shader}), shader
 
 
 def main():

@@ -224,14 +224,12 @@ void MainWindow::connectParts() {
   connect(headset_, &HeadsetView::changed, this, [this] {
     train_->setCardsWanted(headset_->isOn());
     if (!workstation().session()) headset_->setCards({});
+    if (headset_->isSeen()) stereo_->stop();
     showEyes();
   });
   connect(stereo_, &StereoView::changed, this, &MainWindow::showEyes);
   connect(&view(), &ViewWidget::framePainted, this, [this](double ms) { panel_ms_ = ms; });
-  // One pair of pictures at a time.
-  connect(headset_->onAction(), &QAction::toggled, this, [this](bool on) {
-    if (on && headset_->isOn()) stereo_->stop();
-  });
+  // One pair of pictures at a time; a headset that cannot be had takes no screen away.
   connect(stereo_->onAction(), &QAction::toggled, this, [this](bool on) {
     if (on && stereo_->isOn()) headset_->onAction()->setChecked(false);
   });

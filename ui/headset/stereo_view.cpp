@@ -104,7 +104,8 @@ Status StereoView::start() {
           Qt::QueuedConnection);
   screen_window_->setScreen(screen_);
   screen_window_->setGeometry(screen_->geometry());
-  screen_window_->showFullScreen();
+  screen_window_->setWindowState(Qt::WindowFullScreen);
+  screen_window_->show();  // and the keys stay where they are
   draw();
   emit changed();
   return {};

@@ -9,15 +9,15 @@ namespace trephine {
 
 namespace {
 
-constexpr int kEdge = 96;  // voxels
-constexpr double kSpacing_mm = 1.0;
+constexpr int kEdge = 128;  // voxels
+constexpr double kSpacing_mm = 0.5;
 constexpr double kBall_mm = 30.0;  // a ball of tissue, and in it a small one
 constexpr double kMarker_mm = 3.0;
 const Vec3 kMarkerAt_mm(2.0, 14.0, 1.5);
 // Outside of the box, inside it, and deep inside.
 constexpr double kAway_mm[] = {150.0, 40.0, 20.0};
 constexpr double kAside_mm = 31.5;
-constexpr int kPixels = 160;
+constexpr int kPixels = 480;
 
 Volume balls() {
   Volume volume;
@@ -106,6 +106,7 @@ EyeGeometry measureEyeGeometry(SceneRenderer& renderer) {
   renderer.setCards({});
   renderer.setVolume(Grid(balls()));
   renderer.setTissues(tissues(0.0));
+  UploadProbe::setFirstTissue(renderer, true);  // without light, which would move its middle
   const FieldOfView left{-1.0, 0.75, -1.0, 0.75}, right{-0.75, 1.0, -1.0, 0.75};
   for (const double away_mm : kAway_mm) {
     // Near by, eyes as far apart as a person's would not both see it.
@@ -125,6 +126,7 @@ EyeGeometry measureEyeGeometry(SceneRenderer& renderer) {
     found.disparity_error_px = std::max(found.disparity_error_px, disparity);
     found.vertical_error_px = std::max(found.vertical_error_px, vertical);
   }
+  UploadProbe::setFirstTissue(renderer, false);
   renderer.setTissues(tissues(0.9));
   for (const double away_mm : kAway_mm) {
     for (const bool of_left : {true, false}) {

@@ -38,7 +38,10 @@ HeadsetSpread spreadOf(std::vector<double> figures) {
 
 int entriesOf(const char* folder) {
   int count = 0;
-  for ([[maybe_unused]] const auto& each : fs::directory_iterator(folder)) ++count;
+  std::error_code problem;
+  for (fs::directory_iterator each(folder, problem), end; each != end; each.increment(problem)) {
+    ++count;
+  }
   return count;
 }
 

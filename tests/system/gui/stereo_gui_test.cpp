@@ -98,7 +98,7 @@ class StereoGuiTest : public test::TrainTest {
     QVERIFY(!shown()->isActiveWindow());
     QTest::mouseDClick(shown(), Qt::LeftButton);
     QTRY_VERIFY(!shown());
-    QVERIFY(!find<QAction>("stereo")->isChecked());
+    QTRY_VERIFY(!find<QAction>("stereo")->isChecked());
   }
 
   void aLensBendsThePicturesAndNonsenseIsRefused() {
@@ -145,7 +145,7 @@ class StereoGuiTest : public test::TrainTest {
     QFile::remove(good);
     find<QAction>("stereo")->trigger();
     QTRY_VERIFY(error());
-    QVERIFY(!find<QAction>("stereo")->isChecked());
+    QTRY_VERIFY(!find<QAction>("stereo")->isChecked());
     error()->close();
     QVERIFY(!shown());
   }
@@ -159,7 +159,7 @@ class StereoGuiTest : public test::TrainTest {
     error()->close();
     shown()->close();
     QTRY_VERIFY(!shown());
-    QVERIFY(!find<QAction>("stereo")->isChecked());
+    QTRY_VERIFY(!find<QAction>("stereo")->isChecked());
   }
 
   // Last: the screen does not come back.
