@@ -100,6 +100,7 @@ class OpenXrSession {
   void showEyes();
   void showFlat();
   void dropPanel();
+  void discard(SharedPicture& picture);
   void placeScreen();
   void draw(const SharedPicture& picture, std::size_t texture, Chain& into);
   void blitFresh(SharedPicture& picture, Shows kind);
@@ -504,13 +505,18 @@ void OpenXrSession::showEyes() {
   pace_.frame(1e-9 * double(monotonic_ns()), fresh != nullptr);
 }
 
+// Of a picture that is not shown after all.
+void OpenXrSession::discard(SharedPicture& picture) {
+  gl_.glDeleteSync(static_cast<GLsync>(picture.drawn));
+  picture.drawn = nullptr;
+  shared_.pictures.giveBack(picture);
+}
+
 // What was the flat screen's would keep pairs from being drawn.
 void OpenXrSession::dropPanel() {
   release(panel_);
   while (SharedPicture* left = shared_.pictures.take(PictureRequest::Of::panel, 0, 0us)) {
-    gl_.glDeleteSync(static_cast<GLsync>(left->drawn));
-    left->drawn = nullptr;
-    shared_.pictures.giveBack(*left);
+    discard(*left);
   }
 }
 
@@ -529,9 +535,7 @@ void OpenXrSession::showFlat() {
   }
   if (SharedPicture* tried = shared_.pictures.take(PictureRequest::Of::eyes, 0, 0us)) {
     pace_.tried(1e-9 * double(tried->finished_ns - tried->request.asked_ns));
-    gl_.glDeleteSync(static_cast<GLsync>(tried->drawn));
-    tried->drawn = nullptr;
-    shared_.pictures.giveBack(*tried);
+    discard(*tried);
   }
   SharedPicture* fresh = shared_.pictures.take(PictureRequest::Of::panel, 0, 0us);
   if (!fresh) return;

@@ -46,7 +46,8 @@ RoomPanel::RoomPanel(QWidget* parent) : QWidget(parent) {
   layout->addWidget(words_);
   layout->addLayout(row);
   connect(begin_, &QPushButton::clicked, this, [this] {
-    touching_&& touched_m_.empty() ? emit marksWanted(true) : touching_ ? stop() : begin();
+    if (!touching_) return begin();
+    touched_m_.empty() ? emit marksWanted(true) : stop();
   });
   connect(here_, &QPushButton::clicked, this, &RoomPanel::touch);
   connect(by_hand_, &QPushButton::clicked, this, &RoomPanel::byHand);
@@ -116,7 +117,6 @@ void RoomPanel::touch() {
   }
   setArmInRoom(*arm_, ArmInRoom{found->room_from_device_m, found->error_mm, keeps_room_});
   stop();
-  showWords();
 }
 
 // Level, and turned about the vertical alone: what a person can measure with a tape.

@@ -4,11 +4,8 @@
 
 #include <QImage>
 #include <QString>
-#include <QStringList>
 #include <string>
 #include <vector>
-
-#include "render/card.h"
 
 namespace trephine {
 

@@ -1,6 +1,5 @@
 #include "ui/headset/headset_view.h"
 
-#include <QPainter>
 #include <algorithm>
 #include <cmath>
 
@@ -188,22 +187,21 @@ void HeadsetView::serve() {
   sayState(state);
   if (!placed_ && state.located) place();
   if (!placed_) return;
-  // What is drawn for the first time takes as long as several pictures: one thing an event.
-  bool warms = false;
-  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
-    warms = renderer.cold() && renderer.warmUp();
-  });
-  if (warms && !woken_->is.exchange(true)) {
-    QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
-  }
-  if (warms) return;
+  bool warmed = false;
   bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int shown, int wide, int high) {
+    // What is drawn for the first time takes as long as several pictures: one thing an event.
+    warmed = renderer.warmUp();
+    if (warmed) return;
     painter_.serve(headset_->pictures(),
                    [&](const EyeView& eye_m, unsigned int framebuffer, int width, int height) {
                      renderer.paintEye(place_.toPatient_mm(eye_m), framebuffer, width, height);
                    },
                    {shown, wide, high});
   });
+  if (warmed && !woken_->is.exchange(true)) {
+    QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
+  }
+  if (warmed) return;
   showMirror();
 }
 

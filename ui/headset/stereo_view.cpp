@@ -35,11 +35,7 @@ QScreen* chosenScreen(const QWidget& window) {
   return nullptr;
 }
 
-StereoScreen screenBefore(const ViewCamera& camera, double aspect) {
-  const double eyes_mm =
-      readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
-  const double away_mm =
-      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
+StereoScreen screenBefore(const ViewCamera& camera, double aspect, double eyes_mm, double away_mm) {
   // In the patient, so large that what is looked at lies in the screen's plane.
   StereoScreen screen;
   screen.distance = camera.distance_mm();
@@ -99,6 +95,10 @@ Status StereoView::start() {
     if (!lens) return lens.error();
     lens_ = *lens;
   }
+  packing_ = packingOf(read(settings::kStereoPacking));
+  eyes_mm_ = readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
+  away_mm_ =
+      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
   screen_window_ = std::make_unique<StereoWindow>(&window_);
   connect(screen_window_.get(), &StereoWindow::leaveWanted, this, &StereoView::stop,
           Qt::QueuedConnection);
@@ -141,27 +141,22 @@ void StereoView::draw() {
   due_ = false;
   if (!screen_window_) return;
   const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
-  const Packing packing = packingOf(read(settings::kStereoPacking));
   const ViewCamera& camera = bench_.view().camera();
   const Pose head_mm{
       camera.focus() - camera.distance_mm() * camera.forward(),
       glm::normalize(glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward())))};
-  const Eyes eyes_mm = eyesBefore(screenBefore(camera, aspectOf(packing, wide, high)), head_mm);
-  // What is drawn for the first time takes as long as several pictures: one thing an event.
-  bool warms = false;
-  bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
-    warms = renderer.cold() && renderer.warmUp();
-  });
-  if (warms) {
-    due_ = true;
-    return QTimer::singleShot(0, this, &StereoView::draw);
-  }
+  const Eyes eyes_mm =
+      eyesBefore(screenBefore(camera, aspectOf(packing_, wide, high), eyes_mm_, away_mm_), head_mm);
+  bool warmed = false;
   QElapsedTimer timer;
   timer.start();
   bench_.view().withGraphics([&](SceneRenderer& renderer, unsigned int, int, int) {
+    // What is drawn for the first time takes as long as several pictures: one thing an event.
+    warmed = renderer.warmUp();
+    if (warmed) return;
     QOpenGLExtraFunctions& gl = *QOpenGLContext::currentContext()->extraFunctions();
     for (std::size_t eye = 0; eye < 2; ++eye) {
-      const EyeRect rect = rectOf(eye, packing, wide, high);
+      const EyeRect rect = rectOf(eye, packing_, wide, high);
       const QSize size(rect.width, rect.height);
       if (textures_[eye] == 0) gl.glGenTextures(1, &textures_[eye]);
       if (framebuffers_[eye] == 0) gl.glGenFramebuffers(1, &framebuffers_[eye]);
@@ -181,8 +176,12 @@ void StereoView::draw() {
     }
     gl.glFlush();
   });
+  if (warmed) {
+    due_ = true;
+    return QTimer::singleShot(0, this, &StereoView::draw);
+  }
   pair_ms_ = double(timer.nsecsElapsed()) * 1e-6;
-  screen_window_->show(textures_, packing, lens_);
+  screen_window_->show(textures_, packing_, lens_);
 }
 
 void StereoView::screenGone(QScreen* screen) {

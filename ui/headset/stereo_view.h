@@ -49,7 +49,10 @@ class StereoView : public QObject {
   QAction* on_;
   std::unique_ptr<StereoWindow> screen_window_;
   QPointer<QScreen> screen_;
+  // As the settings had them when it was switched on.
   LensProfile lens_;
+  Packing packing_ = Packing::half;
+  double eyes_mm_ = 0.0, away_mm_ = 0.0;
   std::array<unsigned int, 2> textures_{}, framebuffers_{};
   std::array<QSize, 2> sizes_{};
   double pair_ms_ = 0.0;

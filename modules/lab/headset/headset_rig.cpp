@@ -191,7 +191,7 @@ void HeadsetRig::turn() {
                         kAbove_m);
         placed_ = true;
       }
-      while (renderer_->cold() && renderer_->warmUp()) {
+      while (renderer_->warmUp()) {
       }
       const bool drew = painter_.serve(
           headset_->pictures(),
