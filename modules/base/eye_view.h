@@ -21,4 +21,19 @@ struct EyeView {
 };
 using Eyes = std::array<EyeView, 2>;  // left, right
 
+// Between both eyes, and where they look on average: displays of both may be turned outwards.
+struct Head {
+  Vec3 position{0.0};
+  Vec3 forward{0.0, 0.0, -1.0}, up{0.0, 1.0, 0.0};  // of length 1
+};
+inline Head headOf(const Eyes& eyes) {
+  const Pose &left = eyes[0].pose, &right = eyes[1].pose;
+  const auto both = [&](const Vec3& axis) {
+    const Vec3 sum = left.orientation * axis + right.orientation * axis;
+    return glm::length(sum) > 0.0 ? glm::normalize(sum) : left.orientation * axis;
+  };
+  return {0.5 * (left.position + right.position), both(Vec3(0.0, 0.0, -1.0)),
+          both(Vec3(0.0, 1.0, 0.0))};
+}
+
 }  // namespace trephine

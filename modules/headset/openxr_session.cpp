@@ -10,6 +10,8 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "headset/room_place.h"
 //
 #include <unistd.h>
 // Xlib comes with it.
@@ -82,6 +84,22 @@ class OpenXrSession {
     int width = 0, height = 0;
   };
   enum class Shows { nothing, eyes, flat };
+  // Of one frame, and what they point to.
+  struct Layers {
+    XrCompositionLayerProjectionView views[2] = {};
+    XrCompositionLayerProjection pair =
+        typed<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
+    XrCompositionLayerQuad quads[2] = {
+        typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD),
+        typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD)};
+    const XrCompositionLayerBaseHeader* all[2] = {};
+    std::uint32_t count = 0;
+
+    template <class Layer>
+    void add(const Layer& layer) {
+      all[count++] = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
+    }
+  };
 
   template <class Call>
   XrResult call(Call&& function);
@@ -96,6 +114,13 @@ class OpenXrSession {
   bool pollEvents();  // false: it has ended as it was asked to
   void changeState(XrSessionState state);
   void frame();
+  static XrSwapchainSubImage wholeOf(const Chain& chain) {
+    return {chain.handle, {{0, 0}, {chain.width, chain.height}}, 0};
+  }
+  void addShown(Layers& layers);
+  void addPair(Layers& layers);
+  void addStanding(Layers& layers);
+  void addScreen(Layers& layers);
   bool locate(XrTime at);
   void showEyes();
   void showFlat();
@@ -474,14 +499,10 @@ void OpenXrSession::blitFresh(SharedPicture& picture, Shows kind) {
 
 // Upright before the head, and then it stays there.
 void OpenXrSession::placeScreen() {
-  const Vec3 head_m = 0.5 * (now_m_[0].pose.position + now_m_[1].pose.position);
-  Vec3 ahead = 0.5 * (now_m_[0].pose.orientation * Vec3(0.0, 0.0, -1.0) +
-                      now_m_[1].pose.orientation * Vec3(0.0, 0.0, -1.0));
-  ahead.y = 0.0;
-  ahead = glm::length(ahead) > 1e-3 ? glm::normalize(ahead) : Vec3(0.0, 0.0, -1.0);
-  const double yaw = std::atan2(-ahead.x, -ahead.z);
-  screen_pose_m_ = {head_m + shared_.options.screen_m * ahead,
-                    glm::angleAxis(yaw, Vec3(0.0, 1.0, 0.0))};
+  const Head head_m = headOf(now_m_);
+  const Vec3 ahead = levelAhead(head_m);
+  screen_pose_m_ = {head_m.position + shared_.options.screen_m * ahead,
+                    glm::angleAxis(std::atan2(-ahead.x, -ahead.z), Vec3(0.0, 1.0, 0.0))};
 }
 
 void OpenXrSession::showEyes() {
@@ -546,6 +567,58 @@ void OpenXrSession::showFlat() {
   release(pair_);
 }
 
+void OpenXrSession::addShown(Layers& layers) {
+  if (shows_ == Shows::flat) return addScreen(layers);
+  if (shows_ != Shows::eyes) return;
+  state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
+  state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
+  repeats_ > 1 ? addStanding(layers) : addPair(layers);
+}
+
+void OpenXrSession::addPair(Layers& layers) {
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    // What it was drawn for and not where the eyes are now: the runtime moves the picture.
+    const EyeView& of_eye = pair_shown_.eyes_m[eye];
+    XrCompositionLayerProjectionView& view = layers.views[eye];
+    view.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
+    view.pose = poseOf(of_eye.pose);
+    view.fov = fovOf(of_eye.sees);
+    view.subImage = wholeOf(eyes_[eye]);
+  }
+  layers.pair.space = room_;
+  layers.pair.viewCount = 2;
+  layers.pair.views = layers.views;
+  layers.add(layers.pair);
+}
+
+// The last pair as two flat pictures that the runtime places, one before each eye.
+void OpenXrSession::addStanding(Layers& layers) {
+  const double away_m = shared_.options.screen_m;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const EyeView& of_eye = pair_shown_.eyes_m[eye];
+    const FieldOfView& sees = of_eye.sees;
+    const Vec3 middle(0.5 * (sees.left + sees.right), 0.5 * (sees.down + sees.up), -1.0);
+    XrCompositionLayerQuad& quad = layers.quads[eye];
+    quad.space = room_;
+    quad.eyeVisibility = eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT;
+    quad.subImage = wholeOf(eyes_[eye]);
+    quad.pose = poseOf(Pose{of_eye.pose.position + of_eye.pose.orientation * (away_m * middle),
+                            of_eye.pose.orientation});
+    quad.size = {float(away_m * (sees.right - sees.left)), float(away_m * (sees.up - sees.down))};
+    layers.add(quad);
+  }
+}
+
+void OpenXrSession::addScreen(Layers& layers) {
+  XrCompositionLayerQuad& quad = layers.quads[0];
+  quad.space = room_;
+  quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
+  quad.subImage = wholeOf(screen_);
+  quad.pose = poseOf(screen_pose_m_);
+  quad.size = {float(shared_.options.screen_width_m), float(screen_height_m_)};
+  layers.add(quad);
+}
+
 void OpenXrSession::frame() {
   auto of = typed<XrFrameState>(XR_TYPE_FRAME_STATE);
   check(call([&] { return xr_.waitFrame(session_, nullptr, &of); }), "xrWaitFrame");
@@ -556,60 +629,11 @@ void OpenXrSession::frame() {
     const bool flat = pace_.tooSlow();
     flat ? showFlat() : showEyes();
   }
-  XrCompositionLayerProjectionView views[2] = {};
-  auto pair = typed<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
-  XrCompositionLayerQuad quads[2] = {typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD),
-                                     typed<XrCompositionLayerQuad>(XR_TYPE_COMPOSITION_LAYER_QUAD)};
-  const XrCompositionLayerBaseHeader* layers[2] = {};
-  std::uint32_t count = 0;
-  const auto add = [&](auto& layer) {
-    layers[count++] = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
-  };
-  if (draws && shows_ == Shows::eyes) {
-    state_.pose_age_ms = 1e-6 * double(monotonic_ns() - pair_shown_.asked_ns);
-    state_.most_pose_age_ms = std::max(state_.most_pose_age_ms, state_.pose_age_ms);
-  }
-  if (draws && shows_ == Shows::eyes && repeats_ > 1) {
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-      quads[eye].space = room_;
-      quads[eye].eyeVisibility = eye == 0 ? XR_EYE_VISIBILITY_LEFT : XR_EYE_VISIBILITY_RIGHT;
-      quads[eye].subImage = {eyes_[eye].handle, {{0, 0}, {eyes_[eye].width, eyes_[eye].height}}, 0};
-      const EyeView& of_eye = pair_shown_.eyes_m[eye];
-      const FieldOfView& sees = of_eye.sees;
-      const double away_m = shared_.options.screen_m;
-      const Vec3 middle(0.5 * (sees.left + sees.right), 0.5 * (sees.down + sees.up), -1.0);
-      quads[eye].pose =
-          poseOf(Pose{of_eye.pose.position + of_eye.pose.orientation * (away_m * middle),
-                      of_eye.pose.orientation});
-      quads[eye].size = {float(away_m * (sees.right - sees.left)),
-                         float(away_m * (sees.up - sees.down))};
-      add(quads[eye]);
-    }
-  } else if (draws && shows_ == Shows::eyes) {
-    for (std::size_t eye = 0; eye < 2; ++eye) {
-      // What it was drawn for and not where the eyes are now: the runtime moves the picture.
-      const EyeView& of_eye = pair_shown_.eyes_m[eye];
-      views[eye].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
-      views[eye].pose = poseOf(of_eye.pose);
-      views[eye].fov = fovOf(of_eye.sees);
-      views[eye].subImage = {eyes_[eye].handle, {{0, 0}, {eyes_[eye].width, eyes_[eye].height}}, 0};
-    }
-    pair.space = room_;
-    pair.viewCount = 2;
-    pair.views = views;
-    add(pair);
-  } else if (draws && shows_ == Shows::flat) {
-    XrCompositionLayerQuad& quad = quads[0];
-    quad.space = room_;
-    quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
-    quad.subImage = {screen_.handle, {{0, 0}, {screen_.width, screen_.height}}, 0};
-    quad.pose = poseOf(screen_pose_m_);
-    quad.size = {float(shared_.options.screen_width_m), float(screen_height_m_)};
-    add(quad);
-  }
+  Layers layers;
+  if (draws) addShown(layers);
   const XrFrameEndInfo info{
-      XR_TYPE_FRAME_END_INFO,           nullptr, of.predictedDisplayTime,
-      XR_ENVIRONMENT_BLEND_MODE_OPAQUE, count,   count > 0 ? layers : nullptr};
+      XR_TYPE_FRAME_END_INFO,           nullptr,      of.predictedDisplayTime,
+      XR_ENVIRONMENT_BLEND_MODE_OPAQUE, layers.count, layers.count > 0 ? layers.all : nullptr};
   check(call([&] { return xr_.endFrame(session_, &info); }), "xrEndFrame");
   state_.flat = shows_ == Shows::flat;
   state_.pairs_hz = pace_.pairs_hz();

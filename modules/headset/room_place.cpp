@@ -75,23 +75,19 @@ EyeView RoomPlace::toPatient_mm(const EyeView& room_m) const {
           room_m.sees};
 }
 
+Vec3 levelAhead(const Head& head_m) {
+  for (const Vec3& way : {head_m.forward, head_m.up}) {
+    const Vec3 level(way.x, 0.0, way.z);
+    if (glm::length(level) > 1e-3) return glm::normalize(level);
+  }
+  return Vec3(0.0, 0.0, -1.0);
+}
+
 RoomPlace before(const Eyes& eyes_m, const Looked& what, double ahead_m, double above_m,
                  double scale) {
-  const Vec3 head_m = 0.5 * (eyes_m[0].pose.position + eyes_m[1].pose.position);
-  // Displays of both eyes may be turned outwards.
-  const auto both = [&](const Vec3& axis) {
-    return 0.5 * (eyes_m[0].pose.orientation * axis + eyes_m[1].pose.orientation * axis);
-  };
-  Vec3 ahead = both(Vec3(0.0, 0.0, -1.0));
-  ahead.y = 0.0;
-  // Who looks straight down looks ahead where the top of the picture is.
-  if (glm::length(ahead) < 1e-3) {
-    ahead = both(Vec3(0.0, 1.0, 0.0));
-    ahead.y = 0.0;
-  }
-  ahead = glm::length(ahead) < 1e-3 ? Vec3(0.0, 0.0, -1.0) : glm::normalize(ahead);
-  const Vec3 place_m = head_m + ahead_m * ahead + Vec3(0.0, above_m, 0.0);
-  const Vec3 forward = glm::normalize(place_m - head_m);
+  const Head head_m = headOf(eyes_m);
+  const Vec3 place_m = head_m.position + ahead_m * levelAhead(head_m) + Vec3(0.0, above_m, 0.0);
+  const Vec3 forward = glm::normalize(place_m - head_m.position);
   const Vec3 right = glm::normalize(glm::cross(forward, Vec3(0.0, 1.0, 0.0)));
   const Vec3 up = glm::cross(right, forward);
   const Mat3 room(right, up, -forward);

@@ -30,6 +30,9 @@ struct Looked {
   Vec3 forward{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};  // of length 1, at right angles
 };
 
+// Where a head looks, level, of length 1. Of one that looks straight down, where its top points.
+Vec3 levelAhead(const Head& head_m);
+
 // Before the trainee: what is looked at stands so far ahead of the eyes and so far above them
 // (negative: below), and is seen from there as the panel's camera sees it, upright. The head's tilt
 // counts for nothing, only which way it is turned.

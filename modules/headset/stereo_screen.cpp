@@ -15,6 +15,11 @@ double aspectOf(Packing packing, int width, int height) {
   return (packing == Packing::full ? 0.5 : 1.0) * double(width) / double(height);
 }
 
+StereoScreen screenThrough(double focus_mm, double half_height_mm, double aspect, double eyes_mm,
+                           double away_mm) {
+  return {focus_mm, eyes_mm * focus_mm / away_mm, 2.0 * half_height_mm, aspect};
+}
+
 Eyes eyesBefore(const StereoScreen& screen) {
   return eyesBefore(screen, Pose{});
 }

@@ -31,6 +31,10 @@ struct StereoScreen {
   double height = 320.0;     // of what is seen in that plane
   double aspect = 16.0 / 9.0;
 };
+// As large as what a head sees in the plane that it looks at, so that this plane is the screen's,
+// and the eyes as far apart as the screen is away from who looks at it.
+StereoScreen screenThrough(double focus_mm, double half_height_mm, double aspect, double eyes_mm,
+                           double away_mm);
 // In the frame of the head, which looks along -z, between the eyes.
 Eyes eyesBefore(const StereoScreen& screen);
 // The same of a head that is elsewhere.

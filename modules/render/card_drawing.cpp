@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "render/card_drawing.h"
+#include "render/gl_program.h"
 
 namespace trephine {
 
@@ -47,26 +48,6 @@ void main()
 }
 )";
 
-unsigned int build() {
-  const unsigned int program = glCreateProgram();
-  for (const auto& [kind, text] :
-       {std::pair(GL_VERTEX_SHADER, kCardVertex), std::pair(GL_FRAGMENT_SHADER, kCard)}) {
-    const unsigned int shader = glCreateShader(GLenum(kind));
-    glShaderSource(shader, 1, &text, nullptr);
-    glCompileShader(shader);
-    glAttachShader(program, shader);
-    glDeleteShader(shader);
-  }
-  glBindAttribLocation(program, 0, "corner");
-  glBindAttribLocation(program, 1, "texel");
-  glBindFragDataLocation(program, 0, "colour");
-  glLinkProgram(program);
-  GLint linked = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (!linked) spdlog::warn("Cards cannot be drawn: their shader was refused");
-  return program;
-}
-
 }  // namespace
 
 void CardDrawing::show(std::vector<Card> cards) {
@@ -95,8 +76,15 @@ bool CardDrawing::prepare() {
     left_over_.clear();
   }
   if (cards_.empty()) return false;
+  if (refused_) return false;
   if (program_ == 0) {
-    program_ = build();
+    const Result<unsigned int> linked = linkProgram(kCardVertex, kCard, {"corner", "texel"});
+    refused_ = !linked;
+    if (refused_) {
+      spdlog::warn("Cards cannot be drawn: {}", linked.error().where);
+      return false;
+    }
+    program_ = *linked;
     glGenVertexArrays(1, &array_);
     glGenBuffers(1, &buffer_);
   }
@@ -186,6 +174,7 @@ void CardDrawing::release() {
   if (array_ != 0) glDeleteVertexArrays(1, &array_);
   if (buffer_ != 0) glDeleteBuffers(1, &buffer_);
   program_ = array_ = buffer_ = 0;
+  refused_ = false;
 }
 
 }  // namespace trephine

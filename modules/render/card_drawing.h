@@ -35,6 +35,7 @@ class CardDrawing {
   std::vector<Shown> cards_;
   std::vector<unsigned int> left_over_;  // textures of cards that are gone
   unsigned int program_ = 0, array_ = 0, buffer_ = 0;
+  bool refused_ = false;  // the program, by the driver
 };
 
 }  // namespace trephine

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/composer.h"
+#include "render/gl_program.h"
 
 namespace trephine {
 
@@ -143,32 +144,15 @@ void plainState() {
 }  // namespace
 
 unsigned int Composer::build(const char* fragment, const char* vertex) {
-  const unsigned int program = glCreateProgram();
-  for (const auto& [kind, text] :
-       {std::pair(GL_VERTEX_SHADER, vertex), std::pair(GL_FRAGMENT_SHADER, fragment)}) {
-    const unsigned int shader = glCreateShader(GLenum(kind));
-    glShaderSource(shader, 1, &text, nullptr);
-    glCompileShader(shader);
-    glAttachShader(program, shader);
-    glDeleteShader(shader);
-  }
-  glBindAttribLocation(program, 0, "place");
-  glBindAttribLocation(program, 1, "edge");
-  glBindAttribLocation(program, 2, "tint");
-  glBindAttribLocation(program, 3, "reach");
-  glBindFragDataLocation(program, 0, "colour");
-  glLinkProgram(program);
-  GLint linked = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (!linked) {
-    char why[512] = {};
-    glGetProgramInfoLog(program, sizeof why, nullptr, why);
-    failure_ = why[0] ? why : "a shader could not be linked";
-  }
-  return program;
+  const Result<unsigned int> linked =
+      linkProgram(vertex, fragment, {"place", "edge", "tint", "reach"});
+  if (linked) return *linked;
+  failure_ = linked.error().where.empty() ? "a shader could not be linked" : linked.error().where;
+  return 0;
 }
 
 bool Composer::prepare() {
+  if (!failure_.empty()) return false;
   if (volume_ == 0) {
     volume_ = build(kVolume, kWhole);
     tools_ = build(kTools, kWhole);

@@ -48,6 +48,11 @@ class ViewCamera {
   const Vec3& forward() const { return forward_; }
   const Vec3& up() const { return up_; }
   Vec3 right() const { return glm::cross(forward_, up_); }
+  // Of the perspective eye: x to the right, y up, looks along -z.
+  Pose pose_mm() const {
+    return {focus_mm_ - forward_ * distance_mm_,
+            glm::normalize(glm::quat_cast(Mat3(right(), up_, -forward_)))};
+  }
   // Orthographic, the same everywhere.
   double mmPerPixelAt(const Vec3& patient_mm, int height) const;
   // Half of what the picture spans upwards in the focus's plane.

@@ -5,6 +5,7 @@
 
 #include <QCoreApplication>
 #include <QDoubleSpinBox>
+#include <QFormLayout>
 #include <QKeyEvent>
 #include <QLabel>
 #include <QSignalBlocker>
@@ -150,6 +151,14 @@ class NumberField : public Box {
   QString word_;
   bool typed_ = false;  // another number than the one in force, and not yet taken
 };
+
+// A form's row of it; the words' mnemonic leads to the field.
+template <class Box>
+void addRow(QFormLayout& form, const QString& words, NumberField<Box>* field) {
+  auto* label = new QLabel(words, form.parentWidget());
+  label->setBuddy(field);
+  form.addRow(label, field->withReason());
+}
 
 using WholeNumberField = NumberField<QSpinBox>;
 using DecimalField = NumberField<QDoubleSpinBox>;

@@ -137,9 +137,7 @@ void RoomPanel::byHand() {
     field->setDecimals(1);
     field->setLimits(-most, most);
     field->show(now);
-    auto* label = new QLabel(words, dialog);
-    label->setBuddy(field);
-    form->addRow(label, field->withReason());
+    addRow(*form, words, field);
     return field;
   };
   const Vec3 to_right = from.orientation * Vec3(1.0, 0.0, 0.0);

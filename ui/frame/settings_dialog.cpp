@@ -79,19 +79,16 @@ SettingsDialog::SettingsDialog(const QString& storage, bool storage_locked, QWid
 
   auto* form = new QFormLayout;
   // A field that is more than one widget is not found by its label.
-  const auto add = [&](const QString& words, QLayout* field, QWidget* buddy) {
-    auto* label = new QLabel(words, this);
-    label->setBuddy(buddy);
-    form->addRow(label, field);
-  };
-  add(tr("&Storage folder"), storage_row, storage_);
+  auto* storage_label = new QLabel(tr("&Storage folder"), this);
+  storage_label->setBuddy(storage_);
+  form->addRow(storage_label, storage_row);
   form->addRow(tr("&Language"), language_);
   form->addRow(tr("&Theme"), theme_);
-  add(tr("Size of te&xt"), text_->withReason(), text_);
-  add(tr("An arm &gives at most"), arm_limit_->withReason(), arm_limit_);
+  addRow(*form, tr("Size of te&xt"), text_);
+  addRow(*form, tr("An arm &gives at most"), arm_limit_);
   form->addRow(tr("The mouse &begins with the"), hand_);
-  add(tr("One notch of the &wheel pushes by"), push_->withReason(), push_);
-  add(tr("An &arrow key moves by"), step_->withReason(), step_);
+  addRow(*form, tr("One notch of the &wheel pushes by"), push_);
+  addRow(*form, tr("An &arrow key moves by"), step_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Save | QDialogButtonBox::Cancel);
   connect(buttons, &QDialogButtonBox::accepted, this, &SettingsDialog::save);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);

@@ -49,14 +49,9 @@ QWidget* HeadsetDialog::buildHeadset() {
   mirror_ = new QCheckBox(tr("The &window shows what the left eye sees"));
   mirror_->setObjectName("headsetMirror");
   mirror_->setChecked(read(kHeadsetMirror));
-  const auto add = [&](const QString& words, DecimalField* field) {
-    auto* label = new QLabel(words, box);
-    label->setBuddy(field);
-    form->addRow(label, field->withReason());
-  };
-  add(tr("The patient is so far &ahead of the eyes"), ahead_);
-  add(tr("and so far &below them"), below_);
-  add(tr("Of the size in &life"), scale_);
+  addRow(*form, tr("The patient is so far &ahead of the eyes"), ahead_);
+  addRow(*form, tr("and so far &below them"), below_);
+  addRow(*form, tr("Of the size in &life"), scale_);
   form->addRow(mirror_);
   auto* arms = new QLabel(
       tr("Where arms are registered in the room (Devices), the patient lies where they are, and "
@@ -126,13 +121,8 @@ QWidget* HeadsetDialog::buildScreen() {
   }
   form->addRow(tr("&Screen"), screen_);
   form->addRow(tr("&Pictures"), packing_);
-  const auto add = [&](const QString& words, DecimalField* field) {
-    auto* label = new QLabel(words, box);
-    label->setBuddy(field);
-    form->addRow(label, field->withReason());
-  };
-  add(tr("The &eyes are apart by"), eyes_);
-  add(tr("The screen is &distant by"), away_);
+  addRow(*form, tr("The &eyes are apart by"), eyes_);
+  addRow(*form, tr("The screen is &distant by"), away_);
   form->addRow(tr("Lens before each eye"), lens_row);
   connect(screen_, &QComboBox::activated, this, [this] {
     write(kStereoScreen, screen_->currentData().toString());

@@ -111,7 +111,7 @@ void HeadsetView::place() {
   const double ahead_m =
       readWithin(settings::kHeadsetAhead_m, settings::kAheadLeast_m, settings::kAheadMost_m);
   const double below_m = readWithin(settings::kHeadsetBelow_m, 0.0, settings::kBelowMost_m);
-  head_m_ = 0.5 * (state.eyes_m[0].pose.position + state.eyes_m[1].pose.position);
+  head_m_ = headOf(state.eyes_m).position;
   place_ = before(state.eyes_m, {camera.focus(), camera.forward(), camera.up()}, ahead_m, -below_m,
                   scaleOf());
   ahead_ = glm::normalize(place_.toRoom_m(camera.focus()) - head_m_);
@@ -320,16 +320,10 @@ void HeadsetView::showCards() {
 std::vector<Vec3> HeadsetView::showMarks() {
   marks_m_.clear();
   if (!headset_ || !headset_->state().seen) return {};
-  const HeadsetState state = headset_->state();
-  const Pose &left_m = state.eyes_m[0].pose, &right_m = state.eyes_m[1].pose;
-  const Vec3 head_m = 0.5 * (left_m.position + right_m.position);
-  const Vec3 looks = glm::normalize(left_m.orientation * Vec3(0.0, 0.0, -1.0) +
-                                    right_m.orientation * Vec3(0.0, 0.0, -1.0));
-  const Vec3 middle_m = head_m + kMarksAhead_m * looks;
+  const Head head_m = headOf(headset_->state().eyes_m);
+  const Vec3 middle_m = head_m.position + kMarksAhead_m * head_m.forward;
   // The corners of a triangle of equal sides that lies level.
-  const Vec3 ahead =
-      facing(Vec3(middle_m.x - head_m.x, 0.0, middle_m.z - head_m.z) + Vec3(0.0, 0.0, -1e-6)) *
-      Vec3(0.0, 0.0, -1.0);
+  const Vec3 ahead = levelAhead(head_m);
   const Vec3 right = glm::cross(ahead, Vec3(0.0, 1.0, 0.0));
   const double high_m = 0.5 * std::sqrt(3.0) * kMarksApart_m;
   marks_m_ = {middle_m - right * (0.5 * kMarksApart_m) - ahead * (high_m / 3.0),

@@ -3,7 +3,7 @@
 #include <QElapsedTimer>
 #include <QGuiApplication>
 #include <QOpenGLContext>
-#include <QOpenGLExtraFunctions>
+#include <QOpenGLFunctions>
 #include <QTimer>
 
 #include "ui/common/actions.h"
@@ -33,16 +33,6 @@ QScreen* chosenScreen(const QWidget& window) {
     if (each != window.screen()) return each;
   }
   return nullptr;
-}
-
-StereoScreen screenBefore(const ViewCamera& camera, double aspect, double eyes_mm, double away_mm) {
-  // In the patient, so large that what is looked at lies in the screen's plane.
-  StereoScreen screen;
-  screen.distance = camera.distance_mm();
-  screen.separation = eyes_mm * camera.distance_mm() / away_mm;
-  screen.height = 2.0 * camera.halfHeight_mm();
-  screen.aspect = aspect;
-  return screen;
 }
 
 }  // namespace
@@ -128,13 +118,9 @@ void StereoView::stop() {
 void StereoView::release() {
   screen_window_.reset();
   bench_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
-    QOpenGLExtraFunctions& gl = *QOpenGLContext::currentContext()->extraFunctions();
-    gl.glDeleteTextures(2, textures_.data());
-    gl.glDeleteFramebuffers(2, framebuffers_.data());
+    pictures_.release();
     renderer.releaseEyes();
   });
-  textures_ = framebuffers_ = {};
-  sizes_ = {};
 }
 
 void StereoView::draw() {
@@ -142,11 +128,9 @@ void StereoView::draw() {
   if (!screen_window_) return;
   const int wide = screen_window_->pixelWidth(), high = screen_window_->pixelHeight();
   const ViewCamera& camera = bench_.view().camera();
-  const Pose head_mm{
-      camera.focus() - camera.distance_mm() * camera.forward(),
-      glm::normalize(glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward())))};
-  const Eyes eyes_mm =
-      eyesBefore(screenBefore(camera, aspectOf(packing_, wide, high), eyes_mm_, away_mm_), head_mm);
+  const StereoScreen screen = screenThrough(camera.distance_mm(), camera.halfHeight_mm(),
+                                            aspectOf(packing_, wide, high), eyes_mm_, away_mm_);
+  const Eyes eyes_mm = eyesBefore(screen, camera.pose_mm());
   bool warmed = false;
   QElapsedTimer timer;
   timer.start();
@@ -154,34 +138,19 @@ void StereoView::draw() {
     // What is drawn for the first time takes as long as several pictures: one thing an event.
     warmed = renderer.warmUp();
     if (warmed) return;
-    QOpenGLExtraFunctions& gl = *QOpenGLContext::currentContext()->extraFunctions();
     for (std::size_t eye = 0; eye < 2; ++eye) {
       const EyeRect rect = rectOf(eye, packing_, wide, high);
-      const QSize size(rect.width, rect.height);
-      if (textures_[eye] == 0) gl.glGenTextures(1, &textures_[eye]);
-      if (framebuffers_[eye] == 0) gl.glGenFramebuffers(1, &framebuffers_[eye]);
-      if (sizes_[eye] != size) {
-        gl.glBindTexture(GL_TEXTURE_2D, textures_[eye]);
-        gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width(), size.height(), 0, GL_RGBA,
-                        GL_UNSIGNED_BYTE, nullptr);
-        gl.glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-        gl.glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-        gl.glBindTexture(GL_TEXTURE_2D, 0);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[eye]);
-        gl.glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
-                                  textures_[eye], 0);
-        sizes_[eye] = size;
-      }
-      renderer.paintEye(eyes_mm[eye], framebuffers_[eye], size.width(), size.height());
+      renderer.paintEye(eyes_mm[eye], pictures_.framebuffer(eye, rect.width, rect.height),
+                        rect.width, rect.height);
     }
-    gl.glFlush();
+    QOpenGLContext::currentContext()->functions()->glFlush();
   });
   if (warmed) {
     due_ = true;
     return QTimer::singleShot(0, this, &StereoView::draw);
   }
   pair_ms_ = double(timer.nsecsElapsed()) * 1e-6;
-  screen_window_->show(textures_, packing_, lens_);
+  screen_window_->show(pictures_.textures(), packing_, lens_);
 }
 
 void StereoView::screenGone(QScreen* screen) {

@@ -7,9 +7,9 @@
 #include <QObject>
 #include <QPointer>
 #include <QScreen>
-#include <array>
 #include <memory>
 
+#include "headset/eye_pictures.h"
 #include "headset/lens_profile.h"
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
@@ -53,8 +53,7 @@ class StereoView : public QObject {
   LensProfile lens_;
   Packing packing_ = Packing::half;
   double eyes_mm_ = 0.0, away_mm_ = 0.0;
-  std::array<unsigned int, 2> textures_{}, framebuffers_{};
-  std::array<QSize, 2> sizes_{};
+  EyePictures pictures_;
   double pair_ms_ = 0.0;
   bool due_ = false;
 };

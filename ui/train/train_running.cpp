@@ -60,21 +60,14 @@ void TrainWorkspace::tick() {
   if (session->finished()) workstation_.stop();
 }
 
-// The middle one is the loop's: the tools' motors.
 void TrainWorkspace::followPedal(const LoopState& state) {
-  const std::uint32_t now = state.record.arms[0].buttons & (kPedalLeft | kPedalRight);
-  const std::uint32_t changed = now ^ std::exchange(pedal_, now);
-  // Two feet are never down at once: what the left switch does alone waits until it is up again.
-  const bool both = now == (kPedalLeft | kPedalRight);
-  if (both && changed != 0) emit recentreWanted();
-  const bool were_both = pedal_both_;
-  pedal_both_ = both || (pedal_both_ && now != 0);
-  if (changed & kPedalRight) {
-    clutch_->setChecked(now & kPedalRight);
+  const PedalSwitches::Asked asked = pedal_.follow(state.record.arms[0].buttons);
+  if (asked.recentre) emit recentreWanted();
+  if (asked.clutch) {
+    clutch_->setChecked(*asked.clutch);
     clutch();
   }
-  const bool left_up = changed & ~now & kPedalLeft;
-  if (left_up && !were_both && !state.busy && !workstation_.session()->isPoke()) {
+  if (asked.back && !state.busy && !workstation_.session()->isPoke()) {
     rewind(state.seconds - std::min(state.seconds, kPedalBack_s));
   }
 }

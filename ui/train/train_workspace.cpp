@@ -285,7 +285,7 @@ void TrainWorkspace::reset() {
 }
 
 void TrainWorkspace::sessionStarted() {
-  pedal_ = 0;
+  pedal_ = {};
   bench_.say({});  // of the exercise before
   Session& session = *workstation_.session();
   limits_N_.clear();

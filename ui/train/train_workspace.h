@@ -12,6 +12,7 @@
 #include "ui/train/arms_panel.h"
 #include "ui/train/exercise_panel.h"
 #include "ui/train/hand_bar.h"
+#include "ui/train/pedal_switches.h"
 #include "ui/train/pointer_hands.h"
 #include "ui/train/result_page.h"
 #include "ui/train/rewind_bar.h"
@@ -136,8 +137,7 @@ class TrainWorkspace : public Workspace {
   };
   std::optional<GoingBack> going_back_;  // until it is said that one is there
   bool cards_wanted_ = false;
-  bool pedal_both_ = false;              // its outer switches were down together, and one still is
-  std::uint32_t pedal_ = 0;              // buttons, as they were looked at last
+  PedalSwitches pedal_;
   std::optional<LoopState> undoing_;     // what was there when it was asked for
   int frames_ = 0;                       // since the rates were shown
   std::uint64_t ticks_shown_ = 0;

@@ -374,11 +374,6 @@ Status runTrials(const fs::path& bench, int count, const fs::path& out, DeviceRo
 
 // ---- What is said of it
 
-Json spread(const Spread& of) {
-  if (of.count == 0) return nullptr;
-  return {{"median", of.median}, {"p99", of.p99}, {"max", of.max}, {"count", of.count}};
-}
-
 std::string devicesCsv(const DeviceMeasurement& measurement) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
@@ -412,11 +407,6 @@ std::string devicesCsv(const DeviceMeasurement& measurement) {
 }
 
 }  // namespace
-
-Spread spreadOf(std::vector<double> figures) {
-  std::sort(figures.begin(), figures.end());
-  return {quantile(figures, 500), quantile(figures, 990), quantile(figures, 1000), figures.size()};
-}
 
 Result<DeviceTrial> tryDevice(const TrialOptions& options, const fs::path& recording) {
   const Result<DeviceBench*> bench = loadDeviceBench(options.bench);
@@ -559,7 +549,7 @@ Json toJson(const DeviceMeasurement& measurement) {
     Json delays = Json::array();
     for (const DelayRow& delay : row.delays) {
       delays.push_back({{"order", delay.order},
-                        {"delay_ms", spread(delay.delay_ms)},
+                        {"delay_ms", toJson(delay.delay_ms)},
                         {"delay_samples", delay.delay_samples},
                         {"at_the_arm", delay.at_the_arm},
                         {"forces_missing", delay.missing},
@@ -580,16 +570,16 @@ Json toJson(const DeviceMeasurement& measurement) {
          {"faults", row.faults},
          {"reports_lost", row.reports_lost ? Json(*row.reports_lost) : Json(nullptr)},
          {"reports_skipped", row.reports_skipped},
-         {"report_age_ms", spread(row.report_age_ms)},
-         {"sample_to_force_ms", spread(row.sample_to_force_ms)},
+         {"report_age_ms", toJson(row.report_age_ms)},
+         {"sample_to_force_ms", toJson(row.sample_to_force_ms)},
          {"at_the_arm", row.at_the_arm},
          {"force_mismatches", row.force_mismatches ? Json(*row.force_mismatches) : Json(nullptr)},
          {"forces_late", row.force_mismatches ? Json(row.forces_late) : Json(nullptr)},
          {"page_faults", row.page_faults},
-         {"unplug_to_zero_ms", spread(row.unplug_to_zero_ms)},
-         {"block_to_zero_ms", spread(row.block_to_zero_ms)},
-         {"block_at_arm_ms", spread(row.block_at_arm_ms)},
-         {"stop_ms", spread(row.stop_ms)},
+         {"unplug_to_zero_ms", toJson(row.unplug_to_zero_ms)},
+         {"block_to_zero_ms", toJson(row.block_to_zero_ms)},
+         {"block_at_arm_ms", toJson(row.block_at_arm_ms)},
+         {"stop_ms", toJson(row.stop_ms)},
          {"trials", row.unplugged + row.blocked},
          {"failed", row.failed},
          {"replayed", row.replayed},

@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "device/device_bench.h"
 #include "haptics/arm_dynamics.h"
+#include "lab/common/spread.h"
 
 namespace trephine {
 
@@ -21,13 +22,6 @@ struct DeviceOptions {
   double seconds = 60.0;                       // of the closed loop, 1 to 600
   int trials = 20;                             // of each trouble, 0 to 1000; with a bench alone
 };
-
-// Of figures that were not measured: nothing, said as null.
-struct Spread {
-  double median = 0.0, p99 = 0.0, max = 0.0;
-  std::size_t count = 0;
-};
-Spread spreadOf(std::vector<double> figures);
 
 // One order of the loop's calls on the arms, without tissue: from a sample at the arm to the force
 // that answers it there, or, where no bench tells, to the end of the plugin's write; and what the

@@ -8,10 +8,10 @@
 #include <functional>
 
 #include "base/system.h"
+#include "headset/eye_pictures.h"
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
 #include "headset/test_runtime.h"
-#include "lab/common/quantile.h"
 #include "lab/headset/headset_geometry.h"
 #include "lab/headset/headset_rig.h"
 
@@ -25,15 +25,10 @@ constexpr double kPatience_s = 10.0;  // for a headset to show something, or to 
 constexpr double kHang_s = 2.0;
 constexpr int kSmall = 256, kLarge = 1024;
 constexpr double kRow_s = 4.0;  // of each row
+constexpr double kEyes_mm = 63.0, kScreen_mm = 600.0;  // before a screen
 
 Error stopped() {
   return {"CANCELLED", "The measurement was cancelled", "measure headset", ""};
-}
-
-HeadsetSpread spreadOf(std::vector<double> figures) {
-  std::sort(figures.begin(), figures.end());
-  if (figures.empty()) return {};
-  return {quantile(figures, 500), quantile(figures, 990), figures.back(), figures.size()};
 }
 
 int entriesOf(const char* folder) {
@@ -167,17 +162,7 @@ HeadsetRow Measuring::sideBySideRow(int size) {
   row.kind = "side-by-side";
   row.width = row.height = size;
   QOpenGLExtraFunctions& gl = rig_.gl();
-  std::array<unsigned int, 3> textures{}, framebuffers{};
-  gl.glGenTextures(3, textures.data());
-  gl.glGenFramebuffers(3, framebuffers.data());
-  for (std::size_t i = 0; i < 3; ++i) {
-    gl.glBindTexture(GL_TEXTURE_2D, textures[i]);
-    gl.glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, i == 2 ? 2 * size : size, size, 0, GL_RGBA,
-                    GL_UNSIGNED_BYTE, nullptr);
-    gl.glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl.glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[i]);
-    gl.glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, textures[i], 0);
-  }
+  EyePictures eye_pictures, whole;
   PackedDrawing packed;
   std::vector<double> eyes_ms;
   const std::int64_t from_ns = monotonic_ns();
@@ -186,20 +171,18 @@ HeadsetRow Measuring::sideBySideRow(int size) {
       [&] {
         const ViewCamera& camera = rig_.renderer().camera();
         const double t_s = 1e-9 * double(monotonic_ns() - from_ns);
-        StereoScreen screen;
-        screen.distance = camera.distance_mm();
-        screen.separation = 63.0 * camera.distance_mm() / 600.0;
-        screen.height = 2.0 * camera.halfHeight_mm();
-        screen.aspect = 1.0;
-        const Quat turn =
-            glm::normalize(glm::quat_cast(Mat3(camera.right(), camera.up(), -camera.forward())));
-        const Vec3 aside = camera.right() * (10.0 * std::sin(2.0 * t_s));
-        const Eyes eyes = eyesBefore(screen, {camera.eye() + aside, turn});
+        const StereoScreen screen =
+            screenThrough(camera.distance_mm(), camera.halfHeight_mm(), 1.0, kEyes_mm, kScreen_mm);
+        Pose head_mm = camera.pose_mm();
+        head_mm.position += camera.right() * (10.0 * std::sin(2.0 * t_s));
+        const Eyes eyes = eyesBefore(screen, head_mm);
         const std::int64_t begun_ns = monotonic_ns();
-        for (std::size_t eye = 0; eye < 2; ++eye)
-          rig_.renderer().paintEye(eyes[eye], framebuffers[eye], size, size);
-        gl.glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[2]);
-        packed.draw({textures[0], textures[1]}, Packing::full, {}, 2 * size, size);
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+          rig_.renderer().paintEye(eyes[eye], eye_pictures.framebuffer(eye, size, size), size,
+                                   size);
+        }
+        gl.glBindFramebuffer(GL_FRAMEBUFFER, whole.framebuffer(0, 2 * size, size));
+        packed.draw(eye_pictures.textures(), Packing::full, {}, 2 * size, size);
         gl.glFinish();
         if (t_s > 0.5) {
           eyes_ms.push_back(1e-6 * double(monotonic_ns() - begun_ns));
@@ -209,8 +192,8 @@ HeadsetRow Measuring::sideBySideRow(int size) {
       },
       kRow_s);
   packed.release();
-  gl.glDeleteFramebuffers(3, framebuffers.data());
-  gl.glDeleteTextures(3, textures.data());
+  eye_pictures.release();
+  whole.release();
   rig_.renderer().releaseEyes();
   row.eyes_ms = row.pose_age_ms = spreadOf(eyes_ms);  // it is shown as soon as it is drawn
   row.pairs_hz = pairs / (kRow_s - 0.5);
@@ -380,16 +363,6 @@ Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progre
   return {};
 }
 
-Json spreadJson(const HeadsetSpread& of) {
-  if (of.count == 0) return nullptr;
-  return {{"median", of.median}, {"p99", of.p99}, {"max", of.max}, {"count", of.count}};
-}
-
-template <class Value>
-Json orNothing(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 }  // namespace
 
 Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, const fs::path& out,
@@ -461,39 +434,38 @@ Json toJson(const HeadsetMeasurement& of) {
   for (const HeadsetRow& row : of.rows) {
     rows.push_back({{"kind", row.kind},
                     {"size", {row.width, row.height}},
-                    {"eyes_ms", spreadJson(row.eyes_ms)},
-                    {"pose_age_ms", spreadJson(row.pose_age_ms)},
+                    {"eyes_ms", toJson(row.eyes_ms)},
+                    {"pose_age_ms", toJson(row.pose_age_ms)},
                     {"pairs_hz", row.pairs_hz},
                     {"repeats_percent", row.repeats_percent},
                     {"held_percent", row.held_percent}});
   }
   // Equal pictures have no noise at all, which is no number.
   const double psnr = std::min(of.psnr_to_crop_db, 999.0);
-  return {
-      {"opengl", of.opengl},
-      {"real_runtime", of.real_runtime},
-      {"rows", rows},
-      {"geometry",
-       {{"disparity_error_px", of.disparity_error_px},
-        {"vertical_error_px", of.vertical_error_px},
-        {"psnr_to_crop_db", psnr}}},
-      {"toggles", of.toggles},
-      {"losses", orNothing(of.losses)},
-      {"failures", {{"tried", orNothing(of.failures)}, {"ended", orNothing(of.failures_ended)}}},
-      {"leaked_textures", of.leaked_textures},
-      {"leaked_fds", of.leaked_fds},
-      {"leaked_threads", of.leaked_threads},
-      {"cleaned_ms", spreadJson(of.cleaned_ms)},
-      {"panel_longest_gap_ms", of.gap_ms},
-      {"panel_longest_gap_lost_ms", of.gap_lost_ms},
-      {"panel_longest_gap_without_ms", of.gap_without_ms},
-      {"haptic_missed",
-       {{"with_percent", of.missed_with_percent},
-        {"without_percent", of.missed_without_percent},
-        {"late_with", of.late_with},
-        {"late_without", of.late_without}}},
-      {"recording_replays", of.recording_replays},
-      {"violations", of.violations}};
+  return {{"opengl", of.opengl},
+          {"real_runtime", of.real_runtime},
+          {"rows", rows},
+          {"geometry",
+           {{"disparity_error_px", of.disparity_error_px},
+            {"vertical_error_px", of.vertical_error_px},
+            {"psnr_to_crop_db", psnr}}},
+          {"toggles", of.toggles},
+          {"losses", orNull(of.losses)},
+          {"failures", {{"tried", orNull(of.failures)}, {"ended", orNull(of.failures_ended)}}},
+          {"leaked_textures", of.leaked_textures},
+          {"leaked_fds", of.leaked_fds},
+          {"leaked_threads", of.leaked_threads},
+          {"cleaned_ms", toJson(of.cleaned_ms)},
+          {"panel_longest_gap_ms", of.gap_ms},
+          {"panel_longest_gap_lost_ms", of.gap_lost_ms},
+          {"panel_longest_gap_without_ms", of.gap_without_ms},
+          {"haptic_missed",
+           {{"with_percent", of.missed_with_percent},
+            {"without_percent", of.missed_without_percent},
+            {"late_with", of.late_with},
+            {"late_without", of.late_without}}},
+          {"recording_replays", of.recording_replays},
+          {"violations", of.violations}};
 }
 
 std::string toText(const HeadsetMeasurement& of) {

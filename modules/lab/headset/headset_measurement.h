@@ -14,6 +14,7 @@
 #include "base/json.h"
 #include "base/progress.h"
 #include "base/result.h"
+#include "lab/common/spread.h"
 
 namespace trephine {
 
@@ -24,17 +25,12 @@ struct HeadsetMeasureOptions {
   bool pictures = true;   // of both eyes, for each shipped scene
 };
 
-struct HeadsetSpread {
-  double median = 0.0, p99 = 0.0, max = 0.0;
-  std::size_t count = 0;
-};
-
 struct HeadsetRow {
   std::string kind;           // "openxr", "side-by-side"
   int width = 0, height = 0;  // of an eye's picture
-  HeadsetSpread eyes_ms;      // both, one after the other
+  Spread eyes_ms;             // both, one after the other
   // From the eyes' place to the frame that shows the picture drawn for it.
-  HeadsetSpread pose_age_ms;
+  Spread pose_age_ms;
   double pairs_hz = 0.0;
   double repeats_percent = 0.0;  // frames with the pair of the frame before, once
   double held_percent = 0.0;     // with one that stands in the room, until there is another
@@ -50,7 +46,7 @@ struct HeadsetMeasurement {
   std::optional<int> losses;  // that ended as they should
   std::optional<int> failures, failures_ended;  // calls that failed on purpose
   int leaked_textures = 0, leaked_fds = 0, leaked_threads = 0;
-  HeadsetSpread cleaned_ms;  // from a loss, or the return of a call that hung, to the end
+  Spread cleaned_ms;  // from a loss, or the return of a call that hung, to the end
   double gap_ms = 0.0, gap_lost_ms = 0.0;  // longest turn of the panel's loop
   double gap_without_ms = 0.0;             // the same without a headset
   double missed_with_percent = 0.0, missed_without_percent = 0.0;

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "lab/common/exercise_view.h"
 #include "render/display_probe.h"
-#include "render/tool_view.h"
 #include "training/replay.h"
 
 namespace trephine {
@@ -29,18 +29,6 @@ QGuiApplication* application() {
   ::setenv("QT_QPA_PLATFORM", "xcb", 1);
   ::setenv("QT_XCB_GL_INTEGRATION", "xcb_glx", 1);
   return new QGuiApplication(count, arguments);
-}
-
-std::vector<ToolView> toolsOf(const Scene& scene, const LoopState& state) {
-  std::vector<ToolView> tools;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const ArmRecord& arm = state.record.arms[i];
-    const SceneTool* tool = scene.toolOf(i, std::size_t(state.tools[i]));
-    if (!tool || !isFinite(arm.proxy_position_mm)) continue;
-    tools.push_back(toolView(*tool, {arm.proxy_position_mm, arm.proxy_orientation},
-                             arm.tissue_class >= 0, Vec3(0.75, 0.78, 0.82)));
-  }
-  return tools;
 }
 
 }  // namespace
@@ -122,15 +110,9 @@ Status HeadsetRig::open(const std::filesystem::path& file, const std::filesystem
   session_ = *std::move(session);
   renderer_->setTissues(scene_->tissues, scene_->view.looks);
   renderer_->setVolume(session_->grid(), case_->volume);
-  renderer_->setTools(toolsOf(*scene_, session_->state()));
-  bool placed = false;
-  for (const PlacedLandmark& landmark : session_->landmarks()) {
-    if (landmark.id != scene_->view.landmark) continue;
-    renderer_->lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
-                      landmark.frame.viewUp(), scene_->view.distance_mm);
-    placed = true;
-  }
-  if (!placed) renderer_->resetCamera(Vec3(0, 1, 0), Vec3(0, 0, 1));
+  renderer_->setTools(toolsOf(*session_));
+  lookAtExercise(*renderer_, *session_);
+  showOutline(*renderer_, *session_, *case_->volume);
   // A head that looks straight ahead, where a runtime says nothing else.
   Eyes eyes;
   for (std::size_t eye = 0; eye < 2; ++eye)
@@ -172,7 +154,7 @@ void HeadsetRig::turn() {
     next_panel_ns_ = std::max(next_panel_ns_ + kPanelEvery_ns, now_ns);
     if (session_ && session_->running()) {
       renderer_->pullChanges(session_->grid());
-      renderer_->setTools(toolsOf(*scene_, session_->state()));
+      renderer_->setTools(toolsOf(*session_));
     }
     renderer_->paint(panel_.framebuffer, kFrame_ms);
   }

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "base/file.h"
-#include "lab/common/quantile.h"
+#include "lab/common/spread.h"
 #include "lab/common/temporary_folder.h"
 
 namespace trephine {
@@ -106,11 +106,6 @@ const ImportRow* find(const ImportMeasurement& m, const std::string& series,
     return row.series == series && row.loader == loader && row.seconds_median;
   });
   return found == m.rows.end() ? nullptr : &*found;
-}
-
-template <class T>
-Json orNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 Json textOrNull(const std::string& text) {

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "base/system.h"
+#include "lab/common/exercise_view.h"
 #include "lab/common/quantile.h"
 #include "lab/render/render_parts.h"
-#include "render/tool_view.h"
 #include "session/session.h"
 #include "volume/phantom.h"
 
@@ -27,17 +27,6 @@ void addDelays(double last_read_ms, const Seen& seen, std::vector<double>& delay
     const double when = last_read_ms + (seen.read_ms - last_read_ms) * n / kMoments;
     delays.push_back(seen.there_ms - when);
   }
-}
-
-std::vector<ToolView> toolsOf(const Scene& scene, const LoopState& state) {
-  std::vector<ToolView> tools;
-  for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    const ArmRecord& arm = state.record.arms[i];
-    tools.push_back(toolView(*scene.findTool(scene.arms[i].tool),
-                             {arm.proxy_position_mm, arm.proxy_orientation}, arm.tissue_class >= 0,
-                             Vec3(0.75, 0.78, 0.82)));
-  }
-  return tools;
 }
 
 std::uint64_t removedVoxels(const LoopState& state, std::size_t arms) {
@@ -76,11 +65,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
   renderer.setSampleDistance(distance);
   renderer.setTissues(scene->tissues, scene->view.looks);
   renderer.setVolume(session.grid());
-  for (const PlacedLandmark& landmark : session.landmarks()) {
-    if (landmark.id != scene->view.landmark) continue;
-    renderer.lookAt(landmark.frame.position_mm, landmark.frame.viewDirection(),
-                    landmark.frame.viewUp(), scene->view.distance_mm);
-  }
+  lookAtExercise(renderer, session);
   for (int n = 0; n < 2; ++n) renderer.paint(0);  // the first one sends the volume
   Picture last = UploadProbe::painted(renderer);
 
@@ -99,7 +84,7 @@ Status measureExercise(const char* file, const RenderSubject& subject, const Ren
     hands.read_ms = msSince(begin);
     const LoopState& state = session.state();
     const std::uint64_t removed = removedVoxels(state, session.scene().arms.size());
-    renderer.setTools(toolsOf(session.scene(), state));
+    renderer.setTools(toolsOf(session));
     renderer.paint(0, kFrame_ms);
     hands.there_ms = removal.there_ms = msSince(begin);
     // Outside of the time: that the picture is another is the evidence that it was drawn.

@@ -4,16 +4,12 @@
 #include <locale>
 #include <sstream>
 
+#include "lab/common/spread.h"
 #include "lab/render/render_measurement.h"
 
 namespace trephine {
 
 namespace {
-
-template <class T>
-Json orNull(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 const RenderRow* find(const RenderMeasurement& m, const RenderRow& like, const char* mapper) {
   const auto found = std::find_if(m.rows.begin(), m.rows.end(), [&](const RenderRow& row) {
