@@ -8,6 +8,7 @@
 #include "app/signals.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "base/system.h"
 #include "ui/common/colours.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/settings.h"
@@ -39,7 +40,9 @@ int run(int argc, char** argv) {
   bool json = false;
   CLI::App cli("Trephine: practise cutting on a CT, with both hands. " +
                purposeText().toStdString() + ".");
-  auto* path_option = cli.add_option("path", path, "A folder of CT, or a scene (.json)");
+  cli.set_version_flag("--version", buildName());
+  auto* path_option =
+      cli.add_option("path", path, "A folder of CT, a scene (.json) or a recording (.trephine)");
   auto* exercise_option =
       cli.add_option("--exercise", scene, "Play this scene's script in the window, then end");
   cli.add_option("--seconds", seconds, "How long; as long as the script where absent")

@@ -6,15 +6,25 @@ namespace trephine {
 
 namespace build_info {
 extern const char* const name;
-extern const char* const resources;
-extern const char* const plugins;
 }  // namespace build_info
 
 namespace {
 
-std::filesystem::path fromEnvironment(const char* variable, const char* fallback) {
+namespace fs = std::filesystem;
+
+// Beside bin/, where this program is: wherever all of it was put, its own files are found. Links on
+// the way are followed, so that a file has one name.
+fs::path besidePrograms(const char* folder) {
+  std::error_code problem;
+  const fs::path programs = fs::read_symlink("/proc/self/exe", problem).parent_path();
+  const fs::path plain = programs.parent_path() / folder;
+  const fs::path real = fs::canonical(plain, problem);
+  return problem ? plain : real;
+}
+
+fs::path fromEnvironment(const char* variable, const fs::path& fallback) {
   const char* value = std::getenv(variable);
-  return value && *value ? value : fallback;
+  return value && *value ? fs::path(value) : fallback;
 }
 
 }  // namespace
@@ -22,14 +32,16 @@ std::filesystem::path fromEnvironment(const char* variable, const char* fallback
 std::string buildName() { return build_info::name; }
 
 std::filesystem::path resourceFolder() {
-  return fromEnvironment("TREPHINE_RESOURCES", build_info::resources);
+  static const fs::path shipped = besidePrograms("share/trephine");
+  return fromEnvironment("TREPHINE_RESOURCES", shipped);
 }
 
 std::filesystem::path pluginFolder() {
-  return fromEnvironment("TREPHINE_PLUGINS", build_info::plugins);
+  static const fs::path shipped = besidePrograms("lib/trephine/plugins");
+  return fromEnvironment("TREPHINE_PLUGINS", shipped);
 }
 
-void keepToBuiltFolders() {
+void keepToOwnFolders() {
   ::unsetenv("TREPHINE_RESOURCES");
   ::unsetenv("TREPHINE_PLUGINS");
 }

@@ -9,12 +9,14 @@ namespace trephine {
 // "0.1.0 Release": version and build type, in every answer under --json.
 std::string buildName();
 
-// Where scenes, tissues and devices are; the environment's TREPHINE_RESOURCES comes first.
+// Where scenes, tissues and devices are, ../share/trephine from the program's folder; the
+// environment's TREPHINE_RESOURCES comes first.
 std::filesystem::path resourceFolder();
-// Where device plugins are; the environment's TREPHINE_PLUGINS comes first.
+// Where device plugins are, ../lib/trephine/plugins; the environment's TREPHINE_PLUGINS comes
+// first.
 std::filesystem::path pluginFolder();
-// From now on both are where the build has put them: takes the two out of this process's
+// From now on both are where they were installed: takes the two out of this process's
 // environment, and so out of that of what it starts. Before there are threads.
-void keepToBuiltFolders();
+void keepToOwnFolders();
 
 }  // namespace trephine

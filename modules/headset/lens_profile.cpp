@@ -35,7 +35,8 @@ Result<LensProfile> readLensProfile(const std::filesystem::path& file) {
   double last = 0.0;
   for (double r = 0.01; reader.ok() && r <= kCorner; r += 0.01) {
     const double now = bent(lens, r);
-    if (now <= last) reader.fail("k", "folds the picture over", "Check the lens's numbers");
+    if (now <= last)
+      reader.fail("k", "These numbers fold the picture over itself", "Check the lens's numbers");
     last = now;
   }
   if (Status read = reader.finish(); !read) return read.error();

@@ -172,7 +172,7 @@ Policy readPolicy(const fs::path& file) {
 
 Policy policyAtStart(const fs::path& file) {
   Policy policy = readPolicy(file);
-  if (!policy.locks.empty()) keepToBuiltFolders();
+  if (!policy.locks.empty()) keepToOwnFolders();
   return policy;
 }
 

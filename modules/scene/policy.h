@@ -38,7 +38,7 @@ Policy readPolicy(const std::filesystem::path& file);
 Result<Policy> parsePolicy(const Json& json, const std::filesystem::path& file);
 
 // The same, for a program as the first thing that it does, before it has threads: where anything is
-// locked, the environment no longer says where scenes and plugins are (keepToBuiltFolders).
+// locked, the environment no longer says where scenes and plugins are (keepToOwnFolders).
 Policy policyAtStart(const std::filesystem::path& file = kPolicyFile);
 
 // What is locked while this scene is practised.

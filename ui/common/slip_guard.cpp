@@ -5,6 +5,7 @@
 #include <QComboBox>
 #include <QKeyEvent>
 #include <QLineEdit>
+#include <QMenu>
 #include <QScrollBar>
 #include <QTabBar>
 
@@ -65,6 +66,10 @@ bool SlipGuard::eventFilter(QObject* watched, QEvent* event) {
   const QEvent::Type type = event->type();
   if (type == QEvent::ShortcutOverride) {
     const auto& key = *static_cast<QKeyEvent*>(event);
+    if (qobject_cast<QMenu*>(QApplication::activePopupWidget())) {
+      event->accept();
+      return true;
+    }
     return (hasNothingToUndo(watched, key) || isOfWindow(key)) && passOn(event);
   }
   if (type != QEvent::Wheel && type != QEvent::KeyPress && type != QEvent::Polish) return false;

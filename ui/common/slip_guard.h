@@ -5,6 +5,8 @@
 // - The wheel turns a number, a slider or a row of tabs only where that has the focus, which the
 //   wheel does not give.
 // - Ctrl+Z in a field in which nothing was typed is the window's, as are Ctrl+E and Ctrl+K in any.
+// - The keys of an open menu are the menu's: a letter that is a shortcut as well does not act
+// behind it.
 // - A list of choices changes by opening it and choosing: the wheel does nothing to it, Up and Down
 //   open it, other keys pass it by.
 #pragma once

@@ -183,6 +183,7 @@ void RoomPanel::showWords() {
         tr("Hold the tip at the cross of mark %1 of 3, then press the arm's button, or Space.")
             .arg(touched_m_.size() + 1));
   }
+  if (!arm_) return words_->clear();
   if (!where) return words_->setText(tr("Where it stands in a headset's room is not known."));
   if (!where->error_mm) {
     return words_->setText(

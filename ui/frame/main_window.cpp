@@ -276,6 +276,8 @@ void MainWindow::showDevices() {
     headset_->hideMarks();
   });
   tell();
+  // Its marks are touched with the headset on.
+  dialog->addActions({headset_->onAction(), headset_->recentreAction()});
   dialog->open();
 }
 
@@ -286,7 +288,8 @@ void MainWindow::showEyes() {
     eyes_->hide();
     return eyes_->clear();
   }
-  words << tr("window %1 ms").arg(panel_ms_, 0, 'f', 1);
+  // While it shows what an eye sees it draws nothing itself.
+  if (panel_ms_ >= 0.05) words << tr("window %1 ms").arg(panel_ms_, 0, 'f', 1);
   eyes_->setText(words.join(QStringLiteral(" \u00b7 ")));
   eyes_->setVisible(statusBar()->currentMessage().isEmpty());
 }
@@ -303,6 +306,8 @@ void MainWindow::showHeadset() {
                         if (of) of->setLens(toQt(file.string()));
                       });
   });
+  // A window over its screen must not keep the keys from coming back here.
+  connect(dialog, &QDialog::finished, this, [this] { activateWindow(); });
   dialog->open();
 }
 

@@ -155,6 +155,7 @@ EyeCard noteCard(const QString& words) {
   card.image = sheet.take();
   card.width_m = metres(kWidth_deg);
   card.up_deg = -16.0;
+  card.before_all = true;
   return card;
 }
 

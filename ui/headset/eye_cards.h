@@ -14,6 +14,7 @@ struct EyeCard {
   std::string name;
   QImage image;
   double right_deg = 0.0, up_deg = 0.0, width_m = 0.3;
+  bool before_all = false;  // where the patient would hide it
 };
 
 // A card's pixels stand for so many a degree, seen from where it is read.

@@ -24,6 +24,7 @@ HeadsetDialog::HeadsetDialog(QWidget* parent) : QDialog(parent) {
   layout->addWidget(buildHeadset());
   layout->addWidget(buildScreen());
   layout->addWidget(buttons);
+  ahead_->setFocus(Qt::TabFocusReason);  // with its number selected
 }
 
 DecimalField* HeadsetDialog::number(const char* name, const QString& unit, double least,
@@ -60,14 +61,17 @@ QWidget* HeadsetDialog::buildHeadset() {
   arms->setProperty("quiet", true);
   form->addRow(arms);
   ahead_->entered = [this] {
+    ahead_->take();
     write(kHeadsetAhead_m, 0.01 * ahead_->wanted());
     emit headsetChanged();
   };
   below_->entered = [this] {
+    below_->take();
     write(kHeadsetBelow_m, 0.01 * below_->wanted());
     emit headsetChanged();
   };
   scale_->entered = [this] {
+    scale_->take();
     write(kHeadsetScale, 0.01 * scale_->wanted());
     emit headsetChanged();
   };
@@ -87,7 +91,8 @@ QWidget* HeadsetDialog::buildScreen() {
   screen_->addItem(tr("Another than the window's"), QString());
   const QString chosen = read(kStereoScreen);
   for (const QScreen* each : QGuiApplication::screens()) {
-    screen_->addItem(tr("%1, %2 \u00d7 %3")
+    const bool own = parentWidget() && each == parentWidget()->screen();
+    screen_->addItem((own ? tr("%1, %2 \u00d7 %3, over the window") : tr("%1, %2 \u00d7 %3"))
                          .arg(each->name())
                          .arg(each->geometry().width())
                          .arg(each->geometry().height()),
@@ -133,10 +138,12 @@ QWidget* HeadsetDialog::buildScreen() {
     emit screenChanged();
   });
   eyes_->entered = [this] {
+    eyes_->take();
     write(kStereoEyes_mm, eyes_->wanted());
     emit screenChanged();
   };
   away_->entered = [this] {
+    away_->take();
     write(kStereoScreen_mm, 10.0 * away_->wanted());
     emit screenChanged();
   };

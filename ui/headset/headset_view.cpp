@@ -89,7 +89,8 @@ void HeadsetView::start() {
     QMetaObject::invokeMethod(this, &HeadsetView::serve, Qt::QueuedConnection);
   };
   Result<std::unique_ptr<Headset>> started =
-      Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "", "Open a case first"};
+      Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "",
+            "Open a case, and wait until it is shown"};
   if (view.context() && view.canDraw().ok()) {
     started = Headset::start(*view.context(), HeadsetOptions{}, wake);
   }
@@ -255,8 +256,9 @@ void HeadsetView::ended(const HeadsetEnd& how) {
   }
   if (wanted && !how.why.ok()) {
     // What went away in an exercise is said beside it, and no dialog holds up the hands.
-    bench_.workstation().session() ? bench_.say(toQt(how.why.error().sentence()))
-                                   : bench_.report(how.why.error());
+    const Error& why = how.why.error();
+    bench_.workstation().session() ? bench_.say(toQt(why.what + ". " + why.next + "."))
+                                   : bench_.report(why);
   }
   emit changed();
 }
@@ -281,7 +283,7 @@ void HeadsetView::setCards(std::vector<EyeCard> cards) {
 void HeadsetView::showCards() {
   std::vector<EyeCard> all = cards_;
   const double scale = place_.scale;
-  if (!isOne(scale)) {
+  if (!isOne(scale) && bench_.workstation().currentCase()) {
     all.push_back(noteCard(
         scale > 1.0 ? tr("The patient is shown %1 times as large as in life.").arg(scale, 0, 'f', 2)
                     : tr("The patient is shown at %1 % of the size in life.")
@@ -309,6 +311,7 @@ void HeadsetView::showCards() {
     const Vec3 way = ahead_ + right * std::tan(glm::radians(each.right_deg)) +
                      up * std::tan(glm::radians(each.up_deg));
     stand(each, head_m_ + kCardDistance_m * glm::normalize(way));
+    shown.back().before_all = each.before_all;
   }
   for (std::size_t i = 0; i < marks_m_.size(); ++i) {
     stand(markCard(int(i) + 1), marks_m_[i]);
@@ -350,7 +353,8 @@ QString HeadsetView::words() const {
           : tr("Headset")};
   words << tr("both eyes %1 ms").arg(painter_.pair_ms(), 0, 'f', 1);
   if (by_arms_) words << tr("tools within %1 mm of the arms").arg(toolsApart_mm(), 0, 'f', 1);
-  if (!isOne(place_.scale)) words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
+  if (!isOne(place_.scale) && !state.flat && bench_.workstation().currentCase())
+    words << tr("patient at %1 %").arg(100.0 * place_.scale, 0, 'f', 0);
   return words.join(QStringLiteral(" \u00b7 "));
 }
 

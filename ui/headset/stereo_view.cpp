@@ -21,6 +21,8 @@ Packing packingOf(const QString& word) {
 
 namespace {
 
+constexpr int kStereoWordsEvery_ms = 1000;
+
 // The one that a person chose, if it is there; else one that the window is not on.
 QScreen* chosenScreen(const QWidget& window) {
   const QString name = read(settings::kStereoScreen);
@@ -51,6 +53,8 @@ StereoView::StereoView(Bench& bench, QWidget& window)
     QTimer::singleShot(0, this, &StereoView::draw);
   });
   connect(qGuiApp, &QGuiApplication::screenRemoved, this, &StereoView::screenGone);
+  words_timer_.setInterval(kStereoWordsEvery_ms);
+  connect(&words_timer_, &QTimer::timeout, this, &StereoView::changed);
 }
 
 StereoView::~StereoView() {
@@ -69,26 +73,20 @@ void StereoView::toggle(bool on) {
 
 Status StereoView::start() {
   if (!bench_.view().context() || !bench_.view().canDraw()) {
-    return Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "", "Open a case first"};
+    return Error{"NO_OPENGL", "The 3-D view has not drawn anything yet", "",
+                 "Open a case, and wait until it is shown"};
   }
   screen_ = chosenScreen(window_);
   if (!screen_) {
     const QString name = read(settings::kStereoScreen);
-    return Error{"NO_SCREEN",
-                 name.isEmpty() ? "No other screen is connected"
-                                : "The screen that was chosen is not connected",
-                 name.toStdString(), "Connect it, or choose one under View, Headset and screens"};
+    return name.isEmpty()
+               ? Error{"NO_SCREEN", "This computer has one screen only", "",
+                       "Connect another, or choose this one under View, Headset and screens"}
+               : Error{"NO_SCREEN", "The chosen screen is not connected",
+                       "screen " + name.toStdString(),
+                       "Connect it, or choose another under View, Headset and screens"};
   }
-  lens_ = {};
-  if (const QString file = read(settings::kStereoLens); !file.isEmpty()) {
-    Result<LensProfile> lens = readLensProfile(toPath(file));
-    if (!lens) return lens.error();
-    lens_ = *lens;
-  }
-  packing_ = packingOf(read(settings::kStereoPacking));
-  eyes_mm_ = readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
-  away_mm_ =
-      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
+  if (Status read = readSettings(); !read) return read;
   screen_window_ = std::make_unique<StereoWindow>(&window_);
   connect(screen_window_.get(), &StereoWindow::leaveWanted, this, &StereoView::stop,
           Qt::QueuedConnection);
@@ -96,15 +94,41 @@ Status StereoView::start() {
   screen_window_->setGeometry(screen_->geometry());
   screen_window_->setWindowState(Qt::WindowFullScreen);
   screen_window_->show();  // and the keys stay where they are
+  words_timer_.start();
   draw();
   emit changed();
   return {};
 }
 
+Status StereoView::readSettings() {
+  lens_ = {};
+  if (const QString file = read(settings::kStereoLens); !file.isEmpty()) {
+    Result<LensProfile> lens = readLensProfile(toPath(file));
+    if (!lens) {
+      Error error = lens.error();
+      error.what = "The lens before each eye cannot be used: " + error.what;
+      return error;
+    }
+    lens_ = *lens;
+  }
+  packing_ = packingOf(read(settings::kStereoPacking));
+  eyes_mm_ = readWithin(settings::kStereoEyes_mm, settings::kEyesLeast_mm, settings::kEyesMost_mm);
+  away_mm_ =
+      readWithin(settings::kStereoScreen_mm, settings::kScreenLeast_mm, settings::kScreenMost_mm);
+  return {};
+}
+
 void StereoView::settingsChanged() {
   if (!screen_window_) return;
-  stop();
-  on_->setChecked(true);
+  if (chosenScreen(window_) != screen_) {
+    stop();
+    on_->setChecked(true);
+  } else if (const Status read = readSettings(); !read) {
+    stop();
+    bench_.report(read.error());
+  } else {
+    draw();
+  }
 }
 
 void StereoView::stop() {
@@ -116,6 +140,7 @@ void StereoView::stop() {
 }
 
 void StereoView::release() {
+  words_timer_.stop();
   screen_window_.reset();
   bench_.view().withGraphics([this](SceneRenderer& renderer, unsigned int, int, int) {
     pictures_.release();

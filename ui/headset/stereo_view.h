@@ -7,6 +7,7 @@
 #include <QObject>
 #include <QPointer>
 #include <QScreen>
+#include <QTimer>
 #include <memory>
 
 #include "headset/eye_pictures.h"
@@ -40,6 +41,7 @@ class StereoView : public QObject {
  private:
   void toggle(bool on);
   Status start();
+  Status readSettings();
   void draw();
   void screenGone(QScreen* screen);
   void release();
@@ -49,13 +51,14 @@ class StereoView : public QObject {
   QAction* on_;
   std::unique_ptr<StereoWindow> screen_window_;
   QPointer<QScreen> screen_;
-  // As the settings had them when it was switched on.
+  // As the settings had them when they were read last.
   LensProfile lens_;
   Packing packing_ = Packing::half;
   double eyes_mm_ = 0.0, away_mm_ = 0.0;
   EyePictures pictures_;
   double pair_ms_ = 0.0;
   bool due_ = false;
+  QTimer words_timer_;
 };
 
 }  // namespace trephine

@@ -1,6 +1,7 @@
 #include "ui/work/bench.h"
 
 #include <QAbstractSpinBox>
+#include <QApplication>
 #include <QFileInfo>
 #include <QLineEdit>
 #include <QMessageBox>
@@ -99,12 +100,21 @@ void Bench::setTrying(bool trying) {
 
 void Bench::report(const Error& error) {
   spdlog::warn("Said in the window: {}", error.code);  // no more: the rest may name files
-  showError(&window_, error);
+  showError(asking(), error);
   emit failed(error);
 }
 
+// Over a dialog that is open, so that the keys come back to it.
+QWidget* Bench::asking() const {
+  QWidget* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+  for (const QObject* of = dialog; of; of = of->parent()) {
+    if (of == &window_) return dialog;
+  }
+  return &window_;
+}
+
 QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QString& filter) {
-  auto* dialog = new QFileDialog(&window_, title, {}, filter);
+  auto* dialog = new QFileDialog(asking(), title, {}, filter);
   dialog->setObjectName(name);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(QFileDialog::ExistingFile);
@@ -125,8 +135,10 @@ QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QSt
 void Bench::askForFile(const char* name, const QString& title, const QString& filter,
                        GotPath then) {
   QFileDialog* dialog = fileDialog(name, title, filter);
-  connect(dialog, &QFileDialog::fileSelected, this,
-          [then = std::move(then)](const QString& file) { then(toPath(file)); });
+  connect(
+      dialog, &QFileDialog::fileSelected, this,
+      [then = std::move(then)](const QString& file) { then(toPath(file)); },
+      Qt::QueuedConnection);  // once it is closed
   dialog->open();
 }
 

@@ -73,6 +73,7 @@ class Bench : public QObject {
   // The same for a folder that will be made.
   void askForNewFolder(const char* name, const QString& title, const QString& suggestion,
                        GotPath then);
+  QWidget* asking() const;
   QFileDialog* saveDialog(const QString& title, const QString& suggestion, const QString& filter);
 
   // --- What would be lost ---

@@ -12,6 +12,7 @@
 #include "headset/packed_drawing.h"
 #include "headset/stereo_screen.h"
 #include "headset/test_runtime.h"
+#include "lab/common/exercise_view.h"
 #include "lab/headset/headset_geometry.h"
 #include "lab/headset/headset_rig.h"
 
@@ -325,15 +326,20 @@ Status Measuring::failures() {
   return {};
 }
 
-// What each eye sees of a scene where it begins, side by side.
+// What each eye sees of a scene after its first moment, side by side.
 Status savePictures(HeadsetRig& rig, const fs::path& out, const Progress& progress) {
   constexpr int kSize = 512;
+  constexpr double kMoment_s = 1.0;
   for (const char* name : {"burr-hole", "cranium", "cranium-one-arm", "liver", "liver-one-arm",
                            "seed-cranium", "seed-liver"}) {
     progress.at(0.95, std::string("pictures, ") + name);
     if (progress.cancelled()) return stopped();
     const fs::path file = resourceFolder() / "scenes" / (std::string(name) + ".json");
     if (Status opened = rig.open(file, {}, Progress()); !opened) return opened;
+    // Both hands where the script has them after a moment.
+    if (Status run = rig.session().freewheel(kMoment_s, Progress()); !run) return run;
+    rig.renderer().pullChanges(rig.session().grid());
+    rig.renderer().setTools(toolsOf(rig.session()));
     StereoScreen screen;  // the middle of what a headset shows: 50 degrees each way
     screen.distance = 0.6;
     screen.separation = 0.063;

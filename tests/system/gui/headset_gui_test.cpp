@@ -131,6 +131,19 @@ class HeadsetGuiTest : public test::TrainTest {
     stop();
   }
 
+  void oneThatCannotBeHadInAnExerciseIsSaidInALineThatFits() {
+    openScene(scene_);
+    startTraining();
+    ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
+    find<QAction>("headset")->trigger();
+    QTRY_VERIFY(!isOn());
+    QTRY_VERIFY2(said().contains("No OpenXR runtime"), qPrintable(said()));
+    QVERIFY2(!said().contains("XrResult") && said().contains("Install"), qPrintable(said()));
+    ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
+    goesOn();
+    stop();
+  }
+
   void oneWhoseSoftwareHangsHoldsUpNothing() {
     openScene(scene_);
     startTraining();

@@ -11,6 +11,7 @@
 #include <QStatusBar>
 
 #include "train_support.h"
+#include "ui/common/settings.h"
 #include "ui/headset/stereo_window.h"
 
 using namespace trephine;
@@ -79,6 +80,7 @@ class StereoGuiTest : public test::TrainTest {
     QTRY_VERIFY(shown());
     QTRY_COMPARE(shown()->geometry(), QRect(1280, 0, 640, 800));
     QTRY_VERIFY(find<QLabel>("eyes")->text().contains("Both eyes on"));
+    StereoWindow* const first = shown();
     const QImage both = picture();
     QVERIFY(both.save(TREPHINE_ARTEFACTS "/stereo-half.png"));
     const QImage left = both.copy(0, 0, 320, 800), right = both.copy(320, 0, 320, 800);
@@ -90,12 +92,20 @@ class StereoGuiTest : public test::TrainTest {
     auto* packing = find<QComboBox>("stereoPacking");
     packing->setCurrentIndex(packing->findData("top_bottom"));
     emit packing->activated(packing->currentIndex());
-    QTRY_VERIFY(shown());
+    QCOMPARE(shown(), first);  // no other window, which could take the keys
     const QImage above = picture();
     QVERIFY(above.save(TREPHINE_ARTEFACTS "/stereo-top-bottom.png"));
     QVERIFY(difference(above, both) > 1000);
     find<QDialog>("headsetDialog")->close();
     QVERIFY(!shown()->isActiveWindow());
+    QTRY_VERIFY(window_->isActiveWindow());
+    // The status line follows what the pictures take, though nothing is switched.
+    const QString before = find<QLabel>("eyes")->text();
+    for (int i = 0; i < 8; ++i) {
+      key(i % 2 == 0 ? Qt::Key_A : Qt::Key_S);
+      QTest::qWait(300);
+    }
+    QTRY_VERIFY2(find<QLabel>("eyes")->text() != before, qPrintable(before));
     QTest::mouseDClick(shown(), Qt::LeftButton);
     QTRY_VERIFY(!shown());
     QTRY_VERIFY(!find<QAction>("stereo")->isChecked());
@@ -127,12 +137,12 @@ class StereoGuiTest : public test::TrainTest {
     };
     choose(bad);
     QTRY_VERIFY(error());
-    QVERIFY2((error()->text() + error()->informativeText()).contains("folds"),
-             qPrintable(error()->text()));
+    QVERIFY2(error()->text().contains("fold the picture over"), qPrintable(error()->text()));
+    QCOMPARE(error()->parentWidget(), find<QDialog>("headsetDialog"));  // the keys go back to it
     error()->close();
     QVERIFY(find<QLineEdit>("stereoLens")->text().isEmpty());
     choose(good);
-    QCOMPARE(find<QLineEdit>("stereoLens")->text(), good);
+    QTRY_COMPARE(find<QLineEdit>("stereoLens")->text(), good);
     QTRY_VERIFY(shown());
     const QImage bent = picture();
     QVERIFY(bent.save(TREPHINE_ARTEFACTS "/stereo-lens.png"));
@@ -146,8 +156,10 @@ class StereoGuiTest : public test::TrainTest {
     find<QAction>("stereo")->trigger();
     QTRY_VERIFY(error());
     QTRY_VERIFY(!find<QAction>("stereo")->isChecked());
+    QVERIFY2(error()->text().startsWith("The lens"), qPrintable(error()->text()));
     error()->close();
     QVERIFY(!shown());
+    write(settings::kStereoLens, QString());
   }
 
   void whatCannotBeginLeavesTheOther() {
@@ -177,7 +189,7 @@ class StereoGuiTest : public test::TrainTest {
     find<QAction>("stereo")->trigger();
     QTRY_VERIFY(error());
     const QString text = error()->text() + error()->informativeText();
-    QVERIFY2(text.contains("No other screen"), qPrintable(text));
+    QVERIFY2(text.contains("one screen only"), qPrintable(text));
   }
 };
 

@@ -6,6 +6,8 @@
 #include <QAbstractItemView>
 #include <QComboBox>
 #include <QKeyEvent>
+#include <QMenu>
+#include <QTest>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QSlider>
@@ -68,6 +70,29 @@ class SlipGuardTest : public ::testing::Test {
   QComboBox* choices_;
   QTabBar* tabs_;
 };
+
+TEST_F(SlipGuardTest, ALetterInAnOpenMenuIsTheMenusAndNotAShortcutBehindIt) {
+  QMenu menu(&area_);
+  int shortcut = 0, chosen = 0;
+  QAction behind;
+  behind.setShortcut(Qt::Key_P);
+  area_.addAction(&behind);
+  QObject::connect(&behind, &QAction::triggered, &area_, [&] { ++shortcut; });
+  QObject::connect(menu.addAction("&Put it here"), &QAction::triggered, &menu, [&] { ++chosen; });
+  const auto press = [&] {  // as the platform asks first whether a widget wants it
+    QKeyEvent override(QEvent::ShortcutOverride, Qt::Key_P, Qt::NoModifier, "p");
+    override.ignore();
+    QCoreApplication::sendEvent(&area_, &override);
+    return override.isAccepted();
+  };
+  EXPECT_FALSE(press()) << "without a menu it is a shortcut";
+  menu.popup(area_.mapToGlobal(QPoint(10, 10)));
+  ASSERT_EQ(QApplication::activePopupWidget(), &menu);
+  EXPECT_TRUE(press());
+  QTest::keyClick(&menu, Qt::Key_P);
+  EXPECT_EQ(chosen, 1);
+  EXPECT_EQ(shortcut, 0);
+}
 
 TEST_F(SlipGuardTest, TheWheelOverAFieldWithoutFocusScrollsThePanelAndNotTheValue) {
   for (QWidget* widget : {static_cast<QWidget*>(number_), static_cast<QWidget*>(decimal_),
