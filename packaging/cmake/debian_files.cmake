@@ -1,0 +1,12 @@
+# The .deb's files that lie outside of the prefix, or are named as Debian names them.
+if(NOT CPACK_GENERATOR STREQUAL "DEB")
+  return()
+endif()
+set(root ${CPACK_TEMPORARY_DIRECTORY})
+file(MAKE_DIRECTORY ${root}/etc/trephine ${root}/etc/security/limits.d)
+configure_file(${CPACK_TREPHINE_DEBIAN}/limits.conf ${root}/etc/security/limits.d/60-trephine.conf
+               COPYONLY)
+set(TREPHINE_RELEASED_RFC ${CPACK_TREPHINE_RELEASED_RFC})
+set(changelog ${root}/usr/share/doc/trephine/changelog)
+configure_file(${CPACK_TREPHINE_DEBIAN}/changelog.in ${changelog} @ONLY)
+execute_process(COMMAND gzip --no-name --best ${changelog} COMMAND_ERROR_IS_FATAL ANY)
