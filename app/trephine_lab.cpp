@@ -252,15 +252,20 @@ int run(int argc, char** argv) {
   auto* headset_command = with_json(measure_command->add_subcommand(
       "headset", "Pictures for two eyes beside an exercise, and a headset that goes and comes"));
   HeadsetArguments headset;
-  headset_command->add_option("--seconds", headset.seconds, "Of the exercise, with and without")
+  headset_command
+      ->add_option("--seconds", headset.seconds, "Of the exercise, with and without, 2 to 600")
       ->capture_default_str();
-  headset_command->add_option("--toggles", headset.toggles, "How often it is switched on and off")
+  headset_command
+      ->add_option("--toggles", headset.toggles,
+                   "How often it is switched on and off, at most 1000")
       ->capture_default_str();
-  headset_command->add_option("--losses", headset.losses, "Of each of five kinds")
+  headset_command->add_option("--losses", headset.losses, "Of each of five kinds, at most 1000")
       ->capture_default_str();
   headset_command->add_flag("--no-pictures", headset.no_pictures,
                             "No pictures of both eyes for each scene");
-  headset_command->add_option("--out", out, "Folder for the recording and pictures")->required();
+  headset_command->add_option("--out", out, "Folder for the recording and pictures")
+      ->required()
+      ->check(named);
   auto* jitter_command = with_json(
       measure_command->add_subcommand("jitter", "How late the haptic thread wakes on this machine"));
   double seconds = 5.0;

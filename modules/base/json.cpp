@@ -71,7 +71,7 @@ class ParseWatch {
         text += (text.empty() ? "" : ".") + level.key;
       }
     }
-    return text;
+    return shorten(std::move(text), 120);
   }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include <mutex>
+
 namespace trephine {
 
 namespace {
@@ -14,24 +16,30 @@ bool get(const OpenXr& from, XrInstance instance, const char* name, F& function)
   return true;
 }
 
+OpenXr open() {
+  OpenXr xr;
+  // Not closed: what it has loaded in turn may have threads.
+  void* library = ::dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (!library) return xr;
+  xr.getInstanceProcAddr =
+      reinterpret_cast<PFN_xrGetInstanceProcAddr>(::dlsym(library, "xrGetInstanceProcAddr"));
+  if (!xr.getInstanceProcAddr ||
+      !get(xr, XR_NULL_HANDLE, "xrEnumerateInstanceExtensionProperties",
+           xr.enumerateInstanceExtensionProperties) ||
+      !get(xr, XR_NULL_HANDLE, "xrCreateInstance", xr.createInstance)) {
+    xr.createInstance = nullptr;
+  }
+  return xr;
+}
+
 }  // namespace
 
 Result<const OpenXr*> OpenXr::load() {
-  static const OpenXr loaded = [] {
-    OpenXr xr;
-    // Not closed: what it has loaded in turn may have threads.
-    void* library = ::dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (!library) return xr;
-    xr.getInstanceProcAddr =
-        reinterpret_cast<PFN_xrGetInstanceProcAddr>(::dlsym(library, "xrGetInstanceProcAddr"));
-    if (!xr.getInstanceProcAddr ||
-        !get(xr, XR_NULL_HANDLE, "xrEnumerateInstanceExtensionProperties",
-             xr.enumerateInstanceExtensionProperties) ||
-        !get(xr, XR_NULL_HANDLE, "xrCreateInstance", xr.createInstance)) {
-      xr.createInstance = nullptr;
-    }
-    return xr;
-  }();
+  // Tried again where it was not there: somebody may have installed it.
+  static std::mutex one_at_a_time;
+  static OpenXr loaded;
+  const std::lock_guard lock(one_at_a_time);
+  if (!loaded.createInstance) loaded = open();
   if (loaded.createInstance) return &loaded;
   return Error{"NO_LOADER", "No headset can be used: OpenXR's loader is not installed",
                "libopenxr_loader.so.1", "Install the package libopenxr-loader1 and try again"};

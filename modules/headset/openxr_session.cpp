@@ -5,8 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -66,6 +69,37 @@ EyeView viewOf(const XrView& of) {
 XrFovf fovOf(const FieldOfView& of) {
   return {float(std::atan(of.left)), float(std::atan(of.right)), float(std::atan(of.up)),
           float(std::atan(of.down))};
+}
+
+// The runtime that the loader was told of, if any: where it looks, in its order.
+std::string toldOf() {
+  if (const char* named = std::getenv("XR_RUNTIME_JSON"); named && *named) return named;
+  const auto folder = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::string(value ? value : "");
+  };
+  const std::string own = folder("XDG_CONFIG_HOME"), home = folder("HOME");
+  std::vector<std::string> folders{!own.empty() ? own : home + "/.config"};
+  std::istringstream shared(folder("XDG_CONFIG_DIRS"));
+  for (std::string each; std::getline(shared, each, ':');) folders.push_back(each);
+  for (const char* each : {"/etc/xdg", "/etc"}) folders.push_back(each);
+  for (const std::string& each : folders) {
+    const std::string file = each + "/openxr/1/active_runtime.json";
+    std::error_code problem;
+    if (std::filesystem::exists(file, problem)) return file;
+  }
+  return {};
+}
+
+// To the loader one that is broken is none.
+Error noRuntime(const std::string& where) {
+  if (const std::string broken = toldOf(); !broken.empty()) {
+    return {"NO_RUNTIME", "The active OpenXR runtime cannot be used", broken,
+            "Install the headset's software anew, or make another one the active runtime"};
+  }
+  return {"NO_RUNTIME", "No OpenXR runtime is active on this computer", where,
+          "Install the headset's software, such as Monado or SteamVR, and make it the active "
+          "runtime"};
 }
 
 class OpenXrSession {
@@ -178,10 +212,7 @@ void OpenXrSession::check(XrResult result, const char* function) {
   const std::string where = std::string(function) + ", XrResult " + std::to_string(int(result));
   switch (result) {
     case XR_ERROR_RUNTIME_UNAVAILABLE:
-      end(Error{"NO_RUNTIME", "No OpenXR runtime is active on this computer", where,
-                "Install the headset's software, such as Monado or SteamVR, and make it the active "
-                "runtime"},
-          false);
+      end(noRuntime(where), false);
     case XR_ERROR_FORM_FACTOR_UNAVAILABLE:
     case XR_ERROR_FORM_FACTOR_UNSUPPORTED:
       end(Error{"NO_HEADSET", "No headset is found", where, "Plug it in, switch it on, try again"},

@@ -18,6 +18,8 @@
 #include "headset/packed_drawing.h"
 #include "headset/picture_painter.h"
 #include "headset/test_runtime.h"
+//
+#include "headset/openxr_functions.h"  // Xlib comes with it
 
 namespace trephine {
 namespace {
@@ -428,6 +430,12 @@ TEST_F(Lacks, Loader) {
   if (said == "skip") GTEST_SKIP();
   EXPECT_EQ(said.find("NO_LOADER"), 0u) << said;
   EXPECT_NE(said.find("libopenxr-loader1"), std::string::npos) << said;
+  // Installed, it is found the next time, without another start.
+  const std::filesystem::path folder = std::getenv("LD_LIBRARY_PATH");
+  std::filesystem::rename(folder / "libopenxr_loader.so.1", folder / "away");
+  const Result<const trephine::OpenXr*> found = trephine::OpenXr::load();
+  std::filesystem::rename(folder / "away", folder / "libopenxr_loader.so.1");
+  EXPECT_TRUE(found);
 }
 
 TEST_F(OpenXr, WhatIsNotThereIsSaidInWords) {
@@ -442,6 +450,13 @@ TEST_F(OpenXr, WhatIsNotThereIsSaidInWords) {
   start();
   ASSERT_TRUE(until([this] { return over(); }));
   EXPECT_EQ(over_->why.error().code, "NO_RUNTIME") << over_->why.error().sentence();
+  EXPECT_EQ(over_->why.error().where, "/nowhere/runtime.json") << "it was named, and is broken";
+  finish();
+  ::unsetenv("XR_RUNTIME_JSON");
+  start();
+  ASSERT_TRUE(until([this] { return over(); }));
+  EXPECT_EQ(over_->why.error().what.rfind("No OpenXR runtime is active", 0), 0u)
+      << over_->why.error().sentence();
   finish();
   ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
   expectNothingLeft("nothing was there");

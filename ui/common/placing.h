@@ -18,6 +18,7 @@ QScrollArea* scrolled(QWidget* page, const char* name);
 // Room for all lines of a wrapped text in a column of this width: layouts within a form give it
 // one.
 inline void giveRoom(QLabel& wrapped, int width) {
+  wrapped.ensurePolished();  // one that was never shown has not the letters of its style
   wrapped.setMinimumHeight(wrapped.heightForWidth(width));
 }
 

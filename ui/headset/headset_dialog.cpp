@@ -24,6 +24,7 @@ HeadsetDialog::HeadsetDialog(QWidget* parent) : QDialog(parent) {
   layout->addWidget(buildHeadset());
   layout->addWidget(buildScreen());
   layout->addWidget(buttons);
+  layout->setSizeConstraint(QLayout::SetFixedSize);  // room for a refusal, and no more
   ahead_->setFocus(Qt::TabFocusReason);  // with its number selected
 }
 

@@ -54,7 +54,9 @@ HeadsetView::HeadsetView(Bench& bench, QWidget& window) : QObject(&window), benc
   connect(&words_timer_, &QTimer::timeout, this, [this] {
     const bool stuck = headset_->stuck_s() > kStuck_s;
     if (stuck && !std::exchange(stuck_, stuck)) {
-      bench_.say(tr("The headset's software does not answer: the exercise goes on here."));
+      bench_.say(bench_.workstation().session()
+                     ? tr("The headset's software does not answer: the exercise goes on here.")
+                     : tr("The headset's software does not answer."));
     }
     stuck_ = stuck;
     emit changed();
@@ -214,6 +216,7 @@ void HeadsetView::showMirror() {
 }
 
 void HeadsetView::sayState(const HeadsetState& state) {
+  if (!on_->isChecked()) return;  // it is about to end
   keeps_room_ = state.keeps_room;
   if (std::exchange(room_changes_, state.room_changes) != state.room_changes) {
     if (forgetArmsInRoom(true)) {
@@ -222,11 +225,14 @@ void HeadsetView::sayState(const HeadsetState& state) {
     placed_ = false;
   }
   if (state.seen == seen_ && state.flat == flat_) return;
-  if (seen_ && !state.seen) bench_.say(tr("The headset was taken off: the exercise goes on here."));
+  if (seen_ && !state.seen) {
+    bench_.say(bench_.workstation().session()
+                   ? tr("The headset was taken off: the exercise goes on here.")
+                   : tr("The headset was taken off."));
+  }
   if (!flat_ && state.flat) {
-    bench_.say(tr("The headset shows a flat screen: this computer draws %1 pairs of pictures a "
-                  "second, and 45 are needed to look around.")
-                   .arg(state.pairs_hz, 0, 'f', 0));
+    bench_.say(tr("A flat screen in the headset: %1 pairs of pictures a second, and 45 are needed.")
+                   .arg(std::floor(state.pairs_hz)));
   }
   if (flat_ && !state.flat) bench_.say(tr("Pictures come fast enough: look around."));
   seen_ = state.seen;
@@ -267,6 +273,8 @@ void HeadsetView::stop() {
   if (!headset_) return;
   headset_->stop();
   bench_.view().showInstead(0, 0, 0);
+  if (std::exchange(flat_, false)) bench_.say({});  // that it shows a flat screen
+  seen_ = false;
   emit changed();
 }
 

@@ -23,6 +23,12 @@ namespace {
 
 constexpr int kStereoWordsEvery_ms = 1000;
 
+// A window manager may have moved the window without Qt's knowing, when a screen went and came.
+QScreen* screenOf(const QWidget& window) {
+  QScreen* under = QGuiApplication::screenAt(window.frameGeometry().center());
+  return under ? under : window.screen();
+}
+
 // The one that a person chose, if it is there; else one that the window is not on.
 QScreen* chosenScreen(const QWidget& window) {
   const QString name = read(settings::kStereoScreen);
@@ -32,7 +38,7 @@ QScreen* chosenScreen(const QWidget& window) {
   }
   if (!name.isEmpty()) return nullptr;
   for (QScreen* each : all) {
-    if (each != window.screen()) return each;
+    if (each != screenOf(window)) return each;
   }
   return nullptr;
 }
@@ -53,6 +59,7 @@ StereoView::StereoView(Bench& bench, QWidget& window)
     QTimer::singleShot(0, this, &StereoView::draw);
   });
   connect(qGuiApp, &QGuiApplication::screenRemoved, this, &StereoView::screenGone);
+  connect(qGuiApp, &QGuiApplication::screenAdded, this, &StereoView::cover);
   words_timer_.setInterval(kStereoWordsEvery_ms);
   connect(&words_timer_, &QTimer::timeout, this, &StereoView::changed);
 }
@@ -90,14 +97,20 @@ Status StereoView::start() {
   screen_window_ = std::make_unique<StereoWindow>(&window_);
   connect(screen_window_.get(), &StereoWindow::leaveWanted, this, &StereoView::stop,
           Qt::QueuedConnection);
-  screen_window_->setScreen(screen_);
-  screen_window_->setGeometry(screen_->geometry());
+  cover();
+  connect(screen_, &QScreen::geometryChanged, screen_window_.get(), [this] { cover(); });
   screen_window_->setWindowState(Qt::WindowFullScreen);
   screen_window_->show();  // and the keys stay where they are
   words_timer_.start();
   draw();
   emit changed();
   return {};
+}
+
+void StereoView::cover() {
+  if (!screen_window_ || !screen_) return;
+  screen_window_->setScreen(screen_);
+  screen_window_->setGeometry(screen_->geometry());
 }
 
 Status StereoView::readSettings() {

@@ -41,6 +41,7 @@ class StereoView : public QObject {
  private:
   void toggle(bool on);
   Status start();
+  void cover();  // the screen, wherever it has gone
   Status readSettings();
   void draw();
   void screenGone(QScreen* screen);

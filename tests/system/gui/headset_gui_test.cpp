@@ -11,6 +11,7 @@
 
 #include "headset/test_runtime.h"
 #include "train_support.h"
+#include "ui/common/settings.h"
 #include "ui/devices/room_panel.h"
 #include "ui/work/arms_in_room.h"
 
@@ -131,13 +132,55 @@ class HeadsetGuiTest : public test::TrainTest {
     stop();
   }
 
+  void aRefusedNumberIsReadToItsEnd() {
+    find<QAction>("headsetSettings")->trigger();
+    auto* dialog = find<QDialog>("headsetDialog");
+    auto* below = dialog->findChild<QDoubleSpinBox*>("headsetBelow");
+    below->setFocus();
+    below->selectAll();
+    QTest::keyClicks(below, "999");
+    QTest::keyClick(below, Qt::Key_Return);
+    auto* reason = dialog->findChild<QLabel*>("headsetBelowRefused");
+    QTRY_VERIFY(reason->isVisible());
+    QTest::qWait(100);
+    QVERIFY(dialog->grab().save(TREPHINE_ARTEFACTS "/headset-refused.png"));
+    for (QLabel* each : dialog->findChildren<QLabel*>()) {
+      if (!each->isVisible() || !each->wordWrap()) continue;
+      QVERIFY2(each->height() >= each->heightForWidth(each->width()), qPrintable(each->text()));
+    }
+    // And nothing lies over it.
+    const QRect room(reason->mapTo(dialog, QPoint()), reason->size());
+    for (QWidget* each : dialog->findChildren<QWidget*>()) {
+      if (each == reason || !each->isVisible() || each->isAncestorOf(reason)) continue;
+      QVERIFY2(!QRect(each->mapTo(dialog, QPoint()), each->size()).intersects(room),
+               qPrintable(each->objectName()));
+    }
+    dialog->close();
+  }
+
+  void aScreenForBothEyesTakesItsPlace() {
+    openScene(scene_);
+    QTRY_VERIFY(view().canDraw().ok());
+    putOn();
+    QTRY_VERIFY(words().contains("both eyes"));
+    write(settings::kStereoScreen, window_->screen()->name());
+    key(Qt::Key_F9, Qt::ShiftModifier);
+    QTRY_VERIFY(!isOn());
+    QTRY_VERIFY_WITH_TIMEOUT(!runtime().alive().any(), 20000);
+    QTest::qWait(500);
+    QVERIFY(find<QAction>("stereo")->isChecked());
+    QTRY_VERIFY2(words().contains("Both eyes on"), qPrintable(words()));
+    find<QAction>("stereo")->trigger();
+    write(settings::kStereoScreen, QString());
+  }
+
   void oneThatCannotBeHadInAnExerciseIsSaidInALineThatFits() {
     openScene(scene_);
     startTraining();
     ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
     find<QAction>("headset")->trigger();
     QTRY_VERIFY(!isOn());
-    QTRY_VERIFY2(said().contains("No OpenXR runtime"), qPrintable(said()));
+    QTRY_VERIFY2(said().contains("OpenXR runtime cannot be used"), qPrintable(said()));
     QVERIFY2(!said().contains("XrResult") && said().contains("Install"), qPrintable(said()));
     ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
     goesOn();
@@ -193,7 +236,7 @@ class HeadsetGuiTest : public test::TrainTest {
     runtime().setPluggedIn(false);
     refused("No headset is found");
     ::setenv("XR_RUNTIME_JSON", "/nowhere/runtime.json", 1);
-    refused("Monado or SteamVR");
+    refused("OpenXR runtime cannot be used");
     ::setenv("XR_RUNTIME_JSON", TREPHINE_XR_MANIFEST, 1);
     runtime().reset();
     runtime().fail("xrCreateInstance", -10, 0, 1);

@@ -54,20 +54,6 @@ TEST_F(HeadsetDialogTest, ARefusalNamesTheNumberThatIsInForce) {
   EXPECT_EQ(read(settings::kHeadsetBelow_m), 0.3);
 }
 
-TEST_F(HeadsetDialogTest, ARefusalFindsRoomForAllItsLines) {
-  enter("999");
-  QCoreApplication::processEvents();
-  const auto* reason = dialog_->findChild<QLabel*>("headsetBelowRefused");
-  EXPECT_GE(reason->height(), reason->heightForWidth(reason->width()));
-  EXPECT_TRUE(dialog_->rect().contains(
-      QRect(reason->mapTo(dialog_, QPoint()), reason->size())));
-  for (const auto* each : dialog_->findChildren<QLabel*>()) {
-    if (each->isVisible() && each->wordWrap()) {
-      EXPECT_GE(each->height(), each->heightForWidth(each->width())) << qPrintable(each->text());
-    }
-  }
-}
-
 TEST_F(HeadsetDialogTest, ItsFirstNumberIsSelectedToBeTypedOver) {
   auto* ahead = dialog_->findChild<DecimalField*>("headsetAhead");
   EXPECT_EQ(dialog_->focusWidget(), ahead);
