@@ -8,11 +8,8 @@
 
 namespace trephine {
 
-namespace {
-
 namespace fs = std::filesystem;
 
-// Where the window keeps its cases: as the workstation says, else the user's own data.
 Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
   if (!given.empty()) return fs::path(given);
   if (!policy.storage.empty()) return policy.storage;
@@ -20,9 +17,11 @@ Result<fs::path> storageOf(const std::string& given, const Policy& policy) {
   if (data && fs::path(data).is_absolute()) return fs::path(data) / "trephine";
   const char* home = std::getenv("HOME");
   if (home && *home) return fs::path(home) / ".local/share/trephine";
-  return Error{"NO_STORAGE", "It is not known where exercises are kept", "--storage",
+  return Error{"NO_STORAGE", "It is not known where cases and exercises are kept", "--storage",
                "Give a folder"};
 }
+
+namespace {
 
 std::string listed(const char* title, const std::vector<std::string>& files) {
   std::string text;

@@ -95,9 +95,15 @@ int runCommand(const RunArguments& arguments, const Policy& policy, bool json, c
 int pinCommand(bool json, const Progress&);
 int exportExerciseCommand(const std::string& scene, const std::string& case_source,
                           const std::string& out, bool json, const Progress&);
-// `storage`: empty: the workstation's, or the user's own.
+// Where the window keeps its cases: `given`, or where that is empty the workstation's folder, else
+// the user's own data. Error: NO_STORAGE.
+Result<std::filesystem::path> storageOf(const std::string& given, const Policy& policy);
 int importExerciseCommand(const std::string& folder, const std::string& storage,
                           const Policy& policy, bool json, const Progress&);
+// `open`: each is read, and compared with what was saved.
+int listStorageCommand(const std::string& storage, bool open, const Policy& policy, bool json,
+                       const Progress&);
+int shareStorageCommand(const std::string& folder, bool json);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);
 int explainCommand(const std::string& scene, const Policy& policy, bool json, const Progress&);

@@ -6,6 +6,7 @@
 #include "app/answer.h"
 #include "app/out_folder.h"
 #include "app/signals.h"
+#include "base/crash_report.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/system.h"
@@ -26,6 +27,11 @@ constexpr int kSignalPoll_ms = 50;
 
 Progress progress;  // cancelled by a signal
 
+void reportCrashes(const std::filesystem::path& folder) {
+  const Status begun = reportCrashesTo(folder);
+  if (!begun) spdlog::warn("A crash would leave no report: {}", begun.error().code);
+}
+
 int exercise(const ExerciseOptions& options, bool json) {
   const OutFolder folder(options.out);
   Result<ExerciseOutcome> outcome = runExercise(options, progress);
@@ -42,7 +48,7 @@ int run(int argc, char** argv) {
                purposeText().toStdString() + ".");
   cli.set_version_flag("--version", buildName());
   auto* path_option =
-      cli.add_option("path", path, "A folder of CT, a scene (.json) or a recording (.trephine)");
+      cli.add_option("path", path, "A folder of CT, a scene (.json) or a recording (.h5)");
   auto* exercise_option =
       cli.add_option("--exercise", scene, "Play this scene's script in the window, then end");
   cli.add_option("--seconds", seconds, "How long; as long as the script where absent")
@@ -63,6 +69,8 @@ int run(int argc, char** argv) {
 
   setUpLog(!scene.empty());
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
+  const auto crashes = crashFolder();
+  if (crashes) reportCrashes(*crashes);
   prepareMemory();
   const Status display = prepareDisplay();
   const bool can_say = scene.empty() && !display && display.error().code != "NO_DISPLAY";
@@ -104,7 +112,11 @@ int run(int argc, char** argv) {
     spdlog::info("The window is usable, {:.0f} ms after the start of the program",
                  msSinceProcessStart());
   });
-  QObject::connect(&window, &MainWindow::usable, &window, &MainWindow::sayProblem);
+  QObject::connect(&window, &MainWindow::usable, &window, [&] {
+    window.sayProblem();
+    if (!crashes) return;
+    if (const auto left = takeLeftBehind(*crashes)) window.offerLeftBehind(*left);
+  });
   if (!path.empty()) window.openOnceShown(path);
   window.show();
   return QApplication::exec();

@@ -6,6 +6,7 @@
 #include "app/answer.h"
 #include "app/lab_commands.h"
 #include "app/signals.h"
+#include "base/crash_report.h"
 #include "base/log.h"
 #include "base/purpose.h"
 #include "base/system.h"
@@ -107,6 +108,21 @@ int run(int argc, char** argv) {
   import_exercise_command->add_option("folder", file, "The folder")->required();
   import_exercise_command->add_option("--storage", storage,
                                       "Where it is kept, instead of the workstation's storage");
+
+  auto* storage_command =
+      app.add_subcommand("storage", "The folder of cases, exercises and recordings");
+  storage_command->require_subcommand(1);
+  bool open_all = false;
+  auto* list_storage_command = with_json(
+      storage_command->add_subcommand("list", "Its cases, and which of them cannot be opened"));
+  list_storage_command->add_option("--storage", storage, "Instead of the workstation's storage");
+  list_storage_command->add_flag("--open", open_all,
+                                 "Read each, and compare it with what was saved");
+  auto* share_storage_command = with_json(storage_command->add_subcommand(
+      "share", "Give a folder to several accounts of this machine; as root"));
+  share_storage_command->add_option("folder", file, "The folder, made where it is missing")
+      ->required()
+      ->check(named);
 
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);
@@ -281,6 +297,7 @@ int run(int argc, char** argv) {
     const CLI::App& of = *measure_command      ? *measure_command
                          : *structures_command ? *structures_command
                          : *exercise_command   ? *exercise_command
+                         : *storage_command    ? *storage_command
                                                : app;
     const bool missing = of.get_subcommands().empty();
     const std::vector<std::string> words = app.remaining(true);
@@ -297,6 +314,7 @@ int run(int argc, char** argv) {
     return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
   }
   setUpLog(json);
+  if (const auto crashes = crashFolder()) (void)reportCrashesTo(*crashes);
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
   if (*import_command) return importCommand(wanted, json, progress);
@@ -308,6 +326,10 @@ int run(int argc, char** argv) {
   if (*import_exercise_command) {
     return importExerciseCommand(file, storage, policy, json, progress);
   }
+  if (*list_storage_command) {
+    return listStorageCommand(storage, open_all, policy, json, progress);
+  }
+  if (*share_storage_command) return shareStorageCommand(file, json);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);
   if (*import_structures_command) return importStructuresCommand(structures, json, progress);

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/shared_folder.h"
+
 namespace trephine {
 
 namespace fs = std::filesystem;
@@ -53,6 +55,7 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     fs::remove(temporary, ec);
     return writeError(target, error);
   }
+  giveToGroup(target);
   return {};
 }
 

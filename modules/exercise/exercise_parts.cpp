@@ -16,6 +16,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/sha256.h"
+#include "base/shared_folder.h"
 #include "base/sync_folder.h"
 
 namespace trephine {
@@ -114,6 +115,7 @@ Result<PartFolder> PartFolder::make(const fs::path& target) {
   if (!::mkdtemp(path.data())) return writeError(target, errno);
   // mkdtemp's are for their owner alone.
   fs::permissions(path, fs::perms(0755), ec);
+  giveToGroup(path);
   return PartFolder(path, to);
 }
 
@@ -259,6 +261,7 @@ Status PartFolder::becomeInstead(const std::set<fs::path>& own) {
     if (errno != EINVAL && errno != ENOSYS) return writeError(target_, errno);
     const fs::path aside = path_.string() + ".old";
     if (::rename(target_.c_str(), aside.c_str()) != 0) return writeError(target_, errno);
+    giveToGroup(path_);
     if (::rename(path_.c_str(), target_.c_str()) != 0) {
       const int why = errno;
       (void)::rename(aside.c_str(), target_.c_str());
@@ -272,6 +275,7 @@ Status PartFolder::becomeInstead(const std::set<fs::path>& own) {
 
 Status PartFolder::become() {
   if (Status synced = syncFolder(path_); !synced) return synced;
+  giveToGroup(path_);
   if (::rename(path_.c_str(), target_.c_str()) != 0) return writeError(target_, errno);
   path_.clear();
   return syncFolder(target_.parent_path());

@@ -14,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/json.h"
+#include "base/shared_folder.h"
 #include "base/stretched_hash.h"
 
 namespace trephine::case_folders {
@@ -89,13 +90,26 @@ FileLock::~FileLock() {
 }
 
 Status Folders::make() const {
-  for (const fs::path& folder : {cases(), parts(), storage_ / "private"}) {
+  const fs::path own = storage_ / "private";
+  for (const fs::path& folder : {cases(), parts(), own}) {
     if (Status made = makeFolder(folder); !made) return made;
   }
-  if (::chmod((storage_ / "private").c_str(), 0700) != 0) {
-    return writeError(storage_ / "private", errno);
-  }
-  return {};
+  if (Status may = mayChange(); !may) return may;
+  if (isEachOnesOwn(own)) return {};
+  return ::chmod(own.c_str(), 0700) == 0 ? Status() : Status(writeError(own, errno));
+}
+
+Status Folders::mayChange() const {
+  if (!isGroups(cases()) || ::access(cases().c_str(), W_OK) == 0) return {};
+  return Error{"CANNOT_WRITE", "This account may look at the cases here, and not change them",
+               storage_.string(),
+               "Ask whoever keeps this workstation for the group of those who make cases, or "
+               "choose a folder of your own under Settings"};
+}
+
+Result<FileLock> Folders::lock() const {
+  if (Status may = mayChange(); !may) return may.error();
+  return FileLock::waitFor(lockFile());
 }
 
 void Folders::sweep() const {
@@ -153,6 +167,7 @@ Result<Part> Part::make(const Folders& folders, Of what) {
     discard(folders, *path);
     return lock.error();
   }
+  giveToGroup(*path);
   return Part(folders, *path, *std::move(lock));
 }
 
@@ -166,6 +181,7 @@ void Part::drop() {
 
 Status Part::replace(const char* name, const fs::path& case_folder) const {
   std::error_code ec;
+  giveToGroup(path_ / name);
   fs::rename(path_ / name, case_folder / name, ec);
   if (ec) return writeError(case_folder / name, ec.value());
   return syncFolder(case_folder);
@@ -195,6 +211,7 @@ Status Part::becomeCase(const fs::path& case_folder) {
   std::error_code ec;
   // Nobody sweeps meanwhile: that needs the lock of the list.
   fs::remove(path_ / kPartLock, ec);
+  giveToGroup(path_);
   if (Status synced = syncFolder(path_); !synced) return synced;
   fs::rename(path_, case_folder, ec);
   if (ec) return writeError(case_folder, ec.value());

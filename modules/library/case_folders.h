@@ -66,7 +66,9 @@ class Folders {
   // Makes the folders where they are missing. CANNOT_WRITE.
   Status make() const;
   // To be held while the list of cases is looked at to be changed.
-  Result<FileLock> lock() const { return FileLock::waitFor(lockFile()); }
+  Result<FileLock> lock() const;
+  // CANNOT_WRITE where the storage is a group's and this account only looks.
+  Status mayChange() const;
   std::filesystem::path lockFile() const { return storage_ / ".lock"; }
   // Removes parts that no living process holds. What cannot be removed stays. Never throws.
   void sweep() const;

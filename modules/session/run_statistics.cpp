@@ -44,13 +44,12 @@ const FaultName& nameOf(std::uint32_t fault) {
 }  // namespace
 
 Error memoryNotLocked(const std::string& reason) {
-  return {
-      "MEMORY_NOT_LOCKED",
-      "The haptic thread's memory is not held in place (" + reason +
-          "), so ticks may come late when the system is short of memory",
-      "the limit on locked memory",
-      "Set 'memlock' to 'unlimited' for the users of Trephine in /etc/security/limits.d and log "
-      "in again"};
+  return {"MEMORY_NOT_LOCKED",
+          "The haptic thread's memory is not held in place (" + reason +
+              "), so ticks may come late when the system is short of memory",
+          "the limit on locked memory",
+          "Add the account to the group trephine, which the package gives it, or set 'memlock' to "
+          "'unlimited' for it in /etc/security/limits.d, and log in again"};
 }
 
 Warning startsInTissue(const std::string& arm, bool barrier) {

@@ -6,6 +6,7 @@
 #include <new>
 #include <system_error>
 
+#include "base/crash_report.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -171,6 +172,7 @@ Status Session::start(double seconds) {
     return outOfMemory("for the threads of the exercise", "the system");
   }
   running_ = true;
+  if (recorder_) noteRecording(recording_file_);
   return {};
 }
 
@@ -249,6 +251,7 @@ Status Session::stop() {
   if (held) leaveBehind(*held, silenced);
   engine_->locked->release();
   running_ = false;
+  noteRecording({});
   return finishRecording();
 }
 

@@ -1,7 +1,10 @@
 #include "training/recording_list.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 
+#include "base/shared_folder.h"
 #include "training/paused_ticks.h"
 #include "training/session_reader.h"
 
@@ -9,7 +12,7 @@ namespace trephine {
 
 namespace {
 
-ListedRecording listed(const std::filesystem::path& file) {
+ListedRecording headOf(const std::filesystem::path& file) {
   ListedRecording row;
   row.file = file;
   std::error_code ec;
@@ -42,27 +45,35 @@ ListedRecording listed(const std::filesystem::path& file) {
 
 }  // namespace
 
+ListedRecording listRecording(const std::filesystem::path& file) {
+  try {
+    return headOf(file);
+  } catch (const Json::exception&) {  // a head that is no scene
+    ListedRecording row;
+    row.file = file;
+    row.problem = Error{"BAD_RECORDING", "The recording's head is damaged", file.string(),
+                        "It cannot be replayed"};
+    return row;
+  }
+}
+
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
                                                     const Progress& progress) {
   std::vector<std::filesystem::path> files;
+  const bool others_keep_theirs = isEachOnesOwn(folder);
   std::error_code ec;
   for (std::filesystem::directory_iterator it(folder, ec), end; !ec && it != end;
        it.increment(ec)) {
-    if (it->path().extension() == ".h5") files.push_back(it->path());
+    if (it->path().extension() != ".h5") continue;
+    // What another account of the machine keeps for itself is not this one's list.
+    if (others_keep_theirs && ::access(it->path().c_str(), R_OK) != 0) continue;
+    files.push_back(it->path());
   }
   std::vector<ListedRecording> rows;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (progress.cancelled()) return Error{"CANCELLED", "The list was not made", "", ""};
     progress.at(double(i) / double(files.size()), "Looking at the recordings");
-    try {
-      rows.push_back(listed(files[i]));
-    } catch (const Json::exception&) {  // a head that is no scene
-      ListedRecording row;
-      row.file = files[i];
-      row.problem = Error{"BAD_RECORDING", "The recording's head is damaged", files[i].string(),
-                          "It cannot be replayed"};
-      rows.push_back(row);
-    }
+    rows.push_back(listRecording(files[i]));
   }
   std::sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
     return a.written != b.written ? a.written > b.written : a.file > b.file;

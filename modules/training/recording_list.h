@@ -24,8 +24,11 @@ struct ListedRecording {
   const std::string& caseKey() const { return case_source.empty() ? volume_sha256 : case_source; }
 };
 
-// The newest first; a folder that is not there has none. Reads the head of each, which takes some
-// milliseconds. Any thread. Error: CANCELLED.
+// Any file; what is none says so in `problem`.
+ListedRecording listRecording(const std::filesystem::path& file);
+// The newest first, without those that other accounts keep for themselves; a folder that is not
+// there has none. Reads the head of each, which takes some milliseconds. Any thread. Error:
+// CANCELLED.
 Result<std::vector<ListedRecording>> listRecordings(const std::filesystem::path& folder,
                                                     const Progress& progress = Progress());
 

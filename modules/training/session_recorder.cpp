@@ -13,6 +13,7 @@
 
 #include "base/file.h"
 #include "base/purpose.h"
+#include "base/shared_folder.h"
 #include "training/recording_layout.h"
 
 namespace trephine {
@@ -196,6 +197,7 @@ Result<std::unique_ptr<SessionRecorder>> SessionRecorder::create(const std::file
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   f.file = H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access);
   H5Pclose(access);
+  if (f.file >= 0) keepOwn(path);
   const auto cannot = [&path] {
     return Error{"CANNOT_WRITE",
                  std::string("The recording cannot be started: ") +

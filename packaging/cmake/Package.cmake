@@ -63,8 +63,8 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "A workstation on which a patient's CT becomes a training case: open a DICOM
 folder, read its report, and practise cutting bone or liver while two haptic
-arms, or mouse and keys, let both hands feel the tissue. Exercises are recorded,
-scored and replayed.
+arms, or mouse and keys, let both hands feel the tissue. Exercises are
+recorded, scored and replayed.
 .
 For training, not for diagnosis or treatment planning.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

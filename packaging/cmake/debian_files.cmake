@@ -6,6 +6,8 @@ set(root ${CPACK_TEMPORARY_DIRECTORY})
 file(MAKE_DIRECTORY ${root}/etc/trephine ${root}/etc/security/limits.d)
 configure_file(${CPACK_TREPHINE_DEBIAN}/limits.conf ${root}/etc/security/limits.d/60-trephine.conf
                COPYONLY)
+configure_file(${CPACK_TREPHINE_DEBIAN}/lintian-overrides
+               ${root}/usr/share/lintian/overrides/trephine COPYONLY)
 set(TREPHINE_RELEASED_RFC ${CPACK_TREPHINE_RELEASED_RFC})
 set(changelog ${root}/usr/share/doc/trephine/changelog)
 configure_file(${CPACK_TREPHINE_DEBIAN}/changelog.in ${changelog} @ONLY)

@@ -57,7 +57,8 @@ def bare_system():
                      "Codename: bookworm", "Component: main").split()[0]
         shutil.rmtree(made, ignore_errors=True)
         run("debootstrap", "--variant=minbase", "bookworm", made, mirror)
-    shutil.rmtree(ROOT, ignore_errors=True)
+    # What an earlier run may have left mounted there is not this test's to take away.
+    run("rm", "-rf", "--one-file-system", ROOT)
     run("cp", "-a", made, ROOT)
 
 
@@ -121,7 +122,7 @@ def older_files(home):
         "volume_sha256": hashlib.sha256(voxels).hexdigest(), "verdict": "", "structures": []}))
     recordings = storage / "sessions"
     recordings.mkdir()
-    shutil.copy(SOURCE / "tests/unit/training/data/version7.h5", recordings / "old.trephine")
+    shutil.copy(SOURCE / "tests/unit/training/data/version7.h5", recordings / "session-old.h5")
 
 
 class Listeners(threading.Thread):
@@ -242,13 +243,11 @@ class BareSystem(unittest.TestCase):
         self.assertEqual(inside(installed), version)
         print(f"upgrade {time.monotonic() - begun:.1f} s", flush=True)
         case = "~/.local/share/trephine/cases/old-slab"
-        replayed = inside(f"trephine-lab replay ~/.local/share/trephine/sessions/old.trephine "
+        replayed = inside(f"trephine-lab replay ~/.local/share/trephine/sessions/session-old.h5 "
                           f"--case {case}/volume.mha --json", USER)
         self.assertTrue(json.loads(replayed)["identical"])
-        scene = json.loads((ROOT / SCENE[1:]).read_text())
-        opened = inside(f"trephine-lab import {case}/volume.mha --json", USER)
-        self.assertIn('"pass"', opened)
-        self.assertTrue(scene)
+        cases = json.loads(inside("trephine-lab storage list --open --json", USER))["cases"]
+        self.assertEqual([(case["id"], case["problem"]) for case in cases], [("old-slab", None)])
 
     def remove(self, with_package):
         user_files = set(run("find", ROOT / f"home/{USER}", "-type", "f").splitlines())

@@ -83,7 +83,7 @@ INNER = {
 
 # The libraries a room may name under USES; threads and dl are the system's own.
 MAY_USE = {
-    "base": {"glm", "json", "spdlog", "openssl"},
+    "base": {"glm", "json", "spdlog", "openssl", "dl"},
     "volume": {"zlib"},
     "tissue": set(),
     "imaging": {"dcmtk", "openjpeg", "vtk-image"},
@@ -145,7 +145,7 @@ system_error thread tuple type_traits typeindex typeinfo unordered_map unordered
 valarray variant vector version
 assert.h ctype.h errno.h float.h inttypes.h limits.h locale.h math.h signal.h stdarg.h stdatomic.h
 stdbool.h stddef.h stdint.h stdio.h stdlib.h string.h time.h
-dirent.h elf.h fcntl.h malloc.h poll.h pwd.h sched.h unistd.h
+dirent.h elf.h execinfo.h fcntl.h grp.h malloc.h poll.h pwd.h sched.h unistd.h
 sys/file.h sys/ioctl.h sys/mman.h sys/prctl.h
 sys/resource.h sys/socket.h sys/stat.h sys/statvfs.h sys/syscall.h sys/time.h sys/types.h sys/un.h sys/utsname.h
 termios.h

@@ -2,20 +2,25 @@
 
 #include <QCoreApplication>
 #include <QDragEnterEvent>
+#include <QFile>
 #include <QMessageBox>
 #include <QMimeData>
 #include <QPointer>
+#include <QPushButton>
 #include <QStatusBar>
+#include <QTabWidget>
 #include <QTimer>
 #include <algorithm>
 #include <utility>
 
+#include "base/crash_report.h"
 #include "base/system.h"
 #include "ui/common/error_dialog.h"
 #include "ui/common/question.h"
 #include "ui/common/settings.h"
 #include "ui/common/words.h"
 #include "ui/devices/devices_dialog.h"
+#include "ui/frame/help_page.h"
 #include "ui/frame/settings_dialog.h"
 #include "ui/frame/shortcuts_page.h"
 #include "ui/frame/unlock_dialog.h"
@@ -90,9 +95,44 @@ void MainWindow::openOnceShown(const std::filesystem::path& path) {
   // The window manager finds it its place first.
   constexpr int kPlaced_ms = 200;
   QTimer::singleShot(kPlaced_ms, this, [this, path] {
-    cases_->open(path);
+    open(path);
     if (!workstation().isOpening()) train_->showInUse();
   });
+}
+
+void MainWindow::open(const std::filesystem::path& path) {
+  if (!ReviewWorkspace::isRecording(path)) return cases_->open(path);
+  review_->choose(path);
+  place_ == Place::review ? review_->enter() : show(Place::review);
+}
+
+void MainWindow::offerLeftBehind(const LeftBehind& left) {
+  std::error_code ec;
+  const bool recorded = std::filesystem::exists(left.recording, ec);
+  if (left.report.empty() && !recorded) return;
+  auto* box = new QMessageBox(QMessageBox::Information, tr("Trephine"),
+                              tr("Trephine ended unexpectedly the last time."),
+                              QMessageBox::NoButton, this);
+  box->setObjectName("leftBehindDialog");
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setTextFormat(Qt::PlainText);
+  QStringList more;
+  if (recorded) more << tr("The exercise is recorded up to then.");
+  if (!left.report.empty()) {
+    QFile file(toQt(left.report.string()));
+    if (file.open(QIODevice::ReadOnly)) box->setDetailedText(QString::fromUtf8(file.readAll()));
+    more << tr("A report for those who look after Trephine lies in %1. It names nobody, and "
+               "nothing was sent.")
+                .arg(toQt(left.report.string()));
+  }
+  box->setInformativeText(more.join("\n\n"));
+  if (recorded) {
+    QPushButton* open_it = box->addButton(tr("&Open the recording"), QMessageBox::AcceptRole);
+    open_it->setObjectName("openLeftBehind");
+    connect(open_it, &QPushButton::clicked, this, [this, file = left.recording] { open(file); });
+  }
+  box->addButton(QMessageBox::Close);
+  box->open();
 }
 
 void MainWindow::startExercise(std::optional<OperatorScript> script, double seconds) {
@@ -110,7 +150,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() != 1 || !urls.front().isLocalFile()) return;
   event->acceptProposedAction();
-  cases_->open(toPath(urls.front().toLocalFile()));
+  open(toPath(urls.front().toLocalFile()));
 }
 
 // Where nobody else wants them: Esc puts aside what lies over the views, then leaves the full
@@ -239,6 +279,22 @@ void MainWindow::showAbout() {
                              "Graphics: %2")
                               .arg(purposeText(), toQt(view().openGlDescription())));
   box->open();
+}
+
+// At the page of what is before a person.
+void MainWindow::showHelp() {
+  auto* page = findChild<HelpPage*>();
+  if (!page) page = new HelpPage(this);
+  const auto* tabs = findChild<QTabWidget*>("prepareTabs");
+  const bool structures = tabs && tabs->currentIndex() == PrepareWorkspace::kStructureTab;
+  page->open(place_ == Place::cases    ? "first-case"
+             : place_ == Place::train  ? "first-cut"
+             : place_ == Place::review ? "review"
+             : structures              ? "structures"
+                                       : "prepare");
+  page->show();
+  page->raise();
+  page->activateWindow();
 }
 
 void MainWindow::showShortcuts() {

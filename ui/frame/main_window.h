@@ -21,6 +21,7 @@
 namespace trephine {
 
 class HeadsetView;
+struct LeftBehind;
 class StereoView;
 
 class MainWindow : public QMainWindow {
@@ -42,7 +43,9 @@ class MainWindow : public QMainWindow {
   // A folder, file or scene, once the window has its place on the screen: what opens over it then
   // knows where that is.
   void openOnceShown(const std::filesystem::path& path);
-  void open(const std::filesystem::path& path) { cases_->open(path); }
+  void open(const std::filesystem::path& path);
+  // What a program that crashed has left: said, with its report, and its recording offered.
+  void offerLeftBehind(const LeftBehind& left);
   // Why everything is locked, where the workstation's settings are wrong.
   void sayProblem();
   void startExercise(std::optional<OperatorScript> script = {},
@@ -88,6 +91,7 @@ class MainWindow : public QMainWindow {
   void restore();
   void keep();
   void showAbout();
+  void showHelp();
   void showShortcuts();
   void showSettings();
   void showDevices();

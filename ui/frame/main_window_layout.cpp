@@ -214,8 +214,10 @@ void MainWindow::buildMenus() {
   view->addActions(
       {headset_->onAction(), headset_->recentreAction(), stereo_->onAction(), headset_settings_});
   QMenu* help = menuBar()->addMenu(tr("&Help"));
-  QAction* keys =
-      help->addAction(tr("&Keys"), QKeySequence(Qt::Key_F1), this, &MainWindow::showShortcuts);
+  help->addAction(tr("&Help"), QKeySequence(Qt::Key_F1), this, &MainWindow::showHelp)
+      ->setObjectName("help");
+  QAction* keys = help->addAction(tr("&Keys"), QKeySequence(Qt::SHIFT | Qt::Key_F1), this,
+                                  &MainWindow::showShortcuts);
   keys->setObjectName("keys");
   help->addAction(tr("&About Trephine"), this, &MainWindow::showAbout)->setObjectName("about");
 }

@@ -116,6 +116,12 @@ void ReviewPage::showRecordings(const std::vector<ListedRecording>& rows, const 
   showChosen();
 }
 
+void ReviewPage::select(const std::filesystem::path& file) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].file == file) return list_->setCurrentItem(list_->topLevelItem(int(i)));
+  }
+}
+
 void ReviewPage::selectNewestOf(const std::string& case_key) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (rows_[i].caseKey() == case_key) return list_->setCurrentItem(list_->topLevelItem(int(i)));

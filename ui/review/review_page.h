@@ -25,6 +25,7 @@ class ReviewPage : public QWidget {
   void showRecordings(const std::vector<ListedRecording>& rows, const std::string& in_use,
                       const std::map<std::string, QString>& cases);
   void selectNewest() { list_->setCurrentItem(list_->topLevelItem(0)); }
+  void select(const std::filesystem::path& file);
   // The newest of a case.
   void selectNewestOf(const std::string& case_key);
   void showProgress(double fraction, const QString& step);

@@ -1,5 +1,7 @@
 #include "ui/review/review_workspace.h"
 
+#include <algorithm>
+
 #include "training/replay.h"
 #include "ui/common/words.h"
 #include "volume/phantom.h"
@@ -20,17 +22,34 @@ Workspace::Parts ReviewWorkspace::parts() {
   return parts;
 }
 
+bool ReviewWorkspace::isRecording(const std::filesystem::path& path) {
+  std::error_code ec;
+  return path.extension() == ".h5" && !std::filesystem::is_directory(path, ec);
+}
+
+void ReviewWorkspace::choose(const std::filesystem::path& file) {
+  std::error_code ec;
+  opened_ = std::filesystem::absolute(file, ec).lexically_normal();
+  choose_opened_ = true;
+}
+
 void ReviewWorkspace::list() {
   struct Listed {
     std::vector<ListedRecording> rows;
     std::map<std::string, QString> cases;  // names
+    std::filesystem::path opened;
   };
   listing_.run(
-      [folder = bench_.recordings(),
+      [folder = bench_.recordings(), opened = opened_,
        library = bench_.library()](const Progress& progress) -> Result<Listed> {
         Result<std::vector<ListedRecording>> rows = listRecordings(folder, progress);
         if (!rows) return rows.error();
-        Listed listed{*std::move(rows), {}};
+        Listed listed{*std::move(rows), {}, opened};
+        const bool is_there = std::ranges::any_of(
+            listed.rows, [&](const ListedRecording& row) { return row.file == opened; });
+        if (!opened.empty() && !is_there) {
+          listed.rows.insert(listed.rows.begin(), listRecording(opened));
+        }
         for (const std::string& name : phantomNames()) {
           listed.cases[phantomSource(name)] = builtInName(name);
         }
@@ -41,11 +60,13 @@ void ReviewWorkspace::list() {
       },
       [this](Result<Listed> listed) {
         if (!listed) return;
+        if (listed->opened != opened_) return list();  // chosen while this was made
         const std::optional<Case>& of = bench_.workstation().currentCase();
         page_->showRecordings(listed->rows, of ? of->sha256 : "", listed->cases);
         if (const std::string wanted = bench_.takeReviewed(); !wanted.empty()) {
           page_->selectNewestOf(wanted);
         }
+        if (std::exchange(choose_opened_, false)) page_->select(opened_);
         if (std::exchange(replay_newest_, false) && !listed->rows.empty()) {
           page_->selectNewest();
           replay(listed->rows.front());

@@ -16,6 +16,10 @@ class ReviewWorkspace : public Workspace {
   Symbol symbol() const override { return Symbol::review; }
   Parts parts() override;
   void enter() override { list(); }
+  // One that a person has opened, wherever it lies: from the next enter() on it stands in the list,
+  // chosen.
+  void choose(const std::filesystem::path& file);
+  static bool isRecording(const std::filesystem::path& path);
   // Once the list is there.
   void replayNewest() { replay_newest_ = true; }
 
@@ -26,6 +30,8 @@ class ReviewWorkspace : public Workspace {
   Bench& bench_;
   ReviewPage* page_;
   bool replay_newest_ = false;
+  bool choose_opened_ = false;
+  std::filesystem::path opened_;  // not of the workstation's own
   BackgroundTask listing_, replaying_;
 };
 

@@ -17,6 +17,7 @@
 #include <QTreeWidget>
 #include <QtTest>
 
+#include "base/crash_report.h"
 #include "gui_support.h"
 #include "imaging/dicom/ct_writer.h"
 
@@ -281,6 +282,64 @@ class CasesControlsGuiTest : public test::WindowTest {
     click("replay");
     QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("replayOutcome")->text().contains("bit for bit"),
                              kLong_ms);
+  }
+
+  void helpOpensAtThePageOfWhatIsBeforeAPersonAndItsLinksLead() {
+    const auto shown = [this](Place place) {
+      window_->show(place);
+      find<QAction>("help")->trigger();
+      return find<QTextBrowser>("helpText")->source().fileName();
+    };
+    QCOMPARE(shown(Place::cases), QString("first-case.md"));
+    QVERIFY(find<QTextBrowser>("helpText")->toPlainText().contains("report card"));
+    QCOMPARE(shown(Place::train), QString("first-cut.md"));
+    QCOMPARE(shown(Place::review), QString("review.md"));
+    QVERIFY(shown(Place::prepare).endsWith(".md"));
+    auto* text = find<QTextBrowser>("helpText");
+    QTest::mouseClick(find<QPushButton>("helpContents"), Qt::LeftButton);
+    QCOMPARE(text->source().fileName(), QString("index.md"));
+    text->setSource(QUrl("headset.md"));  // as a link does
+    QVERIFY2(text->toPlainText().contains("OpenXR"), qPrintable(text->toPlainText().left(80)));
+    QTest::keyClick(find<QWidget>("helpPage"), Qt::Key_Escape);
+    QTRY_VERIFY(!window_->findChild<QWidget*>("helpPage"));
+  }
+
+  // As a file manager opens one; and what a crash leaves is offered likewise.
+  void aRecordingIsOpenedInReviewWhereverItLies() {
+    const auto chosen = [this] {
+      const auto* list = find<QTreeWidget>("recordings");
+      return list->currentItem() ? list->indexOfTopLevelItem(list->currentItem()) : -1;
+    };
+    const QString own =
+        storage() + "/sessions/" + QDir(storage() + "/sessions").entryList({"*.h5"}).front();
+    const QString elsewhere = temporary_.filePath("session-of-another.h5");
+    QVERIFY(QFile::copy(own, elsewhere));
+    window_->show(Place::cases);
+    window_->open(toPath(elsewhere));
+    QVERIFY(window_->place() == Place::review);
+    QTRY_COMPARE_WITH_TIMEOUT(find<QTreeWidget>("recordings")->topLevelItemCount(), 2, kLong_ms);
+    QTRY_COMPARE(chosen(), 0);
+    window_->open(toPath(own));  // there already
+    QTRY_COMPARE_WITH_TIMEOUT(find<QTreeWidget>("recordings")->topLevelItemCount(), 1, kLong_ms);
+    QTRY_COMPARE(chosen(), 0);
+
+    window_->show(Place::cases);
+    const QString report = temporary_.filePath("crash-1-2.txt");
+    QFile file(report);
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write("Trephine ended unexpectedly.");
+    file.close();
+    window_->offerLeftBehind({toPath(report), toPath(elsewhere)});
+    auto* box = find<QMessageBox>("leftBehindDialog");
+    QVERIFY(box->text().contains("ended unexpectedly"));
+    QVERIFY(box->informativeText().contains("nothing was sent"));
+    QCOMPARE(box->detailedText(), QString("Trephine ended unexpectedly."));
+    QTest::mouseClick(box->findChild<QPushButton*>("openLeftBehind"), Qt::LeftButton);
+    QTRY_VERIFY(window_->place() == Place::review);
+    QTRY_COMPARE_WITH_TIMEOUT(find<QTreeWidget>("recordings")->topLevelItemCount(), 2, kLong_ms);
+    // Nothing to show, nothing said.
+    window_->offerLeftBehind({{}, "/nowhere/session.h5"});
+    QVERIFY(!window_->findChild<QMessageBox*>("leftBehindDialog"));
   }
 
   void aDoubleClickOnACardTrainsOnIt() {

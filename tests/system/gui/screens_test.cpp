@@ -10,12 +10,15 @@
 #include <QScrollArea>
 #include <QSignalSpy>
 #include <QTabWidget>
+#include <QTemporaryDir>
 #include <QtTest>
 #include <cstdlib>
 
 #include "gui_support.h"
+#include "imaging/dicom/ct_writer.h"
 #include "ui/common/placing.h"
 #include "ui/common/words.h"
+#include "volume/phantom.h"
 
 using namespace trephine;
 
@@ -53,6 +56,16 @@ class ScreensTest : public test::WindowTest {
     QVERIFY2(wrong.isEmpty(), qPrintable(name + ": " + wrong.join("; ")));
     auto* purpose = find<QLabel>("purpose");
     QCOMPARE(purpose->visibleRegion().boundingRect(), purpose->rect());
+  }
+
+  // Written once for all sizes.
+  std::filesystem::path phantomSeries() {
+    static QTemporaryDir folder;
+    const std::filesystem::path path = toPath(folder.path()) / "ct";
+    if (std::filesystem::exists(path)) return path;
+    const Result<Volume> head = makePhantom("cranium");
+    if (!head || !writeCtSeries(*head, {"Head, built in", "HEAD"}, path)) qFatal("no series");
+    return path;
   }
 
   // A long form, once from its top and once for each of these of its fields.
@@ -97,30 +110,28 @@ class ScreensTest : public test::WindowTest {
     window_->show(Place::train);
     take("train-no-case");
 
-    // The real head, where it is at hand.
+    // The real head, where it is at hand; else one that is built in, as a scanner would send it.
+    // The pictures of help are of that one.
     const char* data = std::getenv("TREPHINE_TEST_DATA");
+    const std::filesystem::path series =
+        data ? std::filesystem::path(data) / "head-ct-gantry-tilt" : phantomSeries();
     QSignalSpy opened(&workstation(), &Workstation::caseOpened);
-    if (data) {
-      window_->open(std::filesystem::path(data) / "head-ct-gantry-tilt");
-      auto* import = find<QPushButton>("import");
-      QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
-      take("import");
-      QTest::mouseClick(import, Qt::LeftButton);
-      auto* open_case = find<QPushButton>("openCase");
-      QTRY_VERIFY_WITH_TIMEOUT(open_case->isVisible() || opened.count() > 0, kLong_ms);
-      if (open_case->isVisible()) {
-        take("import-asking");
-        for (const char* keep : {"choice_FACE_keep", "choice_COUCH_keep"}) {
-          if (auto* choice = window_->findChild<QRadioButton*>(keep)) choice->click();
-        }
-        QTest::mouseClick(open_case, Qt::LeftButton);
+    window_->open(series);
+    auto* import = find<QPushButton>("import");
+    QTRY_VERIFY_WITH_TIMEOUT(import->isEnabled(), kLong_ms);
+    take("import");
+    QTest::mouseClick(import, Qt::LeftButton);
+    auto* open_case = find<QPushButton>("openCase");
+    QTRY_VERIFY_WITH_TIMEOUT(open_case->isVisible() || opened.count() > 0, kLong_ms);
+    if (open_case->isVisible()) {
+      take("import-asking");
+      for (const char* keep : {"choice_FACE_keep", "choice_COUCH_keep"}) {
+        if (auto* choice = window_->findChild<QRadioButton*>(keep)) choice->click();
       }
-      QTRY_VERIFY_WITH_TIMEOUT(opened.count() > 0, kLong_ms);
-      QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
-    } else {
-      prepareBuiltIn("cranium");
-      QTRY_VERIFY_WITH_TIMEOUT(opened.count() > 0, kLong_ms);
+      QTest::mouseClick(open_case, Qt::LeftButton);
     }
+    QTRY_VERIFY_WITH_TIMEOUT(opened.count() > 0, kLong_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!workstation().currentCase()->stored.empty(), kLong_ms);
     showTissues();
     window_->findChild<TissuePanel*>()->select("bone");
     take("prepare-tissues");

@@ -1,0 +1,64 @@
+// `storage list` and `storage share`: the folder of cases, exercises and recordings of a machine.
+#include <cstdio>
+
+#include "app/answer.h"
+#include "app/lab_commands.h"
+#include "library/case_library.h"
+#include "library/shared_storage.h"
+
+namespace trephine {
+
+int listStorageCommand(const std::string& storage, bool open, const Policy& policy, bool json,
+                       const Progress& progress) {
+  const auto at = storageOf(storage, policy);
+  if (!at) return printError("storage-list", at.error(), json);
+  CaseLibrary library(*at);
+  const std::vector<ListedCase> all = library.list();
+  Json cases = Json::array();
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::optional<Error> problem = all[i].problem;
+    if (open && !problem) {
+      const Result<LoadedCase> loaded = library.load(
+          all[i].id,
+          Progress(progress, double(i) / double(all.size()), double(i + 1) / double(all.size())));
+      if (!loaded) problem = loaded.error();
+    }
+    if (progress.cancelled()) {
+      return printError("storage-list", {"CANCELLED", "The cases were not all opened", "", ""},
+                        json);
+    }
+    bad += problem ? 1 : 0;
+    if (json) {
+      cases.push_back({{"id", all[i].id},
+                       {"name", all[i].record.name},
+                       {"problem", problem ? errorJson(*problem) : Json(nullptr)}});
+    } else {
+      std::printf("%s: %s\n", all[i].id.c_str(),
+                  problem ? problem->sentence().c_str() : all[i].record.name.c_str());
+    }
+  }
+  if (json) printAnswer("storage-list", {{"storage", at->string()}, {"cases", cases}});
+  if (!json && all.empty()) std::printf("No case is kept in %s\n", at->c_str());
+  return bad > 0 ? 1 : 0;
+}
+
+int shareStorageCommand(const std::string& folder, bool json) {
+  if (const Status shared = shareStorage(folder); !shared) {
+    return printError("storage-share", shared.error(), json);
+  }
+  const StorageGroups groups;
+  if (json) {
+    printAnswer("storage-share",
+                {{"storage", folder}, {"readers", groups.readers}, {"writers", groups.writers}});
+  } else {
+    std::printf(
+        "%s: the group %s may look at cases and exercises, the group %s may change them, and each\n"
+        "keeps recordings of his own. Accounts that make cases belong to both groups.\n"
+        "Name the folder as \"storage\" in /etc/trephine/settings.json.\n",
+        folder.c_str(), groups.readers.c_str(), groups.writers.c_str());
+  }
+  return 0;
+}
+
+}  // namespace trephine

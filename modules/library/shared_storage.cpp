@@ -1,0 +1,82 @@
+#include "library/shared_storage.h"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <optional>
+
+#include "base/file.h"
+#include "base/shared_folder.h"
+
+namespace trephine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<gid_t> groupOf(const std::string& name) {
+  const group* found = ::getgrnam(name.c_str());
+  if (found) return found->gr_gid;
+  return Error{"NO_GROUP", "There is no such group on this machine", name,
+               "Install Trephine's package, or make it: addgroup --system " + name};
+}
+
+Status give(const fs::path& path, gid_t group, std::optional<mode_t> mode) {
+  if (::lchown(path.c_str(), uid_t(-1), group) != 0) return writeError(path, errno);
+  if (mode && ::chmod(path.c_str(), *mode) != 0) return writeError(path, errno);
+  return {};
+}
+
+Status giveFolder(const fs::path& path, gid_t group, mode_t mode) {
+  if (Status made = makeFolder(path); !made) return made;
+  std::error_code ec;
+  if (fs::is_symlink(path, ec)) {
+    return Error{"CANNOT_WRITE", "This is a link to another folder", path.string(),
+                 "Name the folder itself"};
+  }
+  if (::chown(path.c_str(), 0, group) != 0) return writeError(path, errno);
+  return give(path, group, mode);
+}
+
+// What is in it already.
+Status giveInside(const fs::path& folder, gid_t group) {
+  std::error_code ec;
+  auto it = fs::recursive_directory_iterator(folder, ec);
+  for (; !ec && it != fs::end(it); it.increment(ec)) {
+    if (Status given = give(it->path(), group, {}); !given) return given;
+  }
+  for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
+    giveToGroup(at->path());
+  }
+  return {};
+}
+
+}  // namespace
+
+Status shareStorage(const fs::path& storage, const StorageGroups& groups) {
+  if (::geteuid() != 0) {
+    return Error{"NOT_ROOT", "Only an administrator can give a folder to groups", storage.string(),
+                 "Run it with sudo"};
+  }
+  const Result<gid_t> readers = groupOf(groups.readers), writers = groupOf(groups.writers);
+  if (!readers) return readers.error();
+  if (!writers) return writers.error();
+  constexpr mode_t kLook = 0750, kGroups = 02775, kOwnOfWriters = 03770, kOwnOfAll = 03777;
+  if (Status given = giveFolder(storage, *readers, kLook); !given) return given;
+  for (const char* name : {"cases", "exercises", "tissues", ".parts"}) {
+    if (Status given = giveFolder(storage / name, *writers, kGroups); !given) return given;
+    if (Status given = giveInside(storage / name, *writers); !given) return given;
+  }
+  if (Status given = giveFolder(storage / "private", *writers, kOwnOfWriters); !given) return given;
+  if (Status given = giveFolder(storage / "sessions", *writers, kOwnOfAll); !given) return given;
+  const fs::path lock = storage / ".lock";
+  const int fd = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0664);
+  if (fd < 0) return writeError(lock, errno);
+  ::close(fd);
+  return give(lock, *writers, 0664);
+}
+
+}  // namespace trephine

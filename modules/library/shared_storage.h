@@ -1,0 +1,25 @@
+// A storage folder for several accounts of one machine.
+//
+//   STORAGE/             readers: go in and look
+//   STORAGE/cases, exercises, tissues, .parts, .lock   writers: change; readers: look
+//   STORAGE/private/     each writer what is his own (name_guard.h)
+//   STORAGE/sessions/    each account what is its own; writers: look
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/result.h"
+
+namespace trephine {
+
+struct StorageGroups {
+  std::string readers = "trephine", writers = "trephine-teach";
+};
+
+// Makes what is missing, and gives all of it, with what is in it already, to these groups. What is
+// in sessions/ and private/ stays its owner's. Root's to do. Errors: NOT_ROOT, NO_GROUP,
+// CANNOT_WRITE.
+Status shareStorage(const std::filesystem::path& storage, const StorageGroups& groups = {});
+
+}  // namespace trephine

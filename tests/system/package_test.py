@@ -1,0 +1,134 @@
+"""The packages of this build: what is in them, what they need, and that a build makes the same file
+each time. On a bare system they are tried by tests/package."""
+
+import gzip
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import tarfile
+import tempfile
+import unittest
+from pathlib import Path
+
+from lab_support import LAB, SOURCE, WINDOW
+
+BUILD = Path(LAB).parents[1]
+
+
+def output(*command, **options):
+    return subprocess.run([str(word) for word in command], check=True, capture_output=True,
+                          text=True, **options).stdout
+
+
+def packed(kind, folder, *options):
+    output("cpack", "-G", kind, "--config", BUILD / "CPackConfig.cmake", "-B", folder, *options,
+           cwd=folder)
+    return next(Path(folder).glob("*.deb" if kind == "DEB" else "*.tar.gz"))
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        for name in ("a", "b", "tar", "root"):
+            (cls.folder / name).mkdir()
+        os.environ["SOURCE_DATE_EPOCH"] = "1767225600"
+        cls.deb = packed("DEB", cls.folder / "a")
+        output("dpkg-deb", "-x", cls.deb, cls.folder / "root")
+        cls.root = cls.folder / "root"
+        print(f"{cls.deb.name}: {cls.deb.stat().st_size / 1e6:.1f} MB")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_holds_what_an_administrator_and_a_desktop_look_for(self):
+        names = {str(path.relative_to(self.root)) for path in self.root.rglob("*")}
+        for name in ("usr/bin/trephine", "usr/bin/trephine-lab",
+                     "usr/share/applications/trephine.desktop",
+                     "usr/share/metainfo/org.trephine.Trephine.metainfo.xml",
+                     "usr/share/icons/hicolor/scalable/apps/trephine.svg",
+                     "usr/share/mime/packages/trephine.xml",
+                     "usr/lib/udev/rules.d/60-trephine-devices.rules",
+                     "usr/share/man/man1/trephine.1.gz", "usr/share/man/man1/trephine-lab.1.gz",
+                     "etc/trephine", "etc/security/limits.d/60-trephine.conf",
+                     "usr/share/trephine/scenes/cranium.json",
+                     "usr/share/doc/trephine/copyright"):
+            self.assertIn(name, names)
+        plugins = {path.name for path in (self.root / "usr/lib/trephine/plugins").iterdir()}
+        self.assertEqual(plugins, {f"trephine_{name}.so" for name in
+                                   ("openhaptics", "pedal", "simulated", "woodenhaptics")})
+        self.assertFalse([name for name in names if "openxr_test" in name or name.endswith(".py")])
+        first = {name.split("/")[0] for name in names}
+        self.assertEqual(first, {"usr", "etc"})
+
+    def test_needs_what_runs_it_and_nothing_to_build_with(self):
+        depends = output("dpkg-deb", "-f", self.deb, "Depends")
+        self.assertIn("libvtk9", depends)
+        self.assertIn("qt6-qpa-plugins", depends)
+        self.assertNotIn("-dev", depends)
+        self.assertIn("xvfb", output("dpkg-deb", "-f", self.deb, "Recommends"))
+
+    def test_tells_nobody_where_it_was_built(self):
+        for path in self.root.rglob("*"):
+            if path.is_file():
+                data = path.read_bytes()
+                if path.suffix == ".gz":
+                    data = gzip.decompress(data)
+                self.assertNotIn(str(SOURCE).encode(), data, path)
+
+    def test_is_the_same_file_each_time(self):
+        again = packed("DEB", self.folder / "b")
+        digest = [hashlib.sha256(file.read_bytes()).hexdigest() for file in (self.deb, again)]
+        self.assertEqual(digest[0], digest[1])
+
+    def test_satisfies_those_who_look_at_packages(self):
+        for tool in ("lintian", "appstreamcli", "desktop-file-validate"):
+            if not shutil.which(tool):
+                self.skipTest(f"{tool} is not installed")
+        said = subprocess.run(["lintian", "--no-tag-display-limit", "--allow-root", str(self.deb)],
+                              capture_output=True, text=True).stdout
+        errors = [line for line in said.splitlines() if line.startswith("E:")]
+        self.assertEqual(errors, [], said)
+        share = self.root / "usr/share"
+        output("appstreamcli", "validate", "--no-net",
+               share / "metainfo/org.trephine.Trephine.metainfo.xml")
+        output("desktop-file-validate", share / "applications/trephine.desktop")
+
+    def test_its_manual_names_every_command_and_option(self):
+        pages = {name: gzip.decompress((self.root / f"usr/share/man/man1/{name}.1.gz").read_bytes())
+                 .decode().replace("\\-", "-") for name in ("trephine", "trephine-lab")}
+        options = re.findall(r"--[a-z]+", output(WINDOW, "--help"))
+        self.assertIn("--exercise", options)
+        for option in options:
+            self.assertIn(option, pages["trephine"])
+
+        def commands(*words):
+            text = output(LAB, *words, "--help")
+            listed = text.split("Subcommands:")[1] if "Subcommands:" in text else ""
+            return re.findall(r"^  ([a-z]+)  ", listed, re.MULTILINE)
+        named = commands()
+        self.assertIn("import", named)
+        for command in named:
+            inner = commands(command)
+            for name in [f"{command} {each}" for each in inner] or [command]:
+                self.assertRegex(pages["trephine-lab"], rf'(?m)(^\.B {name}$|"{name}")')
+
+    def test_runs_from_any_folder(self):
+        archive = packed("TGZ", self.folder / "tar")
+        with tarfile.open(archive) as tar:
+            tar.extractall(self.folder / "tar" / "elsewhere with a blank")
+        program = next((self.folder / "tar").glob("elsewhere*/*/bin/trephine-lab"))
+        scene = program.parents[1] / "share/trephine/scenes/cranium.json"
+        environment = {key: value for key, value in os.environ.items()
+                       if key not in ("DISPLAY", "TREPHINE_RESOURCES", "TREPHINE_PLUGINS")}
+        said = output(program, "run", scene, "--seconds", "0.5", "--out", self.folder / "out",
+                      env=environment)
+        self.assertIn("in tissue", said)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,180 @@
+// One storage folder, several accounts of one machine: who may do what in it. As root, which makes
+// the accounts of: a teacher, another, a trainee; only numbers, none is known to the machine.
+#include <fcntl.h>
+#include <grp.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+
+#include "base/file.h"
+#include "base/shared_folder.h"
+#include "cases.h"
+#include "library/case_library.h"
+#include "library/shared_storage.h"
+#include "support.h"
+
+namespace trephine {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Groups that every Debian has.
+const StorageGroups kGroups{"users", "games"};
+constexpr uid_t kTeacher = 23001, kOther = 23002, kTrainee = 23003, kStranger = 23004;
+
+class Accounts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be other accounts";
+    fs::permissions(folder_.path(), fs::perms(0755));
+    const Status shared = shareStorage(storage_, kGroups);
+    ASSERT_TRUE(shared) << shared.error().sentence();
+  }
+  // In a process of that account, with a plain umask. True where `work` was.
+  bool as(uid_t account, const std::function<bool()>& work) const {
+    const gid_t readers = ::getgrnam("users")->gr_gid, writers = ::getgrnam("games")->gr_gid;
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const bool teaches = account == kTeacher || account == kOther;
+      const gid_t all[] = {readers, writers};
+      const std::size_t count = teaches ? 2 : account == kTrainee ? 1 : 0;
+      ::umask(022);
+      const bool became =
+          ::setgroups(count, all) == 0 && ::setgid(account) == 0 && ::setuid(account) == 0;
+      ::_exit(became && work() ? 0 : 1);
+    }
+    int status = 0;
+    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  std::string savedBy(uid_t account, const std::string& name) const {
+    EXPECT_TRUE(as(account, [&] { return CaseLibrary(storage_).save(named(name)).ok(); }));
+    for (const ListedCase& one : CaseLibrary(storage_).list()) {
+      if (one.record.name == name) return one.id;
+    }
+    return "";
+  }
+  static NewCase named(const std::string& name) {
+    NewCase of = test::smallCase();
+    of.name = name;
+    return of;
+  }
+
+  test::TemporaryFolder folder_;
+  const fs::path storage_ = folder_ / "storage";
+};
+
+TEST_F(Accounts, WhatATeacherSavesTheOtherTeachersMayChangeAndTraineesOpen) {
+  const std::string id = savedBy(kTeacher, "Skull one");
+  ASSERT_FALSE(id.empty());
+  const auto opens = [&] { return CaseLibrary(storage_).load(id).ok(); };
+  EXPECT_TRUE(as(kOther, opens));
+  EXPECT_TRUE(as(kTrainee, opens));
+  EXPECT_FALSE(as(kStranger, opens)) << "of neither group";
+  EXPECT_TRUE(as(kOther, [&] {
+    return CaseLibrary(storage_).saveTissues(id, Json{{"format", "trephine.tissues"}}).ok();
+  }));
+  EXPECT_TRUE(as(kTeacher, opens)) << "also what the other has written";
+  EXPECT_TRUE(as(kOther, [&] { return CaseLibrary(storage_).remove(id).ok(); }));
+  EXPECT_TRUE(CaseLibrary(storage_).list().empty());
+}
+
+TEST_F(Accounts, ATraineeIsToldThatItMayLookAndNotChange) {
+  const std::string id = savedBy(kTeacher, "Skull one");
+  EXPECT_TRUE(as(kTrainee, [&] {
+    CaseLibrary library(storage_);
+    const auto saved = library.save(named("Mine"));
+    const auto removed = library.remove(id);
+    const auto renamed = library.rename(id, "Another");
+    const auto says = [](const Error& error) {
+      return error.code == "CANNOT_WRITE" &&
+             error.what == "This account may look at the cases here, and not change them";
+    };
+    return !saved && says(saved.error()) && !removed && says(removed.error()) && !renamed &&
+           says(renamed.error());
+  }));
+  EXPECT_EQ(CaseLibrary(storage_).list().size(), 1u);
+}
+
+TEST_F(Accounts, WhatACaseMayNotBeCalledIsReadByItsMakerAlone) {
+  NewCase of = named("");
+  of.source.add(IdentityKind::patient_name, "Doe^Jane");
+  ASSERT_TRUE(as(kTeacher, [&] { return CaseLibrary(storage_).save(of).ok(); }));
+  std::vector<fs::path> files;
+  for (const auto& file : fs::directory_iterator(storage_ / "private")) files.push_back(file);
+  ASSERT_EQ(files.size(), 1u);
+  const auto reads = [&] { return std::ifstream(files.front()).good(); };
+  EXPECT_TRUE(as(kTeacher, reads));
+  EXPECT_FALSE(as(kOther, reads));
+  EXPECT_FALSE(as(kTrainee, reads));
+  const std::string id = CaseLibrary(storage_).list().front().id;
+  EXPECT_TRUE(as(kOther, [&] {
+    const auto renamed = CaseLibrary(storage_).rename(id, "Skull");
+    return !renamed && renamed.error().code == "NAME_UNCHECKED";
+  }));
+}
+
+TEST_F(Accounts, ARecordingIsItsOwnersToChangeAndNobodyElses) {
+  const fs::path own = storage_ / "sessions" / "session-1.h5";
+  ASSERT_TRUE(as(kTrainee, [&] {
+    const bool written = bool(std::ofstream(own) << "cut");
+    keepOwn(own);
+    return written;
+  }));
+  for (const uid_t account : {kTeacher, kOther}) {
+    EXPECT_TRUE(as(account, [&] { return std::ifstream(own).good(); })) << "teachers review";
+  }
+  EXPECT_FALSE(as(kStranger, [&] { return std::ifstream(own).good(); }));
+  for (const uid_t account : {kTeacher, kStranger}) {
+    EXPECT_FALSE(as(account, [&] { return std::ofstream(own, std::ios::app).good(); }));
+    EXPECT_FALSE(as(account, [&] { return std::remove(own.c_str()) == 0; }));
+    EXPECT_FALSE(as(account, [&] { return writeTextFile(own, "other").ok(); }));
+  }
+  EXPECT_TRUE(as(kTrainee, [&] { return std::ofstream(own, std::ios::app).good(); }));
+  EXPECT_TRUE(as(kTrainee, [&] { return std::remove(own.c_str()) == 0; }));
+}
+
+TEST_F(Accounts, ALockedStorageAndAHalfWrittenCaseAreSaid) {
+  const std::string id = savedBy(kTeacher, "Skull one");
+  // Another account is at the list and does not let go.
+  const int fd = ::open((storage_ / ".lock").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(fd, LOCK_EX), 0);
+  EXPECT_TRUE(as(kOther, [&] {
+    const auto saved = CaseLibrary(storage_).save(named("Two"));
+    return !saved && saved.error().code == "BUSY";
+  }));
+  ::close(fd);
+  fs::resize_file(storage_ / "cases" / id / "volume.mha", 100);
+  EXPECT_TRUE(as(kTrainee, [&] {
+    const auto loaded = CaseLibrary(storage_).load(id);
+    return !loaded && !loaded.error().what.empty() && !loaded.error().next.empty();
+  }));
+}
+
+TEST_F(Accounts, SharingAgainTakesInWhatWasThereBefore) {
+  const fs::path old = folder_ / "old";
+  ASSERT_TRUE(CaseLibrary(old).save(named("Before")).ok());
+  ASSERT_TRUE(shareStorage(old, kGroups));
+  const std::string id = CaseLibrary(old).list().front().id;
+  EXPECT_TRUE(as(kTrainee, [&] { return CaseLibrary(old).load(id).ok(); }));
+  EXPECT_TRUE(as(kTeacher, [&] { return CaseLibrary(old).remove(id).ok(); }));
+  EXPECT_EQ(shareStorage(old, {"no-such-group", "games"}).error().code, "NO_GROUP");
+  EXPECT_TRUE(as(kTeacher, [&] { return shareStorage(old, kGroups).error().code == "NOT_ROOT"; }));
+}
+
+TEST(SharedFolder, OneOfAPersonsOwnIsLeftAsItIs) {
+  test::TemporaryFolder folder;
+  fs::create_directory(folder / "own");
+  std::ofstream(folder / "own" / "file") << "x";
+  fs::permissions(folder / "own" / "file", fs::perms(0600));
+  giveToGroup(folder / "own" / "file");
+  keepOwn(folder / "own" / "file");
+  EXPECT_EQ(fs::status(folder / "own" / "file").permissions(), fs::perms(0600));
+}
+
+}  // namespace
+}  // namespace trephine
