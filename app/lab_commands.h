@@ -103,6 +103,12 @@ int importExerciseCommand(const std::string& folder, const std::string& storage,
 // `open`: each is read, and compared with what was saved.
 int listStorageCommand(const std::string& storage, bool open, const Policy& policy, bool json,
                        const Progress&);
+struct CommissionArguments {
+  std::string out, storage;
+  double seconds = 5.0;
+};
+int commissionCommand(const CommissionArguments& arguments, const Policy& policy, bool json,
+                      const Progress&);
 int shareStorageCommand(const std::string& folder, bool json);
 int replayCommand(const std::string& file, const std::string& case_source,
                   const std::string& labels, bool json, const Progress&);

@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
 
   setUpLog(!scene.empty());
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
-  const auto crashes = crashFolder();
+  const auto crashes = stateFolder();
   if (crashes) reportCrashes(*crashes);
   prepareMemory();
   const Status display = prepareDisplay();

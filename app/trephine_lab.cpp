@@ -124,6 +124,18 @@ int run(int argc, char** argv) {
       ->required()
       ->check(named);
 
+  CommissionArguments commissioning;
+  auto* commission_command = with_json(app.add_subcommand(
+      "commission", "Whether this machine is fit: each check with its limit and the next step"));
+  commission_command->add_option("--out", commissioning.out, "Folder for the page and its figures")
+      ->required()
+      ->check(named);
+  commission_command->add_option("--storage", commissioning.storage,
+                                 "Instead of the workstation's storage");
+  commission_command
+      ->add_option("--seconds", commissioning.seconds, "Of each row of lateness, 0.2 to 60")
+      ->capture_default_str();
+
   auto* structures_command = app.add_subcommand("structures", "Organs and bones of a case");
   structures_command->require_subcommand(1);
   GrowArguments growing;
@@ -314,7 +326,7 @@ int run(int argc, char** argv) {
     return printError("usage", {"BAD_ARGUMENT", what, "the command line", "See --help"}, true);
   }
   setUpLog(json);
-  if (const auto crashes = crashFolder()) (void)reportCrashesTo(*crashes);
+  if (const auto crashes = stateFolder()) (void)reportCrashesTo(*crashes);
   if (policy.problem) spdlog::warn("{}", policy.problem->sentence());
   if (*phantom_command) return phantomCommand(phantom, out, json, progress);
   if (*import_command) return importCommand(wanted, json, progress);
@@ -329,6 +341,7 @@ int run(int argc, char** argv) {
   if (*list_storage_command) {
     return listStorageCommand(storage, open_all, policy, json, progress);
   }
+  if (*commission_command) return commissionCommand(commissioning, policy, json, progress);
   if (*share_storage_command) return shareStorageCommand(file, json);
   if (*replay_command) return replayCommand(file, case_source, labels, json, progress);
   if (*grow_command) return growCommand(growing, json, progress);

@@ -165,7 +165,7 @@ void deleteOldReports(const fs::path& folder) {
 
 }  // namespace
 
-std::optional<fs::path> crashFolder() {
+std::optional<fs::path> stateFolder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state && fs::path(state).is_absolute()) return fs::path(state) / "trephine";
   const char* home = std::getenv("HOME");

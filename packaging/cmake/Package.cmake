@@ -2,8 +2,6 @@
 # Everything lies below the prefix, where programs find it from where they are; the .deb's files
 # outside of it are put there by debian_files.cmake.
 
-set(TREPHINE_RELEASED 2026-11-26)
-set(TREPHINE_RELEASED_RFC "Thu, 26 Nov 2026 12:00:00 +0000")
 set(here ${CMAKE_SOURCE_DIR}/packaging)
 set(made ${CMAKE_BINARY_DIR}/packaging)
 

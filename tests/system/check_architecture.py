@@ -63,6 +63,7 @@ INNER = {
         "exercise": {"common", "trades"},
         "devices": {"common"},
         "headset": {"common"},
+        "commission": {"common", "machine", "render"},
     },
     "ui": {
         "common": set(),
@@ -98,7 +99,7 @@ MAY_USE = {
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
     "plot": {"qt-gui"},
     "headset": {"qt-opengl", "openxr", "dl"},
-    "lab": {"qt-opengl"},
+    "lab": {"qt-opengl", "dl"},
     "ui": {"qt"},
     "app": {"qt", "cli11"},
 }

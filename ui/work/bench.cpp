@@ -107,6 +107,8 @@ void Bench::report(const Error& error) {
 // Over a dialog that is open, so that the keys come back to it.
 QWidget* Bench::asking() const {
   QWidget* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+  // One that a file was just chosen in is about to go.
+  while (qobject_cast<QFileDialog*>(dialog)) dialog = dialog->parentWidget();
   for (const QObject* of = dialog; of; of = of->parent()) {
     if (of == &window_) return dialog;
   }
@@ -135,10 +137,8 @@ QFileDialog* Bench::fileDialog(const char* name, const QString& title, const QSt
 void Bench::askForFile(const char* name, const QString& title, const QString& filter,
                        GotPath then) {
   QFileDialog* dialog = fileDialog(name, title, filter);
-  connect(
-      dialog, &QFileDialog::fileSelected, this,
-      [then = std::move(then)](const QString& file) { then(toPath(file)); },
-      Qt::QueuedConnection);  // once it is closed
+  connect(dialog, &QFileDialog::fileSelected, this,
+          [then = std::move(then)](const QString& file) { then(toPath(file)); });
   dialog->open();
 }
 

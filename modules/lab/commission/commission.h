@@ -1,0 +1,52 @@
+// Is this machine fit for the work? Each check against the one table of limits
+// (commission_limits.h), under three minutes together.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/result.h"
+#include "lab/commission/commission_limits.h"
+
+namespace trephine {
+
+struct CommissionOptions {
+  std::filesystem::path storage;  // the folder of cases: its disk
+  int largest_edge = 0;           // voxels, of the cases there; 0: none is larger than usual
+  double seconds = 5.0;           // of each row of lateness, 0.2 to 60
+};
+
+struct Commissioning {
+  std::vector<CommissionCheck> checks;
+  std::string when;     // "2026-11-24 09:30", by the clock
+  std::string build;    // of this program
+  std::string machine;  // processors and system, without the name of the host
+};
+Fitness fitnessOf(const Commissioning& of);  // the worst
+
+// Errors: BAD_OPTION, CANCELLED. What cannot be measured is a check that says why.
+Result<Commissioning> commission(const CommissionOptions& options,
+                                 const Progress& progress = Progress());
+
+// A check that is otherwise than before: another verdict, or a value that is worse by a quarter.
+struct CommissionChange {
+  std::string words;
+  Fitness before = Fitness::pass, now = Fitness::pass;
+  std::optional<double> value_before, value_now;
+  std::string unit;
+};
+std::vector<CommissionChange> changesSince(const Commissioning& before, const Commissioning& now);
+
+// {checks:[{name, value, unit, limit, verdict, next, words, remark}], verdict, when, build,
+// machine}
+Json toJson(const Commissioning& of);
+// Of what toJson() wrote. Errors: those of readJsonFile, BAD_FIELD.
+Result<Commissioning> readCommissioning(const std::filesystem::path& file);
+std::string toText(const Commissioning& of, const std::vector<CommissionChange>& changes);
+// One page to be printed, in plain words.
+std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>& changes);
+
+}  // namespace trephine
