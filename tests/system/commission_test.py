@@ -5,7 +5,6 @@ import os
 import resource
 import subprocess
 import tempfile
-import threading
 import unittest
 from pathlib import Path
 
@@ -85,13 +84,11 @@ class Commission(unittest.TestCase):
         self.assertEqual(list(small.iterdir()), [], "nothing is left on it")
 
     def test_loaded_cores_make_ticks_late(self):
-        stop = threading.Event()
-        loads = [subprocess.Popen(["nice", "-n", "-20", "sh", "-c", "while :; do :; done"])
+        loads = [subprocess.Popen(["sh", "-c", "while :; do :; done"])
                  for _ in range(4 * (os.cpu_count() or 1))]
         try:
             checks = self.run_it(without_display())
         finally:
-            stop.set()
             for load in loads:
                 load.kill()
                 load.wait()
