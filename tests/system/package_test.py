@@ -3,6 +3,7 @@ each time. On a bare system they are tried by tests/package."""
 
 import gzip
 import hashlib
+import json
 import os
 import re
 import shutil
@@ -97,6 +98,16 @@ class Package(unittest.TestCase):
         output("appstreamcli", "validate", "--no-net",
                share / "metainfo/org.trephine.Trephine.metainfo.xml")
         output("desktop-file-validate", share / "applications/trephine.desktop")
+
+    def test_its_bill_of_materials_names_what_it_runs_on_with_licences(self):
+        bill = json.loads(output(SOURCE / "packaging" / "bill_of_materials.py", self.deb))
+        self.assertEqual(bill["spdxVersion"], "SPDX-2.3")
+        packages = {package["name"]: package for package in bill["packages"]}
+        self.assertEqual(packages["trephine"]["licenseDeclared"], "BSD-3-Clause")
+        for library in ("libvtk9.1", "libqt6widgets6", "libdcmtk17", "libhdf5-103-1", "libc6"):
+            self.assertTrue(packages[library]["versionInfo"], library)
+            self.assertTrue(packages[library]["licenseComments"], library)
+        self.assertGreater(len(bill["files"]), 50)
 
     def test_its_manual_names_every_command_and_option(self):
         pages = {name: gzip.decompress((self.root / f"usr/share/man/man1/{name}.1.gz").read_bytes())
