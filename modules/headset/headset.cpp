@@ -76,6 +76,10 @@ Result<std::unique_ptr<Headset>> Headset::start(QOpenGLContext& share,
   return headset;
 }
 
+bool openXrInstalled() {
+  return OpenXr::load().ok();
+}
+
 Headset::~Headset() {
   stop();
   if (!engine_->thread->wait(kEnd_ms)) {

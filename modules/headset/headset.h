@@ -52,6 +52,9 @@ struct HeadsetEnd {
   bool again = false;  // it may be there again: worth another try
 };
 
+// Whether OpenXR's loader is there: without it there are no headsets.
+bool openXrInstalled();
+
 class Headset {
  public:
   // The window's thread; `share` is its view's context. `wake` is called in the headset's thread

@@ -1,12 +1,12 @@
 #include "library/case_library.h"
 
 #include <algorithm>
-#include <ctime>
 #include <new>
 #include <tuple>
 #include <utility>
 
 #include "base/file.h"
+#include "base/local_time.h"
 #include "base/memory.h"
 #include "base/stretched_hash.h"
 #include "imaging/report/provenance.h"
@@ -59,14 +59,6 @@ Error nameTaken() {
 // A case's folder, and none that a name could lead to from there.
 bool isFolderName(const std::string& id) {
   return !id.empty() && id[0] != '.' && id.find('/') == id.npos && id.find('\0') == id.npos;
-}
-
-std::string timeText(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&now, &local);
-  char text[40];
-  return {text, std::strftime(text, sizeof text, format, &local)};
 }
 
 const char* regionWord(BodyRegion region) {
@@ -336,8 +328,8 @@ Result<SavedCase> CaseLibrary::save(const NewCase& of, const Progress& progress)
   const Result<FileLock> list_lock = folders_.lock();
   if (!list_lock) return failed(list_lock.error());
   if (progress.cancelled()) return savingCancelled();
-  const std::string day = timeText("%Y-%m-%d");
-  record.imported = timeText("%Y-%m-%dT%H:%M:%S");
+  const std::string day = localTime("%Y-%m-%d");
+  record.imported = localTime("%Y-%m-%dT%H:%M:%S");
   const std::set<std::string> taken = namesBeside("");
   if (taken.contains(foldedName(record.name))) return nameTaken();
   for (int number = 1; record.id.empty(); ++number) {

@@ -15,4 +15,11 @@ int largestVolumeEdge() {
   return edge;
 }
 
+bool isSoftware(const std::string& driver) {
+  for (const char* name : {"llvmpipe", "softpipe", "Software"}) {
+    if (driver.find(name) != std::string::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace trephine

@@ -99,7 +99,7 @@ MAY_USE = {
     "render": {"vtk-rendering", "vtk-image", "opengl", "dl"},
     "plot": {"qt-gui"},
     "headset": {"qt-opengl", "openxr", "dl"},
-    "lab": {"qt-opengl", "dl"},
+    "lab": {"qt-opengl"},
     "ui": {"qt"},
     "app": {"qt", "cli11"},
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/html.h"
 #include "base/purpose.h"
 #include "base/system.h"
 #include "imaging/common/text.h"
@@ -15,26 +16,7 @@ constexpr std::size_t kMostSeries = 8;  // in full; the others are counted
 constexpr std::size_t kMostSlices = 6;  // named in a finding
 
 std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : cleanUtf8(text)) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
+  return inHtml(cleanUtf8(text));
 }
 
 const char* verdictSentence(Verdict verdict) {

@@ -1,6 +1,5 @@
 #include "lab/commission/commission.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
@@ -10,16 +9,16 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <thread>
 
 #include "base/file.h"
+#include "base/local_time.h"
 #include "base/memory.h"
-#include "base/purpose.h"
 #include "base/release.h"
 #include "base/system.h"
 #include "device/find_arms.h"
+#include "headset/headset.h"
 #include "lab/machine/jitter_measurement.h"
 #include "lab/render/render_parts.h"
 #include "render/display_probe.h"
@@ -36,14 +35,6 @@ constexpr std::size_t kDiskTry = 256'000'000;  // bytes
 
 Error stopped() {
   return {"CANCELLED", "The commissioning was cancelled", "commission", ""};
-}
-
-std::string localTime(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm at{};
-  ::localtime_r(&now, &at);
-  char text[64];
-  return {text, std::strftime(text, sizeof text, format, &at)};
 }
 
 std::string machineName() {
@@ -168,8 +159,7 @@ void Run::devices() {
     models += (models.empty() ? "" : ", ") + arm.model;
   }
   add("arms", double(arms), models);
-  void* loader = ::dlopen("libopenxr_loader.so.1", RTLD_NOW | RTLD_LOCAL);
-  add("headset", loader ? 1.0 : 0.0);
+  add("headset", openXrInstalled() ? 1.0 : 0.0);
 }
 
 Status Run::drawing() {
@@ -190,13 +180,8 @@ Status Run::drawing() {
   }
   (*renderer)->paint(0);
   const std::string driver = (*renderer)->openGlDescription();
-  const bool software = driver.find("llvmpipe") != std::string::npos ||
-                        driver.find("softpipe") != std::string::npos ||
-                        driver.find("Software") != std::string::npos;
-  add("opengl", software ? 0.0 : 1.0, driver);
-  const double edge = largestVolumeEdge();
-  add("volume_edge", edge);
-  if (options_.largest_edge > edge) checks.back().verdict = Fitness::fail;
+  add("opengl", isSoftware(driver) ? 0.0 : 1.0, driver);
+  checks.push_back(judged("volume_edge", largestVolumeEdge(), "", options_.largest_edge));
   renderer->reset();
   Result<std::vector<RenderSubject>> subjects = renderSubjects("", Progress(progress_, 0.45, 0.55));
   if (!subjects) return subjects.error();

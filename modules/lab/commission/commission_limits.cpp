@@ -72,7 +72,7 @@ const CommissionLimit* commissionLimit(const std::string& name) {
   return found == std::end(kLimits) ? nullptr : &*found;
 }
 
-CommissionCheck judged(const std::string& name, double value, std::string remark) {
+CommissionCheck judged(const std::string& name, double value, std::string remark, double needed) {
   const CommissionLimit* by = commissionLimit(name);
   if (!by) std::abort();  // a name that the table lacks is a mistake of ours
   CommissionCheck check{name,     by->words,     value, by->unit,
@@ -80,9 +80,11 @@ CommissionCheck judged(const std::string& name, double value, std::string remark
   const auto beyond = [&](double limit) {
     return !std::isfinite(value) || (by->at_least ? value < limit : value > limit);
   };
-  if (by->fail && beyond(*by->fail)) {
+  std::optional<double> fail = by->fail;
+  if (fail && by->at_least) fail = std::max(*fail, needed);
+  if (fail && beyond(*fail)) {
     check.verdict = Fitness::fail;
-    check.limit = by->fail;
+    check.limit = fail;
   } else if (beyond(by->warn)) {
     check.verdict = Fitness::warn;
   }

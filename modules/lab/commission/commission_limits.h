@@ -36,8 +36,10 @@ struct CommissionCheck {
   std::string remark;  // what else is known, such as a driver's name
 };
 
-// By the table. A value that is no number fails.
-CommissionCheck judged(const std::string& name, double value, std::string remark = "");
+// By the table, of which a limit that is `at_least` is raised to what is `needed` on this machine.
+// A value that is no number fails.
+CommissionCheck judged(const std::string& name, double value, std::string remark = "",
+                       double needed = 0.0);
 // What could not be measured, and why.
 CommissionCheck notMeasured(const std::string& name, Fitness verdict, const Error& why);
 

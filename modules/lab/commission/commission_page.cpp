@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/html.h"
 #include "base/purpose.h"
 #include "lab/commission/commission.h"
 #include "lab/common/spread.h"
@@ -29,26 +30,6 @@ std::string changeText(const CommissionChange& change) {
   return change.words + ": " + shown(change.value_before, change.unit) + " (" +
          nameOf(change.before) + ") before, " + shown(change.value_now, change.unit) + " (" +
          nameOf(change.now) + ") now";
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 const char* inWords(Fitness verdict) {
@@ -135,26 +116,26 @@ std::string toHtml(const Commissioning& of, const std::vector<CommissionChange>&
       "<h1>Commissioning of this workstation</h1>\n";
   page += "<p class=\"" + std::string(nameOf(fitnessOf(of))) + "\">" + inWords(fitnessOf(of)) +
           "</p>\n";
-  page += "<p>" + escaped(of.when) + " &middot; Trephine " + escaped(of.build) + " &middot; " +
-          escaped(of.machine) + "</p>\n";
+  page += "<p>" + inHtml(of.when) + " &middot; Trephine " + inHtml(of.build) + " &middot; " +
+          inHtml(of.machine) + "</p>\n";
   page += "<table>\n<tr><th></th><th>What</th><th>Here</th><th>Limit</th><th>Next step</th></tr>\n";
   for (const CommissionCheck& check : of.checks) {
     const CommissionLimit* by = commissionLimit(check.name);
     page += "<tr><td class=\"" + std::string(nameOf(check.verdict)) + "\">" +
-            nameOf(check.verdict) + "</td><td>" + escaped(check.words) + "<br><small>" +
-            (by ? escaped(by->reason) : "") + "</small></td><td>" +
-            escaped(shown(check.value, check.unit));
-    if (!check.remark.empty()) page += "<br><small>" + escaped(check.remark) + "</small>";
+            nameOf(check.verdict) + "</td><td>" + inHtml(check.words) + "<br><small>" +
+            (by ? inHtml(by->reason) : "") + "</small></td><td>" +
+            inHtml(shown(check.value, check.unit));
+    if (!check.remark.empty()) page += "<br><small>" + inHtml(check.remark) + "</small>";
     page += "</td><td>" +
             (check.limit ? std::string(by && by->at_least ? "at least " : "at most ") +
-                               escaped(shown(check.limit, check.unit))
+                               inHtml(shown(check.limit, check.unit))
                          : std::string()) +
-            "</td><td>" + escaped(check.next) + "</td></tr>\n";
+            "</td><td>" + inHtml(check.next) + "</td></tr>\n";
   }
   page += "</table>\n<h2>Since the last commissioning</h2>\n";
   if (changes.empty()) page += "<p>Nothing is otherwise, or there was none before.</p>\n";
   for (const CommissionChange& change : changes)
-    page += "<p>" + escaped(changeText(change)) + "</p>\n";
+    page += "<p>" + inHtml(changeText(change)) + "</p>\n";
   return page + "<p><small>" + kPurpose + ".</small></p>\n</body></html>\n";
 }
 

@@ -15,6 +15,7 @@
 #include "lab/common/exercise_view.h"
 #include "lab/headset/headset_geometry.h"
 #include "lab/headset/headset_rig.h"
+#include "render/gl_limits.h"
 
 namespace trephine {
 
@@ -400,8 +401,6 @@ Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, 
   HeadsetMeasurement measured;
   measured.real_runtime = *runtime == nullptr;
   measured.opengl = rig.renderer().openGlDescription();
-  const bool software = measured.opengl.find("llvmpipe") != std::string::npos ||
-                        measured.opengl.find("softpipe") != std::string::npos;
   Measuring measuring(rig, *runtime, measured, progress);
   if (measured.real_runtime) {
     if (Status answers = measuring.answers(); !answers) return answers.error();
@@ -414,7 +413,7 @@ Result<HeadsetMeasurement> measureHeadset(const HeadsetMeasureOptions& options, 
     return opened.error();
   }
   std::vector<int> sizes{kSmall};
-  if (!software) sizes.push_back(kLarge);
+  if (!isSoftware(measured.opengl)) sizes.push_back(kLarge);
   if (Status done = measuring.rows(sizes); !done) return done.error();
   const int textures = rig.textures(), threads = entriesOf("/proc/self/task"),
             descriptors = entriesOf("/proc/self/fd");

@@ -64,6 +64,10 @@ TEST(CommissionLimits, EachCheckCanPassWarnAndFail) {
       EXPECT_EQ(failed.limit, commissionLimit(sample.name)->fail) << sample.name;
     }
   }
+  const CommissionCheck small = judged("volume_edge", 1024.0, "", 1300.0);
+  EXPECT_EQ(small.verdict, Fitness::fail) << "a case that is kept here is larger";
+  EXPECT_EQ(small.limit, 1300.0);
+  EXPECT_FALSE(small.next.empty());
   const CommissionCheck none = judged("frame_time", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(none.verdict, Fitness::fail) << "a figure that is none is no pass";
   EXPECT_FALSE(none.value);

@@ -21,12 +21,16 @@ namespace {
 using test::recordRun;
 using test::slab;
 
+void takeOut(const char* dataset, const std::filesystem::path& recording) {
+  const hid_t file = H5Fopen(recording.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, dataset, H5P_DEFAULT), 0);
+  H5Fclose(file);
+}
+
 TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 500);
-  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Ldelete(file, "end", H5P_DEFAULT), 0);
-  H5Fclose(file);
+  takeOut("end", folder / "a.h5");
   const auto reader = SessionReader::open(folder / "a.h5");
   ASSERT_FALSE(reader.ok());
   EXPECT_EQ(reader.error().code, "BAD_RECORDING");
@@ -37,9 +41,7 @@ TEST(Recording, WhoseEndIsDamagedIsNotTakenForOneThatWasCutShort) {
 TEST(Recording, ThatIsDamagedIsNamedWithoutANoiseInAnyThread) {
   test::TemporaryFolder folder;
   recordRun(folder / "a.h5", 500);
-  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  ASSERT_GE(H5Ldelete(file, "removed_voxels", H5P_DEFAULT), 0);
-  H5Fclose(file);
+  takeOut("removed_voxels", folder / "a.h5");
   testing::internal::CaptureStderr();
   for (int i = 0; i < 2; ++i) {
     std::thread([&] { EXPECT_FALSE(SessionReader::open(folder / "a.h5").ok()); }).join();
